@@ -1,0 +1,166 @@
+#pragma once
+/// State as little-endian bytes: what hashes cover and snapshots hold.
+///
+/// write(w, x) and read(r, x) handle numbers, enumerations, strings, vectors, optionals, plain structs without
+/// padding and structs with a field list. Reading checks every length: bytes may come from a damaged file.
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "base/fields.h"
+#include "base/node.h"
+
+namespace sandlot {
+
+/// Appends bytes to a buffer whose capacity is reused.
+class ByteWriter {
+ public:
+  void raw(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), bytes, bytes + size);
+  }
+  std::span<const std::byte> bytes() const { return bytes_; }
+  std::vector<std::byte>& buffer() { return bytes_; }
+  std::size_t size() const { return bytes_.size(); }
+  void clear() { bytes_.clear(); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads what ByteWriter wrote. Once a read fails all later ones do; `ok()` tells.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+  bool raw(void* data, std::size_t size) {
+    if (!ok_ || rest_.size() < size) return ok_ = false;
+    if (size) std::memcpy(data, rest_.data(), size);
+    rest_ = rest_.subspan(size);
+    return true;
+  }
+  /// The next `size` bytes without a copy; empty and failed when there are fewer.
+  std::span<const std::byte> take(std::size_t size) {
+    if (!ok_ || rest_.size() < size) return ok_ = false, std::span<const std::byte>();
+    const auto taken = rest_.first(size);
+    rest_ = rest_.subspan(size);
+    return taken;
+  }
+  bool ok() const { return ok_; }
+  void fail() { ok_ = false; }
+  std::size_t remaining() const { return rest_.size(); }
+
+ private:
+  std::span<const std::byte> rest_;
+  bool ok_ = true;
+};
+
+/// Plain values whose bytes are their value: no padding, no pointers.
+template <class T>
+concept RawBytes = (std::is_floating_point_v<T> || (std::is_trivially_copyable_v<T> &&
+                    std::has_unique_object_representations_v<T> && !std::is_pointer_v<T>)) && !Fielded<T>;
+
+template <class T>
+void write(ByteWriter& w, const T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    write(w, static_cast<std::uint32_t>(value.size()));
+    w.raw(value.data(), value.size());
+  } else if constexpr (is_vector<T>::value) {
+    write(w, static_cast<std::uint32_t>(value.size()));
+    if constexpr (std::is_same_v<T, std::vector<bool>>) {
+      for (const bool b : value) write(w, static_cast<std::uint8_t>(b));
+    } else if constexpr (RawBytes<typename T::value_type>) {
+      w.raw(value.data(), value.size() * sizeof(typename T::value_type));
+    } else {
+      for (const auto& element : value) write(w, element);
+    }
+  } else if constexpr (is_optional<T>::value) {
+    write(w, static_cast<std::uint8_t>(value.has_value()));
+    if (value) write(w, *value);
+  } else if constexpr (RawBytes<T>) {
+    w.raw(&value, sizeof value);
+  } else if constexpr (is_array<T>::value) {
+    for (const auto& element : value) write(w, element);
+  } else if constexpr (FixedVector<T>) {
+    for (std::size_t i = 0; i < T::extent; ++i) write(w, value[i]);
+  } else {
+    static_assert(Fielded<T>, "state must be plain values or have a field list");
+    T::fields(value, [&](const Field&, const auto& member) { write(w, member); });
+  }
+}
+
+template <class T>
+void read(ByteReader& r, T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    std::uint32_t size = 0;
+    read(r, size);
+    const auto bytes = r.take(size);
+    value.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  } else if constexpr (is_vector<T>::value) {
+    std::uint32_t size = 0;
+    read(r, size);
+    if (!r.ok() || size > r.remaining()) return r.fail();  // every element takes at least one byte
+    value.clear();
+    value.resize(size);
+    if constexpr (std::is_same_v<T, std::vector<bool>>) {
+      for (std::size_t i = 0; i < size; ++i) {
+        std::uint8_t b = 0;
+        read(r, b);
+        value[i] = b != 0;
+      }
+    } else if constexpr (RawBytes<typename T::value_type>) {
+      r.raw(value.data(), value.size() * sizeof(typename T::value_type));
+    } else {
+      for (auto& element : value) read(r, element);
+    }
+  } else if constexpr (is_optional<T>::value) {
+    std::uint8_t present = 0;
+    read(r, present);
+    if (present) read(r, value.emplace());
+    else value.reset();
+  } else if constexpr (std::is_same_v<T, bool>) {
+    std::uint8_t b = 0;
+    r.raw(&b, 1);
+    value = b != 0;
+  } else if constexpr (RawBytes<T>) {
+    r.raw(&value, sizeof value);
+  } else if constexpr (is_array<T>::value) {
+    for (auto& element : value) read(r, element);
+  } else if constexpr (FixedVector<T>) {
+    for (std::size_t i = 0; i < T::extent; ++i) read(r, value[i]);
+  } else {
+    static_assert(Fielded<T>, "state must be plain values or have a field list");
+    T::fields(value, [&](const Field&, auto& member) { read(r, member); });
+  }
+}
+
+/// The tunable fields of a spec, nested ones included: the part of a spec that is State.
+template <Fielded Spec>
+void write_tunables(ByteWriter& w, const Spec& spec) {
+  Spec::fields(spec, [&](const Field& f, const auto& member) {
+    using Member = std::remove_cvref_t<decltype(member)>;
+    if (f.flags & Field::tunable) {
+      if constexpr (!std::is_same_v<Member, Node>) write(w, member);
+    } else if constexpr (Fielded<Member>) {
+      write_tunables(w, member);
+    }
+  });
+}
+
+template <Fielded Spec>
+void read_tunables(ByteReader& r, Spec& spec) {
+  Spec::fields(spec, [&](const Field& f, auto& member) {
+    using Member = std::remove_cvref_t<decltype(member)>;
+    if (f.flags & Field::tunable) {
+      if constexpr (!std::is_same_v<Member, Node>) read(r, member);
+    } else if constexpr (Fielded<Member>) {
+      read_tunables(r, member);
+    }
+  });
+}
+
+}  // namespace sandlot

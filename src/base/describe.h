@@ -1,0 +1,89 @@
+#pragma once
+/// The field list of a spec as data: for `sandlot list`, the JSON schema, forms and the generated docs.
+#include <string>
+#include <vector>
+
+#include "base/fields.h"
+#include "base/node.h"
+#include "base/text.h"
+
+namespace sandlot {
+
+/// One leaf field of a spec, nested ones with their path.
+struct FieldInfo {
+  std::string path;  ///< "noise/white"
+  std::string type;  ///< "number", "integer", "bool", "text", "choice", "list of number", "map"
+  std::string unit, help;
+  double min = 0, max = 0;
+  bool tunable = false, required = false, optional = false;
+  std::string default_value;  ///< as a file would write it
+  std::vector<std::string> choices;
+  std::size_t length = 0;  ///< of fixed vectors, 0 otherwise
+};
+
+template <class T>
+void describe_value(const Field& f, const T& value, const std::string& path, std::vector<FieldInfo>& out,
+                    bool optional) {
+  FieldInfo info{path, "", f.unit, f.help, f.min, f.max, (f.flags & Field::tunable) != 0,
+                 (f.flags & Field::required) != 0, optional};
+  if constexpr (std::is_same_v<T, bool>) {
+    info.type = "bool";
+    info.default_value = value ? "true" : "false";
+  } else if constexpr (Number<T>) {
+    info.type = std::is_integral_v<T> ? "integer" : "number";
+    info.default_value = number_text(static_cast<double>(value));
+  } else if constexpr (NamedEnum<T>) {
+    info.type = "choice";
+    for (const auto& entry : enum_names(value)) {
+      info.choices.emplace_back(entry.name);
+      if (entry.value == value) info.default_value = entry.name;
+    }
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    info.type = "text";
+    info.default_value = value;
+  } else if constexpr (std::is_same_v<T, Node>) {
+    info.type = "map";
+  } else if constexpr (FixedVector<T> || is_array<T>::value) {
+    info.type = "list of number";
+    info.default_value = "[";
+    std::size_t n = 0;
+    if constexpr (FixedVector<T>) n = T::extent;
+    else n = value.size();
+    for (std::size_t i = 0; i < n; ++i)
+      info.default_value += (i ? ", " : "") + number_text(static_cast<double>(value[i]));
+    info.default_value += "]";
+    info.length = n;
+  } else if constexpr (is_vector<T>::value) {
+    using Element = typename T::value_type;
+    if constexpr (Fielded<Element>) {
+      info.type = "list of maps";
+      out.push_back(info);
+      Element element{};
+      Element::fields(element, [&](const Field& inner, auto& member) {
+        describe_value(inner, member, path + "[]/" + inner.key, out, false);
+      });
+      return;
+    } else {
+      info.type = std::is_same_v<Element, std::string> ? "list of text" : "list of number";
+      info.default_value = "[]";
+    }
+  } else if constexpr (is_optional<T>::value) {
+    describe_value(f, value.value_or(typename T::value_type{}), path, out, true);
+    return;
+  } else {
+    T::fields(value, [&](const Field& inner, const auto& member) {
+      describe_value(inner, member, path + "/" + inner.key, out, optional);
+    });
+    return;
+  }
+  out.push_back(std::move(info));
+}
+
+template <Fielded Spec>
+std::vector<FieldInfo> describe_fields(const Spec& spec = {}) {
+  std::vector<FieldInfo> out;
+  Spec::fields(spec, [&](const Field& f, const auto& member) { describe_value(f, member, f.key, out, false); });
+  return out;
+}
+
+}  // namespace sandlot

@@ -1,0 +1,73 @@
+#pragma once
+/// A configuration value that remembers where it was written: the common form of YAML, SDF and URDF.
+///
+/// Readers build Nodes; specs are read from them (base/read.h), so every complaint can name file, line and key.
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+
+namespace sandlot {
+
+class Node {
+ public:
+  enum class Type { null, scalar, sequence, map };
+  struct Entry;
+
+  Node() = default;
+  static Node scalar(std::string text, Place place = {});
+  static Node sequence(Place place = {});
+  static Node map(Place place = {});
+
+  Type type() const { return type_; }
+  bool is_null() const { return type_ == Type::null; }
+  bool is_scalar() const { return type_ == Type::scalar; }
+  bool is_sequence() const { return type_ == Type::sequence; }
+  bool is_map() const { return type_ == Type::map; }
+  const Place& place() const { return place_; }
+  void set_place(Place place) { place_ = std::move(place); }
+
+  /// The text of a scalar; "" otherwise.
+  const std::string& text() const { return text_; }
+  /// Elements of a sequence; empty otherwise.
+  const std::vector<Node>& items() const { return items_; }
+  std::vector<Node>& items() { return items_; }
+  /// Entries of a map in file order; empty otherwise.
+  const std::vector<Entry>& entries() const { return entries_; }
+  std::vector<Entry>& entries() { return entries_; }
+
+  /// The value of a key, or null (nullptr) when there is none. Maps only.
+  const Node* find(std::string_view key) const;
+  Node* find(std::string_view key);
+  /// Adds or replaces.
+  Node& set(std::string key, Node value);
+  Node& push(Node value);
+  bool erase(std::string_view key);
+
+  /// An error at this node's place.
+  Error error(std::string what, std::string fix = "", std::string path = "") const;
+
+ private:
+  Type type_ = Type::null;
+  Place place_;
+  std::string text_;
+  std::vector<Node> items_;
+  std::vector<Entry> entries_;
+};
+
+struct Node::Entry {
+  std::string key;
+  Node value;
+  Place key_place;
+};
+
+/// Lays `over` upon `base`: maps merge key by key, anything else is replaced.
+void merge(Node& base, const Node& over);
+
+/// "a map", "a list", "text 'x'", "nothing": for error messages.
+std::string describe(const Node& node);
+
+}  // namespace sandlot

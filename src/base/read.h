@@ -1,0 +1,139 @@
+#pragma once
+/// Reads a struct with a field list from a Node: types, units, ranges, unknown and missing keys, each with
+/// `file:line:column`, the key path and what would be right.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/fields.h"
+#include "base/node.h"
+#include "base/text.h"
+#include "base/units.h"
+
+namespace sandlot {
+
+/// A number with unit and range; shared by all numeric fields so that the template stays small.
+Result<double> read_number(const Node& node, const Field& field, bool integer, const std::string& path);
+Result<bool> read_bool(const Node& node, const std::string& path);
+/// The error for a key that no field has.
+Error unknown_key(const Node::Entry& entry, const std::vector<std::string>& known, const std::string& path);
+/// The error for a node of the wrong type.
+Error wrong_type(const Node& node, const char* expected, const std::string& path);
+
+template <class T>
+Status read_value(const Node& node, const Field& field, T& out, const std::string& path);
+
+/// Reads the fields of `spec` that `node` (a map, or null for "all defaults") gives; the others keep their
+/// value. The first fault is returned and `spec` is then half-read: callers throw it away.
+template <Fielded Spec>
+Status read_fields(const Node& node, Spec& spec, const std::string& path = "") {
+  if (!node.is_map() && !node.is_null()) return wrong_type(node, "a map of keys", path);
+  std::vector<std::string> known;
+  Status status;
+  Spec::fields(spec, [&](const Field& f, auto& member) {
+    known.emplace_back(f.key);
+    if (!status) return;
+    if (const Node* value = node.find(f.key))
+      status = read_value(*value, f, member, path + "/" + f.key);
+    else if (f.flags & Field::required)
+      status = node.error(std::string("key '") + f.key + "' is missing", f.help, path);
+  });
+  // An unknown key is reported before a bad value: a slip in the name is the likelier cause of both.
+  for (const Node::Entry& entry : node.entries()) {
+    bool found = false;
+    for (const std::string& key : known) found = found || key == entry.key;
+    if (!found) return unknown_key(entry, known, path);
+  }
+  return status;
+}
+
+template <class T>
+Status read_value(const Node& node, const Field& field, T& out, const std::string& path) {
+  if constexpr (std::is_same_v<T, bool>) {
+    SL_ASSIGN(out, read_bool(node, path));
+  } else if constexpr (Number<T>) {
+    SL_ASSIGN(const double number, read_number(node, field, std::is_integral_v<T>, path));
+    out = static_cast<T>(number);
+  } else if constexpr (NamedEnum<T>) {
+    if (!node.is_scalar()) return wrong_type(node, "a name", path);
+    std::vector<std::string> names;
+    for (const auto& entry : enum_names(T{})) {
+      names.emplace_back(entry.name);
+      if (node.text() == entry.name) return out = entry.value, Status();
+    }
+    return node.error("'" + node.text().substr(0, 40) + "' is no choice here", suggestion(node.text(), names), path);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (!node.is_scalar()) return wrong_type(node, "text", path);
+    if (node.text().size() > field.max_count) return node.error("text is too long", "", path);
+    out = node.text();
+  } else if constexpr (std::is_same_v<T, Node>) {
+    out = node;
+  } else if constexpr (FixedVector<T> || is_array<T>::value) {
+    constexpr std::size_t extent = [] {
+      if constexpr (FixedVector<T>) return static_cast<std::size_t>(T::extent);
+      else return std::tuple_size_v<T>;
+    }();
+    if (!node.is_sequence() || node.items().size() != extent)
+      return wrong_type(node, ("a list of " + std::to_string(extent) + " values").c_str(), path);
+    for (std::size_t i = 0; i < extent; ++i)
+      SL_TRY(read_value(node.items()[i], field, out[i], path + "/" + std::to_string(i)));
+  } else if constexpr (is_vector<T>::value) {
+    if (!node.is_sequence()) return wrong_type(node, "a list", path);
+    if (node.items().size() > field.max_count)
+      return node.error("list has " + std::to_string(node.items().size()) + " elements",
+                        "at most " + std::to_string(field.max_count) + " are allowed", path);
+    out.clear();
+    for (std::size_t i = 0; i < node.items().size(); ++i) {
+      typename T::value_type element{};
+      SL_TRY(read_value(node.items()[i], field, element, path + "/" + std::to_string(i)));
+      out.push_back(std::move(element));
+    }
+  } else if constexpr (is_optional<T>::value) {
+    typename T::value_type value{};
+    if (out) value = *out;
+    SL_TRY(read_value(node, field, value, path));
+    out = std::move(value);
+  } else {
+    static_assert(Fielded<T>, "a field must be a number, text, enumeration, list or a struct with fields");
+    SL_TRY(read_fields(node, out, path));
+  }
+  return {};
+}
+
+/// Defaults overlaid with `node`, every value in range.
+template <Fielded Spec>
+Result<Spec> read_spec(const Node& node, const std::string& path = "") {
+  Spec spec{};
+  SL_TRY(read_fields(node, spec, path));
+  return spec;
+}
+
+/// Sets one tunable field by its path ("noise/white" or "gains/p") while the run goes on.
+template <Fielded Spec>
+Status set_tunable(Spec& spec, std::string_view field_path, const Node& value) {
+  const std::size_t slash = field_path.find('/');
+  const std::string_view key = field_path.substr(0, slash);
+  std::vector<std::string> known;
+  bool found = false;
+  Status status;
+  Spec::fields(spec, [&](const Field& f, auto& member) {
+    known.emplace_back(f.key);
+    if (found || key != f.key) return;
+    found = true;
+    if constexpr (Fielded<std::remove_cvref_t<decltype(member)>>) {
+      if (slash != std::string_view::npos) {
+        status = set_tunable(member, field_path.substr(slash + 1), value);
+        return;
+      }
+    }
+    if (!(f.flags & Field::tunable))
+      status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place()};
+    else
+      status = read_value(value, f, member, "/" + std::string(field_path));
+  });
+  if (!found)
+    return Error{"no parameter '" + std::string(key) + "'", suggestion(key, known), value.place()};
+  return status;
+}
+
+}  // namespace sandlot

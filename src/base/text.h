@@ -1,0 +1,30 @@
+#pragma once
+/// Small text services for error messages and names.
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sandlot {
+
+/// The candidate nearest to `word` by edit distance (case ignored), or "" when none is near enough to be a
+/// plausible slip (more than a third of the letters differ).
+std::string nearest(std::string_view word, std::span<const std::string> candidates);
+
+/// "did you mean 'x'?" or, when nothing is near, "known are: a, b, c" (at most twelve).
+std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+
+/// Shortest decimal text that reads back as exactly `x`.
+std::string number_text(double x);
+
+/// The whole of `text` as a number: no sign of rubbish, no locale. False when it is not one.
+bool parse_number(std::string_view text, double& out);
+
+std::string_view trim(std::string_view text);
+bool starts_with(std::string_view text, std::string_view prefix);
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// The form a name takes in addresses: letters, digits, '_', '-'; everything else becomes '_'.
+std::string sanitised(std::string_view name);
+
+}  // namespace sandlot

@@ -1,0 +1,31 @@
+#pragma once
+/// Simulated time: integer nanoseconds, so that a million steps of 0.1 s end exactly where they should.
+#include <compare>
+#include <cstdint>
+
+namespace sandlot {
+
+/// A duration or a point of simulated time, in nanoseconds since the start of the run.
+struct Time {
+  std::int64_t ns = 0;
+
+  static constexpr std::int64_t per_s = 1'000'000'000;
+  static constexpr Time from_ns(std::int64_t n) { return {n}; }
+  /// @param s  seconds, rounded to the nearest nanosecond; |s| < 9.2e9
+  static constexpr Time from_s(double s) { return {static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))}; }
+  constexpr double s() const { return static_cast<double>(ns) * 1e-9; }
+
+  friend constexpr auto operator<=>(Time, Time) = default;
+  friend constexpr Time operator+(Time a, Time b) { return {a.ns + b.ns}; }
+  friend constexpr Time operator-(Time a, Time b) { return {a.ns - b.ns}; }
+  friend constexpr Time operator*(Time a, std::int64_t k) { return {a.ns * k}; }
+};
+
+/// Due time of sample k of something that runs at `rate_hz` from `start`: start + floor(k * 1e9 / rate).
+/// Computed from k, never accumulated, so that 3 Hz does not drift.
+constexpr Time due_time(Time start, std::int64_t k, double rate_hz) {
+  const long double ns = static_cast<long double>(k) * 1e9L / static_cast<long double>(rate_hz);
+  return {start.ns + static_cast<std::int64_t>(ns)};
+}
+
+}  // namespace sandlot

@@ -1,0 +1,194 @@
+#pragma once
+/// The controller border: observation in, command out. No simulator in it: the same controller can be linked to
+/// the drivers of a real robot.
+///
+/// A controller kind is one folder under controllers/ and one line in controllers/kinds.h. It writes
+///
+///   struct Wander {
+///     using Spec = ...;  using State = ...;           // with field lists; State is saved and hashed
+///     Spec spec; State state;
+///     Status init(const Description& robot);          // resolves names to handles
+///     void step(const Observation& obs, Command& cmd);
+///   };
+///   const ControllerKind kind = make_controller<Wander>({...});
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/describe.h"
+#include "base/random.h"
+#include "base/read.h"
+#include "messages/messages.h"
+#include "messages/topic.h"
+
+namespace sandlot {
+
+inline constexpr int controller_api_version = 1;
+
+/// Handle of a device's message of type M, resolved once.
+template <class M>
+struct Reading {
+  std::uint32_t topic = ~0u;
+};
+/// Handle of a device that takes commands of type M, resolved once.
+template <class M>
+struct Actuator {
+  std::uint32_t slot = ~0u;
+};
+
+/// What a controller may know of the robot it drives: names and types, no ground truth.
+class Description {
+ public:
+  struct Entry {
+    std::string device;  ///< "laser"
+    std::string level;   ///< "ranges"
+    std::string type;    ///< "sensor_msgs/msg/LaserScan"
+    std::uint32_t index; ///< into the observation's topics or the command's slots
+    Pose X_BS;           ///< sensor frame in the robot's base link
+  };
+  std::string robot;
+  double control_period_s = 0;
+  std::vector<Entry> readings;
+  std::vector<Entry> actuators;
+
+  /// `device` or `device/level`; "" takes the only one of that type. Errors name what there is.
+  template <class M>
+  Result<Reading<M>> reading(std::string_view device) const {
+    SL_ASSIGN(const Entry* entry, find(readings, device, M::ros_type, "reading"));
+    return Reading<M>{entry->index};
+  }
+  template <class M>
+  Result<Actuator<M>> actuator(std::string_view device) const {
+    SL_ASSIGN(const Entry* entry, find(actuators, device, M::ros_type, "actuator"));
+    return Actuator<M>{entry->index};
+  }
+  /// Where the sensor behind a reading sits on the robot.
+  template <class M>
+  const Pose& pose(Reading<M> reading) const {
+    for (const Entry& entry : readings)
+      if (entry.index == reading.topic) return entry.X_BS;
+    SL_CHECK_MSG(false, "handle of another robot");
+    return readings.front().X_BS;
+  }
+
+ private:
+  Result<const Entry*> find(const std::vector<Entry>& entries, std::string_view device, const char* type,
+                            const char* what) const;
+};
+
+/// A message as it was at the beginning of this control step; valid during the step.
+template <class M>
+struct View {
+  const M& message;
+  Time stamp;
+  bool fresh;  ///< new since this controller's previous step
+  bool valid;  ///< false: the device has never produced one
+};
+
+/// What a controller sees in one step.
+class Observation {
+ public:
+  Observation(Time now, std::span<const TopicBase* const> topics, std::span<const std::uint64_t> seen, Stream random)
+      : now_(now), topics_(topics), seen_(seen), random_(random) {}
+  Time now() const { return now_; }
+  template <class M>
+  View<M> get(Reading<M> handle) const {
+    SL_CHECK(handle.topic < topics_.size());
+    const Topic<M>* const topic = topic_cast<M>(topics_[handle.topic]);
+    SL_CHECK(topic != nullptr);
+    return {topic->message, topic->stamp, topic->count > seen_[handle.topic], topic->count > 0};
+  }
+  /// This controller's own random numbers for this step.
+  Stream random() const { return random_; }
+
+ private:
+  Time now_;
+  std::span<const TopicBase* const> topics_;
+  std::span<const std::uint64_t> seen_;
+  Stream random_;
+};
+
+/// What a controller orders in one step; acts at the beginning of the next tick.
+class Command {
+ public:
+  struct Order {
+    std::uint32_t slot;
+    std::uint32_t begin, size;  ///< bytes of the message in `bytes`
+  };
+  template <class M>
+  void set(Actuator<M> handle, const M& message) {
+    const auto begin = static_cast<std::uint32_t>(bytes_.size());
+    write(bytes_, message);
+    orders_.push_back({handle.slot, begin, static_cast<std::uint32_t>(bytes_.size()) - begin});
+  }
+  void clear() {
+    orders_.clear();
+    bytes_.clear();
+  }
+  std::span<const Order> orders() const { return orders_; }
+  std::span<const std::byte> bytes(const Order& order) const { return bytes_.bytes().subspan(order.begin, order.size); }
+
+ private:
+  std::vector<Order> orders_;
+  ByteWriter bytes_;
+};
+
+/// A controller of any kind.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  /// Reads the configuration and resolves names. Called once, before the first step.
+  virtual Status init(const Description& robot, const Node& config) = 0;
+  virtual void step(const Observation& obs, Command& cmd) = 0;
+  virtual Status set_parameter(std::string_view path, const Node& value) = 0;
+  virtual void save(ByteWriter& w) const = 0;
+  virtual void load(ByteReader& r) = 0;
+};
+
+struct ControllerKind {
+  const char* name;
+  const char* help;
+  int api_version = controller_api_version;
+  // Filled by make_controller:
+  std::vector<FieldInfo> (*describe)() = nullptr;
+  std::unique_ptr<Controller> (*create)() = nullptr;
+};
+
+template <class C>
+class ControllerAdapter final : public Controller {
+ public:
+  Status init(const Description& robot, const Node& config) override {
+    SL_ASSIGN(controller_.spec, read_spec<typename C::Spec>(config));
+    return controller_.init(robot);
+  }
+  void step(const Observation& obs, Command& cmd) override { controller_.step(obs, cmd); }
+  Status set_parameter(std::string_view path, const Node& value) override {
+    typename C::Spec changed = controller_.spec;
+    SL_TRY(set_tunable(changed, path, value));
+    controller_.spec = std::move(changed);
+    return {};
+  }
+  void save(ByteWriter& w) const override {
+    write_tunables(w, controller_.spec);
+    write(w, controller_.state);
+  }
+  void load(ByteReader& r) override {
+    read_tunables(r, controller_.spec);
+    read(r, controller_.state);
+  }
+
+ private:
+  C controller_;
+};
+
+template <class C>
+constexpr ControllerKind make_controller(ControllerKind kind) {
+  kind.describe = [] { return describe_fields<typename C::Spec>(); };
+  kind.create = []() -> std::unique_ptr<Controller> { return std::make_unique<ControllerAdapter<C>>(); };
+  return kind;
+}
+
+}  // namespace sandlot

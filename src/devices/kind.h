@@ -1,0 +1,267 @@
+#pragma once
+/// The border between the simulator and a kind of device (sensor or actuator).
+///
+/// A kind is one folder under devices/ and one line in devices/kinds.h. It writes a struct
+///
+///   struct Device {                       // one device in the pool
+///     using Spec = ...;                   // named fields with a field list; constant but for tunable fields
+///     using State = ...;                  // plain data with a field list: all that changes
+///     Spec spec; State state;
+///     ...                                 // what create() resolved: handles, topics
+///     static Result<Device> create(const DeviceBuild&, Spec);
+///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, switch_level
+///   };
+///
+/// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
+/// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
+/// one pool: one call per kind and phase, not per device.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/describe.h"
+#include "base/random.h"
+#include "base/read.h"
+#include "base/time.h"
+#include "messages/topic.h"
+#include "model/model.h"
+#include "physics/engine.h"
+
+namespace sandlot {
+
+/// Bumped when the structs below change; plugins built against another version are refused.
+inline constexpr int device_api_version = 1;
+
+/// One level of abstraction of a kind. The first level of a kind is its default.
+struct LevelInfo {
+  const char* name;     ///< "ranges"
+  const char* message;  ///< ROS type published on <device>/<level>, or ""
+  const char* command;  ///< ROS type accepted on <device>/<level>/command, or ""
+  const char* help;
+};
+
+/// Creates topics and command slots while a device is built; they live as long as the device.
+class TopicMaker {
+ public:
+  virtual ~TopicMaker() = default;
+  virtual void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) = 0;
+  virtual void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) = 0;
+};
+
+/// What a device is built from.
+struct DeviceBuild {
+  const model::DeviceDecl& decl;
+  const model::Instance& instance;
+  std::string path;  ///< "robot1/laser"
+  std::uint64_t key = 0;  ///< entity_key(path), for Stream
+  std::uint64_t seed = 0;
+  std::span<const BodyId> bodies;  ///< one per link of the instance's model
+  std::span<const JointId> joints;
+  Capabilities engine;
+  Time tick;               ///< length of a tick
+  std::uint32_t levels = 1;  ///< bit i: level i is active
+  TopicMaker& topics;
+
+  BodyId body() const { return bodies[decl.link]; }
+  /// Frame of the sensor in messages: "robot1/laser".
+  const std::string& frame_id() const { return path; }
+
+  /// The topic of a level, `/robot1/laser/<level>`; the first level's is also what `/robot1/laser` names.
+  template <class M>
+  Topic<M>* publish(std::uint32_t level, const char* level_name) const {
+    auto made = std::make_unique<Topic<M>>("/" + path + "/" + level_name);
+    Topic<M>* const topic = made.get();
+    topics.adopt_topic(std::move(made), level);
+    return topic;
+  }
+  /// The command slot of a level, `/robot1/drive/<level>/command`.
+  template <class M>
+  Topic<M>* accept(std::uint32_t level, const char* level_name) const {
+    auto made = std::make_unique<Topic<M>>("/" + path + "/" + level_name + "/command");
+    Topic<M>* const slot = made.get();
+    topics.adopt_command(std::move(made), level);
+    return slot;
+  }
+  /// The joint a spec names, or an error with the nearest name.
+  Result<JointId> joint(std::string_view name, const char* spec_key) const;
+  /// As above, and its place in the model.
+  Result<std::uint32_t> joint_index(std::string_view name, const char* spec_key) const;
+};
+
+/// What actuators want from the engine in this sub-step; filled in pool order, capacity reused.
+struct Actuation {
+  std::vector<Wrench> wrenches;
+  std::vector<JointTarget> joints;
+  std::vector<DriveTarget> drives;
+  void clear() {
+    wrenches.clear();
+    joints.clear();
+    drives.clear();
+  }
+};
+
+/// Something that spreads: sound, light, radio. Collected in a stable order, delivered in the media phase.
+struct Emission {
+  std::uint64_t medium = 0;   ///< entity_key of the medium's name
+  std::uint64_t emitter = 0;  ///< entity_key of the emitting device
+  Vec3 point_W;
+  double strength = 0;        ///< in the medium's unit
+  std::uint32_t payload_begin = 0, payload_size = 0;  ///< in EmissionBuffer::payload
+};
+
+/// Emissions of one tick. Devices emit from sequential phases only, so the order is that of the pools.
+struct EmissionBuffer {
+  std::vector<Emission> emissions;
+  std::vector<std::byte> payload;
+  void emit(Emission e, std::span<const std::byte> bytes) {
+    e.payload_begin = static_cast<std::uint32_t>(payload.size());
+    e.payload_size = static_cast<std::uint32_t>(bytes.size());
+    payload.insert(payload.end(), bytes.begin(), bytes.end());
+    emissions.push_back(e);
+  }
+  void clear() {
+    emissions.clear();
+    payload.clear();
+  }
+};
+
+/// What a kind's phase functions may see and touch.
+struct Context {
+  Time now;            ///< end of the tick that is being computed
+  Time tick;           ///< its length
+  std::uint64_t tick_index = 0;
+  std::uint64_t seed = 0;
+  const Engine& engine;
+  const RayCaster& rays;
+  Actuation& actuation;
+  EmissionBuffer& emissions;
+};
+
+/// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
+/// For actuate and pre_substep every device is due.
+template <class Device>
+struct PoolView {
+  std::span<Device> all;
+  std::span<const std::uint32_t> due;
+  std::span<const std::uint64_t> sample;  ///< per device in `all`: index of the sample to take, counts from 0
+  std::span<const std::uint32_t> levels;  ///< per device in `all`: active levels as bits
+  std::span<const Time> since;            ///< per device in `all`: time since its previous sample
+};
+
+/// Type-erased pool; `make_kind` writes it.
+class PoolBase {
+ public:
+  virtual ~PoolBase() = default;
+  /// Reads and checks the declaration, builds the device at the end of the pool.
+  virtual Status add(const DeviceBuild& build) = 0;
+  /// Removes one device; those behind it move up by one.
+  virtual void remove(std::uint32_t index) = 0;
+  virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
+  struct Due {
+    std::span<const std::uint32_t> due;
+    std::span<const std::uint64_t> sample;
+    std::span<const std::uint32_t> levels;
+    std::span<const Time> since;
+  };
+  virtual void actuate(const Context& context, const Due& due) = 0;
+  virtual void pre_substep(const Context& context, const Due& due, double h_s) = 0;
+  virtual void sense(const Context& context, const Due& due) = 0;
+  /// State handed over when the active levels of a device change from `before` to `after`.
+  virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after, const Context& context) = 0;
+  virtual Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) = 0;
+  virtual void save(std::uint32_t index, ByteWriter& w) const = 0;
+  virtual void load(std::uint32_t index, ByteReader& r) = 0;
+};
+
+enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4 };
+
+/// A kind of device. Function pointers and constants only, so that a plugin can fill one.
+struct Kind {
+  const char* name;  ///< as scenario files spell it: "laser_scanner"
+  const char* help;  ///< one sentence
+  std::span<const LevelInfo> levels;
+  std::span<const char* const> sdf_types = {};  ///< "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF
+  /// Turns the SDF element into keys of the spec; null when sdf_types is empty. Names what it cannot use.
+  Result<Node> (*from_sdf)(const Node& element, Diagnostics& diagnostics) = nullptr;
+  int api_version = device_api_version;
+  // Filled by make_kind:
+  unsigned phases = 0;
+  std::vector<FieldInfo> (*describe)() = nullptr;
+  std::unique_ptr<PoolBase> (*create_pool)() = nullptr;
+};
+
+template <class Device>
+class DevicePool final : public PoolBase {
+ public:
+  Status add(const DeviceBuild& build) override {
+    SL_ASSIGN(typename Device::Spec spec, read_spec<typename Device::Spec>(build.decl.config));
+    auto device = Device::create(build, std::move(spec));
+    if (!device) {
+      if (!device.error().place.file) device.error().place = build.decl.place;
+      return std::move(device.error());
+    }
+    devices_.push_back(std::move(*device));
+    return {};
+  }
+  void remove(std::uint32_t index) override { devices_.erase(devices_.begin() + index); }
+  double rate_hz(std::uint32_t index) const override {
+    if constexpr (requires { devices_[index].spec.rate_hz; }) return devices_[index].spec.rate_hz;
+    else return 0;
+  }
+  void actuate([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
+    if constexpr (requires { &Device::actuate; }) Device::actuate(view(due), context);
+  }
+  void pre_substep([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due,
+                   [[maybe_unused]] double h_s) override {
+    if constexpr (requires { &Device::pre_substep; }) Device::pre_substep(view(due), context, h_s);
+  }
+  void sense([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
+    if constexpr (requires { &Device::sense; }) Device::sense(view(due), context);
+  }
+  Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after, const Context& context) override {
+    if constexpr (requires { &Device::switch_level; })
+      return devices_[index].switch_level(before, after, context);
+    else
+      return (void)index, (void)before, (void)after, (void)context, Status();
+  }
+  Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) override {
+    typename Device::Spec changed = devices_[index].spec;
+    SL_TRY(set_tunable(changed, path, value));
+    devices_[index].spec = std::move(changed);
+    return {};
+  }
+  void save(std::uint32_t index, ByteWriter& w) const override {
+    write_tunables(w, devices_[index].spec);
+    write(w, devices_[index].state);
+  }
+  void load(std::uint32_t index, ByteReader& r) override {
+    read_tunables(r, devices_[index].spec);
+    read(r, devices_[index].state);
+  }
+
+ private:
+  PoolView<Device> view(const Due& due) { return {devices_, due.due, due.sample, due.levels, due.since}; }
+  std::vector<Device> devices_;
+};
+
+template <class Device>
+constexpr Kind make_kind(Kind kind) {
+  kind.phases = (requires { &Device::actuate; } ? phase_actuate : 0u) |
+                (requires { &Device::pre_substep; } ? phase_pre_substep : 0u) |
+                (requires { &Device::sense; } ? phase_sense : 0u);
+  kind.describe = [] { return describe_fields<typename Device::Spec>(); };
+  kind.create_pool = []() -> std::unique_ptr<PoolBase> { return std::make_unique<DevicePool<Device>>(); };
+  return kind;
+}
+
+/// All kinds, in the order of devices/kinds.h.
+std::span<const Kind* const> device_kinds();
+/// By name, or an error with the nearest one.
+Result<const Kind*> find_device_kind(std::string_view name);
+/// The kind that answers to one of the names an SDF file used, or null.
+const Kind* find_device_kind_for_sdf(std::span<const std::string> sdf_types);
+
+}  // namespace sandlot

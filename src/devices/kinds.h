@@ -1,0 +1,8 @@
+#pragma once
+/// The kinds of devices there are: one line each, the name of the folder. Nothing else knows their names.
+#define SANDLOT_DEVICES(device) \
+  device(diff_drive)            \
+  device(ground_truth)          \
+  device(joint_motor)           \
+  device(laser_scanner)         \
+  device(wheel_encoder)

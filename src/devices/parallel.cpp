@@ -1,0 +1,15 @@
+#include "devices/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace sandlot {
+
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  if (count == 0) return;
+  if (count <= grain) return body(0, count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const auto& range) { body(range.begin(), range.end()); });
+}
+
+}  // namespace sandlot

@@ -1,0 +1,74 @@
+#pragma once
+/// Scenario files (YAML): which world, which robots with which controllers, how time runs, when it stops.
+///
+/// The reader resolves `include`, `vars` and `--set`, checks the whole schema and returns plain structs; files the
+/// scenario names (worlds, models) are opened by sim/load. A key that belongs to a later version of Sandlot
+/// answers "not supported yet"; an unknown key names the nearest known one.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/node.h"
+#include "geometry/pose.h"
+#include "model/model.h"
+
+namespace sandlot::formats {
+
+/// Where a group of robots starts.
+struct Placement {
+  enum class Kind { pose, grid, uniform } kind = Kind::pose;
+  Pose X_WM;                 ///< pose
+  Vec3 centre_m;             ///< grid, uniform: centre of the area
+  double width_m = 0;        ///< uniform: extent along x
+  double height_m = 0;       ///< uniform: extent along y
+  double spacing_m = 1;      ///< grid: distance of neighbours
+  double clearance_m = 0.5;  ///< uniform: no other instance's origin is nearer than this
+  Place place;
+};
+
+struct RobotGroup {
+  std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
+  std::string model;  ///< file as written, relative to the scenario file, or a name in the search path
+  int count = 1;
+  Placement placement;
+  std::string team;
+  std::vector<model::ControllerDecl> controllers;
+  Node devices;       ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
+  Place place;
+  Place model_place;
+};
+
+struct Scenario {
+  std::string file;  ///< as given
+  std::string name;
+  std::string world;  ///< file as written; "" for an empty plane
+  Place world_place;
+  std::string engine = "rigid";
+  Place engine_place;
+  Node physics;       ///< the engine's own keys
+  double step_s = 0.01;
+  int substeps = 1;
+  int control_interval = 1;
+  std::optional<double> stop_s;
+  std::uint64_t seed = 1;
+  std::vector<RobotGroup> robots;
+};
+
+/// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,
+/// `robots[0].devices.laser.beams`; an index may be left out of a list with one element).
+struct Override {
+  std::string path;
+  std::string value;
+};
+
+/// Reads a scenario file.
+Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides, Diagnostics& diagnostics);
+/// As above from text; `file` names it in messages and is the base of relative paths.
+Result<Scenario> parse_scenario(std::string_view text, const std::string& file, std::span<const Override> overrides,
+                                Diagnostics& diagnostics);
+/// JSON schema (draft 2020-12) of scenario files, from the field lists.
+/// @param device_specs, controller_specs  JSON text of the schemas of each kind, by name
+std::string scenario_schema();
+
+}  // namespace sandlot::formats

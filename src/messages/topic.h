@@ -1,0 +1,70 @@
+#pragma once
+/// Where messages live between the one that fills them and those that read them.
+///
+/// A Topic holds the latest message of one device level and its stamp; a CommandSlot holds the latest command.
+/// Both are State: they are hashed and saved. Neither knows who reads it.
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+
+#include "base/bytes.h"
+#include "base/time.h"
+
+namespace sandlot {
+
+class TopicBase {
+ public:
+  TopicBase(std::string name, const char* type) : name_(std::move(name)), type_(type) {}
+  virtual ~TopicBase() = default;
+  const std::string& name() const { return name_; }  ///< "/robot1/laser/ranges"
+  const char* type() const { return type_; }         ///< "sensor_msgs/msg/LaserScan"
+  Time stamp;                                        ///< of the latest message
+  std::uint64_t count = 0;                           ///< messages so far; 0: none yet
+
+  virtual void save(ByteWriter& w) const = 0;
+  virtual void load(ByteReader& r) = 0;
+  virtual std::unique_ptr<TopicBase> clone() const = 0;
+
+ private:
+  std::string name_;
+  const char* type_;
+};
+
+/// The latest message of type M.
+template <class M>
+class Topic : public TopicBase {
+ public:
+  explicit Topic(std::string name) : TopicBase(std::move(name), M::ros_type) {}
+  M message;
+
+  /// Marks the message as filled at `now`.
+  void publish(Time now) {
+    stamp = now;
+    ++count;
+    if constexpr (requires { message.header; }) message.header.stamp = now;
+  }
+  void save(ByteWriter& w) const override {
+    write(w, stamp);
+    write(w, count);
+    write(w, message);
+  }
+  void load(ByteReader& r) override {
+    read(r, stamp);
+    read(r, count);
+    read(r, message);
+  }
+  std::unique_ptr<TopicBase> clone() const override { return std::make_unique<Topic>(*this); }
+};
+
+/// M's topic behind a base pointer, or null when it carries another type.
+template <class M>
+Topic<M>* topic_cast(TopicBase* topic) {
+  return topic && std::string_view(topic->type()) == M::ros_type ? static_cast<Topic<M>*>(topic) : nullptr;
+}
+template <class M>
+const Topic<M>* topic_cast(const TopicBase* topic) {
+  return topic && std::string_view(topic->type()) == M::ros_type ? static_cast<const Topic<M>*>(topic) : nullptr;
+}
+
+}  // namespace sandlot

@@ -1,0 +1,160 @@
+#pragma once
+/// The world as files declare it: plain structs, resolved and checked, in SI. Nothing here changes during a run.
+///
+/// Frames: W world, M model, L link, C collision or visual, J joint, S sensor. `X_ML` is the pose of L in M.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/node.h"
+#include "base/time.h"
+#include "geometry/pose.h"
+#include "geometry/shape.h"
+
+namespace sandlot::model {
+
+/// Contact behaviour of a collision shape (SDF <surface>).
+struct Surface {
+  double mu = 1.0;   ///< Coulomb coefficient; pairs combine by min(), as Gazebo does
+  double mu2 = 1.0;  ///< across the first friction direction
+  Vec3 fdir1;        ///< first friction direction in the collision frame; zero: isotropic, aligned with slip
+  double slip1 = 0, slip2 = 0;           ///< [m/(s N)] force-dependent slip
+  double restitution = 0;                ///< 0..1
+  double restitution_threshold_mps = 0.05;
+  std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
+};
+
+struct Inertial {
+  double mass_kg = 1;
+  Pose X_LCo;             ///< centre of mass, axes of the tensor below
+  Vec3 moments{1, 1, 1};  ///< [kg m^2] ixx iyy izz about Co
+  Vec3 products;          ///< [kg m^2] ixy ixz iyz
+};
+
+struct Color {
+  float r = 0.7f, g = 0.7f, b = 0.7f, a = 1;
+};
+
+struct Collision {
+  std::string name;
+  Pose X_LC;
+  Shape shape;
+  Surface surface;
+  Place place;
+};
+
+struct Visual {
+  std::string name;
+  Pose X_LC;
+  Shape shape;
+  Color color;
+  Place place;
+};
+
+struct Link {
+  std::string name;
+  Pose X_ML;
+  Inertial inertial;
+  std::vector<Collision> collisions;
+  std::vector<Visual> visuals;
+  bool gravity = true;
+  Place place;
+};
+
+enum class JointType : std::uint8_t { fixed, revolute, continuous, prismatic, ball };
+
+/// Joins child to parent. The joint frame J is fixed in the child; positions are 0 in the declared pose.
+struct Joint {
+  std::string name;
+  JointType type = JointType::fixed;
+  std::uint32_t parent = 0;  ///< index of the link, or world_link
+  std::uint32_t child = 0;
+  Pose X_CJ;                 ///< J in the child link
+  Vec3 axis_J{0, 0, 1};      ///< unit, in J
+  double lower = -1e16, upper = 1e16;        ///< [rad] or [m]
+  double max_effort = 1e16;                  ///< [Nm] or [N]
+  double max_velocity = 1e16;                ///< [rad/s] or [m/s]
+  double damping = 0, friction = 0;          ///< [Nm s/rad], [Nm] (prismatic: [N s/m], [N])
+  double spring_stiffness = 0, spring_reference = 0;
+  Place place;
+};
+inline constexpr std::uint32_t world_link = ~0u;
+
+/// A named frame attached to a link.
+struct Frame {
+  std::string name;
+  std::uint32_t link = 0;
+  Pose X_LF;
+};
+
+/// A device as a file declares it. `kind` is Sandlot's name for it; a declaration taken from SDF leaves it empty
+/// and lists what the file called it (`sensor:gpu_lidar`, `plugin:DiffDrive`), most specific first.
+struct DeviceDecl {
+  std::string name;
+  std::string kind;
+  std::vector<std::string> sdf_types;
+  std::uint32_t link = 0;
+  Pose X_LS;
+  Node config;  ///< keys of the kind's spec, or the SDF element's children when `kind` is empty
+  Place place;
+};
+
+struct Model {
+  std::string name;  ///< as the file spells it
+  bool is_static = false;
+  bool self_collide = false;
+  std::vector<Link> links;  ///< [0] is the canonical link
+  std::vector<Joint> joints;
+  std::vector<Frame> frames;
+  std::vector<DeviceDecl> devices;
+  Place place;
+
+  std::optional<std::uint32_t> find_link(std::string_view name) const;
+  std::optional<std::uint32_t> find_joint(std::string_view name) const;
+};
+
+struct ControllerDecl {
+  std::string name;  ///< unique within its robot; "controller" by default
+  std::string kind;
+  Node config;
+  Place place;
+};
+
+/// A model placed in the world. Robots are instances that have devices or controllers.
+struct Instance {
+  std::string name;  ///< address: unique, sanitised
+  std::string original_name;
+  std::shared_ptr<const Model> model;
+  Pose X_WM;
+  bool is_robot = false;
+  std::string team;
+  std::vector<DeviceDecl> devices;  ///< the model's own with the scenario's changes
+  std::vector<ControllerDecl> controllers;
+  Place place;
+};
+
+struct Light {
+  enum class Type : std::uint8_t { directional, point, spot } type = Type::directional;
+  std::string name;
+  Pose X_WLight;
+  Color color;
+};
+
+/// Everything a Simulation is built from.
+struct Setup {
+  std::string name;
+  std::string engine = "rigid";  ///< "rigid" or "planar"
+  Node physics;                  ///< further keys of `physics:`, read by the engine's spec
+  Vec3 gravity{0, 0, -9.81};     ///< [m/s^2]
+  Time step = Time::from_s(0.01);
+  int substeps = 1;              ///< physics steps per tick
+  int control_interval = 1;      ///< ticks between control steps
+  std::uint64_t seed = 1;
+  std::optional<Time> stop;      ///< simulated time at which the run ends by itself
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+};
+
+}  // namespace sandlot::model

@@ -1,0 +1,57 @@
+#pragma once
+/// The ray scene: what every exteroceptive sensor of a 3D world looks at (Embree).
+///
+/// Geometry is given once per Model revision, poses once per tick (SceneFrame), questions in batches of RayJobs.
+/// All three are plain, serialisable data: threads answer now, other processes may later.
+///
+/// Geometry   analytic boxes, spheres, cylinders, capsules, planes: silhouettes are exact.
+/// Precision  single precision inside; distances within 2e-6 of the size of the scene around the sensor.
+/// Limits     surfaces only: a ray that starts inside a solid sees its far side. No materials yet.
+/// Determinism  one answer per Embree isa (fixed, see `isa()`), for any thread count and grouping of jobs.
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/rays.h"
+#include "geometry/shape.h"
+
+namespace sandlot {
+
+/// One solid that rays can hit.
+struct SceneShape {
+  std::uint32_t group = 0;  ///< index into SceneFrame::X_WG
+  Pose X_GC;                ///< shape frame in the group's frame
+  Shape shape;
+  std::uint32_t body = no_body;  ///< reported in RayJob::body and compared with RayJob::ignore_body
+  bool moves = true;        ///< false: the group's pose never changes between revisions
+};
+
+/// Poses of all groups at one tick.
+struct SceneFrame {
+  std::uint64_t tick = 0;
+  std::uint64_t revision = 0;
+  std::vector<Pose> X_WG;
+};
+
+class RayScene final : public RayCaster {
+ public:
+  RayScene();
+  ~RayScene() override;
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  /// Replaces all geometry; the next update() builds the trees.
+  void set_shapes(std::span<const SceneShape> shapes);
+  /// Takes the poses of this tick: one commit. @pre frame.X_WG covers all groups
+  void update(const SceneFrame& frame);
+  void cast(std::span<const RayJob> jobs) const override;
+
+  /// The instruction set that Embree was pinned to ("avx2" or "sse4.2"); part of the numeric profile.
+  const char* isa() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sandlot

@@ -1,0 +1,168 @@
+#pragma once
+/// The border to physics: batched, one call for all bodies, the same for the 3D and the planar engine.
+///
+/// A "body" here is a link of an instance: an engine may lump links that are joined rigidly, but every link has a
+/// BodyId and a BodyState. Ids are index + generation: an index is used again after a removal, an id never.
+/// A call takes effect in the next step(); apply() and the targets it was given are consumed as described there.
+///
+/// Determinism: the result of step() depends on State and inputs alone, never on addresses, thread timing or on
+/// instances that touch nothing (each island of touching bodies is solved as if it were alone). Processing order
+/// is creation order.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "base/bytes.h"
+#include "base/describe.h"
+#include "base/result.h"
+#include "geometry/pose.h"
+#include "geometry/rays.h"
+#include "model/model.h"
+
+namespace sandlot {
+
+struct BodyId {
+  std::uint32_t index = ~0u, generation = 0;
+  friend constexpr bool operator==(BodyId, BodyId) = default;
+};
+struct JointId {
+  std::uint32_t index = ~0u, generation = 0;
+  friend constexpr bool operator==(JointId, JointId) = default;
+};
+struct InstanceId {
+  std::uint32_t index = ~0u, generation = 0;
+  friend constexpr bool operator==(InstanceId, InstanceId) = default;
+};
+
+struct BodyState {
+  Pose X_WB;         ///< frame of the link (not its centre of mass)
+  Velocity V_WB;     ///< of the link's origin, in W
+};
+
+struct JointState {
+  double position = 0;  ///< [rad] or [m]; unwrapped: a wheel keeps counting turns
+  double velocity = 0;  ///< [rad/s] or [m/s]
+  double effort = 0;    ///< [Nm] or [N] that the last JointTarget put in
+};
+
+/// Force at the centre of mass plus torque, in W, for the next step only.
+struct Wrench {
+  BodyId body;
+  Vec3 force_N;
+  Vec3 torque_Nm;
+};
+
+/// What a joint's motor shall do; holds until the next target for this joint.
+struct JointTarget {
+  enum class Mode : std::uint8_t {
+    free,      ///< no motor
+    velocity,  ///< reach `velocity` with at most `max_effort`
+    effort,    ///< apply `effort`
+  };
+  JointId joint;
+  Mode mode = Mode::free;
+  double velocity = 0;
+  double max_effort = 0;
+  double effort = 0;
+};
+
+/// Closed-form drive of a whole instance (level `ideal`): its base moves at a velocity in its own plane as if it
+/// ran on rails, reached with limited acceleration; while it holds, the instance's contacts have no friction.
+/// Obstacles still stop it: the push is limited to mass * max_accel. Holds until the next target for this base.
+struct DriveTarget {
+  BodyId base;
+  bool active = true;          ///< false: release the instance to its own wheels
+  double vx_mps = 0, vy_mps = 0, wz_radps = 0;  ///< in the base frame
+  double max_accel_mps2 = 1e9, max_angular_accel_radps2 = 1e9;
+};
+
+struct Contact {
+  BodyId a, b;          ///< a created before b; a world-fixed body where the other side is static
+  Vec3 point_W;         ///< [m]
+  Vec3 normal_W;        ///< unit, from a towards b
+  double depth_m = 0;
+};
+
+/// What lies in a ball: the cheap question behind proximity, spawning and markers.
+struct OverlapQuery {
+  Vec3 centre_W;
+  double radius_m = 0;
+};
+
+struct Capabilities {
+  const char* name;
+  bool planar = false;        ///< poses have three degrees of freedom
+  bool joints = false;        ///< joints are simulated (else: kinematic)
+  bool contact_drives = false;  ///< wheels drive by contact and friction
+  bool ideal_drives = false;
+  bool rays = false;          ///< rays() answers
+};
+
+/// Counted since the engine was made; reported in the summary.
+struct EngineCounters {
+  std::uint64_t solver_messages = 0;   ///< complaints of the library below
+  std::uint64_t library_allocations = 0;
+  std::uint64_t contacts = 0;          ///< in the last step
+  std::uint64_t awake_bodies = 0;
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual Capabilities capabilities() const = 0;
+
+  /// Adds all links and joints of a model at instance.X_WM. An error names what this engine cannot express.
+  virtual Result<InstanceId> add(const model::Instance& instance) = 0;
+  /// Removes an instance and wakes what rested on it. @pre id is alive
+  virtual void remove(InstanceId id) = 0;
+  /// One per link, and one per joint, of the instance's model, in the model's order.
+  virtual std::span<const BodyId> bodies(InstanceId id) const = 0;
+  virtual std::span<const JointId> joints(InstanceId id) const = 0;
+  /// Moves a whole instance to a pose, at rest, its joints as they are; wakes it and what rested on it.
+  virtual void set_pose(InstanceId id, const Pose& X_WM) = 0;
+  /// Pose of the model frame, from the canonical link.
+  virtual Pose pose(InstanceId id) const = 0;
+
+  /// Indexed by BodyId::index; entries of dead ids hold rubbish. Valid until the next non-const call.
+  virtual std::span<const BodyState> states() const = 0;
+  virtual std::span<const JointState> joint_states() const = 0;
+  /// Contacts of the last step, ordered by creation of the two bodies.
+  virtual std::span<const Contact> contacts() const = 0;
+  /// Indices of bodies that overlap each ball, ascending; appended to `out`, one span end per query in `ends`.
+  virtual void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
+                        std::vector<std::uint32_t>& ends) const = 0;
+  /// The engine's own ray casting, or null when it has none (then the ray scene answers).
+  virtual const RayCaster* rays() const = 0;
+
+  virtual void apply(std::span<const Wrench> wrenches) = 0;
+  virtual void set_targets(std::span<const JointTarget> targets) = 0;
+  virtual void set_drive_targets(std::span<const DriveTarget> targets) = 0;
+
+  /// Advances by h seconds: one sub-step. `stream_key` seeds what the solver draws in this sub-step.
+  virtual void step(double h_s, std::uint64_t stream_key) = 0;
+  /// Fails with the name of the first body whose state is no longer finite.
+  virtual Status check_finite() const = 0;
+
+  /// All State of one instance (bodies, joints, motors, sleep), independent of all other instances.
+  virtual void save(InstanceId id, ByteWriter& w) const = 0;
+  /// @pre the same instances were added in the same order to a new engine; false: the bytes do not fit.
+  virtual bool load(InstanceId id, ByteReader& r) = 0;
+
+  virtual EngineCounters counters() const = 0;
+};
+
+/// One line per engine in physics/engines.cpp.
+struct EngineKind {
+  const char* name;
+  const char* help;
+  std::vector<FieldInfo> (*describe)();
+  /// @param config   keys of `physics:` beside `engine`
+  Result<std::unique_ptr<Engine>> (*create)(const Node& config, Vec3 gravity_mps2);
+};
+
+std::span<const EngineKind* const> engine_kinds();
+/// By name, or an error with the nearest one.
+Result<const EngineKind*> find_engine(std::string_view name);
+
+}  // namespace sandlot

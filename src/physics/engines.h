@@ -1,0 +1,5 @@
+#pragma once
+/// The engines there are: one line each. `find_engine` and `sandlot list engines` use this table.
+#define SANDLOT_ENGINES(engine) \
+  engine(rigid)                 \
+  engine(planar)
