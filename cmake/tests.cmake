@@ -1,0 +1,52 @@
+# Tests: src/<layer>/**/*_test.cpp become <layer>_tests, tests/*_test.cpp become scenario_tests. One executable per
+# layer keeps the number of links small. A layer's tests link that layer and what it may use; a test that needs more
+# belongs into tests/, where everything is at hand.
+include(GoogleTest)
+
+# The prefix of a suite's name decides its label: Slow* is `slow`, Long* is `long`, everything else is `unit`.
+function(sandlot_test_executable name sources libraries)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${name} ${sources})
+  target_include_directories(${name} PRIVATE src)
+  target_link_libraries(${name} PRIVATE ${libraries} GTest::gmock GTest::gtest_main)
+  sandlot_precompile(${name})
+  if(TARGET sandlot)
+    add_dependencies(${name} sandlot)
+  endif()
+  # Tests run in the source root; from there this is the command under test.
+  file(RELATIVE_PATH command ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/sandlot)
+  target_compile_definitions(${name} PRIVATE SANDLOT_BIN="${command}")
+  foreach(label unit slow long)
+    set(filter_unit "-Slow*:*/Slow*:Long*:*/Long*")
+    set(filter_slow "Slow*:*/Slow*")
+    set(filter_long "Long*:*/Long*")
+    set(timeout_unit 120)
+    set(timeout_slow 600)
+    set(timeout_long 3600)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+      TEST_FILTER "${filter_${label}}"
+      PROPERTIES LABELS ${label} TIMEOUT ${timeout_${label}} ENVIRONMENT "${SANDLOT_TEST_ENVIRONMENT}")
+  endforeach()
+endfunction()
+
+foreach(layer IN LISTS sandlot_layers)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/${layer}/*_test.cpp)
+  sandlot_test_executable(${layer}_tests "${sources}" sandlot_${layer})
+endforeach()
+file(GLOB sources CONFIGURE_DEPENDS tests/*_test.cpp)
+set(libraries ${sandlot_layers})
+list(TRANSFORM libraries PREPEND sandlot_)
+list(REVERSE libraries)
+sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
+
+find_package(Python3 COMPONENTS Interpreter REQUIRED)
+add_test(NAME check_layers COMMAND Python3::Interpreter tools/check_layers.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+file(GLOB sources CONFIGURE_DEPENDS tools/*_test.py)
+foreach(source IN LISTS sources)
+  get_filename_component(name ${source} NAME_WE)
+  add_test(NAME ${name} COMMAND Python3::Interpreter ${source} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES LABELS unit)
+endforeach()
+set_tests_properties(check_layers PROPERTIES LABELS unit)
