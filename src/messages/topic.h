@@ -24,6 +24,8 @@ class TopicBase {
 
   virtual void save(ByteWriter& w) const = 0;
   virtual void load(ByteReader& r) = 0;
+  /// Takes the message alone from bytes (a command); false when they are not exactly one message.
+  virtual bool assign(std::span<const std::byte> bytes) = 0;
   virtual std::unique_ptr<TopicBase> clone() const = 0;
 
  private:
@@ -53,6 +55,14 @@ class Topic : public TopicBase {
     read(r, stamp);
     read(r, count);
     read(r, message);
+  }
+  bool assign(std::span<const std::byte> bytes) override {
+    ByteReader r(bytes);
+    M taken{};
+    read(r, taken);
+    if (!r.ok() || r.remaining() != 0) return false;
+    message = std::move(taken);
+    return true;
   }
   std::unique_ptr<TopicBase> clone() const override { return std::make_unique<Topic>(*this); }
 };
