@@ -24,7 +24,7 @@ BANS = [
      "differs between machines: use math:: from base/math.h", ["base/math"]),
     (re.compile(rf"\busing\s+(?:namespace\s+math\b|(?:std|math)\s*::\s*(?:{NAMES})\s*;)"),
      "hides which mathematics is called: write math::", ["base/math"]),
-    (re.compile(r"(?<![\w.:>])(?:std\s*::\s*|::\s*)?s?rand(?:om|_r)?\s*\(|\bstd\s*::\s*(?:random_device|mt19937(?:_64)?|"
+    (re.compile(r"(?<![\w.:>])(?:std\s*::\s*|::\s*)?(?:s?rand|[dl]rand48)\s*\(|\bstd\s*::\s*(?:random_device|mt19937(?:_64)?|"
                 r"default_random_engine|minstd_rand0?|\w+_distribution|shuffle|random_shuffle)\b"),
      "is not reproducible: draw from a stream of base/random.h", ["base/random"]),
     (re.compile(r"_clock\s*::\s*now\s*\(|\b(?:gettimeofday|clock_gettime)\s*\(|\bstd\s*::\s*time\s*\("),

@@ -124,6 +124,11 @@ class Command {
     write(bytes_, message);
     orders_.push_back({handle.slot, begin, static_cast<std::uint32_t>(bytes_.size()) - begin});
   }
+  /// As set(), from bytes that set() wrote before.
+  void set_bytes(std::uint32_t slot, std::span<const std::byte> message) {
+    orders_.push_back({slot, static_cast<std::uint32_t>(bytes_.size()), static_cast<std::uint32_t>(message.size())});
+    bytes_.raw(message.data(), message.size());
+  }
   void clear() {
     orders_.clear();
     bytes_.clear();

@@ -26,6 +26,7 @@
 #include "base/random.h"
 #include "base/read.h"
 #include "base/time.h"
+#include "media/emission.h"
 #include "messages/topic.h"
 #include "model/model.h"
 #include "physics/engine.h"
@@ -100,31 +101,6 @@ struct Actuation {
     wrenches.clear();
     joints.clear();
     drives.clear();
-  }
-};
-
-/// Something that spreads: sound, light, radio. Collected in a stable order, delivered in the media phase.
-struct Emission {
-  std::uint64_t medium = 0;   ///< entity_key of the medium's name
-  std::uint64_t emitter = 0;  ///< entity_key of the emitting device
-  Vec3 point_W;
-  double strength = 0;        ///< in the medium's unit
-  std::uint32_t payload_begin = 0, payload_size = 0;  ///< in EmissionBuffer::payload
-};
-
-/// Emissions of one tick. Devices emit from sequential phases only, so the order is that of the pools.
-struct EmissionBuffer {
-  std::vector<Emission> emissions;
-  std::vector<std::byte> payload;
-  void emit(Emission e, std::span<const std::byte> bytes) {
-    e.payload_begin = static_cast<std::uint32_t>(payload.size());
-    e.payload_size = static_cast<std::uint32_t>(bytes.size());
-    payload.insert(payload.end(), bytes.begin(), bytes.end());
-    emissions.push_back(e);
-  }
-  void clear() {
-    emissions.clear();
-    payload.clear();
   }
 };
 

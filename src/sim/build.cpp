@@ -1,0 +1,339 @@
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "base/text.h"
+#include "controllers/controllers.h"
+#include "sim/simulation.h"
+
+namespace sandlot {
+namespace {
+
+/// Collects what a device creates while it is built.
+struct SlotMaker final : TopicMaker {
+  std::vector<Simulation::Slot> topics, commands;
+  void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
+    topics.push_back({std::move(topic), level});
+  }
+  void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) override {
+    commands.push_back({std::move(slot), level});
+  }
+};
+
+/// Levels named by `level: x` or `levels: [x, y]`; both keys belong to the simulator, not to the kind's spec.
+Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& place) {
+  std::vector<std::string> known;
+  for (const LevelInfo& level : kind.levels) known.emplace_back(level.name);
+  const Node* one = config.find("level");
+  const Node* many = config.find("levels");
+  if (one && many) return one->error("give either 'level' or 'levels'");
+  std::vector<const Node*> named;
+  if (one) named.push_back(one);
+  if (many) {
+    if (!many->is_sequence() || many->items().empty()) return wrong_type(*many, "a list of levels", "/levels");
+    for (const Node& item : many->items()) named.push_back(&item);
+  }
+  std::uint32_t bits = named.empty() ? 1u : 0u;
+  for (const Node* node : named) {
+    const auto found = std::find(known.begin(), known.end(), node->text());
+    if (found == known.end())
+      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node->text() + "'",
+                   suggestion(node->text(), known), node->place().file ? node->place() : place, "/level"};
+    bits |= 1u << (found - known.begin());
+  }
+  config.erase("level");
+  config.erase("levels");
+  return bits;
+}
+
+}  // namespace
+
+Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
+    : setup_(std::move(setup)), options_(options) {
+  const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = options.threads > 0 ? options.threads : available;
+  arena_ = std::make_unique<tbb::task_arena>(threads, 1);
+}
+
+Simulation::~Simulation() = default;
+
+Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const SimulationOptions& options,
+                                                       Diagnostics& diagnostics) {
+  std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
+  SL_TRY(sim->build(diagnostics));
+  // Tick 0: nothing has moved yet, but sensors whose first sample is due now take it and programs see it.
+  sim->arena_->execute([&] {
+    sim->update_scene();
+    sim->sense();
+    sim->deliver_media();
+    sim->judge();
+    sim->control();
+  });
+  return sim;
+}
+
+Status Simulation::build(Diagnostics& diagnostics) {
+  if (setup_.step.ns <= 0) return Error{"time.step must be positive"};
+  SL_ASSIGN(const EngineKind* const kind, find_engine(setup_.engine));
+  SL_ASSIGN(engine_, kind->create(setup_.physics, setup_.gravity));
+  if (const RayCaster* rays = engine_->rays()) {
+    rays_ = rays;
+  } else {
+    scene_ = std::make_unique<RayScene>();
+    rays_ = scene_.get();
+  }
+  const auto add_pool = [&](const Kind* device_kind) {
+    SL_CHECK(device_kind->api_version == device_api_version);
+    pools_.push_back({device_kind, device_kind->create_pool(), {}, {}, {}, {}, {}, {}});
+  };
+  for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
+  for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
+  if (setup_.stop) add_rule(std::make_unique<StopAfter>(*setup_.stop));
+  for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
+  // The instances live in the entities from here on; one copy is enough.
+  setup_.instances.clear();
+  rebuild_scene();
+  return {};
+}
+
+Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diagnostics) {
+  if (find_entity(instance.name))
+    return Error{"there are two things named '" + instance.name + "'", "give one of them another name", instance.place};
+  auto id = engine_->add(instance);
+  if (!id) {
+    if (!id.error().place.file) id.error().place = instance.place;
+    return std::move(id.error());
+  }
+  auto entity = std::make_unique<Entity>();
+  entity->instance = instance;
+  entity->id = *id;
+  entity->key = entity_key(instance.name);
+  entity->serial = next_serial_++;
+  entities_.push_back(std::move(entity));
+  Entity& added = *entities_.back();
+  Status status;
+  for (const model::DeviceDecl& decl : added.instance.devices)
+    if (status) status = add_device(added, decl, diagnostics);
+  for (const model::ControllerDecl& decl : added.instance.controllers)
+    if (status) status = add_program(added, decl);
+  if (!status) remove_entity(entities_.size() - 1);
+  return status;
+}
+
+Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared, Diagnostics& diagnostics) {
+  model::DeviceDecl decl = declared;
+  const Kind* kind = nullptr;
+  std::vector<std::string> names;
+  for (const Pool& pool : pools_) {
+    names.emplace_back(pool.kind->name);
+    if (decl.kind == pool.kind->name) kind = pool.kind;
+  }
+  if (!kind) return Error{"no kind of device '" + decl.kind + "'", suggestion(decl.kind, names), decl.place};
+  const std::string path = entity.instance.name + "/" + sanitised(decl.name);
+  if (find_device(path))
+    return Error{"robot '" + entity.instance.name + "' has two devices named '" + decl.name + "'",
+                 "give one of them another name", decl.place};
+  SL_ASSIGN(const std::uint32_t levels, take_levels(decl.config, *kind, decl.place));
+  const auto pool = std::find_if(pools_.begin(), pools_.end(), [&](const Pool& p) { return p.kind == kind; });
+  SL_CHECK(pool != pools_.end());
+
+  SlotMaker maker;
+  const DeviceBuild build{decl,
+                          entity.instance,
+                          path,
+                          entity_key(path),
+                          setup_.seed,
+                          engine_->bodies(entity.id),
+                          engine_->joints(entity.id),
+                          engine_->capabilities(),
+                          setup_.step,
+                          levels,
+                          maker};
+  SL_TRY(pool->pool->add(build));
+  const auto index = static_cast<std::uint32_t>(pool->devices.size());
+  const double rate_hz = pool->pool->rate_hz(index);
+  const double tick_hz = 1e9 / static_cast<double>(setup_.step.ns);
+  if (rate_hz > tick_hz * (1 + 1e-9)) {
+    pool->pool->remove(index);
+    const Node* const rate = decl.config.find("rate");
+    return Error{"rate " + number_text(rate_hz) + " Hz is above the tick rate of " + number_text(tick_hz) + " Hz",
+                 "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
+                 "/" + path + "/rate"};
+  }
+  if (rate_hz > 0) {
+    const double ticks = tick_hz / rate_hz;
+    if (std::abs(ticks - std::round(ticks)) > 1e-6 * ticks)
+      diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " + number_text(tick_hz) +
+                            " Hz",
+                        "samples fall on the next tick, so their spacing varies by one tick", decl.place,
+                        "/" + path + "/rate"});
+  }
+
+  auto device = std::make_unique<Device>();
+  device->decl = std::move(decl);
+  device->path = path;
+  device->key = build.key;
+  device->kind = static_cast<std::uint32_t>(pool - pools_.begin());
+  device->index = index;
+  device->levels = levels;
+  device->start = now_;
+  device->topics = std::move(maker.topics);
+  device->commands = std::move(maker.commands);
+  plan_next_sample(*device);
+  pool->devices.push_back(device.get());
+  pool->all.push_back(index);
+  entity.devices.push_back(std::move(device));
+  return {};
+}
+
+Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl) {
+  const auto at = [&](Error error) {
+    if (!error.place.file) error.place = decl.place;
+    return error;
+  };
+  auto kind = find_controller_kind(decl.kind);
+  if (!kind) return at(std::move(kind.error()));
+  auto program = std::make_unique<ProgramEntry>();
+  program->decl = decl;
+  program->path = entity.instance.name + "/" + sanitised(decl.name);
+  program->key = entity_key(program->path);
+  if (find_device(program->path) || find_program(program->path))
+    return Error{"'" + program->path + "' names two things", "give the controller another name", decl.place};
+
+  Description& description = program->description;
+  description.robot = entity.instance.name;
+  description.control_period_s = (setup_.step * setup_.control_interval).s();
+  const model::Model& model = *entity.instance.model;
+  for (const auto& device : entity.devices) {
+    const Pose X_BS = inverse(model.links.front().X_ML) * model.links[device->decl.link].X_ML * device->decl.X_LS;
+    // One entry per type that follows the device's active level, then one per level.
+    const auto describe = [&](const std::vector<Slot>& slots, std::vector<Description::Entry>& entries) {
+      std::vector<std::string> types;
+      for (const Slot& slot : slots) {
+        if (std::find(types.begin(), types.end(), slot.topic->type()) != types.end()) continue;
+        types.emplace_back(slot.topic->type());
+        entries.push_back({device->decl.name, "", slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
+      }
+      for (const Slot& slot : slots) {
+        const auto& levels = pools_[device->kind].kind->levels;
+        const std::string level = slot.level < levels.size() ? levels[slot.level].name : "";
+        if (!level.empty())
+          entries.push_back({device->decl.name, level, slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
+      }
+    };
+    describe(device->topics, description.readings);
+    describe(device->commands, description.actuators);
+  }
+  auto controller = (*kind)->create();
+  if (Status status = controller->init(description, decl.config); !status) return at(std::move(status.error()));
+  program->program = std::make_unique<ControllerProgram>(std::move(controller));
+  program->topics.resize(description.readings.size());
+  program->seen.resize(description.readings.size(), 0);
+  entity.programs.push_back(std::move(program));
+  point_programs_at_active_levels(entity);
+  return {};
+}
+
+void Simulation::plan_next_sample(Device& device) {
+  const double rate_hz = pools_[device.kind].pool->rate_hz(device.index);
+  device.due = rate_hz > 0 ? due_time(device.start, static_cast<std::int64_t>(device.sample), rate_hz) : Time{};
+}
+
+void Simulation::point_programs_at_active_levels(Entity& entity) {
+  for (const auto& program : entity.programs) {
+    for (const Description::Entry& entry : program->description.readings) {
+      const TopicBase* first = nullptr;
+      const TopicBase* chosen = nullptr;
+      for (const auto& device : entity.devices) {
+        if (device->decl.name != entry.device) continue;
+        const auto& levels = pools_[device->kind].kind->levels;
+        for (const Slot& slot : device->topics) {
+          if (entry.type != slot.topic->type()) continue;
+          const bool always = slot.level >= levels.size();
+          if (!entry.level.empty() && (always || entry.level != levels[slot.level].name)) continue;
+          if (!first) first = slot.topic.get();
+          if (!chosen && (always || (device->levels >> slot.level & 1))) chosen = slot.topic.get();
+        }
+      }
+      program->topics[entry.index] = chosen ? chosen : first;
+    }
+  }
+}
+
+void Simulation::remove_entity(std::size_t index) {
+  Entity& entity = *entities_[index];
+  // From the back, so that the indices still to be removed stay right.
+  for (auto device = entity.devices.rbegin(); device != entity.devices.rend(); ++device) {
+    Pool& pool = pools_[(*device)->kind];
+    pool.pool->remove((*device)->index);
+    pool.devices.erase(pool.devices.begin() + (*device)->index);
+    pool.all.pop_back();
+    for (std::uint32_t i = (*device)->index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
+  }
+  engine_->remove(entity.id);
+  entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+Simulation::Entity* Simulation::find_entity(std::string_view name) {
+  for (const auto& entity : entities_)
+    if (entity->instance.name == name) return entity.get();
+  return nullptr;
+}
+
+Simulation::Device* Simulation::find_device(std::string_view path) {
+  Entity* const entity = find_entity(path.substr(0, path.find('/')));
+  if (!entity) return nullptr;
+  for (const auto& device : entity->devices)
+    if (device->path == path) return device.get();
+  return nullptr;
+}
+
+Simulation::ProgramEntry* Simulation::find_program(std::string_view path) {
+  Entity* const entity = find_entity(path.substr(0, path.find('/')));
+  if (!entity) return nullptr;
+  for (const auto& program : entity->programs)
+    if (program->path == path) return program.get();
+  return nullptr;
+}
+
+std::optional<InstanceId> Simulation::find_instance(std::string_view name) const {
+  for (const auto& entity : entities_)
+    if (entity->instance.name == name) return entity->id;
+  return std::nullopt;
+}
+
+const TopicBase* Simulation::find_topic(std::string_view name) const {
+  for (const auto& entity : entities_)
+    for (const auto& device : entity->devices)
+      for (const Slot& slot : device->topics)
+        if (slot.topic->name() == name || device->path == name) return slot.topic.get();
+  return nullptr;
+}
+
+std::vector<const TopicBase*> Simulation::topics() const {
+  std::vector<const TopicBase*> all;
+  for (const auto& entity : entities_)
+    for (const auto& device : entity->devices)
+      for (const Slot& slot : device->topics) all.push_back(slot.topic.get());
+  return all;
+}
+
+void Simulation::rebuild_scene() {
+  if (!scene_) return;
+  std::vector<SceneShape> shapes;
+  scene_frame_.X_WG.assign(engine_->states().size(), Pose{});
+  for (const auto& entity : entities_) {
+    const model::Model& model = *entity->instance.model;
+    const auto bodies = engine_->bodies(entity->id);
+    for (std::size_t link = 0; link < model.links.size(); ++link)
+      for (const model::Collision& collision : model.links[link].collisions)
+        shapes.push_back(
+            {bodies[link].index, collision.X_LC, collision.shape, bodies[link].index, !model.is_static});
+  }
+  scene_->set_shapes(shapes);
+  scene_frame_.revision = revision_;
+}
+
+}  // namespace sandlot

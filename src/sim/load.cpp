@@ -1,0 +1,237 @@
+#include "sim/load.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "base/text.h"
+#include "devices/kind.h"
+#include "formats/sdf/sdf.h"
+#include "sim/placement.h"
+
+namespace sandlot {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> search_path() {
+  std::vector<std::string> folders;
+  for (const char* variable : {"SANDLOT_PATH", "GZ_SIM_RESOURCE_PATH"})
+    if (const char* value = std::getenv(variable))
+      for (const std::string_view folder : split(value, ':'))
+        if (!folder.empty()) folders.emplace_back(folder);
+  return folders;
+}
+
+/// The file behind what a scenario wrote: beside the scenario, absolute, or in a folder of the search path; a
+/// folder stands for its model.sdf.
+Result<std::string> locate(std::string written, const std::string& from, const Place& place) {
+  if (starts_with(written, "model://")) written = written.substr(8);
+  if (starts_with(written, "file://")) written = written.substr(7);
+  std::vector<fs::path> candidates;
+  const fs::path path(written);
+  if (path.is_absolute()) {
+    candidates.push_back(path);
+  } else {
+    candidates.push_back(fs::path(from).parent_path() / path);
+    for (const std::string& folder : search_path()) candidates.push_back(fs::path(folder) / path);
+  }
+  std::error_code ignored;
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+    if (fs::is_regular_file(candidate / "model.sdf", ignored)) return (candidate / "model.sdf").lexically_normal().string();
+  }
+  return Error{"there is no file '" + written + "'",
+               "looked at " + candidates.front().lexically_normal().string() +
+                   (candidates.size() > 1 ? " and in SANDLOT_PATH" : "; SANDLOT_PATH may name more folders"),
+               place};
+}
+
+/// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
+Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
+  std::vector<model::DeviceDecl> kept;
+  for (model::DeviceDecl& decl : instance.devices) {
+    if (decl.kind.empty()) {
+      const Kind* const kind = find_device_kind_for_sdf(decl.sdf_types);
+      if (!kind) {
+        diagnostics.warn({"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
+                          "it is ignored", decl.place});
+        continue;
+      }
+      auto config = kind->from_sdf(decl.config, diagnostics);
+      if (!config) {
+        if (!config.error().place.file) config.error().place = decl.place;
+        return std::move(config.error());
+      }
+      decl.config = std::move(*config);
+      decl.kind = kind->name;
+    }
+    kept.push_back(std::move(decl));
+  }
+  instance.devices = std::move(kept);
+  return {};
+}
+
+Result<Pose> read_pose(const Node& node) {
+  std::array<double, 6> v{};
+  const Node* const items = &node;
+  if (!items->is_sequence() || items->items().size() != 6)
+    return wrong_type(node, "a pose [x, y, z, roll, pitch, yaw]", "/pose");
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Field field{"pose", i < 3 ? "m" : "rad", "", -1e6, 1e6};
+    SL_ASSIGN(v[i], read_number(items->items()[i], field, false, "/pose"));
+  }
+  return pose_from_rpy({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
+}
+
+/// Lays the scenario's `devices:` upon the model's own: known names change keys, new names need a kind.
+Status merge_devices(model::Instance& instance, const Node& devices) {
+  for (const Node::Entry& entry : devices.entries()) {
+    const auto found = std::find_if(instance.devices.begin(), instance.devices.end(),
+                                    [&](const model::DeviceDecl& d) { return d.name == entry.key; });
+    const bool fresh = found == instance.devices.end();
+    model::DeviceDecl decl = fresh ? model::DeviceDecl{} : *found;
+    Node keys = entry.value;
+    if (!keys.is_map() && !keys.is_null()) return wrong_type(keys, "a map of keys", "/devices/" + entry.key);
+    const std::string path = "/devices/" + entry.key;
+    decl.name = entry.key;
+    decl.place = entry.key_place;
+    if (const Node* kind = keys.find("kind")) decl.kind = kind->text();
+    if (decl.kind.empty()) {
+      std::vector<std::string> names;
+      for (const model::DeviceDecl& d : instance.devices) names.push_back(d.name);
+      return Error{"model '" + instance.model->name + "' has no device '" + entry.key + "'",
+                   "give it a kind, or " + suggestion(entry.key, names), entry.key_place, path};
+    }
+    if (const Node* link = keys.find("link")) {
+      const auto index = instance.model->find_link(link->text());
+      std::vector<std::string> names;
+      for (const model::Link& l : instance.model->links) names.push_back(l.name);
+      if (!index)
+        return link->error("model '" + instance.model->name + "' has no link '" + link->text() + "'",
+                           suggestion(link->text(), names), path + "/link");
+      decl.link = *index;
+    }
+    if (const Node* pose = keys.find("pose")) {
+      SL_ASSIGN(decl.X_LS, read_pose(*pose));
+    }
+    for (const char* own : {"kind", "link", "pose"}) keys.erase(own);
+    if (decl.config.is_null()) decl.config = Node::map(decl.place);
+    if (keys.find("level") || keys.find("levels")) {
+      decl.config.erase("level");
+      decl.config.erase("levels");
+    }
+    merge(decl.config, keys);
+    if (fresh) instance.devices.push_back(std::move(decl));
+    else *found = std::move(decl);
+  }
+  return {};
+}
+
+/// Takes world instances over: their devices translated, names checked.
+Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics& diagnostics) {
+  setup.gravity = content.gravity_mps2;
+  setup.lights = std::move(content.lights);
+  for (model::Instance& instance : content.instances) {
+    SL_TRY(translate_devices(instance, diagnostics));
+    instance.is_robot = instance.is_robot || !instance.devices.empty();
+    setup.instances.push_back(std::move(instance));
+  }
+  return {};
+}
+
+Result<model::Setup> load_bare_world(const std::string& path, Diagnostics& diagnostics) {
+  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics));
+  model::Setup setup;
+  setup.name = content.world_name.empty() ? fs::path(path).stem().string() : content.world_name;
+  if (content.max_step_s) setup.step = Time::from_s(*content.max_step_s);
+  SL_TRY(take_world(std::move(content), setup, diagnostics));
+  return setup;
+}
+
+}  // namespace
+
+Result<model::Instance> load_instance(const std::string& model_file, const std::string& name, const Pose& X_WM,
+                                      Diagnostics& diagnostics) {
+  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(model_file, diagnostics));
+  if (content.instances.size() != 1 || !content.world_name.empty())
+    return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
+  model::Instance instance = std::move(content.instances.front());
+  SL_TRY(translate_devices(instance, diagnostics));
+  instance.name = sanitised(name);
+  instance.original_name = name;
+  instance.X_WM = X_WM * instance.X_WM;
+  instance.is_robot = !instance.devices.empty();
+  return instance;
+}
+
+Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
+  const std::string extension = fs::path(path).extension().string();
+  model::Setup setup;
+  if (extension == ".sdf" || extension == ".world") {
+    if (!options.overrides.empty())
+      return Error{"--set changes scenarios, and '" + path + "' is a world", "write a scenario that names this world"};
+    SL_ASSIGN(setup, load_bare_world(path, diagnostics));
+  } else if (extension == ".yaml" || extension == ".yml") {
+    SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
+    if (!scenario.world.empty()) {
+      SL_ASSIGN(const std::string world, locate(scenario.world, path, scenario.world_place));
+      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics));
+      SL_TRY(take_world(std::move(content), setup, diagnostics));
+    }
+    setup.name = scenario.name;
+    setup.engine = scenario.engine;
+    setup.physics = scenario.physics;
+    setup.step = Time::from_s(scenario.step_s);
+    setup.substeps = scenario.substeps;
+    setup.control_interval = scenario.control_interval;
+    setup.seed = scenario.seed;
+    if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
+    if (options.seed) setup.seed = *options.seed;
+    std::map<std::string, model::Instance> loaded;
+    Placer placer(setup.instances, setup.seed);
+    for (const formats::RobotGroup& group : scenario.robots) {
+      SL_ASSIGN(const std::string file, locate(group.model, path, group.model_place));
+      auto known = loaded.find(file);
+      if (known == loaded.end()) {
+        auto instance = load_instance(file, group.name, {}, diagnostics);
+        if (!instance) {
+          if (!instance.error().place.file) instance.error().place = group.model_place;
+          return std::move(instance.error());
+        }
+        known = loaded.emplace(file, std::move(*instance)).first;
+      }
+      model::Instance pattern = known->second;
+      pattern.is_robot = true;
+      pattern.team = group.team;
+      pattern.controllers = group.controllers;
+      pattern.place = group.place;
+      SL_TRY(merge_devices(pattern, group.devices));
+      SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
+      for (int i = 0; i < group.count; ++i) {
+        model::Instance instance = pattern;
+        instance.original_name = group.count == 1 ? group.name : group.name + std::to_string(i + 1);
+        instance.name = sanitised(instance.original_name);
+        instance.X_WM = poses[static_cast<std::size_t>(i)] * pattern.X_WM;
+        setup.instances.push_back(std::move(instance));
+      }
+    }
+  } else {
+    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world (.sdf, .world)"};
+  }
+  if (options.seed) setup.seed = *options.seed;
+  if (options.stop_s) setup.stop = Time::from_s(*options.stop_s);
+  std::map<std::string_view, const model::Instance*> names;
+  for (const model::Instance& instance : setup.instances) {
+    const auto [known, fresh] = names.emplace(instance.name, &instance);
+    if (!fresh)
+      return Error{"there are two things named '" + instance.name + "'",
+                   "the other one is at " + to_string(known->second->place) + "; give one of them another name",
+                   instance.place};
+  }
+  return setup;
+}
+
+}  // namespace sandlot

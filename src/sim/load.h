@@ -1,0 +1,26 @@
+#pragma once
+/// From files to a Setup: a scenario with the world and models it names, or a bare world.
+#include <optional>
+#include <span>
+#include <string>
+
+#include "formats/scenario/scenario.h"
+#include "model/model.h"
+
+namespace sandlot {
+
+struct LoadOptions {
+  std::span<const formats::Override> overrides = {};
+  std::optional<std::uint64_t> seed;   ///< replaces the scenario's
+  std::optional<double> stop_s;        ///< replaces the scenario's
+};
+
+/// Loads a scenario (.yaml, .yml) or a world or model (.sdf, .world): what `sandlot run` accepts.
+/// Errors carry file and line; warnings go to `diagnostics`, each once per file.
+Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
+
+/// Loads one model file as an instance at `X_WM`, ready for a SpawnRequest.
+Result<model::Instance> load_instance(const std::string& model_file, const std::string& name, const Pose& X_WM,
+                                      Diagnostics& diagnostics);
+
+}  // namespace sandlot

@@ -1,0 +1,289 @@
+#include "sim/model_bytes.h"
+
+#include <algorithm>
+
+namespace sandlot {
+namespace {
+
+constexpr int max_node_depth = 64;
+
+/// One description of each struct serves both directions: `io` is a Save or a Load.
+struct Save {
+  ByteWriter& w;
+  static constexpr bool loading = false;
+  template <class T>
+  void value(const T& x) {
+    write(w, x);
+  }
+  bool ok() const { return true; }
+};
+struct Load {
+  ByteReader& r;
+  static constexpr bool loading = true;
+  template <class T>
+  void value(T& x) {
+    read(r, x);
+  }
+  bool ok() const { return r.ok(); }
+};
+
+template <class Io, class T, class Each>
+void list(Io& io, T& items, Each&& each) {
+  auto count = static_cast<std::uint32_t>(items.size());
+  io.value(count);
+  if constexpr (Io::loading) {
+    items.clear();
+    if (count > io.r.remaining()) return io.r.fail();
+    items.resize(count);
+  }
+  for (auto& item : items)
+    if (io.ok()) each(io, item);
+}
+
+void node(Save& io, const Node& n) {
+  io.value(static_cast<std::uint8_t>(n.type()));
+  if (n.is_scalar()) io.value(n.text());
+  io.value(static_cast<std::uint32_t>(n.items().size()));
+  for (const Node& item : n.items()) node(io, item);
+  io.value(static_cast<std::uint32_t>(n.entries().size()));
+  for (const Node::Entry& entry : n.entries()) {
+    io.value(entry.key);
+    node(io, entry.value);
+  }
+}
+
+void node(Load& io, Node& n, int depth = 0) {
+  std::uint8_t type = 0;
+  io.value(type);
+  if (depth > max_node_depth || type > 3) return io.r.fail();
+  n = Node();
+  if (type == static_cast<std::uint8_t>(Node::Type::scalar)) {
+    std::string text;
+    io.value(text);
+    n = Node::scalar(std::move(text));
+  }
+  if (type == static_cast<std::uint8_t>(Node::Type::sequence)) n = Node::sequence();
+  if (type == static_cast<std::uint8_t>(Node::Type::map)) n = Node::map();
+  std::uint32_t count = 0;
+  io.value(count);
+  if (count > io.r.remaining() || (count && !n.is_sequence())) return io.r.fail();
+  for (std::uint32_t i = 0; i < count && io.ok(); ++i) node(io, n.push(Node()), depth + 1);
+  io.value(count);
+  if (count > io.r.remaining() || (count && !n.is_map())) return io.r.fail();
+  for (std::uint32_t i = 0; i < count && io.ok(); ++i) {
+    std::string key;
+    io.value(key);
+    Node value;
+    node(io, value, depth + 1);
+    n.set(std::move(key), std::move(value));
+  }
+}
+
+/// Shapes as their index in the variant and their numbers.
+void shape(Save& io, const Shape& s) {
+  std::array<double, 3> n{};
+  if (const auto* b = std::get_if<Box>(&s)) n = {b->size_m.x, b->size_m.y, b->size_m.z};
+  if (const auto* b = std::get_if<Sphere>(&s)) n = {b->radius_m, 0, 0};
+  if (const auto* c = std::get_if<Cylinder>(&s)) n = {c->radius_m, c->length_m, 0};
+  if (const auto* c = std::get_if<Capsule>(&s)) n = {c->radius_m, c->length_m, 0};
+  if (const auto* p = std::get_if<Plane>(&s)) n = {p->normal.x, p->normal.y, p->normal.z};
+  io.value(static_cast<std::uint8_t>(s.index()));
+  io.value(n);
+}
+void shape(Load& io, Shape& s) {
+  std::uint8_t index = 0;
+  std::array<double, 3> n{};
+  io.value(index);
+  io.value(n);
+  switch (index) {
+    case 0: s = Box{{n[0], n[1], n[2]}}; break;
+    case 1: s = Sphere{n[0]}; break;
+    case 2: s = Cylinder{n[0], n[1]}; break;
+    case 3: s = Capsule{n[0], n[1]}; break;
+    case 4: s = Plane{{n[0], n[1], n[2]}}; break;
+    default: io.r.fail();
+  }
+}
+
+void color(auto& io, auto& c) {
+  io.value(c.r);
+  io.value(c.g);
+  io.value(c.b);
+  io.value(c.a);
+}
+
+void collision(auto& io, auto& c) {
+  io.value(c.name);
+  io.value(c.X_LC);
+  shape(io, c.shape);
+  auto& s = c.surface;
+  io.value(s.mu);
+  io.value(s.mu2);
+  io.value(s.fdir1);
+  io.value(s.slip1);
+  io.value(s.slip2);
+  io.value(s.restitution);
+  io.value(s.restitution_threshold_mps);
+  io.value(s.soft_erp);
+  io.value(s.soft_cfm);
+}
+
+void visual(auto& io, auto& v) {
+  io.value(v.name);
+  io.value(v.X_LC);
+  shape(io, v.shape);
+  color(io, v.color);
+}
+
+void link(auto& io, auto& l) {
+  io.value(l.name);
+  io.value(l.X_ML);
+  io.value(l.inertial.mass_kg);
+  io.value(l.inertial.X_LCo);
+  io.value(l.inertial.moments);
+  io.value(l.inertial.products);
+  list(io, l.collisions, [](auto& i, auto& c) { collision(i, c); });
+  list(io, l.visuals, [](auto& i, auto& v) { visual(i, v); });
+  io.value(l.gravity);
+}
+
+void joint(auto& io, auto& j) {
+  io.value(j.name);
+  io.value(j.type);
+  io.value(j.parent);
+  io.value(j.child);
+  io.value(j.X_CJ);
+  io.value(j.axis_J);
+  io.value(j.lower);
+  io.value(j.upper);
+  io.value(j.max_effort);
+  io.value(j.max_velocity);
+  io.value(j.damping);
+  io.value(j.friction);
+  io.value(j.spring_stiffness);
+  io.value(j.spring_reference);
+}
+
+void device(auto& io, auto& d) {
+  io.value(d.name);
+  io.value(d.kind);
+  io.value(d.sdf_types);
+  io.value(d.link);
+  io.value(d.X_LS);
+  node(io, d.config);
+}
+
+void controller(auto& io, auto& c) {
+  io.value(c.name);
+  io.value(c.kind);
+  node(io, c.config);
+}
+
+void whole_model(auto& io, auto& m) {
+  io.value(m.name);
+  io.value(m.is_static);
+  io.value(m.self_collide);
+  list(io, m.links, [](auto& i, auto& l) { link(i, l); });
+  list(io, m.joints, [](auto& i, auto& j) { joint(i, j); });
+  list(io, m.frames, [](auto& i, auto& f) {
+    i.value(f.name);
+    i.value(f.link);
+    i.value(f.X_LF);
+  });
+  list(io, m.devices, [](auto& i, auto& d) { device(i, d); });
+}
+
+void setup_values(auto& io, auto& s) {
+  io.value(s.name);
+  io.value(s.engine);
+  node(io, s.physics);
+  io.value(s.gravity);
+  io.value(s.step);
+  io.value(s.substeps);
+  io.value(s.control_interval);
+  io.value(s.seed);
+  io.value(s.stop);
+  list(io, s.lights, [](auto& i, auto& l) {
+    i.value(l.type);
+    i.value(l.name);
+    i.value(l.X_WLight);
+    color(i, l.color);
+  });
+}
+
+void instance_values(auto& io, auto& x) {
+  io.value(x.name);
+  io.value(x.original_name);
+  io.value(x.X_WM);
+  io.value(x.is_robot);
+  io.value(x.team);
+  list(io, x.devices, [](auto& i, auto& d) { device(i, d); });
+  list(io, x.controllers, [](auto& i, auto& c) { controller(i, c); });
+}
+
+/// Indices that the rest of the program follows without asking.
+bool consistent(const model::Model& m) {
+  const auto links = static_cast<std::uint32_t>(m.links.size());
+  if (links == 0) return false;
+  for (const model::Joint& j : m.joints)
+    if ((j.parent >= links && j.parent != model::world_link) || j.child >= links || j.type > model::JointType::ball) return false;
+  for (const model::Frame& f : m.frames)
+    if (f.link >= links) return false;
+  for (const model::DeviceDecl& d : m.devices)
+    if (d.link >= links) return false;
+  return true;
+}
+
+}  // namespace
+
+void write_setup(ByteWriter& w, const model::Setup& setup, std::span<const model::Instance* const> instances) {
+  Save io{w};
+  setup_values(io, setup);
+  std::vector<const model::Model*> models;
+  std::vector<std::uint32_t> model_of;
+  for (const model::Instance* instance : instances) {
+    const auto* const m = instance->model.get();
+    // Robots of one kind come in a row: look at the newest first.
+    const auto found = std::find(models.rbegin(), models.rend(), m);
+    if (found == models.rend()) models.push_back(m);
+    model_of.push_back(static_cast<std::uint32_t>(
+        found == models.rend() ? models.size() - 1 : static_cast<std::size_t>(models.rend() - found) - 1));
+  }
+  io.value(static_cast<std::uint32_t>(models.size()));
+  for (const model::Model* m : models) whole_model(io, *m);
+  io.value(static_cast<std::uint32_t>(instances.size()));
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    instance_values(io, *instances[i]);
+    io.value(model_of[i]);
+  }
+}
+
+bool read_setup(ByteReader& r, model::Setup& setup) {
+  Load io{r};
+  setup_values(io, setup);
+  std::uint32_t count = 0;
+  io.value(count);
+  std::vector<std::shared_ptr<const model::Model>> models;
+  for (std::uint32_t i = 0; i < count && r.ok(); ++i) {
+    auto m = std::make_shared<model::Model>();
+    whole_model(io, *m);
+    if (!r.ok() || !consistent(*m)) return false;
+    models.push_back(std::move(m));
+  }
+  io.value(count);
+  setup.instances.clear();
+  for (std::uint32_t i = 0; i < count && r.ok(); ++i) {
+    model::Instance instance;
+    instance_values(io, instance);
+    std::uint32_t index = 0;
+    io.value(index);
+    if (!r.ok() || index >= models.size()) return false;
+    instance.model = models[index];
+    for (const model::DeviceDecl& d : instance.devices)
+      if (d.link >= instance.model->links.size()) return false;
+    setup.instances.push_back(std::move(instance));
+  }
+  return r.ok();
+}
+
+}  // namespace sandlot

@@ -1,0 +1,43 @@
+#pragma once
+/// A Program is anything that decides for a robot: a controller in process, later RoBIOS programs and remote
+/// clients. It is resumed once per control interval and says what it waits for.
+#include <memory>
+
+#include "control/controller.h"
+
+namespace sandlot {
+
+class Program {
+ public:
+  enum class Waiting { control_step, nothing };  ///< `nothing`: it has ended
+  struct Resumed {
+    Waiting waiting_for = Waiting::control_step;
+    Time local_time;  ///< how far the program has come in its own time
+  };
+  virtual ~Program() = default;
+  /// Lets the program run until `until`. Called in parallel with other programs.
+  virtual Resumed resume(Time until, const Observation& obs, Command& cmd) = 0;
+  virtual Status set_parameter(std::string_view path, const Node& value) = 0;
+  virtual void save(ByteWriter& w) const = 0;
+  virtual void load(ByteReader& r) = 0;
+};
+
+/// A controller as a program: one step per resume.
+class ControllerProgram final : public Program {
+ public:
+  explicit ControllerProgram(std::unique_ptr<Controller> controller) : controller_(std::move(controller)) {}
+  Resumed resume(Time until, const Observation& obs, Command& cmd) override {
+    controller_->step(obs, cmd);
+    return {Waiting::control_step, until};
+  }
+  Status set_parameter(std::string_view path, const Node& value) override {
+    return controller_->set_parameter(path, value);
+  }
+  void save(ByteWriter& w) const override { controller_->save(w); }
+  void load(ByteReader& r) override { controller_->load(r); }
+
+ private:
+  std::unique_ptr<Controller> controller_;
+};
+
+}  // namespace sandlot

@@ -1,0 +1,65 @@
+#pragma once
+/// Everything that may reach into a running simulation from outside, as one variant.
+///
+/// Requests take effect at the beginning of the next tick, in a fixed order (administrators first, then robots by
+/// creation, then sequence), and are logged: the log plus the seed is the replay.
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/node.h"
+#include "geometry/pose.h"
+#include "model/model.h"
+
+namespace sandlot {
+
+/// Who asks.
+struct Source {
+  enum class Kind : std::uint8_t { admin, robot } kind = Kind::admin;
+  std::uint64_t id = 0;  ///< a client's or robot's own number
+};
+
+/// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".
+struct CommandRequest {
+  std::string target;
+  std::string type;              ///< ROS type
+  std::vector<std::byte> bytes;  ///< the message, as base/bytes.h writes it
+};
+/// A tunable field: "robot1/laser.noise/white" or "robot1/wander.speed".
+struct ParameterRequest {
+  std::string target;
+  std::string field;
+  Node value;
+};
+/// Which levels of a device are active from now on.
+struct LevelRequest {
+  std::string device;
+  std::vector<std::string> levels;
+};
+struct SpawnRequest {
+  model::Instance instance;
+};
+struct DeleteRequest {
+  std::string name;
+};
+struct PoseRequest {
+  std::string name;
+  Pose X_WM;
+};
+/// Take a sample at the end of the next tick although none is due.
+struct SampleRequest {
+  std::string device;
+};
+
+using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest, PoseRequest,
+                             SampleRequest>;
+
+/// What became of a request, in the order they were carried out.
+struct Outcome {
+  Source source;
+  std::uint64_t sequence = 0;
+  Status status;
+};
+
+}  // namespace sandlot

@@ -1,0 +1,139 @@
+#include <algorithm>
+
+#include "base/text.h"
+#include "sim/simulation.h"
+
+namespace sandlot {
+
+std::uint64_t Simulation::submit(Request request, Source source) {
+  const std::lock_guard lock(inbox_mutex_);
+  inbox_.push_back({source, next_sequence_, std::move(request)});
+  return next_sequence_++;
+}
+
+Status Simulation::carry_out(Request& request, const Source& source, std::uint64_t sequence) {
+  if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command, source, sequence);
+  if (const auto* parameter = std::get_if<ParameterRequest>(&request)) {
+    if (Device* device = find_device(parameter->target)) {
+      SL_TRY(pools_[device->kind].pool->set_parameter(device->index, parameter->field, parameter->value));
+      plan_next_sample(*device);
+      return {};
+    }
+    if (ProgramEntry* program = find_program(parameter->target))
+      return program->program->set_parameter(parameter->field, parameter->value);
+    return Error{"there is no device or program '" + parameter->target + "'"};
+  }
+  if (const auto* level = std::get_if<LevelRequest>(&request)) return set_levels(*level);
+  if (auto* spawn = std::get_if<SpawnRequest>(&request)) {
+    Diagnostics ignored;
+    SL_TRY(add_entity(spawn->instance, ignored));
+    ++revision_;
+    rebuild_scene();
+    return {};
+  }
+  if (const auto* removal = std::get_if<DeleteRequest>(&request)) {
+    for (std::size_t i = 0; i < entities_.size(); ++i) {
+      if (entities_[i]->instance.name != removal->name) continue;
+      remove_entity(i);
+      ++revision_;
+      rebuild_scene();
+      return {};
+    }
+    return Error{"there is nothing named '" + removal->name + "'"};
+  }
+  if (const auto* pose = std::get_if<PoseRequest>(&request)) {
+    const Entity* const entity = find_entity(pose->name);
+    if (!entity) return Error{"there is nothing named '" + pose->name + "'"};
+    if (!is_finite(pose->X_WM) || norm(pose->X_WM.q) < 1e-6) return Error{"the pose is not finite"};
+    engine_->set_pose(entity->id, {pose->X_WM.p, normalised(pose->X_WM.q)});
+    return {};
+  }
+  const auto& sample = std::get<SampleRequest>(request);
+  Device* const device = find_device(sample.device);
+  if (!device) return Error{"there is no device '" + sample.device + "'"};
+  device->requested = true;
+  return {};
+}
+
+Simulation::Slot* Simulation::active_command_slot(Device& device, std::string_view type, std::string_view level) {
+  const auto& levels = pools_[device.kind].kind->levels;
+  for (Slot& slot : device.commands) {
+    if (type != slot.topic->type()) continue;
+    const bool always = slot.level >= levels.size();
+    if (!level.empty() && (always || level != levels[slot.level].name)) continue;
+    if (always || (device.levels >> slot.level & 1)) return &slot;
+  }
+  return nullptr;
+}
+
+Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source,
+                                std::uint64_t sequence) {
+  if (!slot.topic->assign(bytes)) return Error{"the bytes are no " + std::string(slot.topic->type())};
+  slot.topic->stamp = now_;
+  ++slot.topic->count;
+  applied_.push_back({source, sequence, slot.topic.get(), static_cast<std::uint32_t>(applied_bytes_.size()),
+                      static_cast<std::uint32_t>(bytes.size())});
+  applied_bytes_.insert(applied_bytes_.end(), bytes.begin(), bytes.end());
+  return {};
+}
+
+Status Simulation::apply_command(const CommandRequest& command, const Source& source, std::uint64_t sequence) {
+  const std::string_view target = command.target;
+  Device* device = find_device(target);
+  std::string_view level;
+  if (!device) {
+    if (const std::size_t slash = target.rfind('/'); slash != std::string_view::npos) {
+      device = find_device(target.substr(0, slash));
+      level = target.substr(slash + 1);
+    }
+  }
+  if (!device) return ++refused_commands_, Error{"there is no device '" + command.target + "'"};
+  Slot* const slot = active_command_slot(*device, command.type, level);
+  if (!slot) {
+    ++refused_commands_;
+    return Error{"'" + command.target + "' takes no " + command.type + " at its active level"};
+  }
+  Status status = give_command(*slot, command.bytes, source, sequence);
+  if (!status) ++refused_commands_;
+  return status;
+}
+
+void Simulation::apply_program_orders() {
+  for (const auto& entity : entities_)
+    for (const auto& program : entity->programs) {
+      for (const Command::Order& order : program->command.orders()) {
+        const Description::Entry& entry = program->description.actuators[order.slot];
+        Slot* slot = nullptr;
+        for (const auto& device : entity->devices)
+          if (device->decl.name == entry.device) slot = active_command_slot(*device, entry.type, entry.level);
+        // A level that was switched off under a controller's feet: its commands are refused and counted.
+        if (!slot || !give_command(*slot, program->command.bytes(order), {Source::Kind::robot, entity->serial}, program->steps))
+          ++refused_commands_;
+      }
+      program->command.clear();
+    }
+}
+
+Status Simulation::set_levels(const LevelRequest& request) {
+  Device* const device = find_device(request.device);
+  if (!device) return Error{"there is no device '" + request.device + "'"};
+  Pool& pool = pools_[device->kind];
+  std::vector<std::string> known;
+  for (const LevelInfo& level : pool.kind->levels) known.emplace_back(level.name);
+  std::uint32_t bits = 0;
+  for (const std::string& name : request.levels) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      return Error{"device '" + request.device + "' has no level '" + name + "'", suggestion(name, known)};
+    bits |= 1u << (found - known.begin());
+  }
+  if (bits == 0) return Error{"a device needs at least one active level", suggestion("", known)};
+  SL_TRY(pool.pool->switch_level(device->index, device->levels, bits, context()));
+  device->levels = bits;
+  ++revision_;
+  for (const auto& entity : entities_)
+    if (entity->instance.name == request.device.substr(0, request.device.find('/'))) point_programs_at_active_levels(*entity);
+  return {};
+}
+
+}  // namespace sandlot

@@ -1,0 +1,44 @@
+#pragma once
+/// A Rule judges the run once per tick, after sensing and before control: stop conditions now, referees and
+/// criteria later. It sees the truth and may end the run.
+#include <optional>
+#include <string>
+
+#include "base/bytes.h"
+#include "physics/engine.h"
+
+namespace sandlot {
+
+struct RuleContext {
+  Time now;
+  std::uint64_t tick_index = 0;
+  const Engine& engine;
+};
+
+class Rule {
+ public:
+  virtual ~Rule() = default;
+  virtual const char* name() const = 0;
+  /// The reason to stop, or nothing.
+  virtual std::optional<std::string> judge(const RuleContext& context) = 0;
+  virtual void save(ByteWriter& w) const = 0;
+  virtual void load(ByteReader& r) = 0;
+};
+
+/// Ends the run at a simulated time.
+class StopAfter final : public Rule {
+ public:
+  explicit StopAfter(Time end) : end_(end) {}
+  const char* name() const override { return "stop_after"; }
+  std::optional<std::string> judge(const RuleContext& context) override {
+    if (context.now < end_) return std::nullopt;
+    return "simulated time reached " + std::to_string(end_.s()) + " s";
+  }
+  void save(ByteWriter& w) const override { write(w, end_); }
+  void load(ByteReader& r) override { read(r, end_); }
+
+ private:
+  Time end_;
+};
+
+}  // namespace sandlot

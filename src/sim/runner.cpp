@@ -1,0 +1,45 @@
+#include "sim/runner.h"
+
+#include <chrono>
+#include <thread>
+
+namespace sandlot {
+
+Status run(Simulation& simulation, const Clock& clock, RunReport& report,
+           const std::function<bool(const Simulation&)>& keep_going) {
+  using std::chrono::duration;
+  using std::chrono::steady_clock;
+  const auto begin = steady_clock::now();
+  const Time sim_begin = simulation.now();
+  const std::uint64_t tick_begin = simulation.tick_index();
+  // When the program falls far behind it does not race to catch up: the clock is set anew.
+  constexpr double resync_s = 1.0;
+  auto origin = begin;
+  Time sim_origin = sim_begin;
+  Status status;
+  while (!simulation.stop_reason()) {
+    if (clock.factor) {
+      const double ahead_s = (simulation.now() - sim_origin).s() / *clock.factor;
+      const auto due = origin + std::chrono::duration_cast<steady_clock::duration>(duration<double>(ahead_s));
+      const auto now = steady_clock::now();
+      if (due > now) {
+        std::this_thread::sleep_until(due);
+      } else {
+        const double behind_s = duration<double>(now - due).count();
+        if (behind_s * *clock.factor > simulation.setup().step.s()) ++report.late_ticks;
+        if (behind_s > resync_s) {
+          origin = now;
+          sim_origin = simulation.now();
+        }
+      }
+    }
+    status = simulation.tick();
+    if (!status || (keep_going && !keep_going(simulation))) break;
+  }
+  report.ticks += simulation.tick_index() - tick_begin;
+  report.sim_s += (simulation.now() - sim_begin).s();
+  report.wall_s += duration<double>(steady_clock::now() - begin).count();
+  return status;
+}
+
+}  // namespace sandlot

@@ -1,0 +1,27 @@
+#pragma once
+/// Runs a simulation against a clock: as fast as possible, or at a multiple of real time. The only place where
+/// the wall clock has a say, and it decides when a tick happens, never what it does.
+#include <functional>
+#include <optional>
+
+#include "sim/simulation.h"
+
+namespace sandlot {
+
+struct Clock {
+  std::optional<double> factor;  ///< real time x factor; unset: as fast as possible ("step" mode)
+};
+
+struct RunReport {
+  std::uint64_t ticks = 0;
+  double wall_s = 0;
+  double sim_s = 0;
+  std::uint64_t late_ticks = 0;  ///< ticks that began more than one step behind the clock
+};
+
+/// Ticks until the simulation has a reason to stop, or `keep_going` (called after each tick) says no.
+/// The report is filled also when a tick fails.
+Status run(Simulation& simulation, const Clock& clock, RunReport& report,
+           const std::function<bool(const Simulation&)>& keep_going = {});
+
+}  // namespace sandlot

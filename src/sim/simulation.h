@@ -1,0 +1,232 @@
+#pragma once
+/// One simulated world: built from a Setup, advanced tick by tick, saved and restored at any tick.
+///
+///   auto sim = Simulation::create(setup, {.threads = 2}, diagnostics);   // Result
+///   while (!(*sim)->stop_reason()) SL_TRY((*sim)->tick());
+///
+/// Determinism   the same Setup, seed and requests give the same state_hash() after every tick, for any number of
+///               threads and observers.
+/// Threads       one thread calls tick(); submit() may be called from any.
+/// Cost          no heap allocation of ours per tick once vectors have reached their size.
+#include <array>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/kind.h"
+#include "optics/ray_scene.h"
+#include "sim/frame.h"
+#include "sim/phase_timer.h"
+#include "sim/program.h"
+#include "sim/request.h"
+#include "sim/rule.h"
+
+namespace tbb::detail::d1 {
+class task_arena;
+}
+
+namespace sandlot {
+
+struct SimulationOptions {
+  int threads = 1;           ///< 0: as many as the machine has
+  bool run_programs = true;  ///< false: programs are not resumed (commands come from a log)
+  std::span<const Kind* const> extra_kinds = {};  ///< beside the built-in ones
+};
+
+class Simulation {
+ public:
+  static Result<std::unique_ptr<Simulation>> create(model::Setup setup, const SimulationOptions& options,
+                                                    Diagnostics& diagnostics);
+  /// Rebuilds the world that `snapshot()` saved; needs nothing else.
+  static Result<std::unique_ptr<Simulation>> restore(std::span<const std::byte> snapshot,
+                                                     const SimulationOptions& options, Diagnostics& diagnostics);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Advances by one step. An error (a state that is no longer finite) ends the run.
+  Status tick();
+
+  Time now() const { return now_; }
+  std::uint64_t tick_index() const { return tick_; }
+  std::uint64_t revision() const { return revision_; }
+  const std::optional<std::string>& stop_reason() const { return stop_reason_; }
+  const model::Setup& setup() const { return setup_; }
+
+  /// Queues a request for the next tick. @return its sequence number
+  std::uint64_t submit(Request request, Source source = {});
+  /// What became of the requests carried out in the last tick.
+  std::span<const Outcome> outcomes() const { return outcomes_; }
+
+  void add_observer(Observer* observer) { observers_.push_back(observer); }
+  void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
+  void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
+
+  /// Hash of all State.
+  std::uint64_t state_hash() const;
+  /// Hashes of each entity's State, in creation order.
+  std::vector<SubHash> sub_hashes() const;
+  /// All State with the Model it belongs to.
+  std::vector<std::byte> snapshot() const;
+  /// What the numbers depend on beside the inputs: "x86-64-v3 embree-avx2 ...". Part of every snapshot.
+  static const std::string& profile();
+
+  // Reading, by address. Null or nothing when there is no such thing.
+  const Engine& engine() const { return *engine_; }
+  const RayCaster& rays() const { return *rays_; }
+  std::optional<InstanceId> find_instance(std::string_view name) const;
+  /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
+  const TopicBase* find_topic(std::string_view name) const;
+  std::vector<const TopicBase*> topics() const;
+
+  const PhaseTimes& phase_times() const { return phase_times_; }
+  std::uint64_t refused_commands() const { return refused_commands_; }
+
+  // --- the parts, for the files of sim/ ---
+  struct Slot {
+    std::unique_ptr<TopicBase> topic;
+    std::uint32_t level = 0;
+  };
+  struct Device {
+    model::DeviceDecl decl;
+    std::string path;
+    std::uint64_t key = 0;
+    std::uint32_t kind = 0;  ///< index into pools_
+    std::uint32_t index = 0; ///< in its pool
+    std::uint32_t levels = 1;
+    Time start;              ///< due times count from here
+    std::uint64_t sample = 0;  ///< index of the next sample
+    Time last;                 ///< time of the previous sample
+    Time due;                  ///< of the next one; follows from start, sample and the rate
+    bool requested = false;
+    std::vector<Slot> topics, commands;
+  };
+  struct ProgramEntry {
+    model::ControllerDecl decl;
+    std::string path;
+    std::uint64_t key = 0;
+    std::unique_ptr<Program> program;
+    Description description;
+    std::vector<const TopicBase*> topics;  ///< what its readings point to at the active levels
+    std::vector<std::uint64_t> seen;       ///< message counts at its previous step
+    Command command;
+    std::uint64_t steps = 0;
+    bool ended = false;
+  };
+  struct Entity {
+    model::Instance instance;
+    InstanceId id;
+    std::uint64_t key = 0;
+    std::uint64_t serial = 0;  ///< creation order over the whole run
+    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<ProgramEntry>> programs;
+  };
+
+ private:
+  struct Pool {
+    const Kind* kind = nullptr;
+    std::unique_ptr<PoolBase> pool;
+    std::vector<Device*> devices;
+    std::vector<std::uint32_t> all, due, levels;
+    std::vector<std::uint64_t> sample;
+    std::vector<Time> since;
+  };
+  struct Pending {
+    Source source;
+    std::uint64_t sequence;
+    Request request;
+  };
+
+  Simulation(model::Setup setup, const SimulationOptions& options);
+
+  // build.cpp
+  Status build(Diagnostics& diagnostics);
+  Status add_entity(const model::Instance& instance, Diagnostics& diagnostics);
+  Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
+  Status add_program(Entity& entity, const model::ControllerDecl& decl);
+  void remove_entity(std::size_t index);
+  void point_programs_at_active_levels(Entity& entity);
+  Entity* find_entity(std::string_view name);
+  Device* find_device(std::string_view path);
+  ProgramEntry* find_program(std::string_view path);
+  void rebuild_scene();
+  void plan_next_sample(Device& device);
+
+  // tick.cpp: the phases, in order
+  void take_commands();
+  void actuate();
+  void physics();
+  void update_scene();
+  void sense();
+  void deliver_media();
+  void judge();
+  void control();
+  void publish();
+  Context context();
+
+  // requests.cpp
+  Status carry_out(Request& request, const Source& source, std::uint64_t sequence);
+  Status apply_command(const CommandRequest& command, const Source& source, std::uint64_t sequence);
+  Status give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source, std::uint64_t sequence);
+  Slot* active_command_slot(Device& device, std::string_view type, std::string_view level);
+  Status set_levels(const LevelRequest& request);
+  void apply_program_orders();
+
+  // state.cpp
+  template <class Visit>
+  void for_each_state(Visit&& visit) const;
+  void save_device(const Device& device, ByteWriter& w) const;
+  void load_device(Device& device, ByteReader& r);
+  static void save_program(const ProgramEntry& program, ByteWriter& w);
+  static bool load_program(ProgramEntry& program, ByteReader& r);
+  void save_run(ByteWriter& w) const;
+  bool load_run(ByteReader& r);
+
+  model::Setup setup_;
+  SimulationOptions options_;
+  std::unique_ptr<tbb::detail::d1::task_arena> arena_;
+  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<RayScene> scene_;  ///< null when the engine casts rays itself
+  const RayCaster* rays_ = nullptr;
+  SceneFrame scene_frame_;
+
+  std::vector<std::unique_ptr<Entity>> entities_;
+  std::vector<Pool> pools_;
+  std::vector<std::unique_ptr<Rule>> rules_;
+  std::vector<std::unique_ptr<Medium>> media_;
+  std::vector<Observer*> observers_;
+
+  Time now_;
+  std::uint64_t tick_ = 0;
+  std::uint64_t revision_ = 0;
+  std::uint64_t next_serial_ = 0;
+  std::uint64_t refused_commands_ = 0;
+  std::optional<std::string> stop_reason_;
+  Status failure_;
+
+  std::mutex inbox_mutex_;
+  std::vector<Pending> inbox_;
+  std::uint64_t next_sequence_ = 0;
+  std::vector<Pending> carrying_out_;
+  std::vector<Outcome> outcomes_;
+
+  Actuation actuation_;
+  EmissionBuffer emissions_;
+  std::vector<ProgramEntry*> running_;
+  struct Applied {
+    Source source;
+    std::uint64_t sequence;
+    const TopicBase* slot;
+    std::uint32_t begin, size;
+  };
+  std::vector<Applied> applied_;
+  std::vector<std::byte> applied_bytes_;
+  std::shared_ptr<Frame> frame_;
+  PhaseTimes phase_times_;
+  mutable ByteWriter scratch_;
+};
+
+}  // namespace sandlot

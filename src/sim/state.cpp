@@ -1,0 +1,246 @@
+/// State as bytes: the hash of a tick, and snapshots.
+///
+/// A snapshot holds the Model (setup and instances in creation order) and the State of each entity. Restoring
+/// always builds a new world from the Model and then loads the State, so the same process and a new one take the
+/// same path.
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "sim/model_bytes.h"
+#include "sim/simulation.h"
+
+namespace sandlot {
+namespace {
+
+constexpr std::array<char, 8> magic{'S', 'A', 'N', 'D', 'L', 'O', 'T', 'S'};
+constexpr std::uint32_t snapshot_version = 1;
+
+/// Keeps each part of a snapshot readable on its own: a part that reads too much or too little is noticed there.
+template <class Fill>
+void write_block(ByteWriter& w, Fill&& fill) {
+  const std::size_t at = w.size();
+  write(w, std::uint64_t{0});
+  fill(w);
+  const std::uint64_t size = w.size() - at - 8;
+  std::memcpy(w.buffer().data() + at, &size, 8);
+}
+
+ByteReader read_block(ByteReader& r) {
+  std::uint64_t size = 0;
+  read(r, size);
+  return ByteReader(r.take(size));
+}
+
+}  // namespace
+
+void Simulation::save_device(const Device& device, ByteWriter& w) const {
+  write(w, device.levels);
+  write(w, device.start);
+  write(w, device.sample);
+  write(w, device.last);
+  write(w, device.requested);
+  for (const Slot& slot : device.topics) slot.topic->save(w);
+  for (const Slot& slot : device.commands) slot.topic->save(w);
+  pools_[device.kind].pool->save(device.index, w);
+}
+
+void Simulation::load_device(Device& device, ByteReader& r) {
+  read(r, device.levels);
+  read(r, device.start);
+  read(r, device.sample);
+  read(r, device.last);
+  read(r, device.requested);
+  for (Slot& slot : device.topics) slot.topic->load(r);
+  for (Slot& slot : device.commands) slot.topic->load(r);
+  pools_[device.kind].pool->load(device.index, r);
+  plan_next_sample(device);
+}
+
+void Simulation::save_program(const ProgramEntry& program, ByteWriter& w) {
+  write(w, program.steps);
+  write(w, program.ended);
+  write(w, program.seen);
+  write(w, static_cast<std::uint32_t>(program.command.orders().size()));
+  for (const Command::Order& order : program.command.orders()) {
+    const auto bytes = program.command.bytes(order);
+    write(w, order.slot);
+    write(w, static_cast<std::uint32_t>(bytes.size()));
+    w.raw(bytes.data(), bytes.size());
+  }
+  program.program->save(w);
+}
+
+bool Simulation::load_program(ProgramEntry& program, ByteReader& r) {
+  const std::size_t readings = program.seen.size();
+  read(r, program.steps);
+  read(r, program.ended);
+  read(r, program.seen);
+  std::uint32_t orders = 0;
+  read(r, orders);
+  program.command.clear();
+  for (std::uint32_t i = 0; i < orders && r.ok(); ++i) {
+    std::uint32_t slot = 0, size = 0;
+    read(r, slot);
+    read(r, size);
+    const auto bytes = r.take(size);
+    if (slot >= program.description.actuators.size()) return false;
+    program.command.set_bytes(slot, bytes);
+  }
+  program.program->load(r);
+  return r.ok() && program.seen.size() == readings;
+}
+
+void Simulation::save_run(ByteWriter& w) const {
+  write(w, now_);
+  write(w, tick_);
+  write(w, revision_);
+  write(w, next_serial_);
+  write(w, refused_commands_);
+  write(w, stop_reason_);
+  for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
+  for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
+}
+
+bool Simulation::load_run(ByteReader& r) {
+  read(r, now_);
+  read(r, tick_);
+  read(r, revision_);
+  read(r, next_serial_);
+  read(r, refused_commands_);
+  read(r, stop_reason_);
+  for (const auto& rule : rules_) {
+    ByteReader block = read_block(r);
+    rule->load(block);
+  }
+  for (const auto& medium : media_) {
+    ByteReader block = read_block(r);
+    medium->load(block);
+  }
+  return r.ok();
+}
+
+/// Calls visit(path, key, fill) for each entity's part of the State, in creation order.
+template <class Visit>
+void Simulation::for_each_state(Visit&& visit) const {
+  for (const auto& entity : entities_) {
+    visit(entity->instance.name, entity->key, [&](ByteWriter& w) { engine_->save(entity->id, w); });
+    for (const auto& device : entity->devices)
+      visit(device->path, device->key, [&](ByteWriter& w) { save_device(*device, w); });
+    for (const auto& program : entity->programs)
+      visit(program->path, program->key, [&](ByteWriter& w) { save_program(*program, w); });
+  }
+}
+
+std::uint64_t Simulation::state_hash() const {
+  scratch_.clear();
+  save_run(scratch_);
+  std::uint64_t hash = hash64(scratch_.bytes());
+  for_each_state([&](const std::string&, std::uint64_t key, auto&& fill) {
+    scratch_.clear();
+    fill(scratch_);
+    hash = hash_combine(hash, hash64(scratch_.bytes(), key));
+  });
+  return hash;
+}
+
+std::vector<SubHash> Simulation::sub_hashes() const {
+  std::vector<SubHash> out;
+  for_each_state([&](const std::string& path, std::uint64_t key, auto&& fill) {
+    scratch_.clear();
+    fill(scratch_);
+    out.push_back({path, hash64(scratch_.bytes(), key)});
+  });
+  return out;
+}
+
+const std::string& Simulation::profile() {
+  static const std::string text = [] {
+    // The ray scene says what Embree was pinned to; the rest is fixed at build time.
+    const RayScene scene;
+#if defined(__AVX2__)
+    const char* const march = "x86-64-v3";
+#else
+    const char* const march = "baseline";
+#endif
+    return std::string("sandlot-1 ") + march + " fp-contract-off sleef-cinz ode-double embree-" + scene.isa();
+  }();
+  return text;
+}
+
+std::vector<std::byte> Simulation::snapshot() const {
+  ByteWriter w;
+  write(w, magic);
+  write(w, snapshot_version);
+  write(w, profile());
+  write_block(w, [&](ByteWriter& block) {
+    std::vector<const model::Instance*> instances;
+    for (const auto& entity : entities_) instances.push_back(&entity->instance);
+    write_setup(block, setup_, instances);
+    for (const auto& entity : entities_) write(block, entity->serial);
+  });
+  write_block(w, [&](ByteWriter& block) { save_run(block); });
+  for_each_state([&](const std::string&, std::uint64_t, auto&& fill) { write_block(w, fill); });
+  const std::uint64_t checksum = hash64(w.bytes());
+  write(w, checksum);
+  return std::move(w.buffer());
+}
+
+Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byte> snapshot,
+                                                        const SimulationOptions& options, Diagnostics& diagnostics) {
+  const auto damaged = [](const char* what) {
+    return Error{std::string("the snapshot is damaged: ") + what, "take it again"};
+  };
+  ByteReader r(snapshot);
+  std::array<char, 8> found_magic{};
+  std::uint32_t version = 0;
+  std::string found_profile;
+  read(r, found_magic);
+  read(r, version);
+  if (!r.ok() || found_magic != magic) return Error{"this is no Sandlot snapshot"};
+  if (version != snapshot_version)
+    return Error{"the snapshot has version " + std::to_string(version),
+                 "this Sandlot reads version " + std::to_string(snapshot_version)};
+  read(r, found_profile);
+  if (!r.ok() || snapshot.size() < 8) return damaged("it is cut short");
+  std::uint64_t checksum = 0;
+  ByteReader tail(snapshot.last(8));
+  read(tail, checksum);
+  if (checksum != hash64(snapshot.first(snapshot.size() - 8))) return damaged("its checksum does not fit");
+  if (found_profile != profile())
+    diagnostics.warn({"the snapshot was taken with another numeric profile (" + found_profile + ")",
+                      "this one is " + profile() + "; the run will go on, but with other last bits"});
+
+  model::Setup setup;
+  ByteReader block = read_block(r);
+  if (!read_setup(block, setup)) return damaged("the model cannot be read");
+  std::vector<std::uint64_t> serials(setup.instances.size());
+  for (std::uint64_t& serial : serials) read(block, serial);
+  if (!block.ok()) return damaged("the model cannot be read");
+
+  std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
+  Diagnostics said_before;  // these warnings were given when the run began
+  SL_TRY(sim->build(said_before));
+  ByteReader run = read_block(r);
+  if (!sim->load_run(run)) return damaged("the run's own state cannot be read");
+  for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
+    Entity& entity = *sim->entities_[i];
+    entity.serial = serials[i];
+    ByteReader bodies = read_block(r);
+    if (!sim->engine_->load(entity.id, bodies)) return damaged("bodies cannot be read");
+    for (const auto& device : entity.devices) {
+      ByteReader state = read_block(r);
+      sim->load_device(*device, state);
+      if (!state.ok()) return damaged("a device cannot be read");
+    }
+    for (const auto& program : entity.programs) {
+      ByteReader state = read_block(r);
+      if (!load_program(*program, state)) return damaged("a program cannot be read");
+    }
+    sim->point_programs_at_active_levels(entity);
+  }
+  sim->arena_->execute([&] { sim->update_scene(); });
+  return sim;
+}
+
+}  // namespace sandlot

@@ -1,0 +1,222 @@
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "devices/parallel.h"
+#include "sim/simulation.h"
+
+namespace sandlot {
+
+/// One step of the world. Each phase sees what the phases before it left; see docs/architecture.md section 3.
+Status Simulation::tick() {
+  if (!failure_) return failure_;
+  arena_->execute([&] {
+    take_commands();  // 1  requests from outside, then what programs ordered in the previous tick
+    actuate();        // 2  actuators turn commands into targets and wrenches
+    physics();        // 3  sub-steps: servo loops, then the engine
+    now_ = now_ + setup_.step;
+    ++tick_;
+    update_scene();   // 4  new poses into the ray scene
+    sense();          // 5  sensors that are due take their samples
+    deliver_media();  // 6  what was emitted in this tick reaches its receivers
+    judge();          // 7  rules: stop conditions
+    control();        // 8  programs decide; their orders act in the next tick
+    publish();        // 9  the immutable frame to observers
+  });
+  return failure_;
+}
+
+Context Simulation::context() {
+  return {now_, setup_.step, tick_, setup_.seed, *engine_, *rays_, actuation_, emissions_};
+}
+
+void Simulation::take_commands() {
+  const PhaseTimer timer(phase_times_, Phase::commands);
+  outcomes_.clear();
+  applied_.clear();
+  applied_bytes_.clear();
+  {
+    const std::lock_guard lock(inbox_mutex_);
+    std::swap(carrying_out_, inbox_);
+  }
+  std::stable_sort(carrying_out_.begin(), carrying_out_.end(), [](const Pending& a, const Pending& b) {
+    return std::tuple(a.source.kind, a.source.id, a.sequence) < std::tuple(b.source.kind, b.source.id, b.sequence);
+  });
+  for (Pending& pending : carrying_out_)
+    outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request, pending.source, pending.sequence)});
+  carrying_out_.clear();
+  apply_program_orders();
+}
+
+void Simulation::actuate() {
+  const PhaseTimer timer(phase_times_, Phase::actuate);
+  actuation_.clear();
+  emissions_.clear();
+  Context ctx = context();
+  ctx.now = now_ + setup_.step;
+  for (Pool& pool : pools_) {
+    pool.levels.clear();
+    for (const Device* device : pool.devices) pool.levels.push_back(device->levels);
+    pool.sample.resize(pool.devices.size());
+    pool.since.resize(pool.devices.size());
+    if (!(pool.kind->phases & phase_actuate) || pool.devices.empty()) continue;
+    pool.pool->actuate(ctx, {pool.all, pool.sample, pool.levels, pool.since});
+  }
+}
+
+void Simulation::physics() {
+  const PhaseTimer timer(phase_times_, Phase::physics);
+  const double h_s = setup_.step.s() / setup_.substeps;
+  Context ctx = context();
+  ctx.now = now_ + setup_.step;
+  for (int substep = 0; substep < setup_.substeps; ++substep) {
+    // Wrenches of the actuate phase act over the whole tick, those of pre_substep in their sub-step.
+    const std::size_t held = actuation_.wrenches.size();
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
+        pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    engine_->apply(actuation_.wrenches);
+    engine_->set_targets(actuation_.joints);
+    engine_->set_drive_targets(actuation_.drives);
+    engine_->step(h_s, hash_combine(mix64(setup_.seed), tick_ * static_cast<std::uint64_t>(setup_.substeps) +
+                                                            static_cast<std::uint64_t>(substep)));
+    actuation_.wrenches.resize(held);
+    actuation_.joints.clear();
+    actuation_.drives.clear();
+  }
+  if (Status finite = engine_->check_finite(); !finite) {
+    failure_ = std::move(finite);
+    stop_reason_ = failure_.error().what;
+  }
+}
+
+void Simulation::update_scene() {
+  const PhaseTimer timer(phase_times_, Phase::scene);
+  if (!scene_) return;
+  const auto states = engine_->states();
+  scene_frame_.tick = tick_;
+  scene_frame_.X_WG.resize(states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) scene_frame_.X_WG[i] = states[i].X_WB;
+  scene_->update(scene_frame_);
+}
+
+void Simulation::sense() {
+  const PhaseTimer timer(phase_times_, Phase::sense);
+  const Context ctx = context();
+  for (Pool& pool : pools_) {
+    if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
+    pool.due.clear();
+    pool.levels.resize(pool.devices.size());
+    pool.sample.resize(pool.devices.size());
+    pool.since.resize(pool.devices.size());
+    for (std::uint32_t i = 0; i < pool.devices.size(); ++i) {
+      Device& device = *pool.devices[i];
+      pool.levels[i] = device.levels;
+      if (!device.requested && device.due > now_) continue;
+      device.requested = false;
+      pool.due.push_back(i);
+      pool.sample[i] = device.sample;
+      // The first sample has no predecessor: it counts as one nominal interval after it.
+      if (device.sample == 0) {
+        const double rate_hz = pool.pool->rate_hz(i);
+        pool.since[i] = rate_hz > 0 ? due_time({}, 1, rate_hz) : setup_.step;
+      } else {
+        pool.since[i] = now_ - device.last;
+      }
+      device.last = now_;
+      ++device.sample;
+      plan_next_sample(device);
+    }
+    if (!pool.due.empty()) pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
+  }
+}
+
+void Simulation::deliver_media() {
+  const PhaseTimer timer(phase_times_, Phase::media);
+  const MediumContext ctx{now_, tick_, setup_.seed, *engine_, *rays_};
+  for (const auto& medium : media_) medium->deliver(emissions_, ctx);
+}
+
+void Simulation::judge() {
+  const PhaseTimer timer(phase_times_, Phase::rules);
+  const RuleContext ctx{now_, tick_, *engine_};
+  for (const auto& rule : rules_) {
+    auto reason = rule->judge(ctx);
+    if (reason && !stop_reason_) stop_reason_ = std::move(reason);
+  }
+}
+
+void Simulation::control() {
+  const PhaseTimer timer(phase_times_, Phase::control);
+  running_.clear();
+  if (!options_.run_programs || tick_ % static_cast<std::uint64_t>(setup_.control_interval) != 0) return;
+  for (const auto& entity : entities_)
+    for (const auto& program : entity->programs)
+      if (!program->ended) running_.push_back(program.get());
+  parallel_for(running_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ProgramEntry& entry = *running_[i];
+      const Observation obs(now_, entry.topics, entry.seen,
+                            Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
+      entry.command.clear();
+      const Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      entry.ended = resumed.waiting_for == Program::Waiting::nothing;
+      ++entry.steps;
+      for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
+    }
+  });
+}
+
+void Simulation::publish() {
+  const PhaseTimer timer(phase_times_, Phase::publish);
+  if (observers_.empty()) return;
+  Observer::Wants wants;
+  for (const Observer* observer : observers_) {
+    wants.messages = wants.messages || observer->wants().messages;
+    wants.hash = wants.hash || observer->wants().hash;
+  }
+  // The previous frame is filled again unless somebody still holds it.
+  if (!frame_ || frame_.use_count() > 1) frame_ = std::make_shared<Frame>();
+  Frame& frame = *frame_;
+  frame.tick = tick_;
+  frame.now = now_;
+  frame.revision = revision_;
+  frame.instances.resize(entities_.size());
+  const auto states = engine_->states();
+  for (std::size_t i = 0; i < entities_.size(); ++i) {
+    const Entity& entity = *entities_[i];
+    FrameInstance& out = frame.instances[i];
+    out.name = entity.instance.name;
+    out.id = entity.id;
+    out.is_robot = entity.instance.is_robot;
+    out.X_WM = engine_->pose(entity.id);
+    out.V_WB = states[engine_->bodies(entity.id).front().index].V_WB;
+  }
+  frame.topics.clear();
+  if (wants.messages)
+    for (const auto& entity : entities_)
+      for (const auto& device : entity->devices)
+        for (const Slot& slot : device->topics)
+          if (slot.topic->count > 0 && slot.topic->stamp == now_) frame.topics.push_back(slot.topic->clone());
+  frame.commands.resize(applied_.size());
+  for (std::size_t i = 0; i < applied_.size(); ++i) {
+    const Applied& applied = applied_[i];
+    const auto* const bytes = applied_bytes_.data() + applied.begin;
+    FrameCommand& out = frame.commands[i];
+    out.source = applied.source;
+    out.sequence = applied.sequence;
+    out.target = applied.slot->name();
+    out.type = applied.slot->type();
+    out.bytes.assign(bytes, bytes + applied.size);
+  }
+  frame.hash = 0;
+  frame.sub_hashes.clear();
+  if (wants.hash) {
+    frame.sub_hashes = sub_hashes();
+    frame.hash = state_hash();
+  }
+  for (Observer* observer : observers_) observer->on_frame(frame_);
+}
+
+}  // namespace sandlot
