@@ -14,6 +14,27 @@
 namespace sandlot::formats {
 namespace {
 
+/// Stand-ins for the braces of ${name}. In a flow list or map YAML takes braces for its own, and `{speed: ${v}}`
+/// would be a puzzling error. check_text() keeps these bytes out of files, so the way back is unique.
+constexpr char open_brace = '\x01', close_brace = '\x02';
+
+std::string hide_variables(std::string_view text) {
+  std::string out(text);
+  for (std::size_t i = 0; (i = out.find("${", i)) != std::string::npos; i += 2) {
+    std::size_t end = i + 2;
+    while (end < out.size() && (std::isalnum(static_cast<unsigned char>(out[end])) || out[end] == '_')) ++end;
+    if (end == i + 2 || end == out.size() || out[end] != '}') continue;
+    out[i + 1] = open_brace;
+    out[end] = close_brace;
+  }
+  return out;
+}
+
+std::string show_variables(std::string text) {
+  for (char& c : text) c = c == open_brace ? '{' : c == close_brace ? '}' : c;
+  return text;
+}
+
 /// How a handler stops yaml-cpp's recursion; caught in parse_yaml.
 struct Refused {
   Error error;
@@ -47,7 +68,7 @@ class Builder final : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
     check_tag(mark, tag);
     count(mark, 1);
-    add(Node::scalar(value, at(mark)), mark, anchor, 1);
+    add(Node::scalar(show_variables(value), at(mark)), mark, anchor, 1);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
@@ -168,7 +189,8 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
                  "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read", {name}};
   SL_TRY(check_text(text, file));
   Builder builder(name, limits);
-  ViewBuffer buffer(text);
+  const std::string hidden = hide_variables(text);
+  ViewBuffer buffer(hidden);
   std::istream in(&buffer);
   try {
     YAML::Parser parser(in);
@@ -177,7 +199,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
     return refused.error;
   } catch (const YAML::Exception& e) {
     const bool known = !e.mark.is_null();
-    return Error{e.msg, "", {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
+    return Error{show_variables(e.msg), "", {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
   } catch (const std::exception& e) {
     return Error{std::string("is not YAML: ") + e.what(), "", {name}};
   }

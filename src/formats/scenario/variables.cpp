@@ -9,6 +9,13 @@ namespace {
 
 constexpr std::size_t max_text = 64u << 10;
 
+std::size_t number_of_nodes(const Node& node) {
+  std::size_t n = 1;
+  for (const Node& item : node.items()) n += number_of_nodes(item);
+  for (const Node::Entry& entry : node.entries()) n += number_of_nodes(entry.value);
+  return n;
+}
+
 /// Substitutes in place; variables are completed when they are first needed.
 class Variables {
  public:
@@ -43,17 +50,14 @@ class Variables {
     if (variable.state == Variable::busy) return variable.value.error("variable '" + name + "' is defined by itself");
     if (variable.state == Variable::raw) {
       variable.state = Variable::busy;
-      const std::size_t before = nodes_;
       Node value = variable.value;
       if (++depth_ > 100) return use.error("variables are defined by each other more than 100 deep");
       SL_TRY(replace(value));
       --depth_;
       variable.value = std::move(value);
-      variable.nodes = nodes_ - before;
+      variable.nodes = number_of_nodes(variable.value);
       variable.state = Variable::done;
     }
-    nodes_ += variable.nodes;
-    if (nodes_ > TextLimits{}.max_nodes) return use.error("variables make too many values");
     return &variable.value;
   }
 
@@ -71,6 +75,8 @@ class Variables {
         const std::string name(trim(std::string_view(text).substr(i + 2, end - i - 2)));
         SL_ASSIGN(const Node* value, value_of(name, node));
         if (i == 0 && end + 1 == text.size()) {
+          nodes_ += variables_.find(name)->second.nodes;
+          if (nodes_ > TextLimits{}.max_nodes) return node.error("variables make too many values");
           node = Node(*value);
           return {};
         }
