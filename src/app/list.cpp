@@ -141,12 +141,10 @@ Json to_json(const Section& section) {
 int list(const ListOptions& options) {
   std::vector<Section> chosen = sections();
   if (options.schema) {
-    std::vector<formats::SchemaEntry> devices, controllers, engines;
-    for (const Section& section : chosen)
-      for (const Item& item : section.items)
-        (section.key == "devices" ? devices : section.key == "controllers" ? controllers : engines)
-            .push_back({item.name, item.fields});
-    fmt::print("{}\n", formats::scenario_schema(devices, controllers, engines));
+    std::vector<formats::KindFields> devices, controllers;
+    for (const Kind* kind : device_kinds()) devices.emplace_back(kind->name, kind->describe());
+    for (const ControllerKind* kind : controller_kinds()) controllers.emplace_back(kind->name, kind->describe());
+    fmt::print("{}\n", formats::scenario_schema(devices, controllers));
     return exit_ok;
   }
   if (!options.what.empty() && options.what != "levels") {
