@@ -78,6 +78,12 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
     for (std::size_t i = 0; i < extent; ++i)
       SL_TRY(read_value(node.items()[i], field, out[i], path + "/" + std::to_string(i)));
   } else if constexpr (is_vector<T>::value) {
+    if constexpr (std::is_same_v<typename T::value_type, std::string>) {
+      if (node.is_scalar()) {  // one text stands for a list of one
+        out.resize(1);
+        return read_value(node, field, out.front(), path);
+      }
+    }
     if (!node.is_sequence()) return wrong_type(node, "a list", path);
     if (node.items().size() > field.max_count)
       return node.error("list has " + std::to_string(node.items().size()) + " elements",
