@@ -90,12 +90,19 @@ Status Simulation::build(Diagnostics& diagnostics) {
   };
   for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
-  if (setup_.stop) add_rule(std::make_unique<StopAfter>(*setup_.stop));
+  set_stop(setup_.stop);
   for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
   return {};
+}
+
+void Simulation::set_stop(std::optional<Time> stop) {
+  setup_.stop = stop;
+  stop_reason_.reset();
+  std::erase_if(rules_, [](const auto& rule) { return dynamic_cast<StopAfter*>(rule.get()) != nullptr; });
+  if (stop) rules_.insert(rules_.begin(), std::make_unique<StopAfter>(*stop));
 }
 
 Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diagnostics) {

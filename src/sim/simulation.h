@@ -61,6 +61,8 @@ class Simulation {
   /// What became of the requests carried out in the last tick.
   std::span<const Outcome> outcomes() const { return outcomes_; }
 
+  /// Sets or clears the simulated time at which the run stops by itself; a run that had stopped may go on.
+  void set_stop(std::optional<Time> stop);
   void add_observer(Observer* observer) { observers_.push_back(observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
