@@ -66,9 +66,11 @@ inline model::Instance disc_robot(const std::string& name, Vec3 p, double yaw = 
   return body_of(name, Cylinder{0.1, 0.1}, 2, {{p.x, p.y, p.z + 0.05}, quat_from_rpy(0, 0, yaw)}, {}, true);
 }
 
-inline Node settings(std::vector<std::pair<std::string, std::string>> entries) {
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+inline Node settings(const Settings& entries) {
   Node node = Node::map();
-  for (auto& [key, value] : entries) node.set(key, Node::scalar(value));
+  for (const auto& [key, value] : entries) node.set(key, Node::scalar(value));
   return node;
 }
 
