@@ -1,6 +1,8 @@
 /// Joints against formulas: motors, effort, friction, damping, springs, limits.
 #include "physics/rigid/joints.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "base/math.h"

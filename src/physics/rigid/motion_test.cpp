@@ -1,4 +1,6 @@
 /// Motion against formulas: falling, sliding, rolling, bouncing, swinging, skidding.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -111,8 +113,7 @@ TEST(RigidMotion, APushThroughAnotherBodyMeetsTheSameThreshold) {
     const double r = 0.2 / std::sqrt(2.0);
     const InstanceId box = world.add(
         body_of("box", Box{{0.2, 0.2, 0.2}}, 1, {{0, 0, 0.1}, turned}, rough, true));
-    const InstanceId pusher = world.add(
-        body_of("pusher", Box{{0.2, 0.2, 0.2}}, 1, {{-r, -r, 0.1}, turned}, smooth, true));
+    const InstanceId pusher = world.add(body_of("pusher", Sphere{0.1}, 1, {{-r, -r, 0.1}, {}}, smooth, true));
     const double force = share * 0.5 * g / std::sqrt(2.0);
     for (int i = 0; i < 200; ++i) {
       world.push(pusher, {force, force, 0});
