@@ -1,9 +1,13 @@
 #pragma once
 /// YAML text as Nodes with positions. Shared by the formats that are written in YAML.
+///
+/// Limits   one document per file; no tags but the standard ones, no merge keys (`<<`), keys are scalars.
+/// Cost     one pass of yaml-cpp's event parser, one Node per value; aliases are copied and count as what they stand for.
 #include <string>
 #include <string_view>
 
 #include "base/node.h"
+#include "formats/text.h"
 
 namespace sandlot::formats {
 
@@ -14,10 +18,8 @@ struct TextLimits {
   std::size_t max_nodes = 1'000'000;  ///< after expansion of YAML aliases
 };
 
-/// Reads a whole file, refusing directories, unreadable files and files over the limit before reading them.
-Result<std::string> read_text_file(const std::string& path, std::size_t max_bytes);
-
-/// Parses one YAML document. Duplicate keys, tabs, bad indentation ... are errors with file:line:column.
+/// Parses one YAML document. Duplicate keys, tabs, bad indentation ... are errors with file:line:column. An empty
+/// document is a null Node.
 /// @param file  name for messages
 Result<Node> parse_yaml(std::string_view text, const std::string& file, const TextLimits& limits = {});
 

@@ -23,7 +23,7 @@ struct SceneShape {
   Pose X_GC;                ///< shape frame in the group's frame
   Shape shape;
   std::uint32_t body = no_body;  ///< reported in RayJob::body and compared with RayJob::ignore_body
-  bool moves = true;        ///< false: the group's pose never changes between revisions
+  bool moves = true;             ///< false: the group's pose never changes between revisions
 };
 
 /// Poses of all groups at one tick.

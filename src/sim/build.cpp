@@ -320,6 +320,29 @@ std::vector<const TopicBase*> Simulation::topics() const {
   return all;
 }
 
+std::vector<const model::Instance*> Simulation::instances() const {
+  std::vector<const model::Instance*> all;
+  for (const auto& entity : entities_) all.push_back(&entity->instance);
+  return all;
+}
+
+std::vector<Simulation::DeviceView> Simulation::devices(std::string_view instance) const {
+  std::vector<DeviceView> views;
+  for (const auto& entity : entities_) {
+    if (entity->instance.name != instance) continue;
+    for (const auto& device : entity->devices) {
+      const Kind& kind = *pools_[device->kind].kind;
+      DeviceView view{device->path, kind.name, {}, {}, {}};
+      for (std::size_t level = 0; level < kind.levels.size(); ++level)
+        if (device->levels >> level & 1) view.active_levels.emplace_back(kind.levels[level].name);
+      for (const Slot& slot : device->topics) view.topics.push_back(slot.topic.get());
+      for (const Slot& slot : device->commands) view.commands.push_back(slot.topic.get());
+      views.push_back(std::move(view));
+    }
+  }
+  return views;
+}
+
 void Simulation::rebuild_scene() {
   if (!scene_) return;
   std::vector<SceneShape> shapes;

@@ -27,7 +27,7 @@ std::vector<std::string> search_path() {
 
 /// The file behind what a scenario wrote: beside the scenario, absolute, or in a folder of the search path; a
 /// folder stands for its model.sdf.
-Result<std::string> locate(std::string written, const std::string& from, const Place& place) {
+Result<std::string> locate(std::string written, const std::string& folder_of_file, const Place& place) {
   if (starts_with(written, "model://")) written = written.substr(8);
   if (starts_with(written, "file://")) written = written.substr(7);
   std::vector<fs::path> candidates;
@@ -35,7 +35,7 @@ Result<std::string> locate(std::string written, const std::string& from, const P
   if (path.is_absolute()) {
     candidates.push_back(path);
   } else {
-    candidates.push_back(fs::path(from).parent_path() / path);
+    candidates.push_back(fs::path(folder_of_file) / path);
     for (const std::string& folder : search_path()) candidates.push_back(fs::path(folder) / path);
   }
   std::error_code ignored;
@@ -74,18 +74,6 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
   return {};
 }
 
-Result<Pose> read_pose(const Node& node) {
-  std::array<double, 6> v{};
-  const Node* const items = &node;
-  if (!items->is_sequence() || items->items().size() != 6)
-    return wrong_type(node, "a pose [x, y, z, roll, pitch, yaw]", "/pose");
-  for (std::size_t i = 0; i < 6; ++i) {
-    const Field field{"pose", i < 3 ? "m" : "rad", "", -1e6, 1e6};
-    SL_ASSIGN(v[i], read_number(items->items()[i], field, false, "/pose"));
-  }
-  return pose_from_rpy({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
-}
-
 /// Lays the scenario's `devices:` upon the model's own: known names change keys, new names need a kind.
 Status merge_devices(model::Instance& instance, const Node& devices) {
   for (const Node::Entry& entry : devices.entries()) {
@@ -115,7 +103,7 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
       decl.link = *index;
     }
     if (const Node* pose = keys.find("pose")) {
-      SL_ASSIGN(decl.X_LS, read_pose(*pose));
+      SL_ASSIGN(decl.X_LS, formats::read_pose(*pose, path + "/pose"));
     }
     for (const char* own : {"kind", "link", "pose"}) keys.erase(own);
     if (decl.config.is_null()) decl.config = Node::map(decl.place);
@@ -140,6 +128,22 @@ Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics&
     setup.instances.push_back(std::move(instance));
   }
   return {};
+}
+
+/// What a scenario without a world stands on.
+model::Instance bare_ground() {
+  auto ground = std::make_shared<model::Model>();
+  ground->name = "ground";
+  ground->is_static = true;
+  model::Link link;
+  link.name = "link";
+  link.collisions.push_back({"collision", {}, Plane{{0, 0, 1}}, {}, {}});
+  link.visuals.push_back({"visual", {}, Plane{{0, 0, 1}}, {}, {}});
+  ground->links.push_back(std::move(link));
+  model::Instance instance;
+  instance.name = instance.original_name = "ground";
+  instance.model = std::move(ground);
+  return instance;
 }
 
 Result<model::Setup> load_bare_world(const std::string& path, Diagnostics& diagnostics) {
@@ -177,9 +181,12 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
-      SL_ASSIGN(const std::string world, locate(scenario.world, path, scenario.world_place));
+      SL_ASSIGN(const std::string world, locate(scenario.world, formats::base_folder(scenario, scenario.world_place),
+                                                scenario.world_place));
       SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics));
       SL_TRY(take_world(std::move(content), setup, diagnostics));
+    } else {
+      setup.instances.push_back(bare_ground());
     }
     setup.name = scenario.name;
     setup.engine = scenario.engine;
@@ -193,7 +200,8 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     std::map<std::string, model::Instance> loaded;
     Placer placer(setup.instances, setup.seed);
     for (const formats::RobotGroup& group : scenario.robots) {
-      SL_ASSIGN(const std::string file, locate(group.model, path, group.model_place));
+      SL_ASSIGN(const std::string file, locate(group.model, formats::base_folder(scenario, group.model_place),
+                                               group.model_place));
       auto known = loaded.find(file);
       if (known == loaded.end()) {
         auto instance = load_instance(file, group.name, {}, diagnostics);

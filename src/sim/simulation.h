@@ -81,6 +81,15 @@ class Simulation {
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
   const TopicBase* find_topic(std::string_view name) const;
   std::vector<const TopicBase*> topics() const;
+  /// What stands in the world now, in creation order.
+  std::vector<const model::Instance*> instances() const;
+  /// Devices and programs of an instance: path, kind, active levels, topics.
+  struct DeviceView {
+    std::string path, kind;
+    std::vector<std::string> active_levels;
+    std::vector<const TopicBase*> topics, commands;
+  };
+  std::vector<DeviceView> devices(std::string_view instance) const;
 
   const PhaseTimes& phase_times() const { return phase_times_; }
   std::uint64_t refused_commands() const { return refused_commands_; }

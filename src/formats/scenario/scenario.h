@@ -4,11 +4,15 @@
 /// The reader resolves `include`, `vars` and `--set`, checks the whole schema and returns plain structs; files the
 /// scenario names (worlds, models) are opened by sim/load. A key that belongs to a later version of Sandlot
 /// answers "not supported yet"; an unknown key names the nearest known one.
-#include <map>
+///
+/// Limits   includes 16 deep and 100 in all; a robot name stands for at most 1e6 robots, all together too.
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/describe.h"
 #include "base/node.h"
 #include "geometry/pose.h"
 #include "model/model.h"
@@ -29,7 +33,7 @@ struct Placement {
 
 struct RobotGroup {
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
-  std::string model;  ///< file as written, relative to the scenario file, or a name in the search path
+  std::string model;  ///< file as written (see base_folder), or a name in the search path
   int count = 1;
   Placement placement;
   std::string team;
@@ -42,12 +46,12 @@ struct RobotGroup {
 struct Scenario {
   std::string file;  ///< as given
   std::string name;
-  std::string world;  ///< file as written; "" for an empty plane
+  std::string world;  ///< file as written (see base_folder); "" for an empty plane
   Place world_place;
   std::string engine = "rigid";
   Place engine_place;
-  Node physics;       ///< the engine's own keys
-  double step_s = 0.01;
+  Node physics;       ///< the engine's own keys; a map
+  double step_s = 0.01;  ///< length of a tick
   int substeps = 1;
   int control_interval = 1;
   std::optional<double> stop_s;
@@ -56,7 +60,8 @@ struct Scenario {
 };
 
 /// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,
-/// `robots[0].devices.laser.beams`; an index may be left out of a list with one element).
+/// `robots[0].devices.laser.beams`; an index may be left out of a list with one element). A variable goes before a
+/// key of the same name. `physics=planar` leaves the other keys of a physics map alone. The value is YAML.
 struct Override {
   std::string path;
   std::string value;
@@ -67,8 +72,20 @@ Result<Scenario> read_scenario(const std::string& path, std::span<const Override
 /// As above from text; `file` names it in messages and is the base of relative paths.
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file, std::span<const Override> overrides,
                                 Diagnostics& diagnostics);
-/// JSON schema (draft 2020-12) of scenario files, from the field lists.
-/// @param device_specs, controller_specs  JSON text of the schemas of each kind, by name
-std::string scenario_schema();
+
+/// The folder that a relative path written at `place` starts from: that of the file that says it (an included file's
+/// own), the scenario's for what came from `--set`.
+std::string base_folder(const Scenario& scenario, const Place& place);
+
+/// Reads a pose as scenario files write it: `[x, y, yaw]`, `[x, y, z, roll, pitch, yaw]` or a map of these keys.
+Result<Pose> read_pose(const Node& node, const std::string& path);
+
+/// A kind's name and its fields, for the schema.
+using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
+
+/// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
+std::string schema_of(const std::vector<FieldInfo>& fields);
+/// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
+std::string scenario_schema(std::span<const KindFields> devices = {}, std::span<const KindFields> controllers = {});
 
 }  // namespace sandlot::formats

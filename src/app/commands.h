@@ -1,0 +1,71 @@
+#pragma once
+/// The verbs of the `sandlot` command. Each takes parsed options and returns an exit code: 0 ok, 1 the run
+/// failed, 2 the input is wrong.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "formats/scenario/scenario.h"
+
+namespace sandlot::app {
+
+inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
+
+struct RunOptions {
+  std::string file;
+  std::optional<double> duration_s;
+  std::optional<double> rate;  ///< real time x factor; unset: as fast as possible
+  std::optional<std::uint64_t> seed;
+  int threads = 1;
+  std::vector<formats::Override> overrides;
+  std::string summary_file;    ///< JSON
+  std::string svg_file;
+  std::string from_file;       ///< a snapshot to go on from
+  std::string snapshot_file;
+  std::optional<double> snapshot_at_s;  ///< unset: at the end
+  bool json = false;           ///< print the summary as JSON instead of text
+};
+int run(const RunOptions& options);
+
+struct FileOptions {
+  std::vector<std::string> files;
+  std::vector<formats::Override> overrides;
+  bool json = false;
+};
+int check(const FileOptions& options);
+int info(const FileOptions& options);
+
+struct ListOptions {
+  std::string what;  ///< "" for everything
+  bool verbose = false;
+  bool json = false;
+  bool markdown = false;
+  bool schema = false;
+};
+int list(const ListOptions& options);
+
+struct BenchOptions {
+  std::string name;  ///< "" for all
+  bool json = false;
+};
+int bench(const BenchOptions& options);
+
+int doctor(bool json);
+
+/// The scenario that `sandlot demo NAME` runs; found beside the program or above it.
+Result<std::string> demo_file(const std::string& name);
+
+/// Prints an error the way all verbs do and returns exit_bad_input.
+int complain(const Error& error);
+void print_warnings(const Diagnostics& diagnostics);
+
+/// Writes a whole file, or an error with the reason.
+Status write_file(const std::string& path, std::string_view content);
+
+/// True once the user has asked to stop (SIGINT, SIGTERM).
+bool interrupted();
+void catch_interrupts();
+
+}  // namespace sandlot::app

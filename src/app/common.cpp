@@ -1,0 +1,82 @@
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "app/commands.h"
+
+namespace sandlot::app {
+namespace {
+
+std::atomic<bool> interrupt_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+}  // namespace
+
+int complain(const Error& error) {
+  std::fprintf(stderr, "error: %s\n", error.text().c_str());
+  return exit_bad_input;
+}
+
+void print_warnings(const Diagnostics& diagnostics) {
+  for (const Error& warning : diagnostics.warnings) std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
+}
+
+Status write_file(const std::string& path, std::string_view content) {
+  // Written beside and renamed: a full disk leaves what was there before.
+  const std::string part = path + ".part";
+  std::ofstream out(part, std::ios::binary | std::ios::trunc);
+  const auto failed = [&](const char* what) {
+    const std::string reason = std::strerror(errno);
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    return Error{std::string(what) + " '" + path + "': " + reason};
+  };
+  if (!out) return failed("cannot write");
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (!out) return failed("cannot write");
+  if (std::rename(part.c_str(), path.c_str()) != 0) return failed("cannot write");
+  return {};
+}
+
+bool interrupted() { return interrupt_requested.load(std::memory_order_relaxed); }
+
+void catch_interrupts() {
+  const auto handler = [](int signal) {
+    // A second signal ends the program at once.
+    if (interrupt_requested.exchange(true)) std::_Exit(128 + signal);
+  };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+Result<std::string> demo_file(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  std::vector<fs::path> folders;
+  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    folders.push_back(folder / "scenarios");
+    folders.push_back(folder / "share" / "sandlot" / "scenarios");
+    if (folder == folder.root_path()) break;
+  }
+  folders.emplace_back("scenarios");
+  for (const fs::path& folder : folders)
+    if (fs::is_regular_file(folder / (name + ".yaml"), error)) return (folder / (name + ".yaml")).lexically_normal().string();
+  for (const fs::path& folder : folders) {
+    if (!fs::is_directory(folder, error)) continue;
+    std::string known;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".yaml") known += (known.empty() ? "" : ", ") + entry.path().stem().string();
+    return Error{"there is no demo '" + name + "'", "there are: " + known};
+  }
+  return Error{"there is no demo '" + name + "'", "no folder 'scenarios' was found near the program"};
+}
+
+}  // namespace sandlot::app

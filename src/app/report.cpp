@@ -1,0 +1,117 @@
+#include "app/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sandlot::app {
+
+void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
+  for (const FrameInstance& instance : frame->instances) {
+    if (!instance.is_robot) continue;
+    auto found = std::find_if(robots_.begin(), robots_.end(), [&](const Travel& t) { return t.name == instance.name; });
+    if (found == robots_.end()) {
+      robots_.push_back({instance.name, false, {}, {}, {}, 0, {}});
+      found = robots_.end() - 1;
+    }
+    Travel& travel = *found;
+    const Vec3 p = instance.X_WM.p;
+    if (!travel.started) {
+      travel.started = true;
+      travel.lowest = travel.highest = p;
+    } else {
+      travel.distance_m += norm(p - travel.last);
+    }
+    travel.last = p;
+    for (std::size_t i = 0; i < 3; ++i) {
+      travel.lowest[i] = std::min(travel.lowest[i], p[i]);
+      travel.highest[i] = std::max(travel.highest[i], p[i]);
+    }
+    constexpr double cell_m = 0.5;
+    travel.cells.emplace(static_cast<int>(std::floor(p.x / cell_m)), static_cast<int>(std::floor(p.y / cell_m)));
+  }
+}
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& report, const TravelRecorder& travel,
+                                 const Diagnostics& diagnostics, const std::vector<Error>& errors) {
+  using Json = nlohmann::ordered_json;
+  const auto rounded = [](double x, double unit) { return std::round(x / unit) * unit; };
+  Json json;
+  json["name"] = simulation.setup().name;
+  json["physics"] = simulation.setup().engine;
+  json["seed"] = simulation.setup().seed;
+  json["ticks"] = report.ticks;
+  json["sim_seconds"] = report.sim_s;
+  json["wall_seconds"] = report.wall_s;
+  json["real_time_factor"] = report.wall_s > 0 ? report.sim_s / report.wall_s : 0.0;
+  json["late_ticks"] = report.late_ticks;
+  Json phases;
+  const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
+  for (std::size_t i = 0; i < phase_names.size(); ++i)
+    phases[phase_names[i]] = rounded(static_cast<double>(simulation.phase_times().ns[i]) * 1e-3 / ticks, 1e-3);
+  json["phase_us"] = phases;
+  json["end_tick"] = simulation.tick_index();
+  json["end_time"] = simulation.now().s();
+  json["stopped"] = simulation.stop_reason().value_or("");
+  json["state_hash"] = hex(simulation.state_hash());
+  Json sub_hashes = Json::object();
+  for (const SubHash& sub : simulation.sub_hashes()) sub_hashes[sub.path] = hex(sub.hash);
+  json["sub_hashes"] = sub_hashes;
+  json["profile"] = Simulation::profile();
+  Json robots = Json::array();
+  std::map<std::string, std::vector<std::string>> teams;
+  for (const model::Instance* instance : simulation.instances())
+    if (!instance->team.empty()) teams[instance->team].push_back(instance->name);
+  for (const TravelRecorder::Travel& t : travel.robots()) {
+    const Vec3 extent = t.highest - t.lowest;
+    robots.push_back({{"name", t.name},
+                      {"distance_m", rounded(t.distance_m, 1e-3)},
+                      {"extent_m", {rounded(extent.x, 1e-3), rounded(extent.y, 1e-3)}},
+                      {"covered_m2", 0.25 * static_cast<double>(t.cells.size())}});
+  }
+  json["robots"] = robots;
+  const EngineCounters counters = simulation.engine().counters();
+  json["engine"] = {{"solver_messages", counters.solver_messages},
+                    {"contacts", counters.contacts},
+                    {"awake_bodies", counters.awake_bodies}};
+  json["refused_commands"] = simulation.refused_commands();
+  json["criterion"] = nullptr;
+  json["teams"] = Json(teams);
+  Json warnings = Json::array(), failures = Json::array();
+  for (const Error& warning : diagnostics.warnings) warnings.push_back(warning.text());
+  for (const Error& error : errors) failures.push_back(error.text());
+  json["warnings"] = warnings;
+  json["errors"] = failures;
+  return json;
+}
+
+std::string as_text(const nlohmann::ordered_json& s) {
+  std::string out;
+  out += fmt::format("scenario   {} ({}, seed {})\n", s["name"].get<std::string>(), s["physics"].get<std::string>(),
+                     s["seed"].get<std::uint64_t>());
+  out += fmt::format("simulated  {:.3f} s in {:.3f} s, {:.1f} x real time, {} ticks\n", s["sim_seconds"].get<double>(),
+                     s["wall_seconds"].get<double>(), s["real_time_factor"].get<double>(),
+                     s["ticks"].get<std::uint64_t>());
+  out += "per tick  ";
+  for (const auto& [name, us] : s["phase_us"].items()) out += fmt::format(" {} {:.1f}", name, us.get<double>());
+  out += " us\n";
+  std::size_t shown = 0;
+  for (const auto& robot : s["robots"]) {
+    if (++shown > 12) {
+      out += fmt::format("           ... {} robots in all\n", s["robots"].size());
+      break;
+    }
+    out += fmt::format("robot      {}: drove {:.2f} m, covered {:.2f} m^2\n", robot["name"].get<std::string>(),
+                       robot["distance_m"].get<double>(), robot["covered_m2"].get<double>());
+  }
+  out += fmt::format("stopped    {}\n", s["stopped"].get<std::string>().empty() ? "by request"
+                                                                                : s["stopped"].get<std::string>());
+  out += fmt::format("state      {} ({})\n", s["state_hash"].get<std::string>(), s["profile"].get<std::string>());
+  for (const auto& error : s["errors"]) out += fmt::format("error      {}\n", error.get<std::string>());
+  return out;
+}
+
+}  // namespace sandlot::app

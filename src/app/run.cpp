@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "app/commands.h"
+#include "app/report.h"
+#include "app/svg.h"
+#include "sim/load.h"
+
+namespace sandlot::app {
+namespace {
+
+Result<std::vector<std::byte>> read_snapshot(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{"cannot read the snapshot '" + path + "'"};
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  std::vector<std::byte> bytes(text.size());
+  std::memcpy(bytes.data(), text.data(), text.size());
+  return bytes;
+}
+
+Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
+  const SimulationOptions simulation_options{.threads = options.threads};
+  if (!options.from_file.empty()) {
+    if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
+    if (!options.overrides.empty()) return Error{"--set cannot change a run that has begun", "leave it out with --from"};
+    SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot(options.from_file));
+    auto simulation = Simulation::restore(bytes, simulation_options, diagnostics);
+    if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
+    return simulation;
+  }
+  SL_ASSIGN(model::Setup setup, load(options.file, {options.overrides, options.seed, options.duration_s}, diagnostics));
+  if (!setup.stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
+    diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
+  return Simulation::create(std::move(setup), simulation_options, diagnostics);
+}
+
+/// One line on a terminal: how far, how fast, how long still.
+class Progress {
+ public:
+  explicit Progress(std::optional<Time> end) : end_(end), shown_(isatty(STDERR_FILENO)) {}
+  ~Progress() {
+    if (drawn_) std::fputs("\r\x1b[K", stderr);
+  }
+  void update(const Simulation& simulation) {
+    if (!shown_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (drawn_ && now - last_ < std::chrono::milliseconds(200)) return;
+    if (!drawn_) begin_ = now, sim_begin_ = simulation.now();
+    last_ = now;
+    drawn_ = true;
+    const double wall_s = std::chrono::duration<double>(now - begin_).count();
+    const double done_s = (simulation.now() - sim_begin_).s();
+    std::string line = fmt::format("\r\x1b[K{:.1f} s", simulation.now().s());
+    if (wall_s > 0) line += fmt::format("  {:.1f} x real time", done_s / wall_s);
+    if (end_ && done_s > 0)
+      line += fmt::format("  {:.0f} % done, {:.0f} s left", 100.0 * simulation.now().s() / end_->s(),
+                          (end_->s() - simulation.now().s()) * wall_s / done_s);
+    std::fputs(line.c_str(), stderr);
+  }
+
+ private:
+  std::optional<Time> end_;
+  bool shown_, drawn_ = false;
+  std::chrono::steady_clock::time_point begin_, last_;
+  Time sim_begin_;
+};
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  Diagnostics diagnostics;
+  auto prepared = prepare(options, diagnostics);
+  print_warnings(diagnostics);
+  if (!prepared) return complain(prepared.error());
+  Simulation& simulation = **prepared;
+  // A run that goes on from a snapshot counts --duration from there.
+  std::optional<Time> end = simulation.setup().stop;
+  if (!options.from_file.empty() && options.duration_s) end = simulation.now() + Time::from_s(*options.duration_s);
+
+  TravelRecorder travel;
+  simulation.add_observer(&travel);
+  std::optional<SvgRecorder> svg;
+  if (!options.svg_file.empty()) simulation.add_observer(&svg.emplace(simulation));
+
+  catch_interrupts();
+  std::vector<Error> errors;
+  const auto save_snapshot = [&] {
+    const auto bytes = simulation.snapshot();
+    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (Status status = write_file(options.snapshot_file, content); !status) errors.push_back(status.error());
+  };
+  bool snapshot_taken = options.snapshot_file.empty();
+  const Time snapshot_at = Time::from_s(options.snapshot_at_s.value_or(0));
+  RunReport report;
+  {
+    Progress progress(end);
+    const auto keep_going = [&](const Simulation& s) {
+      progress.update(s);
+      if (!snapshot_taken && options.snapshot_at_s && s.now() >= snapshot_at) {
+        save_snapshot();
+        snapshot_taken = true;
+      }
+      return !interrupted() && !(end && s.now() >= *end);
+    };
+    Status status;
+    if (!end || simulation.now() < *end) status = sandlot::run(simulation, {options.rate}, report, keep_going);
+    if (!status) errors.push_back(status.error());
+  }
+  if (!snapshot_taken) save_snapshot();
+  const auto summary = summarise(simulation, report, travel, diagnostics, errors);
+  const std::string json_text = summary.dump(2) + "\n";
+  std::fputs(options.json ? json_text.c_str() : as_text(summary).c_str(), stdout);
+  const auto leave = [&](const std::string& file, const std::string& content) {
+    if (file.empty()) return;
+    if (Status status = write_file(file, content); !status) errors.push_back(status.error());
+  };
+  leave(options.summary_file, json_text);
+  if (svg) leave(options.svg_file, svg->draw());
+  for (const Error& error : errors) std::fprintf(stderr, "error: %s\n", error.text().c_str());
+  return errors.empty() ? exit_ok : exit_failed;
+}
+
+}  // namespace sandlot::app

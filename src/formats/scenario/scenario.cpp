@@ -1,0 +1,269 @@
+#include "formats/scenario/scenario.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "base/read.h"
+#include "base/text.h"
+#include "formats/scenario/spec.h"
+#include "formats/scenario/tree.h"
+#include "formats/yaml.h"
+
+namespace sandlot::formats {
+namespace {
+
+namespace spec = scenario_spec;
+
+/// Complains about keys that later versions read; they are no slips, so they come before "unknown key".
+Status refuse_later_keys(const Node& root) {
+  for (const Node::Entry& entry : root.entries())
+    for (const char* const key : spec::later_keys)
+      if (entry.key == key)
+        return Error{"'" + entry.key + "' is not supported yet", "leave it out", entry.key_place, "/" + entry.key};
+  return {};
+}
+
+Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, const std::string& path) {
+  if (read.grid.has_value() == read.uniform.has_value())
+    return node.error("expected one of 'grid' and 'uniform'", "", path);
+  Placement placement;
+  placement.place = node.place();
+  if (read.grid) {
+    placement.kind = Placement::Kind::grid;
+    placement.centre_m = read.grid->centre_m;
+    placement.spacing_m = read.grid->spacing_m;
+  } else {
+    placement.kind = Placement::Kind::uniform;
+    placement.centre_m = read.uniform->centre_m;
+    placement.width_m = read.uniform->width_m;
+    placement.height_m = read.uniform->height_m;
+    placement.clearance_m = read.uniform->clearance_m;
+  }
+  return placement;
+}
+
+/// Text of a key of a kind's map, taken out of it.
+Result<std::string> take_text(Node& map, const char* key, const std::string& otherwise, const std::string& path) {
+  const Node* const value = map.find(key);
+  if (!value || value->is_null()) return otherwise;
+  if (!value->is_scalar()) return wrong_type(*value, "text", path + "/" + key);
+  std::string text = value->text();
+  map.erase(key);
+  return text;
+}
+
+Result<model::ControllerDecl> read_controller(const Node& node, const std::string& path) {
+  model::ControllerDecl decl;
+  decl.place = node.place();
+  decl.name = "controller";
+  if (node.is_scalar()) {
+    decl.kind = node.text();
+    decl.config = Node::map(node.place());
+  } else if (node.is_map()) {
+    decl.config = node;
+    SL_ASSIGN(decl.name, take_text(decl.config, "name", decl.name, path));
+    SL_ASSIGN(decl.kind, take_text(decl.config, "kind", "", path));
+  } else {
+    return wrong_type(node, "the name of a kind or a map with 'kind'", path);
+  }
+  if (decl.kind.empty()) return node.error("the kind of controller is missing", "write kind: wander", path);
+  if (decl.name.empty()) return node.error("the controller's name is empty", "", path);
+  return decl;
+}
+
+Result<std::vector<model::ControllerDecl>> read_controllers(const spec::Robot& robot, const std::string& path) {
+  std::vector<model::ControllerDecl> out;
+  if (!robot.controller.is_null() && !robot.controllers.is_null())
+    return robot.controllers.error("'controller' and 'controllers' are both given", "keep one of them", path);
+  if (!robot.controller.is_null()) {
+    SL_ASSIGN(model::ControllerDecl decl, read_controller(robot.controller, path + "/controller"));
+    out.push_back(std::move(decl));
+  }
+  if (robot.controllers.is_null()) return out;
+  if (!robot.controllers.is_sequence()) return wrong_type(robot.controllers, "a list", path + "/controllers");
+  std::map<std::string, Place> names;
+  for (std::size_t i = 0; i < robot.controllers.items().size(); ++i) {
+    const Node& node = robot.controllers.items()[i];
+    const std::string here = path + "/controllers/" + std::to_string(i);
+    SL_ASSIGN(model::ControllerDecl decl, read_controller(node, here));
+    if (const auto [known, fresh] = names.emplace(sanitised(decl.name), decl.place); !fresh)
+      return node.error("two controllers are called '" + decl.name + "'",
+                        "the other one is at " + to_string(known->second) + "; give each a 'name'", here);
+    out.push_back(std::move(decl));
+  }
+  return out;
+}
+
+Status check_devices(const Node& devices, const std::string& path) {
+  if (devices.is_null()) return {};
+  if (!devices.is_map()) return wrong_type(devices, "a map of names to devices", path);
+  std::map<std::string, Place> names;
+  for (const Node::Entry& entry : devices.entries()) {
+    if (!entry.value.is_map() && !entry.value.is_null())
+      return wrong_type(entry.value, "a map of the device's keys", path + "/" + entry.key);
+    if (const auto [known, fresh] = names.emplace(sanitised(entry.key), entry.key_place); !fresh)
+      return Error{"two devices have the address '" + sanitised(entry.key) + "'",
+                   "the other one is at " + to_string(known->second), entry.key_place, path};
+  }
+  return {};
+}
+
+Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
+  RobotGroup group;
+  const Node* const name = node.find("name");
+  group.place = name ? name->place() : node.place();
+  if (robot.name.empty()) return node.error("the robot's name is empty", "", path + "/name");
+  if (robot.model.empty()) return node.error("the robot's model is empty", "name a model file", path + "/model");
+  group.name = robot.name;
+  group.model = robot.model;
+  if (const Node* const model = node.find("model")) group.model_place = model->place();
+  group.count = robot.count;
+  group.team = robot.team;
+  if (!robot.pose.is_null() && robot.distribution)
+    return robot.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
+  if (robot.distribution) {
+    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *robot.distribution, path + "/distribution"));
+  } else if (!robot.pose.is_null()) {
+    if (robot.count > 1)
+      return robot.pose.error(std::to_string(robot.count) + " robots cannot start at one pose",
+                              "give a 'distribution' instead", path + "/pose");
+    SL_ASSIGN(group.placement.X_WM, read_pose(robot.pose, path + "/pose"));
+    group.placement.place = robot.pose.place();
+  } else {
+    group.placement.kind = robot.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
+    group.placement.place = node.place();
+  }
+  SL_ASSIGN(group.controllers, read_controllers(robot, path));
+  SL_TRY(check_devices(robot.devices, path + "/devices"));
+  group.devices = std::move(robot.devices);
+  return group;
+}
+
+/// Two groups that would make robots of one address. A group of n stands for stem1 ... stemn.
+Status check_names(const std::vector<RobotGroup>& robots) {
+  std::map<std::string, const RobotGroup*> single, stems;
+  const auto clash = [](const RobotGroup& a, const RobotGroup& b, const std::string& name) {
+    return Error{"two robots would be called '" + name + "'", "the other one is at " + to_string(b.place), a.place,
+                 "/robots"};
+  };
+  for (const RobotGroup& group : robots) {
+    const auto [known, fresh] = (group.count > 1 ? stems : single).emplace(sanitised(group.name), &group);
+    if (!fresh) return clash(group, *known->second, known->first + (group.count > 1 ? "1" : ""));
+  }
+  // A name that ends in digits may be one of a group's. For a group that does, its lowest number decides: stem 'a'
+  // with 20 robots and stem 'a1' with 5 share a11 ... a15.
+  const auto check = [&](const std::string& name, const RobotGroup& group) -> Status {
+    for (std::size_t cut = name.size(); cut > 1 && name.size() - cut < 8; --cut) {
+      if (name[cut - 1] < '0' || name[cut - 1] > '9') break;
+      const auto stem = stems.find(name.substr(0, cut - 1));
+      if (stem == stems.end() || stem->second == &group || name[cut - 1] == '0') continue;
+      int number = 0;
+      std::from_chars(name.data() + cut - 1, name.data() + name.size(), number);
+      if (number <= stem->second->count) return clash(group, *stem->second, name);
+    }
+    return {};
+  };
+  for (const auto& [name, group] : single) SL_TRY(check(name, *group));
+  for (const auto& [name, group] : stems) SL_TRY(check(name + "1", *group));
+  return {};
+}
+
+Status read_physics(const Node& node, Scenario& out) {
+  out.physics = Node::map(node.place());
+  if (node.is_null()) return {};
+  out.engine_place = node.place();
+  if (node.is_scalar()) {
+    out.engine = node.text();
+  } else if (node.is_map()) {
+    out.physics = node;
+    if (const Node* engine = node.find("engine")) {
+      if (!engine->is_scalar()) return wrong_type(*engine, "the name of an engine", "/physics/engine");
+      out.engine_place = engine->place();
+      out.engine = engine->text();
+      out.physics.erase("engine");
+    }
+  } else {
+    return wrong_type(node, "the name of an engine or a map with 'engine'", "/physics");
+  }
+  if (out.engine.empty()) return node.error("the name of the engine is empty", "write rigid or planar", "/physics");
+  return {};
+}
+
+Result<Scenario> read_root(const Node& node, const std::string& file) {
+  SL_TRY(refuse_later_keys(node));
+  // A file of a later version may differ in every key: its version is the one thing to complain about.
+  if (const Node* version = node.find("version")) {
+    double number = 1;
+    if (version->is_scalar() && parse_number(version->text(), number) && number != 1)
+      return version->error("version " + version->text() + " of the scenario format is not known",
+                            "this Sandlot reads version 1", "/version");
+  }
+  spec::Root root;
+  SL_TRY(read_fields(node, root));
+  Scenario out;
+  out.file = file;
+  out.name = root.name;
+  out.world = root.world;
+  if (const Node* world = node.find("world")) out.world_place = world->place();
+  SL_TRY(read_physics(root.physics, out));
+  out.step_s = root.time.step_s;
+  out.substeps = root.time.substeps;
+  out.control_interval = root.time.control_interval;
+  out.stop_s = root.time.stop_s;
+  out.seed = root.seed;
+  std::int64_t total = 0;
+  for (std::size_t i = 0; i < root.robots.size(); ++i) {
+    const Node& each = node.find("robots")->items()[i];
+    SL_ASSIGN(RobotGroup group, read_robot(each, root.robots[i], "/robots/" + std::to_string(i)));
+    total += group.count;
+    if (total > spec::max_robots)
+      return each.error("more than " + std::to_string(spec::max_robots) + " robots in all", "", "/robots");
+    out.robots.push_back(std::move(group));
+  }
+  SL_TRY(check_names(out.robots));
+  return out;
+}
+
+}  // namespace
+
+Result<Pose> read_pose(const Node& node, const std::string& path) {
+  spec::PoseKeys keys;
+  if (node.is_sequence() && (node.items().size() == 3 || node.items().size() == 6)) {
+    // The list is the map without its keys.
+    static constexpr const char* planar[] = {"x", "y", "yaw"};
+    static constexpr const char* spatial[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    Node map = Node::map(node.place());
+    for (std::size_t i = 0; i < node.items().size(); ++i)
+      map.set((node.items().size() == 3 ? planar : spatial)[i], node.items()[i]);
+    SL_TRY(read_fields(map, keys, path));
+  } else if (node.is_map()) {
+    SL_TRY(read_fields(node, keys, path));
+  } else {
+    return node.error("a pose is [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these, found " +
+                          (node.is_sequence() ? "a list of " + std::to_string(node.items().size()) : describe(node)),
+                      "", path);
+  }
+  return pose_from_rpy({keys.x_m, keys.y_m, keys.z_m}, {keys.roll_rad, keys.pitch_rad, keys.yaw_rad});
+}
+
+Result<Scenario> parse_scenario(std::string_view text, const std::string& file, std::span<const Override> overrides,
+                                Diagnostics&) {
+  SL_ASSIGN(Node root, parse_with_includes(text, file));
+  SL_TRY(apply_overrides(root, overrides));
+  SL_TRY(substitute_variables(root));
+  if (root.is_null() && !root.place().file) root.set_place(place_in(file));
+  return read_root(root, file);
+}
+
+Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides, Diagnostics& diagnostics) {
+  SL_ASSIGN(const std::string text, read_text_file(path, TextLimits{}.max_bytes));
+  return parse_scenario(text, path, overrides, diagnostics);
+}
+
+std::string base_folder(const Scenario& scenario, const Place& place) {
+  const bool in_file = place.file && !starts_with(*place.file, override_place);
+  return folder_of(in_file ? *place.file : scenario.file);
+}
+
+}  // namespace sandlot::formats

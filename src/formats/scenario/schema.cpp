@@ -1,0 +1,144 @@
+#include <nlohmann/json.hpp>
+
+#include "formats/scenario/scenario.h"
+#include "formats/scenario/spec.h"
+
+namespace sandlot::formats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace spec = scenario_spec;
+
+/// Any scalar may be written as a text: a number with its unit, or ${variable}.
+Json schema_of_leaf(const FieldInfo& field) {
+  const auto number = [&](bool integer) {
+    Json out = {{"type", {integer ? "integer" : "number", "string"}}, {"minimum", field.min}, {"maximum", field.max}};
+    return out;
+  };
+  Json out = Json::object();
+  if (field.type == "number" || field.type == "integer") {
+    out = number(field.type == "integer");
+  } else if (field.type == "bool") {
+    out["type"] = {"boolean", "string"};
+  } else if (field.type == "text") {
+    out["type"] = {"string", "number", "boolean"};
+  } else if (field.type == "choice") {
+    out["anyOf"] = {Json{{"enum", field.choices}}, Json{{"type", "string"}, {"pattern", "\\$\\{"}}};
+  } else if (field.type == "list of number" || field.type == "list of text") {
+    out["type"] = {"array", "string"};
+    out["items"] = field.type == "list of text" ? Json{{"type", "string"}} : number(false);
+    if (field.length > 0) out["minItems"] = out["maxItems"] = field.length;
+  } else if (field.type == "list of lists of number") {
+    out["type"] = {"array", "string"};
+    out["items"] = {{"type", "array"}, {"items", number(false)}, {"minItems", field.length}, {"maxItems", field.length}};
+  }
+  if (!field.help.empty()) out["description"] = field.help;
+  if (!field.unit.empty() && field.unit != "1") out["x-unit"] = field.unit;
+  double value = 0;
+  if ((field.type == "number" || field.type == "integer") && parse_number(field.default_value, value) && !field.required)
+    out["default"] = value;
+  else if ((field.type == "choice" || field.type == "text") && !field.default_value.empty())
+    out["default"] = field.default_value;
+  else if (field.type == "bool")
+    out["default"] = field.default_value == "true";
+  return out;
+}
+
+Json empty_object() {
+  return {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+}
+
+/// The field paths "a/b", "list[]/c" become nested objects and arrays.
+Json object_of(const std::vector<FieldInfo>& fields) {
+  Json root = empty_object();
+  for (const FieldInfo& field : fields) {
+    Json* at = &root;
+    const std::vector<std::string_view> parts = split(field.path, '/');
+    for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+      const bool list = parts[i].size() > 2 && parts[i].substr(parts[i].size() - 2) == "[]";
+      Json& child = (*at)["properties"][std::string(parts[i].substr(0, parts[i].size() - (list ? 2 : 0)))];
+      if (list) {
+        child["type"] = "array";
+        if (!child.contains("items")) child["items"] = empty_object();
+        at = &child["items"];
+      } else {
+        if (!child.contains("properties")) child = empty_object();
+        at = &child;
+      }
+    }
+    const std::string key(parts.back());
+    Json& leaf = (*at)["properties"][key];
+    const Json described = schema_of_leaf(field);
+    if (leaf.is_null()) leaf = described;
+    if (field.required) (*at)["required"].push_back(key);
+  }
+  return root;
+}
+
+/// A map with `kind` and the keys of that kind; `common` are keys that every kind has.
+Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_needed) {
+  Json names = Json::array(), choices = Json::array();
+  Json all = common;
+  for (const auto& [name, fields] : kinds) {
+    names.push_back(name);
+    Json properties = object_of(fields)["properties"];
+    for (const auto& [key, value] : common.items()) properties[key] = value;
+    properties["kind"] = {{"const", name}};
+    choices.push_back({{"if", {{"properties", {{"kind", {{"const", name}}}}}, {"required", {"kind"}}}},
+                       {"then", {{"properties", properties}, {"additionalProperties", false}}}});
+  }
+  all["kind"] = {{"type", "string"}, {"description", "What it is."}};
+  if (!names.empty()) all["kind"]["examples"] = names;
+  Json out = {{"type", "object"}, {"properties", all}};
+  if (kind_needed) out["required"] = {"kind"};
+  if (!choices.empty()) out["allOf"] = choices;
+  return out;
+}
+
+Json pose_schema(const char* description) {
+  Json numbers = {{"type", "array"}, {"items", {{"type", {"number", "string"}}}}};
+  Json planar = numbers, spatial = numbers;
+  planar["minItems"] = planar["maxItems"] = 3;
+  spatial["minItems"] = spatial["maxItems"] = 6;
+  return {{"description", description},
+          {"anyOf", {planar, spatial, object_of(describe_fields<spec::PoseKeys>()), Json{{"type", "string"}}}}};
+}
+
+}  // namespace
+
+std::string schema_of(const std::vector<FieldInfo>& fields) {
+  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}};
+  out.update(object_of(fields));
+  return out.dump(2);
+}
+
+std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers) {
+  Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sandlot scenario"}};
+  root.update(object_of(describe_fields<spec::Root>()));
+  // The keys whose form the field lists leave open.
+  Json& keys = root["properties"];
+  const auto describe_as = [](Json& slot, Json form) {
+    const Json description = slot["description"];
+    slot = std::move(form);
+    slot["description"] = description;
+  };
+  describe_as(keys["physics"],
+              {{"type", {"string", "object"}}, {"properties", {{"engine", {{"type", "string"}}}}}});
+  describe_as(keys["vars"], {{"type", "object"}});
+  describe_as(keys["include"], {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}});
+  Json& robot = keys["robots"]["items"]["properties"];
+  describe_as(robot["pose"], pose_schema(""));
+  const Json named = {{"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}}};
+  const Json controller = kinds_of(controllers, named, true);
+  describe_as(robot["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
+  describe_as(robot["controllers"], {{"type", "array"}, {"items", controller}});
+  const Json mounted = {
+      {"link", {{"type", "string"}, {"description", "Link it is mounted on; the model's first one by default."}}},
+      {"pose", pose_schema("Pose in the link.")},
+      {"level", {{"type", "string"}, {"description", "Level of abstraction."}}},
+      {"levels", {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
+  describe_as(robot["devices"], {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
+  return root.dump(2);
+}
+
+}  // namespace sandlot::formats

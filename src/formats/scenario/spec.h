@@ -1,0 +1,134 @@
+#pragma once
+/// The keys of a scenario file, once: the reader and the schema both come from these lists.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/fields.h"
+#include "base/node.h"
+#include "geometry/vec3.h"
+
+namespace sandlot::formats::scenario_spec {
+
+inline constexpr double max_distance_m = 1e6;
+inline constexpr double max_angle_rad = 1e4;
+inline constexpr int max_robots = 1'000'000;
+
+struct Time {
+  double step_s = 0.01;
+  int substeps = 1;
+  int control_interval = 1;
+  std::optional<double> stop_s;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"step", "s", "Length of a tick.", 1e-6, 10}, s.step_s);
+    visit(Field{"substeps", "1", "Physics steps per tick.", 1, 1000}, s.substeps);
+    visit(Field{"control_interval", "1", "Ticks from one control step to the next.", 1, 1e6}, s.control_interval);
+    visit(Field{"stop", "s", "Simulated time at which the run ends by itself.", 0, 9e9}, s.stop_s);
+  }
+};
+
+struct PoseKeys {
+  double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"x", "m", "Forward.", -max_distance_m, max_distance_m}, s.x_m);
+    visit(Field{"y", "m", "To the left.", -max_distance_m, max_distance_m}, s.y_m);
+    visit(Field{"z", "m", "Up.", -max_distance_m, max_distance_m}, s.z_m);
+    visit(Field{"roll", "rad", "About x, first.", -max_angle_rad, max_angle_rad}, s.roll_rad);
+    visit(Field{"pitch", "rad", "About y, second.", -max_angle_rad, max_angle_rad}, s.pitch_rad);
+    visit(Field{"yaw", "rad", "About z, last.", -max_angle_rad, max_angle_rad}, s.yaw_rad);
+  }
+};
+
+struct Grid {
+  Vec3 centre_m;
+  double spacing_m = 1;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"centre", "m", "Middle of the grid, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
+    visit(Field{"spacing", "m", "Distance of neighbours.", 1e-3, 1e4}, s.spacing_m);
+  }
+};
+
+struct Uniform {
+  Vec3 centre_m;
+  double width_m = 0, height_m = 0;
+  double clearance_m = 0.5;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"centre", "m", "Middle of the area, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
+    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m, Field::required}, s.width_m);
+    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m, Field::required}, s.height_m);
+    visit(Field{"clearance", "m", "No two origins are nearer than this.", 0, 1e4}, s.clearance_m);
+  }
+};
+
+struct Distribution {
+  std::optional<Grid> grid;
+  std::optional<Uniform> uniform;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"grid", "", "Rows and columns."}, s.grid);
+    visit(Field{"uniform", "", "Anywhere in a rectangle, each heading alike."}, s.uniform);
+  }
+};
+
+struct Robot {
+  std::string name;
+  std::string model;
+  int count = 1;
+  Node pose;
+  std::optional<Distribution> distribution;
+  std::string team;
+  Node controller;
+  Node controllers;
+  Node devices;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0, Field::required, 100},
+          s.name);
+    visit(Field{"model", "", "Model file (SDF), relative to this file.", 0, 0, Field::required, 4096}, s.model);
+    visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
+    visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."}, s.pose);
+    visit(Field{"distribution", "", "Where several start."}, s.distribution);
+    visit(Field{"team", "", "Team it plays for.", 0, 0, Field::none, 100}, s.team);
+    visit(Field{"controller", "", "Kind of its controller, or a map with kind and the kind's keys."}, s.controller);
+    visit(Field{"controllers", "", "Several controllers: a list of maps with name, kind and the kind's keys."},
+          s.controllers);
+    visit(Field{"devices", "", "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
+          s.devices);
+  }
+};
+
+struct Root {
+  int version = 1;
+  std::string name;
+  std::string world;
+  Node physics;
+  Time time;
+  std::uint64_t seed = 1;
+  Node vars;
+  std::vector<Robot> robots;
+  Node include;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"version", "1", "Version of the scenario format.", 1, 1, Field::required}, s.version);
+    visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.name);
+    visit(Field{"world", "", "World file (SDF), relative to this file; an empty plane if left out.", 0, 0, Field::none,
+                4096},
+          s.world);
+    visit(Field{"physics", "", "Engine: rigid or planar, or a map with engine and the engine's keys."}, s.physics);
+    visit(Field{"time", "", "How time runs."}, s.time);
+    // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
+    visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
+    visit(Field{"vars", "", "Values that ${name} stands for."}, s.vars);
+    visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"include", "", "Files merged below this one."}, s.include);
+  }
+};
+
+/// Keys of the root that later versions of Sandlot read.
+inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules", "record", "clock"};
+
+}  // namespace sandlot::formats::scenario_spec

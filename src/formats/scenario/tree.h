@@ -1,0 +1,25 @@
+#pragma once
+/// What happens to the Nodes of a scenario before its keys are read: includes, --set, ${var}.
+#include <span>
+#include <string>
+
+#include "base/node.h"
+#include "formats/scenario/scenario.h"
+
+namespace sandlot::formats {
+
+/// Parses `text` and merges the files it includes below it.
+Result<Node> parse_with_includes(std::string_view text, const std::string& file);
+
+/// Applies the overrides in order. New keys are put where the path says; whether they mean anything is found when
+/// the fields are read.
+Status apply_overrides(Node& root, std::span<const Override> overrides);
+
+/// Replaces every ${name} in `root` by the entry of its `vars`; `$${` stands for a plain `${`.
+/// A text that is just `${name}` becomes the variable's value, whatever its type, with the variable's place.
+Status substitute_variables(Node& root);
+
+/// "--set path=value", the `file` of what an override gives.
+inline constexpr std::string_view override_place = "--set ";
+
+}  // namespace sandlot::formats

@@ -1,0 +1,112 @@
+#include <map>
+
+#include "base/text.h"
+#include "formats/scenario/tree.h"
+#include "formats/yaml.h"
+
+namespace sandlot::formats {
+namespace {
+
+constexpr std::size_t max_text = 64u << 10;
+
+std::size_t number_of_nodes(const Node& node) {
+  std::size_t n = 1;
+  for (const Node& item : node.items()) n += number_of_nodes(item);
+  for (const Node::Entry& entry : node.entries()) n += number_of_nodes(entry.value);
+  return n;
+}
+
+/// Substitutes in place; variables are completed when they are first needed.
+class Variables {
+ public:
+  explicit Variables(const Node* vars) {
+    if (!vars) return;
+    for (const Node::Entry& entry : vars->entries()) {
+      names_.push_back(entry.key);
+      variables_.emplace(entry.key, Variable{entry.value});
+    }
+  }
+  Status replace(Node& node) {
+    if (++nodes_ > TextLimits{}.max_nodes) return node.error("variables make too many values");
+    if (node.is_scalar()) return replace_scalar(node);
+    for (Node& item : node.items()) SL_TRY(replace(item));
+    for (Node::Entry& entry : node.entries()) SL_TRY(replace(entry.value));
+    return {};
+  }
+
+ private:
+  struct Variable {
+    Node value;
+    enum { raw, busy, done } state = raw;
+    std::size_t nodes = 0;
+  };
+
+  Result<const Node*> value_of(const std::string& name, const Node& use) {
+    const auto found = variables_.find(name);
+    if (found == variables_.end())
+      return use.error("no variable '" + name.substr(0, 60) + "'",
+                       names_.empty() ? "there is no 'vars' in this scenario" : suggestion(name, names_));
+    Variable& variable = found->second;
+    if (variable.state == Variable::busy) return variable.value.error("variable '" + name + "' is defined by itself");
+    if (variable.state == Variable::raw) {
+      variable.state = Variable::busy;
+      Node value = variable.value;
+      if (++depth_ > 100) return use.error("variables are defined by each other more than 100 deep");
+      SL_TRY(replace(value));
+      --depth_;
+      variable.value = std::move(value);
+      variable.nodes = number_of_nodes(variable.value);
+      variable.state = Variable::done;
+    }
+    return &variable.value;
+  }
+
+  Status replace_scalar(Node& node) {
+    const std::string& text = node.text();
+    if (text.find("${") == std::string::npos) return {};
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+      if (text.compare(i, 3, "$${") == 0) {
+        out += "${";
+        i += 3;
+      } else if (text.compare(i, 2, "${") == 0) {
+        const std::size_t end = text.find('}', i);
+        if (end == std::string::npos) return node.error("'${' is never closed", "write ${name}, or $${ for a plain ${");
+        const std::string name(trim(std::string_view(text).substr(i + 2, end - i - 2)));
+        SL_ASSIGN(const Node* value, value_of(name, node));
+        if (i == 0 && end + 1 == text.size()) {
+          nodes_ += variables_.find(name)->second.nodes;
+          if (nodes_ > TextLimits{}.max_nodes) return node.error("variables make too many values");
+          node = Node(*value);
+          return {};
+        }
+        if (!value->is_scalar())
+          return node.error("variable '" + name + "' is " + describe(*value) + " and cannot be part of a text");
+        out += value->text();
+        i = end + 1;
+      } else {
+        out += text[i++];
+      }
+      if (out.size() > max_text) return node.error("variables make a text that is too long");
+    }
+    node = Node::scalar(std::move(out), node.place());
+    return {};
+  }
+
+  std::map<std::string, Variable, std::less<>> variables_;
+  std::vector<std::string> names_;
+  std::size_t nodes_ = 0;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+Status substitute_variables(Node& root) {
+  const Node* const vars = root.find("vars");
+  if (vars && !vars->is_map() && !vars->is_null())
+    return vars->error("expected a map of names and values, found " + describe(*vars), "", "/vars");
+  Variables variables(vars);
+  return variables.replace(root);
+}
+
+}  // namespace sandlot::formats

@@ -1,0 +1,56 @@
+#pragma once
+/// Embree 3 and 4 behind the few names that differ: one source builds with either.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace sandlot::embree {
+
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+inline void init_context(QueryContext& context) { rtcInitRayQueryContext(&context); }
+inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &context;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+#else
+using QueryContext = RTCIntersectContext;
+inline void init_context(QueryContext& context) {
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+}
+inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  rtcIntersect8(valid, scene, &context, &rays);
+}
+#endif
+
+/// Denormal numbers count as zero while this lives. Embree asks for it, and it must not leak: physics and noise
+/// on the same thread keep IEEE arithmetic.
+class FlushDenormals {
+ public:
+#if defined(__SSE__)
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }  // FTZ | DAZ
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+#else
+  FlushDenormals() {}
+  ~FlushDenormals() {}
+#endif
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+#if defined(__SSE__)
+  unsigned saved_;
+#endif
+};
+
+}  // namespace sandlot::embree

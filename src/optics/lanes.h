@@ -1,0 +1,62 @@
+#pragma once
+/// Eight floats that are computed together: one per ray of a packet.
+///
+/// Vector types of the compiler instead of loops that it may or may not vectorise: every lane gets the same IEEE
+/// operations in the same order at every optimisation level, so the bits are the same in all builds.
+#include <cstring>
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#else
+#include <cmath>
+#endif
+
+namespace sandlot::lanes {
+
+inline constexpr int width = 8;
+typedef float F __attribute__((vector_size(32)));
+typedef int I __attribute__((vector_size(32)));  ///< masks: -1 true, 0 false
+
+inline F all(float x) { return F{x, x, x, x, x, x, x, x}; }
+inline I all(int x) { return I{x, x, x, x, x, x, x, x}; }
+inline F choose(I mask, F yes, F no) { return mask ? yes : no; }
+inline I choose(I mask, I yes, I no) { return mask ? yes : no; }
+/// `b` where the comparison with NaN decides, as in (a < b ? a : b).
+inline F lesser(F a, F b) { return choose(a < b, a, b); }
+inline F greater(F a, F b) { return choose(a > b, a, b); }
+
+inline F root(F x) {
+#if defined(__AVX__)
+  return F(_mm256_sqrt_ps(__m256(x)));
+#else
+  F r;
+  for (int i = 0; i < width; ++i) r[i] = std::sqrt(x[i]);
+  return r;
+#endif
+}
+
+inline bool any(I mask) {
+#if defined(__AVX__)
+  return _mm256_movemask_ps(__m256(F(mask))) != 0;
+#else
+  int together = 0;
+  for (int i = 0; i < width; ++i) together |= mask[i];
+  return together != 0;
+#endif
+}
+
+/// The first `count` <= 8 lanes from memory, the others zero.
+template <class V>
+V load(const void* from, unsigned count = width) {
+  V v{};
+  if (count == width) std::memcpy(&v, from, sizeof v);
+  else std::memcpy(&v, from, count * 4);
+  return v;
+}
+template <class V>
+void store(void* to, V v, unsigned count = width) {
+  if (count == width) std::memcpy(to, &v, sizeof v);
+  else std::memcpy(to, &v, count * 4);
+}
+
+}  // namespace sandlot::lanes

@@ -1,0 +1,304 @@
+#include "optics/ray_scene.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "base/check.h"
+#include "optics/embree.h"
+#include "optics/solid.h"
+
+namespace sandlot {
+namespace {
+
+using lanes::F;
+using lanes::I;
+using optics::Solid;
+
+/// What the callback needs beside the packet: Embree hands the context through to it.
+struct Query : embree::QueryContext {
+  double origin[3];
+  std::uint32_t ignore_body;
+};
+
+/// Fields of a packet of n rays: n values of each, one after the other, in the order of RTCRayHit8.
+float* field(RTCRayHitN* packet, unsigned n, unsigned index) {
+  return reinterpret_cast<float*>(packet) + std::size_t{index} * n;
+}
+constexpr unsigned tnear_field = 3, dir_field = 4, tfar_field = 8, body_field = 17, found_field = 18;
+static_assert(offsetof(RTCRayHit8, ray.tnear) == 32 * tnear_field);
+static_assert(offsetof(RTCRayHit8, ray.dir_x) == 32 * dir_field);
+static_assert(offsetof(RTCRayHit8, ray.tfar) == 32 * tfar_field);
+// `primID` carries the body and `geomID` is 0 once something is hit: Embree passes both through untouched.
+static_assert(offsetof(RTCRayHit8, hit.primID) == 32 * body_field);
+static_assert(offsetof(RTCRayHit8, hit.geomID) == 32 * found_field);
+constexpr int nothing = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
+constexpr float largest = std::numeric_limits<float>::max();
+
+/// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the smaller
+/// body index stays, so that the answer does not depend on the order of traversal.
+void keep_nearest(I valid, F t, F tnear, std::uint32_t body, F& tfar, I& bodies, I& found) {
+  const I other = lanes::all(static_cast<int>(body));
+  const I tie_won = (found == nothing) | (other < bodies);
+  const I take = valid & (t >= tnear) & (t <= largest) & ((t < tfar) | ((t == tfar) & tie_won));
+  tfar = lanes::choose(take, t, tfar);
+  bodies = lanes::choose(take, other, bodies);
+  found = lanes::choose(take, lanes::all(0), found);
+}
+
+/// Solids that are built together, and Embree's tree over them.
+struct Layer {
+  struct Placement {
+    std::uint32_t group;
+    Pose X_GC;
+  };
+  std::vector<Placement> placements;
+  std::vector<Solid> solids;
+  float margin_m = 0;
+  RTCGeometry geometry = nullptr;
+  RTCScene scene = nullptr;
+
+  Layer() = default;
+  Layer(const Layer&) = delete;
+  Layer& operator=(const Layer&) = delete;
+  ~Layer() { clear(); }
+
+  void add(const SceneShape& shape) {
+    placements.push_back({shape.group, shape.X_GC});
+    solids.push_back(optics::make_solid(shape.shape, shape.body));
+  }
+  void clear() {
+    if (scene) rtcReleaseScene(scene);
+    if (geometry) rtcReleaseGeometry(geometry);
+    scene = nullptr;
+    geometry = nullptr;
+    placements.clear();
+    solids.clear();
+  }
+  /// Makes the (still empty) tree.
+  void attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality) {
+    if (solids.empty()) return;
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, flags);
+    rtcSetSceneBuildQuality(scene, quality);
+    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(solids.size()));
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect);
+    rtcAttachGeometry(scene, geometry);
+  }
+  void place(std::span<const Pose> X_WG) {
+    double size_m = 0;
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      solids[i].place(X_WG[placements[i].group] * placements[i].X_GC);
+      const optics::Bounds box = optics::bounds(solids[i]);
+      for (std::size_t k = 0; k < 3; ++k)
+        size_m = std::max({size_m, std::abs(box.lower[k]), std::abs(box.upper[k])});
+    }
+    // Embree clips rays against boxes in single precision, with an origin rounded to it: boxes a few such
+    // roundings too large lose no ray, and the exact solids inside decide what is hit.
+    margin_m = static_cast<float>(1e-6 * size_m);
+  }
+  void commit(tbb::task_arena& arena) {
+    if (solids.empty()) return;
+    rtcCommitGeometry(geometry);
+    arena.execute([this] { rtcCommitScene(scene); });
+  }
+
+  static void bounds(const RTCBoundsFunctionArguments* arguments);
+  static void intersect(const RTCIntersectFunctionNArguments* arguments);
+};
+
+void Layer::bounds(const RTCBoundsFunctionArguments* arguments) {
+  const auto& layer = *static_cast<const Layer*>(arguments->geometryUserPtr);
+  const optics::Bounds box = optics::bounds(layer.solids[arguments->primID]);
+  const double margin = layer.margin_m;
+  RTCBounds& out = *arguments->bounds_o;
+  out.lower_x = static_cast<float>(box.lower[0] - margin);
+  out.lower_y = static_cast<float>(box.lower[1] - margin);
+  out.lower_z = static_cast<float>(box.lower[2] - margin);
+  out.upper_x = static_cast<float>(box.upper[0] + margin);
+  out.upper_y = static_cast<float>(box.upper[1] + margin);
+  out.upper_z = static_cast<float>(box.upper[2] + margin);
+}
+
+void Layer::intersect(const RTCIntersectFunctionNArguments* arguments) {
+  const auto& solid = static_cast<const Layer*>(arguments->geometryUserPtr)->solids[arguments->primID];
+  const auto& query = *static_cast<const Query*>(arguments->context);
+  if (solid.body == query.ignore_body && solid.body != no_body) return;
+  const unsigned n = arguments->N;
+  for (unsigned first = 0; first < n; first += lanes::width) {
+    const unsigned count = std::min(n - first, unsigned{lanes::width});
+    const auto at = [&](unsigned index) { return field(arguments->rayhit, n, index) + first; };
+    const optics::Rays8 rays{lanes::load<F>(at(dir_field), count), lanes::load<F>(at(dir_field + 1), count),
+                             lanes::load<F>(at(dir_field + 2), count),
+                             lanes::load<F>(at(tnear_field), count)};
+    const I valid = lanes::load<I>(arguments->valid + first, count);
+    const F t = optics::distance_to(solid, query.origin, rays);
+    F tfar = lanes::load<F>(at(tfar_field), count);
+    I bodies = lanes::load<I>(at(body_field), count), found = lanes::load<I>(at(found_field), count);
+    keep_nearest(valid, t, rays.near, solid.body, tfar, bodies, found);
+    lanes::store(at(tfar_field), tfar, count);
+    lanes::store(at(body_field), bodies, count);
+    lanes::store(at(found_field), found, count);
+  }
+}
+
+/// Planes have no bounds, so no tree holds them: every ray meets every plane.
+struct WorldPlane {
+  std::uint32_t group;
+  Pose X_GC;
+  Vec3 normal_C;
+  std::uint32_t body;
+  Vec3 point_W, normal_W;
+
+  void place(std::span<const Pose> X_WG) {
+    const Pose X_WC = X_WG[group] * X_GC;
+    point_W = X_WC.p;
+    normal_W = rotate(X_WC.q, normal_C);
+  }
+};
+
+/// The widest instruction set that most machines have: one isa for all of them means one answer.
+const char* choose_isa() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+      __builtin_cpu_supports("bmi2"))
+    return "avx2";
+#endif
+  return "sse4.2";
+}
+
+/// Rotation as a matrix: cheaper than the quaternion from the second direction on.
+struct Rotation {
+  Vec3 x, y, z;  ///< columns
+  explicit Rotation(Quat q) : x(rotate(q, {1, 0, 0})), y(rotate(q, {0, 1, 0})), z(rotate(q, {0, 0, 1})) {}
+};
+
+}  // namespace
+
+struct RayScene::Impl {
+  // Embree's own `threads=` option would limit oneTBB in the whole process; an arena of one builds the trees in
+  // the calling thread alone.
+  tbb::task_arena arena{1};
+  const char* isa = choose_isa();
+  RTCDevice device = nullptr;
+  Layer fixed, moving;
+  std::vector<WorldPlane> planes;
+  std::uint32_t groups = 0;  ///< that a frame must have
+  std::uint64_t revision = 0;
+  bool fixed_is_current = false;
+
+  Impl() : device(rtcNewDevice((std::string("isa=") + isa).c_str())) {
+    SL_CHECK_MSG(device, "Embree refuses to start");
+  }
+  ~Impl() {
+    fixed.clear();
+    moving.clear();
+    rtcReleaseDevice(device);
+  }
+
+  void cast(const RayJob& job) const;
+};
+
+RayScene::RayScene() : impl_(std::make_unique<Impl>()) {}
+RayScene::~RayScene() = default;
+const char* RayScene::isa() const { return impl_->isa; }
+
+void RayScene::set_shapes(std::span<const SceneShape> shapes) {
+  Impl& s = *impl_;
+  const embree::FlushDenormals flush;
+  s.fixed.clear();
+  s.moving.clear();
+  s.planes.clear();
+  s.groups = 0;
+  for (const SceneShape& shape : shapes) {
+    s.groups = std::max(s.groups, shape.group + 1);
+    if (const auto* plane = std::get_if<Plane>(&shape.shape))
+      s.planes.push_back({shape.group, shape.X_GC, plane->normal, shape.body});
+    else (shape.moves ? s.moving : s.fixed).add(shape);
+  }
+  s.fixed.attach(s.device, RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
+  s.moving.attach(s.device, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_LOW);
+  s.fixed_is_current = false;
+}
+
+void RayScene::update(const SceneFrame& frame) {
+  Impl& s = *impl_;
+  SL_CHECK(frame.X_WG.size() >= s.groups);
+  const embree::FlushDenormals flush;
+  if (!s.fixed_is_current || frame.revision != s.revision) {
+    s.fixed.place(frame.X_WG);
+    s.fixed.commit(s.arena);
+    s.fixed_is_current = true;
+    s.revision = frame.revision;
+  }
+  s.moving.place(frame.X_WG);
+  s.moving.commit(s.arena);
+  for (WorldPlane& plane : s.planes) plane.place(frame.X_WG);
+}
+
+void RayScene::Impl::cast(const RayJob& job) const {
+  SL_CHECK(job.distance_m.size() == job.directions.size());
+  SL_CHECK(job.body.empty() || job.body.size() == job.directions.size());
+  const Rotation R(job.X_WS.q);
+  Query query;
+  embree::init_context(query);
+  for (std::size_t i = 0; i < 3; ++i) query.origin[i] = job.X_WS.p[i];
+  query.ignore_body = job.ignore_body;
+
+  alignas(64) RTCRayHit8 packet{};
+  const F tnear = lanes::all(static_cast<float>(job.min_m)), tmax = lanes::all(static_cast<float>(job.max_m));
+  lanes::store(packet.ray.org_x, lanes::all(static_cast<float>(job.X_WS.p.x)));
+  lanes::store(packet.ray.org_y, lanes::all(static_cast<float>(job.X_WS.p.y)));
+  lanes::store(packet.ray.org_z, lanes::all(static_cast<float>(job.X_WS.p.z)));
+  lanes::store(packet.ray.tnear, tnear);
+  lanes::store(packet.ray.mask, lanes::all(-1));
+
+  // A packet never holds rays of two jobs: the answer depends on the job alone.
+  for (std::size_t first = 0; first < job.directions.size(); first += lanes::width) {
+    const std::size_t count = std::min(job.directions.size() - first, std::size_t{lanes::width});
+    alignas(32) int valid[lanes::width] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 d = job.directions[first + i];
+      valid[i] = -1;
+      packet.ray.dir_x[i] = static_cast<float>(R.x.x * d.x + R.y.x * d.y + R.z.x * d.z);
+      packet.ray.dir_y[i] = static_cast<float>(R.x.y * d.x + R.y.y * d.y + R.z.y * d.z);
+      packet.ray.dir_z[i] = static_cast<float>(R.x.z * d.x + R.y.z * d.y + R.z.z * d.z);
+    }
+    F tfar = tmax;
+    I bodies = lanes::all(static_cast<int>(no_body)), found = lanes::all(nothing);
+    for (const WorldPlane& plane : planes) {
+      if (plane.body == job.ignore_body && plane.body != no_body) continue;
+      const Vec3 n = plane.normal_W;
+      const F towards = static_cast<float>(n.x) * lanes::load<F>(packet.ray.dir_x) +
+                        static_cast<float>(n.y) * lanes::load<F>(packet.ray.dir_y) +
+                        static_cast<float>(n.z) * lanes::load<F>(packet.ray.dir_z);
+      const F t = static_cast<float>(dot(n, plane.point_W - job.X_WS.p)) / towards;
+      keep_nearest(lanes::all(-1), t, tnear, plane.body, tfar, bodies, found);
+    }
+    lanes::store(packet.ray.tfar, tfar);
+    lanes::store(packet.hit.primID, bodies);
+    lanes::store(packet.hit.geomID, found);
+    lanes::store(packet.hit.instID[0], lanes::all(nothing));
+    for (const Layer* layer : {&fixed, &moving})
+      if (layer->scene) embree::intersect8(valid, layer->scene, query, packet);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      job.distance_m[first + i] = hit ? packet.ray.tfar[i] : std::numeric_limits<float>::infinity();
+      if (!job.body.empty()) job.body[first + i] = packet.hit.primID[i];
+    }
+  }
+}
+
+void RayScene::cast(std::span<const RayJob> jobs) const {
+  const embree::FlushDenormals flush;
+  for (const RayJob& job : jobs) impl_->cast(job);
+}
+
+}  // namespace sandlot

@@ -1,0 +1,164 @@
+#include "optics/solid.h"
+
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+
+namespace sandlot::optics {
+namespace {
+
+using lanes::all;
+using lanes::choose;
+using lanes::F;
+using lanes::greater;
+using lanes::I;
+using lanes::lesser;
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+
+/// The rays in the frame of a solid: one origin, eight directions.
+struct Local {
+  float ox, oy, oz;
+  F dx, dy, dz;
+};
+
+/// The part of each ray's line inside a convex solid; empty when first > last.
+struct Interval {
+  F first, last;
+};
+
+/// Intersection. A NaN in `b` (a ray that runs exactly in a face) leaves the bound of `a`; in `a` it means "missed"
+/// and stays.
+Interval meet(Interval a, Interval b) { return {greater(b.first, a.first), lesser(b.last, a.last)}; }
+
+/// Union of intervals that overlap or of which one is empty (`first` = inf, `last` = -inf).
+Interval join(Interval a, Interval b) { return {lesser(b.first, a.first), greater(b.last, a.last)}; }
+
+Interval unless_empty(Interval a) {
+  const I valid = a.first <= a.last;
+  return {choose(valid, a.first, all(inf)), choose(valid, a.last, all(-inf))};
+}
+
+/// Between the planes -half and +half. A ray parallel to them divides by zero: +-inf puts it inside or outside.
+Interval slab(float o, F d, float half) {
+  const F towards = choose(I(d) < 0, all(-half),
+                           all(half));  // by sign bit, so that -0 and +0 stay consistent
+  return {(-towards - o) / d, (towards - o) / d};
+}
+
+Interval ball(float ox, float oy, float oz, const Local& ray, float radius) {
+  const F along = -(ox * ray.dx + oy * ray.dy + oz * ray.dz);
+  const F px = ox + along * ray.dx, py = oy + along * ray.dy, pz = oz + along * ray.dz;
+  const F half = lanes::root(radius * radius - (px * px + py * py + pz * pz));  // NaN: missed
+  return {along - half, along + half};
+}
+
+/// Inside the infinite cylinder about z.
+Interval tube(const Local& ray, float radius) {
+  const F a = ray.dx * ray.dx + ray.dy * ray.dy;
+  const F b = ray.ox * ray.dx + ray.oy * ray.dy;
+  const F side = ray.ox * ray.dy - ray.oy * ray.dx;  // |side| / sqrt(a): distance between axis and ray
+  const F half = lanes::root(a * (radius * radius) - side * side);
+  const bool inside = ray.ox * ray.ox + ray.oy * ray.oy <= radius * radius;
+  // Within 1e-10 rad of the axis the ray never leaves a tube that it is in, and squares would underflow.
+  const I parallel = a < 1e-20f;
+  return {choose(parallel, all(inside ? -inf : inf), (-b - half) / a),
+          choose(parallel, all(inside ? inf : -inf), (-b + half) / a)};
+}
+
+Interval capped(const Local& ray, float radius, float half_length) {
+  return meet(tube(ray, radius), slab(ray.oz, ray.dz, half_length));
+}
+
+Interval inside(const Solid& solid, const Local& ray) {
+  const float* s = solid.size;
+  switch (solid.type) {
+    case Solid::Type::box: {
+      const Interval everywhere{all(-inf), all(inf)};
+      return meet(meet(meet(everywhere, slab(ray.ox, ray.dx, s[0])), slab(ray.oy, ray.dy, s[1])),
+                  slab(ray.oz, ray.dz, s[2]));
+    }
+    case Solid::Type::sphere: return ball(ray.ox, ray.oy, ray.oz, ray, s[0]);
+    case Solid::Type::cylinder: return capped(ray, s[0], s[1]);
+    case Solid::Type::capsule: break;
+  }
+  // Convex, so its interval is the union of those of its three parts.
+  const Interval top = unless_empty(ball(ray.ox, ray.oy, ray.oz - s[1], ray, s[0]));
+  const Interval bottom = unless_empty(ball(ray.ox, ray.oy, ray.oz + s[1], ray, s[0]));
+  return join(join(top, bottom), unless_empty(capped(ray, s[0], s[1])));
+}
+
+struct Dimensions {
+  Solid::Type type;
+  double a, b, c;
+};
+Dimensions dimensions(const Box& s) {
+  return {Solid::Type::box, s.size_m.x / 2, s.size_m.y / 2, s.size_m.z / 2};
+}
+Dimensions dimensions(const Sphere& s) { return {Solid::Type::sphere, s.radius_m, 0, 0}; }
+Dimensions dimensions(const Cylinder& s) { return {Solid::Type::cylinder, s.radius_m, s.length_m / 2, 0}; }
+Dimensions dimensions(const Capsule& s) { return {Solid::Type::capsule, s.radius_m, s.length_m / 2, 0}; }
+Dimensions dimensions(const Plane&) {
+  SL_CHECK_MSG(false, "a plane is no bounded solid");
+  return {};
+}
+
+}  // namespace
+
+void Solid::place(const Pose& X_WC) {
+  const Vec3 x = rotate(X_WC.q, {1, 0, 0}), y = rotate(X_WC.q, {0, 1, 0}), z = rotate(X_WC.q, {0, 0, 1});
+  for (std::size_t i = 0; i < 3; ++i) {
+    position[i] = X_WC.p[i];
+    axes[i] = static_cast<float>(x[i]);
+    axes[3 + i] = static_cast<float>(y[i]);
+    axes[6 + i] = static_cast<float>(z[i]);
+  }
+}
+
+Solid make_solid(const Shape& shape, std::uint32_t body) {
+  const Dimensions d = std::visit([](const auto& s) { return dimensions(s); }, shape);
+  Solid solid{};
+  solid.size[0] = static_cast<float>(d.a);
+  solid.size[1] = static_cast<float>(d.b);
+  solid.size[2] = static_cast<float>(d.c);
+  solid.body = body;
+  solid.type = d.type;
+  solid.place({});
+  return solid;
+}
+
+Bounds bounds(const Solid& solid) {
+  Bounds result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = std::abs(solid.axes[i]), y = std::abs(solid.axes[3 + i]),
+                 z = std::abs(solid.axes[6 + i]);
+    const double a = solid.size[0], b = solid.size[1], c = solid.size[2];
+    double half = a;
+    if (solid.type == Solid::Type::box) half = x * a + y * b + z * c;
+    if (solid.type == Solid::Type::cylinder) half = std::sqrt(x * x + y * y) * a + z * b;
+    if (solid.type == Solid::Type::capsule) half = a + z * b;
+    result.lower[i] = solid.position[i] - half;
+    result.upper[i] = solid.position[i] + half;
+  }
+  return result;
+}
+
+F distance_to(const Solid& solid, const double origin[3], const Rays8& rays) {
+  const double px = origin[0] - solid.position[0];
+  const double py = origin[1] - solid.position[1];
+  const double pz = origin[2] - solid.position[2];
+  const float* m = solid.axes;
+  // The same rounded axes turn origin and directions: an error of the axes only turns the solid a little.
+  const Local ray{static_cast<float>(m[0] * px + m[1] * py + m[2] * pz),
+                  static_cast<float>(m[3] * px + m[4] * py + m[5] * pz),
+                  static_cast<float>(m[6] * px + m[7] * py + m[8] * pz),
+                  m[0] * rays.dx + m[1] * rays.dy + m[2] * rays.dz,
+                  m[3] * rays.dx + m[4] * rays.dy + m[5] * rays.dz,
+                  m[6] * rays.dx + m[7] * rays.dy + m[8] * rays.dz};
+  const Interval part = inside(solid, ray);
+  const F seen = choose(part.first >= rays.near, part.first, part.last);
+  return choose(part.first <= part.last, seen, all(inf));
+}
+
+}  // namespace sandlot::optics

@@ -1,0 +1,301 @@
+/// The tick: due times, order of requests, levels, parameters, rules, media, failures, heap.
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include "messages/messages.h"
+#include "sim/test_world.h"
+
+namespace sandlot::test {
+namespace {
+
+/// A device of the tests' own: counts its samples, emits one byte each time, can push its body to infinity.
+struct Probe {
+  struct Spec {
+    double rate_hz = 0;
+    bool explode = false;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"rate", "Hz", "Samples per second; 0: every tick.", 0, 1e5, Field::tunable}, s.rate_hz);
+      visit(Field{"explode", "", "Push with a force that is not finite.", 0, 1, Field::tunable}, s.explode);
+    }
+  };
+  struct State {
+    double sum_since_s = 0;
+    static void fields(auto& s, auto&& visit) { visit(Field{"sum", "s", ""}, s.sum_since_s); }
+  };
+  Spec spec;
+  State state;
+  BodyId body;
+  std::uint64_t key = 0;
+  Topic<msg::Int64Stamped>* count = nullptr;
+  Topic<msg::Float64>* gain = nullptr;
+  Topic<msg::Float64>* trim = nullptr;
+
+  static Result<Probe> create(const DeviceBuild& build, Spec spec) {
+    return Probe{spec, {}, build.body(), build.key, build.publish<msg::Int64Stamped>(0, "count"),
+                 build.accept<msg::Float64>(0, "count"), build.accept<msg::Float64>(1, "other")};
+  }
+  static void actuate(PoolView<Probe> pool, const Context& ctx) {
+    for (const std::uint32_t i : pool.due)
+      if (pool.all[i].spec.explode)
+        ctx.actuation.wrenches.push_back({pool.all[i].body, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}});
+  }
+  static void sense(PoolView<Probe> pool, const Context& ctx) {
+    for (const std::uint32_t i : pool.due) {
+      Probe& probe = pool.all[i];
+      probe.count->message.data = static_cast<std::int64_t>(pool.sample[i]);
+      probe.count->publish(ctx.now);
+      probe.state.sum_since_s += pool.since[i].s();
+      ctx.emissions.emit({entity_key("air"), probe.key, {}, 1.0, 0, 0}, std::as_bytes(std::span("x", 1)));
+    }
+  }
+};
+constexpr LevelInfo probe_levels[] = {{"count", "sandlot_msgs/msg/Int64Stamped", "std_msgs/msg/Float64", "Counts."},
+                                      {"other", "", "std_msgs/msg/Float64", "Takes another command."}};
+const Kind probe_kind = make_kind<Probe>({.name = "probe", .help = "For tests.", .levels = probe_levels});
+const Kind* const probe_kinds[] = {&probe_kind};
+const SimulationOptions with_probe{.threads = 1, .run_programs = true, .extra_kinds = probe_kinds};
+
+model::Instance probed(const std::string& name, const Node& config, Vec3 at = {0, 0, 5}) {
+  model::Instance instance = placed(name, one_shape("ball", Sphere{0.1}, 1), {at, {}});
+  model::DeviceDecl decl;
+  decl.name = "probe";
+  decl.kind = "probe";
+  decl.config = config;
+  instance.devices.push_back(decl);
+  return instance;
+}
+
+model::Setup one_probe(const Node& config, double step_s = 0.01) {
+  model::Setup setup;
+  setup.step = Time::from_s(step_s);
+  setup.instances.push_back(probed("ball", config));
+  return setup;
+}
+
+std::string error_of(model::Setup setup) {
+  Diagnostics diagnostics;
+  const auto made = Simulation::create(std::move(setup), with_probe, diagnostics);
+  return made ? "" : made.error().text();
+}
+
+TEST(Due, the_first_sample_is_taken_at_time_zero_and_the_kth_at_the_first_tick_not_before_k_over_rate) {
+  Diagnostics diagnostics;
+  auto made = Simulation::create(one_probe(map({{"rate", "3"}})), with_probe, diagnostics);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(diagnostics.warnings.size(), 1u) << "3 Hz does not divide 100 Hz: said once";
+  Simulation& simulation = **made;
+  const TopicBase* const topic = simulation.find_topic("/ball/probe/count");
+  ASSERT_TRUE(topic);
+  std::vector<double> stamps{topic->stamp.s()};
+  EXPECT_EQ(topic->count, 1u);
+  for (int i = 0; i < 1000; ++i) {
+    advance(simulation, 1);
+    if (topic->stamp == simulation.now()) stamps.push_back(topic->stamp.s());
+  }
+  ASSERT_EQ(stamps.size(), 31u);  // k = 0..30 fall into [0, 10] s
+  for (std::size_t k = 0; k < stamps.size(); ++k)
+    EXPECT_NEAR(stamps[k], std::ceil(static_cast<double>(k) / 3 * 100 - 1e-9) / 100, 1e-12) << k;
+}
+
+TEST(Due, a_rate_equal_to_the_tick_rate_samples_every_tick_and_one_above_it_is_refused) {
+  const auto simulation = build(one_probe(map({{"rate", "100"}})), with_probe);
+  advance(*simulation, 50);
+  EXPECT_EQ(simulation->find_topic("ball/probe")->count, 51u);
+  EXPECT_NE(error_of(one_probe(map({{"rate", "101"}}))).find("above the tick rate"), std::string::npos);
+}
+
+TEST(Due, a_request_takes_one_sample_more) {
+  const auto simulation = build(one_probe(map({{"rate", "1"}})), with_probe);
+  advance(*simulation, 10);
+  EXPECT_EQ(simulation->find_topic("ball/probe")->count, 1u);
+  simulation->submit(SampleRequest{"ball/probe"});
+  advance(*simulation, 10);
+  EXPECT_EQ(simulation->find_topic("ball/probe")->count, 2u);
+}
+
+TEST(Build, errors_name_what_there_is) {
+  auto setup = one_probe(Node::map());
+  setup.instances[0].devices[0].kind = "prob";
+  EXPECT_NE(error_of(setup).find("did you mean 'probe'"), std::string::npos) << error_of(setup);
+  setup = one_probe(map({{"rat", "1"}}));
+  EXPECT_NE(error_of(setup).find("did you mean 'rate'"), std::string::npos) << error_of(setup);
+  setup = one_probe(map({{"level", "cuont"}}));
+  EXPECT_NE(error_of(setup).find("did you mean 'count'"), std::string::npos) << error_of(setup);
+  setup = one_probe(Node::map());
+  setup.engine = "rigit";
+  EXPECT_NE(error_of(setup).find("did you mean 'rigid'"), std::string::npos) << error_of(setup);
+  setup = one_probe(Node::map());
+  setup.instances.push_back(setup.instances[0]);
+  EXPECT_NE(error_of(setup).find("two things named 'ball'"), std::string::npos);
+  setup = one_probe(Node::map());
+  setup.instances[0].devices.push_back(setup.instances[0].devices[0]);
+  EXPECT_NE(error_of(setup).find("two devices named 'probe'"), std::string::npos);
+  setup = one_probe(Node::map());
+  setup.instances[0].controllers.push_back({"controller", "wandr", Node::map(), {}});
+  EXPECT_NE(error_of(setup).find("did you mean 'wander'"), std::string::npos);
+}
+
+std::vector<std::byte> bytes_of(double x) {
+  ByteWriter w;
+  write(w, msg::Float64{x});
+  return {w.bytes().begin(), w.bytes().end()};
+}
+
+TEST(Requests, administrators_go_first_then_robots_then_sequence) {
+  const auto simulation = build(one_probe(Node::map()), with_probe);
+  struct Log : Observer {
+    std::vector<double> given;
+    void on_frame(const std::shared_ptr<const Frame>& frame) override {
+      for (const FrameCommand& command : frame->commands) {
+        double x = 0;
+        std::memcpy(&x, command.bytes.data(), 8);
+        given.push_back(x);
+      }
+    }
+  } log;
+  simulation->add_observer(&log);
+  const auto give = [&](double x, Source source) {
+    simulation->submit(CommandRequest{"ball/probe", "std_msgs/msg/Float64", bytes_of(x)}, source);
+  };
+  give(4, {Source::Kind::robot, 9});
+  give(3, {Source::Kind::robot, 2});
+  give(1, {Source::Kind::admin, 5});
+  give(5, {Source::Kind::robot, 9});
+  give(2, {Source::Kind::admin, 5});
+  advance(*simulation, 1);
+  EXPECT_EQ(log.given, (std::vector<double>{1, 2, 3, 4, 5}));
+}
+
+TEST(Requests, commands_of_an_inactive_level_are_refused_until_it_is_switched_on) {
+  const auto simulation = build(one_probe(Node::map()), with_probe);
+  const auto give = [&] {
+    simulation->submit(CommandRequest{"ball/probe/other", "std_msgs/msg/Float64", bytes_of(1)});
+    advance(*simulation, 1);
+    return static_cast<bool>(simulation->outcomes().back().status);
+  };
+  EXPECT_FALSE(give());
+  EXPECT_EQ(simulation->refused_commands(), 1u);
+  const auto before = simulation->revision();
+  simulation->submit(LevelRequest{"ball/probe", {"count", "other"}});
+  EXPECT_TRUE(give());
+  EXPECT_EQ(simulation->revision(), before + 1);
+  simulation->submit(LevelRequest{"ball/probe", {"othr"}});
+  advance(*simulation, 1);
+  ASSERT_FALSE(simulation->outcomes().back().status);
+  EXPECT_NE(simulation->outcomes().back().status.error().text().find("did you mean 'other'"), std::string::npos);
+}
+
+TEST(Requests, wrong_targets_types_and_bytes_are_answered_and_change_nothing) {
+  const auto simulation = build(one_probe(Node::map()), with_probe), untouched = build(one_probe(Node::map()), with_probe);
+  simulation->submit(CommandRequest{"ball/prob", "std_msgs/msg/Float64", bytes_of(1)});
+  simulation->submit(CommandRequest{"ball/probe", "geometry_msgs/msg/Twist", bytes_of(1)});
+  simulation->submit(CommandRequest{"ball/probe", "std_msgs/msg/Float64", {std::byte{1}}});
+  simulation->submit(ParameterRequest{"ball/probe", "rat", Node::scalar("1")});
+  simulation->submit(ParameterRequest{"ball/probe", "rate", Node::scalar("fast")});
+  simulation->submit(DeleteRequest{"bal"});
+  simulation->submit(PoseRequest{"ball", {{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}}});
+  advance(*simulation, 1);
+  advance(*untouched, 1);
+  ASSERT_EQ(simulation->outcomes().size(), 7u);
+  for (const Outcome& outcome : simulation->outcomes()) EXPECT_FALSE(outcome.status);
+  EXPECT_EQ(by_path(*simulation), by_path(*untouched));
+}
+
+TEST(Requests, a_tunable_parameter_takes_effect_at_the_next_tick) {
+  const auto simulation = build(one_probe(map({{"rate", "1"}})), with_probe);
+  simulation->submit(ParameterRequest{"ball/probe", "rate", Node::scalar("50 Hz")});
+  advance(*simulation, 1);
+  ASSERT_TRUE(simulation->outcomes().back().status);
+  const auto before = simulation->find_topic("ball/probe")->count;
+  advance(*simulation, 100);
+  EXPECT_NEAR(static_cast<double>(simulation->find_topic("ball/probe")->count - before), 50, 1);
+  // The changed value is State: it survives a restore. (Restoring needs the kind too.)
+  Diagnostics diagnostics;
+  auto restored = Simulation::restore(simulation->snapshot(), with_probe, diagnostics);
+  ASSERT_TRUE(restored) << restored.error().text();
+  EXPECT_EQ((*restored)->state_hash(), simulation->state_hash());
+}
+
+TEST(Requests, a_pose_request_moves_an_instance) {
+  const auto simulation = build(one_probe(Node::map()), with_probe);
+  simulation->submit(PoseRequest{"ball", {{3, 4, 50}, {}}});
+  advance(*simulation, 1);
+  const Pose pose = simulation->engine().pose(*simulation->find_instance("ball"));
+  EXPECT_NEAR(pose.p.x, 3, 1e-9);
+  EXPECT_NEAR(pose.p.z, 50, 0.01);  // fell for one tick
+}
+
+TEST(Failure, a_state_that_is_not_finite_ends_the_run_and_names_the_body) {
+  const auto simulation = build(one_probe(Node::map()), with_probe);
+  advance(*simulation, 3);
+  simulation->submit(ParameterRequest{"ball/probe", "explode", Node::scalar("true")});
+  const Status status = simulation->tick();
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().text().find("ball"), std::string::npos) << status.error().text();
+  EXPECT_TRUE(simulation->stop_reason());
+  EXPECT_FALSE(simulation->tick()) << "a failed run does not go on";
+}
+
+TEST(Rules, the_run_stops_when_its_time_is_up) {
+  auto setup = one_probe(Node::map());
+  setup.stop = Time::from_s(0.5);
+  const auto simulation = build(setup, with_probe);
+  int ticks = 0;
+  while (!simulation->stop_reason()) advance(*simulation, 1), ++ticks;
+  EXPECT_EQ(ticks, 50);
+}
+
+/// Keeps who was heard, in the order it was heard.
+struct Air : Medium {
+  std::vector<std::uint64_t> heard;
+  std::size_t payload = 0;
+  const char* name() const override { return "air"; }
+  void deliver(const EmissionBuffer& buffer, const MediumContext&) override {
+    for (const Emission& emission : buffer.emissions)
+      if (emission.medium == entity_key("air")) heard.push_back(emission.emitter), payload += emission.payload_size;
+  }
+  void save(ByteWriter& w) const override { write(w, heard); }
+  void load(ByteReader& r) override { read(r, heard); }
+};
+
+TEST(Media, emissions_of_a_tick_arrive_once_in_creation_order) {
+  auto setup = one_probe(map({{"rate", "50"}}));
+  for (const char* name : {"c", "a", "b"}) setup.instances.push_back(probed(name, map({{"rate", "50"}}), {2, 0, 9}));
+  const auto simulation = build(setup, with_probe);
+  auto air = std::make_unique<Air>();
+  const Air& listener = *air;
+  simulation->add_medium(std::move(air));
+  advance(*simulation, 2);  // samples fall on every second tick
+  EXPECT_EQ(listener.heard, (std::vector{entity_key("ball/probe"), entity_key("c/probe"), entity_key("a/probe"), entity_key("b/probe")}));
+  EXPECT_EQ(listener.payload, 4u);
+}
+
+TEST(Levels, a_drive_keeps_its_place_when_its_level_is_switched) {
+  const auto simulation = build(arena("rigid", 1));
+  advance(*simulation, 100);
+  const auto id = *simulation->find_instance("rover1");
+  const Vec3 before = simulation->engine().pose(id).p;
+  simulation->submit(LevelRequest{"rover1/drive", {"contact"}});
+  advance(*simulation, 1);
+  ASSERT_TRUE(simulation->outcomes().back().status) << simulation->outcomes().back().status.error().text();
+  EXPECT_LT(norm(simulation->engine().pose(id).p - before), 0.02);
+  advance(*simulation, 200);
+  EXPECT_GT(norm(simulation->engine().pose(id).p - before), 0.2) << "the controller drives on at the new level";
+  EXPECT_EQ(simulation->refused_commands(), 0u);
+  // And it is all in the State.
+  const auto restored = again(*simulation);
+  advance(*simulation, 50);
+  advance(*restored, 50);
+  EXPECT_EQ(restored->state_hash(), simulation->state_hash());
+}
+
+TEST(Levels, planar_has_no_contact_drive_and_says_so) {
+  auto setup = arena("planar", 1);
+  for (auto& device : setup.instances.back().devices)
+    if (device.kind == "diff_drive") device.config.set("level", Node::scalar("contact"));
+  EXPECT_NE(error_of(setup).find("contact"), std::string::npos) << error_of(setup);
+}
+
+}  // namespace
+}  // namespace sandlot::test
