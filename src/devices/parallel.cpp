@@ -5,11 +5,12 @@
 
 namespace sandlot {
 
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for(std::size_t count, std::size_t grain, const void* closure,
+                  void (*body)(const void* closure, std::size_t begin, std::size_t end)) {
   if (count == 0) return;
-  if (count <= grain) return body(0, count);
+  if (count <= grain) return body(closure, 0, count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                    [&](const auto& range) { body(range.begin(), range.end()); });
+                    [=](const auto& range) { body(closure, range.begin(), range.end()); });
 }
 
 }  // namespace sandlot

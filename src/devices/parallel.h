@@ -1,11 +1,20 @@
 #pragma once
 /// Work over threads whose result does not depend on how many there are: each index writes only its own data.
 #include <cstddef>
-#include <functional>
 
 namespace sandlot {
 
+/// As below, with the body as a plain function of its closure.
+void parallel_for(std::size_t count, std::size_t grain, const void* closure,
+                  void (*body)(const void* closure, std::size_t begin, std::size_t end));
+
 /// Runs `body(begin, end)` over [0, count) in chunks of about `grain`, on the threads of the current arena.
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+/// The body is called where it stands, so that a capture of any size costs no heap.
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_for(count, grain, static_cast<const void*>(&body), [](const void* closure, std::size_t begin, std::size_t end) {
+    (*static_cast<const Body*>(closure))(begin, end);
+  });
+}
 
 }  // namespace sandlot

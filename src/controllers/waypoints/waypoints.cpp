@@ -1,0 +1,73 @@
+#include "controllers/waypoints/waypoints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/math.h"
+
+namespace sandlot::controllers::waypoints {
+namespace {
+
+constexpr double turn_first_rad = math::pi / 3;
+constexpr double turned_rad = math::pi / 18;
+
+}  // namespace
+
+Status Waypoints::init(const Description& robot) {
+  if (spec.points_m.empty()) return Error{"there are no points", "give at least one [x, y]", {}, "/points"};
+  SL_ASSIGN(odometry, robot.reading<msg::Odometry>(spec.odometry));
+  SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
+  return {};
+}
+
+void Waypoints::step(const Observation& obs, Command& cmd) {
+  const auto seen = obs.get(odometry);
+  msg::Twist twist;
+  if (!seen.valid) return cmd.set(drive, twist);
+  const Pose& X_OB = seen.message.pose;
+  const auto count = static_cast<std::uint32_t>(spec.points_m.size());
+  const auto aim = [&] {
+    const auto& point = spec.points_m[state.next];
+    return rotate_inverse(X_OB.q, Vec3{point[0] - X_OB.p.x, point[1] - X_OB.p.y, 0});
+  };
+
+  // Points that are near already are passed by, but no more than one round of them: a loop may lie within tolerance.
+  for (std::uint32_t passed = 0; passed < count && state.next < count; ++passed) {
+    const Vec3 to = aim();
+    if (std::sqrt(to.x * to.x + to.y * to.y) > spec.tolerance_m) break;
+    state.turning = 0;
+    if (++state.next == count) {
+      ++state.rounds;
+      if (spec.loop) state.next = 0;
+    }
+  }
+  if (state.next >= count) {
+    if (!spec.loop) return cmd.set(drive, twist);
+    state.next = 0;  // `loop` was switched on after the last point
+  }
+
+  const Vec3 to = aim();
+  const double distance = std::sqrt(to.x * to.x + to.y * to.y);
+  if (distance <= spec.tolerance_m) return cmd.set(drive, twist);
+  const double bearing = math::atan2(to.y, to.x);
+  state.turning = std::abs(bearing) > (state.turning ? turned_rad : turn_first_rad) ? 1 : 0;
+  if (state.turning) {
+    twist.angular.z = std::clamp(2.0 * bearing, -spec.turn_speed_radps, spec.turn_speed_radps);
+    return cmd.set(drive, twist);
+  }
+  const double curvature = 2 * (to.y / distance) / distance;
+  double speed = spec.speed_mps;
+  if (std::abs(curvature) * speed > spec.turn_speed_radps) speed = spec.turn_speed_radps / std::abs(curvature);
+  if (!spec.loop && state.next + 1 == count) speed = std::min(speed, std::sqrt(2 * spec.deceleration_mps2 * distance));
+  twist.linear.x = speed;
+  twist.angular.z = curvature * speed;
+  cmd.set(drive, twist);
+}
+
+extern const ControllerKind kind;
+constinit const ControllerKind kind = make_controller<Waypoints>({
+    .name = "waypoints",
+    .help = "Drives through a list of points.",
+});
+
+}  // namespace sandlot::controllers::waypoints

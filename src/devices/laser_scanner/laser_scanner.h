@@ -1,0 +1,71 @@
+#pragma once
+/// Planar scanning range finder (2D lidar; with one beam a sonar or an infra-red ranger).
+///
+/// Frame    sensor frame S: x forward, y left, z up; the beams lie in its xy plane. Beam i leaves S's origin at
+///          min_angle + i (max_angle - min_angle) / (beams - 1), counter-clockwise positive. A single beam points
+///          to the middle of the two angles.
+/// Output   level `ranges`: sensor_msgs/LaserScan, `beams` distances [m] in beam order. +inf: nothing within
+///          max_range. -inf: nearer than min_range. Never NaN. Convention of ROS REP 117.
+/// Time     all beams are sampled at the same instant, the end of the tick. A real scanner sweeps; see Limits.
+/// Noise    noise/range_noise.h: white noise per beam and a bias that all beams of a scan share; added to finite
+///          distances only, then clamped to [min_range, max_range].
+/// Housing  rays start at S's origin, so that what touches the sensor reads -inf and not whatever lies behind it.
+///          The link that carries the sensor is its housing and is never seen; other links of the robot are.
+/// Limits   no intensities, reflectance, mixed pixels, motion distortion, cross-talk, beam divergence.
+/// Cost     `beams` ray casts per sample, no allocation after the device was built; scanners run in parallel.
+/// Errors   a bad spec: place and path of the key.
+/// Source   ROS REP 117; noise: S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3 (the "hit" term only).
+#include <numbers>
+#include <vector>
+
+#include "devices/kind.h"
+#include "messages/messages.h"
+#include "noise/range_noise.h"
+
+namespace sandlot::laser_scanner {
+
+struct Spec {
+  int beams = 181;
+  double min_angle_rad = -std::numbers::pi / 2;
+  double max_angle_rad = std::numbers::pi / 2;
+  double min_range_m = 0.02;
+  double max_range_m = 10.0;
+  double rate_hz = 10.0;
+  RangeNoiseSpec noise;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"beams", "1", "Number of beams.", 1, 100'000}, s.beams);
+    visit(Field{"min_angle", "rad", "Angle of the first beam.", -2 * std::numbers::pi, 2 * std::numbers::pi}, s.min_angle_rad);
+    visit(Field{"max_angle", "rad", "Angle of the last beam.", -2 * std::numbers::pi, 2 * std::numbers::pi}, s.max_angle_rad);
+    visit(Field{"min_range", "m", "A nearer obstacle reads -inf.", 0, 1e4}, s.min_range_m);
+    visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
+    visit(Field{"rate", "Hz", "Scans per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(Field{"noise", "m", "Error of the distances."}, s.noise);
+  }
+};
+
+struct State {
+  DriftingBias bias;
+
+  static void fields(auto& s, auto&& visit) { visit(Field{"bias", "m", "Error that all beams share."}, s.bias); }
+};
+
+struct Scanner {
+  using Spec = laser_scanner::Spec;
+  using State = laser_scanner::State;
+  Spec spec;
+  State state;
+
+  std::uint64_t key = 0;
+  std::uint32_t body = 0;  ///< index of the link that carries it
+  Pose X_LS;
+  std::vector<Vec3> directions_S;
+  Topic<msg::LaserScan>* scan = nullptr;
+
+  static Result<Scanner> create(const DeviceBuild& build, Spec spec);
+  static void sense(PoolView<Scanner> pool, const Context& context);
+};
+
+extern const Kind kind;
+
+}  // namespace sandlot::laser_scanner

@@ -1,0 +1,112 @@
+#include "sim/model_bytes.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/test_world.h"
+
+namespace sandlot {
+namespace {
+
+std::vector<std::byte> bytes_of(const model::Setup& setup) {
+  std::vector<const model::Instance*> instances;
+  for (const model::Instance& instance : setup.instances) instances.push_back(&instance);
+  ByteWriter w;
+  write_setup(w, setup, instances);
+  return {w.bytes().begin(), w.bytes().end()};
+}
+
+/// Every member differs from its default, so that one left out shows.
+model::Setup full_setup() {
+  auto made = std::make_shared<model::Model>();
+  made->name = "my model";
+  made->self_collide = true;
+  model::Link base;
+  base.name = "base";
+  base.X_ML = {{1, 2, 3}, quat_from_rpy(0.1, 0.2, 0.3)};
+  base.inertial = {4, {{0.1, 0, 0}, {}}, {1, 2, 2.5}, {0.1, 0.2, 0.3}};
+  base.gravity = false;
+  model::Surface surface{0.4, 0.5, {1, 0, 0}, 0.1, 0.2, 0.3, 0.06, 0.2, 1e-5};
+  for (const Shape& shape : {Shape(Box{{1, 2, 3}}), Shape(Sphere{0.5}), Shape(Cylinder{0.2, 0.7}), Shape(Capsule{0.1, 0.6}), Shape(Plane{{0, 0, 1}})}) {
+    base.collisions.push_back({"c", {{0, 0, 1}, {}}, shape, surface, {}});
+    base.visuals.push_back({"v", {{0, 1, 0}, {}}, shape, {0.1f, 0.2f, 0.3f, 0.4f}, {}});
+  }
+  model::Link arm = base;
+  arm.name = "arm";
+  made->links = {base, arm};
+  model::Joint joint{"hinge", model::JointType::revolute, 0, 1, {{0, 1, 0}, {}}, {1, 0, 0}, -1, 2, 30, 4, 0.5, 0.6, 7, 0.8, {}};
+  made->joints.push_back(joint);
+  made->frames.push_back({"tip", 1, {{0, 0, 2}, {}}});
+  Node config = Node::map();
+  config.set("list", Node::sequence()).push(Node::scalar("1.5"));
+  config.set("nested", test::map({{"key", "value"}}));
+  made->devices.push_back({"cam", "camera", {"sensor:camera"}, 1, {{1, 1, 1}, {}}, config, {}});
+  model::Setup setup;
+  setup.name = "full";
+  setup.engine = "planar";
+  setup.physics = config;
+  setup.gravity = {0, 1, -3};
+  setup.step = Time::from_s(0.02);
+  setup.substeps = 3;
+  setup.control_interval = 4;
+  setup.seed = 99;
+  setup.stop = Time::from_s(12);
+  setup.lights.push_back({model::Light::Type::spot, "lamp", {{0, 0, 4}, {}}, {1, 1, 0, 1}});
+  for (const char* name : {"one", "two"}) {
+    model::Instance instance = test::placed(name, made, {{5, 6, 7}, {}});
+    instance.original_name = std::string(name) + "!";
+    instance.is_robot = true;
+    instance.team = "red";
+    instance.devices = made->devices;
+    instance.controllers.push_back({"brain", "wander", config, {}});
+    setup.instances.push_back(instance);
+  }
+  return setup;
+}
+
+TEST(ModelBytes, what_is_read_writes_the_same_bytes_and_shares_models) {
+  const auto bytes = bytes_of(full_setup());
+  model::Setup read;
+  ByteReader r(bytes);
+  ASSERT_TRUE(read_setup(r, read));
+  EXPECT_EQ(r.remaining(), 0u);
+  EXPECT_EQ(bytes_of(read), bytes);
+  ASSERT_EQ(read.instances.size(), 2u);
+  EXPECT_EQ(read.instances[0].model, read.instances[1].model) << "one model, twice used";
+  // Spot checks that the bytes carry the values, not only themselves.
+  const model::Model& m = *read.instances[0].model;
+  EXPECT_EQ(m.links[1].name, "arm");
+  EXPECT_EQ(std::get<Capsule>(m.links[0].collisions[3].shape).length_m, 0.6);
+  EXPECT_EQ(*m.links[0].collisions[0].surface.soft_cfm, 1e-5);
+  EXPECT_EQ(m.joints[0].spring_reference, 0.8);
+  EXPECT_EQ(m.devices[0].config.find("list")->items()[0].text(), "1.5");
+  EXPECT_EQ(read.stop->s(), 12);
+  EXPECT_FALSE(m.links[0].gravity);
+}
+
+TEST(ModelBytes, every_truncation_is_refused) {
+  const auto bytes = bytes_of(full_setup());
+  for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
+    model::Setup read;
+    ByteReader r(std::span(bytes).first(cut));
+    EXPECT_FALSE(read_setup(r, read)) << cut;
+  }
+}
+
+TEST(ModelBytes, indices_out_of_the_model_are_refused) {
+  for (int broken = 0; broken < 4; ++broken) {
+    model::Setup setup = full_setup();
+    auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
+    if (broken == 0) changed->joints[0].child = 2;
+    if (broken == 1) changed->frames[0].link = 7;
+    if (broken == 2) changed->devices[0].link = 2;
+    if (broken == 3) changed->links.clear();
+    setup.instances[0].model = changed;
+    const auto bytes = bytes_of(setup);
+    model::Setup read;
+    ByteReader r(bytes);
+    EXPECT_FALSE(read_setup(r, read)) << broken;
+  }
+}
+
+}  // namespace
+}  // namespace sandlot

@@ -1,0 +1,156 @@
+/// The command as a user meets it: exit codes, messages, files it leaves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Cli, every_verb_explains_itself_with_an_example) {
+  for (const char* verb : {"run", "demo", "check", "info", "list", "bench", "doctor"}) {
+    const Printed help = sandlot(std::string(verb) + " --help");
+    EXPECT_EQ(help.exit_code, 0) << verb;
+    EXPECT_THAT(help.out, HasSubstr("Example: sandlot")) << verb;
+  }
+  EXPECT_EQ(sandlot("").exit_code, 2);
+  EXPECT_EQ(sandlot("fly").exit_code, 2);
+  EXPECT_EQ(sandlot("run scenarios/indoor.yaml --sed 3").exit_code, 2);
+}
+
+TEST(Cli, wrong_options_name_the_option_and_exit_2) {
+  const auto refused = [](const std::string& arguments, const std::string& word) {
+    const Printed printed = sandlot("run " + arguments);
+    EXPECT_EQ(printed.exit_code, 2) << arguments;
+    EXPECT_THAT(printed.out, HasSubstr(word)) << arguments;
+  };
+  refused("scenarios/indoor.yaml --duration soon", "--duration");
+  refused("scenarios/indoor.yaml --duration -3s", "--duration");
+  refused("scenarios/indoor.yaml --rate fast", "--rate");
+  refused("scenarios/indoor.yaml --set physics", "--set");
+  refused("scenarios/indoor.yaml --set phisics=planar", "physics");
+  refused("scenarios/indoor.yaml --snapshot-at 3s", "--snapshot");
+  refused("scenarios/nowhere.yaml", "nowhere.yaml");
+  refused("README.md", "neither a scenario");
+  refused("", "needs either a file or --from");
+  refused("--from README.md", "no Sandlot snapshot");
+  refused("--from nowhere.snap", "cannot read");
+}
+
+TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
+  const auto s = summary_of("scenarios/indoor.yaml --duration 5s --seed 3");
+  ASSERT_FALSE(s.contains("failed")) << s["failed"];
+  for (const char* key : {"ticks", "sim_seconds", "wall_seconds", "real_time_factor", "phase_us", "state_hash", "profile",
+                          "criterion", "teams", "warnings", "errors"})
+    EXPECT_TRUE(s.contains(key)) << key;
+  EXPECT_DOUBLE_EQ(s["sim_seconds"].get<double>(), 5.0);
+  EXPECT_EQ(s["seed"], 3);
+  EXPECT_EQ(s["errors"].size(), 0u);
+  EXPECT_EQ(s["warnings"].size(), 0u);
+  EXPECT_EQ(s["state_hash"].get<std::string>().size(), 16u);
+}
+
+TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
+  for (const char* scenario : {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar", "scenarios/pile.yaml",
+                               "scenarios/fleet.yaml"}) {
+    const Scratch scratch;
+    const std::string snapshot = scratch.file("half.snapshot");
+    const auto whole = summary_of(std::string(scenario) + " --duration 6s");
+    ASSERT_FALSE(whole.contains("failed")) << whole["failed"];
+    const Printed half = sandlot(std::string("run ") + scenario + " --headless --duration 3s --snapshot " + snapshot);
+    ASSERT_EQ(half.exit_code, 0) << half.out;
+    const auto rest = summary_of("--from " + snapshot + " --duration 3s --threads 2");
+    ASSERT_FALSE(rest.contains("failed")) << rest["failed"];
+    EXPECT_EQ(rest["sub_hashes"], whole["sub_hashes"]) << scenario;
+    EXPECT_EQ(rest["end_tick"], whole["end_tick"]) << scenario;
+  }
+}
+
+TEST(Cli, a_snapshot_in_mid_run_changes_nothing) {
+  const Scratch scratch;
+  const auto plain = summary_of("scenarios/pile.yaml --duration 4s");
+  const auto with = summary_of("scenarios/pile.yaml --duration 4s --snapshot-at 2s --snapshot " + scratch.file("s.snapshot"));
+  EXPECT_EQ(plain["state_hash"], with["state_hash"]);
+  const auto rest = summary_of("--from " + scratch.file("s.snapshot"));
+  EXPECT_EQ(plain["state_hash"], rest["state_hash"]) << "--from alone goes on to the stop time of the run";
+}
+
+TEST(Cli, files_that_cannot_be_written_fail_the_run_with_1) {
+  const Printed printed = sandlot("run scenarios/indoor.yaml --headless --duration 1s --summary /nonexistent/s.json");
+  EXPECT_EQ(printed.exit_code, 1);
+  EXPECT_THAT(printed.out, HasSubstr("/nonexistent/s.json"));
+}
+
+TEST(Cli, check_tells_file_line_and_remedy) {
+  const Scratch scratch;
+  const std::string good = "version: 1\nname: g\nrobots: []\n";
+  EXPECT_EQ(sandlot("check " + scratch.write("good.yaml", good)).exit_code, 0);
+  const std::string bad = scratch.write("bad.yaml", "version: 1\nname: b\nphysiks: rigid\n");
+  const Printed printed = sandlot("check " + bad);
+  EXPECT_EQ(printed.exit_code, 2);
+  EXPECT_THAT(printed.out, HasSubstr(bad + ":3:"));
+  EXPECT_THAT(printed.out, HasSubstr("did you mean 'physics'?"));
+  const auto json = nlohmann::json::parse(sandlot("check --json " + bad).out);
+  EXPECT_EQ(json[0]["line"], 3);
+  EXPECT_EQ(json[0]["severity"], "error");
+}
+
+TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
+  const Printed text = sandlot("list --verbose");
+  for (const char* kind : {"laser_scanner", "diff_drive", "wheel_encoder", "joint_motor", "ground_truth", "wander", "waypoints",
+                           "rigid", "planar"})
+    EXPECT_THAT(text.out, HasSubstr(kind));
+  const auto json = nlohmann::json::parse(sandlot("list --json").out);
+  EXPECT_GE(json["devices"].size(), 5u);
+  const auto schema = nlohmann::json::parse(sandlot("list --schema").out);
+  EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_THAT(schema.dump(), HasSubstr("laser_scanner"));
+  EXPECT_THAT(sandlot("list --markdown").out, HasSubstr("### laser_scanner"));
+  const Printed wrong = sandlot("list device");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.out, HasSubstr("did you mean 'devices'?"));
+}
+
+TEST(Cli, info_prints_the_tree) {
+  const Printed text = sandlot("info scenarios/indoor.yaml");
+  EXPECT_EQ(text.exit_code, 0);
+  for (const char* part : {"robot rover", "joint left_wheel_joint", "device rover/laser", "sensor_msgs/msg/LaserScan"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+  const auto json = nlohmann::json::parse(sandlot("info --json scenarios/indoor.yaml").out);
+  EXPECT_GT(json["instances"].size(), 10u);
+}
+
+TEST(Cli, doctor_is_content) {
+  const Printed printed = sandlot("doctor");
+  EXPECT_EQ(printed.exit_code, 0) << printed.out;
+  EXPECT_THAT(printed.out, Not(HasSubstr("BAD")));
+}
+
+TEST(Cli, the_picture_is_svg_with_the_robots_path) {
+  const Scratch scratch;
+  const std::string file = scratch.file("run.svg");
+  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --headless --duration 10s --svg " + file).exit_code, 0);
+  std::ifstream in(file);
+  const std::string svg((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_THAT(svg, HasSubstr("<svg"));
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  EXPECT_THAT(svg, HasSubstr("rover"));
+}
+
+TEST(Cli, a_run_without_an_end_can_be_interrupted_and_still_reports) {
+  const Scratch scratch;
+  const std::string file = scratch.file("s.json");
+  const std::string command = "timeout -s INT 2 " + std::string(SANDLOT_BIN) +
+                              " run scenarios/indoor.yaml --headless --rate 1 --duration 1000s --summary " + file + " >/dev/null 2>&1";
+  (void)!std::system(command.c_str());
+  const auto summary = read_json(file);
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_GT(summary["ticks"].get<int>(), 50);
+  EXPECT_LT(summary["sim_seconds"].get<double>(), 10) << "--rate 1 keeps to real time";
+}
+
+}  // namespace
+}  // namespace sandlot::test

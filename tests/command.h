@@ -1,0 +1,68 @@
+#pragma once
+/// Runs the sandlot command as a user would and returns what it printed.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace sandlot::test {
+
+struct Printed {
+  int exit_code = -1;
+  std::string out;  ///< standard output and error together
+};
+
+/// @param arguments  as typed in a shell, after "sandlot "
+inline Printed sandlot(const std::string& arguments) {
+  Printed printed;
+  const std::string line = std::string(SANDLOT_BIN) + " " + arguments + " 2>&1 </dev/null";
+  FILE* const pipe = popen(line.c_str(), "r");
+  if (!pipe) return printed;
+  std::array<char, 4096> buffer;
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) printed.out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  printed.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return printed;
+}
+
+/// A folder that goes when the test ends.
+struct Scratch {
+  std::filesystem::path folder;
+  Scratch() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-test-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  std::string file(const std::string& name) const { return (folder / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return file(name);
+  }
+};
+
+inline nlohmann::json read_json(const std::string& path) {
+  std::ifstream in(path);
+  return nlohmann::json::parse(in, nullptr, false);
+}
+
+/// Runs a scenario and returns its summary.
+inline nlohmann::json summary_of(const std::string& arguments) {
+  const Scratch scratch;
+  const std::string file = scratch.file("s.json");
+  const Printed printed = sandlot("run " + arguments + " --headless --summary " + file);
+  if (printed.exit_code != 0) return {{"failed", printed.out}};
+  return read_json(file);
+}
+
+}  // namespace sandlot::test
