@@ -81,10 +81,10 @@ void write(ByteWriter& w, const T& value) {
   } else if constexpr (is_optional<T>::value) {
     write(w, static_cast<std::uint8_t>(value.has_value()));
     if (value) write(w, *value);
-  } else if constexpr (RawBytes<T>) {
-    w.raw(&value, sizeof value);
   } else if constexpr (is_array<T>::value) {
     for (const auto& element : value) write(w, element);
+  } else if constexpr (RawBytes<T>) {
+    w.raw(&value, sizeof value);
   } else if constexpr (FixedVector<T>) {
     for (std::size_t i = 0; i < T::extent; ++i) write(w, value[i]);
   } else {
@@ -103,7 +103,9 @@ void read(ByteReader& r, T& value) {
   } else if constexpr (is_vector<T>::value) {
     std::uint32_t size = 0;
     read(r, size);
-    if (!r.ok() || size > r.remaining()) return r.fail();  // every element takes at least one byte
+    // Every element takes at least one byte, a raw one its size: a damaged length cannot ask for more than there is.
+    constexpr std::size_t least = RawBytes<typename T::value_type> ? sizeof(typename T::value_type) : 1;
+    if (!r.ok() || size > r.remaining() / least) return r.fail();
     value.clear();
     value.resize(size);
     if constexpr (std::is_same_v<T, std::vector<bool>>) {
@@ -126,10 +128,16 @@ void read(ByteReader& r, T& value) {
     std::uint8_t b = 0;
     r.raw(&b, 1);
     value = b != 0;
-  } else if constexpr (RawBytes<T>) {
-    r.raw(&value, sizeof value);
+  } else if constexpr (NamedEnum<T>) {
+    T taken{};
+    r.raw(&taken, sizeof taken);
+    for (const auto& entry : enum_names(taken))
+      if (entry.value == taken) return void(value = taken);
+    r.fail();  // no enumerator has this value
   } else if constexpr (is_array<T>::value) {
     for (auto& element : value) read(r, element);
+  } else if constexpr (RawBytes<T>) {
+    r.raw(&value, sizeof value);
   } else if constexpr (FixedVector<T>) {
     for (std::size_t i = 0; i < T::extent; ++i) read(r, value[i]);
   } else {

@@ -12,14 +12,40 @@ namespace sandlot {
 /// One leaf field of a spec, nested ones with their path.
 struct FieldInfo {
   std::string path;  ///< "noise/white"
-  std::string type;  ///< "number", "integer", "bool", "text", "choice", "list of number", "map"
+  std::string type;  ///< "number", "integer", "bool", "text", "choice", "list of number", "list of text",
+                     ///< "list of lists of number", "list of maps", "map"
   std::string unit, help;
   double min = 0, max = 0;
   bool tunable = false, required = false, optional = false;
   std::string default_value;  ///< as a file would write it
   std::vector<std::string> choices;
-  std::size_t length = 0;  ///< of fixed vectors, 0 otherwise
+  std::size_t length = 0;  ///< of fixed vectors (or of the inner lists), 0 otherwise
 };
+
+/// A value as a file would write it.
+template <class T>
+std::string file_text(const T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return value;
+  } else if constexpr (std::is_same_v<T, bool>) {
+    return value ? "true" : "false";
+  } else if constexpr (Number<T>) {
+    return number_text(static_cast<double>(value));
+  } else if constexpr (NamedEnum<T>) {
+    for (const auto& entry : enum_names(value))
+      if (entry.value == value) return entry.name;
+    return "";
+  } else {
+    std::string text = "[";
+    const auto add = [&](const auto& element) { text += (text.size() > 1 ? ", " : "") + file_text(element); };
+    if constexpr (FixedVector<T>) {
+      for (std::size_t i = 0; i < T::extent; ++i) add(value[i]);
+    } else {
+      for (const auto& element : value) add(element);
+    }
+    return text + "]";
+  }
+}
 
 template <class T>
 void describe_value(const Field& f, const T& value, const std::string& path, std::vector<FieldInfo>& out,
@@ -28,16 +54,14 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
                  (f.flags & Field::required) != 0, optional};
   if constexpr (std::is_same_v<T, bool>) {
     info.type = "bool";
-    info.default_value = value ? "true" : "false";
+    info.default_value = file_text(value);
   } else if constexpr (Number<T>) {
     info.type = std::is_integral_v<T> ? "integer" : "number";
-    info.default_value = number_text(static_cast<double>(value));
+    info.default_value = file_text(value);
   } else if constexpr (NamedEnum<T>) {
     info.type = "choice";
-    for (const auto& entry : enum_names(value)) {
-      info.choices.emplace_back(entry.name);
-      if (entry.value == value) info.default_value = entry.name;
-    }
+    for (const auto& entry : enum_names(value)) info.choices.emplace_back(entry.name);
+    info.default_value = file_text(value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     info.type = "text";
     info.default_value = value;
@@ -45,14 +69,9 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
     info.type = "map";
   } else if constexpr (FixedVector<T> || is_array<T>::value) {
     info.type = "list of number";
-    info.default_value = "[";
-    std::size_t n = 0;
-    if constexpr (FixedVector<T>) n = T::extent;
-    else n = value.size();
-    for (std::size_t i = 0; i < n; ++i)
-      info.default_value += (i ? ", " : "") + number_text(static_cast<double>(value[i]));
-    info.default_value += "]";
-    info.length = n;
+    info.default_value = file_text(value);
+    if constexpr (FixedVector<T>) info.length = T::extent;
+    else info.length = value.size();
   } else if constexpr (is_vector<T>::value) {
     using Element = typename T::value_type;
     if constexpr (Fielded<Element>) {
@@ -64,11 +83,17 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
       });
       return;
     } else {
-      info.type = std::is_same_v<Element, std::string> ? "list of text" : "list of number";
-      info.default_value = "[]";
+      info.type = Number<Element> ? "list of number" : "list of text";
+      if constexpr (FixedVector<Element> || is_array<Element>::value) {
+        info.type = "list of lists of number";
+        if constexpr (FixedVector<Element>) info.length = Element::extent;
+        else info.length = std::tuple_size_v<Element>;
+      }
+      info.default_value = file_text(value);
     }
   } else if constexpr (is_optional<T>::value) {
     describe_value(f, value.value_or(typename T::value_type{}), path, out, true);
+    if (!value && !Fielded<typename T::value_type>) out.back().default_value.clear();  // unset is no value
     return;
   } else {
     T::fields(value, [&](const Field& inner, const auto& member) {

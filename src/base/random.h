@@ -42,8 +42,11 @@ class Stream {
   std::uint64_t bits64();
   /// Uniform in [0, 1), 53 bits.
   double uniform();
-  /// Uniform in [lo, hi).
-  double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
+  /// Uniform in [lo, hi); lo when there is nothing between them. @pre lo <= hi
+  double uniform(double lo, double hi) {
+    const double x = lo + (hi - lo) * uniform();
+    return x < hi ? x : lo;  // the sum may round up to hi, once in about 2^53
+  }
   /// Uniform integer in [0, n), unbiased. @pre n > 0
   std::uint32_t below(std::uint32_t n);
   /// Normal deviate with mean 0 and standard deviation 1.

@@ -2,7 +2,8 @@
 
 namespace sandlot {
 
-Result<double> read_number(const Node& node, const Field& field, bool integer, const std::string& path) {
+Result<double> read_number(const Node& node, const Field& field, double min, double max, bool integer,
+                           const std::string& path) {
   if (!node.is_scalar()) return wrong_type(node, "a number", path);
   auto quantity = parse_quantity(node.text(), *field.unit ? field.unit : "1");
   if (!quantity) {
@@ -12,9 +13,8 @@ Result<double> read_number(const Node& node, const Field& field, bool integer, c
   }
   const double x = *quantity;
   const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? " " + std::string(field.unit) : "";
-  if (!(x >= field.min && x <= field.max))
-    return node.error("must be in [" + number_text(field.min) + ", " + number_text(field.max) + "]" + unit + ", is " +
-                          number_text(x),
+  if (!(x >= min && x <= max))
+    return node.error("must be in [" + number_text(min) + ", " + number_text(max) + "]" + unit + ", is " + number_text(x),
                       field.help, path);
   if (integer && x != std::floor(x)) return node.error("must be a whole number, is " + number_text(x), "", path);
   return x;

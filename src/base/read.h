@@ -1,8 +1,11 @@
 #pragma once
 /// Reads a struct with a field list from a Node: types, units, ranges, unknown and missing keys, each with
 /// `file:line:column`, the key path and what would be right.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/fields.h"
@@ -13,12 +16,28 @@
 namespace sandlot {
 
 /// A number with unit and range; shared by all numeric fields so that the template stays small.
-Result<double> read_number(const Node& node, const Field& field, bool integer, const std::string& path);
+/// @param min, max  what the number must lie within: the field's range, cut to what the type can hold
+Result<double> read_number(const Node& node, const Field& field, double min, double max, bool integer,
+                           const std::string& path);
 Result<bool> read_bool(const Node& node, const std::string& path);
 /// The error for a key that no field has.
 Error unknown_key(const Node::Entry& entry, const std::vector<std::string>& known, const std::string& path);
 /// The error for a node of the wrong type.
 Error wrong_type(const Node& node, const char* expected, const std::string& path);
+
+/// The field's range cut to the numbers that T and a double both hold exactly.
+template <Number T>
+std::pair<double, double> number_range(const Field& field) {
+  if constexpr (std::is_integral_v<T>) {
+    constexpr double exact = 9007199254740992.0;  // 2^53
+    const auto low = static_cast<double>(std::numeric_limits<T>::lowest());
+    const auto high = static_cast<double>(std::numeric_limits<T>::max());
+    return {std::max({field.min, low, -exact}), std::min({field.max, high, exact})};
+  } else {
+    const auto high = static_cast<double>(std::numeric_limits<T>::max());
+    return {std::max(field.min, -high), std::min(field.max, high)};
+  }
+}
 
 template <class T>
 Status read_value(const Node& node, const Field& field, T& out, const std::string& path);
@@ -52,7 +71,8 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
   if constexpr (std::is_same_v<T, bool>) {
     SL_ASSIGN(out, read_bool(node, path));
   } else if constexpr (Number<T>) {
-    SL_ASSIGN(const double number, read_number(node, field, std::is_integral_v<T>, path));
+    const auto [min, max] = number_range<T>(field);
+    SL_ASSIGN(const double number, read_number(node, field, min, max, std::is_integral_v<T>, path));
     out = static_cast<T>(number);
   } else if constexpr (NamedEnum<T>) {
     if (!node.is_scalar()) return wrong_type(node, "a name", path);
@@ -115,8 +135,9 @@ Result<Spec> read_spec(const Node& node, const std::string& path = "") {
 }
 
 /// Sets one tunable field by its path ("noise/white" or "gains/p") while the run goes on.
+/// @param prefix  path of `spec` itself, for messages
 template <Fielded Spec>
-Status set_tunable(Spec& spec, std::string_view field_path, const Node& value) {
+Status set_tunable(Spec& spec, std::string_view field_path, const Node& value, const std::string& prefix = "") {
   const std::size_t slash = field_path.find('/');
   const std::string_view key = field_path.substr(0, slash);
   std::vector<std::string> known;
@@ -126,19 +147,20 @@ Status set_tunable(Spec& spec, std::string_view field_path, const Node& value) {
     known.emplace_back(f.key);
     if (found || key != f.key) return;
     found = true;
-    if constexpr (Fielded<std::remove_cvref_t<decltype(member)>>) {
-      if (slash != std::string_view::npos) {
-        status = set_tunable(member, field_path.substr(slash + 1), value);
-        return;
-      }
+    const std::string path = prefix + "/" + f.key;
+    if (slash != std::string_view::npos) {
+      if constexpr (Fielded<std::remove_cvref_t<decltype(member)>>)
+        status = set_tunable(member, field_path.substr(slash + 1), value, path);
+      else
+        status = Error{"'" + std::string(f.key) + "' has no parts", "", value.place(), path};
+    } else if (!(f.flags & Field::tunable)) {
+      status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place(), path};
+    } else {
+      status = read_value(value, f, member, path);
     }
-    if (!(f.flags & Field::tunable))
-      status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place()};
-    else
-      status = read_value(value, f, member, "/" + std::string(field_path));
   });
   if (!found)
-    return Error{"no parameter '" + std::string(key) + "'", suggestion(key, known), value.place()};
+    return Error{"no parameter '" + std::string(key.substr(0, 60)) + "'", suggestion(key, known), value.place(), prefix};
   return status;
 }
 

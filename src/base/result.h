@@ -51,8 +51,8 @@ class [[nodiscard]] Result {
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }
-  Error& error() { return std::get<1>(content_); }
-  const Error& error() const { return std::get<1>(content_); }
+  Error& error() { return SL_CHECK(!*this), std::get<1>(content_); }
+  const Error& error() const { return SL_CHECK(!*this), std::get<1>(content_); }
 
  private:
   const char* error_text() const { return content_.index() == 1 ? std::get<1>(content_).what.c_str() : ""; }
@@ -66,8 +66,8 @@ class [[nodiscard]] Result<void> {
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
   explicit operator bool() const { return !error_; }
-  Error& error() { return *error_; }
-  const Error& error() const { return *error_; }
+  Error& error() { return SL_CHECK(!*this), *error_; }
+  const Error& error() const { return SL_CHECK(!*this), *error_; }
 
  private:
   std::optional<Error> error_;

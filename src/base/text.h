@@ -17,7 +17,8 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
 /// Shortest decimal text that reads back as exactly `x`.
 std::string number_text(double x);
 
-/// The whole of `text` as a number: no sign of rubbish, no locale. False when it is not one.
+/// The whole of `text`, blanks around it aside, as a number: "1", "-2.5e3", "+1", "nan", "inf"; no locale. False when
+/// it is not one, or one that a double cannot hold.
 bool parse_number(std::string_view text, double& out);
 
 std::string_view trim(std::string_view text);

@@ -42,6 +42,8 @@ Result<double> parse_quantity(std::string_view text, std::string_view unit) {
     if (!std::isdigit(static_cast<unsigned char>(last)) && last != '.' && !std::isalpha(static_cast<unsigned char>(last)))
       continue;
     if (parse_number(text.substr(0, n), number)) {
+      // "1e400" must not be taken for "1e40" with the unit "0".
+      if (n < text.size() && std::isdigit(static_cast<unsigned char>(text[n]))) break;
       split = n;
       break;
     }

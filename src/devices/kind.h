@@ -173,12 +173,10 @@ template <class Device>
 class DevicePool final : public PoolBase {
  public:
   Status add(const DeviceBuild& build) override {
-    SL_ASSIGN(typename Device::Spec spec, read_spec<typename Device::Spec>(build.decl.config));
-    auto device = Device::create(build, std::move(spec));
-    if (!device) {
-      if (!device.error().place.file) device.error().place = build.decl.place;
-      return std::move(device.error());
-    }
+    auto spec = read_spec<typename Device::Spec>(build.decl.config);
+    if (!spec) return at_declaration(std::move(spec.error()), build);
+    auto device = Device::create(build, std::move(*spec));
+    if (!device) return at_declaration(std::move(device.error()), build);
     devices_.push_back(std::move(*device));
     return {};
   }
@@ -219,6 +217,10 @@ class DevicePool final : public PoolBase {
   }
 
  private:
+  static Error at_declaration(Error error, const DeviceBuild& build) {
+    if (!error.place.file && error.place.line == 0) error.place = build.decl.place;
+    return error;
+  }
   PoolView<Device> view(const Due& due) { return {devices_, due.due, due.sample, due.levels, due.since}; }
   std::vector<Device> devices_;
 };

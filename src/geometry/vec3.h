@@ -71,7 +71,7 @@ constexpr Vec3 rotate_inverse(Quat q, Vec3 v) { return rotate(conjugate(q), v); 
 Quat quat_from_axis_angle(Vec3 axis, double rad);
 /// Fixed-axis roll, pitch, yaw as in SDF and URDF: Rz(yaw) Ry(pitch) Rx(roll).
 Quat quat_from_rpy(double roll_rad, double pitch_rad, double yaw_rad);
-/// Inverse of quat_from_rpy; pitch in [-pi/2, pi/2].
+/// Inverse of quat_from_rpy; pitch in [-pi/2, pi/2]. Looking straight up or down, roll is 0.
 Vec3 rpy_from_quat(Quat q);
 /// Heading about world z of a body's x axis.
 double yaw_of(Quat q);

@@ -28,6 +28,9 @@ Json schema_of_leaf(const FieldInfo& field) {
     out["type"] = {"array", "string"};
     out["items"] = field.type == "list of text" ? Json{{"type", "string"}} : number(false);
     if (field.length > 0) out["minItems"] = out["maxItems"] = field.length;
+  } else if (field.type == "list of lists of number") {
+    out["type"] = {"array", "string"};
+    out["items"] = {{"type", "array"}, {"items", number(false)}, {"minItems", field.length}, {"maxItems", field.length}};
   }
   if (!field.help.empty()) out["description"] = field.help;
   if (!field.unit.empty() && field.unit != "1") out["x-unit"] = field.unit;
