@@ -135,6 +135,8 @@ class Simulation {
     std::vector<std::unique_ptr<Device>> devices;
     std::vector<std::unique_ptr<ProgramEntry>> programs;
   };
+  /// What the world holds, in creation order. Valid until the next tick.
+  std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
 
  private:
   struct Pool {
