@@ -1,3 +1,4 @@
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -54,6 +55,11 @@ Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
     : setup_(std::move(setup)), options_(options) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
+  // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
+  // would quietly test fewer.
+  if (threads > available)
+    more_threads_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                          static_cast<std::size_t>(threads));
   arena_ = std::make_unique<tbb::task_arena>(threads, 1);
 }
 

@@ -25,8 +25,9 @@
 #include "sim/rule.h"
 
 namespace tbb::detail::d1 {
+class global_control;
 class task_arena;
-}
+}  // namespace tbb::detail::d1
 
 namespace sandlot {
 
@@ -200,6 +201,7 @@ class Simulation {
 
   model::Setup setup_;
   SimulationOptions options_;
+  std::unique_ptr<tbb::detail::d1::global_control> more_threads_;
   std::unique_ptr<tbb::detail::d1::task_arena> arena_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<RayScene> scene_;  ///< null when the engine casts rays itself
