@@ -66,9 +66,12 @@ class Map {
 
  private:
   struct Ray;
-  void cast(Ray& ray, std::uint32_t ignored) const;
-  void meet_walls(Ray& ray, std::span<const std::uint32_t> walls, std::uint32_t ignored) const;
-  void meet_discs(Ray& ray, std::span<const std::uint32_t> discs, std::uint32_t ignored) const;
+  struct Hit;
+  struct Reach;
+  void walk(const Ray& ray, Hit& hit) const;
+  bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
+  void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
+  void meet_discs(const Ray& ray, std::uint32_t slot, Hit& hit) const;
 
   double cell_m_;
   std::vector<Wall> walls_;
