@@ -200,7 +200,7 @@ class Checker {
 
   /// Each member has one origin at most, so a circle is found by walking until something known comes.
   static Status check_circles(Scope& scope) {
-    for (const bool attachment : {false, true}) {
+    for (const bool attachment : {true, false}) {
       for (auto& [name, member] : scope.members()) member.state = 0;
       for (auto& [name, member] : scope.members()) {
         std::vector<Scope::Member*> walked;

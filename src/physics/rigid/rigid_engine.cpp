@@ -136,7 +136,6 @@ Result<std::unique_ptr<Engine>> create(const Node& config, Vec3 gravity_mps2) {
 
 }  // namespace
 
-extern const EngineKind engine;
 const EngineKind engine = {
     .name = "rigid",
     .help = "Rigid bodies in three dimensions with joints, contacts and friction (ODE).",
