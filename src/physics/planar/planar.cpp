@@ -231,9 +231,10 @@ void PlanarEngine::aim(std::uint32_t slot, std::uint32_t link) {
 
 void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
   for (const DriveTarget& t : targets) {
-    if (t.base.index >= body_slot_.size() || t.base.generation != body_generation_[t.base.index]) continue;
+    SL_CHECK(t.base.index < body_slot_.size());
     const std::uint32_t slot = body_slot_[t.base.index];
-    if (slot == ~0u || !instances_[slot].moves) continue;
+    SL_CHECK_MSG(slot != ~0u && t.base.generation == body_generation_[t.base.index], "no such body");
+    if (!instances_[slot].moves) continue;
     const Instance& instance = instances_[slot];
     Drive& drive = drives_[slot];
     if (instance.bodies[drive.link] != t.base)
@@ -249,7 +250,8 @@ void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
 
 void PlanarEngine::set_targets(std::span<const JointTarget> targets) {
   for (const JointTarget& t : targets) {
-    if (t.joint.index >= motors_.size() || t.joint.generation != motors_[t.joint.index].generation) continue;
+    SL_CHECK(t.joint.index < motors_.size());
+    SL_CHECK_MSG(t.joint.generation == motors_[t.joint.index].generation, "no such joint");
     Motor& motor = motors_[t.joint.index];
     motor.active = t.mode == JointTarget::Mode::velocity && t.max_effort > 0;
     motor.velocity = t.velocity;

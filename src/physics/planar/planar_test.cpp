@@ -648,7 +648,7 @@ TEST(PlanarEngine, AnInstanceThatIsGoneTakesNoCommands) {
   const InstanceId next = w.add(robot_model(), at(5, 0));
   EXPECT_EQ(w.engine.bodies(next)[0].index, old.base.index);
   EXPECT_NE(w.engine.bodies(next)[0], old.base);
-  w.engine.set_drive_targets({&old, 1});
+  EXPECT_DEATH(w.engine.set_drive_targets({&old, 1}), "no such body");
   w.run(10);
   EXPECT_EQ(w.p(next).x, 5);
   EXPECT_EQ(w.engine.counters().awake_bodies, 1u);
