@@ -49,15 +49,23 @@ class Cells {
   std::uint32_t slot(std::int64_t i, std::int64_t j) const {
     return (static_cast<std::uint32_t>(j) & mask_y_) * columns_ + (static_cast<std::uint32_t>(i) & mask_x_);
   }
-  /// For loops over many cells: a copy of what finds a cell's list, which the compiler can keep in registers.
-  struct View {
+  /// A walk from cell to cell. Whole rows are counted in slots, so that finding a list takes no product; and the
+  /// compiler can keep a copy in registers, as it cannot the vectors.
+  struct Walk {
     const std::uint32_t *start, *things;
-    std::uint32_t mask_x, mask_y, columns;
-    std::uint32_t slot(std::int64_t i, std::int64_t j) const {
-      return (static_cast<std::uint32_t>(j) & mask_y) * columns + (static_cast<std::uint32_t>(i) & mask_x);
-    }
+    std::uint32_t mask_x, mask_rows, columns;
+    std::uint32_t i, row;  ///< modulo 2^32, of which the table's sizes are divisors
+    std::uint32_t slot() const { return (row & mask_rows) + (i & mask_x); }
   };
-  View view() const { return {start_.data(), things_.data(), mask_x_, mask_y_, columns_}; }
+  Walk walk_from(std::int64_t i, std::int64_t j) const {
+    return {start_.data(),
+            things_.data(),
+            mask_x_,
+            mask_y_ * columns_,
+            columns_,
+            static_cast<std::uint32_t>(i),
+            static_cast<std::uint32_t>(j) * columns_};
+  }
 
   /// Files things 0 .. count-1 under the cells of range_of(thing).
   template <class RangeOf>

@@ -228,26 +228,30 @@ void Map::walk(const Ray& ray_in, const Start* shared, Hit& hit_out) const {
     start = start_at(entry, ray.origin);
   }
   const Vec2 d = ray.direction, per{1 / d.x, 1 / d.y};
-  std::int64_t i = start.i, j = start.j;
-  const std::int64_t step_i = d.x < 0 ? -1 : 1, step_j = d.y < 0 ? -1 : 1;
   double t_x = d.x != 0 ? (d.x < 0 ? start.low.x : start.high.x) * per.x : inf;
   double t_y = d.y != 0 ? (d.y < 0 ? start.low.y : start.high.y) * per.y : inf;
   const double delta_x = cell_m_ * std::abs(per.x), delta_y = cell_m_ * std::abs(per.y);
-  const Cells::View discs = disc_cells_.view();
+  Cells::Walk discs = disc_cells_.walk_from(start.i, start.j),
+              walls = wall_cells_.walk_from(start.i, start.j);
+  const std::uint32_t step_i = d.x < 0 ? ~0u : 1u;
+  const std::uint32_t disc_row = d.y < 0 ? 0u - discs.columns : discs.columns;
+  const std::uint32_t wall_row = d.y < 0 ? 0u - walls.columns : walls.columns;
   const Disc* const disc = discs_.data();
   for (;;) {
-    const std::uint32_t slot = discs.slot(i, j);
+    const std::uint32_t slot = discs.slot();
     for (std::uint32_t k = discs.start[slot]; k < discs.start[slot + 1]; ++k)
       if (discs.things[k] != ray.ignored) hit.meet(ray, disc[discs.things[k]]);
-    if constexpr (with_walls) meet_walls(ray, wall_cells_.in_slot(wall_cells_.slot(i, j)), hit);
+    if constexpr (with_walls) meet_walls(ray, wall_cells_.in_slot(walls.slot()), hit);
     const double leave = std::min(t_x, t_y);
     if (hit.t <= leave || !(leave <= end)) break;
     if (t_x < t_y) {
       t_x += delta_x;
-      i += step_i;
+      discs.i += step_i;
+      walls.i += step_i;
     } else {
       t_y += delta_y;
-      j += step_j;
+      discs.row += disc_row;
+      walls.row += wall_row;
     }
   }
   hit_out = hit;
