@@ -135,6 +135,7 @@ struct Instance {
   Place place;
 };
 
+/// Directional and spot lights shine along -z of their frame.
 struct Light {
   enum class Type : std::uint8_t { directional, point, spot } type = Type::directional;
   std::string name;

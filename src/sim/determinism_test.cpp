@@ -124,7 +124,7 @@ TEST(Snapshot, a_pile_of_40_boxes_with_every_solver) {
                                        {{0.17 * (i % 4) + 0.01 * i, 0.16 * (i / 4 % 3), 0.2 + 0.25 * (i / 4)},
                                         quat_from_rpy(0.1 * i, 0.2 * i, 0.3 * i)}));
     const auto whole = build(setup);
-    advance(*whole, 150);
+    advance(*whole, 260);
     ASSERT_GT(whole->engine().contacts().size(), 40u) << "the pile should be in contact when it is saved";
     const auto restored = again(*whole);
     advance(*whole, 150);

@@ -245,9 +245,12 @@ void write_setup(ByteWriter& w, const model::Setup& setup, std::span<const model
     const auto* const m = instance->model.get();
     // Robots of one kind come in a row: look at the newest first.
     const auto found = std::find(models.rbegin(), models.rend(), m);
-    if (found == models.rend()) models.push_back(m);
-    model_of.push_back(static_cast<std::uint32_t>(
-        found == models.rend() ? models.size() - 1 : static_cast<std::size_t>(models.rend() - found) - 1));
+    if (found != models.rend()) {
+      model_of.push_back(static_cast<std::uint32_t>(models.rend() - found - 1));
+    } else {
+      model_of.push_back(static_cast<std::uint32_t>(models.size()));
+      models.push_back(m);
+    }
   }
   io.value(static_cast<std::uint32_t>(models.size()));
   for (const model::Model* m : models) whole_model(io, *m);

@@ -87,7 +87,7 @@ TEST(ModelBytes, every_truncation_is_refused) {
   const auto bytes = bytes_of(full_setup());
   for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
     model::Setup read;
-    ByteReader r(std::span(bytes).first(cut));
+    ByteReader r(std::span<const std::byte>(bytes).first(cut));
     EXPECT_FALSE(read_setup(r, read)) << cut;
   }
 }

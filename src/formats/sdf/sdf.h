@@ -1,9 +1,19 @@
 #pragma once
-/// SDFormat worlds and models (libsdformat 12 behind tinyxml2's well-formedness check).
+/// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning).
 ///
-/// Sensors and plugins become DeviceDecls whose `config` is the XML element as Nodes (attributes as keys with a
-/// leading '@', repeated children as a sequence), for the kinds to interpret. What is not used is named in one
-/// warning each, with its line.
+/// Each file is taken through four checks: limits on the raw text, well-formedness (tinyxml2), names and references,
+/// and each value as it is read; so every complaint has the line that caused it. libsdformat resolves the poses that
+/// are given relative to something else than their parent; a file without such poses does not need it.
+///
+/// Frames   nested models are flattened: link `b` of nested model `a` is called `a::b`, placed in the top model.
+/// Devices  sensors, model plugins and `<sandlot:device name= kind= link=>` become DeviceDecls. The `config` of the
+///          former two is the element as Nodes: attributes as keys with a leading '@', repeated children as a list, the
+///          text of an element with attributes as '#text'; of a sensor of a joint also '@joint'. That of a
+///          sandlot:device are its children as keys, lists written `[1, 2]`.
+/// Errors   one, with file and line; what is not used is named in one warning each, with its line.
+/// Limits   boxes, spheres, cylinders, capsules, planes; other geometry is left out with a warning. Joints: fixed,
+///          revolute, continuous, prismatic, ball. No merge includes, no URDF, no downloads, no actors. Names with
+///          '::' (worlds saved by old Gazebo versions) are refused.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +26,7 @@ struct SdfContent {
   std::string world_name;                    ///< "" for a model file
   Vec3 gravity_mps2{0, 0, -9.81};
   std::optional<double> max_step_s;          ///< <physics><max_step_size>
-  std::vector<model::Instance> instances;    ///< of a world: its models; of a model file: exactly one at the origin
+  std::vector<model::Instance> instances;    ///< of a world: its models; of a model file: exactly one, at its own <pose>
   std::vector<model::Light> lights;
 };
 

@@ -1,0 +1,248 @@
+#include <map>
+
+#include "base/text.h"
+#include "formats/sdf/frames.h"
+
+namespace sandlot::formats {
+namespace {
+
+bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
+  for (const char* const each : names)
+    if (name == each) return true;
+  return false;
+}
+
+Result<std::string> name_of(const Xml& element) {
+  const std::string* const name = element.attribute("name");
+  if (!name || trim(*name).empty()) return element.error("<" + element.name + "> has no name", "write <" + element.name + " name=\"...\">");
+  if (name->size() > 200) return element.error("the name of this <" + element.name + "> is too long");
+  const bool reserved = *name == "world" || (name->size() >= 4 && starts_with(*name, "__") && name->substr(name->size() - 2) == "__");
+  if (reserved) return element.error("the name '" + *name + "' is reserved by SDF", "take another one");
+  if (name->find("::") != std::string::npos)
+    return element.error("the name '" + *name + "' holds '::'", "SDF keeps it for things in nested models; take another name");
+  return *name;
+}
+
+/// What a world or model can refer to: its links, joints, frames, models by name.
+class Scope {
+ public:
+  static Result<Scope> create(const Xml& element) {
+    Scope scope;
+    for (const Xml& child : element.children) {
+      if (!is_one_of(child.name, {"link", "joint", "frame", "model"})) continue;
+      SL_ASSIGN(std::string name, name_of(child));
+      const auto [known, fresh] = scope.members_.emplace(std::move(name), Member{&child});
+      if (!fresh)
+        return child.error("the name '" + known->first + "' is given twice in " + said(element),
+                           "the other one is the <" + known->second.element->name + "> in " + where(*known->second.element, child));
+    }
+    return scope;
+  }
+  static std::string said(const Xml& element) {
+    const std::string* const name = element.attribute("name");
+    return "this " + element.name + (name ? " ('" + *name + "')" : "");
+  }
+  static std::string where(const Xml& element, const Xml& from) {
+    return element.place.file && from.place.file && *element.place.file == *from.place.file
+               ? "line " + std::to_string(element.place.line)
+               : to_string(element.place);
+  }
+  struct Member {
+    const Xml* element;
+    int state = 0;  ///< of the search for circles: 0 new, 1 on the way, 2 done
+  };
+  std::map<std::string, Member>& members() { return members_; }
+  const Xml* find(const std::string& name) const {
+    const auto found = members_.find(name);
+    return found == members_.end() ? nullptr : found->second.element;
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const auto& [name, member] : members_) out.push_back(name);
+    return out;
+  }
+
+ private:
+  std::map<std::string, Member> members_;
+};
+
+/// Names among children of one sort, such as the collisions of a link.
+Status check_unique(const Xml& parent, const char* sort) {
+  std::map<std::string, const Xml*> seen;
+  for (const Xml& child : parent.children) {
+    if (child.name != sort) continue;
+    SL_ASSIGN(std::string name, name_of(child));
+    const auto [known, fresh] = seen.emplace(std::move(name), &child);
+    if (!fresh)
+      return child.error("the name '" + known->first + "' is given to two " + sort + "s",
+                         "the other one is in " + Scope::where(*known->second, child));
+  }
+  return {};
+}
+
+/// `a::b::c` from a scope: each part but the last is a nested model.
+bool resolves(const Xml& scope_element, const Scope& scope, const std::string& name) {
+  const Xml* at = &scope_element;
+  const Xml* found = nullptr;
+  std::size_t from = 0;
+  for (;;) {
+    const std::size_t to = name.find("::", from);
+    const std::string part = name.substr(from, to == std::string::npos ? to : to - from);
+    if (found) {
+      if (found->name != "model") return false;
+      at = found;
+      found = nullptr;
+      if (part == "__model__" && to == std::string::npos) return true;
+      for (const Xml& child : at->children)
+        if (is_one_of(child.name, {"link", "joint", "frame", "model"}))
+          if (const std::string* n = child.attribute("name"); n && *n == part) found = &child;
+    } else {
+      found = scope.find(part);
+    }
+    if (!found) return false;
+    if (to == std::string::npos) return true;
+    from = to + 2;
+  }
+}
+
+class Checker {
+ public:
+  Status check(const Xml& element, int depth) {
+    SL_ASSIGN(Scope scope, Scope::create(element));
+    const bool world = element.name == "world";
+    for (const Xml& child : element.children) {
+      if (is_one_of(child.name, {"link", "joint", "frame", "model", "light"}))
+        if (const Xml* pose = child.child("pose")) SL_TRY(check_reference(*pose, "relative_to", element, scope));
+      if (child.name == "link") SL_TRY(check_link(child, element, scope));
+      if (child.name == "joint") SL_TRY(check_joint(child, element, scope));
+      if (child.name == "frame") SL_TRY(check_reference(child, "attached_to", element, scope));
+      if (child.name == "model") {
+        if (depth > 30) return child.error("models are nested too deeply");
+        SL_TRY(check(child, depth + 1));
+        SL_TRY(check_inner(child, "placement_frame"));
+        SL_TRY(check_inner(child, "canonical_link"));
+      }
+    }
+    if (world) SL_TRY(check_unique(element, "light"));
+    return check_circles(scope);
+  }
+  /// A model's attribute that names something inside it.
+  Status check_inner(const Xml& model, const char* key) {
+    SL_ASSIGN(const Scope scope, Scope::create(model));
+    return check_reference(model, key, model, scope);
+  }
+
+ private:
+  Status check_reference(const Xml& holder, const char* key, const Xml& element, const Scope& scope) {
+    const std::string* const name = holder.attribute(key);
+    if (!name || name->empty() || *name == "__root__") return {};
+    const bool world = element.name == "world";
+    if (*name == (world ? "world" : "__model__") || resolves(element, scope, *name)) return {};
+    return holder.error("no frame '" + name->substr(0, 60) + "' in " + Scope::said(element), suggestion(*name, scope.names()));
+  }
+
+  Status check_link(const Xml& link, const Xml& model, const Scope& scope) {
+    for (const char* const sort : {"collision", "visual", "sensor", "light"}) {
+      SL_TRY(check_unique(link, sort));
+      for (const Xml& child : link.children)
+        if (child.name == sort)
+          if (const Xml* pose = child.child("pose")) SL_TRY(check_reference(*pose, "relative_to", model, scope));
+    }
+    if (const Xml* inertial = link.child("inertial"))
+      if (const Xml* pose = inertial->child("pose"))
+        if (const std::string* relative = pose->attribute("relative_to"); relative && !relative->empty())
+          return pose->error("the pose of an <inertial> is relative to its link", "leave relative_to out");
+    return {};
+  }
+
+  Status check_joint(const Xml& joint, const Xml& model, const Scope& scope) {
+    for (const char* const end : {"parent", "child"}) {
+      const Xml* const element = joint.child(end);
+      if (!element || element->text.empty())
+        return joint.error("joint '" + *joint.attribute("name") + "' has no <" + end + ">", "name a link");
+      const std::string& name = element->text;
+      const bool parent = end[0] == 'p';
+      if (name == "world") {
+        if (parent) continue;
+        return element->error("the world cannot be the child of a joint", "make it the parent");
+      }
+      if (name == "__model__" || resolves(model, scope, name)) {
+        const Xml* const target = scope.find(name);
+        if (target == &joint) return element->error("the joint '" + name + "' is its own " + end);
+        continue;
+      }
+      std::vector<std::string> links;
+      for (const Xml& child : model.children)
+        if (child.name == "link") links.push_back(*child.attribute("name"));
+      return element->error("joint '" + *joint.attribute("name") + "': no link '" + name.substr(0, 60) + "' in " + Scope::said(model),
+                            suggestion(name, links));
+    }
+    if (const Xml* axis = joint.child("axis"))
+      if (const Xml* xyz = axis->child("xyz")) SL_TRY(check_reference(*xyz, "expressed_in", model, scope));
+    SL_TRY(check_unique(joint, "sensor"));
+    return {};
+  }
+
+  /// What the pose of a member, or what it is fixed to, starts from: the name of another member or "".
+  static std::string origin_of(const Xml& element, bool attachment) {
+    const auto attribute = [](const Xml* holder, const char* key) -> std::string {
+      const std::string* const value = holder ? holder->attribute(key) : nullptr;
+      return value ? value->substr(0, value->find("::")) : "";
+    };
+    if (attachment)
+      return element.name == "frame" ? attribute(&element, "attached_to")
+             : element.name == "joint" && element.child("child") ? element.child("child")->text.substr(0, element.child("child")->text.find("::"))
+                                                                  : "";
+    std::string relative = attribute(element.child("pose"), "relative_to");
+    if (relative.empty()) relative = origin_of(element, true);
+    return relative;
+  }
+
+  /// Each member has one origin at most, so a circle is found by walking until something known comes.
+  static Status check_circles(Scope& scope) {
+    for (const bool attachment : {true, false}) {
+      for (auto& [name, member] : scope.members()) member.state = 0;
+      for (auto& [name, member] : scope.members()) {
+        std::vector<Scope::Member*> walked;
+        Scope::Member* at = &member;
+        while (at && at->state == 0) {
+          at->state = 1;
+          walked.push_back(at);
+          const std::string origin = origin_of(*at->element, attachment);
+          const auto next = origin.empty() ? scope.members().end() : scope.members().find(origin);
+          at = next == scope.members().end() ? nullptr : &next->second;
+        }
+        if (at && at->state == 1) {
+          const Xml* const pose = at->element->child("pose");
+          const bool by_pose = !attachment && pose && pose->attribute("relative_to");
+          return (by_pose ? *pose : *at->element)
+              .error("the frame '" + *at->element->attribute("name") + "' is defined by itself, in a circle of " +
+                     (attachment ? "attached_to" : "relative_to"));
+        }
+        for (Scope::Member* done : walked) done->state = 2;
+      }
+    }
+    return {};
+  }
+};
+
+}  // namespace
+
+const Xml* main_element(const Xml& root) {
+  const Xml* const world = root.child("world");
+  return world ? world : root.child("model");
+}
+
+Status check_names(const Xml& root) {
+  const Xml* const main = main_element(root);
+  if (!main) return root.error("there is no <world> and no <model> in this file");
+  Checker checker;
+  if (main->name == "model") {
+    SL_ASSIGN([[maybe_unused]] const std::string name, name_of(*main));
+    SL_TRY(checker.check_inner(*main, "placement_frame"));
+    SL_TRY(checker.check_inner(*main, "canonical_link"));
+  }
+  return checker.check(*main, 0);
+}
+
+}  // namespace sandlot::formats

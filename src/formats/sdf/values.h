@@ -1,0 +1,52 @@
+#pragma once
+/// Values of SDF elements: numbers in range, vectors, poses, colours, each fault with its line.
+#include <optional>
+#include <set>
+#include <string>
+
+#include "formats/sdf/xml.h"
+#include "geometry/pose.h"
+#include "model/model.h"
+
+namespace sandlot::formats {
+
+/// Bounds of a number. Finite, so that infinities are refused.
+struct Range {
+  double min, max;
+  bool above_min = false;  ///< min itself is refused
+};
+inline constexpr Range position_range{-1e6, 1e6};
+inline constexpr Range size_range{0, 1e6, true};
+inline constexpr Range angle_range{-1e4, 1e4};
+inline constexpr Range not_negative{0, 1e16};
+
+/// What goes along while a file is read: warnings, each place once.
+class Notes {
+ public:
+  explicit Notes(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  void warn(const Xml& element, std::string what, std::string fix = "");
+  /// Names every child of `element` that is in neither list (names separated by spaces; `visual*` may come several
+  /// times). What is only for the eye, or belongs to another program's namespace, stands in `silent` or has a colon.
+  void unused(const Xml& element, std::string_view used, std::string_view silent = "");
+
+ private:
+  Diagnostics& diagnostics_;
+  std::set<std::pair<std::string, int>> said_;
+};
+
+/// The element's text as a number.
+Result<double> read_double(const Xml& element, Range range);
+Result<bool> read_flag(const Xml& element);
+Result<Vec3> read_vec3(const Xml& element, Range range);
+Result<model::Color> read_color(const Xml& element);
+/// A <pose>: six numbers, or with rotation_format="quat_xyzw" seven; degrees="true" is understood.
+Result<Pose> read_sdf_pose(const Xml& element);
+
+/// Overwrites `out` if `parent` has the child.
+Status read_child(const Xml& parent, const char* key, Range range, double& out);
+Status read_child(const Xml& parent, const char* key, bool& out);
+Status read_child(const Xml& parent, const char* key, Range range, Vec3& out);
+/// The pose of an element as written in its own <pose>; identity if it has none.
+Result<Pose> read_child_pose(const Xml& parent);
+
+}  // namespace sandlot::formats

@@ -1,0 +1,276 @@
+#include <algorithm>
+
+#include "base/check.h"
+#include "physics/rigid/joints.h"
+#include "physics/rigid/library.h"
+#include "physics/rigid/rigid_engine.h"
+
+namespace sandlot::rigid {
+namespace {
+
+// ODE tests pairs of shapes whose bits meet: what stands never meets what stands.
+constexpr unsigned long standing_bit = 1, moving_bit = 2;
+
+constexpr bool positive(double x) { return x > 0 && x < 1e12; }
+
+bool has_size(const Shape& shape) {
+  struct {
+    bool operator()(const Box& b) const {
+      return positive(b.size_m.x) && positive(b.size_m.y) && positive(b.size_m.z);
+    }
+    bool operator()(const Sphere& s) const { return positive(s.radius_m); }
+    bool operator()(const Cylinder& c) const { return positive(c.radius_m) && positive(c.length_m); }
+    bool operator()(const Capsule& c) const { return positive(c.radius_m) && positive(c.length_m); }
+    bool operator()(const Plane& p) const { return is_finite(p.normal) && norm(p.normal) > 0; }
+  } visitor;
+  return std::visit(visitor, shape);
+}
+
+struct MakeGeom {
+  dGeomID operator()(const Box& b) const { return dCreateBox(nullptr, b.size_m.x, b.size_m.y, b.size_m.z); }
+  dGeomID operator()(const Sphere& s) const { return dCreateSphere(nullptr, s.radius_m); }
+  dGeomID operator()(const Cylinder& c) const { return dCreateCylinder(nullptr, c.radius_m, c.length_m); }
+  dGeomID operator()(const Capsule& c) const { return dCreateCapsule(nullptr, c.radius_m, c.length_m); }
+  dGeomID operator()(const Plane&) const { return dCreatePlane(nullptr, 0, 0, 1, 0); }
+};
+
+/// Lets slots grow only where none is free; the newest free one is used again first.
+std::uint32_t take_slot(std::vector<std::uint32_t>& free, std::size_t size) {
+  if (free.empty()) return static_cast<std::uint32_t>(size);
+  const std::uint32_t index = free.back();
+  free.pop_back();
+  return index;
+}
+
+}  // namespace
+
+Instance& RigidEngine::alive(InstanceId id) const {
+  SL_CHECK_MSG(
+      id.index < slots_.size() && slots_[id.index].generation == id.generation && slots_[id.index].instance,
+      "no such instance");
+  return *slots_[id.index].instance;
+}
+
+Status RigidEngine::check(const model::Instance& instance) const {
+  const model::Model& model = *instance.model;
+  SL_CHECK(!model.links.empty());
+  if (!is_finite(instance.X_WM))
+    return Error{"the pose of '" + instance.name + "' is not finite", "", instance.place};
+  for (const model::Link& link : model.links) {
+    if (!is_finite(link.X_ML) || !is_finite(link.inertial.X_LCo))
+      return Error{"a pose of link '" + link.name + "' is not finite", "", link.place};
+    for (const model::Collision& c : link.collisions) {
+      if (!has_size(c.shape) || !is_finite(c.X_LC))
+        return Error{"collision '" + c.name + "' has no valid size or pose", "sizes are positive numbers [m]",
+                     c.place};
+    }
+  }
+  for (const model::Joint& joint : model.joints) {
+    SL_CHECK(joint.child < model.links.size());
+    SL_CHECK(joint.parent < model.links.size() || joint.parent == model::world_link);
+    if (joint.parent == joint.child)
+      return Error{"joint '" + joint.name + "' joins a link to itself", "name two links", joint.place};
+    if (!(std::abs(norm(joint.axis_J) - 1) < 1e-6) && joint.type != model::JointType::fixed)
+      return Error{"the axis of joint '" + joint.name + "' has no length", "give it a direction",
+                   joint.place};
+    if (joint.type == model::JointType::ball && joint.spring_stiffness > 0)
+      return Error{"the engine 'rigid' has no springs on ball joints",
+                   "remove the stiffness of '" + joint.name + "'", joint.place};
+    if (joint.type == model::JointType::revolute && !(joint.lower <= joint.upper))
+      return Error{"joint '" + joint.name + "' has its lower limit above its upper one", "exchange them",
+                   joint.place};
+    if (!(joint.damping >= 0) || !(joint.friction >= 0) || !(joint.spring_stiffness >= 0))
+      return Error{"joint '" + joint.name + "' has a negative damping, friction or stiffness",
+                   "0 switches it off", joint.place};
+  }
+  return {};
+}
+
+Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
+  library::prepare_thread();
+  SL_TRY(check(declared));
+  const model::Model& model = *declared.model;
+  SL_ASSIGN(const Lumps lumps, lump_links(model));
+  for (const Lump& lump : lumps.lumps)
+    for (const std::uint32_t l : lump.links)
+      for (const model::Collision& c : model.links[l].collisions)
+        if (!lump.fixed && std::holds_alternative<Plane>(c.shape))
+          return Error{"collision '" + c.name + "' is a plane on a body that moves",
+                       "make the model static, or use a box", c.place};
+
+  const std::uint32_t slot = take_slot(free_instances_, slots_.size());
+  if (slot == slots_.size()) slots_.emplace_back();
+  slots_[slot].instance = std::make_unique<Instance>();
+  Instance& instance = *slots_[slot].instance;
+  instance.id = {slot, slots_[slot].generation};
+  instance.name = declared.name;
+  instance.model = declared.model;
+  instance.is_robot = declared.is_robot;
+  make_bodies(instance, lumps);
+  give_ids(instance);
+  make_geoms(instance, lumps);
+  order_.push_back(&instance);
+  place(instance, {declared.X_WM.p, normalised(declared.X_WM.q)});
+  if (instance.bodies.empty()) wake_neighbours(instance);
+  return instance.id;
+}
+
+void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
+  const model::Model& model = *instance.model;
+  std::vector<Body*> of_lump(lumps.lumps.size(), nullptr);
+  instance.bodies.reserve(lumps.lumps.size());
+  for (std::size_t i = 0; i < lumps.lumps.size(); ++i) {
+    const Lump& lump = lumps.lumps[i];
+    if (lump.fixed) continue;
+    Body& body = instance.bodies.emplace_back();
+    of_lump[i] = &body;
+    body.instance = &instance;
+    body.mass_kg = lump.mass_kg;
+    instance.mass_kg += lump.mass_kg;
+    body.inertia_B = lump.inertia_B;
+    body.X_MB = lump.X_MB;
+    body.gravity_mass_kg = lump.gravity_mass_kg;
+    body.gravity_point_B = lump.gravity_point_B;
+    body.weighs_partly = lump.gravity_mass_kg < lump.mass_kg * (1 - 1e-12);
+    body.ode = dBodyCreate(world_);
+    dMass mass;
+    const Symmetric3& t = body.inertia_B;
+    dMassSetParameters(&mass, body.mass_kg, 0, 0, 0, t.xx, t.yy, t.zz, t.xy, t.xz, t.yz);
+    dBodySetMass(body.ode, &mass);
+    dBodySetGravityMode(body.ode, !body.weighs_partly);
+    // The joints are made in the declared pose at the origin, so that their constants do not depend on the place.
+    body.p = body.X_MB.p;
+    body.q = body.X_MB.q;
+    put(body);
+  }
+
+  instance.links.resize(model.links.size());
+  for (std::uint32_t l = 0; l < model.links.size(); ++l) {
+    Link& link = instance.links[l];
+    link.body = of_lump[lumps.of_link[l]];
+    const Lump& lump = lumps.lumps[lumps.of_link[l]];
+    link.X_BL = model.links[l].X_ML;
+    if (!link.body) continue;
+    link.X_BL = inverse(link.body->X_MB) * model.links[l].X_ML;
+    if (l == lump.links.front()) link.X_BL.q = {};  // exactly: B takes its axes from this link
+    if (lump.links.size() == 1) link.X_BL.p = -model.links[l].inertial.X_LCo.p;
+  }
+
+  instance.joints.resize(model.joints.size());
+  for (std::uint32_t i = 0; i < model.joints.size(); ++i) {
+    Joint& joint = instance.joints[i];
+    joint.decl = &model.joints[i];
+    joint.child = instance.links[joint.decl->child].body;
+    const Pose X_MJ = model.links[joint.decl->child].X_ML * joint.decl->X_CJ;
+    if (joint.decl->parent != model::world_link) joint.parent = instance.links[joint.decl->parent].body;
+    joint.X_child = joint.child ? inverse(joint.child->X_MB) * X_MJ : X_MJ;
+    joint.X_parent = joint.parent ? inverse(joint.parent->X_MB) * X_MJ : X_MJ;
+    joint.X_child.q = normalised(joint.X_child.q);
+    joint.X_parent.q = normalised(joint.X_parent.q);
+    make_joint(world_, joint);
+    if (!joint.main) continue;
+    if (!joint.child || !joint.parent) instance.anchored = true;
+    else instance.joined.emplace_back(std::minmax(joint.child, joint.parent));
+    if (joint.turns() && joint.child && joint.child->spin_axis_B == Vec3{})
+      joint.child->spin_axis_B = rotate(joint.X_child.q, joint.decl->axis_J);
+  }
+}
+
+void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
+  const model::Model& model = *instance.model;
+  std::size_t count = 0, moving = 0;
+  for (std::uint32_t l = 0; l < model.links.size(); ++l) {
+    count += model.links[l].collisions.size();
+    if (!lumps.lumps[lumps.of_link[l]].fixed) moving += model.links[l].collisions.size();
+  }
+  // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one by one,
+  // because the box around a house says nothing about its walls.
+  if (moving > 1) {
+    instance.space = dSimpleSpaceCreate(space_);
+    dSpaceSetCleanup(instance.space, 0);
+  }
+  instance.geoms.reserve(count);
+  for (std::uint32_t l = 0; l < model.links.size(); ++l) {
+    for (const model::Collision& c : model.links[l].collisions) {
+      Geom& geom = instance.geoms.emplace_back();
+      geom.instance = &instance;
+      geom.body = instance.links[l].body;
+      geom.decl = &c;
+      geom.serial = next_serial_++;
+      geom.link = instance.link_ids[l];
+      geom.ode = std::visit(MakeGeom{}, c.shape);
+      dGeomSetData(geom.ode, &geom);
+      dGeomSetCategoryBits(geom.ode, geom.body ? moving_bit : standing_bit);
+      dGeomSetCollideBits(geom.ode, geom.body ? moving_bit | standing_bit : moving_bit);
+      geom.X_BC = instance.links[l].X_BL * c.X_LC;
+      geom.X_BC.q = normalised(geom.X_BC.q);
+      if (geom.body) {
+        const Pose& X = geom.X_BC;
+        dGeomSetBody(geom.ode, geom.body->ode);
+        dGeomSetOffsetPosition(geom.ode, X.p.x, X.p.y, X.p.z);
+        const dQuaternion q = {X.q.w, X.q.x, X.q.y, X.q.z};
+        dGeomSetOffsetQuaternion(geom.ode, q);
+      }
+      dSpaceAdd(geom.body && instance.space ? instance.space : space_, geom.ode);
+    }
+  }
+}
+
+void RigidEngine::give_ids(Instance& instance) {
+  for (std::uint32_t l = 0; l < instance.links.size(); ++l) {
+    const std::uint32_t index = take_slot(free_links_, link_slots_.size());
+    if (index == link_slots_.size()) {
+      link_slots_.emplace_back();
+      states_.emplace_back();
+    }
+    link_slots_[index].instance = &instance;
+    link_slots_[index].link = l;
+    instance.link_ids.push_back({index, link_slots_[index].generation});
+  }
+  for (std::uint32_t j = 0; j < instance.joints.size(); ++j) {
+    const std::uint32_t index = take_slot(free_joints_, joint_slots_.size());
+    if (index == joint_slots_.size()) {
+      joint_slots_.emplace_back();
+      joint_states_.emplace_back();
+    }
+    joint_slots_[index].instance = &instance;
+    joint_slots_[index].joint = j;
+    instance.joint_ids.push_back({index, joint_slots_[index].generation});
+  }
+}
+
+void RigidEngine::remove(InstanceId id) {
+  library::prepare_thread();
+  Instance& instance = alive(id);
+  wake_neighbours(instance);
+  std::erase_if(contacts_, [&](const Contact& c) {
+    const auto mine = [&](BodyId b) { return link_slots_[b.index].instance == &instance; };
+    return mine(c.a) || mine(c.b);
+  });
+  for (std::size_t i = instance.link_ids.size(); i-- > 0;) {
+    LinkSlot& slot = link_slots_[instance.link_ids[i].index];
+    ++slot.generation;
+    slot.instance = nullptr;
+    free_links_.push_back(instance.link_ids[i].index);
+  }
+  for (std::size_t i = instance.joint_ids.size(); i-- > 0;) {
+    JointSlot& slot = joint_slots_[instance.joint_ids[i].index];
+    ++slot.generation;
+    slot.instance = nullptr;
+    free_joints_.push_back(instance.joint_ids[i].index);
+  }
+  destroy(instance);
+  std::erase(order_, &instance);
+  ++slots_[id.index].generation;
+  free_instances_.push_back(id.index);
+  slots_[id.index].instance.reset();
+}
+
+void RigidEngine::destroy(Instance& instance) {
+  for (Joint& joint : instance.joints) destroy_joint(joint);
+  for (Geom& geom : instance.geoms) dGeomDestroy(geom.ode);
+  if (instance.space) dSpaceDestroy(instance.space);
+  for (Body& body : instance.bodies) dBodyDestroy(body.ode);
+}
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,35 @@
+#pragma once
+/// Joints on ODE: what each kind of joint is made of, and its position, velocity and effort.
+///
+/// A revolute or continuous joint is a hinge with its motor; a prismatic one a slider with a linear motor beside it.
+/// Limits, spring with damping, and friction are rows of their own (`extra`), made only where the declaration asks for
+/// them, so that a motor at a limit, or against friction, gets its exact effort.
+///
+///   limit     unwrapped position, corrected by ERP: overshoot of at most one sub-step's motion
+///   spring    implicit: (d + h k) v + effort = -k (x - x0), stable for any stiffness and sub-step
+///   friction  Coulomb: velocity 0 with at most `friction`
+///
+/// Limits   ball joints have damping and friction about each axis of J, no limits, motor or position. max_velocity
+///          bounds velocity targets only.
+#include "physics/rigid/parts.h"
+
+namespace sandlot::rigid {
+
+/// Makes the ODE joints. @pre the bodies stand in the declared pose, the model at X_WM (identity unless the joint holds
+/// on to the world).
+void make_joint(dWorldID world, Joint& joint);
+/// Fixes the world side of a joint anew. @pre as above
+void anchor_joint(Joint& joint, const Pose& X_WM);
+void destroy_joint(Joint& joint);
+
+/// Tells ODE about joint.target.
+void set_motor(Joint& joint);
+/// What depends on the state and the sub-step: limits, spring, effort.
+void prepare_joint(Joint& joint, double h_s);
+/// After the solver: the effort of a velocity motor.
+void measure_effort(Joint& joint);
+/// After the bodies moved: position, from the old one and `h_s` of the new velocity (0: after a load).
+void measure_position(Joint& joint, double h_s, const Pose& X_WM);
+double joint_velocity(const Joint& joint, const Pose& X_WM);
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,121 @@
+#include "physics/rigid/lump.h"
+
+#include <limits>
+#include <numeric>
+
+namespace sandlot::rigid {
+
+Symmetric3& Symmetric3::operator+=(const Symmetric3& b) {
+  xx += b.xx, yy += b.yy, zz += b.zz, xy += b.xy, xz += b.xz, yz += b.yz;
+  return *this;
+}
+
+Symmetric3 rotated(Quat q, const Symmetric3& m) {
+  // Column i of M R^T is M times row i of R, which is R^T e_i; R then turns the columns.
+  const Vec3 c0 = rotate(q, m * rotate_inverse(q, {1, 0, 0}));
+  const Vec3 c1 = rotate(q, m * rotate_inverse(q, {0, 1, 0}));
+  const Vec3 c2 = rotate(q, m * rotate_inverse(q, {0, 0, 1}));
+  return {c0.x, c1.y, c2.z, 0.5 * (c0.y + c1.x), 0.5 * (c0.z + c2.x), 0.5 * (c1.z + c2.y)};
+}
+
+Symmetric3 steiner(double m, Vec3 r) {
+  return {m * (r.y * r.y + r.z * r.z),
+          m * (r.x * r.x + r.z * r.z),
+          m * (r.x * r.x + r.y * r.y),
+          -m * r.x * r.y,
+          -m * r.x * r.z,
+          -m * r.y * r.z};
+}
+
+bool is_positive_definite(const Symmetric3& m) {
+  // Sylvester: all leading minors positive. NaN fails every comparison.
+  const double minor2 = m.xx * m.yy - m.xy * m.xy;
+  const double det = m.zz * minor2 - m.xx * m.yz * m.yz - m.yy * m.xz * m.xz + 2 * m.xy * m.xz * m.yz;
+  return m.xx > 0 && minor2 > 0 && det > 0 && std::isfinite(det);
+}
+
+namespace {
+
+Symmetric3 tensor(const model::Inertial& i) {
+  return {i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z};
+}
+
+void add_masses(const model::Model& model, Lump& lump) {
+  Vec3 moment_M, gravity_moment_M;
+  for (const std::uint32_t l : lump.links) {
+    const model::Link& link = model.links[l];
+    const Vec3 com_M = link.X_ML * link.inertial.X_LCo.p;
+    lump.mass_kg += link.inertial.mass_kg;
+    moment_M += link.inertial.mass_kg * com_M;
+    if (link.gravity) {
+      lump.gravity_mass_kg += link.inertial.mass_kg;
+      gravity_moment_M += link.inertial.mass_kg * com_M;
+    }
+  }
+  const model::Link& first = model.links[lump.links.front()];
+  lump.X_MB.q = normalised(first.X_ML.q);
+  lump.X_MB.p = moment_M / lump.mass_kg;
+  if (lump.links.size() == 1) lump.X_MB.p = first.X_ML * first.inertial.X_LCo.p;
+  const Pose X_BM = inverse(lump.X_MB);
+  for (const std::uint32_t l : lump.links) {
+    const Pose X_BCo = X_BM * model.links[l].X_ML * model.links[l].inertial.X_LCo;
+    lump.inertia_B += rotated(normalised(X_BCo.q), tensor(model.links[l].inertial));
+    lump.inertia_B += steiner(model.links[l].inertial.mass_kg, X_BCo.p);
+  }
+  if (lump.links.size() == 1)  // exactly what the file says, without the rounding of the sums
+    lump.inertia_B = rotated(normalised(first.inertial.X_LCo.q), tensor(first.inertial));
+  if (lump.gravity_mass_kg > 0) lump.gravity_point_B = X_BM * (gravity_moment_M / lump.gravity_mass_kg);
+}
+
+}  // namespace
+
+Result<Lumps> lump_links(const model::Model& model) {
+  // Union-find over links; index n stands for the world. The smallest link is the root, the world above all.
+  const auto n = static_cast<std::uint32_t>(model.links.size());
+  std::vector<std::uint32_t> parent(n + 1);
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    if (a == n || (b != n && a < b)) parent[b] = a;
+    else parent[a] = b;
+  };
+  for (const model::Joint& joint : model.joints)
+    if (joint.type == model::JointType::fixed)
+      join(joint.parent == model::world_link ? n : joint.parent, joint.child);
+  if (model.is_static)
+    for (std::uint32_t l = 0; l < n; ++l) join(n, l);
+
+  Lumps result;
+  result.of_link.assign(n, 0);
+  std::vector<std::uint32_t> lump_of_root(n + 1, ~0u);
+  for (std::uint32_t l = 0; l < n; ++l) {
+    std::uint32_t& lump = lump_of_root[root(l)];
+    if (lump == ~0u) {
+      lump = static_cast<std::uint32_t>(result.lumps.size());
+      result.lumps.emplace_back().fixed = root(l) == n;
+    }
+    result.lumps[lump].links.push_back(l);
+    result.of_link[l] = lump;
+  }
+  for (Lump& lump : result.lumps) {
+    const model::Link& first = model.links[lump.links.front()];
+    if (lump.fixed) {
+      lump.X_MB = first.X_ML;
+      continue;
+    }
+    add_masses(model, lump);
+    if (!(lump.mass_kg > 0) || !std::isfinite(lump.mass_kg))
+      return Error{"the mass of link '" + first.name + "' is not positive",
+                   "give it a mass, or make the model static", first.place};
+    if (!is_positive_definite(lump.inertia_B))
+      return Error{"the inertia of link '" + first.name + "' is not positive definite",
+                   "ixx, iyy, izz must be positive and the products small against them", first.place};
+  }
+  return result;
+}
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,108 @@
+#pragma once
+/// What the rigid engine is made of: plain structs that hold ODE's handles beside Sandlot's own State.
+///
+/// Frames: W world, M model, L link, B body (origin in the centre of mass), C collision, J joint.
+#include <ode/ode.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "physics/engine.h"
+#include "physics/rigid/lump.h"
+
+namespace sandlot::rigid {
+
+struct Instance;
+
+/// One ODE body: a link, or several that fixed joints lump together.
+struct Body {
+  Instance* instance = nullptr;
+  dBodyID ode = nullptr;
+  double mass_kg = 0;
+  Symmetric3 inertia_B;
+  Pose X_MB;                   ///< in the declared pose
+  Vec3 spin_axis_B;            ///< of the joint it spins about as a child; zero: none
+  bool weighs_partly = false;  ///< some of its links have no gravity: the weight below is added by hand
+  double gravity_mass_kg = 0;
+  Vec3 gravity_point_B;
+
+  // State. ODE holds copies: p, v, w exactly, the orientation only until its next sub-step (see step.cpp).
+  Vec3 p;                   ///< [m] centre of mass in W
+  Quat q;                   ///< R_WB
+  Vec3 v, w;                ///< of the centre of mass, in W
+  Vec3 force_N, torque_Nm;  ///< from outside, for the next step
+  double quiet_s = 0;       ///< how long it has been slow
+  bool awake = true;
+  bool quick = false;  ///< its island was solved quickly last time
+
+  std::uint32_t island = 0;  ///< scratch of one sub-step: node of the union-find
+  Pose pose() const { return {p, q}; }
+};
+
+/// One collision shape.
+struct Geom {
+  Instance* instance = nullptr;
+  Body* body = nullptr;  ///< null: fixed to the world
+  dGeomID ode = nullptr;
+  const model::Collision* decl = nullptr;
+  std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
+  BodyId link;
+  Pose X_BC;  ///< in W where body is null
+};
+
+/// One link: what the outside calls a body.
+struct Link {
+  Body* body = nullptr;  ///< null: fixed to the world
+  Pose X_BL;             ///< in M where body is null
+};
+
+struct Joint {
+  const model::Joint* decl = nullptr;
+  Body* child = nullptr;     ///< null: fixed to the world
+  Body* parent = nullptr;    ///< likewise
+  Pose X_child, X_parent;    ///< of J in the two bodies (in M where null) in the declared pose
+  dJointID main = nullptr;   ///< hinge, slider or ball; null: nothing moves (fixed, or both sides are)
+  dJointID motor = nullptr;  ///< of a slider (a hinge has its own); friction of a ball
+  dJointID extra = nullptr;  ///< rows for limit, spring with damping, and friction
+  std::unique_ptr<dJointFeedback> feedback;
+  bool limited = false;
+
+  // State
+  double position = 0;
+  JointTarget target;
+  double effort = 0;  ///< that the target put in
+
+  bool turns() const {
+    return decl->type == model::JointType::revolute || decl->type == model::JointType::continuous;
+  }
+  bool slides() const { return decl->type == model::JointType::prismatic; }
+};
+
+/// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed to.
+struct Instance {
+  InstanceId id;
+  std::string name;
+  std::shared_ptr<const model::Model> model;
+  bool is_robot = false;
+  Pose X_WM;                 ///< where world-fixed parts stand
+  dSpaceID space = nullptr;  ///< of its own when it has several moving shapes
+  std::vector<Body> bodies;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<Geom> geoms;
+  std::vector<BodyId> link_ids;
+  std::vector<JointId> joint_ids;
+  std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide
+  double mass_kg = 0;
+  bool anchored = false;  ///< some joint holds on to the world
+  // State
+  DriveTarget drive{.active = false};
+  std::uint32_t drive_link = 0;
+
+  std::uint32_t contact_points = 0, contacts_seen = 0;  ///< scratch of one sub-step
+};
+
+}  // namespace sandlot::rigid

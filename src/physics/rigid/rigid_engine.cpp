@@ -1,0 +1,164 @@
+#include "physics/rigid/rigid_engine.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/read.h"
+#include "physics/rigid/joints.h"
+#include "physics/rigid/library.h"
+#include "physics/rigid/overlap.h"
+
+namespace sandlot::rigid {
+
+RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gravity_(gravity_mps2) {
+  library::prepare_thread();
+  world_ = dWorldCreate();
+  // ODE's default threading is one object for all worlds of a process; worlds in several threads then abort.
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
+  dWorldSetGravity(world_, gravity_.x, gravity_.y, gravity_.z);
+  dWorldSetERP(world_, spec_.erp);
+  dWorldSetCFM(world_, spec_.cfm);
+  dWorldSetContactMaxCorrectingVel(world_, spec_.contact_correction_mps);
+  dWorldSetContactSurfaceLayer(world_, 0);
+  dWorldSetQuickStepNumIterations(world_, spec_.quick_iterations);
+  dWorldSetAutoDisableFlag(world_, 0);  // sleeping is ours: ODE's counters cannot be saved
+  space_ = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+  dSpaceSetCleanup(space_, 0);
+  contact_joints_ = dJointGroupCreate(0);
+  points_.resize(static_cast<std::size_t>(spec_.max_contacts));
+}
+
+RigidEngine::~RigidEngine() {
+  dJointGroupDestroy(contact_joints_);
+  for (Instance* instance : order_) destroy(*instance);
+  dSpaceDestroy(space_);
+  dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
+}
+
+Capabilities RigidEngine::capabilities() const {
+  return {.name = "rigid",
+          .planar = false,
+          .joints = true,
+          .contact_drives = true,
+          .ideal_drives = true,
+          .rays = false};
+}
+
+void RigidEngine::apply(std::span<const Wrench> wrenches) {
+  for (const Wrench& wrench : wrenches) {
+    SL_CHECK(wrench.body.index < link_slots_.size());
+    const LinkSlot& slot = link_slots_[wrench.body.index];
+    SL_CHECK_MSG(slot.instance && slot.generation == wrench.body.generation, "no such body");
+    if (wrench.force_N == Vec3{} && wrench.torque_Nm == Vec3{}) continue;
+    Body* const body = slot.instance->links[slot.link].body;
+    if (!body) continue;
+    wake(*body);
+    if (!is_finite(wrench.force_N) || !is_finite(wrench.torque_Nm)) {
+      // Kept away from ODE; the body's state says who it was.
+      finite_ = false;
+      states_[wrench.body.index].V_WB.linear = wrench.force_N + wrench.torque_Nm;
+    }
+    // At the link's own centre of mass, which is not the body's where fixed joints lump several links.
+    const Vec3 com_L = slot.instance->model->links[slot.link].inertial.X_LCo.p;
+    const Vec3 arm = rotate(body->q, slot.instance->links[slot.link].X_BL * com_L);
+    body->force_N += wrench.force_N;
+    body->torque_Nm += wrench.torque_Nm + cross(arm, wrench.force_N);
+  }
+}
+
+void RigidEngine::set_targets(std::span<const JointTarget> targets) {
+  for (const JointTarget& target : targets) {
+    SL_CHECK(target.joint.index < joint_slots_.size());
+    const JointSlot& slot = joint_slots_[target.joint.index];
+    SL_CHECK_MSG(slot.instance && slot.generation == target.joint.generation, "no such joint");
+    Joint& joint = slot.instance->joints[slot.joint];
+    joint.target = target;
+    set_motor(joint);
+    if (target.mode != JointTarget::Mode::free) wake_instance(*slot.instance);
+  }
+}
+
+void RigidEngine::set_drive_targets(std::span<const DriveTarget> targets) {
+  for (const DriveTarget& target : targets) {
+    SL_CHECK(target.base.index < link_slots_.size());
+    const LinkSlot& slot = link_slots_[target.base.index];
+    SL_CHECK_MSG(slot.instance && slot.generation == target.base.generation, "no such body");
+    slot.instance->drive = target;
+    slot.instance->drive_link = slot.link;
+    set_gyroscopic(*slot.instance);
+    wake_instance(*slot.instance);
+  }
+}
+
+/// The rails carry what turning wheels would do to a free body, so ODE must not add it.
+void RigidEngine::set_gyroscopic(Instance& instance) {
+  for (Body& body : instance.bodies) dBodySetGyroscopicMode(body.ode, !instance.drive.active);
+}
+
+Status RigidEngine::check_finite() const {
+  if (finite_) return {};
+  for (const Instance* instance : order_)
+    for (std::size_t l = 0; l < instance->links.size(); ++l) {
+      const BodyState& s = states_[instance->link_ids[l].index];
+      if (is_finite(s.X_WB) && is_finite(s.V_WB.linear) && is_finite(s.V_WB.angular) &&
+          norm(s.V_WB.linear) + norm(s.V_WB.angular) < 1e9 && norm(s.X_WB.p) < 1e12)
+        continue;
+      return Error{
+          "the state of '" + instance->name + "/" + instance->model->links[l].name + "' is no longer finite",
+          "a smaller time step, or less extreme masses, forces and speeds"};
+    }
+  if (fault_.empty()) return Error{"the state of a body that was removed was no longer finite"};
+  // ODE stopped before there were numbers to look at: the fastest body is the likeliest cause.
+  std::string fastest;
+  double speed = -1;
+  for (const Instance* instance : order_)
+    for (std::size_t l = 0; l < instance->links.size(); ++l) {
+      const BodyState& s = states_[instance->link_ids[l].index];
+      const double mine = norm(s.V_WB.linear) + norm(s.V_WB.angular);
+      if (mine <= speed) continue;
+      speed = mine;
+      fastest = instance->name + "/" + instance->model->links[l].name;
+    }
+  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" + fastest + "'",
+               "a smaller time step, or less extreme masses, forces and speeds"};
+}
+
+void RigidEngine::overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
+                           std::vector<std::uint32_t>& ends) const {
+  for (const OverlapQuery& query : queries) {
+    for (std::uint32_t index = 0; index < link_slots_.size(); ++index) {
+      const LinkSlot& slot = link_slots_[index];
+      if (!slot.instance) continue;
+      for (const model::Collision& c : slot.instance->model->links[slot.link].collisions) {
+        const Pose X_WC = states_[index].X_WB * c.X_LC;
+        const double reach = query.radius_m + bounding_radius_m(c.shape);
+        const Vec3 apart = query.centre_W - X_WC.p;
+        if (dot(apart, apart) > reach * reach) continue;
+        if (distance_m(c.shape, rotate_inverse(X_WC.q, apart)) > query.radius_m) continue;
+        out.push_back(index);
+        break;
+      }
+    }
+    ends.push_back(static_cast<std::uint32_t>(out.size()));
+  }
+}
+
+namespace {
+
+Result<std::unique_ptr<Engine>> create(const Node& config, Vec3 gravity_mps2) {
+  SL_ASSIGN(const Spec spec, read_spec<Spec>(config));
+  return std::unique_ptr<Engine>(std::make_unique<RigidEngine>(spec, gravity_mps2));
+}
+
+}  // namespace
+
+const EngineKind engine = {
+    .name = "rigid",
+    .help = "Rigid bodies in three dimensions with joints, contacts and friction (ODE).",
+    .describe = [] { return describe_fields<Spec>(); },
+    .create = create,
+};
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,152 @@
+#pragma once
+/// Rigid bodies in three dimensions, on the Open Dynamics Engine (double precision).
+///
+/// Frame    W: z up where gravity points down; everything in SI.
+/// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
+///          exact rotation of the new angular velocity, spin about the own joint axis first.
+/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h.
+/// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
+///          sub-step builds what ODE needs from that State, so that a restored run continues with the same bits.
+/// Limits   no meshes, height fields or rollers; planes are static; no continuous collision: a body faster than its
+///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
+/// Cost     direct solver cubic, quick solver linear in the contacts of an island.
+/// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() tells.
+/// Source   R. Smith, Open Dynamics Engine 0.16.2; settings: docs of the fields in spec.h.
+#include <ode/ode.h>
+
+#include <memory>
+#include <vector>
+
+#include "physics/engine.h"
+#include "physics/rigid/parts.h"
+#include "physics/rigid/spec.h"
+
+namespace sandlot::rigid {
+
+extern const EngineKind engine;
+
+class RigidEngine final : public Engine {
+ public:
+  RigidEngine(const Spec& spec, Vec3 gravity_mps2);
+  ~RigidEngine() override;
+
+  Capabilities capabilities() const override;
+  Result<InstanceId> add(const model::Instance& instance) override;
+  void remove(InstanceId id) override;
+  std::span<const BodyId> bodies(InstanceId id) const override { return alive(id).link_ids; }
+  std::span<const JointId> joints(InstanceId id) const override { return alive(id).joint_ids; }
+  void set_pose(InstanceId id, const Pose& X_WM) override;
+  Pose pose(InstanceId id) const override;
+  std::span<const BodyState> states() const override { return states_; }
+  std::span<const JointState> joint_states() const override { return joint_states_; }
+  std::span<const Contact> contacts() const override { return contacts_; }
+  void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
+                std::vector<std::uint32_t>& ends) const override;
+  const RayCaster* rays() const override { return nullptr; }
+  void apply(std::span<const Wrench> wrenches) override;
+  void set_targets(std::span<const JointTarget> targets) override;
+  void set_drive_targets(std::span<const DriveTarget> targets) override;
+  void step(double h_s, std::uint64_t stream_key) override;
+  Status check_finite() const override;
+  void save(InstanceId id, ByteWriter& w) const override;
+  bool load(InstanceId id, ByteReader& r) override;
+  EngineCounters counters() const override { return counters_; }
+
+ private:
+  struct Pair {
+    Geom *a, *b;  ///< a made before b
+  };
+  struct Hit {
+    Geom *a, *b;
+    std::uint32_t index;  ///< among the points of this pair
+    dContactGeom point;
+  };
+  struct Island {
+    std::uint32_t contacts = 0;
+    bool was_quick = false, quick = false;
+    bool may_sleep = true;
+  };
+  struct LinkSlot {
+    std::uint32_t generation = 0;
+    Instance* instance = nullptr;  ///< null: free
+    std::uint32_t link = 0;
+  };
+  struct JointSlot {
+    std::uint32_t generation = 0;
+    Instance* instance = nullptr;
+    std::uint32_t joint = 0;
+  };
+
+  // build.cpp
+  Instance& alive(InstanceId id) const;
+  Status check(const model::Instance& instance) const;
+  void make_bodies(Instance& instance, const Lumps& lumps);
+  void make_geoms(Instance& instance, const Lumps& lumps);
+  void give_ids(Instance& instance);
+  void destroy(Instance& instance);
+
+  // placing.cpp
+  void place(Instance& instance, const Pose& X_WM);
+  void place_static_geoms(Instance& instance);
+  void put(Body& body);
+  void show(const Instance& instance);
+  void set_gyroscopic(Instance& instance);
+  void wake(Body& body);
+  void wake_instance(Instance& instance);
+  void wake_neighbours(const Instance& instance);
+
+  // collide.cpp
+  void collide();
+  void see_pair(Geom* a, Geom* b);
+  void collide_pair(const Pair& pair);
+  void collide_self(Instance& instance);
+  void attach_contacts(double h_s);
+  static void near(void* engine, dGeomID a, dGeomID b);
+
+  // step.cpp
+  void push_forces(double h_s);
+  void find_islands();
+  std::uint32_t root(std::uint32_t node);
+  void unite(const Body* a, const Body* b);
+  void solve(double h_s, std::uint64_t stream_key);
+  template <class Choose>
+  void enable(Choose&& choose);
+  void solve_again(double h_s);
+  void advance(double h_s);
+  void send_to_sleep(double h_s);
+
+  Spec spec_;
+  Vec3 gravity_;
+  dWorldID world_ = nullptr;
+  dThreadingImplementationID threading_ = nullptr;
+  dSpaceID space_ = nullptr;
+  dJointGroupID contact_joints_ = nullptr;
+
+  struct Slot {
+    std::uint32_t generation = 0;
+    std::unique_ptr<Instance> instance;
+  };
+  std::vector<Slot> slots_;
+  std::vector<Instance*> order_;  ///< alive, in the order of creation: every loop over bodies follows it
+  std::vector<LinkSlot> link_slots_;
+  std::vector<JointSlot> joint_slots_;
+  std::vector<std::uint32_t> free_instances_, free_links_, free_joints_;
+  std::uint64_t next_serial_ = 1;
+
+  std::vector<BodyState> states_;
+  std::vector<JointState> joint_states_;
+  std::vector<Contact> contacts_;
+  EngineCounters counters_;
+  bool finite_ = true;
+  std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
+
+  // Scratch of one sub-step; kept for its capacity.
+  std::vector<Pair> pairs_, dormant_;
+  std::vector<Hit> hits_;
+  std::vector<dContactGeom> points_;
+  std::vector<std::uint32_t> island_parent_;
+  std::vector<Island> islands_;
+  bool woke_ = false;
+};
+
+}  // namespace sandlot::rigid

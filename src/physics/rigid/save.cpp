@@ -1,0 +1,137 @@
+#include "base/check.h"
+#include "physics/rigid/joints.h"
+#include "physics/rigid/library.h"
+#include "physics/rigid/rigid_engine.h"
+
+namespace sandlot::rigid {
+namespace {
+
+// Flags of a body.
+constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4;
+
+bool in_range(Vec3 v) { return dot(v, v) < 1e24; }  // false for NaN too
+bool in_range(double x) { return std::abs(x) < 1e300; }
+
+void save_target(ByteWriter& w, const JointTarget& t) {
+  write(w, static_cast<std::uint8_t>(t.mode));
+  if (t.mode == JointTarget::Mode::free) return;
+  write(w, t.velocity);
+  write(w, t.max_effort);
+  write(w, t.effort);
+}
+
+bool load_target(ByteReader& r, JointTarget& t) {
+  std::uint8_t mode = 0;
+  read(r, mode);
+  t = {.joint = t.joint, .mode = static_cast<JointTarget::Mode>(mode)};
+  if (t.mode == JointTarget::Mode::free) return r.ok();
+  read(r, t.velocity);
+  read(r, t.max_effort);
+  read(r, t.effort);
+  return r.ok() && mode <= static_cast<std::uint8_t>(JointTarget::Mode::effort) && in_range(t.velocity) &&
+         in_range(t.max_effort) && in_range(t.effort);
+}
+
+}  // namespace
+
+void RigidEngine::save(InstanceId id, ByteWriter& w) const {
+  const Instance& instance = alive(id);
+  write(w, static_cast<std::uint32_t>(instance.bodies.size()));
+  write(w, static_cast<std::uint32_t>(instance.joints.size()));
+  if (instance.bodies.empty() || instance.anchored) {
+    write(w, instance.X_WM.p);
+    write(w, instance.X_WM.q);
+  }
+  write(w, static_cast<std::uint8_t>(instance.drive.active));
+  if (instance.drive.active) {
+    write(w, instance.drive_link);
+    const DriveTarget& d = instance.drive;
+    for (const double x : {d.vx_mps, d.vy_mps, d.wz_radps, d.max_accel_mps2, d.max_angular_accel_radps2})
+      write(w, x);
+  }
+  for (const Body& b : instance.bodies) {
+    const bool pushed = b.force_N != Vec3{} || b.torque_Nm != Vec3{};
+    write(w, static_cast<std::uint8_t>((b.awake ? awake_flag : 0) | (b.quick ? quick_flag : 0) |
+                                       (pushed ? pushed_flag : 0)));
+    write(w, b.p);
+    write(w, b.q);
+    write(w, b.v);
+    write(w, b.w);
+    write(w, b.quiet_s);
+    if (!pushed) continue;
+    write(w, b.force_N);
+    write(w, b.torque_Nm);
+  }
+  for (const Joint& j : instance.joints) {
+    write(w, j.position);
+    write(w, j.effort);
+    save_target(w, j.target);
+  }
+}
+
+bool RigidEngine::load(InstanceId id, ByteReader& r) {
+  library::prepare_thread();
+  Instance& instance = alive(id);
+  std::uint32_t bodies = 0, joints = 0;
+  read(r, bodies);
+  read(r, joints);
+  if (!r.ok() || bodies != instance.bodies.size() || joints != instance.joints.size()) return false;
+  if (instance.bodies.empty() || instance.anchored) {
+    Pose X_WM;
+    read(r, X_WM.p);
+    read(r, X_WM.q);
+    if (!r.ok() || !in_range(X_WM.p) || !is_finite(X_WM)) return false;
+    place(instance, X_WM);
+  }
+  std::uint8_t driven = 0;
+  read(r, driven);
+  instance.drive = {.active = driven != 0};
+  instance.drive_link = 0;
+  if (instance.drive.active) {
+    read(r, instance.drive_link);
+    DriveTarget& d = instance.drive;
+    for (double* x : {&d.vx_mps, &d.vy_mps, &d.wz_radps, &d.max_accel_mps2, &d.max_angular_accel_radps2}) {
+      read(r, *x);
+      if (!in_range(*x)) return false;
+    }
+    if (instance.drive_link >= instance.links.size()) return false;
+    d.base = instance.link_ids[instance.drive_link];
+  }
+  set_gyroscopic(instance);
+  bool sound = true;
+  for (Body& b : instance.bodies) {
+    std::uint8_t flags = 0;
+    read(r, flags);
+    b.awake = flags & awake_flag;
+    b.quick = flags & quick_flag;
+    read(r, b.p);
+    read(r, b.q);
+    read(r, b.v);
+    read(r, b.w);
+    read(r, b.quiet_s);
+    b.force_N = b.torque_Nm = {};
+    if (flags & pushed_flag) {
+      read(r, b.force_N);
+      read(r, b.torque_Nm);
+    }
+    sound = sound && r.ok() && in_range(b.p) && in_range(b.v) && in_range(b.w) &&
+            std::abs(norm(b.q) - 1) < 1e-6 && in_range(b.quiet_s) && in_range(b.force_N) &&
+            in_range(b.torque_Nm);
+    if (!sound) return false;
+    put(b);
+    dBodySetLinearVel(b.ode, b.v.x, b.v.y, b.v.z);
+    dBodySetAngularVel(b.ode, b.w.x, b.w.y, b.w.z);
+    dBodySetForce(b.ode, 0, 0, 0);
+    dBodySetTorque(b.ode, 0, 0, 0);
+  }
+  for (Joint& j : instance.joints) {
+    read(r, j.position);
+    read(r, j.effort);
+    if (!load_target(r, j.target) || !in_range(j.position) || !in_range(j.effort)) return false;
+    set_motor(j);
+  }
+  show(instance);
+  return r.ok();
+}
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,55 @@
+#pragma once
+/// What a scenario may set under `physics:` when the engine is `rigid`.
+#include <cstdint>
+#include <span>
+
+#include "base/fields.h"
+
+namespace sandlot::rigid {
+
+enum class Solver : std::uint8_t {
+  automatic,  ///< per island: direct while it is small, quick when it is large
+  direct,     ///< ODE's dWorldStep: exact complementarity, cost cubic in the contacts of an island
+  quick,      ///< ODE's dWorldQuickStep: iterative, cost linear
+};
+
+inline std::span<const EnumName<Solver>> enum_names(Solver) {
+  static constexpr EnumName<Solver> names[] = {
+      {"auto", Solver::automatic}, {"direct", Solver::direct}, {"quick", Solver::quick}};
+  return names;
+}
+
+struct Spec {
+  Solver solver = Solver::automatic;
+  int quick_iterations = 50;
+  int direct_limit = 32;
+  double erp = 0.2;
+  double cfm = 1e-6;
+  double contact_correction_mps = 1;
+  int max_contacts = 8;
+  bool sleeping = true;
+  double sleep_speed_mps = 0.01;
+  double sleep_spin_radps = 0.05;
+  double sleep_time_s = 0.5;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"solver", "", "Solver of an island of touching bodies."}, s.solver);
+    visit(Field{"quick_iterations", "1", "Iterations of the quick solver.", 1, 10000}, s.quick_iterations);
+    visit(Field{"direct_limit", "1", "auto: contact points of an island above which it is solved quickly.", 0,
+                1e6},
+          s.direct_limit);
+    visit(Field{"erp", "1", "Share of a position error that one sub-step corrects.", 0, 1}, s.erp);
+    visit(Field{"cfm", "1/kg s", "Compliance of all constraints.", 1e-12, 1}, s.cfm);
+    visit(Field{"contact_correction", "m/s", "Fastest correction of a penetration.", 0, 1e6},
+          s.contact_correction_mps);
+    visit(Field{"max_contacts", "1", "Contact points per pair of shapes.", 1, 64}, s.max_contacts);
+    visit(Field{"sleeping", "", "Bodies of no robot that lie still are not computed."}, s.sleeping);
+    visit(Field{"sleep_speed", "m/s", "A slower body may sleep.", 0, 1e3}, s.sleep_speed_mps);
+    visit(Field{"sleep_spin", "rad/s", "A body that turns more slowly may sleep.", 0, 1e3},
+          s.sleep_spin_radps);
+    visit(Field{"sleep_time", "s", "How long an island must lie still before it sleeps.", 0, 1e6},
+          s.sleep_time_s);
+  }
+};
+
+}  // namespace sandlot::rigid

@@ -1,0 +1,247 @@
+/// The sub-step. Between sub-steps the State is in Body, Joint and Instance alone; ODE gets what it needs from there,
+/// so nothing that a restored engine could not know takes part:
+///
+///   1 forces      from outside, of joints and drives, into ODE; orientations written anew
+///   2 contacts    found, put in order of creation, attached
+///   3 islands     our own union-find: which solver, who may sleep
+///   4 solve       ODE computes new velocities and positions
+///   5 advance     State read back; orientation integrated by us (exactly, and with base/math.h)
+///   6 sleep
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/math.h"
+#include "physics/rigid/drive.h"
+#include "physics/rigid/joints.h"
+#include "physics/rigid/library.h"
+#include "physics/rigid/rigid_engine.h"
+
+namespace sandlot::rigid {
+namespace {
+
+Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+/// Rotation by the vector `turn` [rad].
+Quat rotation(Vec3 turn) {
+  const double half2 = 0.25 * dot(turn, turn);
+  if (half2 < 0.01) {
+    // Half angle below 0.1: the series of cos and sin(x)/x to x^10, error below 1e-17, cheaper than a sine.
+    const double c = 1 -
+                     half2 / 2 * (1 - half2 / 12 * (1 - half2 / 30 * (1 - half2 / 56 * (1 - half2 / 90))));
+    const double s = 1 -
+                     half2 / 6 * (1 - half2 / 20 * (1 - half2 / 42 * (1 - half2 / 72 * (1 - half2 / 110))));
+    return {c, 0.5 * s * turn.x, 0.5 * s * turn.y, 0.5 * s * turn.z};
+  }
+  const double half = std::sqrt(half2);
+  const auto [s, c] = math::sincos(half);
+  const double scale = s / (2 * half);
+  return {c, scale * turn.x, scale * turn.y, scale * turn.z};
+}
+
+/// Orientation after h seconds at angular velocity w. Spin about the body's own joint axis comes first, the rest turns
+/// the result: a fast wheel on a turning robot thus keeps its axis where the robot holds it.
+Quat turned(Quat q, Vec3 w, Vec3 spin_axis_B, double h) {
+  if (spin_axis_B == Vec3{}) return normalised(rotation(h * w) * q);
+  const Vec3 axis = rotate(q, spin_axis_B);
+  const Vec3 spin = dot(w, axis) * axis;
+  return normalised(rotation(h * (w - spin)) * (rotation(h * spin) * q));
+}
+
+}  // namespace
+
+void RigidEngine::step(double h, std::uint64_t stream_key) {
+  SL_CHECK(h > 0);
+  library::prepare_thread();
+  if (!finite_) return;  // ODE must not see NaN; check_finite() reports it
+  const library::Counts before = library::counts();
+  try {
+    push_forces(h);
+    collide();
+    attach_contacts(h);
+    find_islands();
+    solve(h, stream_key);
+  } catch (const library::Fault& fault) {
+    finite_ = false;
+    fault_ = fault.message;
+    return;
+  }
+  advance(h);
+  if (spec_.sleeping) send_to_sleep(h);
+  dJointGroupEmpty(contact_joints_);
+  counters_.solver_messages += library::counts().messages - before.messages;
+  counters_.library_allocations += library::counts().allocations - before.allocations;
+}
+
+void RigidEngine::push_forces(double h) {
+  for (Instance* instance : order_) {
+    if (instance->bodies.empty()) continue;
+    for (Joint& joint : instance->joints) prepare_joint(joint, h);
+    if (instance->drive.active) push_drive(*instance, gravity_, h);
+    for (Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      put(b);
+      if (b.weighs_partly) {
+        const Vec3 weight = b.gravity_mass_kg * gravity_;
+        b.force_N += weight;
+        b.torque_Nm += cross(rotate(b.q, b.gravity_point_B), weight);
+      }
+      if (b.force_N != Vec3{}) dBodyAddForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
+      if (b.torque_Nm != Vec3{}) dBodyAddTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
+    }
+  }
+}
+
+std::uint32_t RigidEngine::root(std::uint32_t node) {
+  while (island_parent_[node] != node) node = island_parent_[node] = island_parent_[island_parent_[node]];
+  return node;
+}
+
+void RigidEngine::unite(const Body* a, const Body* b) {
+  if (!a || !b) return;
+  const std::uint32_t x = root(a->island), y = root(b->island);
+  island_parent_[std::max(x, y)] = std::min(x, y);
+}
+
+/// Bodies that joints and contacts connect, what stands left out. Decides how each island is solved.
+void RigidEngine::find_islands() {
+  island_parent_.clear();
+  for (Instance* instance : order_)
+    for (Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      b.island = static_cast<std::uint32_t>(island_parent_.size());
+      island_parent_.push_back(b.island);
+    }
+  counters_.awake_bodies = island_parent_.size();
+  for (Instance* instance : order_)
+    for (const Joint& joint : instance->joints)
+      if (joint.main && joint.child && joint.child->awake) unite(joint.child, joint.parent);
+  for (const Hit& hit : hits_) unite(hit.a->body, hit.b->body);
+
+  islands_.assign(island_parent_.size(), {});
+  for (const Hit& hit : hits_) ++islands_[root((hit.a->body ? hit.a->body : hit.b->body)->island)].contacts;
+  for (Instance* instance : order_) {
+    bool idle = !instance->is_robot && !instance->drive.active;
+    for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
+    for (const Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      Island& island = islands_[root(b.island)];
+      island.was_quick = island.was_quick || b.quick;
+      island.may_sleep = island.may_sleep && idle;
+    }
+  }
+  for (Island& island : islands_) {
+    // An island that was solved quickly stays so until it has shrunk by a quarter: no flicker at the limit.
+    const auto limit = static_cast<std::uint32_t>(spec_.direct_limit);
+    const std::uint32_t bound = island.was_quick ? limit - limit / 4 : limit;
+    island.quick = spec_.solver == Solver::quick ||
+                   (spec_.solver == Solver::automatic && island.contacts > bound);
+  }
+}
+
+/// ODE finds the same islands and solves each by itself, and leaves out those whose bodies are disabled.
+void RigidEngine::solve(double h, std::uint64_t stream_key) {
+  library::seed(stream_key);
+  bool any_direct = false, any_quick = false;
+  for (Instance* instance : order_)
+    for (Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      b.quick = islands_[root(b.island)].quick;
+      (b.quick ? any_quick : any_direct) = true;
+    }
+  if (any_direct) {
+    enable([](const Body& b) { return !b.quick; });
+    const std::uint64_t complaints = library::counts().messages;
+    dWorldStep(world_, h);
+    if (library::counts().messages != complaints) solve_again(h);
+  }
+  if (any_quick) {
+    enable([](const Body& b) { return b.quick; });
+    dWorldQuickStep(world_, h);
+  }
+}
+
+template <class Choose>
+void RigidEngine::enable(Choose&& choose) {
+  for (Instance* instance : order_)
+    for (Body& b : instance->bodies) {
+      if (b.awake && choose(b)) dBodyEnable(b.ode);
+      else dBodyDisable(b.ode);
+    }
+}
+
+/// The direct solver gave up on some island, which leaves that one without most of its friction. Every island is tried
+/// by itself, with the same result where it had one, and what fails is solved quickly for this sub-step.
+void RigidEngine::solve_again(double h) {
+  const auto reset = [&](std::uint32_t island) {
+    for (Instance* instance : order_)
+      for (Body& b : instance->bodies) {
+        if (!b.awake || root(b.island) != island) continue;
+        put(b);
+        dBodySetLinearVel(b.ode, b.v.x, b.v.y, b.v.z);
+        dBodySetAngularVel(b.ode, b.w.x, b.w.y, b.w.z);
+        dBodySetForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
+        dBodySetTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
+      }
+  };
+  for (std::uint32_t island = 0; island < islands_.size(); ++island) {
+    if (island_parent_[island] != island || islands_[island].quick) continue;
+    enable([&](const Body& b) { return root(b.island) == island; });
+    reset(island);
+    const std::uint64_t complaints = library::counts().messages;
+    dWorldStep(world_, h);
+    if (library::counts().messages == complaints) continue;
+    reset(island);
+    dWorldQuickStep(world_, h);
+  }
+}
+
+void RigidEngine::advance(double h) {
+  for (Instance* instance : order_) {
+    if (instance->bodies.empty()) continue;
+    bool any_awake = false;
+    for (const Body& b : instance->bodies) any_awake = any_awake || b.awake;
+    if (!any_awake) continue;
+    for (Joint& joint : instance->joints) measure_effort(joint);
+    for (Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      b.p = vec(dBodyGetPosition(b.ode));
+      b.v = vec(dBodyGetLinearVel(b.ode));
+      b.w = vec(dBodyGetAngularVel(b.ode));
+      b.q = turned(b.q, b.w, b.spin_axis_B, h);
+      b.force_N = b.torque_Nm = {};
+      // A velocity above 1e9 m/s, or a place beyond 1e12 m, is a run that has blown up; NaN fails every comparison.
+      finite_ = finite_ && dot(b.v, b.v) + dot(b.w, b.w) < 1e18 && dot(b.p, b.p) < 1e24;
+    }
+    for (Joint& joint : instance->joints) measure_position(joint, h, instance->X_WM);
+    show(*instance);
+  }
+}
+
+void RigidEngine::send_to_sleep(double h) {
+  const double speed2 = spec_.sleep_speed_mps * spec_.sleep_speed_mps;
+  const double spin2 = spec_.sleep_spin_radps * spec_.sleep_spin_radps;
+  for (Instance* instance : order_)
+    for (Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      b.quiet_s = dot(b.v, b.v) < speed2 && dot(b.w, b.w) < spin2 ? b.quiet_s + h : 0;
+      Island& island = islands_[root(b.island)];
+      island.may_sleep = island.may_sleep && b.quiet_s > spec_.sleep_time_s;
+    }
+  for (Instance* instance : order_) {
+    bool changed = false;
+    for (Body& b : instance->bodies) {
+      if (!b.awake || !islands_[root(b.island)].may_sleep) continue;
+      b.awake = b.quick = false;
+      b.v = b.w = {};
+      b.quiet_s = 0;
+      put(b);
+      dBodySetLinearVel(b.ode, 0, 0, 0);
+      dBodySetAngularVel(b.ode, 0, 0, 0);
+      dBodyDisable(b.ode);
+      changed = true;
+    }
+    if (changed) show(*instance);
+  }
+}
+
+}  // namespace sandlot::rigid

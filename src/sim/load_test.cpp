@@ -1,0 +1,126 @@
+/// Scenarios put together from files: search, devices laid upon the model's, placement, names.
+#include "sim/load.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace sandlot {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* bot = R"(<?xml version="1.0"?>
+<sdf version="1.9" xmlns:sandlot="urn:sandlot:sdf"><model name="bot">
+  <link name="base"><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>
+    <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>
+  <sandlot:device name="eye" kind="laser_scanner" link="base"><beams>11</beams><max_range>3</max_range></sandlot:device>
+</model></sdf>)";
+
+struct Files : testing::Test {
+  fs::path folder;
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "sandlot-load-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+    fs::create_directories(folder / "models" / "bot");
+    write("models/bot/model.sdf", bot);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+  Result<model::Setup> load_text(const std::string& robots, std::vector<formats::Override> overrides = {}) {
+    const std::string file = write("s.yaml", "version: 1\nname: s\n" + robots);
+    return load(file, {overrides, {}, {}}, diagnostics);
+  }
+  std::string error_of(const std::string& robots) {
+    const auto setup = load_text(robots);
+    return setup ? "" : setup.error().text();
+  }
+  Diagnostics diagnostics;
+};
+
+TEST_F(Files, a_folder_stands_for_its_model_and_the_search_path_is_used) {
+  EXPECT_EQ(error_of("robots: [{name: a, model: models/bot}]\n"), "");
+  EXPECT_EQ(error_of("robots: [{name: a, model: models/bot/model.sdf}]\n"), "");
+  EXPECT_THAT(error_of("robots: [{name: a, model: bot}]\n"), HasSubstr("s.yaml:3:"));
+  setenv("SANDLOT_PATH", (folder / "models").c_str(), 1);
+  EXPECT_EQ(error_of("robots: [{name: a, model: bot}]\n"), "");
+  EXPECT_EQ(error_of("robots: [{name: a, model: 'model://bot'}]\n"), "");
+  unsetenv("SANDLOT_PATH");
+}
+
+TEST_F(Files, devices_of_the_scenario_are_laid_upon_the_models_own) {
+  const auto setup = load_text(
+      "robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {max_range: 50 cm}\n"
+      "    truth: {kind: ground_truth, link: base, pose: [1, 0, 0, 0, 0, 90 deg]}\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  const model::Instance& robot = setup->instances.back();
+  ASSERT_EQ(robot.devices.size(), 2u);
+  EXPECT_EQ(robot.devices[0].config.find("beams")->text(), "11") << "the model's key stays";
+  EXPECT_EQ(robot.devices[0].config.find("max_range")->text(), "50 cm") << "the scenario's key replaces";
+  EXPECT_EQ(robot.devices[1].kind, "ground_truth");
+  EXPECT_NEAR(yaw_of(robot.devices[1].X_LS.q), 1.5707963, 1e-6);
+  EXPECT_THAT(error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    eya: {beams: 3}\n"), HasSubstr("'eye'"));
+  EXPECT_THAT(error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    t: {kind: ground_truth, link: bas}\n"),
+              HasSubstr("did you mean 'base'?"));
+}
+
+TEST_F(Files, a_group_in_a_grid_is_centred_and_spaced) {
+  const auto setup = load_text("robots: [{name: a, model: models/bot, count: 6, distribution: {grid: {centre: [10, 0, 0], spacing: 2 m}}}]\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  ASSERT_EQ(setup->instances.size(), 7u);  // the ground first
+  EXPECT_EQ(setup->instances[1].name, "a1");
+  EXPECT_EQ(setup->instances[6].name, "a6");
+  Vec3 mean;
+  for (std::size_t i = 1; i < 7; ++i) mean += setup->instances[i].X_WM.p / 6;
+  EXPECT_NEAR(mean.x, 10, 1e-12);  // 3 x 2
+  EXPECT_NEAR(mean.y, 0, 1e-12);
+  EXPECT_NEAR(norm(setup->instances[2].X_WM.p - setup->instances[1].X_WM.p), 2, 1e-12);
+}
+
+TEST_F(Files, a_random_group_keeps_its_clearance_and_depends_on_the_seed_alone) {
+  const std::string robots =
+      "robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: 10, height: 10, clearance: 60 cm}}}]\n";
+  const auto first = load_text(robots), second = load_text(robots), other = load_text(robots + "seed: 2\n");
+  ASSERT_TRUE(first && second && other);
+  for (std::size_t i = 1; i <= 40; ++i) {
+    const Vec3 p = first->instances[i].X_WM.p;
+    EXPECT_EQ(p, second->instances[i].X_WM.p);
+    EXPECT_NE(p, other->instances[i].X_WM.p);
+    EXPECT_LE(std::abs(p.x), 5);
+    EXPECT_LE(std::abs(p.y), 5);
+    for (std::size_t k = 1; k < i; ++k) EXPECT_GE(norm(p - first->instances[k].X_WM.p), 0.6);
+  }
+  EXPECT_THAT(error_of("robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: 2, height: 2, clearance: 1}}}]\n"),
+              HasSubstr("no room"));
+}
+
+TEST_F(Files, names_are_made_into_addresses_and_collisions_are_errors) {
+  const auto setup = load_text("robots: [{name: 'my robot::1', model: models/bot}]\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  EXPECT_EQ(setup->instances.back().name, "my_robot__1");
+  EXPECT_EQ(setup->instances.back().original_name, "my robot::1");
+  const std::string error = error_of("robots:\n- {name: a b, model: models/bot}\n- {name: a_b, model: models/bot}\n");
+  EXPECT_THAT(error, HasSubstr("'a_b'"));
+  EXPECT_THAT(error, HasSubstr("s.yaml:5"));
+}
+
+TEST_F(Files, options_replace_seed_and_stop) {
+  const std::string file = write("s.yaml", "version: 1\nname: s\nseed: 5\ntime: {stop: 9 s}\n");
+  const auto plain = load(file, {}, diagnostics), changed = load(file, {{}, 77, 2.5}, diagnostics);
+  ASSERT_TRUE(plain && changed);
+  EXPECT_EQ(plain->seed, 5u);
+  EXPECT_EQ(plain->stop->s(), 9);
+  EXPECT_EQ(changed->seed, 77u);
+  EXPECT_EQ(changed->stop->s(), 2.5);
+}
+
+}  // namespace
+}  // namespace sandlot
