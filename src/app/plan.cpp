@@ -108,7 +108,7 @@ Area visible_area(const std::vector<Drawn>& solids, const std::vector<std::vecto
       for (const Vec3& point : part) area.add(point);
   const bool anything = !area.empty();
   Area near = area;
-  if (anything) near.grow(std::max(3.0, 0.5 * std::max(area.width(), area.height())));
+  if (anything) near.grow(std::max(6.0, 0.5 * std::max(area.width(), area.height())));
   for (const Drawn& solid : solids)
     if (solid.moves && (!anything || near.contains(solid.outline.centre_m))) add(area, solid.outline);
   if (area.empty()) area.add({});
