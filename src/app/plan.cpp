@@ -201,11 +201,15 @@ class Writer {
   /// Relative steps between rounded corners: short, and rounding does not add up.
   void polyline(const std::vector<Vec3>& points) {
     long x = 0, y = 0;
+    bool stepped = false;  // after the first `l`, further steps need no letter
     for (std::size_t i = 0; i < points.size(); ++i) {
       const long nx = mm(points[i].x), ny = mm(points[i].y);
-      if (i == 0) put("M{} {}", nx, ny);
-      else if (nx != x || ny != y)
-        put("{}{}{}{}", i == 1 ? "l" : nx < x ? "" : " ", nx - x, ny < y ? "" : " ", ny - y);
+      if (i == 0) {
+        put("M{} {}", nx, ny);
+      } else if (nx != x || ny != y) {
+        put("{}{}{}{}", !stepped ? "l" : nx < x ? "" : " ", nx - x, ny < y ? "" : " ", ny - y);
+        stepped = true;
+      }
       x = nx, y = ny;
     }
   }
