@@ -240,6 +240,7 @@ class Simulation {
   std::vector<Applied> applied_;
   std::vector<std::byte> applied_bytes_;
   std::shared_ptr<Frame> frame_;
+  std::vector<FrameCommand> spare_commands_;
   PhaseTimes phase_times_;
   mutable ByteWriter scratch_;
 };
