@@ -20,6 +20,7 @@ constexpr double wide_view_rad = 200 * math::pi / 180;
 constexpr double memory_m = 1.2;
 constexpr float memory_s = 3;
 constexpr std::size_t memory_size = 240;
+constexpr std::size_t most_sectors = 121;  // of a full turn
 constexpr std::size_t edge_sectors = 5;
 constexpr double back_s = 1.0;
 constexpr double back_mps = 0.15;
@@ -31,7 +32,7 @@ void Sectors::fill(const msg::LaserScan& scan, const Pose& X_BS) {
   const double first = scan.angle_min, step = scan.angle_increment;
   const double span = beams > 1 ? static_cast<double>(beams - 1) * std::abs(step) : 0;
   const double low = step < 0 ? first - span : first;
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad)));
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad - 1e-3)));
   const double width = span / static_cast<double>(count);
 
   constexpr float empty = -1;
@@ -89,6 +90,9 @@ Status Wander::init(const Description& robot) {
   SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
   X_BS = robot.pose(laser);
   period_s = robot.control_period_s;
+  state.memory.reserve(memory_size);  // it fills up slowly, and a running robot shall cost no heap
+  sectors.echoes.reserve(most_sectors + memory_size);
+  state.before.reserve(most_sectors);
   return {};
 }
 
@@ -147,6 +151,12 @@ Wander::Motion Wander::cruise(Stream& random) {
   if (state.favourite_left_s <= 0) {
     state.favourite_rad = random.uniform(-1.0, 1.0);
     state.favourite_left_s = random.uniform(2.0, 6.0);
+    // Now and then it looks round: without that it can run the same round of one room for minutes.
+    if (random.below(6) == 0) {
+      state.turn_sign = random.below(2) == 0 ? 1.0 : -1.0;
+      enter(Mode::turn, random);
+      return turn(random);
+    }
   }
   const double half_width = spec.radius_m + spec.margin_m;
   const double right = std::max(-widest_heading_rad, sectors.first_rad), left = std::min(widest_heading_rad, sectors.last_rad);

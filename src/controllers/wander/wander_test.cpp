@@ -174,6 +174,150 @@ Outcome wander_in(const Room& room, Trial& run, double seconds) {
   return out;
 }
 
+TEST(Sectors, TakeTheNearestEchoOfEachAndKnowWhatIsNotSeen) {
+  // 91 beams over 90 degrees: 30 sectors of 3 degrees. One near beam in the fifth, nothing at all on the left half.
+  msg::LaserScan scan;
+  scan.angle_min = static_cast<float>(-math::pi / 4);
+  scan.angle_increment = static_cast<float>(math::pi / 180);
+  scan.range_max = 8;
+  scan.ranges.assign(91, 3.0f);
+  for (std::size_t i = 46; i < 91; ++i) scan.ranges[i] = std::numeric_limits<float>::infinity();
+  scan.ranges[13] = 1.0f;
+  scan.ranges[20] = -std::numeric_limits<float>::infinity();
+  scan.ranges[25] = NAN;
+  Sectors sectors;
+  sectors.fill(scan, {});
+  ASSERT_EQ(sectors.distance_m.size(), 30u);
+  EXPECT_EQ(sectors.distance_m[4], 1.0f);
+  EXPECT_EQ(sectors.distance_m[6], 0.0f);
+  EXPECT_EQ(sectors.distance_m[0], 3.0f);
+  EXPECT_EQ(sectors.distance_m[8], 3.0f);
+  EXPECT_TRUE(sectors.echoes[4].seen);
+  EXPECT_FALSE(sectors.echoes[20].seen);
+}
+
+TEST(Sectors, BetweenSparseBeamsTheNearerNeighbourHolds) {
+  msg::LaserScan scan;
+  scan.angle_min = static_cast<float>(-math::pi / 4);
+  scan.angle_increment = static_cast<float>(math::pi / 4);
+  scan.range_max = 8;
+  scan.ranges = {1, 5, 2};
+  Sectors sectors;
+  sectors.fill(scan, {});
+  ASSERT_EQ(sectors.distance_m.size(), 30u);
+  EXPECT_EQ(sectors.distance_m[3], 1);
+  EXPECT_EQ(sectors.distance_m[14], 1);
+  EXPECT_EQ(sectors.distance_m[15], 5);
+  EXPECT_EQ(sectors.distance_m[16], 2);
+}
+
+TEST(Sectors, ACorridorEndsWhereTheDiscTouches) {
+  // One echo at (2, 0.1): a disc of 0.5 m moving along x touches it at 2 - sqrt(0.25 - 0.01).
+  Sectors sectors;
+  sectors.echoes = {{2, 0.1, math::hypot(2, 0.1), true}};
+  EXPECT_NEAR(sectors.corridor_m(0, 0.5, 10), 2 - std::sqrt(0.24), 1e-12);
+  EXPECT_EQ(sectors.corridor_m(0, 0.09, 10), 10);             // passes beside it
+  EXPECT_EQ(sectors.corridor_m(math::pi, 0.5, 10), 10);       // lies behind
+  EXPECT_NEAR(sectors.corridor_m(math::atan2(0.1, 2), 0.5, 10), math::hypot(2, 0.1) - 0.5, 1e-12);
+  EXPECT_EQ(sectors.corridor_m(0, 0.5, 1), 1);
+}
+
+TEST(Wander, DrivesStraightInTheOpenAndStopsBlind) {
+  Room nothing;
+  Trial trial({});
+  trial.wander.state.favourite_left_s = 100;
+  trial.scan(nothing);
+  trial.decide();
+  EXPECT_NEAR(trial.v, trial.wander.spec.speed_mps, 1e-9);
+  EXPECT_NEAR(trial.omega, 0, 0.1);  // the headings tried are 5 degrees apart
+  for (int k = 0; k < 12; ++k) trial.decide();  // no new scan for more than a second
+  EXPECT_EQ(trial.v, 0);
+  EXPECT_EQ(trial.omega, 0);
+}
+
+TEST(Wander, NeverOrdersMoreThanTheGapAllows) {
+  // A wall straight ahead: v <= (d - radius - margin / 2) / reaction.
+  for (const double d : {0.31, 0.4, 0.6, 1.0}) {
+    Room room;
+    room.walls.push_back({{d, -20}, {d, 20}});
+    Trial trial({});
+    trial.scan(room);
+    trial.decide();
+    EXPECT_LE(trial.v, (d - 0.25 - 0.05) / 0.6 + 1e-6);
+    EXPECT_GE(trial.v, 0);
+  }
+}
+
+TEST(Wander, TurnsToTheFreerSideAndKeepsToIt) {
+  // A pocket, open to the left behind the robot's shoulder.
+  Room room;
+  room.walls = {{{0.4, -0.4}, {0.4, 3}}, {{-3, -0.4}, {0.4, -0.4}}, {{-3, 0.8}, {0.1, 0.8}}};
+  Trial trial({});
+  trial.scan(room);
+  trial.decide();
+  EXPECT_LT(trial.v, 0.02);
+  ASSERT_GT(trial.omega, 0.3);
+  for (int k = 0; k < 8; ++k) {
+    trial.move(0.1);
+    trial.scan(room);
+    trial.decide();
+    EXPECT_GE(trial.omega, 0) << k;
+  }
+}
+
+TEST(Wander, BacksUpWhenItIsHeld) {
+  // Something that the scanner does not see holds the robot: the wall 3 m ahead comes no nearer.
+  Room room;
+  room.box(-3, -3, 6, 6);
+  Trial trial({.noise_m = 0.01});
+  trial.wander.state.favourite_left_s = 100;
+  trial.blocked = true;
+  bool backed = false;
+  for (int k = 0; k < 60 && !backed; ++k) {
+    trial.scan(room);
+    trial.decide();
+    backed = trial.v < 0;
+  }
+  EXPECT_TRUE(backed);
+  trial.blocked = false;
+  for (int k = 0; k < 100; ++k) {
+    trial.scan(room);
+    trial.decide();
+    trial.move(0.1);
+  }
+  EXPECT_GT(math::hypot(trial.x, trial.y), 0.3);  // and is off again
+}
+
+TEST(Wander, StateSurvivesSaving) {
+  const Room room = flat();
+  Trial a({.beams = 61, .fov_rad = 2 * math::pi / 3}), b({.beams = 61, .fov_rad = 2 * math::pi / 3});
+  a.x = 2;
+  a.y = 2;
+  for (int k = 0; k < 300; ++k) {
+    a.scan(room);
+    a.decide();
+    a.move(0.1);
+  }
+  ByteWriter w;
+  write(w, a.wander.state);
+  ByteReader r(w.bytes());
+  read(r, b.wander.state);
+  ASSERT_TRUE(r.ok());
+  b.x = a.x;
+  b.y = a.y;
+  b.theta = a.theta;
+  b.ticks = a.ticks;
+  for (int k = 0; k < 300; ++k) {
+    for (Trial* trial : {&a, &b}) {
+      trial->scan(room);
+      trial->decide();
+      trial->move(0.1);
+    }
+    ASSERT_EQ(a.x, b.x);
+    ASSERT_EQ(a.theta, b.theta);
+  }
+}
+
 class SlowWander : public testing::TestWithParam<int> {};
 
 TEST_P(SlowWander, CoversTheFlatWithoutTouchingAWall) {
@@ -190,7 +334,6 @@ TEST_P(SlowWander, CoversTheFlatWithoutTouchingAWall) {
   } while (room.distance({run.x, run.y}) < 0.5 || (run.x > 1.2 && run.x < 2.2 && run.y > 4.2 && run.y < 5.0));
   run.theta = start.uniform(-3, 3);
   const Outcome out = wander_in(room, run, 600);
-  if (getenv("WANDER_PRINT")) printf("%d: nearest %.3f covered %.2f driven %.1f\n", GetParam(), out.nearest_m, out.covered, out.driven_m);
   EXPECT_GT(out.nearest_m, run.wander.spec.radius_m);
   EXPECT_GT(out.covered, 0.6);
   EXPECT_GT(out.driven_m, 60);
