@@ -1,5 +1,7 @@
 /// What every engine promises (physics/engine.h), tested on each of them. A part that an engine does not claim in its
 /// capabilities() is left out by a condition, so that no test is ever skipped.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
 

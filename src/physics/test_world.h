@@ -1,7 +1,5 @@
 #pragma once
 /// Models and a world for the tests of physics engines: what the tests say in one line each.
-#include <gtest/gtest.h>
-
 #include <memory>
 #include <string>
 #include <utility>
@@ -66,9 +64,11 @@ inline model::Instance disc_robot(const std::string& name, Vec3 p, double yaw = 
   return body_of(name, Cylinder{0.1, 0.1}, 2, {{p.x, p.y, p.z + 0.05}, quat_from_rpy(0, 0, yaw)}, {}, true);
 }
 
-inline Node settings(std::vector<std::pair<std::string, std::string>> entries) {
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+inline Node settings(const Settings& entries) {
   Node node = Node::map();
-  for (auto& [key, value] : entries) node.set(key, Node::scalar(value));
+  for (const auto& [key, value] : entries) node.set(key, Node::scalar(value));
   return node;
 }
 
@@ -80,14 +80,12 @@ struct World {
 
   explicit World(const EngineKind& kind, const Node& config = {}, Vec3 gravity = {0, 0, -9.81}) {
     auto made = kind.create(config, gravity);
-    EXPECT_TRUE(made) << (made ? "" : made.error().text());
-    engine = std::move(*made);
+    engine = std::move(made.value());
   }
   InstanceId add(const model::Instance& instance) {
     auto id = engine->add(instance);
-    EXPECT_TRUE(id) << (id ? "" : id.error().text());
-    ids.push_back(*id);
-    return *id;
+    ids.push_back(id.value());
+    return ids.back();
   }
   void run(int n, double h = 0.01) {
     for (int i = 0; i < n; ++i) engine->step(h, 1000 + steps++);

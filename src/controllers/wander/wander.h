@@ -8,7 +8,8 @@
 ///          computed; the best trades length against leaving the drifting favourite heading and against changing its
 ///          mind. Where no heading is free the robot turns on the spot, towards the freer side, and keeps to that
 ///          side until the way ahead is clear. Speed obeys a barrier for every echo at distance d and bearing b:
-///          v cos(b) <= (d - radius - margin / 2) / reaction_s, so the gap can only shrink exponentially.
+///          v cos(b) <= (d - radius - margin / 2) / reaction_s, so the gap can only shrink exponentially. What a
+///          narrow scanner loses sight of is remembered for 3 s, moved by the orders given since.
 /// Stuck    When the echo straight ahead does not come nearer while the robot should drive towards it, or the whole
 ///          scan stays as it is while it should turn, it backs up the way it came and turns to a random side.
 /// Limits   sees only what the scanner's plane sees; no map, so coverage is that of a random walk; obstacles that move
@@ -54,6 +55,8 @@ struct State {
   double favourite_left_s = 0;  ///< time until it likes another one
   double heading_rad = 0;   ///< chosen in the previous step
   double blind_s = 1e9;     ///< time since the last scan
+  double v_mps = 0, omega_radps = 0;    ///< ordered in the previous step
+  std::vector<std::array<float, 3>> memory;  ///< x [m], y [m], age [s] of echoes out of view, in the robot's frame
   double driven_m = 0, turned_rad = 0;  ///< ordered since `before` was taken
   std::vector<float> before;            ///< sector distances to compare with
 
@@ -66,6 +69,9 @@ struct State {
     visit(Field{"favourite_left", "s", "Until it likes another."}, s.favourite_left_s);
     visit(Field{"heading", "rad", "Heading chosen."}, s.heading_rad);
     visit(Field{"blind", "s", "Time since the last scan."}, s.blind_s);
+    visit(Field{"linear", "m/s", "Ordered in the previous step."}, s.v_mps);
+    visit(Field{"angular", "rad/s", "Ordered in the previous step."}, s.omega_radps);
+    visit(Field{"memory", "", "x, y, age of echoes out of view."}, s.memory);
     visit(Field{"driven", "m", "Ordered since the scan it compares with."}, s.driven_m);
     visit(Field{"turned", "rad", "Ordered since the scan it compares with."}, s.turned_rad);
     visit(Field{"before", "m", "The scan it compares with."}, s.before);
@@ -79,7 +85,7 @@ struct Sectors {
     double range_m;        ///< from the robot's centre
     bool seen;             ///< false: nothing within the scanner's range
   };
-  std::vector<Echo> echoes;         ///< by bearing from the scanner, right to left
+  std::vector<Echo> echoes;         ///< by bearing from the scanner, right to left; then what is remembered
   std::vector<float> distance_m;    ///< from the scanner; its maximum where nothing was seen
   double first_rad = 0, last_rad = 0;  ///< bearings covered, in the robot's frame
 
@@ -111,6 +117,7 @@ struct Wander {
   Motion turn(Stream& random);
   Motion back();
   void enter(Mode mode, Stream& random);
+  void remember();
   bool stuck();
   double safe_speed(double wanted_mps) const;
 };

@@ -105,8 +105,10 @@ Status Motor::switch_level(std::uint32_t before, std::uint32_t after, const Cont
   if (before == after) return {};
   const JointState& now = context.engine.joint_states()[joint.index];
   const Level level = active(after);
-  // With no error left the PID's output is integral - d * rate: start it at the effort of now.
-  state.pid.integral = level == position ? now.effort + spec.position.d * now.velocity : now.effort;
+  // With no error left the PID's output is integral - d * rate: start it at the effort of now. Without an integral
+  // gain nothing would ever take that value away again.
+  const Gains& gains = level == position ? spec.position : spec.velocity;
+  state.pid.integral = gains.i == 0 ? 0 : level == position ? now.effort + gains.d * now.velocity : now.effort;
   state.previous_velocity = now.velocity;
   state.command = state.reference = present(level, now);
   return {};

@@ -8,8 +8,8 @@
 ///          smaller of max_effort and the joint's own.
 /// Output   none; a wheel_encoder shows the joint's state.
 /// Time     a command acts from the tick it arrives in. Before the first one the joint is free.
-/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; the
-///          integral starts where the effort continues without a jump.
+/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; an
+///          integral (if the gains have one) starts where the effort continues without a jump.
 /// Noise    none: the loop sees the true angle and speed.
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.

@@ -126,6 +126,7 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
     of_lump[i] = &body;
     body.instance = &instance;
     body.mass_kg = lump.mass_kg;
+    instance.mass_kg += lump.mass_kg;
     body.inertia_B = lump.inertia_B;
     body.X_MB = lump.X_MB;
     body.gravity_mass_kg = lump.gravity_mass_kg;

@@ -96,10 +96,13 @@ struct Instance {
   std::vector<BodyId> link_ids;
   std::vector<JointId> joint_ids;
   std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide
-  bool anchored = false;                                    ///< some joint holds on to the world
+  double mass_kg = 0;
+  bool anchored = false;  ///< some joint holds on to the world
   // State
   DriveTarget drive{.active = false};
   std::uint32_t drive_link = 0;
+
+  std::uint32_t contact_points = 0, contacts_seen = 0;  ///< scratch of one sub-step
 };
 
 }  // namespace sandlot::rigid

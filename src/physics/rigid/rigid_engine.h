@@ -23,6 +23,8 @@
 
 namespace sandlot::rigid {
 
+extern const EngineKind engine;
+
 class RigidEngine final : public Engine {
  public:
   RigidEngine(const Spec& spec, Vec3 gravity_mps2);
@@ -107,6 +109,9 @@ class RigidEngine final : public Engine {
   std::uint32_t root(std::uint32_t node);
   void unite(const Body* a, const Body* b);
   void solve(double h_s, std::uint64_t stream_key);
+  template <class Choose>
+  void enable(Choose&& choose);
+  void solve_again(double h_s);
   void advance(double h_s);
   void send_to_sleep(double h_s);
 
@@ -133,6 +138,7 @@ class RigidEngine final : public Engine {
   std::vector<Contact> contacts_;
   EngineCounters counters_;
   bool finite_ = true;
+  std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
 
   // Scratch of one sub-step; kept for its capacity.
   std::vector<Pair> pairs_, dormant_;

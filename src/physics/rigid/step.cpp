@@ -54,11 +54,17 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
   library::prepare_thread();
   if (!finite_) return;  // ODE must not see NaN; check_finite() reports it
   const library::Counts before = library::counts();
-  push_forces(h);
-  collide();
-  attach_contacts(h);
-  find_islands();
-  solve(h, stream_key);
+  try {
+    push_forces(h);
+    collide();
+    attach_contacts(h);
+    find_islands();
+    solve(h, stream_key);
+  } catch (const library::Fault& fault) {
+    finite_ = false;
+    fault_ = fault.message;
+    return;
+  }
   advance(h);
   if (spec_.sleeping) send_to_sleep(h);
   dJointGroupEmpty(contact_joints_);
@@ -134,6 +140,7 @@ void RigidEngine::find_islands() {
 
 /// ODE finds the same islands and solves each by itself, and leaves out those whose bodies are disabled.
 void RigidEngine::solve(double h, std::uint64_t stream_key) {
+  library::seed(stream_key);
   bool any_direct = false, any_quick = false;
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
@@ -141,20 +148,49 @@ void RigidEngine::solve(double h, std::uint64_t stream_key) {
       b.quick = islands_[root(b.island)].quick;
       (b.quick ? any_quick : any_direct) = true;
     }
-  const auto enable = [&](bool quick) {
-    for (Instance* instance : order_)
-      for (Body& b : instance->bodies) {
-        if (b.awake && b.quick == quick) dBodyEnable(b.ode);
-        else dBodyDisable(b.ode);
-      }
-  };
   if (any_direct) {
-    enable(false);
+    enable([](const Body& b) { return !b.quick; });
+    const std::uint64_t complaints = library::counts().messages;
     dWorldStep(world_, h);
+    if (library::counts().messages != complaints) solve_again(h);
   }
   if (any_quick) {
-    enable(true);
-    library::seed(stream_key);
+    enable([](const Body& b) { return b.quick; });
+    dWorldQuickStep(world_, h);
+  }
+}
+
+template <class Choose>
+void RigidEngine::enable(Choose&& choose) {
+  for (Instance* instance : order_)
+    for (Body& b : instance->bodies) {
+      if (b.awake && choose(b)) dBodyEnable(b.ode);
+      else dBodyDisable(b.ode);
+    }
+}
+
+/// The direct solver gave up on some island, which leaves that one without most of its friction. Every island is tried
+/// by itself, with the same result where it had one, and what fails is solved quickly for this sub-step.
+void RigidEngine::solve_again(double h) {
+  const auto reset = [&](std::uint32_t island) {
+    for (Instance* instance : order_)
+      for (Body& b : instance->bodies) {
+        if (!b.awake || root(b.island) != island) continue;
+        put(b);
+        dBodySetLinearVel(b.ode, b.v.x, b.v.y, b.v.z);
+        dBodySetAngularVel(b.ode, b.w.x, b.w.y, b.w.z);
+        dBodySetForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
+        dBodySetTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
+      }
+  };
+  for (std::uint32_t island = 0; island < islands_.size(); ++island) {
+    if (island_parent_[island] != island || islands_[island].quick) continue;
+    enable([&](const Body& b) { return root(b.island) == island; });
+    reset(island);
+    const std::uint64_t complaints = library::counts().messages;
+    dWorldStep(world_, h);
+    if (library::counts().messages == complaints) continue;
+    reset(island);
     dWorldQuickStep(world_, h);
   }
 }

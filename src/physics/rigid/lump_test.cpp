@@ -1,0 +1,85 @@
+#include "physics/rigid/lump.h"
+
+#include <gtest/gtest.h>
+
+#include "base/math.h"
+#include "physics/test_world.h"
+
+namespace sandlot::rigid {
+namespace {
+
+using namespace test;
+
+model::Joint fixed(std::uint32_t parent, std::uint32_t child) {
+  model::Joint joint;
+  joint.parent = parent;
+  joint.child = child;
+  return joint;
+}
+
+TEST(Lump, TwoHalvesMakeTheWhole) {
+  // A bar of 2 kg cut in the middle; the second half is turned and carries its frame elsewhere.
+  model::Model m;
+  m.links.push_back(link_of("left", Box{{0.5, 0.1, 0.2}}, 1, {{-0.25, 0, 0}, {}}));
+  m.links.push_back(link_of("right", Box{{0.1, 0.2, 0.5}}, 1));
+  // x of the half lies along its own z, its y along z.
+  m.links[1].X_ML = {{1, 2, 3}, quat_from_rpy(math::pi / 2, 0, 0) * quat_from_rpy(0, math::pi / 2, 0)};
+  const Pose X_MCo{{0.25, 0, 0}, m.links[1].X_ML.q};
+  m.links[1].inertial.X_LCo = inverse(m.links[1].X_ML) * X_MCo;
+  m.joints.push_back(fixed(0, 1));
+  const auto lumps = lump_links(m);
+  ASSERT_TRUE(lumps);
+  ASSERT_EQ(lumps->lumps.size(), 1u);
+  const Lump& lump = lumps->lumps[0];
+  EXPECT_DOUBLE_EQ(lump.mass_kg, 2);
+  EXPECT_NEAR(norm(lump.X_MB.p), 0, 1e-15);
+  // Which way round the half lies decides between y and z extents; take them from the rotated shape.
+  const Vec3 size_M = rotate(m.links[1].X_ML.q, {0.1, 0.2, 0.5});
+  ASSERT_NEAR(std::abs(size_M.x), 0.5, 1e-12);
+  const double y = std::abs(size_M.y), z = std::abs(size_M.z);
+  const Vec3 left = inertia_kg_m2(Box{{0.5, 0.1, 0.2}}, 1), right = inertia_kg_m2(Box{{0.5, y, z}}, 1);
+  EXPECT_NEAR(lump.inertia_B.xx, left.x + right.x, 1e-12);
+  EXPECT_NEAR(lump.inertia_B.yy, left.y + right.y + 2 * 0.0625, 1e-12);  // Steiner: 1 kg at 0.25 m, twice
+  EXPECT_NEAR(lump.inertia_B.zz, left.z + right.z + 2 * 0.0625, 1e-12);
+  EXPECT_NEAR(lump.inertia_B.xy, 0, 1e-12);
+}
+
+TEST(Lump, ProductsOfInertiaTurnWithTheirFrame) {
+  const Symmetric3 m{1, 2, 3, 0.1, 0.2, 0.3};
+  const Quat q = quat_from_rpy(0.3, -0.5, 1.1);
+  const Symmetric3 r = rotated(q, m);
+  // R m R^T v = R (m (R^T v)) for any v.
+  for (const Vec3 v : {Vec3{1, 0, 0}, Vec3{0.3, -2, 0.7}}) {
+    const Vec3 want = rotate(q, m * rotate_inverse(q, v)), got = r * v;
+    EXPECT_NEAR(norm(want - got), 0, 1e-14);
+  }
+  EXPECT_TRUE(is_positive_definite(m));
+  EXPECT_FALSE(is_positive_definite({1, 1, 1, 2, 0, 0}));
+  EXPECT_FALSE(is_positive_definite({1, 1, -1, 0, 0, 0}));
+}
+
+TEST(Lump, FixedJointsJoinAndTheWorldHolds) {
+  model::Model m;
+  for (int i = 0; i < 6; ++i) m.links.push_back(link_of("l", Sphere{0.1}, 1, {{1.0 * i, 0, 0}, {}}));
+  m.joints.push_back(fixed(4, 2));
+  m.joints.push_back(fixed(2, 0));
+  m.joints.push_back(fixed(0, 4));  // a loop of fixed joints
+  m.joints.push_back(fixed(model::world_link, 5));
+  m.joints.push_back(fixed(5, 3));
+  const auto lumps = lump_links(m);
+  ASSERT_TRUE(lumps);
+  EXPECT_EQ(lumps->of_link, (std::vector<std::uint32_t>{0, 1, 0, 2, 0, 2}));
+  ASSERT_EQ(lumps->lumps.size(), 3u);
+  EXPECT_EQ(lumps->lumps[0].links, (std::vector<std::uint32_t>{0, 2, 4}));
+  EXPECT_NEAR(lumps->lumps[0].X_MB.p.x, 2, 1e-15);
+  EXPECT_FALSE(lumps->lumps[0].fixed);
+  EXPECT_TRUE(lumps->lumps[2].fixed);
+  m.is_static = true;
+  const auto standing = lump_links(m);
+  ASSERT_TRUE(standing);
+  ASSERT_EQ(standing->lumps.size(), 1u);
+  EXPECT_TRUE(standing->lumps[0].fixed);
+}
+
+}  // namespace
+}  // namespace sandlot::rigid
