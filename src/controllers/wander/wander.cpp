@@ -109,14 +109,14 @@ void Wander::remember() {
     state.memory.clear();
     return;
   }
-  const auto [s, c] = math::sincos(-state.omega_radps * period_s);
+  const math::SinCos turned = math::sincos(-state.omega_radps * period_s);
   const double dx = state.v_mps * period_s;
   const Pose X_SB = inverse(X_BS);
   const double yaw = yaw_of(X_BS.q);
   std::erase_if(state.memory, [&](std::array<float, 3>& echo) {
     const double x = echo[0] - dx, y = echo[1];
-    echo = {static_cast<float>(x * c - y * s), static_cast<float>(x * s + y * c),
-            echo[2] + static_cast<float>(period_s)};
+    echo = {static_cast<float>(x * turned.cos - y * turned.sin),
+            static_cast<float>(x * turned.sin + y * turned.cos), echo[2] + static_cast<float>(period_s)};
     const Vec3 p_S = X_SB * Vec3{echo[0], echo[1], 0};
     const double bearing = math::wrap_angle(math::atan2(p_S.y, p_S.x) + yaw);
     const bool in_view = bearing > sectors.first_rad && bearing < sectors.last_rad;

@@ -91,7 +91,7 @@ TEST(DiffDrive, OdometryIsOfTheBaseEvenWhenTheAxleIsElsewhere) {
 }
 
 TEST(DiffDrive, IdealMovesTheBaseAndItsOdometryFollowsTheTruth) {
-  for (const auto [dx, dy] : {std::pair{0.0, 0.0}, std::pair{0.4, 0.0}, std::pair{0.4, -0.1}}) {
+  for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, std::pair{0.4, 0.0}, std::pair{0.4, -0.1}}) {
     Rig rig(kind, test::two_wheels(dx, dy));
     ASSERT_TRUE(rig.add("drive", drive(), ideal_bit));
     rig.command("drive/ideal", twist(0.5, 0.8));
