@@ -80,17 +80,19 @@ TEST(Random, ARangeNeverReturnsItsUpperEnd) {
 }
 
 TEST(Random, BelowIsUnbiased) {
-  // n = 3 * 2^30: taking the remainder of 32 bits would give the lowest third twice as often as the others. Counts of
-  // thirds: mean n/3, deviation sqrt(n 2/9).
+  // n = 3 * 2^30 is where shortcuts show: the remainder of 32 bits gives the lowest third twice as often, the high word
+  // of the product without rejection every multiple of three. Counts: mean draws / 3, deviation sqrt(draws 2/9).
   constexpr int draws = 90'000;
   constexpr std::uint32_t n = 3u << 30;
   Stream s = stream();
-  std::array<int, 3> thirds{};
+  std::array<int, 3> thirds{}, residues{};
   for (int i = 0; i < draws; ++i) {
     const std::uint32_t x = s.below(n);
     ASSERT_LT(x, n);
     ++thirds[x >> 30];
+    ++residues[x % 3];
   }
+  for (const int count : residues) EXPECT_NEAR(count, draws / 3, 5 * std::sqrt(draws * 2.0 / 9));
   for (const int count : thirds) EXPECT_NEAR(count, draws / 3, 5 * std::sqrt(draws * 2.0 / 9));
   std::array<int, 6> die{};
   for (int i = 0; i < 60'000; ++i) ++die[s.below(6)];
