@@ -108,7 +108,7 @@ Area visible_area(const std::vector<Drawn>& solids, const std::vector<std::vecto
       for (const Vec3& point : part) area.add(point);
   const bool anything = !area.empty();
   Area near = area;
-  if (anything) near.grow(std::max(3.0, 0.5 * std::max(area.width(), area.height())));
+  if (anything) near.grow(std::max(6.0, 0.5 * std::max(area.width(), area.height())));
   for (const Drawn& solid : solids)
     if (solid.moves && (!anything || near.contains(solid.outline.centre_m))) add(area, solid.outline);
   if (area.empty()) area.add({});
@@ -201,11 +201,15 @@ class Writer {
   /// Relative steps between rounded corners: short, and rounding does not add up.
   void polyline(const std::vector<Vec3>& points) {
     long x = 0, y = 0;
+    bool stepped = false;  // after the first `l`, further steps need no letter
     for (std::size_t i = 0; i < points.size(); ++i) {
       const long nx = mm(points[i].x), ny = mm(points[i].y);
-      if (i == 0) put("M{} {}", nx, ny);
-      else if (nx != x || ny != y)
-        put("{}{}{}{}", i == 1 ? "l" : nx < x ? "" : " ", nx - x, ny < y ? "" : " ", ny - y);
+      if (i == 0) {
+        put("M{} {}", nx, ny);
+      } else if (nx != x || ny != y) {
+        put("{}{}{}{}", !stepped ? "l" : nx < x ? "" : " ", nx - x, ny < y ? "" : " ", ny - y);
+        stepped = true;
+      }
       x = nx, y = ny;
     }
   }

@@ -83,6 +83,13 @@ TEST(Plan, CoordinatesAreMillimetresInTheWorld) {
   EXPECT_THAT(svg, HasSubstr("d=\"M0 0l1235 2000\""));               // the path, in steps
 }
 
+TEST(Plan, PointsThatRoundToOneAreWrittenOnce) {
+  Plan plan = room();
+  plan.robots.push_back(robot("rover", {1, 1, 0}));
+  plan.robots[0].scans.push_back({{1, 1, 0}, {{1.0001, 1, 0}, {2, 1.5, 0}}, {true, true}});
+  EXPECT_THAT(to_svg(plan), HasSubstr("d=\"M1000 1000l1000 500z\""));
+}
+
 TEST(Plan, TheArrowPointsWhereTheRobotDoes) {
   Plan plan = room();
   plan.robots.push_back(robot("rover", {1, 1, 0}, math::pi / 2));

@@ -84,7 +84,7 @@ class BareEmbree {
           p.rays.ray.tfar[i] = p.max_m;
           p.rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
-        trace(p, query);
+        embree::intersect8(p.valid, scene_, query, p.rays);
         for (std::size_t i = 0; i < p.count; ++i)
           distances_[out++] = p.rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
                                   ? std::numeric_limits<float>::infinity()
@@ -98,16 +98,11 @@ class BareEmbree {
   struct Query : embree::QueryContext {
     double origin[3];
   };
-#ifdef BARE16
-  static constexpr std::size_t width = 16;
-  using Rays = RTCRayHit16;
-#else
+  // Packets of eight: with AVX2 Embree splits sixteen into two of them, which costs it a tenth.
   static constexpr std::size_t width = 8;
-  using Rays = RTCRayHit8;
-#endif
   struct alignas(64) Packet {
     int valid[width];
-    Rays rays;
+    RTCRayHit8 rays;
     std::size_t count;
     float max_m;
   };
@@ -115,14 +110,6 @@ class BareEmbree {
     RayJob job;
     std::size_t first_packet;
   };
-  void trace(Packet& p, Query& q) {
-#ifdef BARE16
-    rtcIntersect16(p.valid, scene_, &q, &p.rays);
-#else
-    embree::intersect8(p.valid, scene_, q, p.rays);
-#endif
-  }
-
   static void bounds(const RTCBoundsFunctionArguments* a) {
     const optics::Bounds b = optics::bounds(static_cast<const optics::Solid*>(a->geometryUserPtr)[a->primID]);
     RTCBounds& out = *a->bounds_o;
@@ -142,8 +129,8 @@ class BareEmbree {
     for (unsigned first = 0; first < n; first += lanes::width) {
       const unsigned count = std::min(n - first, unsigned{lanes::width});
       const auto at = [&](unsigned field) { return base + field * n + first; };
-      const optics::Rays8 rays{lanes::load<F>(at(4), count), lanes::load<F>(at(5), count), lanes::load<F>(at(6), count),
-                               lanes::load<F>(at(3), count)};
+      const optics::Rays8 rays{lanes::load<F>(at(4), count), lanes::load<F>(at(5), count),
+                               lanes::load<F>(at(6), count), lanes::load<F>(at(3), count)};
       const F t = optics::distance_to(solid, static_cast<const Query*>(a->context)->origin, rays);
       const F tfar = lanes::load<F>(at(8), count);
       const I take = lanes::load<I>(a->valid + first, count) & (t >= rays.near) & (t < tfar);

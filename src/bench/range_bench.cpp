@@ -5,9 +5,9 @@
 #include "base/check.h"
 #include "base/math.h"
 #include "base/random.h"
-#include "bench/bench.h"
 #include "bench/bare_embree.h"
 #include "bench/bare_grid.h"
+#include "bench/bench.h"
 #include "optics/ray_scene.h"
 #include "physics/engine.h"
 
@@ -75,21 +75,31 @@ std::vector<Row> field_ranges() {
     std::vector<float> seen(directions.size() * field.robots.size());
     std::vector<RayJob> jobs;
     for (std::size_t i = 0; i < field.robots.size(); ++i)
-      jobs.push_back({field.robots[i] * at(0, 0, 0.3), directions, min_m, max_m, static_cast<std::uint32_t>(i + 1),
-                      std::span(seen).subspan(i * directions.size(), directions.size()), {}});
+      jobs.push_back({field.robots[i] * at(0, 0, 0.3),
+                      directions,
+                      min_m,
+                      max_m,
+                      static_cast<std::uint32_t>(i + 1),
+                      std::span(seen).subspan(i * directions.size(), directions.size()),
+                      {}});
     bare.prepare(jobs);
     const int rounds = 40;
     const Timing t = compare(
-        41, [&] { for (int i = 0; i < rounds; ++i) scene.cast(jobs); },
-        [&] { for (int i = 0; i < rounds; ++i) bare.trace(); });
+        41,
+        [&] {
+          for (int i = 0; i < rounds; ++i) scene.cast(jobs);
+        },
+        [&] {
+          for (int i = 0; i < rounds; ++i) bare.trace();
+        });
     std::size_t differences = 0;
     for (std::size_t i = 0; i < seen.size(); ++i)
       differences += !(seen[i] == bare.distances()[i] || std::abs(seen[i] - bare.distances()[i]) < 1e-4f);
     SL_CHECK_MSG(differences * 1000 <= seen.size(), "the two loops must see the same field");
     const double per_ray = 1e9 / (rounds * static_cast<double>(seen.size()));
     // "At least 85 % of the bare loop" as a ratio of costs.
-    rows.push_back(row("P5 ranges, 3D field, " + std::to_string(beams) + " beams", "ns/ray", t.ours_s * per_ray,
-                       t.reference_s * per_ray, 1 / 0.85));
+    rows.push_back(row("P5 ranges, 3D field, " + std::to_string(beams) + " beams", "ns/ray",
+                       t.ours_s * per_ray, t.reference_s * per_ray, 1 / 0.85));
   }
   return rows;
 }
@@ -145,8 +155,13 @@ std::vector<Row> swarm_ranges() {
       std::vector<float> seen(directions.size() * sensor.robots), bare(seen.size());
       std::vector<RayJob> jobs;
       for (std::size_t i = 0; i < sensor.robots; ++i)
-        jobs.push_back({at(discs[i].x, discs[i].y, 0.1), directions, 0, sensor.max_m, bodies[i],
-                        std::span(seen).subspan(i * directions.size(), directions.size()), {}});
+        jobs.push_back({at(discs[i].x, discs[i].y, 0.1),
+                        directions,
+                        0,
+                        sensor.max_m,
+                        bodies[i],
+                        std::span(seen).subspan(i * directions.size(), directions.size()),
+                        {}});
       std::vector<float> dx, dy;
       for (const Vec3 d : directions) {
         dx.push_back(static_cast<float>(d.x));
@@ -158,9 +173,9 @@ std::vector<Row> swarm_ranges() {
           [&] {
             for (std::size_t i = 0; i < sensor.robots; ++i)
               for (std::size_t k = 0; k < directions.size(); ++k)
-                bare[i * directions.size() + k] =
-                    grid.cast(static_cast<float>(discs[i].x), static_cast<float>(discs[i].y), dx[k], dy[k],
-                              static_cast<float>(sensor.max_m), static_cast<std::uint32_t>(i));
+                bare[i * directions.size() + k] = grid.cast(
+                    static_cast<float>(discs[i].x), static_cast<float>(discs[i].y), dx[k], dy[k],
+                    static_cast<float>(sensor.max_m), static_cast<std::uint32_t>(i));
           });
       std::size_t differences = 0;
       for (std::size_t i = 0; i < seen.size(); ++i)

@@ -286,7 +286,8 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(valid, I{0, 1, 2, 3, 4, 5, 6, 7} < lanes::all(static_cast<int>(count)));
     // Lanes beyond the last ray repeat the first.
     const auto in = [&](std::size_t i) -> const Vec3& { return job.directions[first + (i < count ? i : 0)]; };
-    const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)), high = rotate(R, in(4), in(5), in(6), in(7));
+    const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)),
+                         high = rotate(R, in(4), in(5), in(6), in(7));
     const F dx = join(low.x, high.x), dy = join(low.y, high.y), dz = join(low.z, high.z);
     lanes::store(packet.ray.dir_x, dx);
     lanes::store(packet.ray.dir_y, dy);
@@ -296,7 +297,8 @@ void RayScene::Impl::cast(const RayJob& job) const {
     for (const WorldPlane& plane : planes) {
       if (plane.body == job.ignore_body && plane.body != no_body) continue;
       const Vec3 n = plane.normal_W;
-      const F towards = static_cast<float>(n.x) * dx + static_cast<float>(n.y) * dy + static_cast<float>(n.z) * dz;
+      const F towards = static_cast<float>(n.x) * dx + static_cast<float>(n.y) * dy +
+                        static_cast<float>(n.z) * dz;
       const F t = static_cast<float>(dot(n, plane.point_W - job.X_WS.p)) / towards;
       keep_nearest(lanes::all(-1), t, tnear, plane.body, tfar, bodies, found);
     }

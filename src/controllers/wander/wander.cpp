@@ -20,6 +20,7 @@ constexpr double wide_view_rad = 200 * math::pi / 180;
 constexpr double memory_m = 1.2;
 constexpr float memory_s = 3;
 constexpr std::size_t memory_size = 240;
+constexpr std::size_t most_sectors = 121;  // of a full turn
 constexpr std::size_t edge_sectors = 5;
 constexpr double back_s = 1.0;
 constexpr double back_mps = 0.15;
@@ -91,6 +92,9 @@ Status Wander::init(const Description& robot) {
   SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
   X_BS = robot.pose(laser);
   period_s = robot.control_period_s;
+  state.memory.reserve(memory_size);  // it fills up slowly, and a running robot shall cost no heap
+  sectors.echoes.reserve(most_sectors + memory_size);
+  state.before.reserve(most_sectors);
   return {};
 }
 

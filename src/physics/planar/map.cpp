@@ -167,16 +167,11 @@ struct Map::Hit {
     found = true;
   }
   void meet(const Ray& ray, const Disc& disc) {
-    const Chord c =
-        chord_of_circle(disc.centre - ray.origin, disc.radius_m, ray.direction, ray.length2, ray.inverse_length2);
+    const Chord c = chord_of_circle(disc.centre - ray.origin, disc.radius_m, ray.direction, ray.length2,
+                                    ray.inverse_length2);
     if (c.first <= c.last) meet(ray, c, disc.heights, disc.body);
   }
 };
-
-inline void Map::meet_discs(const Ray& ray, std::uint32_t slot, Hit& hit) const {
-  for (const std::uint32_t k : disc_cells_.in_slot(slot))
-    if (k != ray.ignored) hit.meet(ray, discs_[k]);
-}
 
 void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const {
   for (const std::uint32_t k : walls) {
@@ -188,50 +183,74 @@ void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& 
   }
 }
 
+/// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly share it.
+struct Map::Start {
+  std::int64_t i, j;
+  Vec2 low, high;
+};
+
+Map::Start Map::start_at(Vec2 entry, Vec2 origin) const {
+  const std::int64_t i = disc_cells_.cell(entry.x), j = disc_cells_.cell(entry.y);
+  const Vec2 corner{cell_m_ * static_cast<double>(i), cell_m_ * static_cast<double>(j)};
+  return {i, j, corner - origin, corner + Vec2{cell_m_, cell_m_} - origin};
+}
+
+/// Cuts [begin, end] of the ray down to the part over the rectangle of all there is; false when none is left.
+bool Map::clip(const Ray& ray, double& begin, double& end) const {
+  const auto between = [&](double o, double d, double low, double high) {
+    if (d == 0) return o >= low && o <= high;
+    const double a = (low - o) / d, b = (high - o) / d;
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+    return begin <= end;
+  };
+  return between(ray.origin.x, ray.direction.x, area_.low.x, area_.high.x) &&
+         between(ray.origin.y, ray.direction.y, area_.low.y, area_.high.y);
+}
+
 /// Follows a ray from cell to cell until the nearest thing met lies before the next one.
 /// J. Amanatides, A. Woo, A fast voxel traversal algorithm for ray tracing (1987).
-void Map::walk(const Ray& ray, Hit& hit) const {
-  if (!(area_.low.x <= area_.high.x)) return;
-  // Only the part over the rectangle of all there is, where the walk has somewhere to end.
-  double begin = ray.min_m, end = hit.t;
-  const Vec2 o = ray.origin, d = ray.direction;
-  const Vec2 per{1 / d.x, 1 / d.y};
-  if (d.x != 0) {
-    const double a = (area_.low.x - o.x) * per.x, b = (area_.high.x - o.x) * per.x;
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
-  } else if (!(o.x >= area_.low.x && o.x <= area_.high.x)) {
-    return;
+/// @param shared  where rays of this job begin if all of each is over the map; otherwise null
+template <bool with_walls>
+void Map::walk(const Ray& ray_in, const Start* shared, Hit& hit_out) const {
+  const Ray ray = ray_in;
+  Hit hit = hit_out;
+  double end = hit.t;
+  Start start;
+  if (shared) {
+    start = *shared;
+  } else {
+    double begin = ray.min_m;
+    if (!clip(ray, begin, end)) return;
+    const Vec2 entry = ray.origin + begin * ray.direction;
+    if (!(std::abs(entry.x) < 1e13 && std::abs(entry.y) < 1e13))
+      return;  // not finite, or no map reaches so far
+    start = start_at(entry, ray.origin);
   }
-  if (d.y != 0) {
-    const double a = (area_.low.y - o.y) * per.y, b = (area_.high.y - o.y) * per.y;
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
-  } else if (!(o.y >= area_.low.y && o.y <= area_.high.y)) {
-    return;
-  }
-  if (!(begin <= end)) return;
-  const Vec2 entry = o + begin * d;
-  if (!(std::abs(entry.x) < 1e13 && std::abs(entry.y) < 1e13)) return;  // not finite, or no map reaches so far
-
-  std::int64_t i = disc_cells_.cell(entry.x), j = disc_cells_.cell(entry.y);
+  const Vec2 d = ray.direction, per{1 / d.x, 1 / d.y};
+  std::int64_t i = start.i, j = start.j;
   const std::int64_t step_i = d.x < 0 ? -1 : 1, step_j = d.y < 0 ? -1 : 1;
-  const double next_x = cell_m_ * static_cast<double>(i + (d.x < 0 ? 0 : 1));
-  const double next_y = cell_m_ * static_cast<double>(j + (d.y < 0 ? 0 : 1));
-  double t_x = d.x != 0 ? (next_x - o.x) * per.x : inf, t_y = d.y != 0 ? (next_y - o.y) * per.y : inf;
+  double t_x = d.x != 0 ? (d.x < 0 ? start.low.x : start.high.x) * per.x : inf;
+  double t_y = d.y != 0 ? (d.y < 0 ? start.low.y : start.high.y) * per.y : inf;
   const double delta_x = cell_m_ * std::abs(per.x), delta_y = cell_m_ * std::abs(per.y);
-  const bool has_walls = !walls_.empty();
+  const Cells::View discs = disc_cells_.view();
+  const Disc* const disc = discs_.data();
   for (;;) {
-    meet_discs(ray, disc_cells_.slot(i, j), hit);
-    if (has_walls) meet_walls(ray, wall_cells_.in_slot(wall_cells_.slot(i, j)), hit);
+    const std::uint32_t slot = discs.slot(i, j);
+    for (std::uint32_t k = discs.start[slot]; k < discs.start[slot + 1]; ++k)
+      if (discs.things[k] != ray.ignored) hit.meet(ray, disc[discs.things[k]]);
+    if constexpr (with_walls) meet_walls(ray, wall_cells_.in_slot(wall_cells_.slot(i, j)), hit);
     const double leave = std::min(t_x, t_y);
-    if (hit.t <= leave || !(leave <= end)) return;
-    const bool across = t_x < t_y;
-    t_x += across ? delta_x : 0;
-    t_y += across ? 0 : delta_y;
-    i += across ? step_i : 0;
-    j += across ? 0 : step_j;
+    if (hit.t <= leave || !(leave <= end)) break;
+    if (t_x < t_y) {
+      t_x += delta_x;
+      i += step_i;
+    } else {
+      t_y += delta_y;
+      j += step_j;
+    }
   }
+  hit_out = hit;
 }
 
 /// Discs that rays of one job can reach at all, if there are few: short rays then need no walk.
@@ -246,7 +265,8 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
   const Vec2 o{job.X_WS.p.x, job.X_WS.p.y};
   const Area area = around(o, job.max_m);
   const Cells::Range range = disc_cells_.cover(area);
-  if (range.empty() || (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1) > Reach::most_cells) return false;
+  if (range.empty() || (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1) > Reach::most_cells)
+    return false;
   for (std::int64_t j = range.y0; j <= range.y1; ++j)
     for (std::int64_t i = range.x0; i <= range.x1; ++i) {
       if (!walls_.empty() && !wall_cells_.in_slot(wall_cells_.slot(i, j)).empty()) return false;
@@ -262,25 +282,31 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
 }
 
 void Map::cast(const RayJob& job, std::uint32_t ignored) const {
-  const Vec3 x = rotate(job.X_WS.q, {1, 0, 0}), y = rotate(job.X_WS.q, {0, 1, 0}), z = rotate(job.X_WS.q, {0, 0, 1});
+  const Vec3 x = rotate(job.X_WS.q, {1, 0, 0}), y = rotate(job.X_WS.q, {0, 1, 0}),
+             z = rotate(job.X_WS.q, {0, 0, 1});
   const Vec3 o = job.X_WS.p;
   Reach reach;
   const bool near = gather(job, ignored, reach);
+  const bool anything = area_.low.x <= area_.high.x;
+  const Area all = around({o.x, o.y}, job.max_m);
+  const bool inside = job.min_m == 0 && all.low.x >= area_.low.x && all.low.y >= area_.low.y &&
+                      all.high.x <= area_.high.x && all.high.y <= area_.high.y;
+  const Start start = inside ? start_at({o.x, o.y}, {o.x, o.y}) : Start{};
+  const Start* const shared = inside ? &start : nullptr;
   for (std::size_t i = 0; i < job.directions.size(); ++i) {
     const Vec3 s = job.directions[i];
     const Vec2 d{x.x * s.x + y.x * s.y + z.x * s.z, x.y * s.x + y.y * s.y + z.y * s.z};
     const double length2 = dot(d, d);
     // Most rays are level and of unit length up to rounding, where 2 - x is 1 / x.
     const double inverse_length2 = std::abs(length2 - 1) < 1e-9 ? 2 - length2 : 1 / length2;
-    const Ray ray{{o.x, o.y}, d, o.z, x.z * s.x + y.z * s.y + z.z * s.z, length2, inverse_length2,
+    const Ray ray{{o.x, o.y}, d,         o.z,    x.z * s.x + y.z * s.y + z.z * s.z, length2, inverse_length2,
                   job.min_m,  job.max_m, ignored};
     Hit hit{job.max_m};
     if (length2 > 1e-20) {
       if (!everywhere_.empty()) meet_walls(ray, everywhere_, hit);
       if (near)
         for (std::uint32_t k = 0; k < reach.count; ++k) hit.meet(ray, *reach.discs[k]);
-      else
-        walk(ray, hit);
+      else if (anything) walls_.empty() ? walk<false>(ray, shared, hit) : walk<true>(ray, shared, hit);
     }
     job.distance_m[i] = hit.found ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity();
     if (!job.body.empty()) job.body[i] = hit.body;

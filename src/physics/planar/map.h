@@ -6,7 +6,7 @@
 /// the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
 ///
 /// Limits   a ray parallel to z hits nothing.
-/// Cost     a ray about 4 ns per cell it crosses plus 5 ns per thing it meets in them; no allocation.
+/// Cost     360 rays of 5 m among discs, one per 2 m^2: 85 ns each; 24 rays of 0.1 m: 6 ns each. No allocation.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +19,7 @@
 namespace sandlot::planar {
 
 /// The footprint of one moving instance; `body` is what rays and contacts call it.
-struct Disc {
+struct alignas(64) Disc {
   Vec2 centre;
   double radius_m = 0;  ///< 0: nothing to meet
   Heights heights;
@@ -68,10 +68,13 @@ class Map {
   struct Ray;
   struct Hit;
   struct Reach;
-  void walk(const Ray& ray, Hit& hit) const;
+  struct Start;
+  Start start_at(Vec2 entry, Vec2 origin) const;
+  bool clip(const Ray& ray, double& begin, double& end) const;
+  template <bool with_walls>
+  void walk(const Ray& ray, const Start* shared, Hit& hit) const;
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
-  void meet_discs(const Ray& ray, std::uint32_t slot, Hit& hit) const;
 
   double cell_m_;
   std::vector<Wall> walls_;

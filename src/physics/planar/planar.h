@@ -15,7 +15,8 @@
 ///          leave the joint where it is.
 /// Limits   wrenches and gravity have no effect. Discs that move farther than their radius in one step may pass each
 ///          other (never a wall). Stacked discs that press on each other may overlap by about one step's motion.
-/// Cost     per moving body and step about 50 ns, plus contacts; states of links only when asked for.
+/// Cost     per moving body and step 110 ns (1000 bodies) to 140 ns (10,000), plus contacts; the states of links
+///          about 15 ns each and only when asked for.
 #include <atomic>
 #include <memory>
 #include <mutex>
