@@ -37,7 +37,7 @@ Color mix(const Color& a, const Color& b, float share_of_b) {
 }
 
 std::string hex(const Color& c) {
-  const auto byte = [](float x) { return static_cast<int>(255 * std::clamp(x, 0.0f, 1.0f) + 0.5f); };
+  const auto byte = [](float x) { return static_cast<int>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
 }
 
