@@ -73,7 +73,7 @@ void RigidEngine::push_forces(double h) {
     if (instance->drive.active) push_drive(*instance, gravity_, h);
     for (Body& b : instance->bodies) {
       if (!b.awake) continue;
-      put(b);
+      put_orientation(b);
       if (b.weighs_partly) {
         const Vec3 weight = b.gravity_mass_kg * gravity_;
         b.force_N += weight;
@@ -109,10 +109,10 @@ void RigidEngine::find_islands() {
   for (Instance* instance : order_)
     for (const Joint& joint : instance->joints)
       if (joint.main && joint.child && joint.child->awake) unite(joint.child, joint.parent);
-  for (const Hit& hit : hits_) unite(hit.a->body, hit.b->body);
+  for (const Hit& hit : hits()) unite(hit.a->body, hit.b->body);
 
   islands_.assign(island_parent_.size(), {});
-  for (const Hit& hit : hits_) ++islands_[root((hit.a->body ? hit.a->body : hit.b->body)->island)].contacts;
+  for (const Hit& hit : hits()) ++islands_[root((hit.a->body ? hit.a->body : hit.b->body)->island)].contacts;
   for (Instance* instance : order_) {
     bool idle = !instance->is_robot && !instance->drive.active;
     for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
@@ -158,7 +158,10 @@ template <class Choose>
 void RigidEngine::enable(Choose&& choose) {
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (b.awake && choose(b)) dBodyEnable(b.ode);
+      const bool wanted = b.awake && choose(b);
+      if (wanted == b.enabled) continue;
+      b.enabled = wanted;
+      if (wanted) dBodyEnable(b.ode);
       else dBodyDisable(b.ode);
     }
 }
@@ -171,8 +174,6 @@ void RigidEngine::solve_again(double h) {
       for (Body& b : instance->bodies) {
         if (!b.awake || root(b.island) != island) continue;
         put(b);
-        dBodySetLinearVel(b.ode, b.v.x, b.v.y, b.v.z);
-        dBodySetAngularVel(b.ode, b.w.x, b.w.y, b.w.z);
         dBodySetForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
         dBodySetTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
       }
@@ -229,9 +230,6 @@ void RigidEngine::send_to_sleep(double h) {
       b.v = b.w = {};
       b.quiet_s = 0;
       put(b);
-      dBodySetLinearVel(b.ode, 0, 0, 0);
-      dBodySetAngularVel(b.ode, 0, 0, 0);
-      dBodyDisable(b.ode);
       changed = true;
     }
     if (changed) show(*instance);
