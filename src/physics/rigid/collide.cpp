@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/round.h"
 #include "physics/rigid/surface.h"
 
 namespace sandlot::rigid {
@@ -45,7 +46,11 @@ void RigidEngine::collide_pair(const Pair& pair) {
   const std::size_t most = hit_count_ + static_cast<std::size_t>(spec_.max_contacts);
   if (hit_buffer_.size() < most) hit_buffer_.resize(2 * most);
   Hit* const found = &hit_buffer_[hit_count_];
-  const int n = dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, &found->contact.geom, sizeof(Hit));
+  const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
+  const int n = is_round_pair(a, b)
+                    ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts, &found->contact.geom,
+                                    static_cast<int>(sizeof(Hit)))
+                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, &found->contact.geom, sizeof(Hit));
   for (int i = 0; i < n; ++i) {
     found[i].a = pair.a;
     found[i].b = pair.b;

@@ -54,6 +54,8 @@ struct Geom {
   std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
   BodyId link;
   Pose X_BC;  ///< in W where body is null
+
+  Pose pose() const { return body ? body->pose() * X_BC : X_BC; }
 };
 
 /// One link: what the outside calls a body.
