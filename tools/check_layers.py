@@ -90,7 +90,7 @@ def without_comments_and_literals(text):
 def problems_in(path, text, rules):
     """Yields (line, message) for the file at `path`, relative to src/ with forward slashes."""
     lines = text.splitlines()
-    is_test = path.endswith("_test.cpp")
+    is_test = path.endswith("_test.cpp") or pathlib.PurePath(path).name.startswith("test_")
     for n, line in enumerate(lines, 1):
         include = INCLUDE.match(line)
         if not include or is_test:

@@ -79,8 +79,9 @@ int run(const RunOptions& options) {
   if (!prepared) return complain(prepared.error());
   Simulation& simulation = **prepared;
   // A run that goes on from a snapshot counts --duration from there.
-  std::optional<Time> end = simulation.setup().stop;
-  if (!options.from_file.empty() && options.duration_s) end = simulation.now() + Time::from_s(*options.duration_s);
+  if (!options.from_file.empty() && options.duration_s)
+    simulation.set_stop(simulation.now() + Time::from_s(*options.duration_s));
+  const std::optional<Time> end = simulation.setup().stop;
 
   TravelRecorder travel;
   simulation.add_observer(&travel);
@@ -105,11 +106,9 @@ int run(const RunOptions& options) {
         save_snapshot();
         snapshot_taken = true;
       }
-      return !interrupted() && !(end && s.now() >= *end);
+      return !interrupted();
     };
-    Status status;
-    if (!end || simulation.now() < *end) status = sandlot::run(simulation, {options.rate}, report, keep_going);
-    if (!status) errors.push_back(status.error());
+    if (Status status = sandlot::run(simulation, {options.rate}, report, keep_going); !status) errors.push_back(status.error());
   }
   if (!snapshot_taken) save_snapshot();
   const auto summary = summarise(simulation, report, travel, diagnostics, errors);

@@ -1,6 +1,7 @@
 #include "base/node.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace sandlot {
 
@@ -63,9 +64,13 @@ void merge(Node& base, const Node& over) {
     base = over;
     return;
   }
+  // Looked up by hash: two maps of 10^5 keys would otherwise take minutes.
+  std::unordered_map<std::string, std::size_t> present;
+  for (const Node::Entry& entry : base.entries()) present.emplace(entry.key, present.size());
   for (const Node::Entry& entry : over.entries()) {
-    if (Node* present = base.find(entry.key))
-      merge(*present, entry.value);
+    const auto found = present.find(entry.key);
+    if (found != present.end())
+      merge(base.entries()[found->second].value, entry.value);
     else
       base.entries().push_back(entry);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -37,6 +38,7 @@ static_assert(offsetof(RTCRayHit8, ray.tfar) == 32 * tfar_field);
 static_assert(offsetof(RTCRayHit8, hit.primID) == 32 * body_field);
 static_assert(offsetof(RTCRayHit8, hit.geomID) == 32 * found_field);
 constexpr int nothing = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
+constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the smaller
@@ -180,6 +182,23 @@ struct Rotation {
   explicit Rotation(Quat q) : x(rotate(q, {1, 0, 0})), y(rotate(q, {0, 1, 0})), z(rotate(q, {0, 0, 1})) {}
 };
 
+typedef double D4 __attribute__((vector_size(32)));
+typedef float F4 __attribute__((vector_size(16)));
+struct FourDirections {
+  F4 x, y, z;
+};
+
+/// Four directions in W, rotated in double precision.
+inline FourDirections rotate(const Rotation& R, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const D4 x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y}, z{a.z, b.z, c.z, d.z};
+  return {__builtin_convertvector(R.x.x * x + R.y.x * y + R.z.x * z, F4),
+          __builtin_convertvector(R.x.y * x + R.y.y * y + R.z.y * z, F4),
+          __builtin_convertvector(R.x.z * x + R.y.z * y + R.z.z * z, F4)};
+}
+
+/// Whole vectors: Embree would have to wait for two halves that are stored one by one.
+inline F join(F4 a, F4 b) { return F{a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]}; }
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -224,7 +243,7 @@ void RayScene::set_shapes(std::span<const SceneShape> shapes) {
     else (shape.moves ? s.moving : s.fixed).add(shape);
   }
   s.fixed.attach(s.device, RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
-  s.moving.attach(s.device, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_LOW);
+  s.moving.attach(s.device, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);
   s.fixed_is_current = false;
 }
 
@@ -263,22 +282,23 @@ void RayScene::Impl::cast(const RayJob& job) const {
   // A packet never holds rays of two jobs: the answer depends on the job alone.
   for (std::size_t first = 0; first < job.directions.size(); first += lanes::width) {
     const std::size_t count = std::min(job.directions.size() - first, std::size_t{lanes::width});
-    alignas(32) int valid[lanes::width] = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 d = job.directions[first + i];
-      valid[i] = -1;
-      packet.ray.dir_x[i] = static_cast<float>(R.x.x * d.x + R.y.x * d.y + R.z.x * d.z);
-      packet.ray.dir_y[i] = static_cast<float>(R.x.y * d.x + R.y.y * d.y + R.z.y * d.z);
-      packet.ray.dir_z[i] = static_cast<float>(R.x.z * d.x + R.y.z * d.y + R.z.z * d.z);
-    }
+    alignas(32) int valid[lanes::width];
+    lanes::store(valid, I{0, 1, 2, 3, 4, 5, 6, 7} < lanes::all(static_cast<int>(count)));
+    // Lanes beyond the last ray repeat the first.
+    const auto in = [&](std::size_t i) -> const Vec3& { return job.directions[first + (i < count ? i : 0)]; };
+    const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)),
+                         high = rotate(R, in(4), in(5), in(6), in(7));
+    const F dx = join(low.x, high.x), dy = join(low.y, high.y), dz = join(low.z, high.z);
+    lanes::store(packet.ray.dir_x, dx);
+    lanes::store(packet.ray.dir_y, dy);
+    lanes::store(packet.ray.dir_z, dz);
     F tfar = tmax;
     I bodies = lanes::all(static_cast<int>(no_body)), found = lanes::all(nothing);
     for (const WorldPlane& plane : planes) {
       if (plane.body == job.ignore_body && plane.body != no_body) continue;
       const Vec3 n = plane.normal_W;
-      const F towards = static_cast<float>(n.x) * lanes::load<F>(packet.ray.dir_x) +
-                        static_cast<float>(n.y) * lanes::load<F>(packet.ray.dir_y) +
-                        static_cast<float>(n.z) * lanes::load<F>(packet.ray.dir_z);
+      const F towards = static_cast<float>(n.x) * dx + static_cast<float>(n.y) * dy +
+                        static_cast<float>(n.z) * dz;
       const F t = static_cast<float>(dot(n, plane.point_W - job.X_WS.p)) / towards;
       keep_nearest(lanes::all(-1), t, tnear, plane.body, tfar, bodies, found);
     }
@@ -288,11 +308,11 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(packet.hit.instID[0], lanes::all(nothing));
     for (const Layer* layer : {&fixed, &moving})
       if (layer->scene) embree::intersect8(valid, layer->scene, query, packet);
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      job.distance_m[first + i] = hit ? packet.ray.tfar[i] : std::numeric_limits<float>::infinity();
-      if (!job.body.empty()) job.body[first + i] = packet.hit.primID[i];
-    }
+    tfar = lanes::choose(lanes::load<I>(packet.hit.geomID) == nothing, lanes::all(infinity),
+                         lanes::load<F>(packet.ray.tfar));
+    lanes::store(job.distance_m.data() + first, tfar, static_cast<unsigned>(count));
+    if (!job.body.empty())
+      lanes::store(job.body.data() + first, lanes::load<I>(packet.hit.primID), static_cast<unsigned>(count));
   }
 }
 

@@ -1,3 +1,4 @@
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -54,6 +55,11 @@ Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
     : setup_(std::move(setup)), options_(options) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
+  // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
+  // would quietly test fewer.
+  if (threads > available)
+    more_threads_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                          static_cast<std::size_t>(threads));
   arena_ = std::make_unique<tbb::task_arena>(threads, 1);
 }
 
@@ -90,12 +96,19 @@ Status Simulation::build(Diagnostics& diagnostics) {
   };
   for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
-  if (setup_.stop) add_rule(std::make_unique<StopAfter>(*setup_.stop));
+  set_stop(setup_.stop);
   for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
   return {};
+}
+
+void Simulation::set_stop(std::optional<Time> stop) {
+  setup_.stop = stop;
+  stop_reason_.reset();
+  std::erase_if(rules_, [](const auto& rule) { return dynamic_cast<StopAfter*>(rule.get()) != nullptr; });
+  if (stop) rules_.insert(rules_.begin(), std::make_unique<StopAfter>(*stop));
 }
 
 Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diagnostics) {

@@ -29,7 +29,7 @@ Placer::Placer(const std::vector<model::Instance>& world, std::uint64_t seed) : 
 
 bool Placer::free(Vec3 point, double clearance_m) const {
   for (const Vec3& other : placed_)
-    if (std::hypot(other.x - point.x, other.y - point.y) < clearance_m) return false;
+    if (math::hypot(other.x - point.x, other.y - point.y) < clearance_m) return false;
   for (const Obstacle& obstacle : obstacles_) {
     // Seen from above: the point at the obstacle's own height, in its frame.
     const Vec3 local = inverse(obstacle.X_WC) * Vec3{point.x, point.y, obstacle.X_WC.p.z};

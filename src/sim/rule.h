@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/bytes.h"
+#include "base/text.h"
 #include "physics/engine.h"
 
 namespace sandlot {
@@ -25,17 +26,17 @@ class Rule {
   virtual void load(ByteReader& r) = 0;
 };
 
-/// Ends the run at a simulated time.
+/// Ends the run at a simulated time. The time is part of the setup, so there is no State.
 class StopAfter final : public Rule {
  public:
   explicit StopAfter(Time end) : end_(end) {}
   const char* name() const override { return "stop_after"; }
   std::optional<std::string> judge(const RuleContext& context) override {
     if (context.now < end_) return std::nullopt;
-    return "simulated time reached " + std::to_string(end_.s()) + " s";
+    return "simulated time reached " + number_text(end_.s()) + " s";
   }
-  void save(ByteWriter& w) const override { write(w, end_); }
-  void load(ByteReader& r) override { read(r, end_); }
+  void save(ByteWriter&) const override {}
+  void load(ByteReader&) override {}
 
  private:
   Time end_;

@@ -25,8 +25,9 @@
 #include "sim/rule.h"
 
 namespace tbb::detail::d1 {
+class global_control;
 class task_arena;
-}
+}  // namespace tbb::detail::d1
 
 namespace sandlot {
 
@@ -61,6 +62,8 @@ class Simulation {
   /// What became of the requests carried out in the last tick.
   std::span<const Outcome> outcomes() const { return outcomes_; }
 
+  /// Sets or clears the simulated time at which the run stops by itself; a run that had stopped may go on.
+  void set_stop(std::optional<Time> stop);
   void add_observer(Observer* observer) { observers_.push_back(observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
@@ -133,6 +136,8 @@ class Simulation {
     std::vector<std::unique_ptr<Device>> devices;
     std::vector<std::unique_ptr<ProgramEntry>> programs;
   };
+  /// What the world holds, in creation order. Valid until the next tick.
+  std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
 
  private:
   struct Pool {
@@ -196,6 +201,7 @@ class Simulation {
 
   model::Setup setup_;
   SimulationOptions options_;
+  std::unique_ptr<tbb::detail::d1::global_control> more_threads_;
   std::unique_ptr<tbb::detail::d1::task_arena> arena_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<RayScene> scene_;  ///< null when the engine casts rays itself
@@ -234,6 +240,7 @@ class Simulation {
   std::vector<Applied> applied_;
   std::vector<std::byte> applied_bytes_;
   std::shared_ptr<Frame> frame_;
+  std::vector<FrameCommand> spare_commands_;
   PhaseTimes phase_times_;
   mutable ByteWriter scratch_;
 };

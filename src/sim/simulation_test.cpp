@@ -14,8 +14,10 @@ struct Probe {
   struct Spec {
     double rate_hz = 0;
     bool explode = false;
+    double force_N = 0;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"rate", "Hz", "Samples per second; 0: every tick.", 0, 1e5, Field::tunable}, s.rate_hz);
+      visit(Field{"force", "N", "Push sideways.", 0, 1e308, Field::tunable}, s.force_N);
       visit(Field{"explode", "", "Push with a force that is not finite.", 0, 1, Field::tunable}, s.explode);
     }
   };
@@ -37,7 +39,9 @@ struct Probe {
   }
   static void actuate(PoolView<Probe> pool, const Context& ctx) {
     for (const std::uint32_t i : pool.due)
-      if (pool.all[i].spec.explode)
+      if (const double f = pool.all[i].spec.force_N; f > 0)
+        ctx.actuation.wrenches.push_back({pool.all[i].body, {f, f, -f}, {f, 0, 0}});
+      else if (pool.all[i].spec.explode)
         ctx.actuation.wrenches.push_back({pool.all[i].body, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}});
   }
   static void sense(PoolView<Probe> pool, const Context& ctx) {
@@ -235,6 +239,20 @@ TEST(Failure, a_state_that_is_not_finite_ends_the_run_and_names_the_body) {
   EXPECT_NE(status.error().text().find("ball"), std::string::npos) << status.error().text();
   EXPECT_TRUE(simulation->stop_reason());
   EXPECT_FALSE(simulation->tick()) << "a failed run does not go on";
+}
+
+TEST(Failure, forces_beyond_all_bounds_end_the_run_too) {
+  for (const double force_N : {1e30, 1e150, 1e300}) {
+    auto setup = one_probe(Node::map());
+    setup.instances.push_back(placed("ground", one_shape("ground", Plane{{0, 0, 1}}, 0), {{0, 0, 4.9}, {}}));
+    const auto simulation = build(setup, with_probe);
+    advance(*simulation, 3);
+    simulation->submit(ParameterRequest{"ball/probe", "force", Node::scalar(std::to_string(force_N))});
+    Status status;
+    for (int i = 0; i < 10 && status; ++i) status = simulation->tick();
+    ASSERT_FALSE(status) << force_N;
+    EXPECT_NE(status.error().text().find("ball"), std::string::npos) << status.error().text();
+  }
 }
 
 TEST(Rules, the_run_stops_when_its_time_is_up) {

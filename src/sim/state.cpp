@@ -97,7 +97,6 @@ void Simulation::save_run(ByteWriter& w) const {
   write(w, revision_);
   write(w, next_serial_);
   write(w, refused_commands_);
-  write(w, stop_reason_);
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
 }
@@ -108,7 +107,6 @@ bool Simulation::load_run(ByteReader& r) {
   read(r, revision_);
   read(r, next_serial_);
   read(r, refused_commands_);
-  read(r, stop_reason_);
   for (const auto& rule : rules_) {
     ByteReader block = read_block(r);
     rule->load(block);
@@ -239,7 +237,10 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
     }
     sim->point_programs_at_active_levels(entity);
   }
-  sim->arena_->execute([&] { sim->update_scene(); });
+  sim->arena_->execute([&] {
+    sim->update_scene();
+    sim->judge();
+  });
   return sim;
 }
 

@@ -7,6 +7,23 @@
 #include "sim/simulation.h"
 
 namespace sandlot {
+namespace {
+
+/// Resizes without giving the memory of elements back: those cut off are kept in `spare` and used again.
+template <class T>
+void resize_keeping(std::vector<T>& items, std::size_t size, std::vector<T>& spare) {
+  while (items.size() > size) {
+    spare.push_back(std::move(items.back()));
+    items.pop_back();
+  }
+  while (items.size() < size) {
+    if (spare.empty()) spare.emplace_back();
+    items.push_back(std::move(spare.back()));
+    spare.pop_back();
+  }
+}
+
+}  // namespace
 
 /// One step of the world. Each phase sees what the phases before it left; see docs/architecture.md section 3.
 Status Simulation::tick() {
@@ -199,7 +216,7 @@ void Simulation::publish() {
       for (const auto& device : entity->devices)
         for (const Slot& slot : device->topics)
           if (slot.topic->count > 0 && slot.topic->stamp == now_) frame.topics.push_back(slot.topic->clone());
-  frame.commands.resize(applied_.size());
+  resize_keeping(frame.commands, applied_.size(), spare_commands_);
   for (std::size_t i = 0; i < applied_.size(); ++i) {
     const Applied& applied = applied_[i];
     const auto* const bytes = applied_bytes_.data() + applied.begin;

@@ -15,6 +15,13 @@ constexpr double heading_step_rad = 5 * math::pi / 180;
 constexpr double blocked_m = 0.15;
 /// Above this the way ahead is clear enough to end a turn on the spot.
 constexpr double clear_m = 0.6;
+/// A scanner that sees no less than this needs no memory: what is beside or behind cannot be run into.
+constexpr double wide_view_rad = 200 * math::pi / 180;
+constexpr double memory_m = 1.2;
+constexpr float memory_s = 3;
+constexpr std::size_t memory_size = 240;
+constexpr std::size_t most_sectors = 121;  // of a full turn
+constexpr std::size_t edge_sectors = 5;
 constexpr double back_s = 1.0;
 constexpr double back_mps = 0.15;
 
@@ -25,9 +32,11 @@ void Sectors::fill(const msg::LaserScan& scan, const Pose& X_BS) {
   const double first = scan.angle_min, step = scan.angle_increment;
   const double span = beams > 1 ? static_cast<double>(beams - 1) * std::abs(step) : 0;
   const double low = step < 0 ? first - span : first;
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad)));
+  const auto count = static_cast<std::size_t>(
+      std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad - 1e-3)));
   const double width = span / static_cast<double>(count);
 
+  max_m = scan.range_max;
   constexpr float empty = -1;
   distance_m.assign(count, empty);
   for (std::size_t i = 0; i < beams; ++i) {
@@ -83,6 +92,9 @@ Status Wander::init(const Description& robot) {
   SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
   X_BS = robot.pose(laser);
   period_s = robot.control_period_s;
+  state.memory.reserve(memory_size);  // it fills up slowly, and a running robot shall cost no heap
+  sectors.echoes.reserve(most_sectors + memory_size);
+  state.before.reserve(most_sectors);
   return {};
 }
 
@@ -93,6 +105,36 @@ void Wander::enter(Mode mode, Stream& random) {
   state.before.clear();
   // Up to half a turn more than needed: without it the robot would run the same round for ever.
   if (mode == Mode::turn) state.turn_min_s = random.uniform() * math::pi / spec.turn_speed_radps;
+}
+
+/// Keeps near echoes that leave the view: the robot may still turn into them.
+void Wander::remember() {
+  if (sectors.last_rad - sectors.first_rad >= wide_view_rad) {
+    state.memory.clear();
+    return;
+  }
+  const math::SinCos turned = math::sincos(-state.omega_radps * period_s);
+  const double dx = state.v_mps * period_s;
+  const Pose X_SB = inverse(X_BS);
+  const double yaw = yaw_of(X_BS.q);
+  std::erase_if(state.memory, [&](std::array<float, 3>& echo) {
+    const double x = echo[0] - dx, y = echo[1];
+    echo = {static_cast<float>(x * turned.cos - y * turned.sin),
+            static_cast<float>(x * turned.sin + y * turned.cos), echo[2] + static_cast<float>(period_s)};
+    const Vec3 p_S = X_SB * Vec3{echo[0], echo[1], 0};
+    const double bearing = math::wrap_angle(math::atan2(p_S.y, p_S.x) + yaw);
+    const bool in_view = bearing > sectors.first_rad && bearing < sectors.last_rad;
+    return in_view || echo[2] > memory_s || echo[0] * echo[0] + echo[1] * echo[1] > memory_m * memory_m;
+  });
+  const std::size_t count = sectors.echoes.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Sectors::Echo& echo = sectors.echoes[k];
+    if ((k >= edge_sectors && k + edge_sectors < count) || !echo.seen || echo.range_m > memory_m) continue;
+    if (state.memory.size() >= memory_size) state.memory.erase(state.memory.begin());
+    state.memory.push_back({static_cast<float>(echo.x_m), static_cast<float>(echo.y_m), 0});
+  }
+  for (const auto& [x, y, age] : state.memory)
+    sectors.echoes.push_back({x, y, std::sqrt(x * x + y * y), true});
 }
 
 /// The barrier: no echo may come nearer than it can be braked for.
@@ -111,17 +153,26 @@ double Wander::safe_speed(double wanted_mps) const {
 Wander::Motion Wander::cruise(Stream& random) {
   state.favourite_left_s -= period_s;
   if (state.favourite_left_s <= 0) {
-    state.favourite_rad = random.uniform(-0.5, 0.5);
+    state.favourite_rad = random.uniform(-1.0, 1.0);
     state.favourite_left_s = random.uniform(2.0, 6.0);
+    // Now and then it looks round: without that it can run the same round of one room for minutes.
+    if (random.below(6) == 0) {
+      state.turn_sign = random.below(2) == 0 ? 1.0 : -1.0;
+      enter(Mode::turn, random);
+      return turn(random);
+    }
   }
   const double half_width = spec.radius_m + spec.margin_m;
-  const double right = std::max(-widest_heading_rad, sectors.first_rad), left = std::min(widest_heading_rad, sectors.last_rad);
+  const double right = std::max(-widest_heading_rad, sectors.first_rad),
+               left = std::min(widest_heading_rad, sectors.last_rad);
   double best_score = -1e9, best_rad = 0, best_m = 0, free_right = 0, free_left = 0;
-  for (double heading = -widest_heading_rad; heading <= widest_heading_rad + 1e-9; heading += heading_step_rad) {
+  for (double heading = -widest_heading_rad; heading <= widest_heading_rad + 1e-9;
+       heading += heading_step_rad) {
     if (heading < right || heading > left) continue;
     const double free_m = sectors.corridor_m(heading, half_width, spec.lookahead_m);
     (heading < 0 ? free_right : free_left) += free_m;
-    const double score = free_m / spec.lookahead_m - 0.5 * std::abs(heading - state.favourite_rad) / (math::pi / 2) -
+    const double score = free_m / spec.lookahead_m -
+                         0.5 * std::abs(heading - state.favourite_rad) / (math::pi / 2) -
                          0.2 * std::abs(heading - state.heading_rad) / (math::pi / 2);
     if (free_m >= blocked_m && score > best_score) {
       best_score = score;
@@ -174,17 +225,22 @@ bool Wander::stuck() {
     state.driven_m = state.turned_rad = 0;
     return false;
   }
+  double change = 0;  // mean over all sectors
+  for (std::size_t k = 0; k < now.size(); ++k)
+    change += std::abs(now[k] - state.before[k]) / static_cast<double>(now.size());
   bool found = false;
   if (state.driven_m >= 0.25 && std::abs(state.turned_rad) < 0.1) {
-    // Straight ahead the distance must have changed by what was driven, wherever the walls stand.
+    // Straight ahead the distance must have changed by what was driven, wherever the walls stand, unless another
+    // thing came into line at the same distance; but then the rest of the scan has changed.
     const double width = (sectors.last_rad - sectors.first_rad) / static_cast<double>(now.size());
-    const auto middle = static_cast<std::size_t>(std::clamp(-sectors.first_rad / width, 0.0, static_cast<double>(now.size() - 1)));
-    found = sectors.echoes[middle].seen && std::abs(now[middle] - state.before[middle]) < 0.3 * state.driven_m;
+    const auto middle = static_cast<std::size_t>(
+        std::clamp(-sectors.first_rad / width, 0.0, static_cast<double>(now.size() - 1)));
+    const bool seen = now[middle] < sectors.max_m && state.before[middle] < sectors.max_m;
+    found = seen && std::abs(now[middle] - state.before[middle]) < 0.3 * state.driven_m &&
+            change < 0.15 * state.driven_m;
   } else if (std::abs(state.turned_rad) >= 0.8) {
-    double change = 0;
-    for (std::size_t k = 0; k < now.size(); ++k) change += std::abs(now[k] - state.before[k]);
-    found = change < 0.03 * static_cast<double>(now.size());
-  } else if (state.driven_m < 1.0 && state.mode_s < 1e6) {
+    found = change < 0.03;
+  } else if (state.driven_m < 1.0) {
     return false;  // not enough to judge yet
   }
   state.before = now;
@@ -199,6 +255,7 @@ void Wander::step(const Observation& obs, Command& cmd) {
   if (scan.valid && state.blind_s < 1.0 && !scan.message.ranges.empty()) {
     Stream random = obs.random();
     sectors.fill(scan.message, X_BS);
+    remember();
     if (state.mode != Mode::back && scan.fresh && stuck()) enter(Mode::back, random);
     switch (state.mode) {
       case Mode::cruise: motion = cruise(random); break;
@@ -215,6 +272,8 @@ void Wander::step(const Observation& obs, Command& cmd) {
     state.driven_m += std::abs(motion.v_mps) * period_s;
     state.turned_rad += motion.omega_radps * period_s;
   }
+  state.v_mps = motion.v_mps;
+  state.omega_radps = motion.omega_radps;
   msg::Twist twist;
   twist.linear.x = motion.v_mps;
   twist.angular.z = motion.omega_radps;

@@ -8,8 +8,8 @@
 ///          smaller of max_effort and the joint's own.
 /// Output   none; a wheel_encoder shows the joint's state.
 /// Time     a command acts from the tick it arrives in. Before the first one the joint is free.
-/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; the
-///          integral starts where the effort continues without a jump.
+/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; an
+///          integral (if the gains have one) starts where the effort continues without a jump.
 /// Noise    none: the loop sees the true angle and speed.
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.
@@ -31,11 +31,16 @@ struct Spec {
   double max_velocity = 1e9;  ///< [rad/s] or [m/s]
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required, 1000}, s.joint);
+    visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required,
+                1000},
+          s.joint);
     visit(Field{"velocity", "", "Gains of level velocity: Nm per rad/s (prismatic: N per m/s)."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: Nm per rad (prismatic: N per m)."}, s.position);
-    visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9, Field::tunable}, s.max_effort);
-    visit(Field{"max_velocity", "", "Fastest reference [rad/s or m/s]; the joint's own limit holds too.", 0, 1e9, Field::tunable},
+    visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9,
+                Field::tunable},
+          s.max_effort);
+    visit(Field{"max_velocity", "", "Fastest reference [rad/s or m/s]; the joint's own limit holds too.", 0,
+                1e9, Field::tunable},
           s.max_velocity);
   }
 };

@@ -1,285 +1,242 @@
 #include "formats/sdf/frames.h"
 
-#include <mutex>
-#include <ostream>
+#include <map>
+#include <memory>
 
-#include <sdf/sdf.hh>
-
+#include "base/check.h"
 #include "base/text.h"
 #include "formats/sdf/values.h"
 
 namespace sandlot::formats {
 namespace {
 
-/// libsdformat writes its complaints to a process-wide console; this keeps them from the user, who gets ours.
-class QuietConsole {
- public:
-  QuietConsole() : lock_(mutex()), console_(sdf::Console::Instance()), nowhere_(nullptr) {
-    message_ = console_->GetMsgStream().GetStream();
-    log_ = console_->GetLogStream().GetStream();
-    console_->GetMsgStream().SetStream(&nowhere_);
-    console_->GetLogStream().SetStream(&nowhere_);
-  }
-  ~QuietConsole() {
-    console_->GetMsgStream().SetStream(message_);
-    console_->GetLogStream().SetStream(log_);
-  }
-  QuietConsole(const QuietConsole&) = delete;
-  QuietConsole& operator=(const QuietConsole&) = delete;
+/// The value of an attribute, "" when it is not set.
+std::string get(const Xml* element, const char* key) {
+  const std::string* const value = element ? element->attribute(key) : nullptr;
+  return value ? *value : "";
+}
 
- private:
-  static std::mutex& mutex() {
-    static std::mutex the_mutex;
-    return the_mutex;
+/// A world or model with the things in it that have a frame: links, joints, frames, models.
+struct Scope {
+  explicit Scope(const Xml& element_) : element(&element_) {
+    for (const Xml& child : element->children) {
+      if (child.name != "link" && child.name != "joint" && child.name != "frame" && child.name != "model") continue;
+      members.emplace(*child.attribute("name"), &child);
+      if (child.name == "model") models.emplace(&child, std::make_unique<Scope>(child));
+    }
+    canonical = get(element, "canonical_link");
+    for (const char* const kind : {"link", "model"})
+      if (const Xml* const first = element->child(kind); first && canonical.empty()) canonical = *first->attribute("name");
   }
-  std::lock_guard<std::mutex> lock_;
-  sdf::ConsolePtr console_;
-  std::ostream nowhere_;
-  std::ostream* message_ = nullptr;
-  std::ostream* log_ = nullptr;
+  const Xml* element;
+  std::map<std::string, const Xml*, std::less<>> members;
+  std::map<const Xml*, std::unique_ptr<Scope>> models;
+  std::string canonical;  ///< the link or model that the scope's own frame is fixed to
 };
 
-bool is_set(const Xml& element, const char* key) {
-  const std::string* const value = element.attribute(key);
-  return value && !value->empty();
-}
-
-/// Is anything in here given relative to something else than its parent?
-bool needs_resolving(const Xml& element) {
-  if (element.name == "frame" || is_set(element, "placement_frame")) return true;
-  if (element.name == "pose" && is_set(element, "relative_to")) return true;
-  if (element.name == "xyz" && is_set(element, "expressed_in")) return true;
-  if (element.name == "joint")
-    for (const char* const end : {"parent", "child"}) {
-      const Xml* const named = element.child(end);
-      if (named && (named->text == "__model__" || named->text.find("::") != std::string::npos)) return true;
-    }
-  for (const Xml& child : element.children)
-    if (needs_resolving(child)) return true;
-  return false;
-}
-
-/// The part of a document that libsdformat needs to place things: names and poses, one element per line, so that its
-/// line numbers lead back to our elements. Rotations go as quaternions: theirs would be computed with libm.
-class Skeleton {
- public:
-  Status write(const Xml& root) {
-    line("<sdf version='1.9'>", root);
-    SL_TRY(write_scope(*main_element(root)));
-    text_ += "</sdf>";
-    return {};
-  }
-  const std::string& text() const { return text_; }
-  const Xml* at_line(int line_number) const {
-    const auto index = static_cast<std::size_t>(line_number - 1);
-    return line_number >= 1 && index < lines_.size() ? lines_[index] : nullptr;
-  }
-
- private:
-  void line(const std::string& text, const Xml& element) {
-    text_ += text + "\n";
-    lines_.push_back(&element);
-  }
-  static std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-      if (c == '<' || c == '>' || c == '&' || c == '\'' || c == '"' || static_cast<unsigned char>(c) < 0x20)
-        out += "&#" + std::to_string(static_cast<unsigned char>(c)) + ";";
-      else
-        out += c;
-    }
-    return out;
-  }
-  static std::string attribute(const Xml& element, const char* key) {
-    return is_set(element, key) ? " " + std::string(key) + "='" + escaped(*element.attribute(key)) + "'" : "";
-  }
-  static std::string number(double x) { return number_text(x) + " "; }
-  Status write_pose(const Xml& owner) {
-    const Xml* const element = owner.child("pose");
-    if (!element) return {};
-    SL_ASSIGN(const Pose X, read_sdf_pose(*element));
-    line("<pose rotation_format='quat_xyzw'" + attribute(*element, "relative_to") + ">" + number(X.p.x) + number(X.p.y) +
-             number(X.p.z) + number(X.q.x) + number(X.q.y) + number(X.q.z) + number(X.q.w) + "</pose>",
-         *element);
-    return {};
-  }
-  Status write_scope(const Xml& scope) {
-    const bool world = scope.name == "world";
-    line("<" + scope.name + (world ? std::string(" name='w'") : attribute(scope, "name")) + attribute(scope, "canonical_link") +
-             attribute(scope, "placement_frame") + ">",
-         scope);
-    if (!world) SL_TRY(write_pose(scope));
-    for (const Xml& child : scope.children) {
-      if (child.name == "model") SL_TRY(write_scope(child));
-      if (child.name == "frame") SL_TRY(write_named(child, attribute(child, "attached_to")));
-      if (child.name == "link" && !world) SL_TRY(write_link(child));
-      if (child.name == "joint" && !world) SL_TRY(write_joint(child));
-    }
-    line("</" + scope.name + ">", scope);
-    return {};
-  }
-  Status write_named(const Xml& element, const std::string& more, const std::string& content = "") {
-    line("<" + element.name + attribute(element, "name") + more + ">" + content, element);
-    SL_TRY(write_pose(element));
-    line("</" + element.name + ">", element);
-    return {};
-  }
-  Status write_link(const Xml& link) {
-    line("<link" + attribute(link, "name") + ">", link);
-    SL_TRY(write_pose(link));
-    for (const Xml& child : link.children) {
-      if (child.name == "collision" || child.name == "visual")
-        SL_TRY(write_named(child, "", "<geometry><empty/></geometry>"));
-      if (child.name == "sensor") SL_TRY(write_named(child, " type='custom'"));
-    }
-    line("</link>", link);
-    return {};
-  }
-  Status write_joint(const Xml& joint) {
-    const Xml* const axis = joint.child("axis");
-    const Xml* const xyz = axis ? axis->child("xyz") : nullptr;
-    line("<joint" + attribute(joint, "name") + " type='" + (axis ? "revolute" : "fixed") + "'>", joint);
-    for (const char* const end : {"parent", "child"})
-      line("<" + std::string(end) + ">" + escaped(joint.child(end)->text) + "</" + end + ">", *joint.child(end));
-    SL_TRY(write_pose(joint));
-    if (axis) {
-      Vec3 direction{0, 0, 1};
-      if (xyz) {
-        SL_ASSIGN(direction, read_vec3(*xyz, position_range));
-        if (!(norm(direction) > 1e-6)) return xyz->error("the axis of this joint is zero", "write 0 0 1");
-      }
-      line("<axis><xyz" + (xyz ? attribute(*xyz, "expressed_in") : std::string()) + ">" + number(direction.x) +
-               number(direction.y) + number(direction.z) + "</xyz></axis>",
-           xyz ? *xyz : *axis);
-    }
-    for (const Xml& child : joint.children)
-      if (child.name == "sensor") SL_TRY(write_named(child, " type='custom'"));
-    line("</joint>", joint);
-    return {};
-  }
-
-  std::string text_;
-  std::vector<const Xml*> lines_;
+/// A member of a scope.
+struct Entity {
+  const Scope* scope;
+  const Xml* element;
 };
 
-Vec3 from_ignition(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
-Pose from_ignition(const ignition::math::Pose3d& X) {
-  return {from_ignition(X.Pos()), normalised(Quat{X.Rot().W(), X.Rot().X(), X.Rot().Y(), X.Rot().Z()})};
+/// The members that a name passes through: `a::b` is model a, then its member b. Empty for the scope's own frame.
+std::vector<Entity> path_of(const Scope& scope, std::string_view name) {
+  std::vector<Entity> path;
+  const Scope* at = &scope;
+  while (at && !name.empty()) {
+    const std::size_t end = name.find("::");
+    const auto found = at->members.find(name.substr(0, end));
+    if (found == at->members.end()) break;  // __model__, world, __root__: the scope itself
+    path.push_back({at, found->second});
+    name = end == std::string_view::npos ? "" : name.substr(end + 2);
+    const auto model = at->models.find(found->second);
+    at = model == at->models.end() ? nullptr : model->second.get();
+  }
+  return path;
 }
 
-/// Walks our elements and libsdformat's objects side by side.
+/// What the pose of a member is relative to, as a name in its scope; "" for the scope itself.
+std::string origin_of(const Xml& element) {
+  if (std::string relative = get(element.child("pose"), "relative_to"); !relative.empty()) return relative;
+  if (element.name == "frame") return get(&element, "attached_to");
+  if (element.name == "joint") return element.child("child")->text;
+  return "";
+}
+
 class Resolver {
  public:
-  explicit Resolver(const Skeleton& skeleton) : skeleton_(skeleton) {}
   ResolvedFrames out;
 
-  Error complaint(const sdf::Errors& errors, const Xml& near) const {
-    for (const sdf::Error& error : errors)
-      if (const Xml* const element = error.LineNumber() ? skeleton_.at_line(*error.LineNumber()) : nullptr)
-        return element->error(error.Message());
-    return near.error(errors.empty() ? "this cannot be placed" : errors.front().Message());
-  }
-
-  Status world(const Xml& element, const sdf::World& world) {
-    for (const Xml& child : element.children)
-      if (child.name == "model") {
-        const sdf::Model* const object = world.ModelByName(*child.attribute("name"));
-        if (!object) return child.error("this model cannot be placed");
-        SL_TRY(model(child, *object));
-      }
-    return {};
-  }
-
-  Status model(const Xml& element, const sdf::Model& model_) {
-    SL_TRY(pose(element, model_.SemanticPose()));
-    for (const Xml& child : element.children) {
-      if (child.name == "model") {
-        const sdf::Model* const object = model_.ModelByName(*child.attribute("name"));
-        if (!object) return child.error("this model cannot be placed");
-        SL_TRY(model(child, *object));
-      } else if (child.name == "link") {
-        SL_TRY(link(child, model_));
+  Status resolve(const Scope& scope) {
+    for (const Xml& child : scope.element->children) {
+      const bool moved = !get(child.child("pose"), "relative_to").empty();
+      const Entity entity{&scope, &child};
+      if (child.name == "link") {
+        if (moved) SL_TRY(place(entity));
+        SL_TRY(resolve_parts(entity));
       } else if (child.name == "joint") {
-        SL_TRY(joint(child, model_));
+        SL_TRY(resolve_joint(entity, moved));
       } else if (child.name == "frame") {
-        const sdf::Frame* const object = model_.FrameByName(*child.attribute("name"));
-        if (!object) return child.error("this frame cannot be placed");
-        std::string body;
-        if (const sdf::Errors errors = object->ResolveAttachedToBody(body); !errors.empty()) return complaint(errors, child);
-        SL_TRY(pose(child, object->SemanticPose(), body));
+        const std::string body = body_of(scope, *child.attribute("name"));
+        SL_ASSIGN(const Pose X_SF, pose_in_scope(entity));
+        SL_ASSIGN(const Pose X_SB, pose_of(scope, body));
+        out.poses[&child] = inverse(X_SB) * X_SF;
         out.frame_links[&child] = body;
+      } else if (child.name == "model") {
+        if (moved || !get(&child, "placement_frame").empty()) SL_TRY(place(entity));
+        SL_TRY(resolve(*scope.models.at(&child)));
       }
     }
     return {};
   }
 
  private:
-  Status pose(const Xml& element, const sdf::SemanticPose& semantic, const std::string& in = "") {
-    ignition::math::Pose3d X;
-    if (const sdf::Errors errors = semantic.Resolve(X, in); !errors.empty()) return complaint(errors, element);
-    const Pose found = from_ignition(X);
-    if (!is_finite(found)) return element.error("this pose is not finite");
-    out.poses[&element] = found;
+  Status place(const Entity& entity) {
+    SL_ASSIGN(const Pose X, pose_in_scope(entity));
+    out.poses[entity.element] = X;
     return {};
   }
 
-  Status link(const Xml& element, const sdf::Model& model) {
-    const sdf::Link* const object = model.LinkByName(*element.attribute("name"));
-    if (!object) return element.error("this link cannot be placed");
-    SL_TRY(pose(element, object->SemanticPose()));
-    for (const Xml& child : element.children) {
-      const std::string* const name = child.attribute("name");
-      if (!name) continue;
-      const sdf::Collision* const collision = child.name == "collision" ? object->CollisionByName(*name) : nullptr;
-      const sdf::Visual* const visual = child.name == "visual" ? object->VisualByName(*name) : nullptr;
-      const sdf::Sensor* const sensor = child.name == "sensor" ? object->SensorByName(*name) : nullptr;
-      if (collision) SL_TRY(pose(child, collision->SemanticPose()));
-      if (visual) SL_TRY(pose(child, visual->SemanticPose()));
-      if (sensor) SL_TRY(pose(child, sensor->SemanticPose()));
+  /// Collisions, visuals and sensors of a link or joint.
+  Status resolve_parts(const Entity& owner) {
+    for (const Xml& part : owner.element->children) {
+      if (part.name != "collision" && part.name != "visual" && part.name != "sensor") continue;
+      const std::string relative = get(part.child("pose"), "relative_to");
+      if (relative.empty()) continue;
+      SL_ASSIGN(const Pose X_SO, pose_in_scope(owner));
+      SL_ASSIGN(const Pose X_SR, pose_of(*owner.scope, relative));
+      SL_ASSIGN(const Pose X_RP, read_child_pose(part));
+      out.poses[&part] = inverse(X_SO) * X_SR * X_RP;
     }
     return {};
   }
 
-  Status joint(const Xml& element, const sdf::Model& model) {
-    const sdf::Joint* const object = model.JointByName(*element.attribute("name"));
-    if (!object) return element.error("this joint cannot be placed");
-    std::string& child = out.child_links[&element];
-    std::string& parent = out.parent_links[&element];
-    if (const sdf::Errors errors = object->ResolveChildLink(child); !errors.empty()) return complaint(errors, element);
-    if (const sdf::Errors errors = object->ResolveParentLink(parent); !errors.empty()) return complaint(errors, element);
-    SL_TRY(pose(element, object->SemanticPose(), child));
-    if (const sdf::JointAxis* const axis = object->Axis(0)) {
-      ignition::math::Vector3d direction;
-      if (const sdf::Errors errors = axis->ResolveXyz(direction); !errors.empty()) return complaint(errors, element);
-      out.axes[element.child("axis")] = from_ignition(direction);
+  Status resolve_joint(const Entity& joint, bool moved) {
+    const Xml& element = *joint.element;
+    const Scope& scope = *joint.scope;
+    const std::string& child = element.child("child")->text;
+    const std::string child_link = body_of(scope, child);
+    if (child_link != child) out.child_links[&element] = child_link;
+    if (const std::string& parent = element.child("parent")->text; parent != "world")
+      if (const std::string parent_link = body_of(scope, parent); parent_link != parent) out.parent_links[&element] = parent_link;
+    if (moved || child_link != child) {
+      SL_ASSIGN(const Pose X_SC, pose_of(scope, child_link));
+      SL_ASSIGN(const Pose X_SJ, pose_in_scope(joint));
+      out.poses[&element] = inverse(X_SC) * X_SJ;
     }
-    for (const Xml& sensor : element.children)
-      if (sensor.name == "sensor")
-        if (const sdf::Sensor* const found = object->SensorByName(*sensor.attribute("name")))
-          SL_TRY(pose(sensor, found->SemanticPose()));
-    return {};
+    const Xml* const axis = element.child("axis");
+    const Xml* const xyz = axis ? axis->child("xyz") : nullptr;
+    if (const std::string frame = get(xyz, "expressed_in"); !frame.empty()) {
+      SL_ASSIGN(const Pose X_SJ, pose_in_scope(joint));
+      SL_ASSIGN(const Pose X_SE, pose_of(scope, frame));
+      SL_ASSIGN(const Vec3 direction, read_vec3(*xyz, position_range));
+      out.axes[axis] = rotate_inverse(X_SJ.q, rotate(X_SE.q, direction));
+    }
+    return resolve_parts(joint);
   }
 
-  const Skeleton& skeleton_;
+  /// Pose of whatever a name stands for in the scope's own frame.
+  Result<Pose> pose_of(const Scope& scope, std::string_view name) {
+    Pose X;
+    for (const Entity& entity : path_of(scope, name)) {
+      SL_ASSIGN(const Pose X_next, pose_in_scope(entity));
+      X = X * X_next;
+    }
+    return X;
+  }
+
+  /// Pose of a member in its scope. Chains of relative_to may be as long as the file, so they are followed with a
+  /// stack of our own.
+  Result<Pose> pose_in_scope(const Entity& wanted) {
+    std::vector<Entity> stack{wanted};
+    while (!stack.empty()) {
+      const Entity entity = stack.back();
+      if (known_.count(entity.element) > 0) {
+        stack.pop_back();
+        continue;
+      }
+      const std::vector<Entity> base = path_of(*entity.scope, origin_of(*entity.element));
+      const std::string placed = entity.element->name == "model" ? get(entity.element, "placement_frame") : "";
+      const std::vector<Entity> inner =
+          placed.empty() ? std::vector<Entity>{} : path_of(*entity.scope->models.at(entity.element), placed);
+      const std::size_t size = stack.size();
+      for (const auto* const path : {&base, &inner})
+        for (const Entity& each : *path)
+          if (known_.count(each.element) == 0) stack.push_back(each);
+      if (stack.size() > size) continue;
+      Pose X;
+      for (const Entity& each : base) X = X * known_.at(each.element);
+      SL_ASSIGN(const Pose written, read_child_pose(*entity.element));
+      X = X * written;
+      // The pose of a model with a placement frame is that frame's.
+      Pose X_MP;
+      for (const Entity& each : inner) X_MP = X_MP * known_.at(each.element);
+      X = X * inverse(X_MP);
+      X.q = normalised(X.q);
+      if (!is_finite(X)) return entity.element->error("this pose is not finite");
+      known_.emplace(entity.element, X);
+      stack.pop_back();
+    }
+    return known_.at(wanted.element);
+  }
+
+  /// The link that a name is fixed to, as a name in the scope: frames hand on to what they are attached to, joints to
+  /// their child, models to their canonical link. "world" in a world; "" in a model without links, which is refused
+  /// when it is read.
+  std::string body_of(const Scope& scope, const std::string& name) {
+    std::vector<const Xml*> walked;
+    std::string rest = name, body;
+    for (;;) {
+      const std::size_t end = rest.find("::");
+      const auto found = scope.members.find(rest.substr(0, end));
+      if (found == scope.members.end()) {
+        if (scope.element->name == "world") body = "world";
+        if (scope.element->name == "world" || scope.canonical.empty()) break;
+        rest = scope.canonical;
+        continue;
+      }
+      const Xml& element = *found->second;
+      if (element.name == "model") {
+        const std::string inner = body_of(*scope.models.at(&element), end == std::string::npos ? "" : rest.substr(end + 2));
+        body = inner.empty() ? "" : found->first + "::" + inner;
+        break;
+      }
+      if (element.name == "link") {
+        body = found->first;
+        break;
+      }
+      if (const auto known = bodies_.find(&element); known != bodies_.end()) {
+        body = known->second;
+        break;
+      }
+      walked.push_back(&element);
+      rest = element.name == "joint" ? element.child("child")->text : get(&element, "attached_to");
+    }
+    for (const Xml* const each : walked) bodies_.emplace(each, body);
+    return body;
+  }
+
+  std::unordered_map<const Xml*, Pose> known_;
+  std::unordered_map<const Xml*, std::string> bodies_;  ///< of frames and joints, in their scope
 };
 
 }  // namespace
 
 Result<ResolvedFrames> resolve_frames(const Xml& root) {
-  if (!needs_resolving(*main_element(root))) return ResolvedFrames{};
-  Skeleton skeleton;
-  SL_TRY(skeleton.write(root));
-  const QuietConsole quiet;
-  sdf::ParserConfig config;
-  config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
-  sdf::Root parsed;
-  const sdf::Errors errors = parsed.LoadSdfString(skeleton.text(), config);
-  Resolver resolver(skeleton);
-  if (!errors.empty()) return resolver.complaint(errors, root);
-  const Xml& main = *main_element(root);
-  const sdf::World* const world = main.name == "world" ? parsed.WorldByIndex(0) : nullptr;
-  if (main.name == "world" ? !world : !parsed.Model()) return main.error("this " + main.name + " cannot be placed");
-  SL_TRY(world ? resolver.world(main, *world) : resolver.model(main, *parsed.Model()));
+  const Scope scope(*main_element(root));
+  Resolver resolver;
+  SL_TRY(resolver.resolve(scope));
+  // The pose of a model file's own model is what its <pose> says, unless that is the pose of a frame inside.
+  if (const Xml& main = *scope.element; main.name == "model" && !get(&main, "placement_frame").empty()) {
+    Xml world;
+    world.name = "world";
+    world.children.push_back(main);
+    const Scope outer(world);
+    Resolver placing;
+    SL_TRY(placing.resolve(outer));
+    resolver.out.poses[&main] = placing.out.poses.at(&world.children.front());
+  }
   return std::move(resolver.out);
 }
 

@@ -2,8 +2,10 @@
 /// Names and frames of SDF: what is called what, and where things are that are given relative to other things.
 ///
 /// check_names() refuses duplicates, reserved names, references to nothing and circles, each with its line.
-/// resolve_frames() then asks libsdformat for the poses. Only elements that need it are looked up, and a file
-/// without relative_to, <frame>, placement_frame and expressed_in needs none at all.
+/// resolve_frames() then places what is not simply relative to its parent. A name `a::b` leads into nested models;
+/// names never lead out of a model.
+///
+/// Source   SDFormat proposal "Pose frame semantics" (SDF 1.7) and its amendments for nested models (1.8, 1.9).
 #include <string>
 #include <unordered_map>
 
@@ -12,13 +14,14 @@
 
 namespace sandlot::formats {
 
+/// Only what needs resolving is in here: for the rest, the pose as written is relative to the parent.
 struct ResolvedFrames {
-  /// Models in their parent model or the world; links in their model; collisions, visuals, sensors in their link;
-  /// joints in their child link; frames in the link they are attached to.
+  /// Models in their parent model or the world; links in their model; collisions, visuals, sensors in their link or
+  /// joint; joints in their child link; frames in the link they are attached to.
   std::unordered_map<const Xml*, Pose> poses;
   std::unordered_map<const Xml*, Vec3> axes;  ///< <axis> in its joint's frame
-  /// Of joints: child and parent link; of frames: the link they are attached to ("" for the world). As names in the
-  /// scope of the model they are in.
+  /// Of joints: child and parent link; of frames: the link they are attached to. As names in the scope of the model
+  /// they are in; "world" for the world.
   std::unordered_map<const Xml*, std::string> child_links, parent_links, frame_links;
 };
 
@@ -27,6 +30,7 @@ const Xml* main_element(const Xml& root);
 
 /// `root` is an <sdf> element of a loaded document.
 Status check_names(const Xml& root);
+/// @pre check_names(root) succeeded
 Result<ResolvedFrames> resolve_frames(const Xml& root);
 
 }  // namespace sandlot::formats

@@ -108,7 +108,11 @@ class ModelReader {
     for (const Xml& child : element.children) {
       if (child.name != "model") continue;
       SL_ASSIGN(const Pose X_NP, model_pose(child, frames_));
+      const std::size_t before = out_.links.size();
       SL_TRY(read_links(child, prefix + *child.attribute("name") + "::", X_MN * X_NP));
+      if (out_.links.size() == before)
+        return child.error("model '" + *child.attribute("name") + "' has no link", "give it a <link>");
+      first_links_[&child] = out_.links[before].name;
     }
     return {};
   }
@@ -135,12 +139,7 @@ class ModelReader {
         device.link = first_link;
         add(std::move(device), prefix);
       } else if (child.name == "model") {
-        const std::string inner = prefix + *child.attribute("name") + "::";
-        const auto link = std::find_if(out_.links.begin(), out_.links.end(),
-                                       [&](const model::Link& l) { return starts_with(l.name, inner); });
-        const auto index = static_cast<std::uint32_t>(link - out_.links.begin());
-        if (link == out_.links.end()) return child.error("model '" + *child.attribute("name") + "' has no link", "give it a <link>");
-        SL_TRY(read_rest(child, inner, index));
+        SL_TRY(read_rest(child, prefix + *child.attribute("name") + "::", index_.at(first_links_.at(&child))));
       } else if (starts_with(child.name, "sandlot:")) {
         SL_ASSIGN(model::DeviceDecl device, read_native_device(child));
         device.link = first_link;
@@ -239,7 +238,8 @@ class ModelReader {
   const ResolvedFrames& frames_;
   Notes& notes_;
   model::Model out_;
-  std::map<std::string, std::uint32_t> index_;
+  std::map<std::string, std::uint32_t> index_;  ///< of links
+  std::unordered_map<const Xml*, std::string> first_links_;  ///< of nested models
 };
 
 }  // namespace

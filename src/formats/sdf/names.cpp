@@ -80,35 +80,11 @@ Status check_unique(const Xml& parent, const char* sort) {
   return {};
 }
 
-/// `a::b::c` from a scope: each part but the last is a nested model.
-bool resolves(const Xml& scope_element, const Scope& scope, const std::string& name) {
-  const Xml* at = &scope_element;
-  const Xml* found = nullptr;
-  std::size_t from = 0;
-  for (;;) {
-    const std::size_t to = name.find("::", from);
-    const std::string part = name.substr(from, to == std::string::npos ? to : to - from);
-    if (found) {
-      if (found->name != "model") return false;
-      at = found;
-      found = nullptr;
-      if (part == "__model__" && to == std::string::npos) return true;
-      for (const Xml& child : at->children)
-        if (is_one_of(child.name, {"link", "joint", "frame", "model"}))
-          if (const std::string* n = child.attribute("name"); n && *n == part) found = &child;
-    } else {
-      found = scope.find(part);
-    }
-    if (!found) return false;
-    if (to == std::string::npos) return true;
-    from = to + 2;
-  }
-}
-
 class Checker {
  public:
   Status check(const Xml& element, int depth) {
-    SL_ASSIGN(Scope scope, Scope::create(element));
+    SL_ASSIGN(Scope * const found, scope_of(element));
+    Scope& scope = *found;
     const bool world = element.name == "world";
     for (const Xml& child : element.children) {
       if (is_one_of(child.name, {"link", "joint", "frame", "model", "light"}))
@@ -128,16 +104,49 @@ class Checker {
   }
   /// A model's attribute that names something inside it.
   Status check_inner(const Xml& model, const char* key) {
-    SL_ASSIGN(const Scope scope, Scope::create(model));
-    return check_reference(model, key, model, scope);
+    SL_ASSIGN(const Scope* const scope, scope_of(model));
+    SL_TRY(check_reference(model, key, model, *scope));
+    const std::string* const name = model.attribute(key);
+    const bool link_needed = name && !name->empty() && std::string_view(key) == "canonical_link";
+    if (link_needed && !is_link(model, *name))
+      return model.error("canonical_link '" + name->substr(0, 60) + "' is not a link");
+    return {};
   }
 
  private:
+  /// A model's names are looked up many times, and it may hold many.
+  Result<Scope*> scope_of(const Xml& element) {
+    const auto known = scopes_.find(&element);
+    if (known != scopes_.end()) return &known->second;
+    SL_ASSIGN(Scope scope, Scope::create(element));
+    return &scopes_.emplace(&element, std::move(scope)).first->second;
+  }
+
+  /// What `a::b::c` means in a scope: each part but the last is a nested model. Null when there is no such thing; the
+  /// element itself for its own frame.
+  const Xml* find(const Xml& element, const std::string& name) {
+    const Xml* at = &element;
+    for (std::size_t from = 0;;) {
+      const std::size_t to = name.find("::", from);
+      const std::string part = name.substr(from, to == std::string::npos ? to : to - from);
+      const auto scope = scope_of(*at);
+      if (!scope) return nullptr;
+      const bool own = part == (at->name == "world" ? "world" : "__model__");
+      const Xml* const found = own ? at : (*scope)->find(part);
+      if (!found || to == std::string::npos) return found;
+      if (own || found->name != "model") return nullptr;
+      at = found;
+      from = to + 2;
+    }
+  }
+  bool is_link(const Xml& model, const std::string& name) {
+    const Xml* const found = find(model, name);
+    return found && found->name == "link";
+  }
+
   Status check_reference(const Xml& holder, const char* key, const Xml& element, const Scope& scope) {
     const std::string* const name = holder.attribute(key);
-    if (!name || name->empty() || *name == "__root__") return {};
-    const bool world = element.name == "world";
-    if (*name == (world ? "world" : "__model__") || resolves(element, scope, *name)) return {};
+    if (!name || name->empty() || *name == "__root__" || find(element, *name)) return {};
     return holder.error("no frame '" + name->substr(0, 60) + "' in " + Scope::said(element), suggestion(*name, scope.names()));
   }
 
@@ -166,8 +175,7 @@ class Checker {
         if (parent) continue;
         return element->error("the world cannot be the child of a joint", "make it the parent");
       }
-      if (name == "__model__" || resolves(model, scope, name)) {
-        const Xml* const target = scope.find(name);
+      if (const Xml* const target = find(model, name)) {
         if (target == &joint) return element->error("the joint '" + name + "' is its own " + end);
         continue;
       }
@@ -200,7 +208,7 @@ class Checker {
 
   /// Each member has one origin at most, so a circle is found by walking until something known comes.
   static Status check_circles(Scope& scope) {
-    for (const bool attachment : {false, true}) {
+    for (const bool attachment : {true, false}) {
       for (auto& [name, member] : scope.members()) member.state = 0;
       for (auto& [name, member] : scope.members()) {
         std::vector<Scope::Member*> walked;
@@ -224,6 +232,8 @@ class Checker {
     }
     return {};
   }
+
+  std::map<const Xml*, Scope> scopes_;
 };
 
 }  // namespace

@@ -57,10 +57,12 @@ Error not_numbers(const Xml& element, const char* wanted) {
 
 void Notes::warn(const Xml& element, std::string what, std::string fix) {
   // An included model stands in the world many times, but its lines are the same.
-  if (!said_.emplace(to_string(element.place) + what, element.place.line).second) return;
-  if (said_.size() == max_warnings + 1) diagnostics_.warn({"further warnings are left out", "", element.place});
   if (said_.size() > max_warnings) return;
-  diagnostics_.warn(element.error(std::move(what), std::move(fix)));
+  if (!said_.emplace(to_string(element.place) + what, element.place.line).second) return;
+  if (said_.size() > max_warnings)
+    diagnostics_.warn({"further warnings are left out", "", element.place});
+  else
+    diagnostics_.warn(element.error(std::move(what), std::move(fix)));
 }
 
 void Notes::unused(const Xml& element, std::string_view used, std::string_view silent) {

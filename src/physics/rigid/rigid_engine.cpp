@@ -54,6 +54,11 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
     Body* const body = slot.instance->links[slot.link].body;
     if (!body) continue;
     wake(*body);
+    if (!is_finite(wrench.force_N) || !is_finite(wrench.torque_Nm)) {
+      // Kept away from ODE; the body's state says who it was.
+      finite_ = false;
+      states_[wrench.body.index].V_WB.linear = wrench.force_N + wrench.torque_Nm;
+    }
     // At the link's own centre of mass, which is not the body's where fixed joints lump several links.
     const Vec3 com_L = slot.instance->model->links[slot.link].inertial.X_LCo.p;
     const Vec3 arm = rotate(body->q, slot.instance->links[slot.link].X_BL * com_L);
@@ -103,7 +108,20 @@ Status RigidEngine::check_finite() const {
           "the state of '" + instance->name + "/" + instance->model->links[l].name + "' is no longer finite",
           "a smaller time step, or less extreme masses, forces and speeds"};
     }
-  return Error{"the state of a body that was removed was no longer finite"};
+  if (fault_.empty()) return Error{"the state of a body that was removed was no longer finite"};
+  // ODE stopped before there were numbers to look at: the fastest body is the likeliest cause.
+  std::string fastest;
+  double speed = -1;
+  for (const Instance* instance : order_)
+    for (std::size_t l = 0; l < instance->links.size(); ++l) {
+      const BodyState& s = states_[instance->link_ids[l].index];
+      const double mine = norm(s.V_WB.linear) + norm(s.V_WB.angular);
+      if (mine <= speed) continue;
+      speed = mine;
+      fastest = instance->name + "/" + instance->model->links[l].name;
+    }
+  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" + fastest + "'",
+               "a smaller time step, or less extreme masses, forces and speeds"};
 }
 
 void RigidEngine::overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,

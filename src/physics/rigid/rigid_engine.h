@@ -141,6 +141,7 @@ class RigidEngine final : public Engine {
   std::vector<Contact> contacts_;
   EngineCounters counters_;
   bool finite_ = true;
+  std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
 
   // Scratch of one sub-step; kept for its capacity.
   std::vector<Pair> pairs_, dormant_;

@@ -60,11 +60,17 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
   library::prepare_thread();
   if (!finite_) return;  // ODE must not see NaN; check_finite() reports it
   const library::Counts before = library::counts();
-  push_forces(h);
-  collide();
-  attach_contacts(h);
-  find_islands();
-  solve(h, stream_key);
+  try {
+    push_forces(h);
+    collide();
+    attach_contacts(h);
+    find_islands();
+    solve(h, stream_key);
+  } catch (const library::Fault& fault) {
+    finite_ = false;
+    fault_ = fault.message;
+    return;
+  }
   advance(h);
   if (spec_.sleeping) send_to_sleep(h);
   dJointGroupEmpty(contact_joints_);

@@ -1,0 +1,65 @@
+#pragma once
+/// Measurements against references taken in the same run: the machine cancels out, the ratio remains.
+#include <algorithm>
+#include <ctime>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sandlot::bench {
+
+/// One line of `sandlot bench`. `ratio` = value / reference, both costs, so less is better; ok: ratio <= budget.
+struct Row {
+  std::string name;
+  double value = 0;
+  std::string unit;
+  double reference = 0;
+  double ratio = 0;
+  double budget = 0;
+  bool ok = false;
+};
+
+inline Row row(std::string name, std::string unit, double value, double reference, double budget) {
+  const double ratio = value / reference;
+  return {std::move(name), value, std::move(unit), reference, ratio, budget, ratio <= budget};
+}
+
+// The suites; src/app runs them by name.
+std::vector<Row> ranges();   ///< P2, P5: rays of both kinds of world
+std::vector<Row> physics();  ///< P3: steps of the engines
+std::vector<Row> loading();  ///< P8: files to a simulation
+
+/// Processor time of the calling thread: other work on the machine does not count.
+inline double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct Timing {
+  double ours_s, reference_s;
+};
+
+/// Median times of two pieces of work that take turns, so that drifts of clock and caches hit both.
+template <class Ours, class Reference>
+Timing compare(int repetitions, Ours&& ours, Reference&& reference) {
+  std::vector<double> a, b;
+  const auto time = [](auto& work, std::vector<double>& times) {
+    const double begin = thread_seconds();
+    work();
+    times.push_back(thread_seconds() - begin);
+  };
+  for (int i = 0; i < repetitions + 1; ++i) {
+    time(ours, a);
+    time(reference, b);
+  }
+  const auto median = [](std::vector<double>& times) {
+    times.erase(times.begin());  // the first warms up
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+  };
+  return {median(a), median(b)};
+}
+
+}  // namespace sandlot::bench

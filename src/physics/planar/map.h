@@ -1,0 +1,88 @@
+#pragma once
+/// Everything that stands in the plane, filed in cells: the discs of moving instances and the outlines of unmoving
+/// ones. Broad phase, rays and overlaps all ask here.
+///
+/// A thing here is an upright prism: its outline over its heights, with a lid and a bottom. Answers do not depend on
+/// the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
+///
+/// Limits   a ray parallel to z hits nothing.
+/// Cost     360 rays of 5 m among discs, one per 2 m^2: 85 ns each; 24 rays of 0.1 m: 6 ns each. No allocation.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/rays.h"
+#include "physics/engine.h"
+#include "physics/planar/cells.h"
+#include "physics/planar/outline.h"
+
+namespace sandlot::planar {
+
+/// The footprint of one moving instance; `body` is what rays and contacts call it.
+struct alignas(64) Disc {
+  Vec2 centre;
+  double radius_m = 0;  ///< 0: nothing to meet
+  Heights heights;
+  std::uint32_t body = no_body;
+};
+
+/// The outline of one shape that never moves.
+struct Wall {
+  Outline outline;
+  std::uint32_t body = no_body;
+  std::uint32_t instance = ~0u;  ///< slot
+};
+
+class Map {
+ public:
+  explicit Map(double cell_m) : cell_m_(cell_m) {}
+
+  /// Replaces the walls. Their order decides which of two counts first, so it has to be that of creation.
+  void set_walls(std::span<const Wall> walls, std::span<const Edge> edges);
+  /// By slot of the instance. Whoever changes them calls file_discs() before the next question.
+  std::vector<Disc>& discs() { return discs_; }
+  /// Files the discs under the cells where they are now.
+  void file_discs();
+
+  std::span<const Wall> walls() const { return walls_; }
+  std::span<const Edge> edges() const { return edges_; }
+
+  /// Indices of walls that may touch an area, ascending, each once.
+  void walls_near(Area area, std::vector<std::uint32_t>& out) const;
+  /// Calls visit(a, b), a < b, for discs that share a cell; a pair may come more than once.
+  template <class Visit>
+  void for_pairs(Visit&& visit) const {
+    for (std::uint32_t s = 0; s < disc_cells_.columns() * disc_cells_.rows(); ++s) {
+      const auto discs = disc_cells_.in_slot(s);
+      for (std::size_t i = 0; i + 1 < discs.size(); ++i)
+        for (std::size_t j = i + 1; j < discs.size(); ++j) visit(discs[i], discs[j]);
+    }
+  }
+  /// Bodies that meet a ball, ascending, each once, appended.
+  void overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const;
+
+  /// @param ignored  slot of the instance that the rays do not see, or ~0u
+  void cast(const RayJob& job, std::uint32_t ignored) const;
+
+ private:
+  struct Ray;
+  struct Hit;
+  struct Reach;
+  struct Start;
+  Start start_at(Vec2 entry, Vec2 origin) const;
+  bool clip(const Ray& ray, double& begin, double& end) const;
+  template <bool with_walls>
+  void walk(const Ray& ray, const Start* shared, Hit& hit) const;
+  bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
+  void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
+
+  double cell_m_;
+  std::vector<Wall> walls_;
+  std::vector<Edge> edges_;
+  std::vector<Disc> discs_;
+  Cells wall_cells_, disc_cells_;
+  std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
+  Area wall_area_, area_;                  ///< of the walls, and of all there is
+};
+
+}  // namespace sandlot::planar
