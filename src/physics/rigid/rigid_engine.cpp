@@ -26,7 +26,6 @@ RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gra
   space_ = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
   dSpaceSetCleanup(space_, 0);
   contact_joints_ = dJointGroupCreate(0);
-  points_.resize(static_cast<std::size_t>(spec_.max_contacts));
 }
 
 RigidEngine::~RigidEngine() {
