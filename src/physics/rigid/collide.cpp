@@ -10,7 +10,9 @@ namespace sandlot::rigid {
 namespace {
 
 /// Share of its weight that one contact point carries.
-double load_on(const Geom& g) { return g.body ? g.instance->load_N : std::numeric_limits<double>::infinity(); }
+double load_on(const Geom& g) {
+  return g.body ? g.instance->load_N : std::numeric_limits<double>::infinity();
+}
 bool is_awake(const Geom& g) { return g.body && g.body->awake; }
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
@@ -33,9 +35,8 @@ void RigidEngine::see_pair(Geom* a, Geom* b) {
   if (a->body == b->body) return;
   if (a->instance == b->instance) {
     if (!a->instance->model->self_collide) return;
-    const auto bodies = std::minmax<const Body*>(a->body, b->body);
-    for (const auto& joined : a->instance->joined)
-      if (joined.first == bodies.first && joined.second == bodies.second) return;
+    for (const auto& [first, second] : a->instance->joined)
+      if ((first == a->body && second == b->body) || (first == b->body && second == a->body)) return;
   }
   if (b->serial < a->serial) std::swap(a, b);
   (is_awake(*a) || is_awake(*b) ? pairs_ : dormant_).push_back({a->serial, b->serial, a, b});
@@ -47,10 +48,10 @@ void RigidEngine::collide_pair(const Pair& pair) {
   if (hit_buffer_.size() < most) hit_buffer_.resize(2 * most);
   Hit* const found = &hit_buffer_[hit_count_];
   const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
-  const int n = is_round_pair(a, b)
-                    ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts, &found->contact.geom,
-                                    static_cast<int>(sizeof(Hit)))
-                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, &found->contact.geom, sizeof(Hit));
+  const int n = is_round_pair(a, b) ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
+                                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
+                                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts,
+                                               &found->contact.geom, sizeof(Hit));
   for (int i = 0; i < n; ++i) {
     found[i].a = pair.a;
     found[i].b = pair.b;

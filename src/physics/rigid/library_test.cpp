@@ -47,9 +47,7 @@ TEST(RigidLibrary, AnErrorOfOdeCanBeCaughtSoThatTheRunEndsWithItsResults) {
   try {
     dDebug(1, "something %s", "broke");
     FAIL() << "dDebug returned";
-  } catch (const Fault& fault) {
-    EXPECT_EQ(fault.message, "something broke");
-  }
+  } catch (const Fault& fault) { EXPECT_EQ(fault.message, "something broke"); }
 }
 
 }  // namespace

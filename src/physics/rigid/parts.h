@@ -37,7 +37,7 @@ struct Body {
   double quiet_s = 0;       ///< how long it has been slow
   bool awake = true;
   bool enabled = true;  ///< ODE's flag, not State
-  bool quick = false;  ///< its island was solved quickly last time
+  bool quick = false;   ///< its island was solved quickly last time
 
   // Scratch of one sub-step.
   std::uint32_t island = 0;  ///< node of the union-find
@@ -77,7 +77,7 @@ struct Joint {
 
   // State
   double position = 0;
-  double velocity = 0;           ///< follows from the bodies
+  double velocity = 0;  ///< follows from the bodies
   JointTarget target;
   double effort = 0;  ///< that the target put in
 

@@ -120,7 +120,8 @@ Status RigidEngine::check_finite() const {
       speed = mine;
       fastest = instance->name + "/" + instance->model->links[l].name;
     }
-  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" + fastest + "'",
+  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" +
+                   fastest + "'",
                "a smaller time step, or less extreme masses, forces and speeds"};
 }
 

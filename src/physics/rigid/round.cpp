@@ -9,7 +9,7 @@ namespace {
 
 /// A cylinder or a capsule in the world.
 struct Round {
-  Vec3 p, a;  ///< centre, unit axis
+  Vec3 p, a;    ///< centre, unit axis
   double r, h;  ///< radius, half of the length
   bool capsule;
 
@@ -21,7 +21,8 @@ struct Round {
 
 Round round_of(const Shape& shape, const Pose& X) {
   const Vec3 axis = rotate(X.q, {0, 0, 1});
-  if (const auto* c = std::get_if<Cylinder>(&shape)) return {X.p, axis, c->radius_m, 0.5 * c->length_m, false};
+  if (const auto* c = std::get_if<Cylinder>(&shape))
+    return {X.p, axis, c->radius_m, 0.5 * c->length_m, false};
   const auto& c = std::get<Capsule>(shape);
   return {X.p, axis, c.radius_m, 0.5 * c.length_m, true};
 }
@@ -35,7 +36,7 @@ Vec3 across(Vec3 n) {
 struct Overlap {
   const Round &A, &B;
   Vec3 apart;
-  Vec3 n;            ///< best direction so far
+  Vec3 n;  ///< best direction so far
   double depth = 1e300;
 
   double at(Vec3 d) const { return A.support(d) + B.support(d) - dot(d, apart); }
@@ -97,8 +98,8 @@ struct Overlap {
 /// The part of a body that faces direction n.
 struct Face {
   enum Kind { point, line, disc } kind;
-  Vec3 p;  ///< the point; the middle of the line; the centre of the disc
-  Vec3 a;  ///< along the line; across the disc
+  Vec3 p;       ///< the point; the middle of the line; the centre of the disc
+  Vec3 a;       ///< along the line; across the disc
   double size;  ///< half length; radius
 };
 
@@ -195,7 +196,8 @@ struct Manifold {
 }  // namespace
 
 bool is_round_pair(const Shape& a, const Shape& b) {
-  const bool cylinder_a = std::holds_alternative<Cylinder>(a), cylinder_b = std::holds_alternative<Cylinder>(b);
+  const bool cylinder_a = std::holds_alternative<Cylinder>(a),
+             cylinder_b = std::holds_alternative<Cylinder>(b);
   return (cylinder_a && (cylinder_b || std::holds_alternative<Capsule>(b))) ||
          (cylinder_b && std::holds_alternative<Capsule>(a));
 }
@@ -225,7 +227,8 @@ int collide_round(const Shape& shape_a, const Pose& X_WA, const Shape& shape_b, 
   manifold.build();
   const int count = std::min(most, static_cast<int>(manifold.count));
   for (int i = 0; i < count; ++i) {
-    auto* const g = reinterpret_cast<dContactGeom*>(reinterpret_cast<char*>(out) + static_cast<std::ptrdiff_t>(i) * skip);
+    auto* const g = reinterpret_cast<dContactGeom*>(reinterpret_cast<char*>(out) +
+                                                    static_cast<std::ptrdiff_t>(i) * skip);
     const Manifold::Point& point = manifold.points[static_cast<std::size_t>(i)];
     g->pos[0] = point.at.x, g->pos[1] = point.at.y, g->pos[2] = point.at.z, g->pos[3] = 0;
     g->normal[0] = -n.x, g->normal[1] = -n.y, g->normal[2] = -n.z, g->normal[3] = 0;

@@ -20,7 +20,7 @@ namespace sandlot::rigid {
 bool is_round_pair(const Shape& a, const Shape& b);
 
 /// Writes up to `most` contact geometries, `skip` bytes apart, as dCollide does (without g1, g2). @pre is_round_pair
-int collide_round(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, int most, dContactGeom* out,
-                  int skip);
+int collide_round(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, int most,
+                  dContactGeom* out, int skip);
 
 }  // namespace sandlot::rigid

@@ -16,7 +16,8 @@ namespace {
 
 using namespace test;
 
-std::vector<dContactGeom> contacts(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, int most = 8) {
+std::vector<dContactGeom> contacts(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                                   int most = 8) {
   dContactGeom found[8];
   EXPECT_TRUE(is_round_pair(a, b));
   const int n = collide_round(a, X_WA, b, X_WB, most, found, sizeof(dContactGeom));
@@ -129,7 +130,7 @@ TEST(Round, NoDirectionPartsThemWithLess) {
     const Vec3 n{-found[0].normal[0], -found[0].normal[1], -found[0].normal[2]};
     const double depth = support(a, X, n) + support(b, Y, -n);
     EXPECT_NEAR(norm(n), 1, 1e-9);
-    EXPECT_LT(depth, least + 1e-9) << i;       // at least as good as the best of 20,000
+    EXPECT_LT(depth, least + 1e-9) << i;  // at least as good as the best of 20,000
     EXPECT_GT(depth, least - 0.012) << i;
     double deepest = 0;
     for (const dContactGeom& c : found) {
@@ -155,7 +156,8 @@ TEST(Round, NoDirectionPartsThemWithLess) {
 TEST(Round, ATowerOfCansStandsAndACanOnARollFalls) {
   World world(rigid::engine);
   world.add(ground());
-  for (int i = 0; i < 4; ++i) world.add(body_of("can", Cylinder{0.1, 0.2}, 1, {{0.01 * i, 0, 0.1 + 0.2 * i}, {}}));
+  for (int i = 0; i < 4; ++i)
+    world.add(body_of("can", Cylinder{0.1, 0.2}, 1, {{0.01 * i, 0, 0.1 + 0.2 * i}, {}}));
   const Quat lying = quat_from_rpy(math::pi / 2, 0, 0);
   world.add(body_of("roll", Cylinder{0.1, 0.4}, 1, {{2, 0, 0.1}, lying}));
   const InstanceId above = world.add(body_of("upper", Capsule{0.1, 0.2}, 1, {{2.02, 0, 0.301}, lying}));

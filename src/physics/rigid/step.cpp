@@ -27,9 +27,10 @@ inline Quat rotation(Vec3 turn) {
   if (x < 0.01) {
     // The series of cos and of sin(a)/a to a^10: below a = 0.1 their error is under 1e-20. Cheaper than a sine, and
     // multiplied out because a division costs as much as four products.
-    const double c = 1 + x * (-1.0 / 2 + x * (1.0 / 24 + x * (-1.0 / 720 + x * (1.0 / 40320 + x * (-1.0 / 3628800)))));
-    const double s =
-        1 + x * (-1.0 / 6 + x * (1.0 / 120 + x * (-1.0 / 5040 + x * (1.0 / 362880 + x * (-1.0 / 39916800)))));
+    const double c = 1 + x * (-1.0 / 2 +
+                              x * (1.0 / 24 + x * (-1.0 / 720 + x * (1.0 / 40320 + x * (-1.0 / 3628800)))));
+    const double s = 1 + x * (-1.0 / 6 + x * (1.0 / 120 + x * (-1.0 / 5040 +
+                                                               x * (1.0 / 362880 + x * (-1.0 / 39916800)))));
     return {c, 0.5 * s * turn.x, 0.5 * s * turn.y, 0.5 * s * turn.z};
   }
   const double half = std::sqrt(x);
