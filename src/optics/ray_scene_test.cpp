@@ -188,6 +188,25 @@ TEST(RayScene, FarFromTheOriginItIsAsSharp) {
   EXPECT_NEAR(world.see(there, there + Vec3{0, 1, 0}), 4.5, eps_m);
 }
 
+TEST(RayScene, NoThinThingIsLostFarFromTheOrigin) {
+  // 10 km away a float is good to 1 mm, as thick as this board: only the margin of its bounds saves it.
+  const Vec3 there{10'000, 10'000, 0};
+  World world({shape(Box{{0.001, 4, 4}}, there + Vec3{5.0003, 0, 0})});
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 to{5, 0.003 * i - 0.3, 0.002 * i - 0.2};
+    ASSERT_NEAR(world.see(there, there + to), 4.9998 * norm(to) / 5, 2 * eps_m) << i;
+  }
+}
+
+TEST(RayScene, NothingWithinUnlimitedRangeIsNoBody) {
+  // The ray passes through the corner of the bounds of a turned box, but not through the box.
+  World world({{0, {{4, 0, 0}, quat_from_axis_angle({0, 0, 1}, math::pi / 4)}, Box{{2, 2, 2}}, 3, false}});
+  std::uint32_t body = 0;
+  const double unlimited = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(world.see({0, -2.4, 0}, {1, -1.4, 0}, 0, unlimited, no_body, &body), inf);
+  EXPECT_EQ(body, no_body);
+}
+
 // --- a second opinion in double precision -------------------------------------------------------------------------
 
 /// Calls see(t) for all t where the line o + t d meets the surface: faces, sides and caps one by one.
