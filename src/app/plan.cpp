@@ -37,7 +37,7 @@ Color mix(const Color& a, const Color& b, float share_of_b) {
 }
 
 std::string hex(const Color& c) {
-  const auto byte = [](float x) { return static_cast<int>(255 * std::clamp(x, 0.0f, 1.0f) + 0.5f); };
+  const auto byte = [](float x) { return static_cast<int>(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
 }
 
@@ -240,9 +240,10 @@ class Writer {
     put("<g stroke-width=\"{}\">\n", px(1));
     for (const Drawn& solid : solids_) {
       const bool overhead = hangs_over_robots(solid);
+      const bool carpet = solid.outline.top_m < 0.02;  // no more than a colour of the floor
       const float opacity = solid.color.a * (overhead ? 0.45f : 1);
       std::string style = fmt::format("fill=\"{}\" stroke=\"{}\"", hex(solid.color),
-                                      hex(mix(solid.color, black, 0.38f)));
+                                      hex(mix(solid.color, black, carpet ? 0.12f : 0.38f)));
       if (opacity < 0.999f) style += fmt::format(" opacity=\"{:.2f}\"", opacity);
       if (solid.moves) style += fmt::format(" stroke-width=\"{}\"", px(1.8));
       shape(solid.outline, style);

@@ -13,7 +13,8 @@ namespace {
 /// Distance in units of the last place of the true value.
 double ulps(double got, long double truth) {
   const double near = static_cast<double>(truth);
-  const double spacing = std::nextafter(std::abs(near), std::numeric_limits<double>::infinity()) - std::abs(near);
+  const double spacing = std::nextafter(std::abs(near), std::numeric_limits<double>::infinity()) -
+                         std::abs(near);
   return static_cast<double>(std::abs(static_cast<long double>(got) - truth)) / spacing;
 }
 
@@ -30,11 +31,11 @@ struct Case {
 TEST(Math, WithinOneUlpOfTheTruth) {
   const Case cases[] = {
       // lint-ok: these are the references
-      {"sin", sin, std::sin, -100, 100, 1.01},  {"cos", cos, std::cos, -100, 100, 1.01},
-      {"tan", tan, std::tan, -100, 100, 1.01},  {"asin", asin, std::asin, -1, 1, 1.01},
-      {"acos", acos, std::acos, -1, 1, 1.01},   {"atan", atan, std::atan, -50, 50, 1.01},
-      {"exp", exp, std::exp, -700, 700, 1.01},  {"log", log, std::log, 1e-10, 1e10, 1.01},
-      {"tanh", tanh, std::tanh, -20, 20, 1.01}, {"sin small", sin, std::sin, -1e-5, 1e-5, 1.01},
+      {"sin", sin, std::sin, -100, 100, 1.01},       {"cos", cos, std::cos, -100, 100, 1.01},
+      {"tan", tan, std::tan, -100, 100, 1.01},       {"asin", asin, std::asin, -1, 1, 1.01},
+      {"acos", acos, std::acos, -1, 1, 1.01},        {"atan", atan, std::atan, -50, 50, 1.01},
+      {"exp", exp, std::exp, -700, 700, 1.01},       {"log", log, std::log, 1e-10, 1e10, 1.01},
+      {"tanh", tanh, std::tanh, -20, 20, 1.01},      {"sin small", sin, std::sin, -1e-5, 1e-5, 1.01},
       {"log near 1", log, std::log, 0.9, 1.1, 1.01}, {"sin large", sin, std::sin, -1e9, 1e9, 1.01},
   };
   Stream random(1, 2, Purpose::experiment, 3);
@@ -54,9 +55,10 @@ TEST(Math, TwoArgumentsWithinOneUlp) {
   for (int i = 0; i < 20'000; ++i) {
     const double x = random.uniform(-10, 10), y = random.uniform(-10, 10);
     const auto lx = static_cast<long double>(x), ly = static_cast<long double>(y);
-    atan2_worst = std::max(atan2_worst, ulps(atan2(y, x), std::atan2(ly, lx)));        // lint-ok: reference
-    hypot_worst = std::max(hypot_worst, ulps(hypot(x, y), std::hypot(lx, ly)));        // lint-ok: reference
-    pow_worst = std::max(pow_worst, ulps(pow(std::abs(x), y), std::pow(std::abs(lx), ly)));  // lint-ok: reference
+    atan2_worst = std::max(atan2_worst, ulps(atan2(y, x), std::atan2(ly, lx)));  // lint-ok: reference
+    hypot_worst = std::max(hypot_worst, ulps(hypot(x, y), std::hypot(lx, ly)));  // lint-ok: reference
+    pow_worst = std::max(pow_worst,
+                         ulps(pow(std::abs(x), y), std::pow(std::abs(lx), ly)));  // lint-ok: reference
     const auto [s, c] = sincos(x);
     EXPECT_LE(ulps(s, std::sin(lx)), 1.01);  // lint-ok: reference
     EXPECT_LE(ulps(c, std::cos(lx)), 1.01);  // lint-ok: reference

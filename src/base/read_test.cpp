@@ -51,7 +51,9 @@ struct Spec {
 };
 
 const auto file = std::make_shared<const std::string>("a.yaml");
-Node text(std::string value, int line = 7, int column = 3) { return Node::scalar(std::move(value), {file, line, column}); }
+Node text(std::string value, int line = 7, int column = 3) {
+  return Node::scalar(std::move(value), {file, line, column});
+}
 Node list(std::initializer_list<const char*> values) {
   Node node = Node::sequence({file, 7, 3});
   int column = 4;
@@ -116,9 +118,12 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
   EXPECT_EQ(complaint(map("beams", text("1000000000"))),
             "a.yaml:7:3: /beams: must be in [1, 1e+05], is 1e+09; Number of beams.");
   EXPECT_EQ(complaint(map("beams", text("1.5"))), "a.yaml:7:3: /beams: must be a whole number, is 1.5");
-  EXPECT_EQ(complaint(map("range", text("nan"))), "a.yaml:7:3: /range: must be in [0, 100] m, is nan; Range.");
-  EXPECT_EQ(complaint(map("range", text("inf"))), "a.yaml:7:3: /range: must be in [0, 100] m, is inf; Range.");
-  EXPECT_EQ(complaint(map("range", text("-1e-9"))), "a.yaml:7:3: /range: must be in [0, 100] m, is -1e-09; Range.");
+  EXPECT_EQ(complaint(map("range", text("nan"))),
+            "a.yaml:7:3: /range: must be in [0, 100] m, is nan; Range.");
+  EXPECT_EQ(complaint(map("range", text("inf"))),
+            "a.yaml:7:3: /range: must be in [0, 100] m, is inf; Range.");
+  EXPECT_EQ(complaint(map("range", text("-1e-9"))),
+            "a.yaml:7:3: /range: must be in [0, 100] m, is -1e-09; Range.");
   EXPECT_EQ(complaint(map("range", text("5 kg"))),
             "a.yaml:7:3: /range: unit 'kg' does not fit; units that fit: m, mm, cm, km, um, in, ft");
   EXPECT_EQ(complaint(map("range", text("wide"))),
@@ -126,19 +131,26 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
   EXPECT_EQ(complaint(map("range", list({"1"}))), "a.yaml:7:3: /range: expected a number, found a list");
   EXPECT_EQ(complaint(map("on", text("maybe"))), "a.yaml:7:3: /on: expected true or false, found 'maybe'");
   EXPECT_EQ(complaint(map("name", text("sixsix"))), "a.yaml:7:3: /name: text is too long");
-  EXPECT_EQ(complaint(map("colour", text("gren"))), "a.yaml:7:3: /colour: 'gren' is no choice here; did you mean 'green'?");
-  EXPECT_EQ(complaint(map("offset", list({"1", "2"}))), "a.yaml:7:3: /offset: expected a list of 3 values, found a list");
-  EXPECT_EQ(complaint(map("offset", list({"0", "0", "2"}))), "a.yaml:7:6: /offset/2: must be in [-1, 1] m, is 2; Offset.");
-  EXPECT_EQ(complaint(map("list", list({"0", "0", "0", "0"}))), "a.yaml:7:3: /list: list has 4 elements; at most 3 are allowed");
+  EXPECT_EQ(complaint(map("colour", text("gren"))),
+            "a.yaml:7:3: /colour: 'gren' is no choice here; did you mean 'green'?");
+  EXPECT_EQ(complaint(map("offset", list({"1", "2"}))),
+            "a.yaml:7:3: /offset: expected a list of 3 values, found a list");
+  EXPECT_EQ(complaint(map("offset", list({"0", "0", "2"}))),
+            "a.yaml:7:6: /offset/2: must be in [-1, 1] m, is 2; Offset.");
+  EXPECT_EQ(complaint(map("list", list({"0", "0", "0", "0"}))),
+            "a.yaml:7:3: /list: list has 4 elements; at most 3 are allowed");
   EXPECT_EQ(complaint(map("list", list({"0", "x"}))),
             "a.yaml:7:5: /list/1: 'x' is not a number; write a number, in m or with its unit");
   EXPECT_EQ(complaint(map("list", text("1"))), "a.yaml:7:3: /list: expected a list, found '1'");
-  EXPECT_EQ(complaint(map("noise", map("white", text("11")))), "a.yaml:7:3: /noise/white: must be in [0, 10] m, is 11; Noise.");
-  EXPECT_EQ(complaint(map("noise", map("whte", text("1")))), "a.yaml:6:2: /noise: unknown key 'whte'; did you mean 'white'?");
+  EXPECT_EQ(complaint(map("noise", map("white", text("11")))),
+            "a.yaml:7:3: /noise/white: must be in [0, 10] m, is 11; Noise.");
+  EXPECT_EQ(complaint(map("noise", map("whte", text("1")))),
+            "a.yaml:6:2: /noise: unknown key 'whte'; did you mean 'white'?");
   Node two = Node::sequence();
   two.push(Node::map());
   two.push(map("fixed", text("99")));
-  EXPECT_EQ(complaint(map("many", std::move(two))), "a.yaml:7:3: /many/1/fixed: must be in [0, 10], is 99; Fixed.");
+  EXPECT_EQ(complaint(map("many", std::move(two))),
+            "a.yaml:7:3: /many/1/fixed: must be in [0, 10], is 99; Fixed.");
   EXPECT_EQ(complaint(text("5")), "a.yaml:7:3: expected a map of keys, found '5'");
 }
 
@@ -174,7 +186,8 @@ TEST(Read, IntegersStayWithinTheirType) {
     return node;
   };
   EXPECT_EQ(complaint<Needy>(with("small", "255")), "");
-  EXPECT_EQ(complaint<Needy>(with("small", "256")), "a.yaml:7:3: /small: must be in [0, 255], is 256; A byte.");
+  EXPECT_EQ(complaint<Needy>(with("small", "256")),
+            "a.yaml:7:3: /small: must be in [0, 255], is 256; A byte.");
   EXPECT_EQ(complaint<Needy>(with("small", "-1")), "a.yaml:7:3: /small: must be in [0, 255], is -1; A byte.");
   EXPECT_EQ(complaint<Needy>(with("unbounded", "4294967295")), "");
   EXPECT_NE(complaint<Needy>(with("unbounded", "4294967296")), "");
@@ -198,7 +211,8 @@ TEST(SetTunable, RefusesTheRestAndLeavesTheSpecAlone) {
     return status ? "" : status.error().text();
   };
   EXPECT_EQ(refused("beams", "5"), "a.yaml:7:3: /beams: 'beams' is fixed once the run has started");
-  EXPECT_EQ(refused("noise/fixed", "5"), "a.yaml:7:3: /noise/fixed: 'fixed' is fixed once the run has started");
+  EXPECT_EQ(refused("noise/fixed", "5"),
+            "a.yaml:7:3: /noise/fixed: 'fixed' is fixed once the run has started");
   EXPECT_EQ(refused("noise", "5"), "a.yaml:7:3: /noise: 'noise' is fixed once the run has started");
   EXPECT_EQ(refused("noise/whit", "5"), "a.yaml:7:3: /noise: no parameter 'whit'; did you mean 'white'?");
   EXPECT_EQ(refused("range/x", "5"), "a.yaml:7:3: /range: 'range' has no parts");

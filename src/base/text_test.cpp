@@ -12,8 +12,8 @@ namespace {
 
 TEST(Text, NearestForgivesASlipButNoMore) {
   const std::vector<std::string> keys{"beams", "max_range", "min_range", "rate"};
-  EXPECT_EQ(nearest("beam", keys), "beams");        // missing letter
-  EXPECT_EQ(nearest("baems", keys), "beams");       // swapped letters count as one slip
+  EXPECT_EQ(nearest("beam", keys), "beams");   // missing letter
+  EXPECT_EQ(nearest("baems", keys), "beams");  // swapped letters count as one slip
   EXPECT_EQ(nearest("Max_Range", keys), "max_range");
   EXPECT_EQ(nearest("maxrange", keys), "max_range");
   EXPECT_EQ(nearest("colour", keys), "");

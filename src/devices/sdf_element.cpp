@@ -47,7 +47,8 @@ void warn_unknown(const Node& element, std::initializer_list<std::string_view> k
   for (const Node::Entry& entry : element.entries()) {
     if (entry.key.empty() || entry.key.front() == '@') continue;
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
-    diagnostics.warn({"<" + entry.key + "> of " + what + " is not supported and has no effect", "", entry.key_place});
+    diagnostics.warn(
+        {"<" + entry.key + "> of " + what + " is not supported and has no effect", "", entry.key_place});
   }
 }
 

@@ -26,7 +26,11 @@ class HandEngine final : public Engine {
   std::size_t drive_targets_given = 0;
 
   explicit HandEngine(const model::Model& model)
-      : body(model.links.size()), joint(model.joints.size()), target(model.joints.size()), inertia(model.joints.size(), 1.0), outside(model.joints.size()) {
+      : body(model.links.size()),
+        joint(model.joints.size()),
+        target(model.joints.size()),
+        inertia(model.joints.size(), 1.0),
+        outside(model.joints.size()) {
     for (std::uint32_t i = 0; i < body.size(); ++i) {
       body_ids.push_back({i, 1});
       body[i].X_WB = model.links[i].X_ML;
@@ -44,7 +48,8 @@ class HandEngine final : public Engine {
   std::span<const BodyState> states() const override { return body; }
   std::span<const JointState> joint_states() const override { return joint; }
   std::span<const Contact> contacts() const override { return {}; }
-  void overlaps(std::span<const OverlapQuery>, std::vector<std::uint32_t>&, std::vector<std::uint32_t>&) const override {}
+  void overlaps(std::span<const OverlapQuery>, std::vector<std::uint32_t>&,
+                std::vector<std::uint32_t>&) const override {}
   const RayCaster* rays() const override { return nullptr; }
   void apply(std::span<const Wrench>) override {}
   void set_targets(std::span<const JointTarget> targets) override {
@@ -59,7 +64,8 @@ class HandEngine final : public Engine {
       JointState& j = joint[i];
       double acceleration = 0;
       if (target[i].mode == JointTarget::Mode::velocity) j.velocity = target[i].velocity;
-      if (target[i].mode == JointTarget::Mode::effort) acceleration = (target[i].effort + outside[i]) / inertia[i];
+      if (target[i].mode == JointTarget::Mode::effort)
+        acceleration = (target[i].effort + outside[i]) / inertia[i];
       j.effort = target[i].mode == JointTarget::Mode::effort ? target[i].effort : 0;
       j.position += j.velocity * h_s + 0.5 * acceleration * h_s * h_s;
       j.velocity += acceleration * h_s;
@@ -72,14 +78,18 @@ class HandEngine final : public Engine {
   EngineCounters counters() const override { return {}; }
 
  private:
-  static double towards(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
+  static double towards(double from, double to, double step) {
+    return from + std::clamp(to - from, -step, step);
+  }
 
   void step_base(double h_s) {
     BodyState& base = body[0];
     const Vec3 v_B = rotate_inverse(base.X_WB.q, base.V_WB.linear);
     const double vx = blocked ? 0 : towards(v_B.x, drive.vx_mps, drive.max_accel_mps2 * h_s);
     const double vy = blocked ? 0 : towards(v_B.y, drive.vy_mps, drive.max_accel_mps2 * h_s);
-    const double omega = blocked ? 0 : towards(base.V_WB.angular.z, drive.wz_radps, drive.max_angular_accel_radps2 * h_s);
+    const double omega = blocked ? 0
+                                 : towards(base.V_WB.angular.z, drive.wz_radps,
+                                           drive.max_angular_accel_radps2 * h_s);
     // Constant body velocity over h: the exact displacement is the chord, turned by half the angle.
     const double half = 0.5 * omega * h_s;
     const double sinc = std::abs(half) < 1e-6 ? 1 - half * half / 6 : math::sin(half) / half;
@@ -117,12 +127,13 @@ class Rig final : public TopicMaker {
     instance.name = "robot1";
     instance.model = std::make_shared<const model::Model>(std::move(model));
   }
-  Status add(const std::string& name, Node config, std::uint32_t level_bits = 1, std::uint32_t link = 0, Pose X_LS = {}) {
+  Status add(const std::string& name, Node config, std::uint32_t level_bits = 1, std::uint32_t link = 0,
+             Pose X_LS = {}) {
     model::DeviceDecl decl{.name = name, .link = link, .X_LS = X_LS, .config = std::move(config)};
     decl.place = {std::make_shared<const std::string>("robot.yaml"), 12, 5};
     const std::string path = "robot1/" + name;
-    SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids, engine->what, tick,
-                      level_bits, *this}));
+    SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids,
+                      engine->what, tick, level_bits, *this}));
     all.push_back(static_cast<std::uint32_t>(all.size()));
     levels.push_back(level_bits);
     sample.push_back(0);
@@ -202,21 +213,23 @@ inline Node config(std::initializer_list<std::pair<const char*, const char*>> en
   return node;
 }
 
-/// A base with two wheels of 0.1 m radius, 0.5 m apart, the axle `axle_x_m` ahead of the base; a passive slider, too.
-inline model::Model two_wheels(double axle_x_m = 0) {
+/// A base with two wheels of 0.1 m radius, 0.5 m apart, the axle's centre at (axle_x_m, axle_y_m) of the base; a passive slider, too.
+inline model::Model two_wheels(double axle_x_m = 0, double axle_y_m = 0) {
   model::Model model;
   model.name = "rover";
-  for (const char* name : {"chassis", "left_wheel", "right_wheel", "mast"}) model.links.push_back({.name = name});
-  model.links[1].X_ML.p = {axle_x_m, 0.25, 0};
-  model.links[2].X_ML.p = {axle_x_m, -0.25, 0};
+  for (const char* name : {"chassis", "left_wheel", "right_wheel", "mast"})
+    model.links.push_back({.name = name});
+  model.links[1].X_ML.p = {axle_x_m, axle_y_m + 0.25, 0};
+  model.links[2].X_ML.p = {axle_x_m, axle_y_m - 0.25, 0};
   // The wheel links are turned so that their cylinders lie across: the joint axis is z of the link.
   for (const std::size_t i : {1u, 2u}) {
     model.links[i].X_ML.q = quat_from_rpy(-math::pi / 2, 0, 0);
     model.links[i].collisions.push_back({.shape = Cylinder{0.1, 0.04}});
   }
-  model.joints = {{.name = "left", .type = model::JointType::continuous, .child = 1},
-                  {.name = "right", .type = model::JointType::continuous, .child = 2},
-                  {.name = "lift", .type = model::JointType::prismatic, .child = 3, .lower = 0, .upper = 0.5}};
+  model.joints = {
+      {.name = "left", .type = model::JointType::continuous, .child = 1},
+      {.name = "right", .type = model::JointType::continuous, .child = 2},
+      {.name = "lift", .type = model::JointType::prismatic, .child = 3, .lower = 0, .upper = 0.5}};
   return model;
 }
 

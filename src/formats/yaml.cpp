@@ -35,6 +35,25 @@ std::string show_variables(std::string text) {
   return text;
 }
 
+/// yaml-cpp takes in a whole [...] or {...} before it reports the first event, at some hundred bytes per token: one
+/// that is absurdly deep or long has to be refused before. Brackets in comments and quotes are counted too, hence the
+/// generous depth; the exact limits are the Builder's.
+Status check_flow(std::string_view text, const TextLimits& limits, const std::shared_ptr<const std::string>& file) {
+  constexpr std::size_t absurd_depth = 1000;
+  std::size_t depth = 0, commas = 0;
+  int line = 1;
+  for (const char c : text) {
+    line += c == '\n';
+    if (c == '[' || c == '{') ++depth;
+    if ((c == ']' || c == '}') && depth > 0 && --depth == 0) commas = 0;
+    commas += c == ',' && depth > 0;
+    if (depth > absurd_depth) return Error{"nested too deeply, or brackets are not closed", "", {file, line}};
+    if (commas > limits.max_nodes)
+      return Error{"too many values", "at most " + std::to_string(limits.max_nodes) + " are allowed", {file, line}};
+  }
+  return {};
+}
+
 /// How a handler stops yaml-cpp's recursion; caught in parse_yaml.
 struct Refused {
   Error error;
@@ -188,6 +207,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
     return Error{"is too large: " + std::to_string(text.size() >> 20) + " MiB",
                  "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read", {name}};
   SL_TRY(check_text(text, file));
+  SL_TRY(check_flow(text, limits, name));
   Builder builder(name, limits);
   const std::string hidden = hide_variables(text);
   ViewBuffer buffer(hidden);

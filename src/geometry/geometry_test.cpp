@@ -21,7 +21,8 @@ void expect_near(Vec3 a, Vec3 b, double tolerance = eps) {
 /// q and -q are the same rotation.
 void expect_same_rotation(Quat a, Quat b, double tolerance = eps) {
   EXPECT_NEAR(std::abs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z), 1, tolerance * tolerance + 1e-15);
-  for (const Vec3 v : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) expect_near(rotate(a, v), rotate(b, v), tolerance);
+  for (const Vec3 v : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    expect_near(rotate(a, v), rotate(b, v), tolerance);
 }
 Vec3 random_vector(Stream& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
@@ -42,7 +43,8 @@ TEST(Quat, TurnsTheAxesAsTheRightHandSays) {
 TEST(Quat, RollPitchYawComeBack) {
   Stream random(1, 1, Purpose::experiment, 0);
   for (int i = 0; i < 2000; ++i) {
-    const double r = random.uniform(-math::pi, math::pi), p = random.uniform(-1.5, 1.5), y = random.uniform(-math::pi, math::pi);
+    const double r = random.uniform(-math::pi, math::pi), p = random.uniform(-1.5, 1.5),
+                 y = random.uniform(-math::pi, math::pi);
     // Near 1.5 rad roll and yaw are divided by cos(1.5) = 0.07.
     expect_near(rpy_from_quat(quat_from_rpy(r, p, y)), {r, p, y}, 1e-13);
     EXPECT_NEAR(yaw_of(quat_from_rpy(r, p, y)), y, 1e-13);
@@ -51,7 +53,8 @@ TEST(Quat, RollPitchYawComeBack) {
 
 TEST(Quat, LookingStraightUpOrDownIsNoSpecialCaseForTheRotation) {
   // Within 1.5e-8 of the vertical pitch is rounded to it; outside, 2e-16 / 1.5e-8 is lost.
-  for (const double pitch : {math::pi / 2, -math::pi / 2, math::pi / 2 - 1e-9, math::pi / 2 - 1e-7, -math::pi / 2 + 1e-5})
+  for (const double pitch :
+       {math::pi / 2, -math::pi / 2, math::pi / 2 - 1e-9, math::pi / 2 - 1e-7, -math::pi / 2 + 1e-5})
     for (const double roll : {0.0, 0.4, -3.0})
       for (const double yaw : {0.0, 2.0, -1.0}) {
         const Quat q = quat_from_rpy(roll, pitch, yaw);
@@ -78,8 +81,8 @@ TEST(Quat, TheShortestRotationBetweenTwoDirections) {
 TEST(Pose, ComposesAndInverts) {
   Stream random(1, 1, Purpose::experiment, 2);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 pa = random_vector(random), ra = random_vector(random), pb = random_vector(random), rb = random_vector(random),
-               point = random_vector(random);
+    const Vec3 pa = random_vector(random), ra = random_vector(random), pb = random_vector(random),
+               rb = random_vector(random), point = random_vector(random);
     const Pose A = pose_from_rpy(pa, ra), B = pose_from_rpy(pb, rb);
     expect_near((A * B) * point, A * (B * point), 1e-13);
     expect_near(inverse(A) * (A * point), point, 1e-13);

@@ -21,7 +21,7 @@ namespace sandlot::kinematics {
 
 /// Velocity of the axle's centre D, in D.
 struct DriveVelocity {
-  double v_mps = 0;       ///< along x
+  double v_mps = 0;  ///< along x
   double omega_radps = 0;
 };
 

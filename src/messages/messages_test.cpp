@@ -43,8 +43,8 @@ msg::Int64Stamped ticks() {
   return m;
 }
 
-const auto examples = std::tuple(scan(), joint_state(), odometry(), pose_stamped(), ticks(), msg::Float64{2.5},
-                                 msg::Twist{{1, 2, 3}, {4, 5, 6}});
+const auto examples = std::tuple(scan(), joint_state(), odometry(), pose_stamped(), ticks(),
+                                 msg::Float64{2.5}, msg::Twist{{1, 2, 3}, {4, 5, 6}});
 
 template <class Each>
 void for_each_example(Each&& each) {

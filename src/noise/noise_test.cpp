@@ -112,7 +112,8 @@ TEST(RangeNoise, BeamsShareTheBiasAndHaveTheirOwnWhiteError) {
     EXPECT_NEAR(mean, bias.bias, 5.5 * 0.1 / std::sqrt(beams));
   }
   EXPECT_NEAR(std::sqrt(bias_squares / samples), 0.5, 0.5 * 5 / std::sqrt(2.0 * samples));
-  EXPECT_NEAR(std::sqrt(white_squares / samples / (beams - 1)), 0.1, 0.1 * 5 / std::sqrt(2.0 * samples * beams));
+  EXPECT_NEAR(std::sqrt(white_squares / samples / (beams - 1)), 0.1,
+              0.1 * 5 / std::sqrt(2.0 * samples * beams));
 }
 
 TEST(RangeNoise, LeavesTheEndsAloneAndStaysBetweenThem) {

@@ -25,15 +25,16 @@ struct RangeNoiseSpec {
   DriftingBiasSpec bias;  ///< U = m
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"white", "m", "Standard deviation of each beam's own error.", 0, 1e6, Field::tunable}, s.white_m);
+    visit(Field{"white", "m", "Standard deviation of each beam's own error.", 0, 1e6, Field::tunable},
+          s.white_m);
     visit(Field{"bias", "m", "Error that all beams of a sample share."}, s.bias);
   }
 };
 
 /// Corrupts one sample in place.
 /// @param dt_s  [s] since the previous sample, > 0
-inline void corrupt_ranges(const RangeNoiseSpec& s, DriftingBias& bias, double dt_s, Stream& random, double min_m,
-                           double max_m, std::span<float> ranges_m) {
+inline void corrupt_ranges(const RangeNoiseSpec& s, DriftingBias& bias, double dt_s, Stream& random,
+                           double min_m, double max_m, std::span<float> ranges_m) {
   const bool shared = s.bias.bias_std > 0 || s.bias.white_density > 0;
   const double offset_m = shared ? bias.corrupt(s.bias, 0.0, dt_s, random) : 0.0;
   if (!shared && s.white_m == 0) return;
@@ -41,7 +42,8 @@ inline void corrupt_ranges(const RangeNoiseSpec& s, DriftingBias& bias, double d
   for (float& range_m : ranges_m) {
     if (!std::isfinite(range_m)) continue;
     const double shifted_m = static_cast<double>(range_m) + offset_m;
-    range_m = static_cast<float>(std::clamp(white.std > 0 ? white.corrupt(shifted_m, random) : shifted_m, min_m, max_m));
+    range_m = static_cast<float>(
+        std::clamp(white.std > 0 ? white.corrupt(shifted_m, random) : shifted_m, min_m, max_m));
   }
 }
 

@@ -18,7 +18,8 @@ struct WhiteNoiseSpec {
   double std = 0.0;  ///< [U]
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"std", "", "Standard deviation per sample, in the channel's unit.", 0, 1e6, Field::tunable}, s.std);
+    visit(Field{"std", "", "Standard deviation per sample, in the channel's unit.", 0, 1e6, Field::tunable},
+          s.std);
   }
 
   /// @param truth  [U]

@@ -140,6 +140,20 @@ TEST_P(EngineContract, AWallStopsAnIdealDrive) {
   EXPECT_LT(world.state(id).X_WB.p.x, 0.5);
 }
 
+TEST_P(EngineContract, RobotsStopEachOther) {
+  World world(kind);
+  world.add(ground());
+  const InstanceId a = world.add(disc_robot("a", {-0.5, 0, 0}));
+  const InstanceId b = world.add(disc_robot("b", {0.5, 0, 0}, math::pi));
+  world.drive(a, {.vx_mps = 0.5, .max_accel_mps2 = 2.0});
+  world.drive(b, {.vx_mps = 0.5, .max_accel_mps2 = 2.0});
+  world.run(300);
+  // Equal pushes: they stand face to face in the middle, two radii apart.
+  const double gap = world.state(b).X_WB.p.x - world.state(a).X_WB.p.x;
+  EXPECT_NEAR(gap, 0.2, 2e-3);
+  EXPECT_NEAR(world.state(a).X_WB.p.x + world.state(b).X_WB.p.x, 0, 2e-3);
+}
+
 TEST_P(EngineContract, AReleasedDriveNoLongerPushes) {
   World world(kind, {}, {0, 0, 0});
   const InstanceId id = world.add(disc_robot("a", {0, 0, 0}));

@@ -32,9 +32,11 @@ void Sectors::fill(const msg::LaserScan& scan, const Pose& X_BS) {
   const double first = scan.angle_min, step = scan.angle_increment;
   const double span = beams > 1 ? static_cast<double>(beams - 1) * std::abs(step) : 0;
   const double low = step < 0 ? first - span : first;
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad - 1e-3)));
+  const auto count = static_cast<std::size_t>(
+      std::max(1.0, std::ceil(std::min(span, math::tau) / sector_rad - 1e-3)));
   const double width = span / static_cast<double>(count);
 
+  max_m = scan.range_max;
   constexpr float empty = -1;
   distance_m.assign(count, empty);
   for (std::size_t i = 0; i < beams; ++i) {
@@ -111,13 +113,14 @@ void Wander::remember() {
     state.memory.clear();
     return;
   }
-  const auto [s, c] = math::sincos(-state.omega_radps * period_s);
+  const math::SinCos turned = math::sincos(-state.omega_radps * period_s);
   const double dx = state.v_mps * period_s;
   const Pose X_SB = inverse(X_BS);
   const double yaw = yaw_of(X_BS.q);
   std::erase_if(state.memory, [&](std::array<float, 3>& echo) {
     const double x = echo[0] - dx, y = echo[1];
-    echo = {static_cast<float>(x * c - y * s), static_cast<float>(x * s + y * c), echo[2] + static_cast<float>(period_s)};
+    echo = {static_cast<float>(x * turned.cos - y * turned.sin),
+            static_cast<float>(x * turned.sin + y * turned.cos), echo[2] + static_cast<float>(period_s)};
     const Vec3 p_S = X_SB * Vec3{echo[0], echo[1], 0};
     const double bearing = math::wrap_angle(math::atan2(p_S.y, p_S.x) + yaw);
     const bool in_view = bearing > sectors.first_rad && bearing < sectors.last_rad;
@@ -130,7 +133,8 @@ void Wander::remember() {
     if (state.memory.size() >= memory_size) state.memory.erase(state.memory.begin());
     state.memory.push_back({static_cast<float>(echo.x_m), static_cast<float>(echo.y_m), 0});
   }
-  for (const auto& [x, y, age] : state.memory) sectors.echoes.push_back({x, y, std::sqrt(x * x + y * y), true});
+  for (const auto& [x, y, age] : state.memory)
+    sectors.echoes.push_back({x, y, std::sqrt(x * x + y * y), true});
 }
 
 /// The barrier: no echo may come nearer than it can be braked for.
@@ -159,13 +163,16 @@ Wander::Motion Wander::cruise(Stream& random) {
     }
   }
   const double half_width = spec.radius_m + spec.margin_m;
-  const double right = std::max(-widest_heading_rad, sectors.first_rad), left = std::min(widest_heading_rad, sectors.last_rad);
+  const double right = std::max(-widest_heading_rad, sectors.first_rad),
+               left = std::min(widest_heading_rad, sectors.last_rad);
   double best_score = -1e9, best_rad = 0, best_m = 0, free_right = 0, free_left = 0;
-  for (double heading = -widest_heading_rad; heading <= widest_heading_rad + 1e-9; heading += heading_step_rad) {
+  for (double heading = -widest_heading_rad; heading <= widest_heading_rad + 1e-9;
+       heading += heading_step_rad) {
     if (heading < right || heading > left) continue;
     const double free_m = sectors.corridor_m(heading, half_width, spec.lookahead_m);
     (heading < 0 ? free_right : free_left) += free_m;
-    const double score = free_m / spec.lookahead_m - 0.5 * std::abs(heading - state.favourite_rad) / (math::pi / 2) -
+    const double score = free_m / spec.lookahead_m -
+                         0.5 * std::abs(heading - state.favourite_rad) / (math::pi / 2) -
                          0.2 * std::abs(heading - state.heading_rad) / (math::pi / 2);
     if (free_m >= blocked_m && score > best_score) {
       best_score = score;
@@ -218,17 +225,22 @@ bool Wander::stuck() {
     state.driven_m = state.turned_rad = 0;
     return false;
   }
+  double change = 0;  // mean over all sectors
+  for (std::size_t k = 0; k < now.size(); ++k)
+    change += std::abs(now[k] - state.before[k]) / static_cast<double>(now.size());
   bool found = false;
   if (state.driven_m >= 0.25 && std::abs(state.turned_rad) < 0.1) {
-    // Straight ahead the distance must have changed by what was driven, wherever the walls stand.
+    // Straight ahead the distance must have changed by what was driven, wherever the walls stand, unless another
+    // thing came into line at the same distance; but then the rest of the scan has changed.
     const double width = (sectors.last_rad - sectors.first_rad) / static_cast<double>(now.size());
-    const auto middle = static_cast<std::size_t>(std::clamp(-sectors.first_rad / width, 0.0, static_cast<double>(now.size() - 1)));
-    found = sectors.echoes[middle].seen && std::abs(now[middle] - state.before[middle]) < 0.3 * state.driven_m;
+    const auto middle = static_cast<std::size_t>(
+        std::clamp(-sectors.first_rad / width, 0.0, static_cast<double>(now.size() - 1)));
+    const bool seen = now[middle] < sectors.max_m && state.before[middle] < sectors.max_m;
+    found = seen && std::abs(now[middle] - state.before[middle]) < 0.3 * state.driven_m &&
+            change < 0.15 * state.driven_m;
   } else if (std::abs(state.turned_rad) >= 0.8) {
-    double change = 0;
-    for (std::size_t k = 0; k < now.size(); ++k) change += std::abs(now[k] - state.before[k]);
-    found = change < 0.03 * static_cast<double>(now.size());
-  } else if (state.driven_m < 1.0 && state.mode_s < 1e6) {
+    found = change < 0.03;
+  } else if (state.driven_m < 1.0) {
     return false;  // not enough to judge yet
   }
   state.before = now;

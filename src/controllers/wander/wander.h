@@ -10,8 +10,8 @@
 ///          side until the way ahead is clear. Speed obeys a barrier for every echo at distance d and bearing b:
 ///          v cos(b) <= (d - radius - margin / 2) / reaction_s, so the gap can only shrink exponentially. What a
 ///          narrow scanner loses sight of is remembered for 3 s, moved by the orders given since.
-/// Stuck    When the echo straight ahead does not come nearer while the robot should drive towards it, or the whole
-///          scan stays as it is while it should turn, it backs up the way it came and turns to a random side.
+/// Stuck    When neither the echo straight ahead nor the scan as a whole changes as driving should change them, or the
+///          scan stays as it is while the robot should turn, it backs up the way it came and turns to a random side.
 /// Limits   sees only what the scanner's plane sees; no map, so coverage is that of a random walk; obstacles that move
 ///          faster than the robot can hit it.
 /// Cost     about 40 headings x 120 sectors per step; no allocation after the first scan.
@@ -35,12 +35,17 @@ struct Spec {
     constexpr unsigned tunable = Field::tunable;
     visit(Field{"laser", "", "Laser scanner to use; empty: the only one.", 0, 0, Field::none, 1000}, s.laser);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
-    visit(Field{"radius", "m", "Radius of the circle about its centre that contains the robot.", 0.01, 100, tunable}, s.radius_m);
-    visit(Field{"margin", "m", "Distance kept beyond the radius where there is room.", 0, 100, tunable}, s.margin_m);
+    visit(Field{"radius", "m", "Radius of the circle about its centre that contains the robot.", 0.01, 100,
+                tunable},
+          s.radius_m);
+    visit(Field{"margin", "m", "Distance kept beyond the radius where there is room.", 0, 100, tunable},
+          s.margin_m);
     visit(Field{"speed", "m/s", "Speed in the open.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Fastest turn.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"lookahead", "m", "Free space beyond this makes no difference.", 0.1, 100, tunable}, s.lookahead_m);
-    visit(Field{"reaction", "s", "A gap in front is used up in no less than this.", 0.05, 60, tunable}, s.reaction_s);
+    visit(Field{"lookahead", "m", "Free space beyond this makes no difference.", 0.1, 100, tunable},
+          s.lookahead_m);
+    visit(Field{"reaction", "s", "A gap in front is used up in no less than this.", 0.05, 60, tunable},
+          s.reaction_s);
   }
 };
 
@@ -48,15 +53,16 @@ enum class Mode : std::uint8_t { cruise, turn, back };
 
 struct State {
   Mode mode = Mode::cruise;
-  double mode_s = 0;        ///< time in the present mode
-  double turn_min_s = 0;    ///< the present turn lasts at least this long
-  double turn_sign = 1;     ///< +1: left
-  double favourite_rad = 0; ///< heading the robot likes, relative to its own
-  double favourite_left_s = 0;  ///< time until it likes another one
-  double heading_rad = 0;   ///< chosen in the previous step
-  double blind_s = 1e9;     ///< time since the last scan
-  double v_mps = 0, omega_radps = 0;    ///< ordered in the previous step
-  std::vector<std::array<float, 3>> memory;  ///< x [m], y [m], age [s] of echoes out of view, in the robot's frame
+  double mode_s = 0;                  ///< time in the present mode
+  double turn_min_s = 0;              ///< the present turn lasts at least this long
+  double turn_sign = 1;               ///< +1: left
+  double favourite_rad = 0;           ///< heading the robot likes, relative to its own
+  double favourite_left_s = 0;        ///< time until it likes another one
+  double heading_rad = 0;             ///< chosen in the previous step
+  double blind_s = 1e9;               ///< time since the last scan
+  double v_mps = 0, omega_radps = 0;  ///< ordered in the previous step
+  std::vector<std::array<float, 3>>
+      memory;                           ///< x [m], y [m], age [s] of echoes out of view, in the robot's frame
   double driven_m = 0, turned_rad = 0;  ///< ordered since `before` was taken
   std::vector<float> before;            ///< sector distances to compare with
 
@@ -81,12 +87,13 @@ struct State {
 /// A scan reduced to sectors, in the robot's frame. Scratch: made anew from each message.
 struct Sectors {
   struct Echo {
-    double x_m, y_m;       ///< of the echo
-    double range_m;        ///< from the robot's centre
-    bool seen;             ///< false: nothing within the scanner's range
+    double x_m, y_m;  ///< of the echo
+    double range_m;   ///< from the robot's centre
+    bool seen;        ///< false: nothing within the scanner's range
   };
-  std::vector<Echo> echoes;         ///< by bearing from the scanner, right to left; then what is remembered
-  std::vector<float> distance_m;    ///< from the scanner; its maximum where nothing was seen
+  std::vector<Echo> echoes;       ///< by bearing from the scanner, right to left; then what is remembered
+  std::vector<float> distance_m;  ///< from the scanner; its maximum where nothing was seen
+  float max_m = 0;                ///< range of the scanner
   double first_rad = 0, last_rad = 0;  ///< bearings covered, in the robot's frame
 
   void fill(const msg::LaserScan& scan, const Pose& X_BS);

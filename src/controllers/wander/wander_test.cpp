@@ -96,11 +96,13 @@ struct Trial {
   void scan(const Room& room) {
     Stream noise(seed, 7, Purpose::noise, ticks);
     for (std::size_t i = 0; i < topic.message.ranges.size(); ++i) {
-      const double angle = theta + topic.message.angle_min + static_cast<double>(i) * topic.message.angle_increment;
+      const double angle = theta + topic.message.angle_min +
+                           static_cast<double>(i) * topic.message.angle_increment;
       const double r = room.cast({x, y}, angle);
-      topic.message.ranges[i] = r > scanner.max_m   ? std::numeric_limits<float>::infinity()
-                                : r < scanner.min_m ? -std::numeric_limits<float>::infinity()
-                                                    : static_cast<float>(r + scanner.noise_m * noise.normal());
+      topic.message.ranges[i] = r > scanner.max_m ? std::numeric_limits<float>::infinity()
+                                : r < scanner.min_m
+                                    ? -std::numeric_limits<float>::infinity()
+                                    : static_cast<float>(r + scanner.noise_m * noise.normal());
     }
     topic.publish(Time::from_ns(static_cast<std::int64_t>(ticks) * 100'000'000));
   }
@@ -216,8 +218,8 @@ TEST(Sectors, ACorridorEndsWhereTheDiscTouches) {
   Sectors sectors;
   sectors.echoes = {{2, 0.1, math::hypot(2, 0.1), true}};
   EXPECT_NEAR(sectors.corridor_m(0, 0.5, 10), 2 - std::sqrt(0.24), 1e-12);
-  EXPECT_EQ(sectors.corridor_m(0, 0.09, 10), 10);             // passes beside it
-  EXPECT_EQ(sectors.corridor_m(math::pi, 0.5, 10), 10);       // lies behind
+  EXPECT_EQ(sectors.corridor_m(0, 0.09, 10), 10);        // passes beside it
+  EXPECT_EQ(sectors.corridor_m(math::pi, 0.5, 10), 10);  // lies behind
   EXPECT_NEAR(sectors.corridor_m(math::atan2(0.1, 2), 0.5, 10), math::hypot(2, 0.1) - 0.5, 1e-12);
   EXPECT_EQ(sectors.corridor_m(0, 0.5, 1), 1);
 }
@@ -229,7 +231,7 @@ TEST(Wander, DrivesStraightInTheOpenAndStopsBlind) {
   trial.scan(nothing);
   trial.decide();
   EXPECT_NEAR(trial.v, trial.wander.spec.speed_mps, 1e-9);
-  EXPECT_NEAR(trial.omega, 0, 0.1);  // the headings tried are 5 degrees apart
+  EXPECT_NEAR(trial.omega, 0, 0.1);             // the headings tried are 5 degrees apart
   for (int k = 0; k < 12; ++k) trial.decide();  // no new scan for more than a second
   EXPECT_EQ(trial.v, 0);
   EXPECT_EQ(trial.omega, 0);
@@ -288,6 +290,21 @@ TEST(Wander, BacksUpWhenItIsHeld) {
   EXPECT_GT(math::hypot(trial.x, trial.y), 0.3);  // and is off again
 }
 
+TEST(Wander, AnotherThingAtTheSameDistanceAheadIsNotBeingStuck) {
+  // Always 3 m ahead, while everything else goes by as it should.
+  Trial trial({});
+  trial.wander.state.favourite_left_s = 100;
+  for (int k = 0; k < 60; ++k) {
+    Room room;
+    room.walls = {{{trial.x + 3, -0.3}, {trial.x + 3, 0.3}},
+                  {{5 - 0.05 * k, 1}, {5 - 0.05 * k, 7}},
+                  {{5 - 0.05 * k, -7}, {5 - 0.05 * k, -1}}};
+    trial.scan(room);
+    trial.decide();
+    EXPECT_GE(trial.v, 0);
+  }
+}
+
 TEST(Wander, StateSurvivesSaving) {
   const Room room = flat();
   Trial a({.beams = 61, .fov_rad = 2 * math::pi / 3}), b({.beams = 61, .fov_rad = 2 * math::pi / 3});
@@ -321,7 +338,9 @@ TEST(Wander, StateSurvivesSaving) {
 class SlowWander : public testing::TestWithParam<int> {};
 
 TEST_P(SlowWander, CoversTheFlatWithoutTouchingAWall) {
-  const Scanner scanners[] = {{}, {.beams = 720, .fov_rad = math::tau}, {.beams = 25, .fov_rad = math::pi},
+  const Scanner scanners[] = {{},
+                              {.beams = 720, .fov_rad = math::tau},
+                              {.beams = 25, .fov_rad = math::pi},
                               {.beams = 61, .fov_rad = 2 * math::pi / 3}};
   Scanner scanner = scanners[GetParam() % 4];
   if (GetParam() % 2) scanner.noise_m = 0.01;

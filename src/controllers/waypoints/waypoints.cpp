@@ -57,8 +57,10 @@ void Waypoints::step(const Observation& obs, Command& cmd) {
   }
   const double curvature = 2 * (to.y / distance) / distance;
   double speed = spec.speed_mps;
-  if (std::abs(curvature) * speed > spec.turn_speed_radps) speed = spec.turn_speed_radps / std::abs(curvature);
-  if (!spec.loop && state.next + 1 == count) speed = std::min(speed, std::sqrt(2 * spec.deceleration_mps2 * distance));
+  if (std::abs(curvature) * speed > spec.turn_speed_radps)
+    speed = spec.turn_speed_radps / std::abs(curvature);
+  if (!spec.loop && state.next + 1 == count)
+    speed = std::min(speed, std::sqrt(2 * spec.deceleration_mps2 * distance));
   twist.linear.x = speed;
   twist.angular.z = curvature * speed;
   cmd.set(drive, twist);

@@ -28,14 +28,19 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"points", "m", "Points [x, y] in the frame of the odometry.", -1e6, 1e6, Field::required, 10'000}, s.points_m);
-    visit(Field{"odometry", "", "Odometry or ground truth to use; empty: the only one.", 0, 0, Field::none, 1000}, s.odometry);
+    visit(Field{"points", "m", "Points [x, y] in the frame of the odometry.", -1e6, 1e6, Field::required,
+                10'000},
+          s.points_m);
+    visit(Field{"odometry", "", "Odometry or ground truth to use; empty: the only one.", 0, 0, Field::none,
+                1000},
+          s.odometry);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
     visit(Field{"loop", "", "Begin again after the last point.", 0, 1, tunable}, s.loop);
     visit(Field{"tolerance", "m", "A point this near counts as reached.", 1e-3, 100, tunable}, s.tolerance_m);
     visit(Field{"speed", "m/s", "Speed on the straight.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Fastest turn.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"deceleration", "m/s^2", "Braking before the last point.", 0.01, 100, tunable}, s.deceleration_mps2);
+    visit(Field{"deceleration", "m/s^2", "Braking before the last point.", 0.01, 100, tunable},
+          s.deceleration_mps2);
   }
 };
 

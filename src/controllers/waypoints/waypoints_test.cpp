@@ -47,7 +47,8 @@ struct Trial {
     omega = twist.angular.z;
   }
   void move(double dt) {
-    const double half = 0.5 * omega * dt, chord = v * dt * (std::abs(half) < 1e-9 ? 1.0 : math::sin(half) / half);
+    const double half = 0.5 * omega * dt,
+                 chord = v * dt * (std::abs(half) < 1e-9 ? 1.0 : math::sin(half) / half);
     x += chord * math::cos(theta + half);
     y += chord * math::sin(theta + half);
     theta += 2 * half;
@@ -88,7 +89,8 @@ TEST(Waypoints, VisitsAllPointsInOrderAndStopsAtTheLast) {
   for (; time < 120 && (time < 1 || t.v != 0 || t.omega != 0); time += 0.05) {
     t.decide();
     t.move(0.05);
-    if (reached < points.size() && math::hypot(t.x - points[reached][0], t.y - points[reached][1]) <= 0.1) ++reached;
+    if (reached < points.size() && math::hypot(t.x - points[reached][0], t.y - points[reached][1]) <= 0.1)
+      ++reached;
     EXPECT_LE(std::abs(t.omega), 1.2 + 1e-12);
     EXPECT_LE(t.v, 0.5);
   }
@@ -159,7 +161,8 @@ TEST(Waypoints, ReadsPointsAndNamesWhatIsMissing) {
   point.push(Node::scalar("50 cm"));
   EXPECT_EQ(complaint(config), "");
   config.set("odometry", Node::scalar("gps"));
-  EXPECT_EQ(complaint(config), "robot 'rover' has no reading 'gps' of type nav_msgs/msg/Odometry; known are: drive");
+  EXPECT_EQ(complaint(config),
+            "robot 'rover' has no reading 'gps' of type nav_msgs/msg/Odometry; known are: drive");
 }
 
 TEST(Waypoints, StateSurvivesSaving) {

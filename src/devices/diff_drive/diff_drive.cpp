@@ -15,7 +15,7 @@ using kinematics::WheelSpeeds;
 /// no load, so the value has no other meaning.
 constexpr double kinematic_effort_Nm = 1e6;
 
-double mean(std::span<const Wheel> wheels, std::span<const JointState> joints, double JointState::* what) {
+double mean(std::span<const Wheel> wheels, std::span<const JointState> joints, double JointState::*what) {
   double sum = 0;
   for (const Wheel& wheel : wheels) sum += wheel.sign * (joints[wheel.joint.index].*what);
   return sum / static_cast<double>(wheels.size());
@@ -27,7 +27,8 @@ void count_wheels(Drive& drive, std::span<const JointState> joints) {
   const double left_rad = mean(drive.left, joints, &JointState::position);
   const double right_rad = mean(drive.right, joints, &JointState::position);
   if (left_rad == state.left_rad && right_rad == state.right_rad) return;
-  state.X_OD = kinematics::integrate(drive.geometry, state.X_OD, left_rad - state.left_rad, right_rad - state.right_rad);
+  state.X_OD = kinematics::integrate(drive.geometry, state.X_OD, left_rad - state.left_rad,
+                                     right_rad - state.right_rad);
   state.left_rad = left_rad;
   state.right_rad = right_rad;
 }
@@ -71,7 +72,9 @@ void drive_wheels(const Drive& drive, WheelSpeeds speeds, bool kinematic, std::v
       targets.push_back({.joint = wheel.joint,
                          .mode = JointTarget::Mode::velocity,
                          .velocity = wheel.sign * radps,
-                         .max_effort = kinematic ? kinematic_effort_Nm : std::min(drive.spec.max_wheel_effort_Nm, wheel.max_effort)});
+                         .max_effort = kinematic
+                                           ? kinematic_effort_Nm
+                                           : std::min(drive.spec.max_wheel_effort_Nm, wheel.max_effort)});
   };
   side(drive.left, speeds.left_radps);
   side(drive.right, speeds.right_radps);
@@ -87,7 +90,8 @@ Status check_levels(std::uint32_t levels, const Capabilities& engine) {
     return Error{"the engine '" + std::string(engine.name) + "' has no wheels that drive by contact",
                  "use the level 'ideal' or the engine 'rigid'"};
   if (levels == 1u << ideal && !engine.ideal_drives)
-    return Error{"the engine '" + std::string(engine.name) + "' has no ideal drives", "use the level 'contact'"};
+    return Error{"the engine '" + std::string(engine.name) + "' has no ideal drives",
+                 "use the level 'contact'"};
   return {};
 }
 
@@ -101,12 +105,13 @@ void Drive::actuate(PoolView<Drive> pool, const Context& context) {
     const DriveVelocity wanted = goal(drive, context);
     if (is_ideal(pool.levels[index])) {
       // v_B = v_D + omega x r_DB with r_DB = -(dx, dy), so that D itself moves along x.
-      context.actuation.drives.push_back({.base = drive.base,
-                                          .vx_mps = wanted.v_mps + wanted.omega_radps * drive.dy_m,
-                                          .vy_mps = -wanted.omega_radps * drive.dx_m,
-                                          .wz_radps = wanted.omega_radps,
-                                          .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
-                                          .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
+      context.actuation.drives.push_back(
+          {.base = drive.base,
+           .vx_mps = wanted.v_mps + wanted.omega_radps * drive.dy_m,
+           .vy_mps = -wanted.omega_radps * drive.dx_m,
+           .wz_radps = wanted.omega_radps,
+           .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
+           .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
     } else if (drive.state.release) {
       context.actuation.drives.push_back({.base = drive.base, .active = false});
       drive.state.release = 0;
@@ -120,14 +125,15 @@ void Drive::pre_substep(PoolView<Drive> pool, const Context& context, double h_s
     if (is_ideal(pool.levels[index])) {
       // The wheels follow what the base really does, so that a robot held by a wall does not count turns. They lag by
       // one sub-step; the angle they are behind by does not grow and is made up when the base stops.
-      drive_wheels(drive, drive.geometry.inverse(velocity_of_axle(drive, context)), true, context.actuation.joints);
+      drive_wheels(drive, drive.geometry.inverse(velocity_of_axle(drive, context)), true,
+                   context.actuation.joints);
       continue;
     }
     const DriveVelocity wanted = goal(drive, context);
-    drive.state.setpoint_mps =
-        towards(drive.state.setpoint_mps, wanted.v_mps, drive.spec.max_linear_acceleration_mps2 * h_s);
-    drive.state.setpoint_radps =
-        towards(drive.state.setpoint_radps, wanted.omega_radps, drive.spec.max_angular_acceleration_radps2 * h_s);
+    drive.state.setpoint_mps = towards(drive.state.setpoint_mps, wanted.v_mps,
+                                       drive.spec.max_linear_acceleration_mps2 * h_s);
+    drive.state.setpoint_radps = towards(drive.state.setpoint_radps, wanted.omega_radps,
+                                         drive.spec.max_angular_acceleration_radps2 * h_s);
     drive_wheels(drive, drive.geometry.inverse({drive.state.setpoint_mps, drive.state.setpoint_radps}), false,
                  context.actuation.joints);
   }
@@ -143,7 +149,8 @@ void Drive::sense(PoolView<Drive> pool, const Context& context) {
     topic.message.pose = X_BD * to_pose(drive.state.X_OD) * inverse(X_BD);
     const DriveVelocity moving = drive.geometry.forward(
         {mean(drive.left, joints, &JointState::velocity), mean(drive.right, joints, &JointState::velocity)});
-    topic.message.twist.linear = {moving.v_mps + moving.omega_radps * drive.dy_m, -moving.omega_radps * drive.dx_m, 0};
+    topic.message.twist.linear = {moving.v_mps + moving.omega_radps * drive.dy_m,
+                                  -moving.omega_radps * drive.dx_m, 0};
     topic.message.twist.angular = {0, 0, moving.omega_radps};
     topic.publish(context.now);
   }
@@ -167,15 +174,20 @@ Status Drive::switch_level(std::uint32_t before, std::uint32_t after, const Cont
 namespace {
 
 /// Pose of a joint's frame in the model frame, in the declared pose.
-Pose X_MJ(const model::Model& model, const model::Joint& joint) { return model.links[joint.child].X_ML * joint.X_CJ; }
+Pose X_MJ(const model::Model& model, const model::Joint& joint) {
+  return model.links[joint.child].X_ML * joint.X_CJ;
+}
 
 /// Radius of the largest round collision shape of a wheel link; 0 when there is none.
 double wheel_radius_m(const model::Link& link) {
   double radius_m = 0;
   for (const model::Collision& collision : link.collisions) {
-    if (const auto* sphere = std::get_if<Sphere>(&collision.shape)) radius_m = std::max(radius_m, sphere->radius_m);
-    if (const auto* cylinder = std::get_if<Cylinder>(&collision.shape)) radius_m = std::max(radius_m, cylinder->radius_m);
-    if (const auto* capsule = std::get_if<Capsule>(&collision.shape)) radius_m = std::max(radius_m, capsule->radius_m);
+    if (const auto* sphere = std::get_if<Sphere>(&collision.shape))
+      radius_m = std::max(radius_m, sphere->radius_m);
+    if (const auto* cylinder = std::get_if<Cylinder>(&collision.shape))
+      radius_m = std::max(radius_m, cylinder->radius_m);
+    if (const auto* capsule = std::get_if<Capsule>(&collision.shape))
+      radius_m = std::max(radius_m, capsule->radius_m);
   }
   return radius_m;
 }
@@ -190,7 +202,8 @@ Result<Side> resolve_side(const DeviceBuild& build, std::span<const std::string>
   const model::Model& model = *build.instance.model;
   const Node* const node = build.decl.config.find(key);
   const auto error = [&](std::string what, std::string fix) {
-    return Error{std::move(what), std::move(fix), node ? node->place() : build.decl.place, std::string("/") + key};
+    return Error{std::move(what), std::move(fix), node ? node->place() : build.decl.place,
+                 std::string("/") + key};
   };
   if (names.empty()) return error("a side needs at least one wheel joint", "");
   const Pose X_BM = inverse(model.links[0].X_ML);
@@ -204,8 +217,10 @@ Result<Side> resolve_side(const DeviceBuild& build, std::span<const std::string>
     const Pose X_BJ = X_BM * X_MJ(model, joint);
     const double across = rotate(X_BJ.q, joint.axis_J).y;
     if (std::abs(across) < 0.9)
-      return error("the axis of joint '" + name + "' does not lie across the robot", "wheels turn about the y axis of the base");
-    side.wheels.push_back({build.joints[index], across > 0 ? 1.0 : -1.0, joint.max_effort, joint.max_velocity});
+      return error("the axis of joint '" + name + "' does not lie across the robot",
+                   "wheels turn about the y axis of the base");
+    side.wheels.push_back(
+        {build.joints[index], across > 0 ? 1.0 : -1.0, joint.max_effort, joint.max_velocity});
     side.centre_B += X_BJ.p / static_cast<double>(names.size());
     if (const double radius_m = wheel_radius_m(model.links[joint.child]); radius_m > 0) {
       side.radius_m += radius_m;
@@ -224,12 +239,14 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
   SL_ASSIGN(Side right, resolve_side(build, spec.right_joint, "right_joint"));
   for (const Wheel& wheel : left.wheels)
     for (const Wheel& other : right.wheels)
-      if (wheel.joint == other.joint) return Error{"a joint cannot be on both sides", "", build.decl.place, "/right_joint"};
+      if (wheel.joint == other.joint)
+        return Error{"a joint cannot be on both sides", "", build.decl.place, "/right_joint"};
 
   Drive drive{std::move(spec)};
   drive.base = build.bodies[0];
   drive.engine = build.engine;
-  drive.geometry.wheel_separation_m = drive.spec.wheel_separation_m.value_or(left.centre_B.y - right.centre_B.y);
+  drive.geometry.wheel_separation_m = drive.spec.wheel_separation_m.value_or(left.centre_B.y -
+                                                                             right.centre_B.y);
   if (drive.geometry.wheel_separation_m < 1e-3)
     return Error{"the left wheels are not to the left of the right ones",
                  "exchange left_joint and right_joint, or give wheel_separation", build.decl.place};
@@ -242,7 +259,8 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
   drive.right = std::move(right.wheels);
   drive.max_wheel_speed_radps = 1e16;
   for (const auto* wheels : {&drive.left, &drive.right})
-    for (const Wheel& wheel : *wheels) drive.max_wheel_speed_radps = std::min(drive.max_wheel_speed_radps, wheel.max_speed);
+    for (const Wheel& wheel : *wheels)
+      drive.max_wheel_speed_radps = std::min(drive.max_wheel_speed_radps, wheel.max_speed);
 
   const std::string& robot = build.instance.name;
   for (const Level level : {ideal, contact}) {
@@ -258,7 +276,8 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
 namespace {
 constexpr LevelInfo levels[] = {
     {"ideal", msg::Odometry::ros_type, msg::Twist::ros_type, "The base moves as commanded, as if on rails."},
-    {"contact", msg::Odometry::ros_type, msg::Twist::ros_type, "Motors turn the wheels, friction moves the robot."},
+    {"contact", msg::Odometry::ros_type, msg::Twist::ros_type,
+     "Motors turn the wheels, friction moves the robot."},
 };
 // Names and file names of the plugins of Gazebo, Ignition and Gazebo classic.
 constexpr const char* sdf_types[] = {

@@ -38,18 +38,28 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned required = Field::required, tunable = Field::tunable;
-    visit(Field{"left_joint", "", "Wheel joint on the left side, or a list of them.", 0, 0, required, 100}, s.left_joint);
-    visit(Field{"right_joint", "", "Wheel joint on the right side, or a list of them.", 0, 0, required, 100}, s.right_joint);
-    visit(Field{"wheel_radius", "m", "Radius of the wheels; not given: that of their collision shapes.", 1e-4, 100}, s.wheel_radius_m);
-    visit(Field{"wheel_separation", "m", "Distance between left and right wheels; not given: from the joints.", 1e-3, 1000},
+    visit(Field{"left_joint", "", "Wheel joint on the left side, or a list of them.", 0, 0, required, 100},
+          s.left_joint);
+    visit(Field{"right_joint", "", "Wheel joint on the right side, or a list of them.", 0, 0, required, 100},
+          s.right_joint);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels; not given: that of their collision shapes.", 1e-4,
+                100},
+          s.wheel_radius_m);
+    visit(Field{"wheel_separation", "m",
+                "Distance between left and right wheels; not given: from the joints.", 1e-3, 1000},
           s.wheel_separation_m);
-    visit(Field{"max_linear_speed", "m/s", "Faster commands are cut.", 0, 1e9, tunable}, s.max_linear_speed_mps);
-    visit(Field{"max_angular_speed", "rad/s", "Faster commands are cut.", 0, 1e9, tunable}, s.max_angular_speed_radps);
-    visit(Field{"max_linear_acceleration", "m/s^2", "Of speeding up and braking.", 0, 1e9, tunable}, s.max_linear_acceleration_mps2);
+    visit(Field{"max_linear_speed", "m/s", "Faster commands are cut.", 0, 1e9, tunable},
+          s.max_linear_speed_mps);
+    visit(Field{"max_angular_speed", "rad/s", "Faster commands are cut.", 0, 1e9, tunable},
+          s.max_angular_speed_radps);
+    visit(Field{"max_linear_acceleration", "m/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
+          s.max_linear_acceleration_mps2);
     visit(Field{"max_angular_acceleration", "rad/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
           s.max_angular_acceleration_radps2);
-    visit(Field{"max_wheel_effort", "Nm", "Of each wheel's motor, level contact.", 0, 1e9, tunable}, s.max_wheel_effort_Nm);
-    visit(Field{"command_timeout", "s", "Stop this long after the last command; 0: never.", 0, 1e6, tunable}, s.command_timeout_s);
+    visit(Field{"max_wheel_effort", "Nm", "Of each wheel's motor, level contact.", 0, 1e9, tunable},
+          s.max_wheel_effort_Nm);
+    visit(Field{"command_timeout", "s", "Stop this long after the last command; 0: never.", 0, 1e6, tunable},
+          s.command_timeout_s);
     visit(Field{"rate", "Hz", "Odometry messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }
 };
@@ -82,7 +92,7 @@ struct State {
 /// One wheel: its joint and which way round the joint turns.
 struct Wheel {
   JointId joint;
-  double sign = 1;  ///< +1: a positive angle rolls forward
+  double sign = 1;                       ///< +1: a positive angle rolls forward
   double max_effort = 0, max_speed = 0;  ///< of the joint
 };
 

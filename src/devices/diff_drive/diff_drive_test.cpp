@@ -91,18 +91,18 @@ TEST(DiffDrive, OdometryIsOfTheBaseEvenWhenTheAxleIsElsewhere) {
 }
 
 TEST(DiffDrive, IdealMovesTheBaseAndItsOdometryFollowsTheTruth) {
-  for (const double axle_x : {0.0, 0.4}) {
-    Rig rig(kind, test::two_wheels(axle_x));
+  for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, std::pair{0.4, 0.0}, std::pair{0.4, -0.1}}) {
+    Rig rig(kind, test::two_wheels(dx, dy));
     ASSERT_TRUE(rig.add("drive", drive(), ideal_bit));
     rig.command("drive/ideal", twist(0.5, 0.8));
     for (int i = 0; i < 300; ++i) rig.act();
     rig.command("drive/ideal", twist(0, 0));
     rig.act();
     rig.act();  // the wheels lag by one sub-step: now they have made up for it
-    // D runs on a circle of radius 0.5/0.8 from its start at (axle_x, 0).
-    const double angle = 0.8 * 3, r = 0.5 / 0.8;
-    const double x = axle_x + r * math::sin(angle) - axle_x * math::cos(angle);
-    const double y = r * (1 - math::cos(angle)) - axle_x * math::sin(angle);
+    // D runs on a circle of radius r = 0.5/0.8 from its start at (dx, dy); the base is at R(angle) (-dx, -dy) from it.
+    const double angle = 0.8 * 3, r = 0.5 / 0.8, sine = math::sin(angle), cosine = math::cos(angle);
+    const double x = dx + r * sine - (dx * cosine - dy * sine);
+    const double y = dy + r * (1 - cosine) - (dx * sine + dy * cosine);
     expect_pose(rig.engine->body[0].X_WB, x, y, angle, 1e-11);
     expect_pose(odometry(rig, "ideal").pose, x, y, angle, 1e-11);
   }
@@ -121,7 +121,9 @@ TEST(DiffDrive, IdealWheelsDoNotTurnWhenTheBaseIsHeld) {
 TEST(DiffDrive, SpeedsAndAccelerationsAreLimited) {
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("drive",
-                      drive({{"max_linear_speed", "0.8"}, {"max_angular_speed", "2"}, {"max_linear_acceleration", "2"},
+                      drive({{"max_linear_speed", "0.8"},
+                             {"max_angular_speed", "2"},
+                             {"max_linear_acceleration", "2"},
                              {"max_angular_acceleration", "10"}}),
                       contact_bit));
   rig.command("drive/contact", twist(5, 0));
@@ -209,7 +211,8 @@ TEST(DiffDrive, ALevelTheEngineLacksIsAnError) {
   Rig rig(kind, test::two_wheels());
   rig.engine->what.contact_drives = false;
   EXPECT_EQ(rig.add("drive", drive(), contact_bit).error().text(),
-            "robot.yaml:12:5: the engine 'hand' has no wheels that drive by contact; use the level 'ideal' or the engine 'rigid'");
+            "robot.yaml:12:5: the engine 'hand' has no wheels that drive by contact; use the level 'ideal' "
+            "or the engine 'rigid'");
   EXPECT_EQ(rig.add("drive", drive(), 3).error().what, "a differential drive runs at exactly one level");
   ASSERT_TRUE(rig.add("drive", drive(), ideal_bit));
   EXPECT_FALSE(rig.switch_level(contact_bit));
@@ -220,8 +223,9 @@ TEST(DiffDrive, GeometryComesFromTheModelWhenItIsNotGiven) {
   // A joint that turns the other way round: its axis points to the right.
   model.joints[1].axis_J = {0, 0, -1};
   Rig rig(kind, model);
-  ASSERT_TRUE(rig.add("drive", config({{"left_joint", "left"}, {"right_joint", "right"}, {"max_linear_acceleration", "1e9"}}),
-                      contact_bit));
+  ASSERT_TRUE(rig.add(
+      "drive", config({{"left_joint", "left"}, {"right_joint", "right"}, {"max_linear_acceleration", "1e9"}}),
+      contact_bit));
   rig.command("drive/contact", twist(0.5, 0));
   rig.act();
   EXPECT_NEAR(rig.engine->target[0].velocity, 5, 1e-12);
@@ -240,7 +244,8 @@ TEST(DiffDrive, SeveralWheelsPerSideShareTheirSpeedAndCountTheirMean) {
   }
   Rig rig(kind, model);
   Node node = drive();
-  for (const auto& [key, front, rear] : {std::tuple{"left_joint", "left", "left_rear"}, std::tuple{"right_joint", "right", "right_rear"}}) {
+  for (const auto& [key, front, rear] :
+       {std::tuple{"left_joint", "left", "left_rear"}, std::tuple{"right_joint", "right", "right_rear"}}) {
     Node& list = node.set(key, Node::sequence());
     list.push(Node::scalar(front));
     list.push(Node::scalar(rear));
@@ -264,24 +269,29 @@ TEST(DiffDrive, WhatIsWrongIsSaidAtItsPlace) {
   EXPECT_EQ(complaint(config({{"left_joint", "left"}, {"right_joint", "rigth"}})),
             "robot.yaml:2:9: /right_joint: model 'rover' has no joint 'rigth'; did you mean 'right'?");
   EXPECT_EQ(complaint(config({{"left_joint", "left"}, {"right_joint", "lift"}})),
-            "robot.yaml:2:9: /right_joint: joint 'lift' does not turn; a wheel needs a revolute or continuous joint");
+            "robot.yaml:2:9: /right_joint: joint 'lift' does not turn; a wheel needs a revolute or "
+            "continuous joint");
   EXPECT_EQ(complaint(config({{"left_joint", "left"}, {"right_joint", "left"}})),
             "robot.yaml:12:5: /right_joint: a joint cannot be on both sides");
   EXPECT_EQ(complaint(config({{"left_joint", "right"}, {"right_joint", "left"}})),
-            "robot.yaml:12:5: the left wheels are not to the left of the right ones; exchange left_joint and right_joint, or "
+            "robot.yaml:12:5: the left wheels are not to the left of the right ones; exchange left_joint and "
+            "right_joint, or "
             "give wheel_separation");
-  EXPECT_EQ(complaint(config({{"left_joint", "left"}})),
-            "robot.yaml:1:1: key 'right_joint' is missing; Wheel joint on the right side, or a list of them.");
+  EXPECT_EQ(
+      complaint(config({{"left_joint", "left"}})),
+      "robot.yaml:1:1: key 'right_joint' is missing; Wheel joint on the right side, or a list of them.");
   model.joints[0].axis_J = {1, 0, 0};
   Rig skew(kind, model);
   EXPECT_EQ(skew.add("drive", drive()).error().text(),
-            "robot.yaml:1:9: /left_joint: the axis of joint 'left' does not lie across the robot; wheels turn about the y axis of "
+            "robot.yaml:1:9: /left_joint: the axis of joint 'left' does not lie across the robot; wheels "
+            "turn about the y axis of "
             "the base");
 }
 
 TEST(DiffDrive, StateSurvivesSaving) {
   Rig a(kind, test::two_wheels()), b(kind, test::two_wheels());
-  for (Rig* rig : {&a, &b}) ASSERT_TRUE(rig->add("drive", drive({{"max_linear_acceleration", "0.5"}}), contact_bit));
+  for (Rig* rig : {&a, &b})
+    ASSERT_TRUE(rig->add("drive", drive({{"max_linear_acceleration", "0.5"}}), contact_bit));
   a.command("drive/contact", twist(0.5, 0.7));
   for (int i = 0; i < 33; ++i) a.act();
   ASSERT_TRUE(a.pool->set_parameter(0, "max_linear_speed", Node::scalar("0.4")));
@@ -329,7 +339,8 @@ TEST(DiffDriveFromSdf, TakesTheElementsOfGazebosPlugin) {
   EXPECT_EQ(spec->max_linear_acceleration_mps2, 3);
   EXPECT_EQ(spec->max_angular_acceleration_radps2, 3);
   ASSERT_EQ(diagnostics.warnings.size(), 1u);
-  EXPECT_EQ(diagnostics.warnings[0].what, "<topic> of the differential drive plugin is not supported and has no effect");
+  EXPECT_EQ(diagnostics.warnings[0].what,
+            "<topic> of the differential drive plugin is not supported and has no effect");
 }
 
 TEST(DiffDriveFromSdf, TakesTheSpellingsOfGazeboClassic) {
@@ -347,20 +358,28 @@ TEST(DiffDriveFromSdf, TakesTheSpellingsOfGazeboClassic) {
   EXPECT_EQ(spec->rate_hz, 20);
   EXPECT_TRUE(diagnostics.warnings.empty());
   // DiffDrivePlugin gives joints and torque alone: the geometry comes from the model.
-  const auto bare = spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"torque", "20"}}), diagnostics);
+  const auto bare = spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"torque", "20"}}),
+                            diagnostics);
   ASSERT_TRUE(bare);
   EXPECT_FALSE(bare->wheel_radius_m || bare->wheel_separation_m);
 }
 
 TEST(DiffDriveFromSdf, UnevenLimitsAreWarnedOfAndNonsenseIsAnError) {
   Diagnostics diagnostics;
-  const auto spec = spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"max_velocity", "0.5"}, {"min_velocity", "-1"}}), diagnostics);
+  const auto spec = spec_of(
+      config({{"left_joint", "l"}, {"right_joint", "r"}, {"max_velocity", "0.5"}, {"min_velocity", "-1"}}),
+      diagnostics);
   ASSERT_TRUE(spec);
   EXPECT_EQ(spec->max_linear_speed_mps, 1);
   EXPECT_EQ(diagnostics.warnings.size(), 2u);  // linear and angular
-  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "big"}}), diagnostics).error().text(),
+  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "big"}}), diagnostics)
+                .error()
+                .text(),
             "robot.yaml:3:9: <wheel_radius> is 'big'; write a number");
-  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "-1"}}), diagnostics).error().place.line, 3);
+  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "-1"}}), diagnostics)
+                .error()
+                .place.line,
+            3);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ using namespace sdf_element;
 constexpr const char* unlimited = "1e9";
 
 /// Joint names of one side under any of the given element names, repeated ones included.
-void copy_joints(const Node& element, std::initializer_list<const char*> names, Node& config, const char* key) {
+void copy_joints(const Node& element, std::initializer_list<const char*> names, Node& config,
+                 const char* key) {
   Node joints = Node::sequence(element.place());
   for (const char* name : names) {
     const Node* const node = element.find(name);
@@ -22,14 +23,14 @@ void copy_joints(const Node& element, std::initializer_list<const char*> names, 
     joints.set_place(node->place());
     if (node->is_sequence())
       for (const Node& item : node->items()) joints.push(Node::scalar(text(&item), item.place()));
-    else
-      joints.push(Node::scalar(text(node), node->place()));
+    else joints.push(Node::scalar(text(node), node->place()));
   }
   if (!joints.items().empty()) config.set(key, std::move(joints));
 }
 
 /// The first of several spellings that is present, times a factor.
-Status copy_number(const Node& element, std::initializer_list<const char*> names, double factor, Node& config, const char* key) {
+Status copy_number(const Node& element, std::initializer_list<const char*> names, double factor, Node& config,
+                   const char* key) {
   for (const char* name : names) {
     SL_ASSIGN(const auto value, number(element, name));
     if (!value) continue;
@@ -40,8 +41,8 @@ Status copy_number(const Node& element, std::initializer_list<const char*> names
 }
 
 /// Limits given as a minimum and a maximum are symmetrical here: the larger magnitude counts.
-Status copy_limit(const Node& element, const std::string& quantity, const char* common, Node& config, const char* key,
-                  Diagnostics& diagnostics) {
+Status copy_limit(const Node& element, const std::string& quantity, const char* common, Node& config,
+                  const char* key, Diagnostics& diagnostics) {
   for (const std::string& name : {quantity, std::string(common)}) {
     SL_ASSIGN(const auto max, number(element, "max_" + name));
     SL_ASSIGN(const auto min, number(element, "min_" + name));
@@ -49,7 +50,8 @@ Status copy_limit(const Node& element, const std::string& quantity, const char* 
     const Node& node = *find(element, max ? "max_" + name : "min_" + name);
     if (max && min && *min != -*max)
       diagnostics.warn(find(element, "min_" + name)
-                           ->error("<min_" + name + "> differs from <max_" + name + ">: the larger magnitude limits both directions"));
+                           ->error("<min_" + name + "> differs from <max_" + name +
+                                   ">: the larger magnitude limits both directions"));
     config.set(key, scalar(std::max(std::abs(max.value_or(0)), std::abs(min.value_or(0))), node));
     return {};
   }
@@ -70,16 +72,42 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   SL_TRY(copy_number(element, {"odom_publish_frequency", "update_rate", "updateRate"}, 1.0, config, "rate"));
   SL_TRY(copy_limit(element, "linear_velocity", "velocity", config, "max_linear_speed", diagnostics));
   SL_TRY(copy_limit(element, "angular_velocity", "velocity", config, "max_angular_speed", diagnostics));
-  SL_TRY(copy_limit(element, "linear_acceleration", "acceleration", config, "max_linear_acceleration", diagnostics));
-  SL_TRY(copy_limit(element, "angular_acceleration", "acceleration", config, "max_angular_acceleration", diagnostics));
-  config.set("max_wheel_effort", Node::scalar(unlimited, element.place()));  // then the joint's own limit holds
-  SL_TRY(copy_number(element, {"max_wheel_torque", "wheelTorque", "torque"}, 1.0, config, "max_wheel_effort"));
+  SL_TRY(copy_limit(element, "linear_acceleration", "acceleration", config, "max_linear_acceleration",
+                    diagnostics));
+  SL_TRY(copy_limit(element, "angular_acceleration", "acceleration", config, "max_angular_acceleration",
+                    diagnostics));
+  config.set("max_wheel_effort",
+             Node::scalar(unlimited, element.place()));  // then the joint's own limit holds
+  SL_TRY(
+      copy_number(element, {"max_wheel_torque", "wheelTorque", "torque"}, 1.0, config, "max_wheel_effort"));
   warn_unknown(element,
-               {"left_joint", "leftJoint", "right_joint", "rightJoint", "wheel_separation", "wheelSeparation", "wheel_radius",
-                "wheel_diameter", "wheelDiameter", "odom_publish_frequency", "update_rate", "updateRate", "max_linear_velocity",
-                "min_linear_velocity", "max_angular_velocity", "min_angular_velocity", "max_velocity", "min_velocity",
-                "max_linear_acceleration", "min_linear_acceleration", "max_angular_acceleration",
-                "min_angular_acceleration", "max_acceleration", "min_acceleration", "max_wheel_torque", "wheelTorque", "torque"},
+               {"left_joint",
+                "leftJoint",
+                "right_joint",
+                "rightJoint",
+                "wheel_separation",
+                "wheelSeparation",
+                "wheel_radius",
+                "wheel_diameter",
+                "wheelDiameter",
+                "odom_publish_frequency",
+                "update_rate",
+                "updateRate",
+                "max_linear_velocity",
+                "min_linear_velocity",
+                "max_angular_velocity",
+                "min_angular_velocity",
+                "max_velocity",
+                "min_velocity",
+                "max_linear_acceleration",
+                "min_linear_acceleration",
+                "max_angular_acceleration",
+                "min_angular_acceleration",
+                "max_acceleration",
+                "min_acceleration",
+                "max_wheel_torque",
+                "wheelTorque",
+                "torque"},
                "the differential drive plugin", diagnostics);
   return config;
 }

@@ -46,8 +46,10 @@ double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
       return state.pid.step(motor.spec.velocity, state.reference - joint.velocity, rate, limit, h_s);
     }
     case position:
-      state.reference = towards(state.reference, std::clamp(state.command, motor.lower, motor.upper), fastest * h_s);
-      return state.pid.step(motor.spec.position, state.reference - joint.position, joint.velocity, limit, h_s);
+      state.reference = towards(state.reference, std::clamp(state.command, motor.lower, motor.upper),
+                                fastest * h_s);
+      return state.pid.step(motor.spec.position, state.reference - joint.position, joint.velocity, limit,
+                            h_s);
     case effort: break;
   }
   state.reference = std::clamp(state.command, -limit, limit);
@@ -59,13 +61,16 @@ double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
 Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   SL_TRY(check_levels(build.levels));
   if (!build.engine.joints)
-    return Error{"the engine '" + std::string(build.engine.name) + "' does not simulate joints", "use the engine 'rigid'"};
+    return Error{"the engine '" + std::string(build.engine.name) + "' does not simulate joints",
+                 "use the engine 'rigid'"};
   SL_ASSIGN(const std::uint32_t index, build.joint_index(spec.joint, "joint"));
   const model::Joint& joint = build.instance.model->joints[index];
   using model::JointType;
-  if (joint.type != JointType::revolute && joint.type != JointType::continuous && joint.type != JointType::prismatic) {
+  if (joint.type != JointType::revolute && joint.type != JointType::continuous &&
+      joint.type != JointType::prismatic) {
     const Node* const node = build.decl.config.find("joint");
-    return Error{"joint '" + spec.joint + "' cannot be driven", "a motor needs a revolute, continuous or prismatic joint",
+    return Error{"joint '" + spec.joint + "' cannot be driven",
+                 "a motor needs a revolute, continuous or prismatic joint",
                  node ? node->place() : build.decl.place, "/joint"};
   }
   Motor motor{std::move(spec)};
@@ -108,7 +113,9 @@ Status Motor::switch_level(std::uint32_t before, std::uint32_t after, const Cont
   // With no error left the PID's output is integral - d * rate: start it at the effort of now. Without an integral
   // gain nothing would ever take that value away again.
   const Gains& gains = level == position ? spec.position : spec.velocity;
-  state.pid.integral = gains.i == 0 ? 0 : level == position ? now.effort + gains.d * now.velocity : now.effort;
+  state.pid.integral = gains.i == 0        ? 0
+                       : level == position ? now.effort + gains.d * now.velocity
+                                           : now.effort;
   state.previous_velocity = now.velocity;
   state.command = state.reference = present(level, now);
   return {};

@@ -31,11 +31,16 @@ struct Spec {
   double max_velocity = 1e9;  ///< [rad/s] or [m/s]
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required, 1000}, s.joint);
+    visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required,
+                1000},
+          s.joint);
     visit(Field{"velocity", "", "Gains of level velocity: Nm per rad/s (prismatic: N per m/s)."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: Nm per rad (prismatic: N per m)."}, s.position);
-    visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9, Field::tunable}, s.max_effort);
-    visit(Field{"max_velocity", "", "Fastest reference [rad/s or m/s]; the joint's own limit holds too.", 0, 1e9, Field::tunable},
+    visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9,
+                Field::tunable},
+          s.max_effort);
+    visit(Field{"max_velocity", "", "Fastest reference [rad/s or m/s]; the joint's own limit holds too.", 0,
+                1e9, Field::tunable},
           s.max_velocity);
   }
 };

@@ -14,7 +14,8 @@ using test::Rig;
 
 constexpr std::uint32_t velocity_bit = 1, position_bit = 2, effort_bit = 4;
 
-Node gains(const char* which, std::initializer_list<std::pair<const char*, const char*>> values, const char* joint = "left") {
+Node gains(const char* which, std::initializer_list<std::pair<const char*, const char*>> values,
+           const char* joint = "left") {
   Node node = config({{"joint", joint}});
   node.set(which, config(values));
   return node;
@@ -32,12 +33,14 @@ TEST(JointMotor, APositionStepFollowsTheSecondOrderSystem) {
   for (int k = 1; k <= 3000; ++k) {
     rig.act();
     const double t = 0.001 * k;
-    const double exact = 1 - math::exp(-zeta * w * t) * (math::cos(wd * t) + zeta / std::sqrt(1 - zeta * zeta) * math::sin(wd * t));
+    const double exact = 1 - math::exp(-zeta * w * t) *
+                                 (math::cos(wd * t) + zeta / std::sqrt(1 - zeta * zeta) * math::sin(wd * t));
     worst = std::max(worst, std::abs(rig.engine->joint[0].position - exact));
     highest = std::max(highest, rig.engine->joint[0].position);
   }
   EXPECT_LT(worst, 0.002);
-  EXPECT_NEAR(highest, 1 + math::exp(-math::pi * zeta / std::sqrt(1 - zeta * zeta)), 0.002);  // overshoot 16.3 %
+  EXPECT_NEAR(highest, 1 + math::exp(-math::pi * zeta / std::sqrt(1 - zeta * zeta)),
+              0.002);  // overshoot 16.3 %
 }
 
 TEST(JointMotor, AVelocityStepFollowsTheFirstOrderSystem) {
@@ -175,9 +178,11 @@ TEST(JointMotor, RefusesWhatItCannotDrive) {
   model.joints[1].type = model::JointType::fixed;
   Rig rig(kind, model);
   EXPECT_EQ(rig.add("m", config({{"joint", "right"}})).error().text(),
-            "robot.yaml:1:9: /joint: joint 'right' cannot be driven; a motor needs a revolute, continuous or prismatic joint");
-  EXPECT_EQ(rig.add("m", config({{"joint", "left"}}), 3).error().text(),
-            "robot.yaml:12:5: a joint motor runs at exactly one level; give 'velocity', 'position' or 'effort'");
+            "robot.yaml:1:9: /joint: joint 'right' cannot be driven; a motor needs a revolute, continuous or "
+            "prismatic joint");
+  EXPECT_EQ(
+      rig.add("m", config({{"joint", "left"}}), 3).error().text(),
+      "robot.yaml:12:5: a joint motor runs at exactly one level; give 'velocity', 'position' or 'effort'");
   rig.engine->what.joints = false;
   EXPECT_EQ(rig.add("m", config({{"joint", "left"}})).error().text(),
             "robot.yaml:12:5: the engine 'hand' does not simulate joints; use the engine 'rigid'");

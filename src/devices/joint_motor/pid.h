@@ -29,8 +29,10 @@ struct Gains {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"p", "", "Proportional gain, effort per unit of error.", 0, 1e9, Field::tunable}, s.p);
     visit(Field{"i", "", "Integral gain, effort per unit of error and second.", 0, 1e9, Field::tunable}, s.i);
-    visit(Field{"d", "", "Derivative gain, effort per unit of error per second.", 0, 1e9, Field::tunable}, s.d);
-    visit(Field{"anti_windup", "s", "Time constant that unwinds the integral while the output is limited.", 1e-6, 1e6, Field::tunable},
+    visit(Field{"d", "", "Derivative gain, effort per unit of error per second.", 0, 1e9, Field::tunable},
+          s.d);
+    visit(Field{"anti_windup", "s", "Time constant that unwinds the integral while the output is limited.",
+                1e-6, 1e6, Field::tunable},
           s.anti_windup_s);
   }
 };
@@ -38,7 +40,9 @@ struct Gains {
 struct Pid {
   double integral = 0;  ///< [V]
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"integral", "", "Integral part of the output."}, s.integral); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"integral", "", "Integral part of the output."}, s.integral);
+  }
 
   /// @param error  [U] reference - measurement
   /// @param rate   [U/s] of the measurement

@@ -25,7 +25,8 @@ void finish(Scanner& scanner, std::uint64_t sample, Time since, const Context& c
   for (float& range_m : ranges)
     if (range_m < min_m) range_m = -std::numeric_limits<float>::infinity();
   Stream random(context.seed, scanner.key, Purpose::noise, sample);
-  corrupt_ranges(spec.noise, scanner.state.bias, since.s(), random, spec.min_range_m, spec.max_range_m, ranges);
+  corrupt_ranges(spec.noise, scanner.state.bias, since.s(), random, spec.min_range_m, spec.max_range_m,
+                 ranges);
   scanner.scan->publish(context.now);
 }
 
@@ -39,18 +40,21 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   SL_ASSIGN(const auto samples, number(*sensor, "scan/horizontal/samples"));
   SL_ASSIGN(const auto resolution, number(*sensor, "scan/horizontal/resolution"));
   if (samples)
-    config.set("beams", scalar(std::floor(*samples * resolution.value_or(1.0)), *find(*sensor, "scan/horizontal/samples")));
+    config.set("beams", scalar(std::floor(*samples * resolution.value_or(1.0)),
+                               *find(*sensor, "scan/horizontal/samples")));
   copy(*sensor, "scan/horizontal/min_angle", config, "min_angle");
   copy(*sensor, "scan/horizontal/max_angle", config, "max_angle");
   copy(*sensor, "range/min", config, "min_range");
   copy(*sensor, "range/max", config, "max_range");
   // SDF's default is 0: a scan in every step, which is also what 0 means here.
   config.set("rate", Node::scalar(find(element, "update_rate") ? text(find(element, "update_rate")) : "0",
-                                  find(element, "update_rate") ? find(element, "update_rate")->place() : element.place()));
+                                  find(element, "update_rate") ? find(element, "update_rate")->place()
+                                                               : element.place()));
 
   SL_ASSIGN(const auto planes, number(*sensor, "scan/vertical/samples"));
   if (planes && *planes > 1) {
-    Error warning = find(*sensor, "scan/vertical/samples")->error("a laser scanner has one plane only: the horizontal one is used");
+    Error warning = find(*sensor, "scan/vertical/samples")
+                        ->error("a laser scanner has one plane only: the horizontal one is used");
     diagnostics.warn(std::move(warning));
   }
   if (const Node* const noise = find(*sensor, "noise")) {
@@ -59,7 +63,9 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
     SL_ASSIGN(const auto stddev, number(*noise, "stddev"));
     if (text(type) == "gaussian") {
       if (mean && *mean != 0)
-        diagnostics.warn(find(*noise, "mean")->error("a constant error (<mean>) of a laser scanner is not supported and has no effect"));
+        diagnostics.warn(
+            find(*noise, "mean")
+                ->error("a constant error (<mean>) of a laser scanner is not supported and has no effect"));
       if (stddev) {
         Node errors = Node::map(noise->place());
         errors.set("white", scalar(*stddev, *find(*noise, "stddev")));
@@ -79,9 +85,11 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
     return rule_error(build, "max_range", "max_range must be greater than min_range",
                       "min_range is " + number_text(spec.min_range_m) + " m");
   if (spec.max_angle_rad < spec.min_angle_rad)
-    return rule_error(build, "max_angle", "max_angle must not be less than min_angle", "angles grow counter-clockwise");
+    return rule_error(build, "max_angle", "max_angle must not be less than min_angle",
+                      "angles grow counter-clockwise");
   if (spec.max_angle_rad - spec.min_angle_rad > math::tau + 1e-6)
-    return rule_error(build, "max_angle", "the beams cover more than a full turn", "max_angle - min_angle is at most 360 deg");
+    return rule_error(build, "max_angle", "the beams cover more than a full turn",
+                      "max_angle - min_angle is at most 360 deg");
 
   Scanner scanner{spec};
   scanner.key = build.key;

@@ -35,8 +35,10 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"beams", "1", "Number of beams.", 1, 100'000}, s.beams);
-    visit(Field{"min_angle", "rad", "Angle of the first beam.", -2 * std::numbers::pi, 2 * std::numbers::pi}, s.min_angle_rad);
-    visit(Field{"max_angle", "rad", "Angle of the last beam.", -2 * std::numbers::pi, 2 * std::numbers::pi}, s.max_angle_rad);
+    visit(Field{"min_angle", "rad", "Angle of the first beam.", -2 * std::numbers::pi, 2 * std::numbers::pi},
+          s.min_angle_rad);
+    visit(Field{"max_angle", "rad", "Angle of the last beam.", -2 * std::numbers::pi, 2 * std::numbers::pi},
+          s.max_angle_rad);
     visit(Field{"min_range", "m", "A nearer obstacle reads -inf.", 0, 1e4}, s.min_range_m);
     visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
     visit(Field{"rate", "Hz", "Scans per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
@@ -47,7 +49,9 @@ struct Spec {
 struct State {
   DriftingBias bias;
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"bias", "m", "Error that all beams share."}, s.bias); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"bias", "m", "Error that all beams share."}, s.bias);
+  }
 };
 
 struct Scanner {

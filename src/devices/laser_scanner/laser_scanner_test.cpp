@@ -22,7 +22,8 @@ constexpr double float_m = 5e-7;
 /// A world that is a function of one ray.
 class Caster final : public RayCaster {
  public:
-  explicit Caster(std::function<double(Vec3 origin_W, Vec3 direction_W)> distance) : distance_(std::move(distance)) {}
+  explicit Caster(std::function<double(Vec3 origin_W, Vec3 direction_W)> distance)
+      : distance_(std::move(distance)) {}
   void cast(std::span<const RayJob> jobs) const override {
     for (const RayJob& job : jobs) {
       ++jobs_cast;
@@ -59,8 +60,8 @@ const std::vector<float>& scan(Rig& rig, const Caster& caster) {
 
 TEST(LaserScanner, AWallReadsItsDistanceOverTheCosineBeamZeroRightmost) {
   Rig rig(kind, test::two_wheels());
-  ASSERT_TRUE(rig.add("laser", config({{"beams", "5"}, {"min_angle", "-90 deg"}, {"max_angle", "90 deg"}}), 1, 3,
-                      pose_from_rpy({0.5, 0, 0}, {})));
+  ASSERT_TRUE(rig.add("laser", config({{"beams", "5"}, {"min_angle", "-90 deg"}, {"max_angle", "90 deg"}}), 1,
+                      3, pose_from_rpy({0.5, 0, 0}, {})));
   const auto& r = scan(rig, Caster(wall));
   ASSERT_EQ(r.size(), 5u);
   EXPECT_EQ(r[0], inf);
@@ -116,7 +117,9 @@ TEST(LaserScanner, DoesNotSeeItsOwnHousing) {
 
 TEST(LaserScanner, TheMessageDescribesItsBeams) {
   Rig rig(kind, test::two_wheels());
-  ASSERT_TRUE(rig.add("laser", config({{"beams", "91"}, {"min_angle", "-45 deg"}, {"max_angle", "135 deg"}, {"rate", "20"}})));
+  ASSERT_TRUE(
+      rig.add("laser",
+              config({{"beams", "91"}, {"min_angle", "-45 deg"}, {"max_angle", "135 deg"}, {"rate", "20"}})));
   rig.now = Time::from_s(3);
   scan(rig, Caster(wall));
   const msg::LaserScan& m = rig.topic<msg::LaserScan>("laser/ranges").message;
@@ -198,7 +201,8 @@ TEST(LaserScanner, AScannersNoiseDoesNotDependOnItsNeighbours) {
   const Caster flat([](Vec3, Vec3) { return 5.0; });
   Rig alone(kind, test::two_wheels()), crowd(kind, test::two_wheels());
   ASSERT_TRUE(alone.add("laser", with_noise({{"white", "0.1"}}, {})));
-  for (int i = 0; i < 40; ++i) ASSERT_TRUE(crowd.add("other" + std::to_string(i), with_noise({{"white", "0.1"}}, {})));
+  for (int i = 0; i < 40; ++i)
+    ASSERT_TRUE(crowd.add("other" + std::to_string(i), with_noise({{"white", "0.1"}}, {})));
   ASSERT_TRUE(crowd.add("laser", with_noise({{"white", "0.1"}}, {})));
   for (int k = 0; k < 3; ++k) EXPECT_EQ(scan(alone, flat), scan(crowd, flat));
   EXPECT_NE(crowd.topic<msg::LaserScan>("other0/ranges").message.ranges,
@@ -207,7 +211,8 @@ TEST(LaserScanner, AScannersNoiseDoesNotDependOnItsNeighbours) {
 
 TEST(LaserScanner, CastsForAllThatAreDueInBatches) {
   Rig rig(kind, test::two_wheels());
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.add("laser" + std::to_string(i), config({{"beams", std::to_string(i + 1).c_str()}})));
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(rig.add("laser" + std::to_string(i), config({{"beams", std::to_string(i + 1).c_str()}})));
   const Caster caster(wall);
   rig.rays = &caster;
   const std::vector<std::uint32_t> due{3, 7, 50};
@@ -231,7 +236,8 @@ TEST(LaserScanner, StateAndNoiseSurviveSavingAndNoiseIsTunable) {
   const Caster flat([](Vec3, Vec3) { return 5.0; });
   Rig a(kind, test::two_wheels()), b(kind, test::two_wheels());
   for (Rig* rig : {&a, &b})
-    ASSERT_TRUE(rig->add("laser", with_noise({{"white", "0.1"}}, {{"bias_std", "0.2"}, {"correlation", "10"}})));
+    ASSERT_TRUE(
+        rig->add("laser", with_noise({{"white", "0.1"}}, {{"bias_std", "0.2"}, {"correlation", "10"}})));
   ASSERT_TRUE(a.pool->set_parameter(0, "noise/white", Node::scalar("3 cm")));
   EXPECT_FALSE(a.pool->set_parameter(0, "noise/white", Node::scalar("-1")));
   EXPECT_FALSE(a.pool->set_parameter(0, "beams", Node::scalar("5")));
@@ -255,15 +261,18 @@ TEST(LaserScanner, ABadSpecIsRefusedAtItsPlace) {
             "robot.yaml:2:9: /max_range: max_range must be greater than min_range; min_range is 5 m");
   EXPECT_EQ(complaint({{"min_range", "20"}}),
             "robot.yaml:12:5: /max_range: max_range must be greater than min_range; min_range is 20 m");
-  EXPECT_EQ(complaint({{"min_angle", "1"}, {"max_angle", "0"}}),
-            "robot.yaml:2:9: /max_angle: max_angle must not be less than min_angle; angles grow counter-clockwise");
+  EXPECT_EQ(
+      complaint({{"min_angle", "1"}, {"max_angle", "0"}}),
+      "robot.yaml:2:9: /max_angle: max_angle must not be less than min_angle; angles grow counter-clockwise");
   EXPECT_EQ(complaint({{"min_angle", "-200 deg"}, {"max_angle", "200 deg"}}),
-            "robot.yaml:2:9: /max_angle: the beams cover more than a full turn; max_angle - min_angle is at most 360 deg");
+            "robot.yaml:2:9: /max_angle: the beams cover more than a full turn; max_angle - min_angle is at "
+            "most 360 deg");
   EXPECT_EQ(complaint({{"min_angle", "-180 deg"}, {"max_angle", "180 deg"}}), "");
   EXPECT_EQ(complaint({{"beam", "5"}}), "robot.yaml:1:9: unknown key 'beam'; did you mean 'beams'?");
 }
 
-Node sdf(std::initializer_list<std::pair<const char*, const char*>> horizontal, Node noise = Node(), const char* planes = nullptr) {
+Node sdf(std::initializer_list<std::pair<const char*, const char*>> horizontal, Node noise = Node(),
+         const char* planes = nullptr) {
   Node scan = Node::map();
   scan.set("horizontal", config(horizontal));
   if (planes) scan.set("vertical", config({{"samples", planes}}));
@@ -278,9 +287,10 @@ Node sdf(std::initializer_list<std::pair<const char*, const char*>> horizontal, 
 
 TEST(LaserScannerFromSdf, TakesTheElementsOfALidar) {
   Diagnostics diagnostics;
-  const auto node = kind.from_sdf(sdf({{"samples", "640"}, {"resolution", "0.5"}, {"min_angle", "-1.5"}, {"max_angle", "1.2"}},
-                                      config({{"type", "gaussian"}, {"mean", "0.0"}, {"stddev", "0.02"}})),
-                                  diagnostics);
+  const auto node = kind.from_sdf(
+      sdf({{"samples", "640"}, {"resolution", "0.5"}, {"min_angle", "-1.5"}, {"max_angle", "1.2"}},
+          config({{"type", "gaussian"}, {"mean", "0.0"}, {"stddev", "0.02"}})),
+      diagnostics);
   ASSERT_TRUE(node);
   const auto spec = read_spec<Spec>(*node);
   ASSERT_TRUE(spec) << spec.error().text();
@@ -296,13 +306,16 @@ TEST(LaserScannerFromSdf, TakesTheElementsOfALidar) {
 
 TEST(LaserScannerFromSdf, WarnsOfWhatItLeavesOut) {
   Diagnostics diagnostics;
-  ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian"}, {"mean", "0.1"}}), "16"), diagnostics));
+  ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian"}, {"mean", "0.1"}}), "16"),
+                            diagnostics));
   ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian_quantized"}})), diagnostics));
   ASSERT_EQ(diagnostics.warnings.size(), 3u);
   EXPECT_EQ(diagnostics.warnings[0].text(),
             "robot.yaml:1:9: a laser scanner has one plane only: the horizontal one is used");
-  EXPECT_EQ(diagnostics.warnings[1].what, "a constant error (<mean>) of a laser scanner is not supported and has no effect");
-  EXPECT_EQ(diagnostics.warnings[2].what, "noise of type 'gaussian_quantized' is not supported and has no effect");
+  EXPECT_EQ(diagnostics.warnings[1].what,
+            "a constant error (<mean>) of a laser scanner is not supported and has no effect");
+  EXPECT_EQ(diagnostics.warnings[2].what,
+            "noise of type 'gaussian_quantized' is not supported and has no effect");
 }
 
 TEST(LaserScannerFromSdf, BadNumbersAreErrorsWithPlace) {

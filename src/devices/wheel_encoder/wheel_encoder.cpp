@@ -18,8 +18,9 @@ Result<Encoder> Encoder::create(const DeviceBuild& build, Spec spec) {
   const model::JointType type = build.instance.model->joints[index].type;
   if (type != model::JointType::revolute && type != model::JointType::continuous) {
     const Node* const node = build.decl.config.find("joint");
-    return Error{"joint '" + spec.joint + "' does not turn", "an encoder needs a revolute or continuous joint",
-                 node ? node->place() : build.decl.place, "/joint"};
+    return Error{"joint '" + spec.joint + "' does not turn",
+                 "an encoder needs a revolute or continuous joint", node ? node->place() : build.decl.place,
+                 "/joint"};
   }
   Encoder encoder{std::move(spec)};
   encoder.joint = build.joints[index].index;

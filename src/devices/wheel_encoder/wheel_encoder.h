@@ -20,7 +20,8 @@ struct Spec {
   double rate_hz = 50.0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000}, s.joint);
+    visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000},
+          s.joint);
     visit(Field{"ticks_per_turn", "1", "Edges counted per turn of the joint.", 1, 1e8}, s.ticks_per_turn);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }

@@ -48,8 +48,9 @@ TEST(WheelEncoder, RefusesWhatItCannotMeasure) {
   Rig rig(kind, test::two_wheels());
   EXPECT_EQ(rig.add("e", config({{"joint", "lft"}})).error().text(),
             "robot.yaml:1:9: /joint: model 'rover' has no joint 'lft'; did you mean 'left'?");
-  EXPECT_EQ(rig.add("e", config({{"joint", "lift"}})).error().text(),
-            "robot.yaml:1:9: /joint: joint 'lift' does not turn; an encoder needs a revolute or continuous joint");
+  EXPECT_EQ(
+      rig.add("e", config({{"joint", "lift"}})).error().text(),
+      "robot.yaml:1:9: /joint: joint 'lift' does not turn; an encoder needs a revolute or continuous joint");
   EXPECT_EQ(rig.add("e", Node()).error().text(),
             "robot.yaml:12:5: key 'joint' is missing; Name of the revolute or continuous joint.");
   EXPECT_FALSE(rig.add("e", config({{"joint", "left"}, {"ticks_per_turn", "0"}})));

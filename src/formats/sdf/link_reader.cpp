@@ -64,6 +64,7 @@ Status read_friction(const Xml& friction, model::Surface& out, Notes& notes) {
   if (!ode) return {};
   notes.unused(*ode, "mu mu2 fdir1 slip1 slip2");
   SL_TRY(read_child(*ode, "mu", not_negative, out.mu));
+  // SDF's default for mu2 is 1 whatever mu is; who gives only mu means both directions.
   out.mu2 = out.mu;
   SL_TRY(read_child(*ode, "mu2", not_negative, out.mu2));
   SL_TRY(read_child(*ode, "fdir1", position_range, out.fdir1));

@@ -53,7 +53,8 @@ TEST(Sdf, ReadsShapesSurfacesAndInertia) {
       <surface><friction><ode><mu>0.5</mu><mu2>0.25</mu2><fdir1>0 2 0</fdir1><slip1>0.01</slip1></ode></friction>
         <bounce><restitution_coefficient>0.75</restitution_coefficient><threshold>0.1</threshold></bounce>
         <contact><ode><soft_cfm>0.001</soft_cfm><soft_erp>0.3</soft_erp></ode></contact></surface></collision>
-    <collision name="ball"><pose>1 0 0 0 0 0</pose><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>
+    <collision name="ball"><pose>1 0 0 0 0 0</pose><geometry><sphere><radius>0.5</radius></sphere></geometry>
+      <surface><friction><ode><mu>0.3</mu></ode></friction></surface></collision>
     <collision name="can"><geometry><cylinder><radius>0.5</radius><length>2</length></cylinder></geometry></collision>
     <collision name="pill"><geometry><capsule><radius>0.25</radius><length>1.5</length></capsule></geometry></collision>
     <collision name="ground"><geometry><plane><normal>0 3 4</normal><size>9 9</size></plane></geometry></collision>
@@ -85,6 +86,7 @@ TEST(Sdf, ReadsShapesSurfacesAndInertia) {
   EXPECT_EQ(s.soft_erp, 0.3);
   EXPECT_EQ(std::get<Sphere>(l.collisions[1].shape).radius_m, 0.5);
   EXPECT_EQ(l.collisions[1].X_LC.p.x, 1);
+  EXPECT_EQ(l.collisions[1].surface.mu2, 0.3) << "mu alone means both directions";
   EXPECT_EQ(std::get<Cylinder>(l.collisions[2].shape).length_m, 2);
   EXPECT_EQ(std::get<Capsule>(l.collisions[3].shape).length_m, 1.5);
   EXPECT_EQ(std::get<Plane>(l.collisions[4].shape).normal, (Vec3{0, 0.6, 0.8}));
@@ -172,7 +174,7 @@ TEST(Sdf, FlattensNestedModels) {
 TEST(Sdf, ReadsWorlds) {
   const Read r = parse(world("<gravity>0 0 -1.6</gravity><physics type='ode'><max_step_size>0.002</max_step_size></physics>" +
                              std::string("<scene><sky/></scene><plugin name='gz::sim::systems::Physics' filename='x'/>") +
-                             "<light name='sun' type='directional'><pose>0 0 9 0 0 0</pose><diffuse>1 0.5 0 1</diffuse>"
+                             "<light name='sun' type='directional'><pose>0 0 9 0 0 1.5707963267948966</pose><diffuse>1 0.5 0 1</diffuse>"
                              "<direction>1 0 0</direction></light>"
                              "<model name='my robot'><pose>1 0 0 0 0 0</pose>" + link("l") + "</model>"
                              "<model name='wall'><static>true</static><link name='l'/></model>"));
@@ -183,7 +185,7 @@ TEST(Sdf, ReadsWorlds) {
   EXPECT_EQ(r.content->max_step_s, 0.002);
   ASSERT_EQ(r.content->lights.size(), 1u);
   const Vec3 beam = rotate(r.content->lights[0].X_WLight.q, {0, 0, -1});
-  EXPECT_NEAR(beam.x, 1, 1e-15);
+  EXPECT_NEAR(beam.y, 1, 1e-15) << "the direction is given in the light's frame, which is turned to the left";
   ASSERT_EQ(r.content->instances.size(), 2u);
   EXPECT_EQ(r.content->instances[0].name, "my_robot");
   EXPECT_EQ(r.content->instances[0].original_name, "my robot");

@@ -170,7 +170,7 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
     make_joint(world_, joint);
     if (!joint.main) continue;
     if (!joint.child || !joint.parent) instance.anchored = true;
-    else instance.joined.emplace_back(std::minmax(joint.child, joint.parent));
+    else instance.joined.emplace_back(joint.child, joint.parent);
     if (joint.turns() && joint.child && joint.child->spin_axis_B == Vec3{})
       joint.child->spin_axis_B = rotate(joint.X_child.q, joint.decl->axis_J);
   }

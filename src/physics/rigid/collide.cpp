@@ -3,13 +3,17 @@
 #include <tuple>
 
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/round.h"
 #include "physics/rigid/surface.h"
 
 namespace sandlot::rigid {
 namespace {
 
+/// Share of its weight that one contact point carries.
+double load_on(const Geom& g) {
+  return g.body ? g.instance->load_N : std::numeric_limits<double>::infinity();
+}
 bool is_awake(const Geom& g) { return g.body && g.body->awake; }
-bool in_order(const Geom& a, const Geom& b) { return a.serial < b.serial; }
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
@@ -31,20 +35,30 @@ void RigidEngine::see_pair(Geom* a, Geom* b) {
   if (a->body == b->body) return;
   if (a->instance == b->instance) {
     if (!a->instance->model->self_collide) return;
-    const auto bodies = std::minmax<const Body*>(a->body, b->body);
-    for (const auto& joined : a->instance->joined)
-      if (joined.first == bodies.first && joined.second == bodies.second) return;
+    for (const auto& [first, second] : a->instance->joined)
+      if ((first == a->body && second == b->body) || (first == b->body && second == a->body)) return;
   }
-  if (!in_order(*a, *b)) std::swap(a, b);
-  (is_awake(*a) || is_awake(*b) ? pairs_ : dormant_).push_back({a, b});
+  if (b->serial < a->serial) std::swap(a, b);
+  (is_awake(*a) || is_awake(*b) ? pairs_ : dormant_).push_back({a->serial, b->serial, a, b});
 }
 
 /// Finds contact points and wakes whom an awake body touches.
 void RigidEngine::collide_pair(const Pair& pair) {
-  const int n = dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, points_.data(), sizeof(dContactGeom));
+  const std::size_t most = hit_count_ + static_cast<std::size_t>(spec_.max_contacts);
+  if (hit_buffer_.size() < most) hit_buffer_.resize(2 * most);
+  Hit* const found = &hit_buffer_[hit_count_];
+  const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
+  const int n = is_round_pair(a, b) ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
+                                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
+                                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts,
+                                               &found->contact.geom, sizeof(Hit));
+  for (int i = 0; i < n; ++i) {
+    found[i].a = pair.a;
+    found[i].b = pair.b;
+    found[i].index = static_cast<std::uint32_t>(i);
+  }
+  hit_count_ += static_cast<std::size_t>(n);
   if (n == 0) return;
-  for (int i = 0; i < n; ++i)
-    hits_.push_back({pair.a, pair.b, static_cast<std::uint32_t>(i), points_[static_cast<std::size_t>(i)]});
   if (pair.a->body && !pair.a->body->awake) wake(*pair.a->body);
   if (pair.b->body && !pair.b->body->awake) wake(*pair.b->body);
 }
@@ -53,15 +67,14 @@ void RigidEngine::collide_pair(const Pair& pair) {
 void RigidEngine::collide() {
   pairs_.clear();
   dormant_.clear();
-  hits_.clear();
+  hit_count_ = 0;
   dSpaceCollide(space_, this, &near);
   for (Instance* instance : order_)
     if (instance->space && instance->model->self_collide) dSpaceCollide(instance->space, this, &near);
 
-  const auto before = [](const Pair& x, const Pair& y) {
-    return std::tie(x.a->serial, x.b->serial) < std::tie(y.a->serial, y.b->serial);
-  };
-  std::sort(pairs_.begin(), pairs_.end(), before);
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& x, const Pair& y) {
+    return x.first != y.first ? x.first < y.first : x.second < y.second;
+  });
   woke_ = false;
   for (const Pair& pair : pairs_) collide_pair(pair);
   if (!woke_) return;
@@ -75,7 +88,7 @@ void RigidEngine::collide() {
       return true;
     });
   }
-  std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) {
+  std::sort(hits().begin(), hits().end(), [](const Hit& x, const Hit& y) {
     return std::tie(x.a->serial, x.b->serial, x.index) < std::tie(y.a->serial, y.b->serial, y.index);
   });
 }
@@ -94,32 +107,28 @@ void RigidEngine::collide() {
 /// (a softer second one makes it overshoot, from side to side, sub-step by sub-step).
 void RigidEngine::attach_contacts(double h) {
   contacts_.clear();
-  for (Instance* instance : order_) instance->contact_points = instance->contacts_seen = 0;
-  for (const Hit& hit : hits_) {
+  for (const Hit& hit : hits()) {
     ++hit.a->instance->contact_points;
     ++hit.b->instance->contact_points;
   }
   const double weight_of_1kg = std::max(norm(gravity_), 1.0);
-  const auto load = [&](const Geom& g) {
-    if (!g.body) return std::numeric_limits<double>::infinity();
-    return weight_of_1kg * g.instance->mass_kg / g.instance->contact_points;
-  };
-  const auto free_velocity = [&](const Geom& g, Vec3 point) {
-    if (!g.body) return Vec3{};
-    const Body& b = *g.body;
-    return velocity_at(g, point) + h * (b.gravity_mass_kg / b.mass_kg * gravity_ + b.force_N / b.mass_kg);
-  };
+  for (Instance* instance : order_) {
+    if (instance->contact_points == 0) continue;
+    instance->load_N = weight_of_1kg * instance->mass_kg / instance->contact_points;
+    instance->contact_points = instance->contacts_seen = 0;
+    for (Body& b : instance->bodies)
+      b.pull_mps = h * (b.gravity_mass_kg / b.mass_kg * gravity_ + b.force_N / b.mass_kg);
+  }
   SurfacePair pair;
-  for (const Hit& hit : hits_) {
+  for (Hit& hit : hits()) {
     const Geom &a = *hit.a, &b = *hit.b;
     if (hit.index == 0) {
       const bool slippery = a.instance->drive.active || b.instance->drive.active;
       pair = combine(a.decl->surface, b.decl->surface, spec_.cfm, slippery);
     }
-    dContact contact;
+    dContact& contact = hit.contact;
     contact.surface = pair.parameters;
-    contact.geom = hit.point;
-    const Vec3 point = vec(hit.point.pos), normal = vec(hit.point.normal);
+    const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
     // Equal limits of symmetric contacts are reached at the same moment, and the direct solver, which follows them one
     // by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to tell them apart.
     std::uint32_t number = 0;
@@ -128,29 +137,34 @@ void RigidEngine::attach_contacts(double h) {
     contact.surface.mu *= 1 - 1e-7 * (1 + number % 32);
     contact.surface.mu2 *= 1 - 1.37e-7 * (1 + number % 32);
     const double mu = contact.surface.mu;
-    Vec3 wanted;
+    Vec3 slip, wanted;
     if (pair.directed) {
       const Geom& owner = pair.directed == &a.decl->surface ? a : b;
       const Quat q = owner.body ? owner.body->q * owner.X_BC.q : owner.X_BC.q;
       wanted = rotate(q, pair.directed->fdir1);
     } else if (mu > 0) {
-      wanted = free_velocity(a, point) - free_velocity(b, point);
+      slip = velocity_at(a, point) - velocity_at(b, point);
+      wanted = slip;
+      if (a.body) wanted += a.body->pull_mps;
+      if (b.body) wanted -= b.body->pull_mps;
     }
     const Vec3 direction = friction_direction(normal, wanted);
     contact.fdir1[0] = direction.x, contact.fdir1[1] = direction.y, contact.fdir1[2] = direction.z;
     if (!pair.directed && mu > 0) {
-      const Vec3 slip = velocity_at(a, point) - velocity_at(b, point);
-      const double limit = mu * std::min(load(a), load(b)), creep = 100 * spec_.cfm * limit;
+      const double limit = mu * std::min(load_on(a), load_on(b)), creep = 100 * spec_.cfm * limit;
       if (const double speed = std::abs(dot(slip, direction)); speed > creep) {
         if (!(contact.surface.mode & dContactSlip2)) contact.surface.slip2 = spec_.cfm;
         contact.surface.mode |= dContactSlip2;
         contact.surface.slip2 += (speed - creep) / limit;
       }
     }
-    const dJointID joint = dJointCreateContact(world_, contact_joints_, &contact);
-    dJointAttach(joint, a.body ? a.body->ode : nullptr, b.body ? b.body->ode : nullptr);
     // ODE's normal points into the first shape, ours from a towards b.
-    contacts_.push_back({a.link, b.link, point, -normal, hit.point.depth});
+    contacts_.push_back({a.link, b.link, point, -normal, contact.geom.depth});
+  }
+  // In a loop of its own: ODE copies the contact, and would wait for what was only just written there.
+  for (const Hit& hit : hits()) {
+    const dJointID joint = dJointCreateContact(world_, contact_joints_, &hit.contact);
+    dJointAttach(joint, hit.a->body ? hit.a->body->ode : nullptr, hit.b->body ? hit.b->body->ode : nullptr);
   }
   counters_.contacts = contacts_.size();
 }

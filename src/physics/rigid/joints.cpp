@@ -185,20 +185,27 @@ void measure_effort(Joint& j) {
   }
 }
 
-double joint_velocity(const Joint& j, const Pose& X_WM) {
-  if (!j.main || j.decl->type == model::JointType::ball) return 0;
-  const Vec3 axis = axis_W(j);
-  const auto side = [&](const Body* body, Vec3 point) {
+namespace {
+
+double velocity_about(const Joint& j, Vec3 axis, Vec3 point) {
+  const auto side = [&](const Body* body) {
     if (!body) return 0.0;
     return dot(axis, j.turns() ? body->w : body->v + cross(body->w, point - body->p));
   };
-  const Vec3 point = frame_on_child(j, X_WM).p;
-  return side(j.child, point) - side(j.parent, point);
+  return side(j.child) - side(j.parent);
+}
+
+}  // namespace
+
+void measure_velocity(Joint& j, const Pose& X_WM) {
+  if (!j.main || j.decl->type == model::JointType::ball) return;
+  j.velocity = velocity_about(j, axis_W(j), frame_on_child(j, X_WM).p);
 }
 
 void measure_position(Joint& j, double h, const Pose& X_WM) {
   if (!j.main || j.decl->type == model::JointType::ball) return;
   const Pose on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
+  j.velocity = velocity_about(j, rotate(j.child ? on_child.q : on_parent.q, j.decl->axis_J), on_child.p);
   if (j.slides()) {
     j.position = dot(rotate(on_parent.q, j.decl->axis_J), on_child.p - on_parent.p);
     return;
@@ -206,8 +213,9 @@ void measure_position(Joint& j, double h, const Pose& X_WM) {
   const Quat turn = conjugate(on_parent.q) * on_child.q;
   const double angle = 2 * math::atan2(dot({turn.x, turn.y, turn.z}, j.decl->axis_J), turn.w);
   // The measured angle is exact but wrapped; the velocity says near which turn it must lie.
-  const double expected = j.position + h * joint_velocity(j, X_WM);
-  j.position = expected + math::wrap_angle(angle - expected);
+  const double expected = j.position + h * j.velocity;
+  const double turns = std::floor((expected - angle) / math::tau + 0.5);
+  j.position = angle + turns * math::tau;
 }
 
 }  // namespace sandlot::rigid

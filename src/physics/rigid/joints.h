@@ -28,8 +28,9 @@ void set_motor(Joint& joint);
 void prepare_joint(Joint& joint, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);
-/// After the bodies moved: position, from the old one and `h_s` of the new velocity (0: after a load).
+/// After the bodies moved: velocity, then position from the old one and `h_s` of that velocity.
 void measure_position(Joint& joint, double h_s, const Pose& X_WM);
-double joint_velocity(const Joint& joint, const Pose& X_WM);
+/// From the bodies as they are.
+void measure_velocity(Joint& joint, const Pose& X_WM);
 
 }  // namespace sandlot::rigid

@@ -78,10 +78,10 @@ void prepare_thread() {
     dSetErrorHandler(fail);
     dSetDebugHandler(fail);
     dInitODE2(0);
-    dAllocateODEDataForThread(dAllocateMaskAll);
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
     check_random_numbers_are_ours();
   });
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   ready = true;
 }
 

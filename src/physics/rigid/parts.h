@@ -36,9 +36,12 @@ struct Body {
   Vec3 force_N, torque_Nm;  ///< from outside, for the next step
   double quiet_s = 0;       ///< how long it has been slow
   bool awake = true;
-  bool quick = false;  ///< its island was solved quickly last time
+  bool enabled = true;  ///< ODE's flag, not State
+  bool quick = false;   ///< its island was solved quickly last time
 
-  std::uint32_t island = 0;  ///< scratch of one sub-step: node of the union-find
+  // Scratch of one sub-step.
+  std::uint32_t island = 0;  ///< node of the union-find
+  Vec3 pull_mps;             ///< what gravity and forces add to v
   Pose pose() const { return {p, q}; }
 };
 
@@ -51,6 +54,8 @@ struct Geom {
   std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
   BodyId link;
   Pose X_BC;  ///< in W where body is null
+
+  Pose pose() const { return body ? body->pose() * X_BC : X_BC; }
 };
 
 /// One link: what the outside calls a body.
@@ -72,6 +77,7 @@ struct Joint {
 
   // State
   double position = 0;
+  double velocity = 0;  ///< follows from the bodies
   JointTarget target;
   double effort = 0;  ///< that the target put in
 
@@ -102,7 +108,9 @@ struct Instance {
   DriveTarget drive{.active = false};
   std::uint32_t drive_link = 0;
 
-  std::uint32_t contact_points = 0, contacts_seen = 0;  ///< scratch of one sub-step
+  // Scratch of one sub-step.
+  std::uint32_t contact_points = 0, contacts_seen = 0;
+  double load_N = 0;
 };
 
 }  // namespace sandlot::rigid

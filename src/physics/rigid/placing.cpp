@@ -7,10 +7,17 @@
 
 namespace sandlot::rigid {
 
-/// Gives ODE what the body's State says. ODE normalises the orientation once more, so this must happen in every
-/// sub-step, restored or not, for both to compute with the same bits.
+/// Gives ODE what the body's State says.
 void RigidEngine::put(Body& body) {
   dBodySetPosition(body.ode, body.p.x, body.p.y, body.p.z);
+  dBodySetLinearVel(body.ode, body.v.x, body.v.y, body.v.z);
+  dBodySetAngularVel(body.ode, body.w.x, body.w.y, body.w.z);
+  put_orientation(body);
+}
+
+/// ODE normalises the orientation once more, so this must happen in every sub-step, restored or not, for both to compute
+/// with the same bits. The other quantities ODE holds as they are.
+void RigidEngine::put_orientation(Body& body) {
   const dQuaternion q = {body.q.w, body.q.x, body.q.y, body.q.z};
   dBodySetQuaternion(body.ode, q);
 }
@@ -31,8 +38,7 @@ void RigidEngine::show(const Instance& instance) {
   }
   for (std::size_t i = 0; i < instance.joints.size(); ++i) {
     const Joint& joint = instance.joints[i];
-    joint_states_[instance.joint_ids[i].index] = {joint.position, joint_velocity(joint, instance.X_WM),
-                                                  joint.effort};
+    joint_states_[instance.joint_ids[i].index] = {joint.position, joint.velocity, joint.effort};
   }
 }
 
@@ -44,13 +50,12 @@ void RigidEngine::place(Instance& instance, const Pose& X_WM) {
     body.q = normalised(X_WM.q * body.X_MB.q);
     body.v = body.w = {};
     put(body);
-    dBodySetLinearVel(body.ode, 0, 0, 0);
-    dBodySetAngularVel(body.ode, 0, 0, 0);
   }
   if (instance.anchored)
     for (Joint& joint : instance.joints)
       if (!joint.child || !joint.parent) anchor_joint(joint, X_WM);
   place_static_geoms(instance);
+  for (Joint& joint : instance.joints) measure_velocity(joint, X_WM);
   show(instance);
 }
 
@@ -119,7 +124,7 @@ void RigidEngine::wake_instance(Instance& instance) {
 void RigidEngine::wake_neighbours(const Instance& instance) {
   constexpr double margin_m = 0.01;
   for (const Geom& geom : instance.geoms)
-    if (geom.body) put(*geom.body);  // ODE's own orientation is not State: see step.cpp
+    if (geom.body) put_orientation(*geom.body);  // ODE's own orientation is not State: see step.cpp
   for (Instance* other : order_) {
     if (other == &instance) continue;
     for (Geom& sleeper : other->geoms) {

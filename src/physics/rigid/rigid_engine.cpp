@@ -26,7 +26,6 @@ RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gra
   space_ = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
   dSpaceSetCleanup(space_, 0);
   contact_joints_ = dJointGroupCreate(0);
-  points_.resize(static_cast<std::size_t>(spec_.max_contacts));
 }
 
 RigidEngine::~RigidEngine() {
@@ -121,7 +120,8 @@ Status RigidEngine::check_finite() const {
       speed = mine;
       fastest = instance->name + "/" + instance->model->links[l].name;
     }
-  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" + fastest + "'",
+  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" +
+                   fastest + "'",
                "a smaller time step, or less extreme masses, forces and speeds"};
 }
 

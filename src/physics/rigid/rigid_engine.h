@@ -54,12 +54,13 @@ class RigidEngine final : public Engine {
 
  private:
   struct Pair {
-    Geom *a, *b;  ///< a made before b
+    std::uint64_t first, second;  ///< their serials, first < second
+    Geom *a, *b;
   };
   struct Hit {
     Geom *a, *b;
     std::uint32_t index;  ///< among the points of this pair
-    dContactGeom point;
+    dContact contact;
   };
   struct Island {
     std::uint32_t contacts = 0;
@@ -89,6 +90,7 @@ class RigidEngine final : public Engine {
   void place(Instance& instance, const Pose& X_WM);
   void place_static_geoms(Instance& instance);
   void put(Body& body);
+  void put_orientation(Body& body);
   void show(const Instance& instance);
   void set_gyroscopic(Instance& instance);
   void wake(Body& body);
@@ -96,6 +98,7 @@ class RigidEngine final : public Engine {
   void wake_neighbours(const Instance& instance);
 
   // collide.cpp
+  std::span<Hit> hits() { return {hit_buffer_.data(), hit_count_}; }
   void collide();
   void see_pair(Geom* a, Geom* b);
   void collide_pair(const Pair& pair);
@@ -142,8 +145,8 @@ class RigidEngine final : public Engine {
 
   // Scratch of one sub-step; kept for its capacity.
   std::vector<Pair> pairs_, dormant_;
-  std::vector<Hit> hits_;
-  std::vector<dContactGeom> points_;
+  std::vector<Hit> hit_buffer_;  ///< never shrinks: clearing 300 bytes per possible point would show
+  std::size_t hit_count_ = 0;
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;
   bool woke_ = false;

@@ -119,8 +119,6 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
             in_range(b.torque_Nm);
     if (!sound) return false;
     put(b);
-    dBodySetLinearVel(b.ode, b.v.x, b.v.y, b.v.z);
-    dBodySetAngularVel(b.ode, b.w.x, b.w.y, b.w.z);
     dBodySetForce(b.ode, 0, 0, 0);
     dBodySetTorque(b.ode, 0, 0, 0);
   }
@@ -129,6 +127,7 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     read(r, j.effort);
     if (!load_target(r, j.target) || !in_range(j.position) || !in_range(j.effort)) return false;
     set_motor(j);
+    measure_velocity(j, instance.X_WM);
   }
   show(instance);
   return r.ok();

@@ -48,13 +48,4 @@ SurfacePair combine(const model::Surface& a, const model::Surface& b, double wor
   return pair;
 }
 
-Vec3 friction_direction(Vec3 normal, Vec3 wanted) {
-  const Vec3 across = wanted - dot(wanted, normal) * normal;
-  const double length2 = dot(across, across);
-  // Below 1e-12 m/s it is rounding that moves the bodies, and rounding has no direction worth following.
-  if (length2 > 1e-24) return across / std::sqrt(length2);
-  const Vec3 axis = std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  return normalised(axis - dot(axis, normal) * normal);
-}
-
 }  // namespace sandlot::rigid

@@ -9,8 +9,6 @@
 /// Limits    no rolling or spinning friction, no adhesion, no conveyors.
 #include <ode/ode.h>
 
-#include <optional>
-
 #include "model/model.h"
 
 namespace sandlot::rigid {
@@ -25,7 +23,15 @@ struct SurfacePair {
 /// @param slippery   friction is switched off (an ideal drive moves one of the two)
 SurfacePair combine(const model::Surface& a, const model::Surface& b, double world_cfm, bool slippery);
 
-/// Unit vector across `normal` along `wanted`, or a fixed one when `wanted` has no part across it.
-Vec3 friction_direction(Vec3 normal, Vec3 wanted);
+/// Unit vector across `normal` along `wanted`, or a fixed one when `wanted` has no part across it. Inline: it is asked for
+/// every contact point.
+inline Vec3 friction_direction(Vec3 normal, Vec3 wanted) {
+  const Vec3 across = wanted - dot(wanted, normal) * normal;
+  const double length2 = dot(across, across);
+  // Below 1e-12 m/s it is rounding that moves the bodies, and rounding has no direction worth following.
+  if (length2 > 1e-24) return across / std::sqrt(length2);
+  const Vec3 axis = std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  return normalised(axis - dot(axis, normal) * normal);
+}
 
 }  // namespace sandlot::rigid

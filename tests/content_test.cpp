@@ -1,0 +1,233 @@
+/// What models/, worlds/ and scenarios/ promise in their comments.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "base/math.h"
+#include "formats/sdf/sdf.h"
+#include "sim/load.h"
+#include "sim/simulation.h"
+
+namespace sandlot {
+namespace {
+
+model::Setup loaded(const std::string& file, std::vector<formats::Override> overrides = {},
+                    std::uint64_t seed = 1) {
+  Diagnostics diagnostics;
+  LoadOptions options;
+  options.overrides = overrides;
+  options.seed = seed;
+  auto setup = load(file, options, diagnostics);
+  if (!setup) {
+    ADD_FAILURE() << setup.error().text();
+    return {};
+  }
+  for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << warning.text();
+  return std::move(*setup);
+}
+
+std::unique_ptr<Simulation> built(model::Setup setup) {
+  Diagnostics diagnostics;
+  auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
+  if (!simulation) {
+    ADD_FAILURE() << simulation.error().text();
+    return nullptr;
+  }
+  for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << warning.text();
+  return std::move(*simulation);
+}
+
+formats::SdfContent rover_file() {
+  Diagnostics diagnostics;
+  auto content = formats::read_sdf("models/rover/model.sdf", diagnostics);
+  if (!content) ADD_FAILURE() << content.error().text();
+  return std::move(*content);
+}
+
+TEST(Content, EveryScenarioLoadsAndBuildsWithoutAWarning) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("scenarios")) {
+    if (entry.path().extension() != ".yaml") continue;
+    SCOPED_TRACE(entry.path().string());
+    ++files;
+    EXPECT_TRUE(built(loaded(entry.path().string())));
+  }
+  EXPECT_GE(files, 3);
+}
+
+TEST(Rover, InertiaIsThatOfTheSolidsItNames) {
+  struct Part {
+    double mass_kg;
+    Shape shape;
+    Vec3 at;
+  };
+  const Part parts[] = {{3.0, Cylinder{0.175, 0.10}, {0, 0, 0.08}},
+                        {0.6, Box{{0.08, 0.14, 0.05}}, {-0.09, 0, 0.065}},
+                        {0.1, Cylinder{0.025, 0.09}, {0, 0, 0.175}},
+                        {0.2, Cylinder{0.04, 0.06}, {0, 0, 0.25}}};
+  double mass = 0;
+  Vec3 moment;
+  for (const Part& part : parts) mass += part.mass_kg, moment += part.mass_kg * part.at;
+  const Vec3 centre = moment / mass;
+  Vec3 inertia;
+  double ixz = 0;
+  for (const Part& part : parts) {
+    const Vec3 d = part.at - centre;
+    inertia += inertia_kg_m2(part.shape, part.mass_kg) +
+               part.mass_kg * Vec3{d.y * d.y + d.z * d.z, d.x * d.x + d.z * d.z, d.x * d.x + d.y * d.y};
+    ixz -= part.mass_kg * d.x * d.z;
+  }
+  const formats::SdfContent content = rover_file();
+  const model::Link& base = content.instances[0].model->links[0];
+  // The file has six digits.
+  EXPECT_NEAR(base.inertial.mass_kg, mass, 1e-9);
+  EXPECT_NEAR(norm(base.inertial.X_LCo.p - centre), 0, 1e-6);
+  EXPECT_NEAR(norm(base.inertial.moments - inertia), 0, 1e-6);
+  EXPECT_NEAR(base.inertial.products.y, ixz, 1e-8);
+  for (const char* name : {"left_wheel", "right_wheel"}) {
+    const auto index = content.instances[0].model->find_link(name);
+    ASSERT_TRUE(index);
+    const model::Inertial& wheel = content.instances[0].model->links[*index].inertial;
+    const Vec3 disc = inertia_kg_m2(Cylinder{0.05, 0.02}, wheel.mass_kg);
+    EXPECT_NEAR(norm(wheel.moments - Vec3{disc.x, disc.z, disc.y}), 0, 1e-9);  // its axis is y
+  }
+}
+
+TEST(Rover, FitsIntoADiscOfItsRadius) {
+  // What planar physics takes as its footprint: no collision shape reaches beyond the chassis.
+  const formats::SdfContent content = rover_file();
+  for (const model::Link& link : content.instances[0].model->links)
+    for (const model::Collision& collision : link.collisions) {
+      const Pose X = link.X_ML * collision.X_LC;
+      double radius = bounding_radius_m(collision.shape);
+      if (const auto* cylinder = std::get_if<Cylinder>(&collision.shape)) radius = cylinder->radius_m;
+      EXPECT_LE(math::hypot(X.p.x, X.p.y) + radius, 0.175 + 1e-9) << link.name << "/" << collision.name;
+    }
+}
+
+TEST(Rover, StandsStillOnItsWheelsAndRearCaster) {
+  auto setup = loaded("scenarios/indoor.yaml");
+  setup.instances.back().controllers.clear();
+  for (const char* level : {"ideal", "contact"}) {
+    auto leveled = setup;
+    for (model::DeviceDecl& device : leveled.instances.back().devices)
+      if (device.name == "drive") device.config.set("level", Node::scalar(level));
+    const auto simulation = built(std::move(leveled));
+    ASSERT_TRUE(simulation);
+    const Pose before = simulation->engine().pose(*simulation->find_instance("rover"));
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(static_cast<bool>(simulation->tick()));
+    const Pose after = simulation->engine().pose(*simulation->find_instance("rover"));
+    // Soft contacts give way by far less than the front caster's clearance of 1 mm.
+    EXPECT_NEAR(norm(after.p - before.p), 0, 2e-4) << level;
+    EXPECT_GT(rotate(after.q, {0, 0, 1}).z, 1 - 1e-6) << level;
+  }
+}
+
+/// Which room of worlds/indoor.sdf a point is in.
+int room_of(Vec3 p) {
+  if (p.y > 4.06 && p.y < 5.24) return 0;
+  if (p.y < 4.06) return p.x < 5.2 ? 1 : p.x < 8.6 ? 2 : 3;
+  return p.x < 4.2 ? 4 : p.x < 6.4 ? 5 : 6;
+}
+
+/// Where the rovers go, and how long each stays within 0.3 m of a point.
+struct Tracker final : Observer {
+  struct Track {
+    Vec3 anchor{1e9, 0, 0};
+    Time since;
+    double longest_s = 0;
+    std::set<int> rooms;
+    std::set<std::pair<int, int>> cells;  ///< of 0.5 m
+    double lean = 0, out_of_world = 0;
+  };
+  std::map<std::string, Track> tracks;
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    for (const FrameInstance& instance : frame->instances) {
+      if (!instance.is_robot) continue;
+      Track& track = tracks[instance.name];
+      const Vec3 p = instance.X_WM.p;
+      if (norm(p - track.anchor) > 0.3) track.anchor = p, track.since = frame->now;
+      track.longest_s = std::max(track.longest_s, (frame->now - track.since).s());
+      track.rooms.insert(room_of(p));
+      track.cells.insert({static_cast<int>(2 * p.x), static_cast<int>(2 * p.y)});
+      track.lean = std::max(track.lean, 1 - rotate(instance.X_WM.q, {0, 0, 1}).z);
+      if (p.x < 0.1 || p.x > 11.9 || p.y < 0.1 || p.y > 8.9 || std::abs(p.z) > 0.01) ++track.out_of_world;
+    }
+  }
+};
+
+void expect_wandering(const std::string& physics, const std::string& level) {
+  double cells = 0;
+  std::size_t rooms = 0;
+  constexpr int runs = 4;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    SCOPED_TRACE(physics + " " + level + " seed " + std::to_string(seed));
+    const auto simulation = built(
+        loaded("scenarios/indoor.yaml", {{"physics", physics}, {"level", level}}, seed));
+    ASSERT_TRUE(simulation);
+    Tracker tracker;
+    simulation->add_observer(&tracker);
+    while (!simulation->stop_reason()) ASSERT_TRUE(static_cast<bool>(simulation->tick()));
+    ASSERT_EQ(tracker.tracks.size(), 1u);
+    const Tracker::Track& track = tracker.tracks.begin()->second;
+    EXPECT_EQ(simulation->now(), Time::from_s(300));
+    EXPECT_LT(track.longest_s, 40);  // 16 s at most in 80 runs over both engines
+    EXPECT_EQ(track.out_of_world, 0);
+    EXPECT_LT(track.lean, 1e-3);
+    cells += static_cast<double>(track.cells.size()) / runs;
+    rooms += track.rooms.size();
+  }
+  // 80 runs over both engines: 110 cells and 5.2 of 7 rooms on average, never less than 80 cells and 3 rooms.
+  EXPECT_GT(cells, 70);
+  EXPECT_GE(rooms, 3u * runs);
+}
+
+TEST(SlowContent, TheRoverWandersWithoutGettingStuckRigid) { expect_wandering("rigid", "ideal"); }
+TEST(SlowContent, TheRoverWandersWithoutGettingStuckPlanar) { expect_wandering("planar", "ideal"); }
+TEST(SlowContent, TheRoverWandersWithoutGettingStuckOnWheels) { expect_wandering("rigid", "contact"); }
+
+TEST(SlowContent, AFleetKeepsMovingAndInside) {
+  for (const char* physics : {"rigid", "planar"}) {
+    SCOPED_TRACE(physics);
+    const auto simulation = built(loaded("scenarios/fleet.yaml", {{"physics", physics}}));
+    ASSERT_TRUE(simulation);
+    Tracker tracker;
+    simulation->add_observer(&tracker);
+    while (!simulation->stop_reason()) ASSERT_TRUE(static_cast<bool>(simulation->tick()));
+    EXPECT_EQ(tracker.tracks.size(), 8u);
+    for (const auto& [name, track] : tracker.tracks) {
+      EXPECT_LT(track.longest_s, 60) << name;
+      EXPECT_EQ(track.out_of_world, 0) << name;
+      EXPECT_GT(track.cells.size(), 10u) << name;
+    }
+  }
+}
+
+TEST(SlowContent, ThePileFallsIntoTheBinAndTheSlopeSortsWhatLiesOnIt) {
+  const auto simulation = built(loaded("scenarios/pile.yaml"));
+  ASSERT_TRUE(simulation);
+  const auto at = [&](const char* name) {
+    return simulation->engine().pose(*simulation->find_instance(name)).p;
+  };
+  const Vec3 stuck = at("box_sticking"), sliding = at("box_sliding");
+  while (!simulation->stop_reason()) ASSERT_TRUE(static_cast<bool>(simulation->tick()));
+  // tan 20 deg = 0.364 lies between the two coefficients, 0.6 and 0.2. Soft friction creeps a little.
+  EXPECT_NEAR(norm(at("box_sticking") - stuck), 0, 0.02);
+  EXPECT_GT(norm(at("box_sliding") - sliding), 3);
+  int inside = 0;
+  for (int i = 1; i <= 40; ++i) {
+    const Vec3 p = at(("box_" + std::string(i < 10 ? "0" : "") + std::to_string(i)).c_str());
+    EXPECT_GT(p.z, 0.09) << "box " << i << " is in the floor";
+    EXPECT_LT(p.z, 1.5) << "box " << i << " still stands high";
+    inside += std::abs(p.x) < 0.75 && std::abs(p.y) < 0.75 ? 1 : 0;
+  }
+  EXPECT_GE(inside, 15);
+  // What rolls leaves the slope, which ends at x = 5.6, and nothing brakes it on the floor.
+  EXPECT_GT(at("ball_light").x, 10);
+  EXPECT_GT(at("cylinder_thick").x, 10);
+}
+
+}  // namespace
+}  // namespace sandlot
