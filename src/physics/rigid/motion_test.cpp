@@ -54,6 +54,66 @@ TEST(RigidMotion, LinksWithoutGravityWeighNothing) {
   EXPECT_NEAR(world.state(id).V_WB.linear.z, -g / 4, 1e-12);  // 1 kg of weight moves 4 kg
 }
 
+TEST(RigidMotion, PartialWeightTurnsALump) {
+  Rigid world;
+  model::Model m;
+  m.links.push_back(link_of("heavy", Box{{0.2, 0.2, 0.2}}, 1));
+  m.links.push_back(link_of("floating", Box{{0.2, 0.2, 0.2}}, 3, {{0.4, 0, 0}, {}}));
+  m.links[1].gravity = false;
+  model::Joint fix;
+  fix.parent = 0;
+  fix.child = 1;
+  m.joints.push_back(fix);
+  const InstanceId id = world.add(instance_of("a", m, {{0, 0, 10}, {}}));
+  world.run(1, 0.001);
+  // The centre of mass is 0.3 m from where 1 kg weighs. Seen from above y, the heavy end goes down: w_y < 0.
+  const double inertia = 4 * inertia_kg_m2(Box{{0.2, 0.2, 0.2}}, 1).y + 0.09 + 3 * 0.01;
+  EXPECT_NEAR(world.state(id).V_WB.angular.y, -0.3 * g / inertia * 0.001, 1e-9);
+}
+
+TEST(RigidMotion, AForceOnALumpedLinkActsThere) {
+  Rigid world({}, {});
+  model::Model m;
+  m.links.push_back(link_of("a", Box{{0.2, 0.2, 0.2}}, 1));
+  m.links.push_back(link_of("b", Box{{0.2, 0.2, 0.2}}, 1, {{0.4, 0, 0}, {}}));
+  model::Joint fix;
+  fix.parent = 0;
+  fix.child = 1;
+  m.joints.push_back(fix);
+  const InstanceId id = world.add(instance_of("a", m));
+  const Wrench wrench{world.engine->bodies(id)[1], {0, 2, 0}, {}};
+  world.engine->apply(std::span(&wrench, 1));
+  world.run(1, 0.01);
+  const double inertia = 2 * inertia_kg_m2(Box{{0.2, 0.2, 0.2}}, 1).z + 2 * 0.04;
+  EXPECT_NEAR(world.state(id).V_WB.angular.z, 0.2 * 2 / inertia * 0.01, 1e-12);
+  EXPECT_NEAR(world.state(id, 1).V_WB.linear.y, 0.01 + 0.2 * world.state(id).V_WB.angular.z,
+              1e-8);  // it has turned
+}
+
+TEST(RigidMotion, WhereTheDirectSolverGivesUpNothingJumps) {
+  // Box against box, both aligned: with ODE 0.16.2 the direct solver fails here in some sub-steps. Left at that, the box
+  // would lose its friction and start with 5 cm/s.
+  Rigid world;
+  world.add(ground());
+  model::Surface rough, smooth;
+  rough.mu = 0.5;
+  smooth.mu = 0;
+  const Quat turned = quat_from_rpy(0, 0, math::pi / 4);
+  const double r = 0.2 / std::sqrt(2.0);
+  const InstanceId box = world.add(
+      body_of("box", Box{{0.2, 0.2, 0.2}}, 1, {{0, 0, 0.1}, turned}, rough, true));
+  const InstanceId pusher = world.add(
+      body_of("pusher", Box{{0.2, 0.2, 0.2}}, 1, {{-r, -r, 0.1}, turned}, smooth, true));
+  double fastest = 0;
+  for (int i = 0; i < 200; ++i) {
+    world.push(pusher, Vec3{0.5, 0.5, 0} * (0.5 * g / std::sqrt(2.0)));
+    world.run(1, 0.005);
+    fastest = std::max(fastest, norm(world.state(box).V_WB.linear));
+  }
+  EXPECT_GT(world.engine->counters().solver_messages, 0u) << "the scene no longer provokes it: find another";
+  EXPECT_LT(fastest, 2e-5);
+}
+
 TEST(RigidMotion, ATurningBodyKeepsItsRate) {
   Rigid world({}, {});
   const InstanceId id = world.add(body_of("ball", Sphere{0.1}, 1));
@@ -70,7 +130,7 @@ struct Slope : ::testing::TestWithParam<double> {};
 
 TEST_P(Slope, ABoxSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   const double mu = 0.5, direction = GetParam(), h = 0.005;
-  for (const double share : {0.8, 0.99, 1.01, 1.3}) {
+  for (const double share : {0.8, 0.99, 1.01, 1.3, 0.85}) {
     const double angle = math::atan(share * mu);
     Rigid world({}, slope(angle, direction));
     model::Surface surface;
