@@ -207,8 +207,10 @@ TEST(RigidRestore, TheChoiceOfTheSolverIsRememberedWhereItMatters) {
   const auto furnish = [](Recorded& world, int balls) {
     world.put(ground());
     world.put(body_of("plate", Box{{2, 2, 0.1}}, 1, {{0, 0, 0.2499}, {}}));
-    for (int i = 0; i < balls; ++i)
-      world.put(body_of("ball", Sphere{0.1}, 1, {{0.3 * (i % 4) - 0.45, 0.3 * (i / 4) - 0.3, 0.09995}, {}}));
+    for (int i = 0; i < balls; ++i)  // four corners first, so that the plate does not tip when balls go
+      world.put(
+          body_of("ball", Sphere{0.1}, 1,
+                  {{(i % 2 ? 0.7 : -0.7), (i / 2 % 2 ? 1 : -1) * (0.8 - 0.25 * (i / 4)), 0.09995}, {}}));
   };
   const Settings config{{"direct_limit", "16"}, {"sleeping", "false"}};
   Recorded world(config), fresh(config);
