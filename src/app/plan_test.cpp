@@ -154,8 +154,8 @@ TEST(Plan, AnEmptyWorldIsAnEmptyFloor) {
 TEST(Plan, StaysSmallWithManyRobotsAndLongPaths) {
   Plan plan = room();
   for (int i = 0; i < 3000; ++i) {
-    Plan::Robot r = robot("robot" + std::to_string(i),
-                          {0.5 * (i % 60), 0.5 * static_cast<double>(i / 60), 0});
+    const int row = i / 60;
+    Plan::Robot r = robot("robot" + std::to_string(i), {0.5 * (i % 60), 0.5 * row, 0});
     r.path[0].clear();
     for (int k = 0; k < 200; ++k)
       r.path[0].push_back(r.X_WB.p + 0.2 * Vec3{math::cos(0.37 * k * k), math::sin(0.3 * k), 0});

@@ -18,23 +18,32 @@ constexpr int models = 500;
 std::string world_text(bool frames) {
   const std::string inertial =
       "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz></inertia></inertial>\n";
-  const std::string shape = "<pose>0 0 0.1 0 0 0</pose>\n<geometry><box><size>0.4 0.3 0.2</size></box></geometry>\n";
+  const std::string shape =
+      "<pose>0 0 0.1 0 0 0</pose>\n<geometry><box><size>0.4 0.3 0.2</size></box></geometry>\n";
   std::string text = "<sdf version='1.9'>\n<world name='bench'>\n";
   for (int i = 0; i < models; ++i) {
     const std::string n = std::to_string(i);
-    text += "<model name='robot" + n + "'>\n<pose>" + n + " 0 0 0 0 0.5</pose>\n<link name='base'>\n" + inertial +
-            "<collision name='c'>\n" + shape +
-            "<surface><friction><ode><mu>0.8</mu><mu2>0.8</mu2></ode></friction></surface>\n</collision>\n"
-            "<visual name='v'>\n" + shape + "<material><diffuse>0.8 0.1 0.1 1</diffuse></material>\n</visual>\n"
-            "<sensor name='lidar' type='gpu_lidar'>\n<update_rate>10</update_rate>\n<lidar><scan><horizontal>"
-            "<samples>181</samples><min_angle>-1.57</min_angle><max_angle>1.57</max_angle></horizontal></scan>"
-            "<range><min>0.1</min><max>10</max></range></lidar>\n</sensor>\n</link>\n";
+    text +=
+        "<model name='robot" + n + "'>\n<pose>" + n + " 0 0 0 0 0.5</pose>\n<link name='base'>\n" + inertial +
+        "<collision name='c'>\n" + shape +
+        "<surface><friction><ode><mu>0.8</mu><mu2>0.8</mu2></ode></friction></surface>\n</collision>\n"
+        "<visual name='v'>\n" +
+        shape +
+        "<material><diffuse>0.8 0.1 0.1 1</diffuse></material>\n</visual>\n"
+        "<sensor name='lidar' type='gpu_lidar'>\n<update_rate>10</update_rate>\n<lidar><scan><horizontal>"
+        "<samples>181</samples><min_angle>-1.57</min_angle><max_angle>1.57</max_angle></horizontal></scan>"
+        "<range><min>0.1</min><max>10</max></range></lidar>\n</sensor>\n</link>\n";
     if (frames) text += "<frame name='hub' attached_to='base'><pose>0 0.2 0 0 0 0</pose></frame>\n";
     text += "<link name='wheel'>\n" +
-            std::string(frames ? "<pose relative_to='hub'>0 0 0 1.5707963 0 0</pose>\n" : "<pose>0 0.2 0 1.5707963 0 0</pose>\n") +
-            inertial + "<collision name='c'><geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder></geometry>"
-            "</collision>\n</link>\n<joint name='axle' type='revolute'>\n<parent>base</parent>\n<child>wheel</child>\n<axis><xyz" +
-            std::string(frames ? " expressed_in='base'>0 1 0" : ">0 0 1") + "</xyz></axis>\n</joint>\n</model>\n";
+            std::string(frames ? "<pose relative_to='hub'>0 0 0 1.5707963 0 0</pose>\n"
+                               : "<pose>0 0.2 0 1.5707963 0 0</pose>\n") +
+            inertial +
+            "<collision "
+            "name='c'><geometry><cylinder><radius>0.1</radius><length>0.05</length></cylinder></geometry>"
+            "</collision>\n</link>\n<joint name='axle' "
+            "type='revolute'>\n<parent>base</parent>\n<child>wheel</child>\n<axis><xyz" +
+            std::string(frames ? " expressed_in='base'>0 1 0" : ">0 0 1") +
+            "</xyz></axis>\n</joint>\n</model>\n";
   }
   return text + "</world>\n</sdf>\n";
 }
