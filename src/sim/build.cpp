@@ -128,6 +128,7 @@ Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diag
   entity->serial = next_serial_++;
   entities_.push_back(std::move(entity));
   Entity& added = *entities_.back();
+  by_name_[instance.name] = &added;
   Status status;
   for (const model::DeviceDecl& decl : added.instance.devices)
     if (status) status = add_device(added, decl, diagnostics);
@@ -294,13 +295,13 @@ void Simulation::remove_entity(std::size_t index) {
     for (std::uint32_t i = (*device)->index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
   }
   engine_->remove(entity.id);
+  by_name_.erase(entity.instance.name);
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {
-  for (const auto& entity : entities_)
-    if (entity->instance.name == name) return entity.get();
-  return nullptr;
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : found->second;
 }
 
 Simulation::Device* Simulation::find_device(std::string_view path) {

@@ -9,7 +9,7 @@
 /// Threads       one thread calls tick(); submit() may be called from any.
 /// Cost          no heap allocation of ours per tick once vectors have reached their size.
 #include <array>
-#include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -211,6 +211,7 @@ class Simulation {
   SceneFrame scene_frame_;
 
   std::vector<std::unique_ptr<Entity>> entities_;
+  std::map<std::string, Entity*, std::less<>> by_name_;
   std::vector<Pool> pools_;
   std::vector<std::unique_ptr<Rule>> rules_;
   std::vector<std::unique_ptr<Medium>> media_;
