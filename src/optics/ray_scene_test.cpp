@@ -188,6 +188,31 @@ TEST(RayScene, FarFromTheOriginItIsAsSharp) {
   EXPECT_NEAR(world.see(there, there + Vec3{0, 1, 0}), 4.5, eps_m);
 }
 
+TEST(RayScene, NoEdgeIsLostFarFromTheOrigin) {
+  // 10 km away floats are 1 mm apart: bounds that are rounded to them cut up to half of it off a box, unless they have
+  // a margin. Rays 0.1 mm inside the edge tell.
+  const Vec3 there{10'000, 10'000, 0};
+  std::vector<SceneShape> shapes;
+  const auto width_m = [](int i) { return 1 + 1.3e-4 * i; };
+  for (int i = 0; i < 40; ++i)
+    shapes.push_back(shape(Box{{1, width_m(i), 0.5}}, there + Vec3{5.5, 0, 1.0 * i}));
+  World world(shapes);
+  for (int i = 0; i < 40; ++i) {
+    const double y = 0.5 * width_m(i) - 1e-4;
+    const Vec3 from = there + Vec3{0, y, 1.0 * i};
+    ASSERT_NEAR(world.see(from, from + Vec3{1, 0, 0}), 5, eps_m) << i;
+  }
+}
+
+TEST(RayScene, NothingWithinUnlimitedRangeIsNoBody) {
+  // The ray passes through the corner of the bounds of a turned box, but not through the box.
+  World world({{0, {{4, 0, 0}, quat_from_axis_angle({0, 0, 1}, math::pi / 4)}, Box{{2, 2, 2}}, 3, false}});
+  std::uint32_t body = 0;
+  const double unlimited = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(world.see({0, -2.4, 0}, {1, -1.4, 0}, 0, unlimited, no_body, &body), inf);
+  EXPECT_EQ(body, no_body);
+}
+
 // --- a second opinion in double precision -------------------------------------------------------------------------
 
 /// Calls see(t) for all t where the line o + t d meets the surface: faces, sides and caps one by one.

@@ -30,6 +30,46 @@ TEST(PlanarRays, DiscsAndWallsAreMetWhereTheyAre) {
   EXPECT_EQ(w.see({0, 0, 0.1}, {0, 0, 1}), std::numeric_limits<float>::infinity());
 }
 
+TEST(PlanarRays, ACarrierThatStandsStillDoesNotSeeItself) {
+  World w;
+  const InstanceId mast = w.add(model_of(Box{{0.2, 0.2, 1}}, true), at(0, 0, 0, 0.5));
+  w.add(model_of(Box{{1, 1, 1}}, true), at(3, 0, 0, 0.5));
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.5}, {1, 0, 0}), 0.1f);
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.5}, {1, 0, 0}, 100, w.engine.bodies(mast)[0].index), 2.5f);
+}
+
+TEST(PlanarRays, OfTwoAtTheSameDistanceTheSmallerIndexIsReported) {
+  World w;
+  const auto can = model_of(Cylinder{0.25, 0.5});
+  const InstanceId first = w.add(can, at(2, 0));
+  w.add(can, at(2, 0));
+  w.add(model_of(Box{{1, 1, 1}}, true), at(2.25, 0));  // its face at 1.75, as the cans' rims
+  std::uint32_t body = 0;
+  EXPECT_EQ(w.see({0, 0, 0.1}, {1, 0, 0}, 100, no_body, &body), 1.75f);
+  EXPECT_EQ(body, w.engine.bodies(first)[0].index);
+  const InstanceId wall = w.add(model_of(Box{{1, 1, 1}}, true), at(2.25, 9));
+  const InstanceId later = w.add(can, at(2, 9));
+  EXPECT_EQ(w.see({0, 9, 0.1}, {1, 0, 0}, 100, no_body, &body), 1.75f);
+  EXPECT_EQ(body, w.engine.bodies(wall)[0].index);
+  EXPECT_LT(w.engine.bodies(wall)[0].index, w.engine.bodies(later)[0].index);
+}
+
+TEST(PlanarRays, ShortOnesSeeWhatLongOnesSee) {
+  World w;
+  const InstanceId robot = w.add(robot_model(), at(0, 0));
+  const std::uint32_t self = w.engine.bodies(robot)[0].index;
+  w.add(robot_model(), at(0.5, 0));
+  EXPECT_EQ(w.see({0, 0, 0.1}, {1, 0, 0}, 0.29, self), std::numeric_limits<float>::infinity());
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {1, 0, 0}, 0.31, self), 0.3f);
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {1, 0, 0}, 0.31), 0.2f);  // who is nobody's sees the rim from inside
+  w.add(model_of(Box{{0.1, 1, 1}}, true), at(0, 0.3, math::pi / 2, 0.5));
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {0, 1, 0}, 0.31, self), 0.25f);
+  // Many near ones, of which the last to be filed is the nearest.
+  World many;
+  for (int i = 0; i < 60; ++i) many.add(model_of(Cylinder{0.01, 1}), at(0.3 - 0.003 * i, 0));
+  EXPECT_FLOAT_EQ(many.see({0, 0, 0.1}, {1, 0, 0}, 0.4), static_cast<float>(0.3 - 0.003 * 59 - 0.01));
+}
+
 TEST(PlanarRays, HeightsCount) {
   World w;
   w.add(robot_model(), at(3, 0));  // 0 .. 0.4
@@ -146,6 +186,20 @@ TEST(PlanarOverlaps, NameBodiesOnceAndInOrder) {
                       B = w.engine.bodies(b)[0].index;
   EXPECT_EQ(ends, (std::vector<std::uint32_t>{1, 2, 4, 4, 5, 8}));
   EXPECT_EQ(out, (std::vector<std::uint32_t>{A, A, W, A, A, W, A, B}));
+}
+
+TEST(PlanarOverlaps, ABallIsNarrowerAwayFromItsMiddle) {
+  World w;
+  const InstanceId robot = w.add(robot_model(), at(0, 0));  // radius 0.2, up to 0.4
+  const InstanceId wall = w.add(model_of(Box{{2, 2, 0.4}}, true), at(5, 0, 0, 0.2));
+  // 0.3 above the top a ball of radius 0.5 has a circle of 0.4.
+  const OverlapQuery queries[] = {
+      {{0.59, 0, 0.7}, 0.5}, {{0.61, 0, 0.7}, 0.5}, {{3.61, 0, 0.7}, 0.5}, {{3.59, 0, 0.7}, 0.5}};
+  std::vector<std::uint32_t> out, ends;
+  w.engine.overlaps(queries, out, ends);
+  EXPECT_EQ(ends, (std::vector<std::uint32_t>{1, 1, 2, 2}));
+  EXPECT_EQ(out,
+            (std::vector<std::uint32_t>{w.engine.bodies(robot)[0].index, w.engine.bodies(wall)[0].index}));
 }
 
 TEST(PlanarRays, SeveralThreadsMayAskFirst) {

@@ -38,6 +38,15 @@ TEST(PlanarOutline, ABoxIsItsRectangle) {
   EXPECT_NEAR(c.last, 1.25, 1e-12);
 }
 
+TEST(PlanarOutline, ALineBesideAnEdgeMissesIt) {
+  const Shadow box(Box{{2, 1, 1}}, {});
+  const Chord beside = chord(box.outlines[0], box.edges, {-3, 0.51}, {1, 0});
+  EXPECT_GT(beside.first, beside.last);
+  const Chord inside = chord(box.outlines[0], box.edges, {-3, 0.49}, {1, 0});
+  EXPECT_NEAR(inside.first, 2, 1e-12);
+  EXPECT_NEAR(inside.last, 4, 1e-12);
+}
+
 TEST(PlanarOutline, ATiltedBoxIsTheHullOfItsCorners) {
   const Shadow box(Box{{1, 1, 1}}, pose_from_rpy({0, 0, 0}, {0, math::pi / 4, 0}));
   EXPECT_NEAR(box.distance({2, 0}), 2 - std::sqrt(0.5), 1e-12);

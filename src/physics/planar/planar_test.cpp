@@ -69,6 +69,30 @@ TEST(PlanarJoint, LimitsHoldItAndASlideMoves) {
   EXPECT_EQ(w.engine.joint_states()[slide.index].velocity, 0);
 }
 
+TEST(PlanarJoint, AHingeTurnsAboutItsOwnAxis) {
+  auto model = robot_model();
+  model::Link door;
+  door.name = "door";
+  door.X_ML = at(1, 0);
+  model->links.push_back(door);
+  model->joints.push_back({.name = "hinge",
+                           .type = model::JointType::revolute,
+                           .parent = 0,
+                           .child = 1,
+                           .X_CJ = {{-0.5, 0, 0}, {}}});
+  World w;
+  const InstanceId robot = w.add(model, at(0, 0));
+  const JointTarget swing{w.engine.joints(robot)[0], JointTarget::Mode::velocity, math::pi / 2, 1, 0};
+  w.engine.set_targets({&swing, 1});
+  w.run(100);
+  // A quarter turn about (0.5, 0).
+  const BodyState state = w.engine.states()[w.engine.bodies(robot)[1].index];
+  EXPECT_NEAR(state.X_WB.p.x, 0.5, 1e-12);
+  EXPECT_NEAR(state.X_WB.p.y, 0.5, 1e-12);
+  EXPECT_NEAR(state.V_WB.linear.x, -0.5 * math::pi / 2, 1e-12);
+  EXPECT_NEAR(state.V_WB.linear.y, 0, 1e-12);
+}
+
 TEST(PlanarJoint, ATreeMayHangFromAChild) {
   // The canonical link is the joint's child: the other link swings the opposite way.
   auto model = robot_model();

@@ -123,6 +123,18 @@ TEST(PlanarContact, AWallStopsADisc) {
   EXPECT_NEAR(contact.point_W.z, 0.2, 1e-12);
 }
 
+TEST(PlanarContact, TheNormalPointsFromTheOlderToTheYounger) {
+  World w;
+  const InstanceId robot = w.add(robot_model(), at(0.7, 0));
+  const InstanceId wall = w.add(model_of(Box{{1, 1, 1}}, true), at(1.35, 0, 0, 0.5));  // overlap 0.05
+  w.run(1);
+  ASSERT_EQ(w.engine.contacts().size(), 1u);
+  EXPECT_EQ(w.engine.contacts()[0].a, w.engine.bodies(robot)[0]);
+  EXPECT_EQ(w.engine.contacts()[0].b, w.engine.bodies(wall)[0]);
+  EXPECT_NEAR(w.engine.contacts()[0].normal_W.x, 1, 1e-12);
+  EXPECT_NEAR(w.engine.contacts()[0].depth_m, 0.05, 1e-12);
+}
+
 TEST(PlanarContact, ADiscSlidesAlongAWall) {
   World w;
   w.add(model_of(Box{{0.1, 10, 1}}, true), at(1.05, 0, 0, 0.5));
@@ -199,6 +211,17 @@ TEST(PlanarContact, ARobotPushesABoxUpToAWall) {
   w.run(300);
   EXPECT_NEAR(w.p(ball).x, 1.9, 1e-9);
   EXPECT_NEAR(w.p(robot).x, 1.6, 1e-9);
+}
+
+TEST(PlanarContact, ThingsOfAnySizeCostNoMoreThanTheTable) {
+  World w;
+  w.add(model_of(Box{{1e9, 1e9, 0.2}}, true), at(0, 0, 0, -0.1));
+  w.add(model_of(Cylinder{1e7, 0.1}), at(0, 2e7, 0, 5));
+  const InstanceId robot = w.add(robot_model(), at(0, 0));
+  w.drive(robot, 1, 0, 0);
+  w.run(100);
+  EXPECT_NEAR(w.p(robot).x, 1, 1e-9);
+  EXPECT_FLOAT_EQ(w.see({0, 0, 0.5}, {1, 0, -1}, 10), static_cast<float>(std::sqrt(0.5)));
 }
 
 TEST(PlanarContact, OnlyWhatSharesHeightsMeets) {
