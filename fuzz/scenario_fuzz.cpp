@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto result = sandlot::formats::parse_scenario(text, "/nowhere/fuzz.yaml", overrides, diagnostics);
   if (result) {
     SL_CHECK(result->step_s > 0 && result->substeps >= 1 && result->control_interval >= 1);
-    for (const auto& robot : result->robots) SL_CHECK(robot.count >= 1 && sandlot::is_finite(robot.placement.X_WM));
+    for (const auto& robot : result->robots)
+      SL_CHECK(robot.count >= 1 && sandlot::is_finite(robot.placement.X_WM));
   } else {
     SL_CHECK(!result.error().text().empty());
   }

@@ -43,8 +43,8 @@ TEST(Cli, wrong_options_name_the_option_and_exit_2) {
 TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
   const auto s = summary_of("scenarios/indoor.yaml --duration 5s --seed 3");
   ASSERT_FALSE(s.contains("failed")) << s["failed"];
-  for (const char* key : {"ticks", "sim_seconds", "wall_seconds", "real_time_factor", "phase_us", "state_hash", "profile",
-                          "criterion", "teams", "warnings", "errors"})
+  for (const char* key : {"ticks", "sim_seconds", "wall_seconds", "real_time_factor", "phase_us",
+                          "state_hash", "profile", "criterion", "teams", "warnings", "errors"})
     EXPECT_TRUE(s.contains(key)) << key;
   EXPECT_DOUBLE_EQ(s["sim_seconds"].get<double>(), 5.0);
   EXPECT_EQ(s["seed"], 3);
@@ -54,13 +54,14 @@ TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
 }
 
 TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
-  for (const char* scenario : {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar", "scenarios/pile.yaml",
-                               "scenarios/fleet.yaml"}) {
+  for (const char* scenario : {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar",
+                               "scenarios/pile.yaml", "scenarios/fleet.yaml"}) {
     const Scratch scratch;
     const std::string snapshot = scratch.file("half.snapshot");
     const auto whole = summary_of(std::string(scenario) + " --duration 6s");
     ASSERT_FALSE(whole.contains("failed")) << whole["failed"];
-    const Printed half = sandlot(std::string("run ") + scenario + " --headless --duration 3s --snapshot " + snapshot);
+    const Printed half = sandlot(std::string("run ") + scenario + " --headless --duration 3s --snapshot " +
+                                 snapshot);
     ASSERT_EQ(half.exit_code, 0) << half.out;
     const auto rest = summary_of("--from " + snapshot + " --duration 3s --threads 2");
     ASSERT_FALSE(rest.contains("failed")) << rest["failed"];
@@ -72,14 +73,16 @@ TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
 TEST(Cli, a_snapshot_in_mid_run_changes_nothing) {
   const Scratch scratch;
   const auto plain = summary_of("scenarios/pile.yaml --duration 4s");
-  const auto with = summary_of("scenarios/pile.yaml --duration 4s --snapshot-at 2s --snapshot " + scratch.file("s.snapshot"));
+  const auto with = summary_of("scenarios/pile.yaml --duration 4s --snapshot-at 2s --snapshot " +
+                               scratch.file("s.snapshot"));
   EXPECT_EQ(plain["state_hash"], with["state_hash"]);
   const auto rest = summary_of("--from " + scratch.file("s.snapshot"));
   EXPECT_EQ(plain["state_hash"], rest["state_hash"]) << "--from alone goes on to the stop time of the run";
 }
 
 TEST(Cli, files_that_cannot_be_written_fail_the_run_with_1) {
-  const Printed printed = sandlot("run scenarios/indoor.yaml --headless --duration 1s --summary /nonexistent/s.json");
+  const Printed printed = sandlot(
+      "run scenarios/indoor.yaml --headless --duration 1s --summary /nonexistent/s.json");
   EXPECT_EQ(printed.exit_code, 1);
   EXPECT_THAT(printed.out, HasSubstr("/nonexistent/s.json"));
 }
@@ -100,8 +103,8 @@ TEST(Cli, check_tells_file_line_and_remedy) {
 
 TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
   const Printed text = sandlot("list --verbose");
-  for (const char* kind : {"laser_scanner", "diff_drive", "wheel_encoder", "joint_motor", "ground_truth", "wander", "waypoints",
-                           "rigid", "planar"})
+  for (const char* kind : {"laser_scanner", "diff_drive", "wheel_encoder", "joint_motor", "ground_truth",
+                           "wander", "waypoints", "rigid", "planar"})
     EXPECT_THAT(text.out, HasSubstr(kind));
   const auto json = nlohmann::json::parse(sandlot("list --json").out);
   EXPECT_GE(json["devices"].size(), 5u);
@@ -117,7 +120,8 @@ TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
 TEST(Cli, info_prints_the_tree) {
   const Printed text = sandlot("info scenarios/indoor.yaml");
   EXPECT_EQ(text.exit_code, 0);
-  for (const char* part : {"robot rover", "joint left_wheel_joint", "device rover/laser", "sensor_msgs/msg/LaserScan"})
+  for (const char* part :
+       {"robot rover", "joint left_wheel_joint", "device rover/laser", "sensor_msgs/msg/LaserScan"})
     EXPECT_THAT(text.out, HasSubstr(part));
   const auto json = nlohmann::json::parse(sandlot("info --json scenarios/indoor.yaml").out);
   EXPECT_GT(json["instances"].size(), 10u);
@@ -144,7 +148,8 @@ TEST(Cli, a_run_without_an_end_can_be_interrupted_and_still_reports) {
   const Scratch scratch;
   const std::string file = scratch.file("s.json");
   const std::string command = "timeout -s INT 2 " + std::string(SANDLOT_BIN) +
-                              " run scenarios/indoor.yaml --headless --rate 1 --duration 1000s --summary " + file + " >/dev/null 2>&1";
+                              " run scenarios/indoor.yaml --headless --rate 1 --duration 1000s --summary " +
+                              file + " >/dev/null 2>&1";
   (void)!std::system(command.c_str());
   const auto summary = read_json(file);
   ASSERT_TRUE(summary.is_object());

@@ -25,7 +25,8 @@ inline Printed sandlot(const std::string& arguments) {
   FILE* const pipe = popen(line.c_str(), "r");
   if (!pipe) return printed;
   std::array<char, 4096> buffer;
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) printed.out.append(buffer.data(), n);
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    printed.out.append(buffer.data(), n);
   const int status = pclose(pipe);
   printed.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return printed;

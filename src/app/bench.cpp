@@ -37,7 +37,8 @@ int bench(const BenchOptions& options) {
                       {"ok", row.ok}});
       if (!options.json)
         fmt::print("{:<4} {:<44} {:>10.4g} {:<8} reference {:>10.4g}  ratio {:.3f} (budget {:.3g})\n",
-                   row.ok ? "ok" : "OVER", row.name, row.value, row.unit, row.reference, row.ratio, row.budget);
+                   row.ok ? "ok" : "OVER", row.name, row.value, row.unit, row.reference, row.ratio,
+                   row.budget);
     }
   }
   if (options.json) fmt::print("{}\n", json.dump(2));

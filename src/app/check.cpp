@@ -12,13 +12,15 @@ namespace sandlot::app {
 namespace {
 
 nlohmann::ordered_json to_json(const Error& e, const char* severity) {
-  return {{"severity", severity}, {"file", e.place.file ? *e.place.file : ""}, {"line", e.place.line},
-          {"column", e.place.column}, {"path", e.path},  {"what", e.what},
+  return {{"severity", severity}, {"file", e.place.file ? *e.place.file : ""},
+          {"line", e.place.line}, {"column", e.place.column},
+          {"path", e.path},       {"what", e.what},
           {"fix", e.fix}};
 }
 
 /// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
-Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options, Diagnostics& diagnostics) {
+Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
+                                          Diagnostics& diagnostics) {
   SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}}, diagnostics));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
@@ -41,13 +43,14 @@ const char* joint_name(model::JointType type) {
 
 std::string pose_text(const Pose& X) {
   const Vec3 rpy = rpy_from_quat(X.q);
-  return fmt::format("[{:.4g} {:.4g} {:.4g}  {:.4g} {:.4g} {:.4g}]", X.p.x, X.p.y, X.p.z, rpy.x, rpy.y, rpy.z);
+  return fmt::format("[{:.4g} {:.4g} {:.4g}  {:.4g} {:.4g} {:.4g}]", X.p.x, X.p.y, X.p.z, rpy.x, rpy.y,
+                     rpy.z);
 }
 
 void print_tree(const Simulation& simulation) {
   const model::Setup& setup = simulation.setup();
-  fmt::print("{}: {} physics, step {} s in {} sub-steps, control every {} ticks, seed {}\n", setup.name, setup.engine,
-             number_text(setup.step.s()), setup.substeps, setup.control_interval, setup.seed);
+  fmt::print("{}: {} physics, step {} s in {} sub-steps, control every {} ticks, seed {}\n", setup.name,
+             setup.engine, number_text(setup.step.s()), setup.substeps, setup.control_interval, setup.seed);
   for (const model::Instance* instance : simulation.instances()) {
     const model::Model& model = *instance->model;
     double mass_kg = 0;
@@ -59,8 +62,10 @@ void print_tree(const Simulation& simulation) {
     fmt::print("\n");
     for (const model::Link& link : model.links) {
       std::vector<std::string> shapes;
-      for (const model::Collision& collision : link.collisions) shapes.emplace_back(shape_name(collision.shape));
-      fmt::print("  link {} at {}{}{}\n", link.name, pose_text(link.X_ML), shapes.empty() ? "" : ": ", joined(shapes));
+      for (const model::Collision& collision : link.collisions)
+        shapes.emplace_back(shape_name(collision.shape));
+      fmt::print("  link {} at {}{}{}\n", link.name, pose_text(link.X_ML), shapes.empty() ? "" : ": ",
+                 joined(shapes));
     }
     for (const model::Joint& joint : model.joints)
       fmt::print("  joint {} ({}): {} -> {}\n", joint.name, joint_name(joint.type),
@@ -68,8 +73,10 @@ void print_tree(const Simulation& simulation) {
                  model.links[joint.child].name);
     for (const auto& device : simulation.devices(instance->name)) {
       fmt::print("  device {} ({}, level {})\n", device.path, device.kind, joined(device.active_levels));
-      for (const TopicBase* topic : device.topics) fmt::print("    publishes {} [{}]\n", topic->name(), topic->type());
-      for (const TopicBase* slot : device.commands) fmt::print("    takes     {} [{}]\n", slot->name(), slot->type());
+      for (const TopicBase* topic : device.topics)
+        fmt::print("    publishes {} [{}]\n", topic->name(), topic->type());
+      for (const TopicBase* slot : device.commands)
+        fmt::print("    takes     {} [{}]\n", slot->name(), slot->type());
     }
     for (const model::ControllerDecl& controller : instance->controllers)
       fmt::print("  controller {} ({})\n", controller.name, controller.kind);
@@ -83,29 +90,42 @@ nlohmann::ordered_json tree_json(const Simulation& simulation) {
     return Json{{"position", vec(X.p)}, {"orientation_wxyz", {X.q.w, X.q.x, X.q.y, X.q.z}}};
   };
   const model::Setup& setup = simulation.setup();
-  Json root{{"name", setup.name},   {"physics", setup.engine},         {"step_s", setup.step.s()},
-            {"substeps", setup.substeps}, {"control_interval", setup.control_interval}, {"seed", setup.seed}};
+  Json root{{"name", setup.name},
+            {"physics", setup.engine},
+            {"step_s", setup.step.s()},
+            {"substeps", setup.substeps},
+            {"control_interval", setup.control_interval},
+            {"seed", setup.seed}};
   Json& instances = root["instances"] = Json::array();
   for (const model::Instance* instance : simulation.instances()) {
     const model::Model& model = *instance->model;
-    Json entry{{"name", instance->name}, {"original_name", instance->original_name}, {"robot", instance->is_robot},
-               {"static", model.is_static}, {"team", instance->team}, {"pose", pose(instance->X_WM)}};
+    Json entry{{"name", instance->name},      {"original_name", instance->original_name},
+               {"robot", instance->is_robot}, {"static", model.is_static},
+               {"team", instance->team},      {"pose", pose(instance->X_WM)}};
     Json links = Json::array(), joints = Json::array(), devices = Json::array(), controllers = Json::array();
     for (const model::Link& link : model.links) {
       Json shapes = Json::array();
       for (const model::Collision& collision : link.collisions) shapes.push_back(shape_name(collision.shape));
-      links.push_back({{"name", link.name}, {"pose", pose(link.X_ML)}, {"mass_kg", link.inertial.mass_kg}, {"collisions", shapes}});
+      links.push_back({{"name", link.name},
+                       {"pose", pose(link.X_ML)},
+                       {"mass_kg", link.inertial.mass_kg},
+                       {"collisions", shapes}});
     }
     for (const model::Joint& joint : model.joints)
-      joints.push_back({{"name", joint.name},
-                        {"type", joint_name(joint.type)},
-                        {"parent", joint.parent == model::world_link ? "world" : model.links[joint.parent].name},
-                        {"child", model.links[joint.child].name}});
+      joints.push_back(
+          {{"name", joint.name},
+           {"type", joint_name(joint.type)},
+           {"parent", joint.parent == model::world_link ? "world" : model.links[joint.parent].name},
+           {"child", model.links[joint.child].name}});
     for (const auto& device : simulation.devices(instance->name)) {
       Json topics = Json::object(), commands = Json::object();
       for (const TopicBase* topic : device.topics) topics[topic->name()] = topic->type();
       for (const TopicBase* slot : device.commands) commands[slot->name()] = slot->type();
-      devices.push_back({{"path", device.path}, {"kind", device.kind}, {"levels", device.active_levels}, {"topics", topics}, {"commands", commands}});
+      devices.push_back({{"path", device.path},
+                         {"kind", device.kind},
+                         {"levels", device.active_levels},
+                         {"topics", topics},
+                         {"commands", commands}});
     }
     for (const model::ControllerDecl& controller : instance->controllers)
       controllers.push_back({{"name", controller.name}, {"kind", controller.kind}});
@@ -133,7 +153,8 @@ int check(const FileOptions& options) {
       findings.push_back(to_json(built.error(), "error"));
       if (!options.json) complain(built.error());
     } else if (!options.json) {
-      fmt::print("{}: ok, {} things, {} warnings\n", file, (*built)->instances().size(), diagnostics.warnings.size());
+      fmt::print("{}: ok, {} things, {} warnings\n", file, (*built)->instances().size(),
+                 diagnostics.warnings.size());
     }
   }
   if (options.json) fmt::print("{}\n", findings.dump(2));

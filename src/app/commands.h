@@ -20,12 +20,12 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   int threads = 1;
   std::vector<formats::Override> overrides;
-  std::string summary_file;    ///< JSON
+  std::string summary_file;  ///< JSON
   std::string svg_file;
-  std::string from_file;       ///< a snapshot to go on from
+  std::string from_file;  ///< a snapshot to go on from
   std::string snapshot_file;
   std::optional<double> snapshot_at_s;  ///< unset: at the end
-  bool json = false;           ///< print the summary as JSON instead of text
+  bool json = false;                    ///< print the summary as JSON instead of text
 };
 int run(const RunOptions& options);
 

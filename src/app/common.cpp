@@ -24,7 +24,8 @@ int complain(const Error& error) {
 }
 
 void print_warnings(const Diagnostics& diagnostics) {
-  for (const Error& warning : diagnostics.warnings) std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
+  for (const Error& warning : diagnostics.warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
 }
 
 Status write_file(const std::string& path, std::string_view content) {
@@ -68,12 +69,14 @@ Result<std::string> demo_file(const std::string& name) {
   }
   folders.emplace_back("scenarios");
   for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / (name + ".yaml"), error)) return (folder / (name + ".yaml")).lexically_normal().string();
+    if (fs::is_regular_file(folder / (name + ".yaml"), error))
+      return (folder / (name + ".yaml")).lexically_normal().string();
   for (const fs::path& folder : folders) {
     if (!fs::is_directory(folder, error)) continue;
     std::string known;
     for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".yaml") known += (known.empty() ? "" : ", ") + entry.path().stem().string();
+      if (entry.path().extension() == ".yaml")
+        known += (known.empty() ? "" : ", ") + entry.path().stem().string();
     return Error{"there is no demo '" + name + "'", "there are: " + known};
   }
   return Error{"there is no demo '" + name + "'", "no folder 'scenarios' was found near the program"};

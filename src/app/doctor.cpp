@@ -25,18 +25,21 @@ Finding repeatable(const EngineKind& engine) {
   box->name = "box";
   box->links.push_back({.name = "link"});
   box->links.front().inertial.moments = {0.1, 0.1, 0.1};
-  box->links.front().collisions.push_back({.name = "c", .X_LC = {}, .shape = Box{{0.4, 0.4, 0.4}}, .surface = {}, .place = {}});
+  box->links.front().collisions.push_back(
+      {.name = "c", .X_LC = {}, .shape = Box{{0.4, 0.4, 0.4}}, .surface = {}, .place = {}});
   auto ground = std::make_shared<model::Model>();
   ground->name = "ground";
   ground->is_static = true;
   ground->links.push_back({.name = "link"});
-  ground->links.front().collisions.push_back({.name = "c", .X_LC = {}, .shape = Plane{{0, 0, 1}}, .surface = {}, .place = {}});
+  ground->links.front().collisions.push_back(
+      {.name = "c", .X_LC = {}, .shape = Plane{{0, 0, 1}}, .surface = {}, .place = {}});
   model::Setup setup;
   setup.engine = engine.name;
   setup.instances.push_back({.name = "ground", .original_name = "ground", .model = ground});
   for (int i = 0; i < 5; ++i) {
     const std::string name = "box" + std::to_string(i);
-    setup.instances.push_back({.name = name, .original_name = name, .model = box, .X_WM = {{0.05 * i, 0, 0.3 + 0.5 * i}, {}}});
+    setup.instances.push_back(
+        {.name = name, .original_name = name, .model = box, .X_WM = {{0.05 * i, 0, 0.3 + 0.5 * i}, {}}});
   }
   std::uint64_t hashes[3] = {};
   for (int variant = 0; variant < 3; ++variant) {
@@ -73,7 +76,8 @@ Finding known_bits() {
     }
   }
   constexpr std::uint64_t expected = 0x037a49614dbce6ac;
-  return {"known bits", h == expected, "mathematics and random numbers give " + hex(h) + ", expected " + hex(expected)};
+  return {"known bits", h == expected,
+          "mathematics and random numbers give " + hex(h) + ", expected " + hex(expected)};
 }
 
 }  // namespace
@@ -82,7 +86,8 @@ int doctor(bool json) {
   std::vector<Finding> findings;
   findings.push_back({"version", true, std::string("sandlot ") + SANDLOT_VERSION});
   findings.push_back({"numeric profile", true, Simulation::profile()});
-  findings.push_back({"threads", true, std::to_string(std::thread::hardware_concurrency()) + " on this machine"});
+  findings.push_back(
+      {"threads", true, std::to_string(std::thread::hardware_concurrency()) + " on this machine"});
   findings.push_back(known_bits());
   for (const EngineKind* engine : engine_kinds()) findings.push_back(repeatable(*engine));
   const auto demo = demo_file("indoor");

@@ -36,14 +36,18 @@ struct RunFlags {
 
   void add_to(CLI::App& verb) {
     verb.add_flag("--headless", headless, "Run without the page (this version always does)");
-    verb.add_option("--duration", duration.text, "Simulated time after which the run ends, such as 30s or '2 min'");
-    verb.add_option("--rate", rate, "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time")
+    verb.add_option("--duration", duration.text,
+                    "Simulated time after which the run ends, such as 30s or '2 min'");
+    verb.add_option("--rate", rate,
+                    "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time")
         ->capture_default_str();
     verb.add_option("--seed", options.seed, "Seed of all random numbers, instead of the scenario's");
-    verb.add_option("--threads", options.threads, "Threads; 0: as many as the machine has. The result does not depend on it")
+    verb.add_option("--threads", options.threads,
+                    "Threads; 0: as many as the machine has. The result does not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    verb.add_option("--set", sets, "Change the scenario before it is loaded: path=value, such as physics=planar")
+    verb.add_option("--set", sets,
+                    "Change the scenario before it is loaded: path=value, such as physics=planar")
         ->allow_extra_args(false);
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
@@ -70,7 +74,8 @@ struct RunFlags {
     for (const std::string& text : texts) {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos || equals == 0)
-        return Error{"--set: '" + text + "' is not of the form path=value", "for example --set physics=planar"};
+        return Error{"--set: '" + text + "' is not of the form path=value",
+                     "for example --set physics=planar"};
       out.push_back({text.substr(0, equals), text.substr(equals + 1)});
     }
     return {};
@@ -80,7 +85,8 @@ struct RunFlags {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Sandlot simulates many mobile robots with real sensors, and gives the same answer twice.", "sandlot"};
+  CLI::App app{"Sandlot simulates many mobile robots with real sensors, and gives the same answer twice.",
+               "sandlot"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "sandlot " SANDLOT_VERSION);
   app.footer("Try: sandlot demo --duration 20s    Every verb explains itself: sandlot run --help");
@@ -91,7 +97,8 @@ int main(int argc, char** argv) {
   run_verb->add_option("file", run_flags.options.file, "Scenario or world");
   run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
-  run_verb->footer("Example: sandlot run scenarios/indoor.yaml --duration 60s --set physics=planar --svg run.svg");
+  run_verb->footer(
+      "Example: sandlot run scenarios/indoor.yaml --duration 60s --set physics=planar --svg run.svg");
   run_verb->callback([&] {
     if (Status status = run_flags.finish(); !status) result = complain(status.error());
     else if (run_flags.options.file.empty() == run_flags.options.from_file.empty())
@@ -116,10 +123,12 @@ int main(int argc, char** argv) {
 
   FileOptions file_options;
   std::vector<std::string> file_sets;
-  const auto add_file_verb = [&](const char* name, const char* help, const char* example, int (*act)(const FileOptions&)) {
+  const auto add_file_verb = [&](const char* name, const char* help, const char* example,
+                                 int (*act)(const FileOptions&)) {
     CLI::App* const verb = app.add_subcommand(name, help);
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
-    verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")->allow_extra_args(false);
+    verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
+        ->allow_extra_args(false);
     verb->add_flag("--json", file_options.json, "Print as JSON");
     verb->footer(example);
     verb->callback([&, act] {
@@ -128,14 +137,16 @@ int main(int argc, char** argv) {
       else result = act(file_options);
     });
   };
-  add_file_verb("check", "Find what is wrong in files, with line and remedy", "Example: sandlot check scenarios/*.yaml",
-                check);
+  add_file_verb("check", "Find what is wrong in files, with line and remedy",
+                "Example: sandlot check scenarios/*.yaml", check);
   add_file_verb("info", "Print the tree of a scenario or world: links, joints, devices, topics",
                 "Example: sandlot info scenarios/indoor.yaml", info);
 
   ListOptions list_options;
-  CLI::App* const list_verb = app.add_subcommand("list", "List the kinds of devices, controllers, engines and levels");
-  list_verb->add_option("what", list_options.what, "devices, controllers, engines or levels; all when left out");
+  CLI::App* const list_verb = app.add_subcommand(
+      "list", "List the kinds of devices, controllers, engines and levels");
+  list_verb->add_option("what", list_options.what,
+                        "devices, controllers, engines or levels; all when left out");
   list_verb->add_flag("--verbose", list_options.verbose, "With every field: unit, range, default, meaning");
   list_verb->add_flag("--json", list_options.json, "Print as JSON");
   list_verb->add_flag("--markdown", list_options.markdown, "Print as the reference page of the docs");
@@ -144,22 +155,22 @@ int main(int argc, char** argv) {
   list_verb->callback([&] { result = list(list_options); });
 
   BenchOptions bench_options;
-  CLI::App* const bench_verb = app.add_subcommand("bench", "Measure Sandlot against references in the same run");
+  CLI::App* const bench_verb = app.add_subcommand("bench",
+                                                  "Measure Sandlot against references in the same run");
   bench_verb->add_option("name", bench_options.name, "Rows whose name contains this; all when left out");
   bench_verb->add_flag("--json", bench_options.json, "Print as JSON");
   bench_verb->footer("Example: sandlot bench ranges --json");
   bench_verb->callback([&] { result = bench(bench_options); });
 
   bool doctor_json = false;
-  CLI::App* const doctor_verb = app.add_subcommand("doctor", "Check this build and machine: libraries, profile, determinism");
+  CLI::App* const doctor_verb = app.add_subcommand(
+      "doctor", "Check this build and machine: libraries, profile, determinism");
   doctor_verb->add_flag("--json", doctor_json, "Print as JSON");
   doctor_verb->footer("Example: sandlot doctor");
   doctor_verb->callback([&] { result = doctor(doctor_json); });
 
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
-  }
+  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? exit_ok : exit_bad_input; }
   return result;
 }

@@ -10,7 +10,8 @@ namespace sandlot::app {
 void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
   for (const FrameInstance& instance : frame->instances) {
     if (!instance.is_robot) continue;
-    auto found = std::find_if(robots_.begin(), robots_.end(), [&](const Travel& t) { return t.name == instance.name; });
+    auto found = std::find_if(robots_.begin(), robots_.end(),
+                              [&](const Travel& t) { return t.name == instance.name; });
     if (found == robots_.end()) {
       robots_.push_back({instance.name, false, {}, {}, {}, 0, {}});
       found = robots_.end() - 1;
@@ -29,14 +30,16 @@ void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
       travel.highest[i] = std::max(travel.highest[i], p[i]);
     }
     constexpr double cell_m = 0.5;
-    travel.cells.emplace(static_cast<int>(std::floor(p.x / cell_m)), static_cast<int>(std::floor(p.y / cell_m)));
+    travel.cells.emplace(static_cast<int>(std::floor(p.x / cell_m)),
+                         static_cast<int>(std::floor(p.y / cell_m)));
   }
 }
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& report, const TravelRecorder& travel,
-                                 const Diagnostics& diagnostics, const std::vector<Error>& errors) {
+nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& report,
+                                 const TravelRecorder& travel, const Diagnostics& diagnostics,
+                                 const std::vector<Error>& errors) {
   using Json = nlohmann::ordered_json;
   const auto rounded = [](double x, double unit) { return std::round(x / unit) * unit; };
   Json json;
@@ -51,7 +54,8 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
   Json phases;
   const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
   for (std::size_t i = 0; i < phase_names.size(); ++i)
-    phases[phase_names[i]] = rounded(static_cast<double>(simulation.phase_times().ns[i]) * 1e-3 / ticks, 1e-3);
+    phases[phase_names[i]] = rounded(static_cast<double>(simulation.phase_times().ns[i]) * 1e-3 / ticks,
+                                     1e-3);
   json["phase_us"] = phases;
   json["end_tick"] = simulation.tick_index();
   json["end_time"] = simulation.now().s();
@@ -90,13 +94,14 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
 
 std::string as_text(const nlohmann::ordered_json& s) {
   std::string out;
-  out += fmt::format("scenario   {} ({}, seed {})\n", s["name"].get<std::string>(), s["physics"].get<std::string>(),
-                     s["seed"].get<std::uint64_t>());
-  out += fmt::format("simulated  {:.3f} s in {:.3f} s, {:.1f} x real time, {} ticks\n", s["sim_seconds"].get<double>(),
-                     s["wall_seconds"].get<double>(), s["real_time_factor"].get<double>(),
-                     s["ticks"].get<std::uint64_t>());
+  out += fmt::format("scenario   {} ({}, seed {})\n", s["name"].get<std::string>(),
+                     s["physics"].get<std::string>(), s["seed"].get<std::uint64_t>());
+  out += fmt::format("simulated  {:.3f} s in {:.3f} s, {:.1f} x real time, {} ticks\n",
+                     s["sim_seconds"].get<double>(), s["wall_seconds"].get<double>(),
+                     s["real_time_factor"].get<double>(), s["ticks"].get<std::uint64_t>());
   out += "per tick  ";
-  for (const auto& [name, us] : s["phase_us"].items()) out += fmt::format(" {} {:.1f}", name, us.get<double>());
+  for (const auto& [name, us] : s["phase_us"].items())
+    out += fmt::format(" {} {:.1f}", name, us.get<double>());
   out += " us\n";
   std::size_t shown = 0;
   for (const auto& robot : s["robots"]) {
@@ -104,12 +109,15 @@ std::string as_text(const nlohmann::ordered_json& s) {
       out += fmt::format("           ... {} robots in all\n", s["robots"].size());
       break;
     }
-    out += fmt::format("robot      {}: drove {:.2f} m, covered {:.2f} m^2\n", robot["name"].get<std::string>(),
-                       robot["distance_m"].get<double>(), robot["covered_m2"].get<double>());
+    out += fmt::format("robot      {}: drove {:.2f} m, covered {:.2f} m^2\n",
+                       robot["name"].get<std::string>(), robot["distance_m"].get<double>(),
+                       robot["covered_m2"].get<double>());
   }
-  out += fmt::format("stopped    {}\n", s["stopped"].get<std::string>().empty() ? "by request"
-                                                                                : s["stopped"].get<std::string>());
-  out += fmt::format("state      {} ({})\n", s["state_hash"].get<std::string>(), s["profile"].get<std::string>());
+  out += fmt::format("stopped    {}\n", s["stopped"].get<std::string>().empty()
+                                            ? "by request"
+                                            : s["stopped"].get<std::string>());
+  out += fmt::format("state      {} ({})\n", s["state_hash"].get<std::string>(),
+                     s["profile"].get<std::string>());
   for (const auto& error : s["errors"]) out += fmt::format("error      {}\n", error.get<std::string>());
   return out;
 }

@@ -28,8 +28,9 @@ class TravelRecorder final : public Observer {
 };
 
 /// @param errors  what ended the run early, if anything
-nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& report, const TravelRecorder& travel,
-                                 const Diagnostics& diagnostics, const std::vector<Error>& errors);
+nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& report,
+                                 const TravelRecorder& travel, const Diagnostics& diagnostics,
+                                 const std::vector<Error>& errors);
 
 /// A dozen lines for people.
 std::string as_text(const nlohmann::ordered_json& summary);

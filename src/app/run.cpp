@@ -27,13 +27,15 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
   const SimulationOptions simulation_options{.threads = options.threads};
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
-    if (!options.overrides.empty()) return Error{"--set cannot change a run that has begun", "leave it out with --from"};
+    if (!options.overrides.empty())
+      return Error{"--set cannot change a run that has begun", "leave it out with --from"};
     SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot(options.from_file));
     auto simulation = Simulation::restore(bytes, simulation_options, diagnostics);
     if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
     return simulation;
   }
-  SL_ASSIGN(model::Setup setup, load(options.file, {options.overrides, options.seed, options.duration_s}, diagnostics));
+  SL_ASSIGN(model::Setup setup,
+            load(options.file, {options.overrides, options.seed, options.duration_s}, diagnostics));
   if (!setup.stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);
@@ -108,7 +110,8 @@ int run(const RunOptions& options) {
       }
       return !interrupted();
     };
-    if (Status status = sandlot::run(simulation, {options.rate}, report, keep_going); !status) errors.push_back(status.error());
+    if (Status status = sandlot::run(simulation, {options.rate}, report, keep_going); !status)
+      errors.push_back(status.error());
   }
   if (!snapshot_taken) save_snapshot();
   const auto summary = summarise(simulation, report, travel, diagnostics, errors);

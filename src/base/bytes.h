@@ -61,8 +61,10 @@ class ByteReader {
 
 /// Plain values whose bytes are their value: no padding, no pointers.
 template <class T>
-concept RawBytes = (std::is_floating_point_v<T> || (std::is_trivially_copyable_v<T> &&
-                    std::has_unique_object_representations_v<T> && !std::is_pointer_v<T>)) && !Fielded<T>;
+concept RawBytes = (std::is_floating_point_v<T> ||
+                    (std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T> &&
+                     !std::is_pointer_v<T>)) &&
+                   !Fielded<T>;
 
 template <class T>
 void write(ByteWriter& w, const T& value) {

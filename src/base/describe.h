@@ -50,8 +50,15 @@ std::string file_text(const T& value) {
 template <class T>
 void describe_value(const Field& f, const T& value, const std::string& path, std::vector<FieldInfo>& out,
                     bool optional) {
-  FieldInfo info{path, "", f.unit, f.help, f.min, f.max, (f.flags & Field::tunable) != 0,
-                 (f.flags & Field::required) != 0, optional};
+  FieldInfo info{path,
+                 "",
+                 f.unit,
+                 f.help,
+                 f.min,
+                 f.max,
+                 (f.flags & Field::tunable) != 0,
+                 (f.flags & Field::required) != 0,
+                 optional};
   if constexpr (std::is_same_v<T, bool>) {
     info.type = "bool";
     info.default_value = file_text(value);
@@ -107,7 +114,8 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
 template <Fielded Spec>
 std::vector<FieldInfo> describe_fields(const Spec& spec = {}) {
   std::vector<FieldInfo> out;
-  Spec::fields(spec, [&](const Field& f, const auto& member) { describe_value(f, member, f.key, out, false); });
+  Spec::fields(spec,
+               [&](const Field& f, const auto& member) { describe_value(f, member, f.key, out, false); });
   return out;
 }
 

@@ -31,8 +31,9 @@ struct Field {
   const char* key;
   const char* unit;  ///< "m", "rad", "s", ... SI; "1" for pure numbers; "" where units make no sense
   const char* help;
-  double min = -1e12;  ///< inclusive; finite, so that an infinity is refused too. Also bounds vector elements.
-  double max = 1e12;   ///< inclusive
+  double min =
+      -1e12;          ///< inclusive; finite, so that an infinity is refused too. Also bounds vector elements.
+  double max = 1e12;  ///< inclusive
   unsigned flags = none;
   std::size_t max_count = 100'000;  ///< limit on the length of lists and strings
 };
@@ -45,7 +46,9 @@ struct EnumName {
 };
 
 template <class T>
-concept Fielded = requires(T& t) { std::remove_cvref_t<T>::fields(t, [](const Field&, auto&) {}); };
+concept Fielded = requires(T& t) {
+  std::remove_cvref_t<T>::fields(t, [](const Field&, auto&) {});
+};
 template <class T>
 concept FixedVector = requires(T& t) {
   { std::remove_cvref_t<T>::extent } -> std::convertible_to<std::size_t>;
@@ -54,7 +57,9 @@ concept FixedVector = requires(T& t) {
 template <class T>
 concept Number = std::is_arithmetic_v<T>;  // bool included; handled first where it matters
 template <class T>
-concept NamedEnum = std::is_enum_v<T> && requires(T t) { enum_names(t); };
+concept NamedEnum = std::is_enum_v<T> && requires(T t) {
+  enum_names(t);
+};
 
 template <class T>
 struct is_vector : std::false_type {};

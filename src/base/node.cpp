@@ -69,10 +69,8 @@ void merge(Node& base, const Node& over) {
   for (const Node::Entry& entry : base.entries()) present.emplace(entry.key, present.size());
   for (const Node::Entry& entry : over.entries()) {
     const auto found = present.find(entry.key);
-    if (found != present.end())
-      merge(base.entries()[found->second].value, entry.value);
-    else
-      base.entries().push_back(entry);
+    if (found != present.end()) merge(base.entries()[found->second].value, entry.value);
+    else base.entries().push_back(entry);
   }
 }
 

@@ -14,8 +14,8 @@ constexpr std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t
 // The key is (seed, entity, purpose) hashed to 64 bits; the counter is (block, sample). 2^32 blocks of four
 // words per sample are more than any sample draws.
 Stream::Stream(std::uint64_t seed, std::uint64_t entity, Purpose purpose, std::uint64_t sample) {
-  const std::uint64_t key =
-      hash_combine(hash_combine(mix64(seed), entity), static_cast<std::uint64_t>(purpose));
+  const std::uint64_t key = hash_combine(hash_combine(mix64(seed), entity),
+                                         static_cast<std::uint64_t>(purpose));
   key_ = {low(key), high(key)};
   counter_ = {0, low(entity), low(sample), high(sample)};
 }

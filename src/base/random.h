@@ -17,14 +17,14 @@ namespace sandlot {
 
 /// What a stream is for: one enumerator per independent use of randomness by one entity.
 enum class Purpose : std::uint32_t {
-  noise = 1,        ///< sensor errors, drawn anew per sample
-  initial = 2,      ///< values drawn once when an entity is created (biases)
-  placement = 3,    ///< start poses
-  controller = 4,   ///< decisions of a control program
-  actuation = 5,    ///< errors of actuators
-  physics = 6,      ///< solver-internal choices
-  medium = 7,       ///< propagation in a medium
-  experiment = 8,   ///< parameters drawn by scenarios and studies
+  noise = 1,       ///< sensor errors, drawn anew per sample
+  initial = 2,     ///< values drawn once when an entity is created (biases)
+  placement = 3,   ///< start poses
+  controller = 4,  ///< decisions of a control program
+  actuation = 5,   ///< errors of actuators
+  physics = 6,     ///< solver-internal choices
+  medium = 7,      ///< propagation in a medium
+  experiment = 8,  ///< parameters drawn by scenarios and studies
 };
 
 /// Hash of an entity's path ("robot1/laser"): stable against insertion order.

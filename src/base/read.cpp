@@ -12,11 +12,14 @@ Result<double> read_number(const Node& node, const Field& field, double min, dou
     return quantity;
   }
   const double x = *quantity;
-  const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? " " + std::string(field.unit) : "";
+  const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? " " + std::string(field.unit)
+                                                                              : "";
   if (!(x >= min && x <= max))
-    return node.error("must be in [" + number_text(min) + ", " + number_text(max) + "]" + unit + ", is " + number_text(x),
-                      field.help, path);
-  if (integer && x != std::floor(x)) return node.error("must be a whole number, is " + number_text(x), "", path);
+    return node.error(
+        "must be in [" + number_text(min) + ", " + number_text(max) + "]" + unit + ", is " + number_text(x),
+        field.help, path);
+  if (integer && x != std::floor(x))
+    return node.error("must be a whole number, is " + number_text(x), "", path);
   return x;
 }
 
@@ -28,8 +31,8 @@ Result<bool> read_bool(const Node& node, const std::string& path) {
 }
 
 Error unknown_key(const Node::Entry& entry, const std::vector<std::string>& known, const std::string& path) {
-  const std::string fix =
-      known.empty() ? std::string("no keys are allowed here") : suggestion(entry.key, known);
+  const std::string fix = known.empty() ? std::string("no keys are allowed here")
+                                        : suggestion(entry.key, known);
   return {"unknown key '" + entry.key.substr(0, 60) + "'", fix, entry.key_place, path};
 }
 

@@ -52,8 +52,7 @@ Status read_fields(const Node& node, Spec& spec, const std::string& path = "") {
   Spec::fields(spec, [&](const Field& f, auto& member) {
     known.emplace_back(f.key);
     if (!status) return;
-    if (const Node* value = node.find(f.key))
-      status = read_value(*value, f, member, path + "/" + f.key);
+    if (const Node* value = node.find(f.key)) status = read_value(*value, f, member, path + "/" + f.key);
     else if (f.flags & Field::required)
       status = node.error(std::string("key '") + f.key + "' is missing", f.help, path);
   });
@@ -81,7 +80,8 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
       names.emplace_back(entry.name);
       if (node.text() == entry.name) return out = entry.value, Status();
     }
-    return node.error("'" + node.text().substr(0, 40) + "' is no choice here", suggestion(node.text(), names), path);
+    return node.error("'" + node.text().substr(0, 40) + "' is no choice here", suggestion(node.text(), names),
+                      path);
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!node.is_scalar()) return wrong_type(node, "text", path);
     if (node.text().size() > field.max_count) return node.error("text is too long", "", path);
@@ -137,7 +137,8 @@ Result<Spec> read_spec(const Node& node, const std::string& path = "") {
 /// Sets one tunable field by its path ("noise/white" or "gains/p") while the run goes on.
 /// @param prefix  path of `spec` itself, for messages
 template <Fielded Spec>
-Status set_tunable(Spec& spec, std::string_view field_path, const Node& value, const std::string& prefix = "") {
+Status set_tunable(Spec& spec, std::string_view field_path, const Node& value,
+                   const std::string& prefix = "") {
   const std::size_t slash = field_path.find('/');
   const std::string_view key = field_path.substr(0, slash);
   std::vector<std::string> known;
@@ -151,16 +152,17 @@ Status set_tunable(Spec& spec, std::string_view field_path, const Node& value, c
     if (slash != std::string_view::npos) {
       if constexpr (Fielded<std::remove_cvref_t<decltype(member)>>)
         status = set_tunable(member, field_path.substr(slash + 1), value, path);
-      else
-        status = Error{"'" + std::string(f.key) + "' has no parts", "", value.place(), path};
+      else status = Error{"'" + std::string(f.key) + "' has no parts", "", value.place(), path};
     } else if (!(f.flags & Field::tunable)) {
-      status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place(), path};
+      status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place(),
+                     path};
     } else {
       status = read_value(value, f, member, path);
     }
   });
   if (!found)
-    return Error{"no parameter '" + std::string(key.substr(0, 60)) + "'", suggestion(key, known), value.place(), prefix};
+    return Error{"no parameter '" + std::string(key.substr(0, 60)) + "'", suggestion(key, known),
+                 value.place(), prefix};
   return status;
 }
 

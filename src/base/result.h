@@ -87,12 +87,12 @@ struct Diagnostics {
 #define SL_CONCAT_(a, b) a##b
 #define SL_CONCAT(a, b) SL_CONCAT_(a, b)
 /// Returns the error of a failed Status or Result from the enclosing function.
-#define SL_TRY(expression)                                                     \
-  do {                                                                         \
+#define SL_TRY(expression)                                                              \
+  do {                                                                                  \
     if (auto sl_status = (expression); !sl_status) return std::move(sl_status).error(); \
   } while (false)
 /// `SL_ASSIGN(auto x, f())`: x becomes f()'s value, or the enclosing function returns f()'s error.
-#define SL_ASSIGN(declaration, expression)                                         \
-  auto SL_CONCAT(sl_result_, __LINE__) = (expression);                             \
+#define SL_ASSIGN(declaration, expression)                                                         \
+  auto SL_CONCAT(sl_result_, __LINE__) = (expression);                                             \
   if (!SL_CONCAT(sl_result_, __LINE__)) return std::move(SL_CONCAT(sl_result_, __LINE__).error()); \
   declaration = std::move(SL_CONCAT(sl_result_, __LINE__)).value()

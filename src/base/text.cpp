@@ -47,7 +47,8 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 
 std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
   if (candidates.empty()) return "";
-  if (const std::string near = nearest(word, candidates); !near.empty()) return "did you mean '" + near + "'?";
+  if (const std::string near = nearest(word, candidates); !near.empty())
+    return "did you mean '" + near + "'?";
   constexpr std::size_t shown = 12;
   std::string text = "known are: ";
   for (std::size_t i = 0; i < candidates.size() && i < shown; ++i) text += (i ? ", " : "") + candidates[i];
@@ -76,7 +77,9 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-bool starts_with(std::string_view text, std::string_view prefix) { return text.substr(0, prefix.size()) == prefix; }
+bool starts_with(std::string_view text, std::string_view prefix) {
+  return text.substr(0, prefix.size()) == prefix;
+}
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;

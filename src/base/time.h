@@ -12,8 +12,12 @@ struct Time {
   static constexpr std::int64_t per_s = 1'000'000'000;
   static constexpr Time from_ns(std::int64_t n) { return {n}; }
   /// @param s  seconds, rounded to the nearest nanosecond; |s| < 9.2e9
-  static constexpr Time from_s(double s) { return {static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))}; }
-  constexpr double s() const { return static_cast<double>(ns) / 1e9; }  // correctly rounded: 20 s is 20, not 20.000000000000004
+  static constexpr Time from_s(double s) {
+    return {static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
+  }
+  constexpr double s() const {
+    return static_cast<double>(ns) / 1e9;
+  }  // correctly rounded: 20 s is 20, not 20.000000000000004
 
   friend constexpr auto operator<=>(Time, Time) = default;  // NOLINT(modernize-use-nullptr): a false alarm
   friend constexpr Time operator+(Time a, Time b) { return {a.ns + b.ns}; }

@@ -15,6 +15,7 @@ struct Unit {
 };
 
 constexpr double deg = std::numbers::pi / 180;
+// clang-format off
 constexpr Unit units[] = {
     {"m", "m", 1},          {"mm", "m", 1e-3},        {"cm", "m", 1e-2},       {"km", "m", 1e3},
     {"um", "m", 1e-6},      {"in", "m", 0.0254},      {"ft", "m", 0.3048},     {"rad", "rad", 1},
@@ -29,6 +30,7 @@ constexpr Unit units[] = {
     {"V", "V", 1},          {"mV", "V", 1e-3},        {"A", "A", 1},           {"mA", "A", 1e-3},
     {"ohm", "ohm", 1},      {"%", "1", 1e-2},         {"1", "1", 1},
 };
+// clang-format on
 
 }  // namespace
 
@@ -39,7 +41,8 @@ Result<double> parse_quantity(std::string_view text, std::string_view unit) {
   double number = 0;
   for (std::size_t n = text.size(); n > 0; --n) {
     const char last = text[n - 1];
-    if (!std::isdigit(static_cast<unsigned char>(last)) && last != '.' && !std::isalpha(static_cast<unsigned char>(last)))
+    if (!std::isdigit(static_cast<unsigned char>(last)) && last != '.' &&
+        !std::isalpha(static_cast<unsigned char>(last)))
       continue;
     if (parse_number(text.substr(0, n), number)) {
       // "1e400" must not be taken for "1e40" with the unit "0".
@@ -50,8 +53,9 @@ Result<double> parse_quantity(std::string_view text, std::string_view unit) {
     if (n > 64) n = 65;  // nobody writes longer numbers; keeps rubbish linear
   }
   if (split == 0)
-    return Error{"'" + std::string(text.substr(0, 40)) + "' is not a number",
-                 unit == "1" ? "write a number" : "write a number, in " + std::string(unit) + " or with its unit"};
+    return Error{
+        "'" + std::string(text.substr(0, 40)) + "' is not a number",
+        unit == "1" ? "write a number" : "write a number, in " + std::string(unit) + " or with its unit"};
   const std::string_view suffix = trim(text.substr(split));
   if (suffix.empty() || suffix == unit) return number;
   std::string fitting;

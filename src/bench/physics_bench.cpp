@@ -42,7 +42,8 @@ std::shared_ptr<model::Model> robot_model() {
   made->links[0].X_ML.p = {0, 0, 0.12};
   model::Surface slick;
   slick.mu = slick.mu2 = 0;
-  for (const double x : {0.15, -0.15}) made->links[0].collisions.push_back({"caster", {{x, 0, -0.09}, {}}, Sphere{0.03}, slick, {}});
+  for (const double x : {0.15, -0.15})
+    made->links[0].collisions.push_back({"caster", {{x, 0, -0.09}, {}}, Sphere{0.03}, slick, {}});
   for (const double y : {0.15, -0.15}) {
     model::Link wheel = one_link("wheel", Sphere{wheel_radius_m}, 0.5)->links[0];
     wheel.name = y > 0 ? "left" : "right";
@@ -180,7 +181,8 @@ struct Bare {
     if (!body_a && !body_b) return;
     dContactGeom points[8];
     const int n = dCollide(a, b, 8, points, sizeof(dContactGeom));
-    const double mu = std::min(*static_cast<double*>(dGeomGetData(a)), *static_cast<double*>(dGeomGetData(b)));
+    const double mu = std::min(*static_cast<double*>(dGeomGetData(a)),
+                               *static_cast<double*>(dGeomGetData(b)));
     for (int i = 0; i < n; ++i) {
       dContact contact;
       contact.surface.mode = dContactFDir1 | dContactApprox1;
@@ -212,7 +214,8 @@ struct Bare {
 std::vector<Row> physics() {
   Ours ours;  // also initialises ODE
   Bare bare;
-  const Timing timing = compare(9, [&] { ours.run(); }, [&] { bare.run(); });
+  const Timing timing = compare(
+      9, [&] { ours.run(); }, [&] { bare.run(); });
   constexpr double per_step_us = 1e6 / steps;
   return {row("P3 step of 50 two-wheeled robots and 100 boxes", "us", timing.ours_s * per_step_us,
               timing.reference_s * per_step_us, 1.15)};

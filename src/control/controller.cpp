@@ -4,8 +4,9 @@
 
 namespace sandlot {
 
-Result<const Description::Entry*> Description::find(const std::vector<Entry>& entries, std::string_view device,
-                                                    const char* type, const char* what) const {
+Result<const Description::Entry*> Description::find(const std::vector<Entry>& entries,
+                                                    std::string_view device, const char* type,
+                                                    const char* what) const {
   const Entry* found = nullptr;
   std::vector<std::string> names;
   for (const Entry& entry : entries) {
@@ -18,8 +19,9 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
     if (match && !found) found = &entry;
   }
   if (found) return found;
-  const std::string wanted = device.empty() ? std::string(what) + " of type " + type
-                                            : std::string(what) + " '" + std::string(device) + "' of type " + type;
+  const std::string wanted = device.empty()
+                                 ? std::string(what) + " of type " + type
+                                 : std::string(what) + " '" + std::string(device) + "' of type " + type;
   return Error{"robot '" + robot + "' has no " + wanted,
                names.empty() ? std::string("add a device that offers one") : suggestion(device, names)};
 }

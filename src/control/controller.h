@@ -43,11 +43,11 @@ struct Actuator {
 class Description {
  public:
   struct Entry {
-    std::string device;  ///< "laser"
-    std::string level;   ///< "ranges"
-    std::string type;    ///< "sensor_msgs/msg/LaserScan"
-    std::uint32_t index; ///< into the observation's topics or the command's slots
-    Pose X_BS;           ///< sensor frame in the robot's base link
+    std::string device;   ///< "laser"
+    std::string level;    ///< "ranges"
+    std::string type;     ///< "sensor_msgs/msg/LaserScan"
+    std::uint32_t index;  ///< into the observation's topics or the command's slots
+    Pose X_BS;            ///< sensor frame in the robot's base link
   };
   std::string robot;
   double control_period_s = 0;
@@ -91,7 +91,8 @@ struct View {
 /// What a controller sees in one step.
 class Observation {
  public:
-  Observation(Time now, std::span<const TopicBase* const> topics, std::span<const std::uint64_t> seen, Stream random)
+  Observation(Time now, std::span<const TopicBase* const> topics, std::span<const std::uint64_t> seen,
+              Stream random)
       : now_(now), topics_(topics), seen_(seen), random_(random) {}
   Time now() const { return now_; }
   template <class M>
@@ -126,7 +127,8 @@ class Command {
   }
   /// As set(), from bytes that set() wrote before.
   void set_bytes(std::uint32_t slot, std::span<const std::byte> message) {
-    orders_.push_back({slot, static_cast<std::uint32_t>(bytes_.size()), static_cast<std::uint32_t>(message.size())});
+    orders_.push_back(
+        {slot, static_cast<std::uint32_t>(bytes_.size()), static_cast<std::uint32_t>(message.size())});
     bytes_.raw(message.data(), message.size());
   }
   void clear() {
@@ -134,7 +136,9 @@ class Command {
     bytes_.clear();
   }
   std::span<const Order> orders() const { return orders_; }
-  std::span<const std::byte> bytes(const Order& order) const { return bytes_.bytes().subspan(order.begin, order.size); }
+  std::span<const std::byte> bytes(const Order& order) const {
+    return bytes_.bytes().subspan(order.begin, order.size);
+  }
 
  private:
   std::vector<Order> orders_;

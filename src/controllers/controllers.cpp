@@ -4,9 +4,9 @@
 #include "controllers/kinds.h"
 
 namespace sandlot {
-#define SL_DECLARE(name)                        \
-  namespace controllers::name {                 \
-  extern const ControllerKind kind;             \
+#define SL_DECLARE(name)            \
+  namespace controllers::name {     \
+  extern const ControllerKind kind; \
   }
 SANDLOT_CONTROLLERS(SL_DECLARE)
 #undef SL_DECLARE

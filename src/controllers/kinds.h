@@ -1,5 +1,7 @@
 #pragma once
 /// The controllers that come with Sandlot: one line each, the name of the folder. Nothing else knows their names.
+// clang-format off
 #define SANDLOT_CONTROLLERS(controller) \
   controller(wander)                    \
   controller(waypoints)
+// clang-format on

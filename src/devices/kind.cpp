@@ -5,9 +5,9 @@
 #include "devices/kinds.h"
 
 namespace sandlot {
-#define SL_DECLARE(name)    \
-  namespace name {          \
-  extern const Kind kind;   \
+#define SL_DECLARE(name)  \
+  namespace name {        \
+  extern const Kind kind; \
   }
 SANDLOT_DEVICES(SL_DECLARE)
 #undef SL_DECLARE
@@ -18,8 +18,8 @@ Result<std::uint32_t> DeviceBuild::joint_index(std::string_view name, const char
   for (const model::Joint& joint : instance.model->joints) names.push_back(joint.name);
   const Node* const value = decl.config.find(spec_key);
   return Error{"model '" + instance.model->name + "' has no joint '" + std::string(name) + "'",
-               names.empty() ? "it has no joints" : suggestion(name, names), value ? value->place() : decl.place,
-               std::string("/") + spec_key};
+               names.empty() ? "it has no joints" : suggestion(name, names),
+               value ? value->place() : decl.place, std::string("/") + spec_key};
 }
 
 Result<JointId> DeviceBuild::joint(std::string_view name, const char* spec_key) const {
@@ -46,7 +46,8 @@ Result<const Kind*> find_device_kind(std::string_view name) {
 const Kind* find_device_kind_for_sdf(std::span<const std::string> sdf_types) {
   for (const std::string& type : sdf_types)
     for (const Kind* kind : device_kinds())
-      if (std::any_of(kind->sdf_types.begin(), kind->sdf_types.end(), [&](const char* t) { return type == t; }))
+      if (std::any_of(kind->sdf_types.begin(), kind->sdf_types.end(),
+                      [&](const char* t) { return type == t; }))
         return kind;
   return nullptr;
 }

@@ -56,13 +56,13 @@ class TopicMaker {
 struct DeviceBuild {
   const model::DeviceDecl& decl;
   const model::Instance& instance;
-  std::string path;  ///< "robot1/laser"
+  std::string path;       ///< "robot1/laser"
   std::uint64_t key = 0;  ///< entity_key(path), for Stream
   std::uint64_t seed = 0;
   std::span<const BodyId> bodies;  ///< one per link of the instance's model
   std::span<const JointId> joints;
   Capabilities engine;
-  Time tick;               ///< length of a tick
+  Time tick;                 ///< length of a tick
   std::uint32_t levels = 1;  ///< bit i: level i is active
   TopicMaker& topics;
 
@@ -106,8 +106,8 @@ struct Actuation {
 
 /// What a kind's phase functions may see and touch.
 struct Context {
-  Time now;            ///< end of the tick that is being computed
-  Time tick;           ///< its length
+  Time now;   ///< end of the tick that is being computed
+  Time tick;  ///< its length
   std::uint64_t tick_index = 0;
   std::uint64_t seed = 0;
   const Engine& engine;
@@ -146,7 +146,8 @@ class PoolBase {
   virtual void pre_substep(const Context& context, const Due& due, double h_s) = 0;
   virtual void sense(const Context& context, const Due& due) = 0;
   /// State handed over when the active levels of a device change from `before` to `after`.
-  virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after, const Context& context) = 0;
+  virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
+                              const Context& context) = 0;
   virtual Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) = 0;
   virtual void save(std::uint32_t index, ByteWriter& w) const = 0;
   virtual void load(std::uint32_t index, ByteReader& r) = 0;
@@ -159,7 +160,8 @@ struct Kind {
   const char* name;  ///< as scenario files spell it: "laser_scanner"
   const char* help;  ///< one sentence
   std::span<const LevelInfo> levels;
-  std::span<const char* const> sdf_types = {};  ///< "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF
+  std::span<const char* const> sdf_types =
+      {};  ///< "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF
   /// Turns the SDF element into keys of the spec; null when sdf_types is empty. Names what it cannot use.
   Result<Node> (*from_sdf)(const Node& element, Diagnostics& diagnostics) = nullptr;
   int api_version = device_api_version;
@@ -195,11 +197,11 @@ class DevicePool final : public PoolBase {
   void sense([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
     if constexpr (requires { &Device::sense; }) Device::sense(view(due), context);
   }
-  Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after, const Context& context) override {
+  Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
+                      const Context& context) override {
     if constexpr (requires { &Device::switch_level; })
       return devices_[index].switch_level(before, after, context);
-    else
-      return (void)index, (void)before, (void)after, (void)context, Status();
+    else return (void)index, (void)before, (void)after, (void)context, Status();
   }
   Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) override {
     typename Device::Spec changed = devices_[index].spec;

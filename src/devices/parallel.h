@@ -12,9 +12,10 @@ void parallel_for(std::size_t count, std::size_t grain, const void* closure,
 /// The body is called where it stands, so that a capture of any size costs no heap.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
-  parallel_for(count, grain, static_cast<const void*>(&body), [](const void* closure, std::size_t begin, std::size_t end) {
-    (*static_cast<const Body*>(closure))(begin, end);
-  });
+  parallel_for(count, grain, static_cast<const void*>(&body),
+               [](const void* closure, std::size_t begin, std::size_t end) {
+                 (*static_cast<const Body*>(closure))(begin, end);
+               });
 }
 
 }  // namespace sandlot

@@ -57,12 +57,11 @@ void check(const std::string& path, Read read) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "somebody else complained too";
   ASSERT_FALSE(result) << "was accepted";
   const Error& error = result.error();
-  const std::string text = (error.path.empty() ? "" : error.path + ": ") + error.what + (error.fix.empty() ? "" : "; " + error.fix);
+  const std::string text = (error.path.empty() ? "" : error.path + ": ") + error.what +
+                           (error.fix.empty() ? "" : "; " + error.fix);
   EXPECT_NE(text.find(expected.words), std::string::npos) << text;
   EXPECT_EQ(error.place.file ? *error.place.file : "", path);
-  if (expected.line > 0) {
-    EXPECT_EQ(error.place.line, expected.line) << text;
-  }
+  if (expected.line > 0) { EXPECT_EQ(error.place.line, expected.line) << text; }
   EXPECT_EQ(text.find('\n'), std::string::npos);
 }
 

@@ -34,7 +34,8 @@ Result<std::string> read_text_file(const std::string& path, std::size_t max_byte
   const auto refuse = [&](std::string what, std::string fix = "") {
     return Error{std::move(what), std::move(fix), place_in(path)};
   };
-  if (path.empty() || path.find('\0') != std::string::npos) return Error{"the file name is empty or has a NUL in it"};
+  if (path.empty() || path.find('\0') != std::string::npos)
+    return Error{"the file name is empty or has a NUL in it"};
   std::error_code failed;
   const fs::file_status status = fs::status(path, failed);
   if (status.type() == fs::file_type::not_found) return refuse("no such file");
@@ -49,7 +50,8 @@ Result<std::string> read_text_file(const std::string& path, std::size_t max_byte
   if (!in) return refuse("cannot be read", "is it readable for you?");
   std::string text(static_cast<std::size_t>(size), '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad() || static_cast<std::size_t>(in.gcount()) != text.size()) return refuse("changed while it was read");
+  if (in.bad() || static_cast<std::size_t>(in.gcount()) != text.size())
+    return refuse("changed while it was read");
   return text;
 }
 

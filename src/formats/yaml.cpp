@@ -38,7 +38,8 @@ std::string show_variables(std::string text) {
 /// yaml-cpp takes in a whole [...] or {...} before it reports the first event, at some hundred bytes per token: one
 /// that is absurdly deep or long has to be refused before. Brackets in comments and quotes are counted too, hence the
 /// generous depth; the exact limits are the Builder's.
-Status check_flow(std::string_view text, const TextLimits& limits, const std::shared_ptr<const std::string>& file) {
+Status check_flow(std::string_view text, const TextLimits& limits,
+                  const std::shared_ptr<const std::string>& file) {
   constexpr std::size_t absurd_depth = 1000;
   std::size_t depth = 0, commas = 0;
   int line = 1;
@@ -49,7 +50,8 @@ Status check_flow(std::string_view text, const TextLimits& limits, const std::sh
     commas += c == ',' && depth > 0;
     if (depth > absurd_depth) return Error{"nested too deeply, or brackets are not closed", "", {file, line}};
     if (commas > limits.max_nodes)
-      return Error{"too many values", "at most " + std::to_string(limits.max_nodes) + " are allowed", {file, line}};
+      return Error{
+          "too many values", "at most " + std::to_string(limits.max_nodes) + " are allowed", {file, line}};
   }
   return {};
 }
@@ -69,7 +71,8 @@ struct ViewBuffer : std::streambuf {
 
 class Builder final : public YAML::EventHandler {
  public:
-  Builder(std::shared_ptr<const std::string> file, const TextLimits& limits) : file_(std::move(file)), limits_(limits) {}
+  Builder(std::shared_ptr<const std::string> file, const TextLimits& limits)
+      : file_(std::move(file)), limits_(limits) {}
 
   Node take() { return std::move(root_); }
   int documents() const { return documents_; }
@@ -84,14 +87,16 @@ class Builder final : public YAML::EventHandler {
     count(mark, 1);
     add(std::move(node), mark, anchor, 1);
   }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
     check_tag(mark, tag);
     count(mark, 1);
     add(Node::scalar(show_variables(value), at(mark)), mark, anchor, 1);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) refuse(mark, "this alias stands for a value that contains it", "write the value out");
+    if (found == anchors_.end())
+      refuse(mark, "this alias stands for a value that contains it", "write the value out");
     if (stack_.size() + found->second.depth > limits_.max_depth) refuse_depth(mark);
     count(mark, found->second.nodes);
     const std::size_t nodes = found->second.nodes, depth = found->second.depth;
@@ -160,7 +165,8 @@ class Builder final : public YAML::EventHandler {
   }
   [[noreturn]] void refuse_key(const YAML::Mark& mark) const { refuse(mark, "a key must be a plain word"); }
 
-  void add(Node node, const YAML::Mark& mark, YAML::anchor_t anchor, std::size_t nodes, std::size_t depth = 0) {
+  void add(Node node, const YAML::Mark& mark, YAML::anchor_t anchor, std::size_t nodes,
+           std::size_t depth = 0) {
     if (anchor != 0) {
       // The copy that an anchor keeps counts as well: it takes the same memory.
       count(mark, nodes);
@@ -205,7 +211,8 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
   const auto name = std::make_shared<const std::string>(file);
   if (text.size() > limits.max_bytes)
     return Error{"is too large: " + std::to_string(text.size() >> 20) + " MiB",
-                 "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read", {name}};
+                 "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read",
+                 {name}};
   SL_TRY(check_text(text, file));
   SL_TRY(check_flow(text, limits, name));
   Builder builder(name, limits);
@@ -215,14 +222,11 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
   try {
     YAML::Parser parser(in);
     while (parser.HandleNextDocument(builder)) {}
-  } catch (const Refused& refused) {
-    return refused.error;
-  } catch (const YAML::Exception& e) {
+  } catch (const Refused& refused) { return refused.error; } catch (const YAML::Exception& e) {
     const bool known = !e.mark.is_null();
-    return Error{show_variables(e.msg), "", {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
-  } catch (const std::exception& e) {
-    return Error{std::string("is not YAML: ") + e.what(), "", {name}};
-  }
+    return Error{
+        show_variables(e.msg), "", {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
+  } catch (const std::exception& e) { return Error{std::string("is not YAML: ") + e.what(), "", {name}}; }
   return builder.take();
 }
 

@@ -65,16 +65,18 @@ TEST(Yaml, RefusesWhatItCannotMean) {
 
 TEST(Yaml, RefusesBytesThatNoTextHas) {
   EXPECT_EQ(error_of(std::string_view("a: 1\nb: \0", 9)).substr(0, 34), "f.yaml:2:4: control character 0x00");
-  EXPECT_EQ(error_of("ab\xC0\xAF").substr(0, 42), "f.yaml:1:3: byte 0xc0 is not valid UTF-8; ");  // overlong '/'
-  EXPECT_NE(error_of("\xED\xA0\x80"), "");                                                         // surrogate
-  EXPECT_NE(error_of("a: \xE2\x82"), "");                                                          // cut off
+  EXPECT_EQ(error_of("ab\xC0\xAF").substr(0, 42),
+            "f.yaml:1:3: byte 0xc0 is not valid UTF-8; ");  // overlong '/'
+  EXPECT_NE(error_of("\xED\xA0\x80"), "");                  // surrogate
+  EXPECT_NE(error_of("a: \xE2\x82"), "");                   // cut off
   EXPECT_EQ(error_of("a: \xE2\x82\xAC \xF0\x9F\xA4\x96\n"), "");
 }
 
 TEST(Yaml, BoundsDepthAndNumberOfValues) {
   const auto nest = [](std::size_t n) { return std::string(n, '[') + std::string(n, ']'); };
   EXPECT_EQ(error_of(nest(8), {.max_depth = 8}), "");
-  EXPECT_EQ(error_of(nest(9), {.max_depth = 8}), "f.yaml:1:9: nested too deeply; at most 8 levels are allowed");
+  EXPECT_EQ(error_of(nest(9), {.max_depth = 8}),
+            "f.yaml:1:9: nested too deeply; at most 8 levels are allowed");
   EXPECT_NE(error_of(nest(1'000'000)), "");
   EXPECT_EQ(error_of("[1, 2, 3]", {.max_nodes = 4}), "");
   EXPECT_EQ(error_of("[1, 2, 3, 4]", {.max_nodes = 4}).substr(0, 28), "f.yaml:1:11: too many values");

@@ -10,7 +10,9 @@ struct Pose {
   Quat q;  ///< rotation of B in A
 
   friend constexpr bool operator==(const Pose&, const Pose&) = default;
-  friend constexpr Pose operator*(const Pose& a, const Pose& b) { return {a.p + rotate(a.q, b.p), a.q * b.q}; }
+  friend constexpr Pose operator*(const Pose& a, const Pose& b) {
+    return {a.p + rotate(a.q, b.p), a.q * b.q};
+  }
   /// Takes a point from B to A.
   friend constexpr Vec3 operator*(const Pose& a, Vec3 point) { return a.p + rotate(a.q, point); }
 
@@ -25,7 +27,8 @@ constexpr Pose inverse(const Pose& X) {
   return {rotate(q, -X.p), q};
 }
 inline bool is_finite(const Pose& X) {
-  return is_finite(X.p) && std::isfinite(X.q.w) && std::isfinite(X.q.x) && std::isfinite(X.q.y) && std::isfinite(X.q.z);
+  return is_finite(X.p) && std::isfinite(X.q.w) && std::isfinite(X.q.x) && std::isfinite(X.q.y) &&
+         std::isfinite(X.q.z);
 }
 /// From SDF's `x y z roll pitch yaw`.
 Pose pose_from_rpy(Vec3 p_m, Vec3 rpy_rad);

@@ -15,9 +15,10 @@ struct RayJob {
   std::span<const Vec3> directions;  ///< unit vectors in S
   double min_m = 0;                  ///< nearer surfaces are not seen at all (rays start there)
   double max_m = 0;                  ///< farther surfaces are not seen
-  std::uint32_t ignore_body = std::numeric_limits<std::uint32_t>::max();  ///< index of the body that carries the sensor
-  std::span<float> distance_m;       ///< out, one per direction: distance, or +inf where nothing is hit
-  std::span<std::uint32_t> body;     ///< out, optional (empty): index of the body hit, or no_body
+  std::uint32_t ignore_body =
+      std::numeric_limits<std::uint32_t>::max();  ///< index of the body that carries the sensor
+  std::span<float> distance_m;    ///< out, one per direction: distance, or +inf where nothing is hit
+  std::span<std::uint32_t> body;  ///< out, optional (empty): index of the body hit, or no_body
 };
 
 inline constexpr std::uint32_t no_body = std::numeric_limits<std::uint32_t>::max();

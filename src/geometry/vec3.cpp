@@ -20,11 +20,12 @@ Quat quat_from_rpy(double roll_rad, double pitch_rad, double yaw_rad) {
 }
 
 Vec3 rpy_from_quat(Quat q) {
-  const double up = 2 * (q.w * q.y - q.z * q.x);                 // sin(pitch)
+  const double up = 2 * (q.w * q.y - q.z * q.x);  // sin(pitch)
   const double c_r = 1 - 2 * (q.x * q.x + q.y * q.y), s_r = 2 * (q.w * q.x + q.y * q.z);
-  const double level = std::sqrt(c_r * c_r + s_r * s_r);         // cos(pitch)
+  const double level = std::sqrt(c_r * c_r + s_r * s_r);  // cos(pitch)
   // Straight up or down, only the sum or difference of roll and yaw is defined: all of it is called yaw.
-  if (level < 1.5e-8) return {0, up > 0 ? math::pi / 2 : -math::pi / 2, math::wrap_angle(2 * math::atan2(q.z, q.w))};
+  if (level < 1.5e-8)
+    return {0, up > 0 ? math::pi / 2 : -math::pi / 2, math::wrap_angle(2 * math::atan2(q.z, q.w))};
   return {math::atan2(s_r, c_r), math::atan2(up, level), yaw_of(q)};
 }
 

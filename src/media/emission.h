@@ -17,7 +17,7 @@ struct Emission {
   std::uint64_t medium = 0;   ///< entity_key of the medium's name
   std::uint64_t emitter = 0;  ///< entity_key of the emitting device
   Vec3 point_W;
-  double strength = 0;        ///< in the medium's unit
+  double strength = 0;                                ///< in the medium's unit
   std::uint32_t payload_begin = 0, payload_size = 0;  ///< in EmissionBuffer::payload
 };
 

@@ -74,7 +74,8 @@ Topic<M>* topic_cast(TopicBase* topic) {
 }
 template <class M>
 const Topic<M>* topic_cast(const TopicBase* topic) {
-  return topic && std::string_view(topic->type()) == M::ros_type ? static_cast<const Topic<M>*>(topic) : nullptr;
+  return topic && std::string_view(topic->type()) == M::ros_type ? static_cast<const Topic<M>*>(topic)
+                                                                 : nullptr;
 }
 
 }  // namespace sandlot

@@ -20,8 +20,8 @@ struct Surface {
   double mu = 1.0;   ///< Coulomb coefficient; pairs combine by min(), as Gazebo does
   double mu2 = 1.0;  ///< across the first friction direction
   Vec3 fdir1;        ///< first friction direction in the collision frame; zero: isotropic, aligned with slip
-  double slip1 = 0, slip2 = 0;           ///< [m/(s N)] force-dependent slip
-  double restitution = 0;                ///< 0..1
+  double slip1 = 0, slip2 = 0;  ///< [m/(s N)] force-dependent slip
+  double restitution = 0;       ///< 0..1
   double restitution_threshold_mps = 0.05;
   std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
 };
@@ -71,12 +71,12 @@ struct Joint {
   JointType type = JointType::fixed;
   std::uint32_t parent = 0;  ///< index of the link, or world_link
   std::uint32_t child = 0;
-  Pose X_CJ;                 ///< J in the child link
-  Vec3 axis_J{0, 0, 1};      ///< unit, in J
-  double lower = -1e16, upper = 1e16;        ///< [rad] or [m]
-  double max_effort = 1e16;                  ///< [Nm] or [N]
-  double max_velocity = 1e16;                ///< [rad/s] or [m/s]
-  double damping = 0, friction = 0;          ///< [Nm s/rad], [Nm] (prismatic: [N s/m], [N])
+  Pose X_CJ;                           ///< J in the child link
+  Vec3 axis_J{0, 0, 1};                ///< unit, in J
+  double lower = -1e16, upper = 1e16;  ///< [rad] or [m]
+  double max_effort = 1e16;            ///< [Nm] or [N]
+  double max_velocity = 1e16;          ///< [rad/s] or [m/s]
+  double damping = 0, friction = 0;    ///< [Nm s/rad], [Nm] (prismatic: [N s/m], [N])
   double spring_stiffness = 0, spring_reference = 0;
   Place place;
 };
@@ -150,10 +150,10 @@ struct Setup {
   Node physics;                  ///< further keys of `physics:`, read by the engine's spec
   Vec3 gravity{0, 0, -9.81};     ///< [m/s^2]
   Time step = Time::from_s(0.01);
-  int substeps = 1;              ///< physics steps per tick
-  int control_interval = 1;      ///< ticks between control steps
+  int substeps = 1;          ///< physics steps per tick
+  int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
-  std::optional<Time> stop;      ///< simulated time at which the run ends by itself
+  std::optional<Time> stop;  ///< simulated time at which the run ends by itself
   std::vector<Instance> instances;
   std::vector<Light> lights;
 };

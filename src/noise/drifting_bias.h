@@ -28,18 +28,23 @@ struct DriftingBiasSpec {
   double correlation_s = 100.0;  ///< [s], tau
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"white_density", "", "White noise density, in the channel's unit per sqrt(Hz).", 0, 1e6, Field::tunable},
+    visit(Field{"white_density", "", "White noise density, in the channel's unit per sqrt(Hz).", 0, 1e6,
+                Field::tunable},
           s.white_density);
-    visit(Field{"bias_std", "", "Stationary standard deviation of the bias, in the channel's unit.", 0, 1e6, Field::tunable},
+    visit(Field{"bias_std", "", "Stationary standard deviation of the bias, in the channel's unit.", 0, 1e6,
+                Field::tunable},
           s.bias_std);
-    visit(Field{"correlation", "s", "Correlation time of the bias.", 1e-6, 1e9, Field::tunable}, s.correlation_s);
+    visit(Field{"correlation", "s", "Correlation time of the bias.", 1e-6, 1e9, Field::tunable},
+          s.correlation_s);
   }
 };
 
 struct DriftingBias {
   double bias = 0.0;  ///< [U], the present bias; ground truth that a test or a log may read
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"bias", "", "Present bias, in the channel's unit."}, s.bias); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"bias", "", "Present bias, in the channel's unit."}, s.bias);
+  }
 
   /// @param truth  [U]
   /// @param dt_s   [s] since the previous *sample* (not the physics step), > 0

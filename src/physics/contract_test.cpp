@@ -266,10 +266,13 @@ TEST_P(EngineContract, ContactsComeInTheOrderOfCreation) {
   World world(kind);
   world.add(ground());
   const InstanceId wall = world.add(static_of("wall", Box{{0.2, 4, 0.5}}, {{0, 0, 0.25}, {}}));
-  // Made in an order that is not that of their places; each pushes against the wall at x = 0.1.
+  // Made in an order that is neither that of their places nor its reverse; each pushes against the wall, from x > 0 or
+  // from x < 0.
   std::vector<InstanceId> robots;
-  for (const double y : {1.0, -1.0, 0.0, 0.5, -0.5}) {
-    robots.push_back(world.add(disc_robot("r", {0.3, y, 0}, math::pi)));
+  const std::vector<std::pair<double, double>> places{
+      {0.3, 1.0}, {-0.3, -1.0}, {0.3, 0.0}, {-0.3, 0.5}, {0.3, -0.5}};
+  for (const auto& [x, y] : places) {
+    robots.push_back(world.add(disc_robot("r", {x, y, 0}, x > 0 ? math::pi : 0)));
     world.drive(robots.back(), {.vx_mps = 0.5, .max_accel_mps2 = 3});
   }
   world.run(200);
@@ -277,9 +280,10 @@ TEST_P(EngineContract, ContactsComeInTheOrderOfCreation) {
   for (const Contact& contact : world.engine->contacts()) {
     if (!(contact.a == world.engine->bodies(wall)[0])) continue;
     if (met.empty() || !(met.back() == contact.b)) met.push_back(contact.b);
-    // From the wall (a, made first) towards the robot: along +x.
-    EXPECT_NEAR(contact.normal_W.x, 1, 1e-3);
-    EXPECT_NEAR(contact.point_W.x, 0.1, 2e-3);
+    // From the wall (a, made first) towards the robot.
+    const double side = contact.point_W.x > 0 ? 1 : -1;
+    EXPECT_NEAR(contact.normal_W.x, side, 1e-3);
+    EXPECT_NEAR(contact.point_W.x, 0.1 * side, 2e-3);
     EXPECT_LT(std::abs(contact.depth_m), 2e-3);
   }
   ASSERT_EQ(met.size(), robots.size());

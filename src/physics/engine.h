@@ -36,8 +36,8 @@ struct InstanceId {
 };
 
 struct BodyState {
-  Pose X_WB;         ///< frame of the link (not its centre of mass)
-  Velocity V_WB;     ///< of the link's origin, in W
+  Pose X_WB;      ///< frame of the link (not its centre of mass)
+  Velocity V_WB;  ///< of the link's origin, in W
 };
 
 struct JointState {
@@ -72,15 +72,15 @@ struct JointTarget {
 /// Obstacles still stop it: the push is limited to mass * max_accel. Holds until the next target for this base.
 struct DriveTarget {
   BodyId base;
-  bool active = true;          ///< false: release the instance to its own wheels
+  bool active = true;                           ///< false: release the instance to its own wheels
   double vx_mps = 0, vy_mps = 0, wz_radps = 0;  ///< in the base frame
   double max_accel_mps2 = 1e9, max_angular_accel_radps2 = 1e9;
 };
 
 struct Contact {
-  BodyId a, b;          ///< a created before b; a world-fixed body where the other side is static
-  Vec3 point_W;         ///< [m]
-  Vec3 normal_W;        ///< unit, from a towards b
+  BodyId a, b;    ///< a created before b; a world-fixed body where the other side is static
+  Vec3 point_W;   ///< [m]
+  Vec3 normal_W;  ///< unit, from a towards b
   double depth_m = 0;
 };
 
@@ -92,18 +92,18 @@ struct OverlapQuery {
 
 struct Capabilities {
   const char* name;
-  bool planar = false;        ///< poses have three degrees of freedom
-  bool joints = false;        ///< joints are simulated (else: kinematic)
+  bool planar = false;          ///< poses have three degrees of freedom
+  bool joints = false;          ///< joints are simulated (else: kinematic)
   bool contact_drives = false;  ///< wheels drive by contact and friction
   bool ideal_drives = false;
-  bool rays = false;          ///< rays() answers
+  bool rays = false;  ///< rays() answers
 };
 
 /// Counted since the engine was made; reported in the summary.
 struct EngineCounters {
-  std::uint64_t solver_messages = 0;   ///< complaints of the library below
+  std::uint64_t solver_messages = 0;  ///< complaints of the library below
   std::uint64_t library_allocations = 0;
-  std::uint64_t contacts = 0;          ///< in the last step
+  std::uint64_t contacts = 0;  ///< in the last step
   std::uint64_t awake_bodies = 0;
 };
 

@@ -33,7 +33,8 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
   std::vector<const Node*> named;
   if (one) named.push_back(one);
   if (many) {
-    if (!many->is_sequence() || many->items().empty()) return wrong_type(*many, "a list of levels", "/levels");
+    if (!many->is_sequence() || many->items().empty())
+      return wrong_type(*many, "a list of levels", "/levels");
     for (const Node& item : many->items()) named.push_back(&item);
   }
   std::uint32_t bits = named.empty() ? 1u : 0u;
@@ -113,7 +114,8 @@ void Simulation::set_stop(std::optional<Time> stop) {
 
 Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diagnostics) {
   if (find_entity(instance.name))
-    return Error{"there are two things named '" + instance.name + "'", "give one of them another name", instance.place};
+    return Error{"there are two things named '" + instance.name + "'", "give one of them another name",
+                 instance.place};
   auto id = engine_->add(instance);
   if (!id) {
     if (!id.error().place.file) id.error().place = instance.place;
@@ -126,6 +128,7 @@ Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diag
   entity->serial = next_serial_++;
   entities_.push_back(std::move(entity));
   Entity& added = *entities_.back();
+  by_name_[instance.name] = &added;
   Status status;
   for (const model::DeviceDecl& decl : added.instance.devices)
     if (status) status = add_device(added, decl, diagnostics);
@@ -171,15 +174,16 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   if (rate_hz > tick_hz * (1 + 1e-9)) {
     pool->pool->remove(index);
     const Node* const rate = decl.config.find("rate");
-    return Error{"rate " + number_text(rate_hz) + " Hz is above the tick rate of " + number_text(tick_hz) + " Hz",
-                 "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
-                 "/" + path + "/rate"};
+    return Error{
+        "rate " + number_text(rate_hz) + " Hz is above the tick rate of " + number_text(tick_hz) + " Hz",
+        "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
+        "/" + path + "/rate"};
   }
   if (rate_hz > 0) {
     const double ticks = tick_hz / rate_hz;
     if (std::abs(ticks - std::round(ticks)) > 1e-6 * ticks)
-      diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " + number_text(tick_hz) +
-                            " Hz",
+      diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " +
+                            number_text(tick_hz) + " Hz",
                         "samples fall on the next tick, so their spacing varies by one tick", decl.place,
                         "/" + path + "/rate"});
   }
@@ -220,27 +224,31 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
   description.control_period_s = (setup_.step * setup_.control_interval).s();
   const model::Model& model = *entity.instance.model;
   for (const auto& device : entity.devices) {
-    const Pose X_BS = inverse(model.links.front().X_ML) * model.links[device->decl.link].X_ML * device->decl.X_LS;
+    const Pose X_BS = inverse(model.links.front().X_ML) * model.links[device->decl.link].X_ML *
+                      device->decl.X_LS;
     // One entry per type that follows the device's active level, then one per level.
     const auto describe = [&](const std::vector<Slot>& slots, std::vector<Description::Entry>& entries) {
       std::vector<std::string> types;
       for (const Slot& slot : slots) {
         if (std::find(types.begin(), types.end(), slot.topic->type()) != types.end()) continue;
         types.emplace_back(slot.topic->type());
-        entries.push_back({device->decl.name, "", slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
+        entries.push_back(
+            {device->decl.name, "", slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
       }
       for (const Slot& slot : slots) {
         const auto& levels = pools_[device->kind].kind->levels;
         const std::string level = slot.level < levels.size() ? levels[slot.level].name : "";
         if (!level.empty())
-          entries.push_back({device->decl.name, level, slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
+          entries.push_back({device->decl.name, level, slot.topic->type(),
+                             static_cast<std::uint32_t>(entries.size()), X_BS});
       }
     };
     describe(device->topics, description.readings);
     describe(device->commands, description.actuators);
   }
   auto controller = (*kind)->create();
-  if (Status status = controller->init(description, decl.config); !status) return at(std::move(status.error()));
+  if (Status status = controller->init(description, decl.config); !status)
+    return at(std::move(status.error()));
   program->program = std::make_unique<ControllerProgram>(std::move(controller));
   program->topics.resize(description.readings.size());
   program->seen.resize(description.readings.size(), 0);
@@ -251,7 +259,8 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
 
 void Simulation::plan_next_sample(Device& device) {
   const double rate_hz = pools_[device.kind].pool->rate_hz(device.index);
-  device.due = rate_hz > 0 ? due_time(device.start, static_cast<std::int64_t>(device.sample), rate_hz) : Time{};
+  device.due = rate_hz > 0 ? due_time(device.start, static_cast<std::int64_t>(device.sample), rate_hz)
+                           : Time{};
 }
 
 void Simulation::point_programs_at_active_levels(Entity& entity) {
@@ -286,13 +295,13 @@ void Simulation::remove_entity(std::size_t index) {
     for (std::uint32_t i = (*device)->index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
   }
   engine_->remove(entity.id);
+  by_name_.erase(entity.instance.name);
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {
-  for (const auto& entity : entities_)
-    if (entity->instance.name == name) return entity.get();
-  return nullptr;
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : found->second;
 }
 
 Simulation::Device* Simulation::find_device(std::string_view path) {

@@ -8,7 +8,8 @@ namespace sandlot::test {
 namespace {
 
 class OnBoth : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Engines, OnBoth, testing::Values("rigid", "planar"), [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Engines, OnBoth, testing::Values("rigid", "planar"),
+                         [](const auto& p) { return std::string(p.param); });
 
 TEST_P(OnBoth, every_tick_has_one_hash_for_any_number_of_threads) {
   std::vector<std::vector<std::uint64_t>> hashes;
@@ -69,7 +70,8 @@ TEST_P(OnBoth, a_robot_more_changes_nothing_for_the_others) {
     advance(*a, 10);
     advance(*b, 10);
     const auto of_b = by_path(*b);
-    for (const auto& [path, hash] : by_path(*a)) ASSERT_EQ(of_b.at(path), hash) << path << " at tick " << a->tick_index();
+    for (const auto& [path, hash] : by_path(*a))
+      ASSERT_EQ(of_b.at(path), hash) << path << " at tick " << a->tick_index();
   }
 }
 
@@ -91,9 +93,11 @@ TEST_P(OnBoth, spawning_and_deleting_between_snapshots) {
   advance(*whole, 50);
   whole->submit(DeleteRequest{"rover2"});
   whole->submit(SpawnRequest{rover("late", rover_model(), {2.8, 2.6, 0}, 2.0)});
-  whole->submit(SpawnRequest{placed("crate3", one_shape("crate", Cylinder{0.2, 0.4}, 2), {{2.8, -2.6, 0.2}, {}})});
+  whole->submit(
+      SpawnRequest{placed("crate3", one_shape("crate", Cylinder{0.2, 0.4}, 2), {{2.8, -2.6, 0.2}, {}})});
   advance(*whole, 50);
-  for (const Outcome& outcome : whole->outcomes()) EXPECT_TRUE(outcome.status) << outcome.status.error().text();
+  for (const Outcome& outcome : whole->outcomes())
+    EXPECT_TRUE(outcome.status) << outcome.status.error().text();
   EXPECT_FALSE(whole->find_instance("rover2"));
   EXPECT_TRUE(whole->find_instance("late"));
   whole->submit(DeleteRequest{"crate1"});

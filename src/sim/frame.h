@@ -40,7 +40,8 @@ struct Frame {
   Time now;
   std::uint64_t revision = 0;  ///< of the Model: counts spawns, deletions and level changes
   std::vector<FrameInstance> instances;
-  std::vector<std::shared_ptr<const TopicBase>> topics;  ///< those that got a message in this tick, if asked for
+  std::vector<std::shared_ptr<const TopicBase>>
+      topics;  ///< those that got a message in this tick, if asked for
   std::vector<FrameCommand> commands;
   std::uint64_t hash = 0;  ///< if asked for
   std::vector<SubHash> sub_hashes;

@@ -26,7 +26,9 @@ bool asked_by_a_library() {
     Dl_info frame{};
     if (!dladdr(frames[i], &frame)) continue;
     if (frame.dli_sname && std::strncmp(frame.dli_sname, "_Zn", 3) == 0) continue;  // operator new itself
-    if (frame.dli_fbase == here.dli_fbase && frame.dli_sname && std::strncmp(frame.dli_sname, "_ZNSt", 5) == 0) continue;
+    if (frame.dli_fbase == here.dli_fbase && frame.dli_sname &&
+        std::strncmp(frame.dli_sname, "_ZNSt", 5) == 0)
+      continue;
     if (frame.dli_fname && std::strstr(frame.dli_fname, "libstdc++")) continue;
     return frame.dli_fbase != here.dli_fbase;
   }
@@ -60,7 +62,8 @@ struct PoseWatcher : Observer {
 };
 
 class Heap : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Engines, Heap, testing::Values("rigid", "planar"), [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Engines, Heap, testing::Values("rigid", "planar"),
+                         [](const auto& p) { return std::string(p.param); });
 
 TEST_P(Heap, a_tick_allocates_nothing_after_warm_up) {
   for (const int threads : {1, 2}) {
@@ -74,9 +77,10 @@ TEST_P(Heap, a_tick_allocates_nothing_after_warm_up) {
     advance(*simulation, 200);
     counting = false;
     const std::uint64_t physics = simulation->engine().counters().library_allocations - library_before;
-    std::printf("%s, %d threads, per tick: %.2f allocations of ours, %.2f of ODE, %.2f of Embree and others\n", GetParam(),
-                threads, static_cast<double>(ours) / 200, static_cast<double>(physics) / 200,
-                static_cast<double>(of_libraries) / 200);
+    std::printf(
+        "%s, %d threads, per tick: %.2f allocations of ours, %.2f of ODE, %.2f of Embree and others\n",
+        GetParam(), threads, static_cast<double>(ours) / 200, static_cast<double>(physics) / 200,
+        static_cast<double>(of_libraries) / 200);
     EXPECT_EQ(ours.load(), 0u) << threads << " threads";
   }
   // The counter itself works.

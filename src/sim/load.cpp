@@ -41,7 +41,8 @@ Result<std::string> locate(std::string written, const std::string& folder_of_fil
   std::error_code ignored;
   for (const fs::path& candidate : candidates) {
     if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
-    if (fs::is_regular_file(candidate / "model.sdf", ignored)) return (candidate / "model.sdf").lexically_normal().string();
+    if (fs::is_regular_file(candidate / "model.sdf", ignored))
+      return (candidate / "model.sdf").lexically_normal().string();
   }
   return Error{"there is no file '" + written + "'",
                "looked at " + candidates.front().lexically_normal().string() +
@@ -56,8 +57,9 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
     if (decl.kind.empty()) {
       const Kind* const kind = find_device_kind_for_sdf(decl.sdf_types);
       if (!kind) {
-        diagnostics.warn({"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
-                          "it is ignored", decl.place});
+        diagnostics.warn(
+            {"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
+             "it is ignored", decl.place});
         continue;
       }
       auto config = kind->from_sdf(decl.config, diagnostics);
@@ -157,8 +159,8 @@ Result<model::Setup> load_bare_world(const std::string& path, Diagnostics& diagn
 
 }  // namespace
 
-Result<model::Instance> load_instance(const std::string& model_file, const std::string& name, const Pose& X_WM,
-                                      Diagnostics& diagnostics) {
+Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
+                                      const Pose& X_WM, Diagnostics& diagnostics) {
   SL_ASSIGN(formats::SdfContent content, formats::read_sdf(model_file, diagnostics));
   if (content.instances.size() != 1 || !content.world_name.empty())
     return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
@@ -176,13 +178,15 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
   model::Setup setup;
   if (extension == ".sdf" || extension == ".world") {
     if (!options.overrides.empty())
-      return Error{"--set changes scenarios, and '" + path + "' is a world", "write a scenario that names this world"};
+      return Error{"--set changes scenarios, and '" + path + "' is a world",
+                   "write a scenario that names this world"};
     SL_ASSIGN(setup, load_bare_world(path, diagnostics));
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
-      SL_ASSIGN(const std::string world, locate(scenario.world, formats::base_folder(scenario, scenario.world_place),
-                                                scenario.world_place));
+      SL_ASSIGN(
+          const std::string world,
+          locate(scenario.world, formats::base_folder(scenario, scenario.world_place), scenario.world_place));
       SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics));
       SL_TRY(take_world(std::move(content), setup, diagnostics));
     } else {
@@ -200,8 +204,8 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     std::map<std::string, model::Instance> loaded;
     Placer placer(setup.instances, setup.seed);
     for (const formats::RobotGroup& group : scenario.robots) {
-      SL_ASSIGN(const std::string file, locate(group.model, formats::base_folder(scenario, group.model_place),
-                                               group.model_place));
+      SL_ASSIGN(const std::string file,
+                locate(group.model, formats::base_folder(scenario, group.model_place), group.model_place));
       auto known = loaded.find(file);
       if (known == loaded.end()) {
         auto instance = load_instance(file, group.name, {}, diagnostics);
@@ -235,9 +239,10 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
   for (const model::Instance& instance : setup.instances) {
     const auto [known, fresh] = names.emplace(instance.name, &instance);
     if (!fresh)
-      return Error{"there are two things named '" + instance.name + "'",
-                   "the other one is at " + to_string(known->second->place) + "; give one of them another name",
-                   instance.place};
+      return Error{
+          "there are two things named '" + instance.name + "'",
+          "the other one is at " + to_string(known->second->place) + "; give one of them another name",
+          instance.place};
   }
   return setup;
 }

@@ -11,8 +11,8 @@ namespace sandlot {
 
 struct LoadOptions {
   std::span<const formats::Override> overrides = {};
-  std::optional<std::uint64_t> seed;   ///< replaces the scenario's
-  std::optional<double> stop_s;        ///< replaces the scenario's
+  std::optional<std::uint64_t> seed;  ///< replaces the scenario's
+  std::optional<double> stop_s;       ///< replaces the scenario's
 };
 
 /// Loads a scenario (.yaml, .yml) or a world or model (.sdf, .world): what `sandlot run` accepts.
@@ -20,7 +20,7 @@ struct LoadOptions {
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
 /// Loads one model file as an instance at `X_WM`, ready for a SpawnRequest.
-Result<model::Instance> load_instance(const std::string& model_file, const std::string& name, const Pose& X_WM,
-                                      Diagnostics& diagnostics);
+Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
+                                      const Pose& X_WM, Diagnostics& diagnostics);
 
 }  // namespace sandlot

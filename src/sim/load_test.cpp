@@ -67,13 +67,18 @@ TEST_F(Files, devices_of_the_scenario_are_laid_upon_the_models_own) {
   EXPECT_EQ(robot.devices[0].config.find("max_range")->text(), "50 cm") << "the scenario's key replaces";
   EXPECT_EQ(robot.devices[1].kind, "ground_truth");
   EXPECT_NEAR(yaw_of(robot.devices[1].X_LS.q), 1.5707963, 1e-6);
-  EXPECT_THAT(error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    eya: {beams: 3}\n"), HasSubstr("'eye'"));
-  EXPECT_THAT(error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    t: {kind: ground_truth, link: bas}\n"),
-              HasSubstr("did you mean 'base'?"));
+  EXPECT_THAT(error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    eya: {beams: 3}\n"),
+              HasSubstr("'eye'"));
+  EXPECT_THAT(
+      error_of(
+          "robots:\n- name: a\n  model: models/bot\n  devices:\n    t: {kind: ground_truth, link: bas}\n"),
+      HasSubstr("did you mean 'base'?"));
 }
 
 TEST_F(Files, a_group_in_a_grid_is_centred_and_spaced) {
-  const auto setup = load_text("robots: [{name: a, model: models/bot, count: 6, distribution: {grid: {centre: [10, 0, 0], spacing: 2 m}}}]\n");
+  const auto setup = load_text(
+      "robots: [{name: a, model: models/bot, count: 6, distribution: {grid: {centre: [10, 0, 0], spacing: 2 "
+      "m}}}]\n");
   ASSERT_TRUE(setup) << setup.error().text();
   ASSERT_EQ(setup->instances.size(), 7u);  // the ground first
   EXPECT_EQ(setup->instances[1].name, "a1");
@@ -87,7 +92,8 @@ TEST_F(Files, a_group_in_a_grid_is_centred_and_spaced) {
 
 TEST_F(Files, a_random_group_keeps_its_clearance_and_depends_on_the_seed_alone) {
   const std::string robots =
-      "robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: 10, height: 10, clearance: 60 cm}}}]\n";
+      "robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: "
+      "10, height: 10, clearance: 60 cm}}}]\n";
   const auto first = load_text(robots), second = load_text(robots), other = load_text(robots + "seed: 2\n");
   ASSERT_TRUE(first && second && other);
   for (std::size_t i = 1; i <= 40; ++i) {
@@ -98,7 +104,8 @@ TEST_F(Files, a_random_group_keeps_its_clearance_and_depends_on_the_seed_alone) 
     EXPECT_LE(std::abs(p.y), 5);
     for (std::size_t k = 1; k < i; ++k) EXPECT_GE(norm(p - first->instances[k].X_WM.p), 0.6);
   }
-  EXPECT_THAT(error_of("robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: 2, height: 2, clearance: 1}}}]\n"),
+  EXPECT_THAT(error_of("robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: "
+                       "[0, 0, 0], width: 2, height: 2, clearance: 1}}}]\n"),
               HasSubstr("no room"));
 }
 
@@ -107,7 +114,8 @@ TEST_F(Files, names_are_made_into_addresses_and_collisions_are_errors) {
   ASSERT_TRUE(setup) << setup.error().text();
   EXPECT_EQ(setup->instances.back().name, "my_robot__1");
   EXPECT_EQ(setup->instances.back().original_name, "my robot::1");
-  const std::string error = error_of("robots:\n- {name: a b, model: models/bot}\n- {name: a_b, model: models/bot}\n");
+  const std::string error = error_of(
+      "robots:\n- {name: a b, model: models/bot}\n- {name: a_b, model: models/bot}\n");
   EXPECT_THAT(error, HasSubstr("'a_b'"));
   EXPECT_THAT(error, HasSubstr("s.yaml:5"));
 }

@@ -226,7 +226,9 @@ bool consistent(const model::Model& m) {
   const auto links = static_cast<std::uint32_t>(m.links.size());
   if (links == 0) return false;
   for (const model::Joint& j : m.joints)
-    if ((j.parent >= links && j.parent != model::world_link) || j.child >= links || j.type > model::JointType::ball) return false;
+    if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
+        j.type > model::JointType::ball)
+      return false;
   for (const model::Frame& f : m.frames)
     if (f.link >= links) return false;
   for (const model::DeviceDecl& d : m.devices)
@@ -236,7 +238,8 @@ bool consistent(const model::Model& m) {
 
 }  // namespace
 
-void write_setup(ByteWriter& w, const model::Setup& setup, std::span<const model::Instance* const> instances) {
+void write_setup(ByteWriter& w, const model::Setup& setup,
+                 std::span<const model::Instance* const> instances) {
   Save io{w};
   setup_values(io, setup);
   std::vector<const model::Model*> models;

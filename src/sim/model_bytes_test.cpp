@@ -26,14 +26,17 @@ model::Setup full_setup() {
   base.inertial = {4, {{0.1, 0, 0}, {}}, {1, 2, 2.5}, {0.1, 0.2, 0.3}};
   base.gravity = false;
   model::Surface surface{0.4, 0.5, {1, 0, 0}, 0.1, 0.2, 0.3, 0.06, 0.2, 1e-5};
-  for (const Shape& shape : {Shape(Box{{1, 2, 3}}), Shape(Sphere{0.5}), Shape(Cylinder{0.2, 0.7}), Shape(Capsule{0.1, 0.6}), Shape(Plane{{0, 0, 1}})}) {
+  for (const Shape& shape : {Shape(Box{{1, 2, 3}}), Shape(Sphere{0.5}), Shape(Cylinder{0.2, 0.7}),
+                             Shape(Capsule{0.1, 0.6}), Shape(Plane{{0, 0, 1}})}) {
     base.collisions.push_back({"c", {{0, 0, 1}, {}}, shape, surface, {}});
     base.visuals.push_back({"v", {{0, 1, 0}, {}}, shape, {0.1f, 0.2f, 0.3f, 0.4f}, {}});
   }
   model::Link arm = base;
   arm.name = "arm";
   made->links = {base, arm};
-  model::Joint joint{"hinge", model::JointType::revolute, 0, 1, {{0, 1, 0}, {}}, {1, 0, 0}, -1, 2, 30, 4, 0.5, 0.6, 7, 0.8, {}};
+  model::Joint joint{
+      "hinge", model::JointType::revolute, 0, 1, {{0, 1, 0}, {}}, {1, 0, 0}, -1, 2, 30, 4, 0.5, 0.6, 7, 0.8,
+      {}};
   made->joints.push_back(joint);
   made->frames.push_back({"tip", 1, {{0, 0, 2}, {}}});
   Node config = Node::map();

@@ -7,7 +7,7 @@
 namespace sandlot {
 
 enum class Phase : std::uint8_t { commands, actuate, physics, scene, sense, media, rules, control, publish };
-inline constexpr std::array phase_names{"commands", "actuate", "physics", "scene", "sense",
+inline constexpr std::array phase_names{"commands", "actuate", "physics", "scene",  "sense",
                                         "media",    "rules",   "control", "publish"};
 
 struct PhaseTimes {

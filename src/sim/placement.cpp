@@ -55,8 +55,10 @@ Result<std::vector<Pose>> Placer::place(const formats::RobotGroup& group) {
   switch (placement.kind) {
     case formats::Placement::Kind::pose:
       if (group.count > 1)
-        return Error{"a pose is for one robot, and '" + group.name + "' has count " + std::to_string(group.count),
-                     "use distribution: {grid: ...} or {uniform: ...}", placement.place.file ? placement.place : group.place};
+        return Error{
+            "a pose is for one robot, and '" + group.name + "' has count " + std::to_string(group.count),
+            "use distribution: {grid: ...} or {uniform: ...}",
+            placement.place.file ? placement.place : group.place};
       poses.push_back(placement.X_WM);
       break;
     case formats::Placement::Kind::grid: {

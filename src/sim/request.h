@@ -52,8 +52,8 @@ struct SampleRequest {
   std::string device;
 };
 
-using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest, PoseRequest,
-                             SampleRequest>;
+using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
+                             PoseRequest, SampleRequest>;
 
 /// What became of a request, in the order they were carried out.
 struct Outcome {

@@ -12,7 +12,8 @@ std::uint64_t Simulation::submit(Request request, Source source) {
 }
 
 Status Simulation::carry_out(Request& request, const Source& source, std::uint64_t sequence) {
-  if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command, source, sequence);
+  if (const auto* command = std::get_if<CommandRequest>(&request))
+    return apply_command(*command, source, sequence);
   if (const auto* parameter = std::get_if<ParameterRequest>(&request)) {
     if (Device* device = find_device(parameter->target)) {
       SL_TRY(pools_[device->kind].pool->set_parameter(device->index, parameter->field, parameter->value));
@@ -55,7 +56,8 @@ Status Simulation::carry_out(Request& request, const Source& source, std::uint64
   return {};
 }
 
-Simulation::Slot* Simulation::active_command_slot(Device& device, std::string_view type, std::string_view level) {
+Simulation::Slot* Simulation::active_command_slot(Device& device, std::string_view type,
+                                                  std::string_view level) {
   const auto& levels = pools_[device.kind].kind->levels;
   for (Slot& slot : device.commands) {
     if (type != slot.topic->type()) continue;
@@ -77,7 +79,8 @@ Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes, co
   return {};
 }
 
-Status Simulation::apply_command(const CommandRequest& command, const Source& source, std::uint64_t sequence) {
+Status Simulation::apply_command(const CommandRequest& command, const Source& source,
+                                 std::uint64_t sequence) {
   const std::string_view target = command.target;
   Device* device = find_device(target);
   std::string_view level;
@@ -107,7 +110,8 @@ void Simulation::apply_program_orders() {
         for (const auto& device : entity->devices)
           if (device->decl.name == entry.device) slot = active_command_slot(*device, entry.type, entry.level);
         // A level that was switched off under a controller's feet: its commands are refused and counted.
-        if (!slot || !give_command(*slot, program->command.bytes(order), {Source::Kind::robot, entity->serial}, program->steps))
+        if (!slot || !give_command(*slot, program->command.bytes(order),
+                                   {Source::Kind::robot, entity->serial}, program->steps))
           ++refused_commands_;
       }
       program->command.clear();
@@ -132,7 +136,8 @@ Status Simulation::set_levels(const LevelRequest& request) {
   device->levels = bits;
   ++revision_;
   for (const auto& entity : entities_)
-    if (entity->instance.name == request.device.substr(0, request.device.find('/'))) point_programs_at_active_levels(*entity);
+    if (entity->instance.name == request.device.substr(0, request.device.find('/')))
+      point_programs_at_active_levels(*entity);
   return {};
 }
 

@@ -9,7 +9,7 @@
 /// Threads       one thread calls tick(); submit() may be called from any.
 /// Cost          no heap allocation of ours per tick once vectors have reached their size.
 #include <array>
-#include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -43,7 +43,8 @@ class Simulation {
                                                     Diagnostics& diagnostics);
   /// Rebuilds the world that `snapshot()` saved; needs nothing else.
   static Result<std::unique_ptr<Simulation>> restore(std::span<const std::byte> snapshot,
-                                                     const SimulationOptions& options, Diagnostics& diagnostics);
+                                                     const SimulationOptions& options,
+                                                     Diagnostics& diagnostics);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -106,10 +107,10 @@ class Simulation {
     model::DeviceDecl decl;
     std::string path;
     std::uint64_t key = 0;
-    std::uint32_t kind = 0;  ///< index into pools_
-    std::uint32_t index = 0; ///< in its pool
+    std::uint32_t kind = 0;   ///< index into pools_
+    std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
-    Time start;              ///< due times count from here
+    Time start;                ///< due times count from here
     std::uint64_t sample = 0;  ///< index of the next sample
     Time last;                 ///< time of the previous sample
     Time due;                  ///< of the next one; follows from start, sample and the rate
@@ -184,7 +185,8 @@ class Simulation {
   // requests.cpp
   Status carry_out(Request& request, const Source& source, std::uint64_t sequence);
   Status apply_command(const CommandRequest& command, const Source& source, std::uint64_t sequence);
-  Status give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source, std::uint64_t sequence);
+  Status give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source,
+                      std::uint64_t sequence);
   Slot* active_command_slot(Device& device, std::string_view type, std::string_view level);
   Status set_levels(const LevelRequest& request);
   void apply_program_orders();
@@ -209,6 +211,7 @@ class Simulation {
   SceneFrame scene_frame_;
 
   std::vector<std::unique_ptr<Entity>> entities_;
+  std::map<std::string, Entity*, std::less<>> by_name_;
   std::vector<Pool> pools_;
   std::vector<std::unique_ptr<Rule>> rules_;
   std::vector<std::unique_ptr<Medium>> media_;

@@ -34,15 +34,21 @@ struct Probe {
   Topic<msg::Float64>* trim = nullptr;
 
   static Result<Probe> create(const DeviceBuild& build, Spec spec) {
-    return Probe{spec, {}, build.body(), build.key, build.publish<msg::Int64Stamped>(0, "count"),
-                 build.accept<msg::Float64>(0, "count"), build.accept<msg::Float64>(1, "other")};
+    return Probe{spec,
+                 {},
+                 build.body(),
+                 build.key,
+                 build.publish<msg::Int64Stamped>(0, "count"),
+                 build.accept<msg::Float64>(0, "count"),
+                 build.accept<msg::Float64>(1, "other")};
   }
   static void actuate(PoolView<Probe> pool, const Context& ctx) {
     for (const std::uint32_t i : pool.due)
       if (const double f = pool.all[i].spec.force_N; f > 0)
         ctx.actuation.wrenches.push_back({pool.all[i].body, {f, f, -f}, {f, 0, 0}});
       else if (pool.all[i].spec.explode)
-        ctx.actuation.wrenches.push_back({pool.all[i].body, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}});
+        ctx.actuation.wrenches.push_back(
+            {pool.all[i].body, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}});
   }
   static void sense(PoolView<Probe> pool, const Context& ctx) {
     for (const std::uint32_t i : pool.due) {
@@ -54,8 +60,9 @@ struct Probe {
     }
   }
 };
-constexpr LevelInfo probe_levels[] = {{"count", "sandlot_msgs/msg/Int64Stamped", "std_msgs/msg/Float64", "Counts."},
-                                      {"other", "", "std_msgs/msg/Float64", "Takes another command."}};
+constexpr LevelInfo probe_levels[] = {
+    {"count", "sandlot_msgs/msg/Int64Stamped", "std_msgs/msg/Float64", "Counts."},
+    {"other", "", "std_msgs/msg/Float64", "Takes another command."}};
 const Kind probe_kind = make_kind<Probe>({.name = "probe", .help = "For tests.", .levels = probe_levels});
 const Kind* const probe_kinds[] = {&probe_kind};
 const SimulationOptions with_probe{.threads = 1, .run_programs = true, .extra_kinds = probe_kinds};
@@ -187,11 +194,13 @@ TEST(Requests, commands_of_an_inactive_level_are_refused_until_it_is_switched_on
   simulation->submit(LevelRequest{"ball/probe", {"othr"}});
   advance(*simulation, 1);
   ASSERT_FALSE(simulation->outcomes().back().status);
-  EXPECT_NE(simulation->outcomes().back().status.error().text().find("did you mean 'other'"), std::string::npos);
+  EXPECT_NE(simulation->outcomes().back().status.error().text().find("did you mean 'other'"),
+            std::string::npos);
 }
 
 TEST(Requests, wrong_targets_types_and_bytes_are_answered_and_change_nothing) {
-  const auto simulation = build(one_probe(Node::map()), with_probe), untouched = build(one_probe(Node::map()), with_probe);
+  const auto simulation = build(one_probe(Node::map()), with_probe),
+             untouched = build(one_probe(Node::map()), with_probe);
   simulation->submit(CommandRequest{"ball/prob", "std_msgs/msg/Float64", bytes_of(1)});
   simulation->submit(CommandRequest{"ball/probe", "geometry_msgs/msg/Twist", bytes_of(1)});
   simulation->submit(CommandRequest{"ball/probe", "std_msgs/msg/Float64", {std::byte{1}}});
@@ -271,7 +280,8 @@ struct Air : Medium {
   const char* name() const override { return "air"; }
   void deliver(const EmissionBuffer& buffer, const MediumContext&) override {
     for (const Emission& emission : buffer.emissions)
-      if (emission.medium == entity_key("air")) heard.push_back(emission.emitter), payload += emission.payload_size;
+      if (emission.medium == entity_key("air"))
+        heard.push_back(emission.emitter), payload += emission.payload_size;
   }
   void save(ByteWriter& w) const override { write(w, heard); }
   void load(ByteReader& r) override { read(r, heard); }
@@ -279,13 +289,15 @@ struct Air : Medium {
 
 TEST(Media, emissions_of_a_tick_arrive_once_in_creation_order) {
   auto setup = one_probe(map({{"rate", "50"}}));
-  for (const char* name : {"c", "a", "b"}) setup.instances.push_back(probed(name, map({{"rate", "50"}}), {2, 0, 9}));
+  for (const char* name : {"c", "a", "b"})
+    setup.instances.push_back(probed(name, map({{"rate", "50"}}), {2, 0, 9}));
   const auto simulation = build(setup, with_probe);
   auto air = std::make_unique<Air>();
   const Air& listener = *air;
   simulation->add_medium(std::move(air));
   advance(*simulation, 2);  // samples fall on every second tick
-  EXPECT_EQ(listener.heard, (std::vector{entity_key("ball/probe"), entity_key("c/probe"), entity_key("a/probe"), entity_key("b/probe")}));
+  EXPECT_EQ(listener.heard, (std::vector{entity_key("ball/probe"), entity_key("c/probe"),
+                                         entity_key("a/probe"), entity_key("b/probe")}));
   EXPECT_EQ(listener.payload, 4u);
 }
 
@@ -299,7 +311,8 @@ TEST(Levels, a_drive_keeps_its_place_when_its_level_is_switched) {
   ASSERT_TRUE(simulation->outcomes().back().status) << simulation->outcomes().back().status.error().text();
   EXPECT_LT(norm(simulation->engine().pose(id).p - before), 0.02);
   advance(*simulation, 200);
-  EXPECT_GT(norm(simulation->engine().pose(id).p - before), 0.2) << "the controller drives on at the new level";
+  EXPECT_GT(norm(simulation->engine().pose(id).p - before), 0.2)
+      << "the controller drives on at the new level";
   EXPECT_EQ(simulation->refused_commands(), 0u);
   // And it is all in the State.
   const auto restored = again(*simulation);

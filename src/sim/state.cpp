@@ -185,7 +185,8 @@ std::vector<std::byte> Simulation::snapshot() const {
 }
 
 Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byte> snapshot,
-                                                        const SimulationOptions& options, Diagnostics& diagnostics) {
+                                                        const SimulationOptions& options,
+                                                        Diagnostics& diagnostics) {
   const auto damaged = [](const char* what) {
     return Error{std::string("the snapshot is damaged: ") + what, "take it again"};
   };

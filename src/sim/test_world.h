@@ -72,8 +72,8 @@ inline std::shared_ptr<model::Model> rover_model() {
   return rover;
 }
 
-inline model::Instance rover(const std::string& name, std::shared_ptr<const model::Model> shape, Vec3 at, double yaw_rad,
-                             const char* controller = "wander") {
+inline model::Instance rover(const std::string& name, std::shared_ptr<const model::Model> shape, Vec3 at,
+                             double yaw_rad, const char* controller = "wander") {
   model::Instance instance = placed(name, std::move(shape), {at, quat_from_rpy(0, 0, yaw_rad)});
   instance.is_robot = true;
   const auto add = [&](const char* device, const char* kind, Pose X_LS, Node config) {
@@ -85,7 +85,10 @@ inline model::Instance rover(const std::string& name, std::shared_ptr<const mode
     instance.devices.push_back(std::move(decl));
   };
   add("drive", "diff_drive", {},
-      map({{"left_joint", "left_wheel_joint"}, {"right_joint", "right_wheel_joint"}, {"wheel_radius", "0.07"}, {"wheel_separation", "0.3"}}));
+      map({{"left_joint", "left_wheel_joint"},
+           {"right_joint", "right_wheel_joint"},
+           {"wheel_radius", "0.07"},
+           {"wheel_separation", "0.3"}}));
   Node laser = map({{"beams", "61"}, {"rate", "10"}, {"min_range", "0.05"}, {"max_range", "6"}});
   Node noise = map({{"white", "0.01"}});
   laser.set("noise", noise);
@@ -108,8 +111,10 @@ inline model::Setup arena(const std::string& engine, int robots, const char* con
   const auto wall = one_shape("wall", Box{{8.2, 0.2, 1}}, 0);
   for (int i = 0; i < 4; ++i) {
     const double yaw = 0.5 * math::pi * i;
-    setup.instances.push_back(placed("wall" + std::to_string(i), wall,
-                                     {{4 * math::cos(yaw - 0.5 * math::pi), 4 * math::sin(yaw - 0.5 * math::pi), 0.5}, quat_from_rpy(0, 0, yaw)}));
+    setup.instances.push_back(
+        placed("wall" + std::to_string(i), wall,
+               {{4 * math::cos(yaw - 0.5 * math::pi), 4 * math::sin(yaw - 0.5 * math::pi), 0.5},
+                quat_from_rpy(0, 0, yaw)}));
   }
   const auto pillar = one_shape("pillar", Cylinder{0.2, 1}, 0);
   setup.instances.push_back(placed("pillar1", pillar, {{1.5, 1.2, 0.5}, {}}));

@@ -58,10 +58,12 @@ void Simulation::take_commands() {
     std::swap(carrying_out_, inbox_);
   }
   std::stable_sort(carrying_out_.begin(), carrying_out_.end(), [](const Pending& a, const Pending& b) {
-    return std::tuple(a.source.kind, a.source.id, a.sequence) < std::tuple(b.source.kind, b.source.id, b.sequence);
+    return std::tuple(a.source.kind, a.source.id, a.sequence) <
+           std::tuple(b.source.kind, b.source.id, b.sequence);
   });
   for (Pending& pending : carrying_out_)
-    outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request, pending.source, pending.sequence)});
+    outcomes_.push_back(
+        {pending.source, pending.sequence, carry_out(pending.request, pending.source, pending.sequence)});
   carrying_out_.clear();
   apply_program_orders();
 }

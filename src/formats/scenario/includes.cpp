@@ -18,7 +18,8 @@ struct Including {
 };
 
 Result<Node> Including::include(const Node& name, const std::string& folder) {
-  if (!name.is_scalar() || name.text().empty()) return name.error("expected the name of a file", "", "/include");
+  if (!name.is_scalar() || name.text().empty())
+    return name.error("expected the name of a file", "", "/include");
   const std::string path = beside(folder, name.text());
   const std::string canonical = canonical_path(path);
   for (const std::string& outer : open)
@@ -26,7 +27,8 @@ Result<Node> Including::include(const Node& name, const std::string& folder) {
   if (open.size() >= max_depth) return name.error("files are included more than 16 deep", "", "/include");
   if (++files > max_files) return name.error("more than 100 files are included", "", "/include");
   auto text = read_text_file(path, TextLimits{}.max_bytes);
-  if (!text) return name.error("cannot include '" + path + "': " + text.error().what, text.error().fix, "/include");
+  if (!text)
+    return name.error("cannot include '" + path + "': " + text.error().what, text.error().fix, "/include");
   SL_ASSIGN(Node root, parse_yaml(*text, path));
   open.push_back(canonical);
   auto expanded = expand(std::move(root), path);

@@ -27,8 +27,9 @@ Result<std::vector<Part>> parse_path(const std::string& text, const Place& place
     while (!rest.empty()) {
       const std::size_t close = rest.find(']');
       double index = -1;
-      if (rest[0] != '[' || close == std::string_view::npos || !parse_number(rest.substr(1, close - 1), index) ||
-          !(index >= 0 && index <= 1e6) || index != static_cast<double>(static_cast<std::size_t>(index)))
+      if (rest[0] != '[' || close == std::string_view::npos ||
+          !parse_number(rest.substr(1, close - 1), index) || !(index >= 0 && index <= 1e6) ||
+          index != static_cast<double>(static_cast<std::size_t>(index)))
         return refuse("an index must be a whole number in brackets");
       part.indices.push_back(static_cast<std::size_t>(index));
       rest.remove_prefix(close + 1);
@@ -52,9 +53,11 @@ void put_at(Node& node, const Place& place) {
 /// Steps into a list: by the index given, or into its only element.
 Result<Node*> element(Node* list, const std::size_t* index, const std::string& key, const Place& place) {
   const std::size_t size = list->items().size();
-  const std::string has = "'" + key + "' has " + std::to_string(size) + (size == 1 ? " element" : " elements");
+  const std::string has = "'" + key + "' has " + std::to_string(size) +
+                          (size == 1 ? " element" : " elements");
   if (index && *index >= size)
-    return Error{has, size == 0 ? "" : "the last one is " + key + "[" + std::to_string(size - 1) + "]", place};
+    return Error{has, size == 0 ? "" : "the last one is " + key + "[" + std::to_string(size - 1) + "]",
+                 place};
   if (!index && size != 1) return Error{has, "say which one, as " + key + "[0]", place};
   return &list->items()[index ? *index : 0];
 }
@@ -70,10 +73,12 @@ void lengthen(Node& node, const std::string& key) {
 }
 
 Status apply(Node& root, const Override& override_) {
-  const std::string text = std::string(override_place) + override_.path.substr(0, 200) + "=" + override_.value.substr(0, 200);
+  const std::string text = std::string(override_place) + override_.path.substr(0, 200) + "=" +
+                           override_.value.substr(0, 200);
   const Place place = place_in(text);
   SL_ASSIGN(const std::vector<Part> parts, parse_path(override_.path, place));
-  auto parsed = parse_yaml(override_.value, text, {.max_bytes = 1u << 20, .max_depth = 32, .max_nodes = 10'000});
+  auto parsed = parse_yaml(override_.value, text,
+                           {.max_bytes = 1u << 20, .max_depth = 32, .max_nodes = 10'000});
   if (!parsed) return Error{"the value cannot be read: " + parsed.error().what, parsed.error().fix, place};
   Node value = trim(override_.value).empty() ? Node::scalar("") : std::move(*parsed);
   put_at(value, place);
@@ -90,11 +95,10 @@ Status apply(Node& root, const Override& override_) {
     const Part& part = parts[i];
     const bool last = i + 1 == parts.size();
     const std::string& outer = i == 0 ? part.key : parts[i - 1].key;
-    if (at->is_sequence()) {
-      SL_ASSIGN(at, element(at, nullptr, outer, place));
-    }
+    if (at->is_sequence()) { SL_ASSIGN(at, element(at, nullptr, outer, place)); }
     lengthen(*at, outer);
-    if (at->is_scalar()) return Error{"'" + outer + "' is " + describe(*at) + " and has no '" + part.key + "' in it", "", place};
+    if (at->is_scalar())
+      return Error{"'" + outer + "' is " + describe(*at) + " and has no '" + part.key + "' in it", "", place};
     if (at->is_null()) *at = Node::map(at->place().line > 0 ? at->place() : place);
     if (i == 1 && parts[0].key == "vars" && !at->find(part.key)) {
       std::vector<std::string> known;
@@ -107,10 +111,12 @@ Status apply(Node& root, const Override& override_) {
     }
     Node* next = at->find(part.key);
     for (const std::size_t& index : part.indices) {
-      if (!next->is_sequence()) return Error{"'" + part.key + "' is " + describe(*next) + ", not a list", "", place};
+      if (!next->is_sequence())
+        return Error{"'" + part.key + "' is " + describe(*next) + ", not a list", "", place};
       SL_ASSIGN(next, element(next, &index, part.key, place));
     }
-    if (last && i == 0 && part.key == "physics" && next->is_map() && value.is_scalar() && !next->entries().empty()) {
+    if (last && i == 0 && part.key == "physics" && next->is_map() && value.is_scalar() &&
+        !next->entries().empty()) {
       next->set("engine", std::move(value));
       return {};
     }

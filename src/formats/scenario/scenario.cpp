@@ -20,11 +20,13 @@ Status refuse_later_keys(const Node& root) {
   for (const Node::Entry& entry : root.entries())
     for (const char* const key : spec::later_keys)
       if (entry.key == key)
-        return Error{"'" + entry.key + "' is not supported yet", "leave it out", entry.key_place, "/" + entry.key};
+        return Error{"'" + entry.key + "' is not supported yet", "leave it out", entry.key_place,
+                     "/" + entry.key};
   return {};
 }
 
-Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, const std::string& path) {
+Result<Placement> read_distribution(const Node& node, const spec::Distribution& read,
+                                    const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
     return node.error("expected one of 'grid' and 'uniform'", "", path);
   Placement placement;
@@ -44,7 +46,8 @@ Result<Placement> read_distribution(const Node& node, const spec::Distribution& 
 }
 
 /// Text of a key of a kind's map, taken out of it.
-Result<std::string> take_text(Node& map, const char* key, const std::string& otherwise, const std::string& path) {
+Result<std::string> take_text(Node& map, const char* key, const std::string& otherwise,
+                              const std::string& path) {
   const Node* const value = map.find(key);
   if (!value || value->is_null()) return otherwise;
   if (!value->is_scalar()) return wrong_type(*value, "text", path + "/" + key);
@@ -72,7 +75,8 @@ Result<model::ControllerDecl> read_controller(const Node& node, const std::strin
   return decl;
 }
 
-Result<std::vector<model::ControllerDecl>> read_controllers(const spec::Robot& robot, const std::string& path) {
+Result<std::vector<model::ControllerDecl>> read_controllers(const spec::Robot& robot,
+                                                            const std::string& path) {
   std::vector<model::ControllerDecl> out;
   if (!robot.controller.is_null() && !robot.controllers.is_null())
     return robot.controllers.error("'controller' and 'controllers' are both given", "keep one of them", path);
@@ -114,7 +118,8 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   const Node* const name = node.find("name");
   group.place = name ? name->place() : node.place();
   if (robot.name.empty()) return node.error("the robot's name is empty", "", path + "/name");
-  if (robot.model.empty()) return node.error("the robot's model is empty", "name a model file", path + "/model");
+  if (robot.model.empty())
+    return node.error("the robot's model is empty", "name a model file", path + "/model");
   group.name = robot.name;
   group.model = robot.model;
   if (const Node* const model = node.find("model")) group.model_place = model->place();
@@ -123,7 +128,8 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   if (!robot.pose.is_null() && robot.distribution)
     return robot.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (robot.distribution) {
-    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *robot.distribution, path + "/distribution"));
+    SL_ASSIGN(group.placement,
+              read_distribution(*node.find("distribution"), *robot.distribution, path + "/distribution"));
   } else if (!robot.pose.is_null()) {
     if (robot.count > 1)
       return robot.pose.error(std::to_string(robot.count) + " robots cannot start at one pose",
@@ -144,8 +150,8 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
 Status check_names(const std::vector<RobotGroup>& robots) {
   std::map<std::string, const RobotGroup*> single, stems;
   const auto clash = [](const RobotGroup& a, const RobotGroup& b, const std::string& name) {
-    return Error{"two robots would be called '" + name + "'", "the other one is at " + to_string(b.place), a.place,
-                 "/robots"};
+    return Error{"two robots would be called '" + name + "'", "the other one is at " + to_string(b.place),
+                 a.place, "/robots"};
   };
   for (const RobotGroup& group : robots) {
     const auto [known, fresh] = (group.count > 1 ? stems : single).emplace(sanitised(group.name), &group);
@@ -186,7 +192,8 @@ Status read_physics(const Node& node, Scenario& out) {
   } else {
     return wrong_type(node, "the name of an engine or a map with 'engine'", "/physics");
   }
-  if (out.engine.empty()) return node.error("the name of the engine is empty", "write rigid or planar", "/physics");
+  if (out.engine.empty())
+    return node.error("the name of the engine is empty", "write rigid or planar", "/physics");
   return {};
 }
 
@@ -240,15 +247,16 @@ Result<Pose> read_pose(const Node& node, const std::string& path) {
   } else if (node.is_map()) {
     SL_TRY(read_fields(node, keys, path));
   } else {
-    return node.error("a pose is [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these, found " +
-                          (node.is_sequence() ? "a list of " + std::to_string(node.items().size()) : describe(node)),
-                      "", path);
+    return node.error(
+        "a pose is [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these, found " +
+            (node.is_sequence() ? "a list of " + std::to_string(node.items().size()) : describe(node)),
+        "", path);
   }
   return pose_from_rpy({keys.x_m, keys.y_m, keys.z_m}, {keys.roll_rad, keys.pitch_rad, keys.yaw_rad});
 }
 
-Result<Scenario> parse_scenario(std::string_view text, const std::string& file, std::span<const Override> overrides,
-                                Diagnostics&) {
+Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
+                                std::span<const Override> overrides, Diagnostics&) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
   SL_TRY(substitute_variables(root));
@@ -256,7 +264,8 @@ Result<Scenario> parse_scenario(std::string_view text, const std::string& file, 
   return read_root(root, file);
 }
 
-Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides, Diagnostics& diagnostics) {
+Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides,
+                               Diagnostics& diagnostics) {
   SL_ASSIGN(const std::string text, read_text_file(path, TextLimits{}.max_bytes));
   return parse_scenario(text, path, overrides, diagnostics);
 }

@@ -38,7 +38,7 @@ struct RobotGroup {
   Placement placement;
   std::string team;
   std::vector<model::ControllerDecl> controllers;
-  Node devices;       ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
+  Node devices;  ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
   Place place;
   Place model_place;
 };
@@ -50,7 +50,7 @@ struct Scenario {
   Place world_place;
   std::string engine = "rigid";
   Place engine_place;
-  Node physics;       ///< the engine's own keys; a map
+  Node physics;          ///< the engine's own keys; a map
   double step_s = 0.01;  ///< length of a tick
   int substeps = 1;
   int control_interval = 1;
@@ -68,10 +68,11 @@ struct Override {
 };
 
 /// Reads a scenario file.
-Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides, Diagnostics& diagnostics);
+Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides,
+                               Diagnostics& diagnostics);
 /// As above from text; `file` names it in messages and is the base of relative paths.
-Result<Scenario> parse_scenario(std::string_view text, const std::string& file, std::span<const Override> overrides,
-                                Diagnostics& diagnostics);
+Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
+                                std::span<const Override> overrides, Diagnostics& diagnostics);
 
 /// The folder that a relative path written at `place` starts from: that of the file that says it (an included file's
 /// own), the scenario's for what came from `--set`.
@@ -86,6 +87,7 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
-std::string scenario_schema(std::span<const KindFields> devices = {}, std::span<const KindFields> controllers = {});
+std::string scenario_schema(std::span<const KindFields> devices = {},
+                            std::span<const KindFields> controllers = {});
 
 }  // namespace sandlot::formats

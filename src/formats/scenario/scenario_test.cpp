@@ -136,22 +136,26 @@ TEST(Scenario, SetLengthensShortForms) {
 }
 
 TEST(Scenario, SetSaysWhatIsWrongWithItsPath) {
-  EXPECT_EQ(error_of(indoor, {{"robts.count", "3"}}), "--set robts.count=3: unknown key 'robts'; did you mean 'robots'?");
+  EXPECT_EQ(error_of(indoor, {{"robts.count", "3"}}),
+            "--set robts.count=3: unknown key 'robts'; did you mean 'robots'?");
   EXPECT_EQ(error_of(indoor, {{"robots.cuont", "3"}}),
             "--set robots.cuont=3: /robots/0: unknown key 'cuont'; did you mean 'count'?");
-  EXPECT_EQ(error_of(indoor, {{"vars.sped", "3"}}), "--set vars.sped=3: no variable 'sped'; did you mean 'speed'?");
+  EXPECT_EQ(error_of(indoor, {{"vars.sped", "3"}}),
+            "--set vars.sped=3: no variable 'sped'; did you mean 'speed'?");
   EXPECT_EQ(error_of(indoor, {{"robots[1].count", "3"}}),
             "--set robots[1].count=3: 'robots' has 1 element; the last one is robots[0]");
   EXPECT_EQ(error_of(indoor, {{"robots.count", "-3"}}),
             "--set robots.count=-3: /robots/0/count: must be in [1, 1e+06], is -3; How many of them.");
   EXPECT_NE(error_of(indoor, {{"time.step.x", "3"}}).find("has no 'x' in it"), std::string::npos);
-  EXPECT_NE(error_of(indoor, {{"seed", "[1"}}).find("--set seed=[1: the value cannot be read"), std::string::npos);
+  EXPECT_NE(error_of(indoor, {{"seed", "[1"}}).find("--set seed=[1: the value cannot be read"),
+            std::string::npos);
   EXPECT_NE(error_of(indoor, {{"robots[x].count", "1"}}).find("whole number in brackets"), std::string::npos);
   EXPECT_NE(error_of(indoor, {{"", "1"}}).find("empty part"), std::string::npos);
   EXPECT_NE(error_of(indoor, {{"seed[0]", "1"}}).find("not a list"), std::string::npos);
-  EXPECT_NE(error_of("version: 1\nrobots: [{name: a, model: m}, {name: b, model: m}]", {{"robots.count", "1"}})
-                .find("'robots' has 2 elements; say which one, as robots[0]"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of("version: 1\nrobots: [{name: a, model: m}, {name: b, model: m}]", {{"robots.count", "1"}})
+          .find("'robots' has 2 elements; say which one, as robots[0]"),
+      std::string::npos);
 }
 
 TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {
@@ -163,7 +167,8 @@ TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {
   EXPECT_EQ(error_of("version: 1\nname: ${spede}\nvars: {speed: 1}\n"),
             "dir/s.yaml:2:7: no variable 'spede'; did you mean 'speed'?");
   EXPECT_NE(error_of("version: 1\nname: ${a\n").find("never closed"), std::string::npos);
-  EXPECT_NE(error_of("version: 1\nname: x${a}\nvars: {a: [1]}\n").find("is a list and cannot be part"), std::string::npos);
+  EXPECT_NE(error_of("version: 1\nname: x${a}\nvars: {a: [1]}\n").find("is a list and cannot be part"),
+            std::string::npos);
 }
 
 TEST(Scenario, VariablesCannotExplode) {
@@ -183,7 +188,8 @@ TEST(Scenario, VariablesCannotExplode) {
 TEST(Scenario, IncludesLieBelowTheIncludingFile) {
   const std::string folder = testing::TempDir() + "sandlot_includes/";
   std::filesystem::create_directories(folder + "sub");
-  std::ofstream(folder + "top.yaml") << "version: 1\ninclude: [a.yaml, sub/b.yaml]\nname: top\ntime: {substeps: 3}\n";
+  std::ofstream(folder + "top.yaml")
+      << "version: 1\ninclude: [a.yaml, sub/b.yaml]\nname: top\ntime: {substeps: 3}\n";
   std::ofstream(folder + "a.yaml") << "version: 1\nname: a\nseed: 1\ntime: {step: 5 ms, substeps: 7}\n";
   std::ofstream(folder + "sub/b.yaml") << "seed: 2\nworld: w.sdf\n";
   std::ofstream(folder + "loop.yaml") << "version: 1\ninclude: sub/back.yaml\n";

@@ -12,7 +12,8 @@ namespace spec = scenario_spec;
 /// Any scalar may be written as a text: a number with its unit, or ${variable}.
 Json schema_of_leaf(const FieldInfo& field) {
   const auto number = [&](bool integer) {
-    Json out = {{"type", {integer ? "integer" : "number", "string"}}, {"minimum", field.min}, {"maximum", field.max}};
+    Json out = {
+        {"type", {integer ? "integer" : "number", "string"}}, {"minimum", field.min}, {"maximum", field.max}};
     return out;
   };
   Json out = Json::object();
@@ -30,17 +31,18 @@ Json schema_of_leaf(const FieldInfo& field) {
     if (field.length > 0) out["minItems"] = out["maxItems"] = field.length;
   } else if (field.type == "list of lists of number") {
     out["type"] = {"array", "string"};
-    out["items"] = {{"type", "array"}, {"items", number(false)}, {"minItems", field.length}, {"maxItems", field.length}};
+    out["items"] = {
+        {"type", "array"}, {"items", number(false)}, {"minItems", field.length}, {"maxItems", field.length}};
   }
   if (!field.help.empty()) out["description"] = field.help;
   if (!field.unit.empty() && field.unit != "1") out["x-unit"] = field.unit;
   double value = 0;
-  if ((field.type == "number" || field.type == "integer") && parse_number(field.default_value, value) && !field.required)
+  if ((field.type == "number" || field.type == "integer") && parse_number(field.default_value, value) &&
+      !field.required)
     out["default"] = value;
   else if ((field.type == "choice" || field.type == "text") && !field.default_value.empty())
     out["default"] = field.default_value;
-  else if (field.type == "bool")
-    out["default"] = field.default_value == "true";
+  else if (field.type == "bool") out["default"] = field.default_value == "true";
   return out;
 }
 
@@ -100,8 +102,9 @@ Json pose_schema(const char* description) {
   Json planar = numbers, spatial = numbers;
   planar["minItems"] = planar["maxItems"] = 3;
   spatial["minItems"] = spatial["maxItems"] = 6;
-  return {{"description", description},
-          {"anyOf", {planar, spatial, object_of(describe_fields<spec::PoseKeys>()), Json{{"type", "string"}}}}};
+  return {
+      {"description", description},
+      {"anyOf", {planar, spatial, object_of(describe_fields<spec::PoseKeys>()), Json{{"type", "string"}}}}};
 }
 
 }  // namespace
@@ -128,16 +131,20 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   describe_as(keys["include"], {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}});
   Json& robot = keys["robots"]["items"]["properties"];
   describe_as(robot["pose"], pose_schema(""));
-  const Json named = {{"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}}};
+  const Json named = {
+      {"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}}};
   const Json controller = kinds_of(controllers, named, true);
   describe_as(robot["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
   describe_as(robot["controllers"], {{"type", "array"}, {"items", controller}});
   const Json mounted = {
-      {"link", {{"type", "string"}, {"description", "Link it is mounted on; the model's first one by default."}}},
+      {"link",
+       {{"type", "string"}, {"description", "Link it is mounted on; the model's first one by default."}}},
       {"pose", pose_schema("Pose in the link.")},
       {"level", {{"type", "string"}, {"description", "Level of abstraction."}}},
-      {"levels", {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
-  describe_as(robot["devices"], {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
+      {"levels",
+       {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
+  describe_as(robot["devices"],
+              {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
   return root.dump(2);
 }
 

@@ -23,7 +23,8 @@ struct Time {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"step", "s", "Length of a tick.", 1e-6, 10}, s.step_s);
     visit(Field{"substeps", "1", "Physics steps per tick.", 1, 1000}, s.substeps);
-    visit(Field{"control_interval", "1", "Ticks from one control step to the next.", 1, 1e6}, s.control_interval);
+    visit(Field{"control_interval", "1", "Ticks from one control step to the next.", 1, 1e6},
+          s.control_interval);
     visit(Field{"stop", "s", "Simulated time at which the run ends by itself.", 0, 9e9}, s.stop_s);
   }
 };
@@ -86,17 +87,23 @@ struct Robot {
   Node devices;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0, Field::required, 100},
+    visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
+                Field::required, 100},
           s.name);
-    visit(Field{"model", "", "Model file (SDF), relative to this file.", 0, 0, Field::required, 4096}, s.model);
+    visit(Field{"model", "", "Model file (SDF), relative to this file.", 0, 0, Field::required, 4096},
+          s.model);
     visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
-    visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."}, s.pose);
+    visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
+          s.pose);
     visit(Field{"distribution", "", "Where several start."}, s.distribution);
     visit(Field{"team", "", "Team it plays for.", 0, 0, Field::none, 100}, s.team);
-    visit(Field{"controller", "", "Kind of its controller, or a map with kind and the kind's keys."}, s.controller);
-    visit(Field{"controllers", "", "Several controllers: a list of maps with name, kind and the kind's keys."},
-          s.controllers);
-    visit(Field{"devices", "", "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
+    visit(Field{"controller", "", "Kind of its controller, or a map with kind and the kind's keys."},
+          s.controller);
+    visit(
+        Field{"controllers", "", "Several controllers: a list of maps with name, kind and the kind's keys."},
+        s.controllers);
+    visit(Field{"devices", "",
+                "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
           s.devices);
   }
 };
@@ -115,10 +122,11 @@ struct Root {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"version", "1", "Version of the scenario format.", 1, 1, Field::required}, s.version);
     visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.name);
-    visit(Field{"world", "", "World file (SDF), relative to this file; an empty plane if left out.", 0, 0, Field::none,
-                4096},
+    visit(Field{"world", "", "World file (SDF), relative to this file; an empty plane if left out.", 0, 0,
+                Field::none, 4096},
           s.world);
-    visit(Field{"physics", "", "Engine: rigid or planar, or a map with engine and the engine's keys."}, s.physics);
+    visit(Field{"physics", "", "Engine: rigid or planar, or a map with engine and the engine's keys."},
+          s.physics);
     visit(Field{"time", "", "How time runs."}, s.time);
     // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
     visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);

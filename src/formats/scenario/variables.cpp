@@ -47,7 +47,8 @@ class Variables {
       return use.error("no variable '" + name.substr(0, 60) + "'",
                        names_.empty() ? "there is no 'vars' in this scenario" : suggestion(name, names_));
     Variable& variable = found->second;
-    if (variable.state == Variable::busy) return variable.value.error("variable '" + name + "' is defined by itself");
+    if (variable.state == Variable::busy)
+      return variable.value.error("variable '" + name + "' is defined by itself");
     if (variable.state == Variable::raw) {
       variable.state = Variable::busy;
       Node value = variable.value;
@@ -71,7 +72,8 @@ class Variables {
         i += 3;
       } else if (text.compare(i, 2, "${") == 0) {
         const std::size_t end = text.find('}', i);
-        if (end == std::string::npos) return node.error("'${' is never closed", "write ${name}, or $${ for a plain ${");
+        if (end == std::string::npos)
+          return node.error("'${' is never closed", "write ${name}, or $${ for a plain ${");
         const std::string name(trim(std::string_view(text).substr(i + 2, end - i - 2)));
         SL_ASSIGN(const Node* value, value_of(name, node));
         if (i == 0 && end + 1 == text.size()) {
@@ -81,7 +83,8 @@ class Variables {
           return {};
         }
         if (!value->is_scalar())
-          return node.error("variable '" + name + "' is " + describe(*value) + " and cannot be part of a text");
+          return node.error("variable '" + name + "' is " + describe(*value) +
+                            " and cannot be part of a text");
         out += value->text();
         i = end + 1;
       } else {

@@ -15,7 +15,8 @@ std::string snake_case(const std::string& name) {
   std::string out;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const bool word = i > 0 && upper(name[i]) && name[i - 1] != '_' &&
-                      (!upper(name[i - 1]) || (i + 1 < name.size() && !upper(name[i + 1]) && name[i + 1] != '_'));
+                      (!upper(name[i - 1]) ||
+                       (i + 1 < name.size() && !upper(name[i + 1]) && name[i + 1] != '_'));
     if (word) out += '_';
     out += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
   }
@@ -29,7 +30,8 @@ std::string last_component(const std::string& name, const char* separator) {
 
 /// A text such as "[1, 2]" in an element of ours is YAML: XML has no lists of its own.
 Status read_flow(Node& node) {
-  if (node.is_scalar() && !node.text().empty() && (node.text().front() == '[' || node.text().front() == '{')) {
+  if (node.is_scalar() && !node.text().empty() &&
+      (node.text().front() == '[' || node.text().front() == '{')) {
     auto value = parse_yaml(node.text(), "", {.max_bytes = 1u << 20, .max_depth = 16, .max_nodes = 100'000});
     if (!value) return node.error("this list cannot be read: " + value.error().what, value.error().fix);
     const Place place = node.place();
@@ -64,7 +66,8 @@ Result<model::DeviceDecl> read_sensor(const Xml& element, const ResolvedFrames& 
   device.place = element.place;
   device.name = *element.attribute("name");
   const std::string* const type = element.attribute("type");
-  if (!type || type->empty()) return element.error("sensor '" + device.name + "' has no type", "write type=\"gpu_lidar\"");
+  if (!type || type->empty())
+    return element.error("sensor '" + device.name + "' has no type", "write type=\"gpu_lidar\"");
   device.sdf_types.push_back("sensor:" + *type);
   // A plugin inside a sensor is how Gazebo Classic says which of several it is.
   for (const Xml& child : element.children)
@@ -101,7 +104,8 @@ Result<model::DeviceDecl> read_plugin(const Xml& element) {
 
 Result<model::DeviceDecl> read_native_device(const Xml& element) {
   if (element.name != "sandlot:device")
-    return element.error("unknown element <" + element.name.substr(0, 60) + ">", "did you mean 'sandlot:device'?");
+    return element.error("unknown element <" + element.name.substr(0, 60) + ">",
+                         "did you mean 'sandlot:device'?");
   model::DeviceDecl device;
   device.place = element.place;
   for (const auto& [key, value] : element.attributes) {
@@ -112,7 +116,8 @@ Result<model::DeviceDecl> read_native_device(const Xml& element) {
                            suggestion(key, std::vector<std::string>{"name", "kind", "link"}));
   }
   if (device.name.empty()) return element.error("<sandlot:device> has no name", "write name=\"laser\"");
-  if (device.kind.empty()) return element.error("device '" + device.name + "' has no kind", "write kind=\"laser_scanner\"");
+  if (device.kind.empty())
+    return element.error("device '" + device.name + "' has no kind", "write kind=\"laser_scanner\"");
   if (const Xml* const pose = element.child("pose")) {
     if (const std::string* const relative = pose->attribute("relative_to"); relative && !relative->empty())
       return pose->error("the pose of a <sandlot:device> is relative to its link", "leave relative_to out");
@@ -139,8 +144,8 @@ Status name_devices(model::Model& model) {
     if (is_plugin(device)) continue;
     const auto [known, fresh] = taken.emplace(sanitised(device.name), device.place);
     if (!fresh)
-      return Error{"two devices have the address '" + known->first + "'", "the other one is at " + to_string(known->second),
-                   device.place};
+      return Error{"two devices have the address '" + known->first + "'",
+                   "the other one is at " + to_string(known->second), device.place};
   }
   // Plugins are often given several times under one name, once per joint.
   std::map<std::string, int> numbers;

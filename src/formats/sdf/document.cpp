@@ -17,18 +17,24 @@ constexpr std::size_t max_depth = 16;
 
 /// The minor number of version "1.x".
 Result<int> version_of(const Xml& root, Notes& notes) {
-  if (root.name == "robot") return root.error("this is URDF, which is not supported yet", "convert it: gz sdf -p robot.urdf");
+  if (root.name == "robot")
+    return root.error("this is URDF, which is not supported yet", "convert it: gz sdf -p robot.urdf");
   if (root.name != "sdf")
-    return root.error("the root element is <" + root.name.substr(0, 60) + ">", "an SDF file begins with <sdf version=\"1.9\">");
+    return root.error("the root element is <" + root.name.substr(0, 60) + ">",
+                      "an SDF file begins with <sdf version=\"1.9\">");
   const std::string* const text = root.attribute("version");
   if (!text) return root.error("<sdf> has no version", "write <sdf version=\"1.9\">");
   const std::vector<std::string_view> parts = split(*text, '.');
   double major = 0, minor = 0;
-  const bool numbers = parts.size() == 2 && parts[1].size() <= 2 && parse_number(parts[0], major) && parse_number(parts[1], minor);
+  const bool numbers = parts.size() == 2 && parts[1].size() <= 2 && parse_number(parts[0], major) &&
+                       parse_number(parts[1], minor);
   if (!numbers || major != 1 || minor != std::floor(minor) || minor < 0 || minor > 30)
     return root.error("version '" + text->substr(0, 20) + "' of SDF is not known", "1.5 to 1.9 are read");
-  if (minor < 5) return root.error("version " + *text + " of SDF is too old", "convert it to 1.5 or newer: gz sdf -p file.sdf");
-  if (minor > 9) notes.warn(root, "version " + *text + " of SDF is newer than 1.9", "what it added is not understood");
+  if (minor < 5)
+    return root.error("version " + *text + " of SDF is too old",
+                      "convert it to 1.5 or newer: gz sdf -p file.sdf");
+  if (minor > 9)
+    notes.warn(root, "version " + *text + " of SDF is newer than 1.9", "what it added is not understood");
   return static_cast<int>(minor);
 }
 
@@ -39,7 +45,8 @@ void modernise(Xml& element, int minor) {
       if (key == "frame") key = "relative_to";
   if (element.name == "axis" && minor < 7) {
     const Xml* const flag = element.child("use_parent_model_frame");
-    const bool in_model = flag && (flag->text == "1" || flag->text == "true" || flag->text == "True" || flag->text == "TRUE");
+    const bool in_model = flag && (flag->text == "1" || flag->text == "true" || flag->text == "True" ||
+                                   flag->text == "TRUE");
     Xml* const xyz = element.child("xyz");
     if (in_model && xyz) xyz->set_attribute("expressed_in", "__model__");
     std::erase_if(element.children, [](const Xml& child) { return child.name == "use_parent_model_frame"; });
@@ -83,7 +90,8 @@ class Loader {
 
   Result<Xml> include(const Xml& include, const std::string& folder) {
     const Xml* const uri = include.child("uri");
-    if (!uri || uri->text.empty()) return include.error("<include> has no <uri>", "name a model file or folder");
+    if (!uri || uri->text.empty())
+      return include.error("<include> has no <uri>", "name a model file or folder");
     if (const std::string* merge = include.attribute("merge"); merge && *merge != "false" && *merge != "0")
       return include.error("merge=\"true\" is not supported yet", "include the model without it");
     notes_.unused(include, "uri name pose static placement_frame plugin*");
@@ -107,7 +115,8 @@ class Loader {
                            "at most " + std::to_string(limits_.max_elements) + " are read");
     Xml model = cached->second.first;
     if (const Xml* name = include.child("name")) model.set_attribute("name", name->text);
-    if (const Xml* frame = include.child("placement_frame")) model.set_attribute("placement_frame", frame->text);
+    if (const Xml* frame = include.child("placement_frame"))
+      model.set_attribute("placement_frame", frame->text);
     for (const char* const key : {"pose", "static"}) {
       const Xml* const given = include.child(key);
       if (!given) continue;
@@ -143,7 +152,9 @@ class Loader {
         for (const std::string_view each : split(value ? value : "", ':'))
           if (!each.empty()) tried.push_back(beside(std::string(each), text.substr(8)));
       }
-      if (tried.empty()) return uri.error("'" + text + "' cannot be looked up", "set SANDLOT_PATH to the folder of your models");
+      if (tried.empty())
+        return uri.error("'" + text + "' cannot be looked up",
+                         "set SANDLOT_PATH to the folder of your models");
     } else if (text.find("://") != std::string::npos) {
       return uri.error("'" + text.substr(0, 100) + "' would have to be downloaded",
                        "download the model and include its folder by a relative path");
@@ -197,7 +208,8 @@ class Loader {
 
 }  // namespace
 
-Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes, const SdfLimits& limits) {
+Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes,
+                          const SdfLimits& limits) {
   return Loader(notes, limits).load(text, file);
 }
 

@@ -10,6 +10,7 @@ namespace sandlot::formats {
 
 /// The <sdf> element of `text`, includes resolved.
 /// Search   relative to the file, file://, and model:// through SANDLOT_PATH and GZ_SIM_RESOURCE_PATH.
-Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes, const SdfLimits& limits);
+Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes,
+                          const SdfLimits& limits);
 
 }  // namespace sandlot::formats

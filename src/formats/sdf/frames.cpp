@@ -20,13 +20,15 @@ std::string get(const Xml* element, const char* key) {
 struct Scope {
   explicit Scope(const Xml& element_) : element(&element_) {
     for (const Xml& child : element->children) {
-      if (child.name != "link" && child.name != "joint" && child.name != "frame" && child.name != "model") continue;
+      if (child.name != "link" && child.name != "joint" && child.name != "frame" && child.name != "model")
+        continue;
       members.emplace(*child.attribute("name"), &child);
       if (child.name == "model") models.emplace(&child, std::make_unique<Scope>(child));
     }
     canonical = get(element, "canonical_link");
     for (const char* const kind : {"link", "model"})
-      if (const Xml* const first = element->child(kind); first && canonical.empty()) canonical = *first->attribute("name");
+      if (const Xml* const first = element->child(kind); first && canonical.empty())
+        canonical = *first->attribute("name");
   }
   const Xml* element;
   std::map<std::string, const Xml*, std::less<>> members;
@@ -119,7 +121,8 @@ class Resolver {
     const std::string child_link = body_of(scope, child);
     if (child_link != child) out.child_links[&element] = child_link;
     if (const std::string& parent = element.child("parent")->text; parent != "world")
-      if (const std::string parent_link = body_of(scope, parent); parent_link != parent) out.parent_links[&element] = parent_link;
+      if (const std::string parent_link = body_of(scope, parent); parent_link != parent)
+        out.parent_links[&element] = parent_link;
     if (moved || child_link != child) {
       SL_ASSIGN(const Pose X_SC, pose_of(scope, child_link));
       SL_ASSIGN(const Pose X_SJ, pose_in_scope(joint));
@@ -157,9 +160,11 @@ class Resolver {
         continue;
       }
       const std::vector<Entity> base = path_of(*entity.scope, origin_of(*entity.element));
-      const std::string placed = entity.element->name == "model" ? get(entity.element, "placement_frame") : "";
-      const std::vector<Entity> inner =
-          placed.empty() ? std::vector<Entity>{} : path_of(*entity.scope->models.at(entity.element), placed);
+      const std::string placed = entity.element->name == "model" ? get(entity.element, "placement_frame")
+                                                                 : "";
+      const std::vector<Entity> inner = placed.empty()
+                                            ? std::vector<Entity>{}
+                                            : path_of(*entity.scope->models.at(entity.element), placed);
       const std::size_t size = stack.size();
       for (const auto* const path : {&base, &inner})
         for (const Entity& each : *path)
@@ -198,7 +203,8 @@ class Resolver {
       }
       const Xml& element = *found->second;
       if (element.name == "model") {
-        const std::string inner = body_of(*scope.models.at(&element), end == std::string::npos ? "" : rest.substr(end + 2));
+        const std::string inner = body_of(*scope.models.at(&element),
+                                          end == std::string::npos ? "" : rest.substr(end + 2));
         body = inner.empty() ? "" : found->first + "::" + inner;
         break;
       }

@@ -70,7 +70,8 @@ class Writer {
 void expect_same(const Pose& X, const ignition::math::Pose3d& Y) {
   // Some twenty poses of a few metres are chained; each product rounds coordinates below 100 m by 1.4e-14 a few times.
   EXPECT_NEAR(norm(X.p - Vec3{Y.Pos().X(), Y.Pos().Y(), Y.Pos().Z()}), 0, 1e-11);
-  EXPECT_NEAR(std::abs(X.q.w * Y.Rot().W() + X.q.x * Y.Rot().X() + X.q.y * Y.Rot().Y() + X.q.z * Y.Rot().Z()), 1, 1e-12);
+  EXPECT_NEAR(std::abs(X.q.w * Y.Rot().W() + X.q.x * Y.Rot().X() + X.q.y * Y.Rot().Y() + X.q.z * Y.Rot().Z()),
+              1, 1e-12);
 }
 
 int compared = 0;
@@ -134,7 +135,9 @@ TEST(Frames, AgreeWithLibsdformatOnRandomModels) {
     if (!ours || !errors.empty()) {
       // A random child may be the link that is the parent; then both refuse.
       EXPECT_FALSE(ours) << errors.front().Message() << "\n" << text;
-      EXPECT_TRUE(ours || ours.error().what.find("to itself") != std::string::npos) << ours.error().text() << "\n" << text;
+      EXPECT_TRUE(ours || ours.error().what.find("to itself") != std::string::npos)
+          << ours.error().text() << "\n"
+          << text;
       continue;
     }
     compare(*ours->instances[0].model, *theirs.Model(), "", {});
@@ -146,8 +149,10 @@ TEST(Frames, LongChainsAreFollowedWithoutRecursion) {
   constexpr int n = 20'000;
   std::string text = "<sdf version='1.9'><model name='m'><static>1</static>";
   for (int i = n; i > 0; --i)
-    text += "<frame name='f" + std::to_string(i) + "' attached_to='f" + std::to_string(i - 1) + "'><pose>0.5 0 0 0 0 0</pose></frame>\n";
-  text += "<link name='f0'/><link name='end'><pose relative_to='f" + std::to_string(n) + "'/></link></model></sdf>";
+    text += "<frame name='f" + std::to_string(i) + "' attached_to='f" + std::to_string(i - 1) +
+            "'><pose>0.5 0 0 0 0 0</pose></frame>\n";
+  text += "<link name='f0'/><link name='end'><pose relative_to='f" + std::to_string(n) +
+          "'/></link></model></sdf>";
   Diagnostics diagnostics;
   const auto result = parse_sdf(text, "f.sdf", diagnostics);
   ASSERT_TRUE(result) << result.error().text();

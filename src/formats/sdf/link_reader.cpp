@@ -18,11 +18,13 @@ Status check_inertia(const Xml& inertia, const model::Inertial& inertial) {
   const Vec3 d = inertial.moments, p = inertial.products;
   Eigen::Matrix3d tensor;
   tensor << d.x, p.x, p.y, p.x, d.y, p.z, p.y, p.z, d.z;
-  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
-  const std::string shown =
-      number_text(moments[0]) + ", " + number_text(moments[1]) + ", " + number_text(moments[2]);
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+  const std::string shown = number_text(moments[0]) + ", " + number_text(moments[1]) + ", " +
+                            number_text(moments[2]);
   if (!(moments[0] > 0))
-    return inertia.error("inertia is not physical: its principal moments are " + shown, "all must be above 0");
+    return inertia.error("inertia is not physical: its principal moments are " + shown,
+                         "all must be above 0");
   if (moments[0] + moments[1] < moments[2] * (1 - triangle_slack))
     return inertia.error("inertia is not physical: its principal moments are " + shown,
                          "no body has one that is larger than the sum of the others");
@@ -110,9 +112,7 @@ Result<model::Color> read_material(const Xml& visual) {
   if (const Xml* const material = visual.child("material")) {
     const Xml* const diffuse = material->child("diffuse");
     const Xml* const color = diffuse ? diffuse : material->child("ambient");
-    if (color) {
-      SL_ASSIGN(out, read_color(*color));
-    }
+    if (color) { SL_ASSIGN(out, read_color(*color)); }
   }
   out.a *= static_cast<float>(1 - transparency);
   return out;
@@ -129,11 +129,15 @@ Result<Pose> pose_of(const Xml& element, const ResolvedFrames& frames) {
 Result<std::optional<Shape>> read_shape(const Xml& owner, Notes& notes) {
   const Xml* const geometry = owner.child("geometry");
   const std::string said = "<" + owner.name + "> '" + *owner.attribute("name") + "'";
-  if (!geometry) return owner.error(said + " has no <geometry>", "give it a <box>, <sphere>, <cylinder>, <capsule> or <plane>");
+  if (!geometry)
+    return owner.error(said + " has no <geometry>",
+                       "give it a <box>, <sphere>, <cylinder>, <capsule> or <plane>");
   if (geometry->children.empty())
-    return geometry->error("<geometry> is empty", "give it a <box>, <sphere>, <cylinder>, <capsule> or <plane>");
+    return geometry->error("<geometry> is empty",
+                           "give it a <box>, <sphere>, <cylinder>, <capsule> or <plane>");
   const Xml& form = geometry->children.front();
-  if (geometry->children.size() > 1) notes.warn(geometry->children[1], "a second shape in one <geometry> is not used");
+  if (geometry->children.size() > 1)
+    notes.warn(geometry->children[1], "a second shape in one <geometry> is not used");
   const auto need = [&](const char* key) -> Result<double> {
     const Xml* const child = form.child(key);
     if (!child) return form.error("<" + form.name + "> has no <" + key + ">");
@@ -162,18 +166,22 @@ Result<std::optional<Shape>> read_shape(const Xml& owner, Notes& notes) {
     notes.unused(form, "normal size");
     Vec3 normal{0, 0, 1};
     SL_TRY(read_child(form, "normal", position_range, normal));
-    if (!(norm(normal) > 1e-6)) return form.error("the normal of this <plane> is zero", "write <normal>0 0 1</normal>");
+    if (!(norm(normal) > 1e-6))
+      return form.error("the normal of this <plane> is zero", "write <normal>0 0 1</normal>");
     return std::optional<Shape>(Plane{normalised(normal)});
   }
-  static const std::vector<std::string> known{"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap",
-                                              "ellipsoid", "cone", "polyline", "image", "empty"};
+  static const std::vector<std::string> known{"box",   "sphere",   "cylinder",  "capsule",
+                                              "plane", "mesh",     "heightmap", "ellipsoid",
+                                              "cone",  "polyline", "image",     "empty"};
   if (std::find(known.begin(), known.end(), form.name) == known.end())
     return form.error("unknown geometry <" + form.name.substr(0, 60) + ">", suggestion(form.name, known));
-  if (form.name != "empty") notes.warn(form, "geometry <" + form.name + "> is not supported yet", said + " is left out");
+  if (form.name != "empty")
+    notes.warn(form, "geometry <" + form.name + "> is not supported yet", said + " is left out");
   return std::optional<Shape>();
 }
 
-Result<model::Link> read_link(const Xml& element, const ResolvedFrames& frames, bool is_static, Notes& notes) {
+Result<model::Link> read_link(const Xml& element, const ResolvedFrames& frames, bool is_static,
+                              Notes& notes) {
   notes.unused(element, "pose inertial gravity collision* visual* sensor*",
                "velocity_decay must_be_base_link self_collide kinematic enable_wind");
   model::Link link;

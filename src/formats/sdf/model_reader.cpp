@@ -13,11 +13,12 @@ constexpr const char* silent_model_children = "allow_auto_disable enable_wind";
 constexpr double unlimited = 1e16;  ///< SDF's own word for it
 
 Result<model::JointType> joint_type(const Xml& joint) {
-  static constexpr std::pair<const char*, model::JointType> types[] = {{"fixed", model::JointType::fixed},
-                                                                      {"revolute", model::JointType::revolute},
-                                                                      {"continuous", model::JointType::continuous},
-                                                                      {"prismatic", model::JointType::prismatic},
-                                                                      {"ball", model::JointType::ball}};
+  static constexpr std::pair<const char*, model::JointType> types[] = {
+      {"fixed", model::JointType::fixed},
+      {"revolute", model::JointType::revolute},
+      {"continuous", model::JointType::continuous},
+      {"prismatic", model::JointType::prismatic},
+      {"ball", model::JointType::ball}};
   const std::string* const text = joint.attribute("type");
   const std::string name = "joint '" + *joint.attribute("name") + "'";
   if (!text) return joint.error(name + " has no type", "write type=\"revolute\"");
@@ -54,8 +55,10 @@ Status read_axis(const Xml& axis, const ResolvedFrames& frames, model::Joint& ou
   notes.unused(axis, "xyz limit dynamics", "initial_position");
   Vec3 direction{0, 0, 1};
   SL_TRY(read_child(axis, "xyz", position_range, direction));
-  if (const auto resolved = frames.axes.find(&axis); resolved != frames.axes.end()) direction = resolved->second;
-  if (!(norm(direction) > 1e-6)) return axis.child("xyz")->error("the axis of this joint is zero", "write 0 0 1");
+  if (const auto resolved = frames.axes.find(&axis); resolved != frames.axes.end())
+    direction = resolved->second;
+  if (!(norm(direction) > 1e-6))
+    return axis.child("xyz")->error("the axis of this joint is zero", "write 0 0 1");
   out.axis_J = normalised(direction);
   if (const Xml* const limit = axis.child("limit")) {
     notes.unused(*limit, "lower upper effort velocity", "stiffness dissipation");
@@ -64,7 +67,8 @@ Status read_axis(const Xml& axis, const ResolvedFrames& frames, model::Joint& ou
     SL_TRY(read_maximum(*limit, "effort", out.max_effort));
     SL_TRY(read_maximum(*limit, "velocity", out.max_velocity));
     if (out.lower > out.upper)
-      return limit->error("the lower limit " + number_text(out.lower) + " is above the upper limit " + number_text(out.upper));
+      return limit->error("the lower limit " + number_text(out.lower) + " is above the upper limit " +
+                          number_text(out.upper));
   }
   if (const Xml* const dynamics = axis.child("dynamics")) {
     notes.unused(*dynamics, "damping friction spring_stiffness spring_reference");
@@ -120,7 +124,8 @@ class ModelReader {
   void bring_to_front(const Xml& element) {
     const std::string* const canonical = element.attribute("canonical_link");
     if (!canonical) return;
-    const auto found = std::find_if(out_.links.begin(), out_.links.end(), [&](const model::Link& l) { return l.name == *canonical; });
+    const auto found = std::find_if(out_.links.begin(), out_.links.end(),
+                                    [&](const model::Link& l) { return l.name == *canonical; });
     if (found != out_.links.end()) std::rotate(out_.links.begin(), found, found + 1);
   }
 
@@ -139,7 +144,8 @@ class ModelReader {
         device.link = first_link;
         add(std::move(device), prefix);
       } else if (child.name == "model") {
-        SL_TRY(read_rest(child, prefix + *child.attribute("name") + "::", index_.at(first_links_.at(&child))));
+        SL_TRY(
+            read_rest(child, prefix + *child.attribute("name") + "::", index_.at(first_links_.at(&child))));
       } else if (starts_with(child.name, "sandlot:")) {
         SL_ASSIGN(model::DeviceDecl device, read_native_device(child));
         device.link = first_link;
@@ -163,7 +169,8 @@ class ModelReader {
     std::vector<std::string> known;
     for (const model::Link& link : out_.links)
       if (starts_with(link.name, prefix)) known.push_back(link.name.substr(prefix.size()));
-    return at.error("no link '" + name.substr(0, 60) + "' in model '" + out_.name + "'", suggestion(name, known));
+    return at.error("no link '" + name.substr(0, 60) + "' in model '" + out_.name + "'",
+                    suggestion(name, known));
   }
 
   Status read_link_devices(const Xml& link, const std::string& prefix) {
@@ -176,7 +183,8 @@ class ModelReader {
       } else if (starts_with(child.name, "sandlot:")) {
         SL_ASSIGN(model::DeviceDecl device, read_native_device(child));
         device.link = index;
-        if (child.attribute("link")) return child.error("a device inside a <link> is mounted on it", "leave the attribute link out");
+        if (child.attribute("link"))
+          return child.error("a device inside a <link> is mounted on it", "leave the attribute link out");
         add(std::move(device), prefix);
       }
     }
@@ -188,7 +196,8 @@ class ModelReader {
     const auto pose = frames_.poses.find(&frame);
     if (link == frames_.frame_links.end() || pose == frames_.poses.end()) return;
     const auto index = index_.find(prefix + link->second);
-    if (index != index_.end()) out_.frames.push_back({prefix + *frame.attribute("name"), index->second, pose->second});
+    if (index != index_.end())
+      out_.frames.push_back({prefix + *frame.attribute("name"), index->second, pose->second});
   }
 
   Status read_joint(const Xml& element, const std::string& prefix) {
@@ -204,9 +213,7 @@ class ModelReader {
     const std::string parent = end("parent", frames_.parent_links), child = end("child", frames_.child_links);
     SL_ASSIGN(joint.child, link_index(*element.child("child"), child, prefix));
     joint.parent = model::world_link;
-    if (parent != "world") {
-      SL_ASSIGN(joint.parent, link_index(*element.child("parent"), parent, prefix));
-    }
+    if (parent != "world") { SL_ASSIGN(joint.parent, link_index(*element.child("parent"), parent, prefix)); }
     if (joint.parent == joint.child)
       return element.error("joint '" + joint.name + "' joins link '" + child + "' to itself");
     const auto pose = frames_.poses.find(&element);
@@ -217,7 +224,8 @@ class ModelReader {
     }
     const bool turns = joint.type != model::JointType::fixed && joint.type != model::JointType::ball;
     const Xml* const axis = element.child("axis");
-    if (turns && !axis) return element.error("joint '" + joint.name + "' has no <axis>", "write <axis><xyz>0 0 1</xyz></axis>");
+    if (turns && !axis)
+      return element.error("joint '" + joint.name + "' has no <axis>", "write <axis><xyz>0 0 1</xyz></axis>");
     if (axis) SL_TRY(read_axis(*axis, frames_, joint, notes_));
     if (joint.type == model::JointType::continuous) {
       joint.lower = -unlimited;
@@ -238,7 +246,7 @@ class ModelReader {
   const ResolvedFrames& frames_;
   Notes& notes_;
   model::Model out_;
-  std::map<std::string, std::uint32_t> index_;  ///< of links
+  std::map<std::string, std::uint32_t> index_;               ///< of links
   std::unordered_map<const Xml*, std::string> first_links_;  ///< of nested models
 };
 
@@ -250,7 +258,8 @@ Result<Pose> model_pose(const Xml& element, const ResolvedFrames& frames) {
   return read_child_pose(element);
 }
 
-Result<std::shared_ptr<const model::Model>> read_model(const Xml& element, const ResolvedFrames& frames, Notes& notes) {
+Result<std::shared_ptr<const model::Model>> read_model(const Xml& element, const ResolvedFrames& frames,
+                                                       Notes& notes) {
   return ModelReader(frames, notes).read(element);
 }
 

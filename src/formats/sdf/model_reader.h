@@ -9,7 +9,8 @@
 namespace sandlot::formats {
 
 /// Reads a model with its nested models, whose links, joints and devices are called `nested::name`.
-Result<std::shared_ptr<const model::Model>> read_model(const Xml& element, const ResolvedFrames& frames, Notes& notes);
+Result<std::shared_ptr<const model::Model>> read_model(const Xml& element, const ResolvedFrames& frames,
+                                                       Notes& notes);
 /// Pose of a model in the world.
 Result<Pose> model_pose(const Xml& element, const ResolvedFrames& frames);
 

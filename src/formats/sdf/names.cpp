@@ -14,12 +14,15 @@ bool is_one_of(const std::string& name, std::initializer_list<const char*> names
 
 Result<std::string> name_of(const Xml& element) {
   const std::string* const name = element.attribute("name");
-  if (!name || trim(*name).empty()) return element.error("<" + element.name + "> has no name", "write <" + element.name + " name=\"...\">");
+  if (!name || trim(*name).empty())
+    return element.error("<" + element.name + "> has no name", "write <" + element.name + " name=\"...\">");
   if (name->size() > 200) return element.error("the name of this <" + element.name + "> is too long");
-  const bool reserved = *name == "world" || (name->size() >= 4 && starts_with(*name, "__") && name->substr(name->size() - 2) == "__");
+  const bool reserved = *name == "world" || (name->size() >= 4 && starts_with(*name, "__") &&
+                                             name->substr(name->size() - 2) == "__");
   if (reserved) return element.error("the name '" + *name + "' is reserved by SDF", "take another one");
   if (name->find("::") != std::string::npos)
-    return element.error("the name '" + *name + "' holds '::'", "SDF keeps it for things in nested models; take another name");
+    return element.error("the name '" + *name + "' holds '::'",
+                         "SDF keeps it for things in nested models; take another name");
   return *name;
 }
 
@@ -34,7 +37,8 @@ class Scope {
       const auto [known, fresh] = scope.members_.emplace(std::move(name), Member{&child});
       if (!fresh)
         return child.error("the name '" + known->first + "' is given twice in " + said(element),
-                           "the other one is the <" + known->second.element->name + "> in " + where(*known->second.element, child));
+                           "the other one is the <" + known->second.element->name + "> in " +
+                               where(*known->second.element, child));
     }
     return scope;
   }
@@ -83,12 +87,13 @@ Status check_unique(const Xml& parent, const char* sort) {
 class Checker {
  public:
   Status check(const Xml& element, int depth) {
-    SL_ASSIGN(Scope * const found, scope_of(element));
+    SL_ASSIGN(Scope* const found, scope_of(element));
     Scope& scope = *found;
     const bool world = element.name == "world";
     for (const Xml& child : element.children) {
       if (is_one_of(child.name, {"link", "joint", "frame", "model", "light"}))
-        if (const Xml* pose = child.child("pose")) SL_TRY(check_reference(*pose, "relative_to", element, scope));
+        if (const Xml* pose = child.child("pose"))
+          SL_TRY(check_reference(*pose, "relative_to", element, scope));
       if (child.name == "link") SL_TRY(check_link(child, element, scope));
       if (child.name == "joint") SL_TRY(check_joint(child, element, scope));
       if (child.name == "frame") SL_TRY(check_reference(child, "attached_to", element, scope));
@@ -147,7 +152,8 @@ class Checker {
   Status check_reference(const Xml& holder, const char* key, const Xml& element, const Scope& scope) {
     const std::string* const name = holder.attribute(key);
     if (!name || name->empty() || *name == "__root__" || find(element, *name)) return {};
-    return holder.error("no frame '" + name->substr(0, 60) + "' in " + Scope::said(element), suggestion(*name, scope.names()));
+    return holder.error("no frame '" + name->substr(0, 60) + "' in " + Scope::said(element),
+                        suggestion(*name, scope.names()));
   }
 
   Status check_link(const Xml& link, const Xml& model, const Scope& scope) {
@@ -155,7 +161,8 @@ class Checker {
       SL_TRY(check_unique(link, sort));
       for (const Xml& child : link.children)
         if (child.name == sort)
-          if (const Xml* pose = child.child("pose")) SL_TRY(check_reference(*pose, "relative_to", model, scope));
+          if (const Xml* pose = child.child("pose"))
+            SL_TRY(check_reference(*pose, "relative_to", model, scope));
     }
     if (const Xml* inertial = link.child("inertial"))
       if (const Xml* pose = inertial->child("pose"))
@@ -182,7 +189,8 @@ class Checker {
       std::vector<std::string> links;
       for (const Xml& child : model.children)
         if (child.name == "link") links.push_back(*child.attribute("name"));
-      return element->error("joint '" + *joint.attribute("name") + "': no link '" + name.substr(0, 60) + "' in " + Scope::said(model),
+      return element->error("joint '" + *joint.attribute("name") + "': no link '" + name.substr(0, 60) +
+                                "' in " + Scope::said(model),
                             suggestion(name, links));
     }
     if (const Xml* axis = joint.child("axis"))
@@ -199,8 +207,9 @@ class Checker {
     };
     if (attachment)
       return element.name == "frame" ? attribute(&element, "attached_to")
-             : element.name == "joint" && element.child("child") ? element.child("child")->text.substr(0, element.child("child")->text.find("::"))
-                                                                  : "";
+             : element.name == "joint" && element.child("child")
+                 ? element.child("child")->text.substr(0, element.child("child")->text.find("::"))
+                 : "";
     std::string relative = attribute(element.child("pose"), "relative_to");
     if (relative.empty()) relative = origin_of(element, true);
     return relative;
@@ -224,7 +233,8 @@ class Checker {
           const Xml* const pose = at->element->child("pose");
           const bool by_pose = !attachment && pose && pose->attribute("relative_to");
           return (by_pose ? *pose : *at->element)
-              .error("the frame '" + *at->element->attribute("name") + "' is defined by itself, in a circle of " +
+              .error("the frame '" + *at->element->attribute("name") +
+                     "' is defined by itself, in a circle of " +
                      (attachment ? "attached_to" : "relative_to"));
         }
         for (Scope::Member* done : walked) done->state = 2;

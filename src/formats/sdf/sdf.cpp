@@ -14,12 +14,14 @@ namespace {
 
 constexpr const char* world_children = "gravity physics* model* light* frame* plugin*";
 /// What is for the eye, the ear or the map only.
-constexpr const char* silent_world_children = "scene gui audio atmosphere magnetic_field spherical_coordinates";
+constexpr const char* silent_world_children =
+    "scene gui audio atmosphere magnetic_field spherical_coordinates";
 
 /// World plugins that ask Gazebo for what Sandlot does anyway.
 bool is_standard_plugin(const Xml& plugin) {
-  static constexpr const char* standard[] = {"physics", "scenebroadcaster", "usercommands", "sensors", "contact", "imu",
-                                             "forcetorque", "altimeter", "airpressure", "magnetometer", "navsat"};
+  static constexpr const char* standard[] = {
+      "physics",     "scenebroadcaster", "usercommands", "sensors",      "contact", "imu",
+      "forcetorque", "altimeter",        "airpressure",  "magnetometer", "navsat"};
   const std::string* const name = plugin.attribute("name");
   if (!name) return false;
   std::string last;
@@ -50,21 +52,22 @@ Result<model::Light> read_light(const Xml& element, Notes& notes) {
   notes.unused(element, "pose diffuse direction",
                "cast_shadows intensity specular attenuation spot visualize visual light_on");
   if (!type || (*type != "directional" && *type != "point" && *type != "spot"))
-    return element.error("light '" + light.name + "' has no type that is known", "write directional, point or spot");
+    return element.error("light '" + light.name + "' has no type that is known",
+                         "write directional, point or spot");
   light.type = *type == "directional" ? model::Light::Type::directional
                : *type == "point"     ? model::Light::Type::point
                                       : model::Light::Type::spot;
   if (const Xml* const pose = element.child("pose"))
-    if (const std::string* const relative = pose->attribute("relative_to"); relative && !relative->empty() && *relative != "world")
+    if (const std::string* const relative = pose->attribute("relative_to");
+        relative && !relative->empty() && *relative != "world")
       notes.warn(*pose, "relative_to of a light is not used", "it is placed in the world");
   SL_ASSIGN(light.X_WLight, read_child_pose(element));
   light.color = {1, 1, 1, 1};
-  if (const Xml* const diffuse = element.child("diffuse")) {
-    SL_ASSIGN(light.color, read_color(*diffuse));
-  }
+  if (const Xml* const diffuse = element.child("diffuse")) { SL_ASSIGN(light.color, read_color(*diffuse)); }
   Vec3 direction{0, 0, -1};
   SL_TRY(read_child(element, "direction", position_range, direction));
-  if (!(norm(direction) > 1e-6)) return element.child("direction")->error("the direction of this light is zero");
+  if (!(norm(direction) > 1e-6))
+    return element.child("direction")->error("the direction of this light is zero");
   light.X_WLight.q = light.X_WLight.q * quat_between({0, 0, -1}, normalised(direction));
   return light;
 }
@@ -79,8 +82,8 @@ class Instances {
     instance.place = element.place;
     const auto [known, fresh] = places_.emplace(instance.name, &element);
     if (!fresh)
-      return element.error("models '" + *known->second->attribute("name") + "' and '" + instance.original_name +
-                               "' have the same address '" + instance.name + "'",
+      return element.error("models '" + *known->second->attribute("name") + "' and '" +
+                               instance.original_name + "' have the same address '" + instance.name + "'",
                            "rename one; the other is at " + to_string(known->second->place));
     SL_ASSIGN(instance.model, read_model(element, frames, notes));
     SL_ASSIGN(instance.X_WM, model_pose(element, frames));
@@ -111,7 +114,8 @@ Status read_world(const Xml& world, const ResolvedFrames& frames, Notes& notes, 
       const std::string* const plugin = child.attribute("name");
       notes.warn(child, "plugin '" + (plugin ? plugin->substr(0, 100) : "") + "' of the world is not used");
     } else if (starts_with(child.name, "sandlot:")) {
-      return child.error("<" + child.name.substr(0, 60) + "> means nothing in a <world>", "put it into a <model>");
+      return child.error("<" + child.name.substr(0, 60) + "> means nothing in a <world>",
+                         "put it into a <model>");
     }
   }
   return {};
@@ -127,7 +131,8 @@ Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Dia
   const Xml& main = *main_element(root);
   for (const Xml& child : root.children)
     if (&child != &main && child.name.find(':') == std::string::npos)
-      notes.warn(child, "<" + child.name.substr(0, 60) + "> is not used", "the " + main.name + " of this file is read");
+      notes.warn(child, "<" + child.name.substr(0, 60) + "> is not used",
+                 "the " + main.name + " of this file is read");
   SL_ASSIGN(const ResolvedFrames frames, resolve_frames(root));
   SdfContent out;
   if (main.name == "world") {

@@ -26,10 +26,11 @@
 namespace sandlot::formats {
 
 struct SdfContent {
-  std::string world_name;                    ///< "" for a model file
+  std::string world_name;  ///< "" for a model file
   Vec3 gravity_mps2{0, 0, -9.81};
-  std::optional<double> max_step_s;          ///< <physics><max_step_size>
-  std::vector<model::Instance> instances;    ///< of a world: its models; of a model file: exactly one, at its own <pose>
+  std::optional<double> max_step_s;  ///< <physics><max_step_size>
+  std::vector<model::Instance>
+      instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>
   std::vector<model::Light> lights;
 };
 

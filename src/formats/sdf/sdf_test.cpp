@@ -28,11 +28,16 @@ Read parse(const std::string& text, const SdfLimits& limits = {}) {
   return out;
 }
 
-std::string world(const std::string& content) { return "<sdf version='1.9'><world name='w'>\n" + content + "\n</world></sdf>"; }
-std::string model(const std::string& content) { return "<sdf version='1.9'><model name='m'>\n" + content + "\n</model></sdf>"; }
+std::string world(const std::string& content) {
+  return "<sdf version='1.9'><world name='w'>\n" + content + "\n</world></sdf>";
+}
+std::string model(const std::string& content) {
+  return "<sdf version='1.9'><model name='m'>\n" + content + "\n</model></sdf>";
+}
 
 constexpr const char* body =
-    "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz><ixy>0.01</ixy></inertia></inertial>";
+    "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz><ixy>0.01</ixy></inertia></"
+    "inertial>";
 std::string link(const std::string& name, const std::string& content = "") {
   return "<link name='" + name + "'>" + body + content + "</link>";
 }
@@ -130,7 +135,8 @@ TEST(Sdf, ResolvesFramesByHand) {
   // b is at (2, 1, 1) and turned by 90 degrees. The axis y of the model is the axis x of the turned joint.
   const Read r = parse(model("<link name='a'><pose>0 0 1 0 0 0</pose>" + std::string(body) + R"(</link>
     <frame name="f" attached_to="a"><pose degrees="true">2 0 0 0 0 90</pose></frame>
-    <link name="b"><pose relative_to="f">1 0 0 0 0 0</pose>)" + body + R"(
+    <link name="b"><pose relative_to="f">1 0 0 0 0 0</pose>)" +
+                             body + R"(
       <collision name="c"><pose relative_to="a">2 1 0 0 0 0</pose><geometry><sphere><radius>1</radius></sphere></geometry></collision>
       <sensor name="s" type="no_such_sensor"><pose relative_to="__model__">0 0 0 0 0 0</pose></sensor></link>
     <joint name="j" type="revolute"><parent>a</parent><child>b</child>
@@ -147,10 +153,12 @@ TEST(Sdf, ResolvesFramesByHand) {
 }
 
 TEST(Sdf, FlattensNestedModels) {
-  const std::string text = model(link("base") + "<model name='arm'><pose>1 0 0 0 0 1.5707963267948966</pose>" +
-                                 "<link name='lower'><pose>1 0 0 0 0 0</pose>" + body + "</link>" + link("upper") +
-                                 "<joint name='elbow' type='revolute'><parent>lower</parent><child>upper</child><axis/></joint></model>" +
-                                 "<joint name='fix' type='fixed'><parent>base</parent><child>arm::lower</child></joint>");
+  const std::string text = model(
+      link("base") + "<model name='arm'><pose>1 0 0 0 0 1.5707963267948966</pose>" +
+      "<link name='lower'><pose>1 0 0 0 0 0</pose>" + body + "</link>" + link("upper") +
+      "<joint name='elbow' "
+      "type='revolute'><parent>lower</parent><child>upper</child><axis/></joint></model>" +
+      "<joint name='fix' type='fixed'><parent>base</parent><child>arm::lower</child></joint>");
   const Read r = parse(text);
   ASSERT_TRUE(r.content) << r.error;
   const model::Model& m = *r.content->instances[0].model;
@@ -172,12 +180,16 @@ TEST(Sdf, FlattensNestedModels) {
 }
 
 TEST(Sdf, ReadsWorlds) {
-  const Read r = parse(world("<gravity>0 0 -1.6</gravity><physics type='ode'><max_step_size>0.002</max_step_size></physics>" +
-                             std::string("<scene><sky/></scene><plugin name='gz::sim::systems::Physics' filename='x'/>") +
-                             "<light name='sun' type='directional'><pose>0 0 9 0 0 1.5707963267948966</pose><diffuse>1 0.5 0 1</diffuse>"
-                             "<direction>1 0 0</direction></light>"
-                             "<model name='my robot'><pose>1 0 0 0 0 0</pose>" + link("l") + "</model>"
-                             "<model name='wall'><static>true</static><link name='l'/></model>"));
+  const Read r = parse(
+      world("<gravity>0 0 -1.6</gravity><physics type='ode'><max_step_size>0.002</max_step_size></physics>" +
+            std::string("<scene><sky/></scene><plugin name='gz::sim::systems::Physics' filename='x'/>") +
+            "<light name='sun' type='directional'><pose>0 0 9 0 0 1.5707963267948966</pose><diffuse>1 0.5 0 "
+            "1</diffuse>"
+            "<direction>1 0 0</direction></light>"
+            "<model name='my robot'><pose>1 0 0 0 0 0</pose>" +
+            link("l") +
+            "</model>"
+            "<model name='wall'><static>true</static><link name='l'/></model>"));
   ASSERT_TRUE(r.content) << r.error;
   EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
   EXPECT_EQ(r.content->world_name, "w");
@@ -197,7 +209,8 @@ TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
       <sensor name="lidar" type="gpu_lidar"><pose>0.1 0 0.2 0 0 0</pose><always_on>1</always_on><update_rate>10</update_rate>
         <ray><scan><horizontal><samples>181</samples></horizontal></scan><noise type="gaussian"><mean>0</mean></noise></ray>
       </sensor><sensor name="cam" type="camera"/></link>
-    <link name="head">)" + body + R"(<sensor name="cam" type="camera"/></link>
+    <link name="head">)" + body +
+                             R"(<sensor name="cam" type="camera"/></link>
     <joint name="neck" type="fixed"><parent>base</parent><child>head</child>
       <sensor name="force" type="force_torque"/></joint>
     <plugin name="gz::sim::systems::DiffDrive" filename="libignition-gazebo-diff-drive-system.so">
@@ -226,7 +239,8 @@ TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
   EXPECT_EQ(d[3].link, 1u);
   EXPECT_EQ(d[3].config.find("@joint")->text(), "neck");
   EXPECT_EQ(d[4].name, "diff_drive");
-  EXPECT_EQ(d[4].sdf_types, (std::vector<std::string>{"plugin:DiffDrive", "plugin:ignition-gazebo-diff-drive-system"}));
+  EXPECT_EQ(d[4].sdf_types,
+            (std::vector<std::string>{"plugin:DiffDrive", "plugin:ignition-gazebo-diff-drive-system"}));
   EXPECT_EQ(d[4].config.find("left_joint")->items().at(1).text(), "b");
   EXPECT_EQ(d[4].config.find("topic")->find("#text")->text(), "t");
   EXPECT_EQ(d[5].name, "diff_drive_2");
@@ -241,12 +255,13 @@ TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
 }
 
 TEST(Sdf, NamesWhatIsNotUsedOnce) {
-  const Read r = parse(world("<model name='m'>\n<link name='l'>\n<collision name='c'><geometry>\n<mesh><uri>x</uri></mesh></geometry>"
-                             "</collision><other:thing/>\n<projector/></link></model>\n<road/><plugin name='Magic' filename='f'/>"));
+  const Read r = parse(world(
+      "<model name='m'>\n<link name='l'>\n<collision "
+      "name='c'><geometry>\n<mesh><uri>x</uri></mesh></geometry>"
+      "</collision><other:thing/>\n<projector/></link></model>\n<road/><plugin name='Magic' filename='f'/>"));
   ASSERT_TRUE(r.content) << r.error;
   const std::vector<std::string> expected = {
-      "f.sdf:7: <road> in <world> is not used",
-      "f.sdf:6: <projector> in <link> is not used",
+      "f.sdf:7: <road> in <world> is not used", "f.sdf:6: <projector> in <link> is not used",
       "f.sdf:3: link 'l' has no <inertial>; taken as 1 kg with moments of 1 kg m^2",
       "f.sdf:5: geometry <mesh> is not supported yet; <collision> 'c' is left out",
       "f.sdf:7: plugin 'Magic' of the world is not used"};
@@ -254,10 +269,12 @@ TEST(Sdf, NamesWhatIsNotUsedOnce) {
 }
 
 TEST(Sdf, OlderVersionsMeanTheSame) {
-  const Read r = parse("<sdf version='1.5'><world name='w'><physics><gravity>0 0 -5</gravity></physics><model name='m'>" +
-                       link("a", "<pose>0 0 0 0 0 1.5707963267948966</pose>") + link("b", "<pose frame='a'>1 0 0 0 0 0</pose>") +
-                       "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz>"
-                       "<use_parent_model_frame>1</use_parent_model_frame></axis></joint></model></world></sdf>");
+  const Read r = parse(
+      "<sdf version='1.5'><world name='w'><physics><gravity>0 0 -5</gravity></physics><model name='m'>" +
+      link("a", "<pose>0 0 0 0 0 1.5707963267948966</pose>") +
+      link("b", "<pose frame='a'>1 0 0 0 0 0</pose>") +
+      "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz>"
+      "<use_parent_model_frame>1</use_parent_model_frame></axis></joint></model></world></sdf>");
   ASSERT_TRUE(r.content) << r.error;
   EXPECT_EQ(r.content->gravity_mps2.z, -5);
   const model::Model& m = *r.content->instances[0].model;
@@ -265,7 +282,9 @@ TEST(Sdf, OlderVersionsMeanTheSame) {
   EXPECT_NEAR(m.joints[0].axis_J.y, -1, 1e-12) << "the model's x is the turned joint's -y";
   const Read newer = parse("<sdf version='1.11'><model name='m'>" + link("l") + "</model></sdf>");
   ASSERT_TRUE(newer.content) << newer.error;
-  EXPECT_EQ(newer.warnings, std::vector<std::string>{"f.sdf:1: version 1.11 of SDF is newer than 1.9; what it added is not understood"});
+  EXPECT_EQ(newer.warnings,
+            std::vector<std::string>{
+                "f.sdf:1: version 1.11 of SDF is newer than 1.9; what it added is not understood"});
 }
 
 TEST(Sdf, IncludesFilesAndFolders) {
@@ -273,12 +292,14 @@ TEST(Sdf, IncludesFilesAndFolders) {
   std::filesystem::create_directories(folder + "models/box");
   std::ofstream(folder + "models/box/model.config")
       << "<model><sdf version='1.4'>old.sdf</sdf><sdf version='1.6'>new.sdf</sdf></model>";
-  std::ofstream(folder + "models/box/new.sdf") << "<sdf version='1.6'><model name='box'>\n" << link("l") << "</model></sdf>";
-  std::ofstream(folder + "w.sdf") << "<sdf version='1.9'><world name='w'>"
-                                     "<include><uri>models/box</uri></include>"
-                                     "<include><uri>file://models/box/new.sdf</uri><name>second</name><pose>1 2 3 0 0 0</pose>"
-                                     "<static>1</static></include>"
-                                     "<include><uri>model://box</uri><name>third</name></include></world></sdf>";
+  std::ofstream(folder + "models/box/new.sdf") << "<sdf version='1.6'><model name='box'>\n"
+                                               << link("l") << "</model></sdf>";
+  std::ofstream(folder + "w.sdf")
+      << "<sdf version='1.9'><world name='w'>"
+         "<include><uri>models/box</uri></include>"
+         "<include><uri>file://models/box/new.sdf</uri><name>second</name><pose>1 2 3 0 0 0</pose>"
+         "<static>1</static></include>"
+         "<include><uri>model://box</uri><name>third</name></include></world></sdf>";
   setenv("SANDLOT_PATH", ("/nowhere:" + folder + "models").c_str(), 1);
   Diagnostics diagnostics;
   const auto r = read_sdf(folder + "w.sdf", diagnostics);
@@ -292,14 +313,19 @@ TEST(Sdf, IncludesFilesAndFolders) {
   EXPECT_TRUE(r->instances[1].model->is_static);
   EXPECT_EQ(r->instances[2].name, "third");
 
-  std::ofstream(folder + "a.sdf") << "<sdf version='1.9'><model name='a'>\n<include><uri>b.sdf</uri></include></model></sdf>";
-  std::ofstream(folder + "b.sdf") << "<sdf version='1.9'><model name='b'>\n\n<include><uri>a.sdf</uri></include></model></sdf>";
+  std::ofstream(folder + "a.sdf")
+      << "<sdf version='1.9'><model name='a'>\n<include><uri>b.sdf</uri></include></model></sdf>";
+  std::ofstream(folder + "b.sdf")
+      << "<sdf version='1.9'><model name='b'>\n\n<include><uri>a.sdf</uri></include></model></sdf>";
   const auto loop = read_sdf(folder + "a.sdf", diagnostics);
   ASSERT_FALSE(loop);
   EXPECT_EQ(loop.error().text(), folder + "b.sdf:3: 'a.sdf' includes itself");
-  const auto gone = parse_sdf("<sdf version='1.9'><world name='w'><include><uri>model://x</uri></include></world></sdf>", "f.sdf", diagnostics);
+  const auto gone = parse_sdf(
+      "<sdf version='1.9'><world name='w'><include><uri>model://x</uri></include></world></sdf>", "f.sdf",
+      diagnostics);
   ASSERT_FALSE(gone);
-  EXPECT_EQ(gone.error().text(), "f.sdf:1: 'model://x' cannot be looked up; set SANDLOT_PATH to the folder of your models");
+  EXPECT_EQ(gone.error().text(),
+            "f.sdf:1: 'model://x' cannot be looked up; set SANDLOT_PATH to the folder of your models");
   std::filesystem::remove_all(folder);
 }
 
@@ -321,7 +347,8 @@ TEST(Sdf, BoundsSizeDepthAndCount) {
 
 /// libsdformat reads the same file its own way; the values must agree.
 TEST(Sdf, AgreesWithLibsdformat) {
-  const std::string text = model(link("a", R"(<pose>1 2 3 0.1 0.2 0.3</pose>
+  const std::string text = model(
+      link("a", R"(<pose>1 2 3 0.1 0.2 0.3</pose>
       <collision name="c"><pose>0.1 0.2 0.3 0.4 0.5 0.6</pose><geometry><cylinder><radius>0.3</radius><length>0.7</length></cylinder></geometry></collision>)") +
       R"(<frame name="f"><pose>0 1 0 0.5 0.6 0.7</pose></frame>)" +
       link("b", "<pose relative_to='f'>4 5 6 0.7 0.8 0.9</pose>") +
@@ -334,7 +361,9 @@ TEST(Sdf, AgreesWithLibsdformat) {
   const auto expect_same = [](const Pose& X, const ignition::math::Pose3d& Y) {
     // Both compose fewer than ten rotations of unit length: 1e-14 is some tens of roundings.
     EXPECT_NEAR(norm(X.p - Vec3{Y.Pos().X(), Y.Pos().Y(), Y.Pos().Z()}), 0, 1e-13);
-    EXPECT_NEAR(std::abs(X.q.w * Y.Rot().W() + X.q.x * Y.Rot().X() + X.q.y * Y.Rot().Y() + X.q.z * Y.Rot().Z()), 1, 1e-14);
+    EXPECT_NEAR(
+        std::abs(X.q.w * Y.Rot().W() + X.q.x * Y.Rot().X() + X.q.y * Y.Rot().Y() + X.q.z * Y.Rot().Z()), 1,
+        1e-14);
   };
   for (std::size_t i = 0; i < 2; ++i) {
     const sdf::Link* const theirs = root.Model()->LinkByIndex(i);

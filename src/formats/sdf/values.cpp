@@ -21,16 +21,19 @@ bool listed(std::string_view names, std::string_view name, bool* several) {
 }
 
 Error out_of_range(const Xml& element, double x, Range range) {
-  const std::string bound = range.above_min ? "above " + number_text(range.min) + " and at most " + number_text(range.max)
-                                            : "in [" + number_text(range.min) + ", " + number_text(range.max) + "]";
+  const std::string bound = range.above_min
+                                ? "above " + number_text(range.min) + " and at most " + number_text(range.max)
+                                : "in [" + number_text(range.min) + ", " + number_text(range.max) + "]";
   if (x < 0 && range.min == 0)
     return element.error("negative " + element.name + ": " + number_text(x), "it must be " + bound);
   return element.error("<" + element.name + "> must be " + bound + ", is " + number_text(x));
 }
 
 Status in_range(const Xml& element, double x, Range range) {
-  if (!std::isfinite(x)) return element.error("<" + element.name + "> is not a finite number", "write a plain number");
-  if (x < range.min || x > range.max || (range.above_min && x == range.min)) return out_of_range(element, x, range);
+  if (!std::isfinite(x))
+    return element.error("<" + element.name + "> is not a finite number", "write a plain number");
+  if (x < range.min || x > range.max || (range.above_min && x == range.min))
+    return out_of_range(element, x, range);
   return {};
 }
 
@@ -50,7 +53,8 @@ bool read_numbers(std::string_view text, std::array<double, N>& out, std::size_t
 }
 
 Error not_numbers(const Xml& element, const char* wanted) {
-  return element.error("<" + element.name + "> is '" + element.text.substr(0, 40) + "'", std::string("expected ") + wanted);
+  return element.error("<" + element.name + "> is '" + element.text.substr(0, 40) + "'",
+                       std::string("expected ") + wanted);
 }
 
 }  // namespace
@@ -59,10 +63,8 @@ void Notes::warn(const Xml& element, std::string what, std::string fix) {
   // An included model stands in the world many times, but its lines are the same.
   if (said_.size() > max_warnings) return;
   if (!said_.emplace(to_string(element.place) + what, element.place.line).second) return;
-  if (said_.size() > max_warnings)
-    diagnostics_.warn({"further warnings are left out", "", element.place});
-  else
-    diagnostics_.warn(element.error(std::move(what), std::move(fix)));
+  if (said_.size() > max_warnings) diagnostics_.warn({"further warnings are left out", "", element.place});
+  else diagnostics_.warn(element.error(std::move(what), std::move(fix)));
 }
 
 void Notes::unused(const Xml& element, std::string_view used, std::string_view silent) {
@@ -103,9 +105,11 @@ Result<Vec3> read_vec3(const Xml& element, Range range) {
 Result<model::Color> read_color(const Xml& element) {
   std::array<double, 4> v{0, 0, 0, 1};
   std::size_t n = 0;
-  if (!read_numbers(element.text, v, n) || n < 3) return not_numbers(element, "three or four numbers from 0 to 1");
+  if (!read_numbers(element.text, v, n) || n < 3)
+    return not_numbers(element, "three or four numbers from 0 to 1");
   for (const double x : v) SL_TRY(in_range(element, x, {0, 1}));
-  return model::Color{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
+  return model::Color{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+                      static_cast<float>(v[3])};
 }
 
 Result<Pose> read_sdf_pose(const Xml& element) {
@@ -113,7 +117,8 @@ Result<Pose> read_sdf_pose(const Xml& element) {
   const std::string* const degrees = element.attribute("degrees");
   const bool quaternion = format && *format == "quat_xyzw";
   if (format && !quaternion && *format != "euler_rpy")
-    return element.error("rotation_format '" + format->substr(0, 40) + "' is not known", "write euler_rpy or quat_xyzw");
+    return element.error("rotation_format '" + format->substr(0, 40) + "' is not known",
+                         "write euler_rpy or quat_xyzw");
   if (element.text.empty()) return Pose{};  // SDF takes an empty <pose/> as the identity
   std::array<double, 7> v{};
   std::size_t n = 0;
@@ -131,23 +136,17 @@ Result<Pose> read_sdf_pose(const Xml& element) {
 }
 
 Status read_child(const Xml& parent, const char* key, Range range, double& out) {
-  if (const Xml* const child = parent.child(key)) {
-    SL_ASSIGN(out, read_double(*child, range));
-  }
+  if (const Xml* const child = parent.child(key)) { SL_ASSIGN(out, read_double(*child, range)); }
   return {};
 }
 
 Status read_child(const Xml& parent, const char* key, bool& out) {
-  if (const Xml* const child = parent.child(key)) {
-    SL_ASSIGN(out, read_flag(*child));
-  }
+  if (const Xml* const child = parent.child(key)) { SL_ASSIGN(out, read_flag(*child)); }
   return {};
 }
 
 Status read_child(const Xml& parent, const char* key, Range range, Vec3& out) {
-  if (const Xml* const child = parent.child(key)) {
-    SL_ASSIGN(out, read_vec3(*child, range));
-  }
+  if (const Xml* const child = parent.child(key)) { SL_ASSIGN(out, read_vec3(*child, range)); }
   return {};
 }
 

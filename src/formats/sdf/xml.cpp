@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t max_attributes = 100;
 
 /// Depth and counts without building anything, so that hostile text costs one pass and no memory.
-Status check_limits(std::string_view text, const SdfLimits& limits, const std::shared_ptr<const std::string>& file) {
+Status check_limits(std::string_view text, const SdfLimits& limits,
+                    const std::shared_ptr<const std::string>& file) {
   const auto refuse = [&](std::size_t at, std::string what, std::string fix = "") {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     return Error{std::move(what), std::move(fix), {file, static_cast<int>(line)}};
@@ -29,7 +30,8 @@ Status check_limits(std::string_view text, const SdfLimits& limits, const std::s
                                                                   : "";
     if (!end.empty()) {
       const std::size_t stop = text.find(end, i + (end == "-->" ? 4 : 2));
-      if (stop == std::string_view::npos) return refuse(i, "this is never closed by '" + std::string(end) + "'");
+      if (stop == std::string_view::npos)
+        return refuse(i, "this is never closed by '" + std::string(end) + "'");
       i = stop + end.size();
       continue;
     }
@@ -39,7 +41,8 @@ Status check_limits(std::string_view text, const SdfLimits& limits, const std::s
       const char c = text[j];
       if (quote) quote = c == quote ? '\0' : quote;
       else if (c == '"' || c == '\'') quote = c;
-      else if (c == '=' && ++attributes > max_attributes) return refuse(i, "the element has too many attributes");
+      else if (c == '=' && ++attributes > max_attributes)
+        return refuse(i, "the element has too many attributes");
       else if (c == '<') return refuse(i, "this tag is never closed by '>'");
     }
     if (j >= text.size()) return refuse(i, "this tag is never closed by '>'");
@@ -49,7 +52,8 @@ Status check_limits(std::string_view text, const SdfLimits& limits, const std::s
       if (++elements > limits.max_elements)
         return refuse(i, "too many elements", "at most " + std::to_string(limits.max_elements) + " are read");
       if (text[j - 1] != '/' && ++depth > limits.max_depth)
-        return refuse(i, "nested too deeply", "at most " + std::to_string(limits.max_depth) + " levels are allowed");
+        return refuse(i, "nested too deeply",
+                      "at most " + std::to_string(limits.max_depth) + " levels are allowed");
     }
     i = j + 1;
   }
@@ -70,7 +74,8 @@ std::string reason(const tinyxml2::XMLDocument& document) {
 void convert(const tinyxml2::XMLElement& from, Xml& to, const std::shared_ptr<const std::string>& file) {
   to.name = from.Name();
   to.place = {file, from.GetLineNum()};
-  for (const tinyxml2::XMLAttribute* a = from.FirstAttribute(); a; a = a->Next()) to.attributes.emplace_back(a->Name(), a->Value());
+  for (const tinyxml2::XMLAttribute* a = from.FirstAttribute(); a; a = a->Next())
+    to.attributes.emplace_back(a->Name(), a->Value());
   for (const tinyxml2::XMLNode* node = from.FirstChild(); node; node = node->NextSibling()) {
     if (const tinyxml2::XMLText* text = node->ToText()) {
       to.text += text->Value();
@@ -108,7 +113,8 @@ Result<Xml> parse_xml(std::string_view text, const std::string& file, const SdfL
   const auto name = std::make_shared<const std::string>(file);
   if (text.size() > limits.max_bytes)
     return Error{"is too large: " + std::to_string(text.size() >> 20) + " MiB",
-                 "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read", {name}};
+                 "at most " + std::to_string(limits.max_bytes >> 20) + " MiB are read",
+                 {name}};
   SL_TRY(check_text(text, file));
   SL_TRY(check_limits(text, limits, name));
   tinyxml2::XMLDocument document;
@@ -128,7 +134,8 @@ std::size_t count_elements(const Xml& root) {
 }
 
 Node node_of(const Xml& element) {
-  if (element.attributes.empty() && element.children.empty()) return Node::scalar(element.text, element.place);
+  if (element.attributes.empty() && element.children.empty())
+    return Node::scalar(element.text, element.place);
   Node out = Node::map(element.place);
   for (const auto& [key, value] : element.attributes) out.set("@" + key, Node::scalar(value, element.place));
   if (element.children.empty()) {
@@ -138,9 +145,11 @@ Node node_of(const Xml& element) {
   // Children of one name are collected without searching the map for each: there may be very many.
   std::vector<const Xml*> sorted;
   for (const Xml& child : element.children) sorted.push_back(&child);
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Xml* a, const Xml* b) { return a->name < b->name; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Xml* a, const Xml* b) { return a->name < b->name; });
   for (auto from = sorted.begin(); from != sorted.end();) {
-    const auto to = std::find_if(from, sorted.end(), [&](const Xml* other) { return other->name != (*from)->name; });
+    const auto to = std::find_if(from, sorted.end(),
+                                 [&](const Xml* other) { return other->name != (*from)->name; });
     const Xml& first = **from;
     Node value = to - from == 1 ? node_of(first) : Node::sequence(first.place);
     if (to - from > 1)
@@ -149,9 +158,9 @@ Node node_of(const Xml& element) {
     from = to;
   }
   // Back into the order of the file, so that the first complaint is about the first mistake.
-  std::stable_sort(out.entries().begin(), out.entries().end(), [](const Node::Entry& a, const Node::Entry& b) {
-    return a.key_place.line < b.key_place.line;
-  });
+  std::stable_sort(
+      out.entries().begin(), out.entries().end(),
+      [](const Node::Entry& a, const Node::Entry& b) { return a.key_place.line < b.key_place.line; });
   return out;
 }
 

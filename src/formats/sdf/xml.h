@@ -25,7 +25,9 @@ struct Xml {
   const Xml* child(std::string_view key) const;
   Xml* child(std::string_view key);
 
-  Error error(std::string what, std::string fix = "") const { return {std::move(what), std::move(fix), place}; }
+  Error error(std::string what, std::string fix = "") const {
+    return {std::move(what), std::move(fix), place};
+  }
 };
 
 /// The root element of a document.
@@ -37,6 +39,5 @@ std::size_t count_elements(const Xml& root);
 /// An element as a Node: attributes as keys with a leading '@', repeated children as a sequence, an element without
 /// either as its text. The text of an element that has attributes but no children is the key '#text'.
 Node node_of(const Xml& element);
-
 
 }  // namespace sandlot::formats

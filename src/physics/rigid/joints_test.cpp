@@ -241,6 +241,84 @@ TEST(RigidJoints, AWheelsAxisTurnsWithItsRobot) {
   EXPECT_NEAR(world.joint(id, 1).velocity, -40 * math::cos(0.02), 1e-5);
 }
 
+TEST(RigidJoints, ASpinningWheelDoesNotTiltADrivenRobot) {
+  World world(rigid::engine, {}, Vec3{});
+  model::Model m;
+  m.links.push_back(link_of("base", Box{{1, 1, 1}}, 50));
+  m.links.push_back(
+      link_of("wheel", Cylinder{0.1, 0.04}, 0.5, {{0, 0.6, 0}, quat_from_rpy(-math::pi / 2, 0, 0)}));
+  model::Joint axle = joint_of(model::JointType::continuous);
+  axle.parent = 0;
+  axle.child = 1;
+  m.joints.push_back(axle);
+  const InstanceId id = world.add(instance_of("a", m, {}, true));
+  // Spun up from outside, so that the base does not turn the other way: 40 rad/s, angular momentum L = 0.1.
+  const double inertia = 0.5 * 0.5 * 0.01;
+  const Wrench spin{world.engine->bodies(id)[1], {}, {0, 40 * inertia / h, 0}};
+  world.engine->apply(std::span(&spin, 1));
+  world.run(1, h);
+  EXPECT_NEAR(world.joint(id).velocity, 40, 1e-6);
+  world.drive(id, {.wz_radps = 2});
+  // A free body would answer the turning of the axis with L w = 0.2 Nm, and roll to and fro with L / I = 0.012 rad/s.
+  double roll = 0;
+  for (int i = 0; i < 300; ++i) {
+    world.run(1, h);
+    const Vec3 w = world.state(id).V_WB.angular;
+    roll = std::max(roll, std::sqrt(w.x * w.x + w.y * w.y));
+  }
+  EXPECT_LT(roll, 2e-4);
+  EXPECT_NEAR(world.joint(id).velocity, 40, 0.1);
+}
+
+TEST(RigidJoints, AMotorThatHoldsAWeightShowsItsTorque) {
+  World world(rigid::engine);
+  for (const bool slides : {false, true}) {
+    model::Model m;
+    m.links.push_back(link_of("arm", Sphere{0.1}, 2, {{0, 0, slides ? 5.0 : 0.0}, {}}));
+    m.links[0].inertial.X_LCo.p = {0.5, 0.1,
+                                   0.2};  // away from the anchor, whose force must not be mistaken for torque
+    m.links[0].collisions.clear();
+    model::Joint joint = joint_of(slides ? model::JointType::prismatic : model::JointType::revolute);
+    joint.axis_J = slides ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+    joint.parent = model::world_link;
+    m.joints.push_back(joint);
+    const InstanceId id = world.add(instance_of("arm", m));
+    world.target(id, 0, {.mode = JointTarget::Mode::velocity, .velocity = 0, .max_effort = 100});
+    world.run(50, h);
+    // About +y gravity turns a mass at +x by +m g x; the motor holds against it.
+    EXPECT_NEAR(world.joint(id).effort, slides ? 2 * 9.81 : -2 * 9.81 * 0.5, 1e-3);
+  }
+}
+
+TEST(RigidJoints, WhatAJointPushesPushesBack) {
+  for (const bool slides : {false, true})
+    for (const auto mode : {JointTarget::Mode::effort, JointTarget::Mode::velocity}) {
+      World world(rigid::engine, {}, Vec3{});
+      model::Model m;
+      m.links = {link_of("a", Sphere{0.1}, 1), link_of("b", Sphere{0.2}, 3, {{0.5, 0.2, 0}, {}})};
+      for (model::Link& link : m.links) link.collisions.clear();
+      model::Joint joint = joint_of(slides ? model::JointType::prismatic : model::JointType::continuous);
+      joint.axis_J = {0, 1, 0};
+      joint.parent = 0;
+      joint.child = 1;
+      m.joints.push_back(joint);
+      const InstanceId id = world.add(instance_of("two", m));
+      world.target(id, 0, {.mode = mode, .velocity = 1, .max_effort = 2, .effort = 2});
+      world.run(20, h);
+      Vec3 momentum, spin;
+      for (std::size_t l = 0; l < 2; ++l) {
+        const double mass = l ? 3 : 1, inertia = inertia_kg_m2(Sphere{l ? 0.2 : 0.1}, mass).x;
+        const BodyState& s = world.state(id, l);
+        momentum += mass * s.V_WB.linear;
+        spin += mass * cross(s.X_WB.p, s.V_WB.linear) + inertia * s.V_WB.angular;
+      }
+      EXPECT_GT(world.joint(id).velocity, 0.1);
+      EXPECT_LT(norm(momentum), 1e-12);
+      // The sub-step moves along straight lines, so angular momentum is kept to first order in h only.
+      EXPECT_LT(norm(spin), slides ? 1e-3 : 5e-3);
+    }
+}
+
 TEST(RigidJoints, ABallJointHoldsItsPointAndItsDampingDecays) {
   model::Joint joint = joint_of(model::JointType::ball);
   joint.damping = 0.05 * 3;

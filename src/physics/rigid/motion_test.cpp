@@ -54,6 +54,66 @@ TEST(RigidMotion, LinksWithoutGravityWeighNothing) {
   EXPECT_NEAR(world.state(id).V_WB.linear.z, -g / 4, 1e-12);  // 1 kg of weight moves 4 kg
 }
 
+TEST(RigidMotion, PartialWeightTurnsALump) {
+  Rigid world;
+  model::Model m;
+  m.links.push_back(link_of("heavy", Box{{0.2, 0.2, 0.2}}, 1));
+  m.links.push_back(link_of("floating", Box{{0.2, 0.2, 0.2}}, 3, {{0.4, 0, 0}, {}}));
+  m.links[1].gravity = false;
+  model::Joint fix;
+  fix.parent = 0;
+  fix.child = 1;
+  m.joints.push_back(fix);
+  const InstanceId id = world.add(instance_of("a", m, {{0, 0, 10}, {}}));
+  world.run(1, 0.001);
+  // The centre of mass is 0.3 m from where 1 kg weighs. Seen from above y, the heavy end goes down: w_y < 0.
+  const double inertia = 4 * inertia_kg_m2(Box{{0.2, 0.2, 0.2}}, 1).y + 0.09 + 3 * 0.01;
+  EXPECT_NEAR(world.state(id).V_WB.angular.y, -0.3 * g / inertia * 0.001, 1e-9);
+}
+
+TEST(RigidMotion, AForceOnALumpedLinkActsThere) {
+  Rigid world({}, {});
+  model::Model m;
+  m.links.push_back(link_of("a", Box{{0.2, 0.2, 0.2}}, 1));
+  m.links.push_back(link_of("b", Box{{0.2, 0.2, 0.2}}, 1, {{0.4, 0, 0}, {}}));
+  model::Joint fix;
+  fix.parent = 0;
+  fix.child = 1;
+  m.joints.push_back(fix);
+  const InstanceId id = world.add(instance_of("a", m));
+  const Wrench wrench{world.engine->bodies(id)[1], {0, 2, 0}, {}};
+  world.engine->apply(std::span(&wrench, 1));
+  world.run(1, 0.01);
+  const double inertia = 2 * inertia_kg_m2(Box{{0.2, 0.2, 0.2}}, 1).z + 2 * 0.04;
+  EXPECT_NEAR(world.state(id).V_WB.angular.z, 0.2 * 2 / inertia * 0.01, 1e-12);
+  EXPECT_NEAR(world.state(id, 1).V_WB.linear.y, 0.01 + 0.2 * world.state(id).V_WB.angular.z,
+              1e-8);  // it has turned
+}
+
+TEST(RigidMotion, WhereTheDirectSolverGivesUpNothingJumps) {
+  // Box against box, both aligned: with ODE 0.16.2 the direct solver fails here in some sub-steps. Left at that, the box
+  // would lose its friction and start with 5 cm/s.
+  Rigid world;
+  world.add(ground());
+  model::Surface rough, smooth;
+  rough.mu = 0.5;
+  smooth.mu = 0;
+  const Quat turned = quat_from_rpy(0, 0, math::pi / 4);
+  const double r = 0.2 / std::sqrt(2.0);
+  const InstanceId box = world.add(
+      body_of("box", Box{{0.2, 0.2, 0.2}}, 1, {{0, 0, 0.1}, turned}, rough, true));
+  const InstanceId pusher = world.add(
+      body_of("pusher", Box{{0.2, 0.2, 0.2}}, 1, {{-r, -r, 0.1}, turned}, smooth, true));
+  double fastest = 0;
+  for (int i = 0; i < 200; ++i) {
+    world.push(pusher, Vec3{0.5, 0.5, 0} * (0.5 * g / std::sqrt(2.0)));
+    world.run(1, 0.005);
+    fastest = std::max(fastest, norm(world.state(box).V_WB.linear));
+  }
+  EXPECT_GT(world.engine->counters().solver_messages, 0u) << "the scene no longer provokes it: find another";
+  EXPECT_LT(fastest, 2e-5);
+}
+
 TEST(RigidMotion, ATurningBodyKeepsItsRate) {
   Rigid world({}, {});
   const InstanceId id = world.add(body_of("ball", Sphere{0.1}, 1));
@@ -75,10 +135,18 @@ TEST_P(Slope, ABoxSticksBelowTheFrictionAngleAndSlidesAboveIt) {
     Rigid world({}, slope(angle, direction));
     model::Surface surface;
     surface.mu = surface.mu2 = mu;
-    world.add(ground(surface));
+    // A little deep, so that all corners touch from the start. Made before the ground or after it: either shape may be the first of the pair.
+    if (share < 1.2) world.add(ground(surface));
     const InstanceId id = world.add(
-        body_of("box", Box{{0.2, 0.2, 0.1}}, 1, {{0, 0, 0.05}, {}}, surface, true));
-    world.run(200, h);  // one second
+        body_of("box", Box{{0.2, 0.2, 0.1}}, 1, {{0, 0, 0.05 - 1e-7}, {}}, surface, true));
+    if (share > 1.2) world.add(ground(surface));
+    world.run(1, h);
+    if (share > 1) {
+      // From the first sub-step on friction points up the slope, though nothing has slipped yet.
+      const double gained = g * (math::sin(angle) - mu * math::cos(angle)) * h;
+      EXPECT_NEAR(norm(world.state(id).V_WB.linear), gained, 2e-5);
+    }
+    world.run(199, h);  // one second
     const Velocity v = world.state(id).V_WB;
     const Vec3 p = world.state(id).X_WB.p;
     const auto [sd, cd] = math::sincos(direction);
@@ -99,6 +167,22 @@ TEST_P(Slope, ABoxSticksBelowTheFrictionAngleAndSlidesAboveIt) {
 INSTANTIATE_TEST_SUITE_P(Directions, Slope,
                          ::testing::Values(0.0, math::pi / 6, math::pi / 4, 1.0, math::pi / 2, 2.5,
                                            -math::pi / 4));
+
+TEST(RigidMotion, SymmetricContactsDoNotEndTheDirectSolver) {
+  // Boxes that lie square to their pull: all corners reach their limit at once.
+  for (const double share : {0.5, 0.8, 0.9, 0.99}) {
+    const double half = 0.5 * share * g / std::sqrt(2.0);
+    for (const Vec3 pull : {Vec3{half, half, -g}, Vec3{half, -half, -g}, Vec3{-half, half, -g}}) {
+      Rigid world({}, pull);
+      model::Surface surface;
+      surface.mu = surface.mu2 = 0.5;
+      world.add(ground(surface));
+      world.add(body_of("box", Box{{0.2, 0.2, 0.1}}, 1, {{0, 0, 0.05}, {}}, surface, true));
+      world.run(200, 0.005);
+      EXPECT_EQ(world.engine->counters().solver_messages, 0u) << share;
+    }
+  }
+}
 
 TEST(RigidMotion, APushThroughAnotherBodyMeetsTheSameThreshold) {
   // A slippery pusher presses a rough box diagonally: the way in which friction must hold is known to the solver only.

@@ -217,8 +217,7 @@ int collide_round(const Shape& shape_a, const Pose& X_WA, const Shape& shape_b, 
   overlap.search_circle(A.a);
   overlap.search_circle(B.a);
   if (overlap.depth < 0) return 0;
-  // From the best so far, and from the middle, because a search may end on a kink.
-  overlap.search_around(overlap.n);
+  // Not from the best so far: that lies on a kink, and there the search would stay.
   overlap.search_around(normalised(d, overlap.n));
   if (overlap.depth < 0) return 0;
 

@@ -1,0 +1,38 @@
+/// Golden hashes: the state at the end of each scenario, the same in every build and for any number of threads.
+/// They change only with a commit that says why.
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+struct Golden {
+  const char* run;
+  const char* state_hash;
+};
+
+void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.run; }
+
+constexpr Golden goldens[] = {
+    {"scenarios/indoor.yaml --duration 20s", "cc10795d35b47444"},
+    {"scenarios/indoor.yaml --duration 20s --set physics=planar", "bf8d9715584d4874"},
+    {"scenarios/fleet.yaml --duration 20s", "dcf5e57224ad794f"},
+    {"scenarios/fleet.yaml --duration 20s --set physics=planar", "298e5f5f27673617"},
+    {"scenarios/pile.yaml --duration 10s", "de905fdd039c8d8e"},
+};
+
+class GoldenRun : public testing::TestWithParam<Golden> {};
+INSTANTIATE_TEST_SUITE_P(Scenarios, GoldenRun, testing::ValuesIn(goldens));
+
+TEST_P(GoldenRun, ends_in_the_known_state_for_1_2_and_4_threads) {
+  for (const int threads : {1, 2, 4}) {
+    const auto summary = summary_of(std::string(GetParam().run) + " --threads " + std::to_string(threads));
+    ASSERT_FALSE(summary.contains("failed")) << summary["failed"];
+    EXPECT_EQ(summary["state_hash"], GetParam().state_hash)
+        << threads << " threads, profile " << summary["profile"];
+  }
+}
+
+}  // namespace
+}  // namespace sandlot::test
