@@ -57,7 +57,7 @@ void Simulation::take_commands() {
     const std::lock_guard lock(inbox_mutex_);
     std::swap(carrying_out_, inbox_);
   }
-  std::stable_sort(carrying_out_.begin(), carrying_out_.end(), [](const Pending& a, const Pending& b) {
+  std::sort(carrying_out_.begin(), carrying_out_.end(), [](const Pending& a, const Pending& b) {
     return std::tuple(a.source.kind, a.source.id, a.sequence) <
            std::tuple(b.source.kind, b.source.id, b.sequence);
   });
