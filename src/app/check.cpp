@@ -21,7 +21,7 @@ nlohmann::ordered_json to_json(const Error& e, const char* severity) {
 /// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics) {
-  SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}}, diagnostics));
+  SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}, options.paths}, diagnostics));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
 
@@ -31,13 +31,9 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-const char* shape_name(const Shape& shape) {
-  static constexpr const char* names[] = {"box", "sphere", "cylinder", "capsule", "plane"};
-  return names[shape.index()];
-}
-
 const char* joint_name(model::JointType type) {
-  static constexpr const char* names[] = {"fixed", "revolute", "continuous", "prismatic", "ball"};
+  static constexpr const char* names[] = {"fixed", "revolute",  "continuous", "prismatic",
+                                          "ball",  "universal", "screw"};
   return names[static_cast<std::size_t>(type)];
 }
 

@@ -20,7 +20,8 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   int threads = 1;
   std::vector<formats::Override> overrides;
-  std::string summary_file;  ///< JSON
+  std::vector<std::string> paths;  ///< folders to search first
+  std::string summary_file;        ///< JSON
   std::string svg_file;
   std::string from_file;  ///< a snapshot to go on from
   std::string snapshot_file;
@@ -32,6 +33,7 @@ int run(const RunOptions& options);
 struct FileOptions {
   std::vector<std::string> files;
   std::vector<formats::Override> overrides;
+  std::vector<std::string> paths;  ///< folders to search first
   bool json = false;
 };
 int check(const FileOptions& options);

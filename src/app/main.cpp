@@ -49,6 +49,9 @@ struct RunFlags {
     verb.add_option("--set", sets,
                     "Change the scenario before it is loaded: path=value, such as physics=planar")
         ->allow_extra_args(false);
+    verb.add_option("--path", options.paths,
+                    "Folder to search for models and other files; may be given several times")
+        ->allow_extra_args(false);
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
@@ -128,6 +131,9 @@ int main(int argc, char** argv) {
     CLI::App* const verb = app.add_subcommand(name, help);
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
     verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
+        ->allow_extra_args(false);
+    verb->add_option("--path", file_options.paths,
+                     "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);
     verb->add_flag("--json", file_options.json, "Print as JSON");
     verb->footer(example);

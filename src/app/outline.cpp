@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/math.h"
+#include "geometry/mesh.h"
 
 namespace sandlot {
 namespace {
@@ -99,6 +100,22 @@ Outline outline(const Capsule& capsule, const Pose& X_WC) {
     add_rim(points, X_WC.p + end * capsule.length_m * axis, {r, 0, 0}, {0, r, 0});
   return polygon(std::move(points), X_WC.p, half_height);
 }
+
+/// Everything else: the hull of its corners.
+Outline outline_of_corners(const Shape& shape, const Pose& X_WC) {
+  std::vector<Vec3> points;
+  double half_height = 0;
+  for (const Vec3& v : tessellate(shape).vertices) {
+    const Vec3 corner = X_WC * v;
+    half_height = std::max(half_height, std::abs(corner.z - X_WC.p.z));
+    points.push_back(flat(corner));
+  }
+  return polygon(std::move(points), X_WC.p, half_height);
+}
+Outline outline(const Cone& s, const Pose& X) { return outline_of_corners(s, X); }
+Outline outline(const Ellipsoid& s, const Pose& X) { return outline_of_corners(s, X); }
+Outline outline(const Mesh& s, const Pose& X) { return outline_of_corners(s, X); }
+Outline outline(const Heightfield& s, const Pose& X) { return outline_of_corners(s, X); }
 
 /// Squared distance of p from the segment a-b, in the plane.
 double squared_distance(Vec3 p, Vec3 a, Vec3 b) {

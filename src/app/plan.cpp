@@ -18,7 +18,6 @@ constexpr std::size_t max_path_corners = 60'000;
 constexpr std::size_t max_detailed_robots = 100;
 constexpr std::size_t max_named_robots = 16;
 
-using Color = model::Color;
 constexpr Color white{1, 1, 1, 1}, black{0, 0, 0, 1};
 
 /// M. Okabe, K. Ito, Color Universal Design (2008), without its yellow and black; then two of our own.

@@ -21,7 +21,7 @@ struct Plan {
   struct Solid {
     Shape shape;
     Pose X_WC;
-    model::Color color;
+    Color color;
     bool moves = false;
   };
   /// A planar scan: where the sensor was, and where its beams ended.
@@ -39,7 +39,7 @@ struct Plan {
     std::vector<Scan> scans;
   };
   std::string title, subtitle;
-  model::Color ground{0.95f, 0.94f, 0.91f, 1};
+  Color ground{0.95f, 0.94f, 0.91f, 1};
   std::vector<Solid> solids;
   std::vector<Robot> robots;
 };

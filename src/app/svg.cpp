@@ -46,7 +46,7 @@ void add_solids(const Simulation& simulation, const Simulation::Entity& entity,
     const model::Link& link = model.links[l];
     const Pose X_WL = states[bodies[l].index].X_WB;
     for (const model::Visual& visual : link.visuals)
-      out.push_back({visual.shape, X_WL * visual.X_LC, visual.color, !model.is_static});
+      out.push_back({visual.shape, X_WL * visual.X_LC, visual.material.diffuse, !model.is_static});
     if (!link.visuals.empty()) continue;
     for (const model::Collision& collision : link.collisions)
       out.push_back({collision.shape, X_WL * collision.X_LC, {}, !model.is_static});
@@ -119,7 +119,7 @@ Plan SvgRecorder::plan() const {
       add_solids(simulation_, *entity, plan.solids);
       for (const model::Link& link : entity->instance.model->links)
         for (const model::Visual& visual : link.visuals)
-          if (std::holds_alternative<Plane>(visual.shape)) plan.ground = visual.color;
+          if (std::holds_alternative<Plane>(visual.shape)) plan.ground = visual.material.diffuse;
       continue;
     }
     Plan::Robot robot;

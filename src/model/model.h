@@ -10,6 +10,7 @@
 
 #include "base/node.h"
 #include "base/time.h"
+#include "geometry/color.h"
 #include "geometry/pose.h"
 #include "geometry/shape.h"
 
@@ -33,8 +34,13 @@ struct Inertial {
   Vec3 products;          ///< [kg m^2] ixy ixz iyz
 };
 
-struct Color {
-  float r = 0.7f, g = 0.7f, b = 0.7f, a = 1;
+/// What a visual looks like. PBR and scripts of materials are reduced to this.
+struct Material {
+  Color diffuse;  ///< times the texture, if there is one
+  Color specular{0, 0, 0, 1}, emissive{0, 0, 0, 1};
+  float shininess = 0;    ///< exponent of the highlight; 0: matt
+  std::string texture;    ///< file of the colour texture; "" for none
+  bool from_mesh = true;  ///< a mesh shows its own colours: the file said nothing of a material
 };
 
 struct Collision {
@@ -49,7 +55,8 @@ struct Visual {
   std::string name;
   Pose X_LC;
   Shape shape;
-  Color color;
+  Material material;
+  bool cast_shadows = true;
   Place place;
 };
 
@@ -63,7 +70,21 @@ struct Link {
   Place place;
 };
 
-enum class JointType : std::uint8_t { fixed, revolute, continuous, prismatic, ball };
+/// A universal joint turns about `axis_J` and then about `second->axis_J`; a screw turns and slides along one axis.
+enum class JointType : std::uint8_t { fixed, revolute, continuous, prismatic, ball, universal, screw };
+
+/// One axis of a joint follows another joint of the model: position = multiplier * (leader - reference) + offset.
+struct Mimic {
+  std::uint32_t joint = 0;  ///< index of the leader
+  double multiplier = 1, offset = 0, reference = 0;
+};
+
+/// The second axis of a universal joint. It is passive: it can be limited and damped, not driven or read.
+struct SecondAxis {
+  Vec3 axis_J{0, 1, 0};                ///< unit, in J, across the first
+  double lower = -1e16, upper = 1e16;  ///< [rad]
+  double damping = 0, friction = 0;    ///< [Nm s/rad], [Nm]
+};
 
 /// Joins child to parent. The joint frame J is fixed in the child; positions are 0 in the declared pose.
 struct Joint {
@@ -78,9 +99,32 @@ struct Joint {
   double max_velocity = 1e16;          ///< [rad/s] or [m/s]
   double damping = 0, friction = 0;    ///< [Nm s/rad], [Nm] (prismatic: [N s/m], [N])
   double spring_stiffness = 0, spring_reference = 0;
+  double thread_pitch_m = 0;         ///< of a screw: slide per turn, right-handed when positive
+  std::optional<SecondAxis> second;  ///< of universal joints only
+  std::optional<Mimic> mimic;
   Place place;
 };
 inline constexpr std::uint32_t world_link = ~0u;
+
+/// Directional and spot lights shine along -z of their frame.
+struct Light {
+  enum class Type : std::uint8_t { directional, point, spot } type = Type::directional;
+  std::string name;
+  Pose X_PLight;  ///< P: the world, or the link that carries it
+  Color color;    ///< times the intensity
+  Color specular{0, 0, 0, 1};
+  bool cast_shadows = false;
+  double range_m = 10;  ///< of point and spot lights: dark beyond
+  double constant = 1, linear = 0,
+         quadratic = 0;  ///< attenuation = 1 / (constant + linear d + quadratic d^2)
+  double inner_rad = 0, outer_rad = 0, falloff = 1;  ///< of spot lights: full within, dark without
+};
+
+/// A light on a link.
+struct LinkLight {
+  std::uint32_t link = 0;
+  Light light;
+};
 
 /// A named frame attached to a link.
 struct Frame {
@@ -108,6 +152,7 @@ struct Model {
   std::vector<Link> links;  ///< [0] is the canonical link
   std::vector<Joint> joints;
   std::vector<Frame> frames;
+  std::vector<LinkLight> lights;
   std::vector<DeviceDecl> devices;
   Place place;
 
@@ -122,6 +167,17 @@ struct ControllerDecl {
   Place place;
 };
 
+/// A path that an instance follows whatever happens to it (SDF <actor>): it pushes and is not pushed.
+struct Motion {
+  struct Key {
+    double time_s;  ///< since the beginning of a round, ascending, the first at 0
+    Pose X_WM;
+  };
+  std::vector<Key> keys;  ///< at least one; between keys the pose is interpolated
+  double delay_s = 0;     ///< before the first round; until then it stands at the first key
+  bool loop = true;       ///< begin again after the last key, else stay there
+};
+
 /// A model placed in the world. Robots are instances that have devices or controllers.
 struct Instance {
   std::string name;  ///< address: unique, sanitised
@@ -132,15 +188,14 @@ struct Instance {
   std::string team;
   std::vector<DeviceDecl> devices;  ///< the model's own with the scenario's changes
   std::vector<ControllerDecl> controllers;
+  std::optional<Motion> motion;
   Place place;
 };
 
-/// Directional and spot lights shine along -z of their frame.
-struct Light {
-  enum class Type : std::uint8_t { directional, point, spot } type = Type::directional;
-  std::string name;
-  Pose X_WLight;
-  Color color;
+/// Where the world's origin lies on the Earth (SDF <spherical_coordinates>), for satellite receivers and compasses.
+struct Geography {
+  double latitude_rad = 0, longitude_rad = 0, elevation_m = 0;
+  double heading_rad = 0;  ///< of the world's x axis, counter-clockwise from east
 };
 
 /// Everything a Simulation is built from.
@@ -156,6 +211,9 @@ struct Setup {
   std::optional<Time> stop;  ///< simulated time at which the run ends by itself
   std::vector<Instance> instances;
   std::vector<Light> lights;
+  Color ambient{0.4f, 0.4f, 0.4f, 1}, background{0.7f, 0.7f, 0.7f, 1};
+  std::optional<Geography> geography;
+  Vec3 magnetic_field_T{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< SDF's own default
 };
 
 }  // namespace sandlot::model

@@ -103,6 +103,10 @@ Dimensions dimensions(const Plane&) {
   SL_CHECK_MSG(false, "a plane is no bounded solid");
   return {};
 }
+template <class Other>
+Dimensions dimensions(const Other& s) {
+  return {Solid::Type::sphere, bounding_radius_m(s), 0, 0};
+}
 
 }  // namespace
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 
 #include "base/text.h"
 #include "devices/kind.h"
+#include "formats/resources.h"
 #include "formats/sdf/sdf.h"
 #include "sim/placement.h"
 
@@ -16,38 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> search_path() {
-  std::vector<std::string> folders;
-  for (const char* variable : {"SANDLOT_PATH", "GZ_SIM_RESOURCE_PATH"})
-    if (const char* value = std::getenv(variable))
-      for (const std::string_view folder : split(value, ':'))
-        if (!folder.empty()) folders.emplace_back(folder);
-  return folders;
-}
-
-/// The file behind what a scenario wrote: beside the scenario, absolute, or in a folder of the search path; a
-/// folder stands for its model.sdf.
-Result<std::string> locate(std::string written, const std::string& folder_of_file, const Place& place) {
-  if (starts_with(written, "model://")) written = written.substr(8);
-  if (starts_with(written, "file://")) written = written.substr(7);
-  std::vector<fs::path> candidates;
-  const fs::path path(written);
-  if (path.is_absolute()) {
-    candidates.push_back(path);
-  } else {
-    candidates.push_back(fs::path(folder_of_file) / path);
-    for (const std::string& folder : search_path()) candidates.push_back(fs::path(folder) / path);
-  }
+/// The file behind what a scenario wrote; a folder stands for its model.sdf.
+Result<std::string> locate(const std::string& written, const std::string& folder_of_file,
+                           const formats::SearchPath& path, const Place& place) {
+  SL_ASSIGN(const std::string found, formats::find_resource(written, folder_of_file, path, place));
   std::error_code ignored;
-  for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
-    if (fs::is_regular_file(candidate / "model.sdf", ignored))
-      return (candidate / "model.sdf").lexically_normal().string();
-  }
-  return Error{"there is no file '" + written + "'",
-               "looked at " + candidates.front().lexically_normal().string() +
-                   (candidates.size() > 1 ? " and in SANDLOT_PATH" : "; SANDLOT_PATH may name more folders"),
-               place};
+  if (!fs::is_directory(found, ignored)) return found;
+  const std::string file = (fs::path(found) / "model.sdf").string();
+  if (fs::is_regular_file(file, ignored)) return file;
+  return Error{"folder '" + found + "' holds no model.sdf", "name the file", place};
 }
 
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
@@ -140,7 +117,7 @@ model::Instance bare_ground() {
   model::Link link;
   link.name = "link";
   link.collisions.push_back({"collision", {}, Plane{{0, 0, 1}}, {}, {}});
-  link.visuals.push_back({"visual", {}, Plane{{0, 0, 1}}, {}, {}});
+  link.visuals.push_back({"visual", {}, Plane{{0, 0, 1}}, {}, true, {}});
   ground->links.push_back(std::move(link));
   model::Instance instance;
   instance.name = instance.original_name = "ground";
@@ -148,8 +125,9 @@ model::Instance bare_ground() {
   return instance;
 }
 
-Result<model::Setup> load_bare_world(const std::string& path, Diagnostics& diagnostics) {
-  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics));
+Result<model::Setup> load_bare_world(const std::string& path, const formats::SearchPath& search,
+                                     Diagnostics& diagnostics) {
+  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, {.path = search}));
   model::Setup setup;
   setup.name = content.world_name.empty() ? fs::path(path).stem().string() : content.world_name;
   if (content.max_step_s) setup.step = Time::from_s(*content.max_step_s);
@@ -160,8 +138,10 @@ Result<model::Setup> load_bare_world(const std::string& path, Diagnostics& diagn
 }  // namespace
 
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
-                                      const Pose& X_WM, Diagnostics& diagnostics) {
-  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(model_file, diagnostics));
+                                      const Pose& X_WM, Diagnostics& diagnostics,
+                                      std::span<const std::string> paths) {
+  SL_ASSIGN(formats::SdfContent content,
+            formats::read_sdf(model_file, diagnostics, {.path = formats::search_path(paths)}));
   if (content.instances.size() != 1 || !content.world_name.empty())
     return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
   model::Instance instance = std::move(content.instances.front());
@@ -175,19 +155,20 @@ Result<model::Instance> load_instance(const std::string& model_file, const std::
 
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::string extension = fs::path(path).extension().string();
+  const formats::SearchPath search = formats::search_path(options.paths);
   model::Setup setup;
   if (extension == ".sdf" || extension == ".world") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
-    SL_ASSIGN(setup, load_bare_world(path, diagnostics));
+    SL_ASSIGN(setup, load_bare_world(path, search, diagnostics));
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
-      SL_ASSIGN(
-          const std::string world,
-          locate(scenario.world, formats::base_folder(scenario, scenario.world_place), scenario.world_place));
-      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics));
+      SL_ASSIGN(const std::string world,
+                locate(scenario.world, formats::base_folder(scenario, scenario.world_place), search,
+                       scenario.world_place));
+      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, {.path = search}));
       SL_TRY(take_world(std::move(content), setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
@@ -204,11 +185,11 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     std::map<std::string, model::Instance> loaded;
     Placer placer(setup.instances, setup.seed);
     for (const formats::RobotGroup& group : scenario.robots) {
-      SL_ASSIGN(const std::string file,
-                locate(group.model, formats::base_folder(scenario, group.model_place), group.model_place));
+      SL_ASSIGN(const std::string file, locate(group.model, formats::base_folder(scenario, group.model_place),
+                                               search, group.model_place));
       auto known = loaded.find(file);
       if (known == loaded.end()) {
-        auto instance = load_instance(file, group.name, {}, diagnostics);
+        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths);
         if (!instance) {
           if (!instance.error().place.file) instance.error().place = group.model_place;
           return std::move(instance.error());

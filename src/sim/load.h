@@ -11,8 +11,9 @@ namespace sandlot {
 
 struct LoadOptions {
   std::span<const formats::Override> overrides = {};
-  std::optional<std::uint64_t> seed;  ///< replaces the scenario's
-  std::optional<double> stop_s;       ///< replaces the scenario's
+  std::optional<std::uint64_t> seed;        ///< replaces the scenario's
+  std::optional<double> stop_s;             ///< replaces the scenario's
+  std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
 };
 
 /// Loads a scenario (.yaml, .yml) or a world or model (.sdf, .world): what `sandlot run` accepts.
@@ -21,6 +22,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
 
 /// Loads one model file as an instance at `X_WM`, ready for a SpawnRequest.
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
-                                      const Pose& X_WM, Diagnostics& diagnostics);
+                                      const Pose& X_WM, Diagnostics& diagnostics,
+                                      std::span<const std::string> paths = {});
 
 }  // namespace sandlot

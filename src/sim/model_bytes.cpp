@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+
 namespace sandlot {
 namespace {
 
@@ -10,6 +13,8 @@ constexpr int max_node_depth = 64;
 /// One description of each struct serves both directions: `io` is a Save or a Load.
 struct Save {
   ByteWriter& w;
+  std::vector<const TriangleMesh*> meshes{};
+  std::vector<const HeightGrid*> grids{};
   static constexpr bool loading = false;
   template <class T>
   void value(const T& x) {
@@ -19,6 +24,8 @@ struct Save {
 };
 struct Load {
   ByteReader& r;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes{};
+  std::vector<std::shared_ptr<const HeightGrid>> grids{};
   static constexpr bool loading = true;
   template <class T>
   void value(T& x) {
@@ -38,6 +45,17 @@ void list(Io& io, T& items, Each&& each) {
   }
   for (auto& item : items)
     if (io.ok()) each(io, item);
+}
+
+template <class Io, class T, class Each>
+void optional(Io& io, T& item, Each&& each) {
+  bool present = item.has_value();
+  io.value(present);
+  if constexpr (Io::loading) {
+    item.reset();
+    if (present) item.emplace();
+  }
+  if (item) each(io, *item);
 }
 
 void node(Save& io, const Node& n) {
@@ -79,7 +97,84 @@ void node(Load& io, Node& n, int depth = 0) {
   }
 }
 
-/// Shapes as their index in the variant and their numbers.
+void color(auto& io, auto& c) {
+  io.value(c.r);
+  io.value(c.g);
+  io.value(c.b);
+  io.value(c.a);
+}
+
+void mesh(auto& io, auto& m) {
+  io.value(m.vertices);
+  io.value(m.triangles);
+  io.value(m.texture_uv);
+  list(io, m.parts, [](auto& i, auto& part) {
+    i.value(part.name);
+    i.value(part.first_triangle);
+    i.value(part.triangles);
+    color(i, part.color);
+    i.value(part.texture);
+  });
+  io.value(m.source);
+}
+
+void grid(auto& io, auto& g) {
+  io.value(g.columns);
+  io.value(g.rows);
+  io.value(g.size_x_m);
+  io.value(g.size_y_m);
+  io.value(g.height_m);
+  io.value(g.source);
+}
+
+bool consistent(const TriangleMesh& m) {
+  for (const auto& triangle : m.triangles)
+    for (const std::uint32_t corner : triangle)
+      if (corner >= m.vertices.size()) return false;
+  for (const MeshPart& part : m.parts)
+    if (part.first_triangle > m.triangles.size() || part.triangles > m.triangles.size() - part.first_triangle)
+      return false;
+  return m.texture_uv.empty() || m.texture_uv.size() == m.vertices.size();
+}
+
+bool consistent(const HeightGrid& g) {
+  return g.columns >= 2 && g.rows >= 2 && g.size_x_m > 0 && g.size_y_m > 0 &&
+         g.height_m.size() == static_cast<std::size_t>(g.columns) * static_cast<std::size_t>(g.rows);
+}
+
+/// Shapes as their index in the variant and their numbers; meshes and terrain, which shapes share, as their place in
+/// a table that is written once.
+template <class T>
+std::uint32_t place_in_table(std::vector<const T*>& table, const T* item) {
+  const auto found = std::find(table.begin(), table.end(), item);
+  if (found != table.end()) return static_cast<std::uint32_t>(found - table.begin());
+  table.push_back(item);
+  return static_cast<std::uint32_t>(table.size() - 1);
+}
+
+/// The first mention of a mesh or grid brings it along.
+template <class T, class Each>
+void shared(Save& io, std::vector<const T*>& table, const std::shared_ptr<const T>& item, Each&& each) {
+  const std::size_t known = table.size();
+  const std::uint32_t index = place_in_table(table, item.get());
+  io.value(index);
+  if (index == known) each(io, *item);
+}
+template <class T, class Each>
+void shared(Load& io, std::vector<std::shared_ptr<const T>>& table, std::shared_ptr<const T>& item,
+            Each&& each) {
+  std::uint32_t index = 0;
+  io.value(index);
+  if (index > table.size()) return io.r.fail();
+  if (index == table.size()) {
+    auto fresh = std::make_shared<T>();
+    each(io, *fresh);
+    if (!io.ok() || !consistent(*fresh)) return io.r.fail();
+    table.push_back(std::move(fresh));
+  }
+  item = table[index];
+}
+
 void shape(Save& io, const Shape& s) {
   std::array<double, 3> n{};
   if (const auto* b = std::get_if<Box>(&s)) n = {b->size_m.x, b->size_m.y, b->size_m.z};
@@ -87,8 +182,14 @@ void shape(Save& io, const Shape& s) {
   if (const auto* c = std::get_if<Cylinder>(&s)) n = {c->radius_m, c->length_m, 0};
   if (const auto* c = std::get_if<Capsule>(&s)) n = {c->radius_m, c->length_m, 0};
   if (const auto* p = std::get_if<Plane>(&s)) n = {p->normal.x, p->normal.y, p->normal.z};
+  if (const auto* c = std::get_if<Cone>(&s)) n = {c->radius_m, c->length_m, 0};
+  if (const auto* e = std::get_if<Ellipsoid>(&s)) n = {e->radii_m.x, e->radii_m.y, e->radii_m.z};
   io.value(static_cast<std::uint8_t>(s.index()));
   io.value(n);
+  if (const auto* m = std::get_if<Mesh>(&s))
+    shared(io, io.meshes, m->mesh, [](auto& i, auto& x) { mesh(i, x); });
+  if (const auto* h = std::get_if<Heightfield>(&s))
+    shared(io, io.grids, h->grid, [](auto& i, auto& x) { grid(i, x); });
 }
 void shape(Load& io, Shape& s) {
   std::uint8_t index = 0;
@@ -101,15 +202,22 @@ void shape(Load& io, Shape& s) {
     case 2: s = Cylinder{n[0], n[1]}; break;
     case 3: s = Capsule{n[0], n[1]}; break;
     case 4: s = Plane{{n[0], n[1], n[2]}}; break;
+    case 5: s = Cone{n[0], n[1]}; break;
+    case 6: s = Ellipsoid{{n[0], n[1], n[2]}}; break;
+    case 7: {
+      Mesh m;
+      shared(io, io.meshes, m.mesh, [](auto& i, auto& x) { mesh(i, x); });
+      if (m.mesh) s = std::move(m);
+      break;
+    }
+    case 8: {
+      Heightfield h;
+      shared(io, io.grids, h.grid, [](auto& i, auto& x) { grid(i, x); });
+      if (h.grid) s = std::move(h);
+      break;
+    }
     default: io.r.fail();
   }
-}
-
-void color(auto& io, auto& c) {
-  io.value(c.r);
-  io.value(c.g);
-  io.value(c.b);
-  io.value(c.a);
 }
 
 void collision(auto& io, auto& c) {
@@ -132,7 +240,13 @@ void visual(auto& io, auto& v) {
   io.value(v.name);
   io.value(v.X_LC);
   shape(io, v.shape);
-  color(io, v.color);
+  color(io, v.material.diffuse);
+  color(io, v.material.specular);
+  color(io, v.material.emissive);
+  io.value(v.material.shininess);
+  io.value(v.material.texture);
+  io.value(v.material.from_mesh);
+  io.value(v.cast_shadows);
 }
 
 void link(auto& io, auto& l) {
@@ -162,6 +276,36 @@ void joint(auto& io, auto& j) {
   io.value(j.friction);
   io.value(j.spring_stiffness);
   io.value(j.spring_reference);
+  io.value(j.thread_pitch_m);
+  optional(io, j.second, [](auto& i, auto& s) {
+    i.value(s.axis_J);
+    i.value(s.lower);
+    i.value(s.upper);
+    i.value(s.damping);
+    i.value(s.friction);
+  });
+  optional(io, j.mimic, [](auto& i, auto& m) {
+    i.value(m.joint);
+    i.value(m.multiplier);
+    i.value(m.offset);
+    i.value(m.reference);
+  });
+}
+
+void light(auto& io, auto& l) {
+  io.value(l.type);
+  io.value(l.name);
+  io.value(l.X_PLight);
+  color(io, l.color);
+  color(io, l.specular);
+  io.value(l.cast_shadows);
+  io.value(l.range_m);
+  io.value(l.constant);
+  io.value(l.linear);
+  io.value(l.quadratic);
+  io.value(l.inner_rad);
+  io.value(l.outer_rad);
+  io.value(l.falloff);
 }
 
 void device(auto& io, auto& d) {
@@ -190,6 +334,10 @@ void whole_model(auto& io, auto& m) {
     i.value(f.link);
     i.value(f.X_LF);
   });
+  list(io, m.lights, [](auto& i, auto& l) {
+    i.value(l.link);
+    light(i, l.light);
+  });
   list(io, m.devices, [](auto& i, auto& d) { device(i, d); });
 }
 
@@ -203,12 +351,16 @@ void setup_values(auto& io, auto& s) {
   io.value(s.control_interval);
   io.value(s.seed);
   io.value(s.stop);
-  list(io, s.lights, [](auto& i, auto& l) {
-    i.value(l.type);
-    i.value(l.name);
-    i.value(l.X_WLight);
-    color(i, l.color);
+  list(io, s.lights, [](auto& i, auto& l) { light(i, l); });
+  color(io, s.ambient);
+  color(io, s.background);
+  optional(io, s.geography, [](auto& i, auto& g) {
+    i.value(g.latitude_rad);
+    i.value(g.longitude_rad);
+    i.value(g.elevation_m);
+    i.value(g.heading_rad);
   });
+  io.value(s.magnetic_field_T);
 }
 
 void instance_values(auto& io, auto& x) {
@@ -219,6 +371,14 @@ void instance_values(auto& io, auto& x) {
   io.value(x.team);
   list(io, x.devices, [](auto& i, auto& d) { device(i, d); });
   list(io, x.controllers, [](auto& i, auto& c) { controller(i, c); });
+  optional(io, x.motion, [](auto& i, auto& m) {
+    list(i, m.keys, [](auto& each, auto& key) {
+      each.value(key.time_s);
+      each.value(key.X_WM);
+    });
+    i.value(m.delay_s);
+    i.value(m.loop);
+  });
 }
 
 /// Indices that the rest of the program follows without asking.
@@ -227,8 +387,10 @@ bool consistent(const model::Model& m) {
   if (links == 0) return false;
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
-        j.type > model::JointType::ball)
+        j.type > model::JointType::screw || (j.mimic && j.mimic->joint >= m.joints.size()))
       return false;
+  for (const model::LinkLight& l : m.lights)
+    if (l.link >= links) return false;
   for (const model::Frame& f : m.frames)
     if (f.link >= links) return false;
   for (const model::DeviceDecl& d : m.devices)
@@ -285,6 +447,7 @@ bool read_setup(ByteReader& r, model::Setup& setup) {
     io.value(index);
     if (!r.ok() || index >= models.size()) return false;
     instance.model = models[index];
+    if (instance.motion && instance.motion->keys.empty()) return false;
     for (const model::DeviceDecl& d : instance.devices)
       if (d.link >= instance.model->links.size()) return false;
     setup.instances.push_back(std::move(instance));

@@ -1,11 +1,11 @@
 #include "formats/sdf/document.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 
 #include "base/text.h"
+#include "formats/resources.h"
 #include "formats/text.h"
 
 namespace sandlot::formats {
@@ -61,10 +61,10 @@ void modernise(Xml& element, int minor) {
 
 class Loader {
  public:
-  Loader(Notes& notes, const SdfLimits& limits) : notes_(notes), limits_(limits) {}
+  Loader(Notes& notes, const SdfOptions& options) : notes_(notes), options_(options) {}
 
   Result<Xml> load(std::string_view text, const std::string& file) {
-    SL_ASSIGN(Xml root, parse_xml(text, file, limits_));
+    SL_ASSIGN(Xml root, parse_xml(text, file, options_.limits));
     SL_ASSIGN(const int minor, version_of(root, notes_));
     modernise(root, minor);
     open_.push_back(canonical_path(file));
@@ -102,7 +102,7 @@ class Loader {
     if (open_.size() >= max_depth) return uri->error("files are included more than 16 deep");
     auto cached = files_.find(canonical);
     if (cached == files_.end()) {
-      auto text = read_text_file(path, limits_.max_bytes);
+      auto text = read_text_file(path, options_.limits.max_bytes);
       if (!text) return uri->error("cannot include '" + path + "': " + text.error().what, text.error().fix);
       SL_ASSIGN(Xml root, load(*text, path));
       SL_ASSIGN(Xml model, only_model(root));
@@ -110,9 +110,9 @@ class Loader {
       cached = files_.emplace(canonical, std::pair(std::move(model), size)).first;
     }
     elements_ += cached->second.second;
-    if (elements_ > limits_.max_elements)
+    if (elements_ > options_.limits.max_elements)
       return include.error("the included files have too many elements together",
-                           "at most " + std::to_string(limits_.max_elements) + " are read");
+                           "at most " + std::to_string(options_.limits.max_elements) + " are read");
     Xml model = cached->second.first;
     if (const Xml* name = include.child("name")) model.set_attribute("name", name->text);
     if (const Xml* frame = include.child("placement_frame"))
@@ -142,36 +142,9 @@ class Loader {
   }
 
   Result<std::string> find(const Xml& uri, const std::string& folder) {
-    const std::string& text = uri.text;
-    std::vector<std::string> tried;
-    if (starts_with(text, "file://")) {
-      tried.push_back(beside(folder, text.substr(7)));
-    } else if (starts_with(text, "model://")) {
-      for (const char* const variable : {"SANDLOT_PATH", "GZ_SIM_RESOURCE_PATH"}) {
-        const char* const value = std::getenv(variable);
-        for (const std::string_view each : split(value ? value : "", ':'))
-          if (!each.empty()) tried.push_back(beside(std::string(each), text.substr(8)));
-      }
-      if (tried.empty())
-        return uri.error("'" + text + "' cannot be looked up",
-                         "set SANDLOT_PATH to the folder of your models");
-    } else if (text.find("://") != std::string::npos) {
-      return uri.error("'" + text.substr(0, 100) + "' would have to be downloaded",
-                       "download the model and include its folder by a relative path");
-    } else {
-      tried.push_back(beside(folder, text));
-    }
-    std::string list;
-    for (const std::string& path : tried) {
-      std::error_code failed;
-      if (fs::is_directory(path, failed)) {
-        SL_ASSIGN(const std::string file, file_in(uri, path));
-        return file;
-      }
-      if (fs::exists(path, failed)) return path;
-      list += (list.empty() ? "" : ", ") + path;
-    }
-    return uri.error("'" + text.substr(0, 100) + "' is not there", "looked for " + list);
+    SL_ASSIGN(const std::string path, find_resource(uri.text, folder, options_.path, uri.place));
+    std::error_code failed;
+    return fs::is_directory(path, failed) ? file_in(uri, path) : Result<std::string>(path);
   }
 
   /// The model file of a model folder: the newest one of its model.config that we read, or model.sdf.
@@ -180,7 +153,7 @@ class Loader {
     std::error_code failed;
     if (!fs::exists(config, failed)) return folder + "/model.sdf";
     SL_ASSIGN(const std::string text, read_text_file(config, 1u << 20));
-    SL_ASSIGN(const Xml root, parse_xml(text, config, limits_));
+    SL_ASSIGN(const Xml root, parse_xml(text, config, options_.limits));
     double best = -1;
     std::string file;
     for (const Xml& child : root.children) {
@@ -200,7 +173,7 @@ class Loader {
   }
 
   Notes& notes_;
-  SdfLimits limits_;
+  SdfOptions options_;
   std::vector<std::string> open_;  ///< from the first file to the one being read
   std::map<std::string, std::pair<Xml, std::size_t>> files_;
   std::size_t elements_ = 0;
@@ -209,8 +182,8 @@ class Loader {
 }  // namespace
 
 Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes,
-                          const SdfLimits& limits) {
-  return Loader(notes, limits).load(text, file);
+                          const SdfOptions& options) {
+  return Loader(notes, options).load(text, file);
 }
 
 }  // namespace sandlot::formats

@@ -105,16 +105,17 @@ Result<model::Surface> read_surface(const Xml& collision, Notes& notes) {
   return out;
 }
 
-Result<model::Color> read_material(const Xml& visual) {
-  model::Color out;
+Result<model::Material> read_material(const Xml& visual) {
+  model::Material out;
   double transparency = 0;
   SL_TRY(read_child(visual, "transparency", {0, 1}, transparency));
   if (const Xml* const material = visual.child("material")) {
     const Xml* const diffuse = material->child("diffuse");
     const Xml* const color = diffuse ? diffuse : material->child("ambient");
-    if (color) { SL_ASSIGN(out, read_color(*color)); }
+    if (color) { SL_ASSIGN(out.diffuse, read_color(*color)); }
+    out.from_mesh = false;
   }
-  out.a *= static_cast<float>(1 - transparency);
+  out.diffuse.a *= static_cast<float>(1 - transparency);
   return out;
 }
 
@@ -204,9 +205,9 @@ Result<model::Link> read_link(const Xml& element, const ResolvedFrames& frames, 
       notes.unused(child, "pose geometry material transparency",
                    "cast_shadows laser_retro meta visibility_flags plugin");
       SL_ASSIGN(const std::optional<Shape> shape, read_shape(child, notes));
-      model::Visual visual{*child.attribute("name"), {}, Sphere{1}, {}, child.place};
+      model::Visual visual{*child.attribute("name"), {}, Sphere{1}, {}, true, child.place};
       SL_ASSIGN(visual.X_LC, pose_of(child, frames));
-      SL_ASSIGN(visual.color, read_material(child));
+      SL_ASSIGN(visual.material, read_material(child));
       if (!shape) continue;
       visual.shape = *shape;
       link.visuals.push_back(std::move(visual));

@@ -61,14 +61,14 @@ Result<model::Light> read_light(const Xml& element, Notes& notes) {
     if (const std::string* const relative = pose->attribute("relative_to");
         relative && !relative->empty() && *relative != "world")
       notes.warn(*pose, "relative_to of a light is not used", "it is placed in the world");
-  SL_ASSIGN(light.X_WLight, read_child_pose(element));
+  SL_ASSIGN(light.X_PLight, read_child_pose(element));
   light.color = {1, 1, 1, 1};
   if (const Xml* const diffuse = element.child("diffuse")) { SL_ASSIGN(light.color, read_color(*diffuse)); }
   Vec3 direction{0, 0, -1};
   SL_TRY(read_child(element, "direction", position_range, direction));
   if (!(norm(direction) > 1e-6))
     return element.child("direction")->error("the direction of this light is zero");
-  light.X_WLight.q = light.X_WLight.q * quat_between({0, 0, -1}, normalised(direction));
+  light.X_PLight.q = light.X_PLight.q * quat_between({0, 0, -1}, normalised(direction));
   return light;
 }
 
@@ -124,9 +124,9 @@ Status read_world(const Xml& world, const ResolvedFrames& frames, Notes& notes, 
 }  // namespace
 
 Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
-                             const SdfLimits& limits) {
+                             const SdfOptions& options) {
   Notes notes(diagnostics);
-  SL_ASSIGN(const Xml root, load_document(text, file, notes, limits));
+  SL_ASSIGN(const Xml root, load_document(text, file, notes, options));
   SL_TRY(check_names(root));
   const Xml& main = *main_element(root);
   for (const Xml& child : root.children)
@@ -144,9 +144,9 @@ Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Dia
   return out;
 }
 
-Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics, const SdfLimits& limits) {
-  SL_ASSIGN(const std::string text, read_text_file(path, limits.max_bytes));
-  return parse_sdf(text, path, diagnostics, limits);
+Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics, const SdfOptions& options) {
+  SL_ASSIGN(const std::string text, read_text_file(path, options.limits.max_bytes));
+  return parse_sdf(text, path, diagnostics, options);
 }
 
 }  // namespace sandlot::formats

@@ -21,6 +21,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/resources.h"
+#include "formats/xml.h"
 #include "model/model.h"
 
 namespace sandlot::formats {
@@ -34,15 +36,15 @@ struct SdfContent {
   std::vector<model::Light> lights;
 };
 
-struct SdfLimits {
-  std::size_t max_bytes = 64u << 20;
-  std::size_t max_depth = 64;
-  std::size_t max_elements = 2'000'000;
+struct SdfOptions {
+  XmlLimits limits;
+  SearchPath path = search_path();
 };
 
-Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics, const SdfLimits& limits = {});
+Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics,
+                            const SdfOptions& options = {});
 /// As above from text; `file` names it in messages.
 Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
-                             const SdfLimits& limits = {});
+                             const SdfOptions& options = {});
 
 }  // namespace sandlot::formats

@@ -102,14 +102,14 @@ Result<Vec3> read_vec3(const Xml& element, Range range) {
   return Vec3{v[0], v[1], v[2]};
 }
 
-Result<model::Color> read_color(const Xml& element) {
+Result<Color> read_color(const Xml& element) {
   std::array<double, 4> v{0, 0, 0, 1};
   std::size_t n = 0;
   if (!read_numbers(element.text, v, n) || n < 3)
     return not_numbers(element, "three or four numbers from 0 to 1");
   for (const double x : v) SL_TRY(in_range(element, x, {0, 1}));
-  return model::Color{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
-                      static_cast<float>(v[3])};
+  return Color{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+               static_cast<float>(v[3])};
 }
 
 Result<Pose> read_sdf_pose(const Xml& element) {

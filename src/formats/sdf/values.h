@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "formats/sdf/xml.h"
+#include "formats/xml.h"
 #include "geometry/pose.h"
 #include "model/model.h"
 
@@ -38,7 +38,7 @@ class Notes {
 Result<double> read_double(const Xml& element, Range range);
 Result<bool> read_flag(const Xml& element);
 Result<Vec3> read_vec3(const Xml& element, Range range);
-Result<model::Color> read_color(const Xml& element);
+Result<Color> read_color(const Xml& element);
 /// A <pose>: six numbers, or with rotation_format="quat_xyzw" seven; degrees="true" is understood.
 Result<Pose> read_sdf_pose(const Xml& element);
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
@@ -22,6 +24,12 @@ bool has_size(const Shape& shape) {
     bool operator()(const Cylinder& c) const { return positive(c.radius_m) && positive(c.length_m); }
     bool operator()(const Capsule& c) const { return positive(c.radius_m) && positive(c.length_m); }
     bool operator()(const Plane& p) const { return is_finite(p.normal) && norm(p.normal) > 0; }
+    bool operator()(const Cone& c) const { return positive(c.radius_m) && positive(c.length_m); }
+    bool operator()(const Ellipsoid& e) const {
+      return positive(e.radii_m.x) && positive(e.radii_m.y) && positive(e.radii_m.z);
+    }
+    bool operator()(const Mesh& m) const { return m.mesh && !m.mesh->triangles.empty(); }
+    bool operator()(const Heightfield& h) const { return h.grid && h.grid->columns > 1 && h.grid->rows > 1; }
   } visitor;
   return std::visit(visitor, shape);
 }
@@ -32,6 +40,11 @@ struct MakeGeom {
   dGeomID operator()(const Cylinder& c) const { return dCreateCylinder(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Capsule& c) const { return dCreateCapsule(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Plane&) const { return dCreatePlane(nullptr, 0, 0, 1, 0); }
+  template <class Other>
+  dGeomID operator()(const Other&) const {
+    SL_CHECK_MSG(false, "check() refused this shape");
+    return nullptr;
+  }
 };
 
 /// Lets slots grow only where none is free; the newest free one is used again first.
@@ -62,6 +75,9 @@ Status RigidEngine::check(const model::Instance& instance) const {
     for (const model::Collision& c : link.collisions) {
       if (!has_size(c.shape) || !is_finite(c.X_LC))
         return Error{"collision '" + c.name + "' has no valid size or pose", "sizes are positive numbers [m]",
+                     c.place};
+      if (c.shape.index() > Shape(Plane{}).index())
+        return Error{std::string("the engine 'rigid' has no shape '") + shape_name(c.shape) + "' yet", "",
                      c.place};
     }
   }

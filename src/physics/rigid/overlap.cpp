@@ -24,6 +24,10 @@ struct Distance {
   double operator()(const Plane& plane) const {
     return std::max(dot(p, normalised(plane.normal, {0, 0, 1})), 0.0);
   }
+  template <class Other>
+  double operator()(const Other& other) const {
+    return std::max(norm(p) - bounding_radius_m(other), 0.0);
+  }
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// XML elements with their lines, as plain data: the SDF reader takes its values from these.
+/// XML elements with their lines, as plain data: the readers of SDF and URDF take their values from these.
 ///
 /// Limits   size, depth, number of elements and of attributes are checked before the XML parser sees the text.
 #include <string>
@@ -7,10 +7,16 @@
 #include <utility>
 #include <vector>
 
+#include "base/node.h"
 #include "base/result.h"
-#include "formats/sdf/sdf.h"
 
 namespace sandlot::formats {
+
+struct XmlLimits {
+  std::size_t max_bytes = 64u << 20;
+  std::size_t max_depth = 64;
+  std::size_t max_elements = 2'000'000;
+};
 
 struct Xml {
   std::string name;
@@ -31,7 +37,7 @@ struct Xml {
 };
 
 /// The root element of a document.
-Result<Xml> parse_xml(std::string_view text, const std::string& file, const SdfLimits& limits);
+Result<Xml> parse_xml(std::string_view text, const std::string& file, const XmlLimits& limits);
 
 /// Number of elements, the root included.
 std::size_t count_elements(const Xml& root);

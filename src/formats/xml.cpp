@@ -1,4 +1,4 @@
-#include "formats/sdf/xml.h"
+#include "formats/xml.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t max_attributes = 100;
 
 /// Depth and counts without building anything, so that hostile text costs one pass and no memory.
-Status check_limits(std::string_view text, const SdfLimits& limits,
+Status check_limits(std::string_view text, const XmlLimits& limits,
                     const std::shared_ptr<const std::string>& file) {
   const auto refuse = [&](std::size_t at, std::string what, std::string fix = "") {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
@@ -109,7 +109,7 @@ const Xml* Xml::child(std::string_view key) const {
 
 Xml* Xml::child(std::string_view key) { return const_cast<Xml*>(std::as_const(*this).child(key)); }
 
-Result<Xml> parse_xml(std::string_view text, const std::string& file, const SdfLimits& limits) {
+Result<Xml> parse_xml(std::string_view text, const std::string& file, const XmlLimits& limits) {
   const auto name = std::make_shared<const std::string>(file);
   if (text.size() > limits.max_bytes)
     return Error{"is too large: " + std::to_string(text.size() >> 20) + " MiB",

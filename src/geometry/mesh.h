@@ -1,0 +1,63 @@
+#pragma once
+/// Triangle meshes: what files of meshes, polylines and tessellated primitives become.
+///
+/// A mesh is shared by all shapes made from one file at one scale and never changes, so that engines and the ray
+/// scene may build their trees once per mesh.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/color.h"
+#include "geometry/shape.h"
+#include "geometry/vec3.h"
+
+namespace sandlot {
+
+/// A run of triangles of one look.
+struct MeshPart {
+  std::string name;  ///< of the sub-mesh; "" when the file has none
+  std::uint32_t first_triangle = 0, triangles = 0;
+  Color color;          ///< the file's own
+  std::string texture;  ///< file of the colour texture; "" for none
+};
+
+struct TriangleMesh {
+  std::vector<Vec3> vertices;                           ///< [m] in the shape's frame, scale applied
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<std::array<float, 2>> texture_uv;         ///< one per vertex, or none at all
+  std::vector<MeshPart> parts;                          ///< cover all triangles in order; none: one look
+  std::string source;                                   ///< file it came from, for messages; "" for made ones
+};
+
+/// What a homogeneous solid bounded by the mesh weighs, from integrals over its triangles.
+/// Source   D. Eberly, Polyhedral mass properties (2002).
+struct MassProperties {
+  double volume_m3 = 0;    ///< signed: negative when the triangles face inwards
+  Vec3 centre_m;           ///< of mass
+  Vec3 moments, products;  ///< ixx iyy izz, ixy ixz iyz about the centre, per kg of mass [m^2]
+};
+MassProperties mass_properties(const TriangleMesh& mesh);
+/// The same of any bounded shape; zeros for planes and height fields.
+MassProperties mass_properties(const Shape& shape);
+
+/// Every edge is shared by exactly two triangles that run along it in opposite directions. Vertices at equal places
+/// count as one.
+bool is_closed(const TriangleMesh& mesh);
+
+/// Smallest convex mesh around the points; empty (no triangles) when they lie in a plane.
+/// Deterministic; O(n log n) on average.
+TriangleMesh convex_hull(const std::vector<Vec3>& points);
+
+/// The pieces of a mesh that hang together by shared vertices, each as a mesh of its own, largest first.
+std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh);
+
+/// A bounded shape as triangles: exact for boxes, inscribed for round ones. @pre not a Plane
+/// @param segments  corners of a full circle
+TriangleMesh tessellate(const Shape& shape, int segments = 32);
+
+/// A solid from a polygon in xy, extruded from z = 0 to `height_m`; the way SDF's <polyline> says it. Further loops are
+/// holes. Empty when a loop crosses itself or has no area.
+TriangleMesh extrude(const std::vector<std::vector<std::array<double, 2>>>& loops_m, double height_m);
+
+}  // namespace sandlot
