@@ -39,6 +39,13 @@ struct FileOptions {
 int check(const FileOptions& options);
 int info(const FileOptions& options);
 
+struct ConvertOptions {
+  std::string in, out;
+  std::vector<std::string> paths;  ///< folders to search first
+  bool force = false;              ///< replace what is there
+};
+int convert(const ConvertOptions& options);
+
 struct ListOptions {
   std::string what;  ///< "" for everything
   bool verbose = false;

@@ -96,8 +96,9 @@ int main(int argc, char** argv) {
   int result = exit_ok;
 
   RunFlags run_flags;
-  CLI::App* const run_verb = app.add_subcommand("run", "Run a scenario (.yaml) or a world (.sdf)");
-  run_verb->add_option("file", run_flags.options.file, "Scenario or world");
+  CLI::App* const run_verb = app.add_subcommand("run",
+                                                "Run a scenario (.yaml), a world (.sdf) or a robot (.urdf)");
+  run_verb->add_option("file", run_flags.options.file, "Scenario, world or robot");
   run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
   run_verb->footer(
@@ -147,6 +148,21 @@ int main(int argc, char** argv) {
                 "Example: sandlot check scenarios/*.yaml", check);
   add_file_verb("info", "Print the tree of a scenario or world: links, joints, devices, topics",
                 "Example: sandlot info scenarios/indoor.yaml", info);
+
+  ConvertOptions convert_options;
+  CLI::App* const convert_verb = app.add_subcommand(
+      "convert", "Turn URDF, SDF and scenarios into each other, by the extensions of the files");
+  convert_verb->add_option("in", convert_options.in, "What is there: .urdf, .sdf, .world or .yaml")
+      ->required();
+  convert_verb->add_option("out", convert_options.out, "What it becomes: .sdf, .world, .urdf or .yaml")
+      ->required();
+  convert_verb->add_flag("--force", convert_options.force, "Replace the file when it exists");
+  convert_verb
+      ->add_option("--path", convert_options.paths,
+                   "Folder to search for models and other files; may be given several times")
+      ->allow_extra_args(false);
+  convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
+  convert_verb->callback([&] { result = convert(convert_options); });
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(
