@@ -9,6 +9,7 @@
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/sdf/sdf.h"
+#include "sim/modules.h"
 #include "sim/placement.h"
 
 namespace sandlot {
@@ -93,6 +94,32 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
     merge(decl.config, keys);
     if (fresh) instance.devices.push_back(std::move(decl));
     else *found = std::move(decl);
+  }
+  return {};
+}
+
+/// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
+Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
+                      const formats::Scenario& scenario, const formats::SearchPath& search,
+                      std::span<const std::string> paths, Diagnostics& diagnostics) {
+  for (const formats::Module& module : group.modules) {
+    SL_ASSIGN(const std::string file, locate(module.model, formats::base_folder(scenario, module.model_place),
+                                             search, module.model_place));
+    SL_ASSIGN(model::Instance part, load_instance(file, module.id, {}, diagnostics, paths));
+    part.place = module.place;
+    SL_TRY(merge_devices(part, module.devices));
+    std::uint32_t link = 0;
+    if (!module.link.empty()) {
+      const auto found = robot.model->find_link(module.link);
+      std::vector<std::string> names;
+      for (const model::Link& each : robot.model->links) names.push_back(each.name);
+      if (!found)
+        return Error{"robot '" + group.name + "' has no link '" + module.link + "'",
+                     suggestion(module.link, names), module.link_place, "/modules/" + module.id + "/link"};
+      link = *found;
+    }
+    auto attached = attach_module(robot, part, module.id, link, module.X_LM);
+    if (!attached) return std::move(attached.error());
   }
   return {};
 }
@@ -201,6 +228,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
       pattern.team = group.team;
       pattern.controllers = group.controllers;
       pattern.place = group.place;
+      SL_TRY(attach_modules(pattern, group, scenario, search, options.paths, diagnostics));
       SL_TRY(merge_devices(pattern, group.devices));
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {
