@@ -184,7 +184,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
   const std::string extension = fs::path(path).extension().string();
   const formats::SearchPath search = formats::search_path(options.paths);
   model::Setup setup;
-  if (extension == ".sdf" || extension == ".world") {
+  if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
@@ -240,7 +240,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
       }
     }
   } else {
-    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world (.sdf, .world)"};
+    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world or robot (.sdf, .world, .urdf)"};
   }
   if (options.seed) setup.seed = *options.seed;
   if (options.stop_s) setup.stop = Time::from_s(*options.stop_s);
