@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file behind what a scenario wrote; a folder stands for its model.sdf.
+/// The file behind what a scenario wrote. A folder stands for its model.sdf or, without one, for its only .urdf.
 Result<std::string> locate(const std::string& written, const std::string& folder_of_file,
                            const formats::SearchPath& path, const Place& place) {
   SL_ASSIGN(const std::string found, formats::find_resource(written, folder_of_file, path, place));
@@ -25,7 +25,13 @@ Result<std::string> locate(const std::string& written, const std::string& folder
   if (!fs::is_directory(found, ignored)) return found;
   const std::string file = (fs::path(found) / "model.sdf").string();
   if (fs::is_regular_file(file, ignored)) return file;
-  return Error{"folder '" + found + "' holds no model.sdf", "name the file", place};
+  std::vector<std::string> robots;
+  for (const auto& entry : fs::directory_iterator(found, ignored))
+    if (entry.path().extension() == ".urdf") robots.push_back(entry.path().string());
+  if (robots.size() == 1) return robots.front();
+  return Error{"folder '" + found + "' holds " +
+                   (robots.empty() ? "no model.sdf" : "several .urdf files and no model.sdf"),
+               "name the file", place};
 }
 
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
