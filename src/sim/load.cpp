@@ -11,6 +11,7 @@
 #include "formats/sdf/sdf.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
+#include "sim/presets.h"
 
 namespace sandlot {
 namespace {
@@ -34,12 +35,20 @@ Result<std::string> locate(const std::string& written, const std::string& folder
                "name the file", place};
 }
 
+Result<std::uint32_t> link_named(const model::Model& model, const Node& name, const std::string& path) {
+  if (const auto index = model.find_link(name.text())) return *index;
+  std::vector<std::string> names;
+  for (const model::Link& link : model.links) names.push_back(link.name);
+  return name.error("model '" + model.name + "' has no link '" + name.text() + "'",
+                    suggestion(name.text(), names), path);
+}
+
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
 Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
   std::vector<model::DeviceDecl> kept;
   for (model::DeviceDecl& decl : instance.devices) {
     if (decl.kind.empty()) {
-      const Kind* const kind = find_device_kind_for_sdf(decl.sdf_types);
+      const Kind* const kind = find_device_kind_for_sdf(decl);
       if (!kind) {
         diagnostics.warn(
             {"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
@@ -53,6 +62,10 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
       }
       decl.config = std::move(*config);
       decl.kind = kind->name;
+      if (const Node* const link = decl.config.find("link")) {
+        SL_ASSIGN(decl.link, link_named(*instance.model, *link, ""));
+        decl.config.erase("link");
+      }
     }
     kept.push_back(std::move(decl));
   }
@@ -80,13 +93,7 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
                    "give it a kind, or " + suggestion(entry.key, names), entry.key_place, path};
     }
     if (const Node* link = keys.find("link")) {
-      const auto index = instance.model->find_link(link->text());
-      std::vector<std::string> names;
-      for (const model::Link& l : instance.model->links) names.push_back(l.name);
-      if (!index)
-        return link->error("model '" + instance.model->name + "' has no link '" + link->text() + "'",
-                           suggestion(link->text(), names), path + "/link");
-      decl.link = *index;
+      SL_ASSIGN(decl.link, link_named(*instance.model, *link, path + "/link"));
     }
     if (const Node* pose = keys.find("pose")) {
       SL_ASSIGN(decl.X_LS, formats::read_pose(*pose, path + "/pose"));
@@ -97,6 +104,8 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
       decl.config.erase("level");
       decl.config.erase("levels");
     }
+    // A preset goes before what the model said, and what stands beside it before both.
+    SL_TRY(lay_preset(keys, decl.kind));
     merge(decl.config, keys);
     if (fresh) instance.devices.push_back(std::move(decl));
     else *found = std::move(decl);

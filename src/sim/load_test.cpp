@@ -59,6 +59,29 @@ TEST_F(Files, a_folder_stands_for_its_model_and_the_search_path_is_used) {
   unsetenv("SANDLOT_PATH");
 }
 
+TEST_F(Files, a_preset_goes_before_the_models_keys_and_after_those_beside_it) {
+  const auto setup = load_text(
+      "robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {preset: sick_lms200, rate: 5}\n"
+      "    back: {kind: laser_scanner, preset: sick_ld, noise: {white: 1 cm}}\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  const auto number = [&](std::size_t device, std::initializer_list<const char*> path) {
+    const Node* node = &setup->instances.back().devices[device].config;
+    for (const char* key : path) node = node ? node->find(key) : nullptr;
+    return node ? node->text() : "";
+  };
+  EXPECT_EQ(number(0, {"beams"}), "181");    // the model says 11
+  EXPECT_EQ(number(0, {"max_range"}), "8");  // the model says 3
+  EXPECT_EQ(number(0, {"rate"}), "5");
+  EXPECT_EQ(number(0, {"preset"}), "");
+  EXPECT_EQ(number(1, {"beams"}), "720");
+  EXPECT_EQ(number(1, {"noise", "white"}), "1 cm");
+  EXPECT_EQ(number(1, {"noise", "systematic"}), "38 mm");
+  EXPECT_THAT(
+      error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {preset: sick_lms20}\n"),
+      HasSubstr("s.yaml:7:19: /preset: device kind 'laser_scanner' has no preset 'sick_lms20'; did you mean "
+                "'sick_lms200'?"));
+}
+
 TEST_F(Files, devices_of_the_scenario_are_laid_upon_the_models_own) {
   const auto setup = load_text(
       "robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {max_range: 50 cm}\n"
