@@ -9,6 +9,7 @@
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/sdf/sdf.h"
+#include "physics/engine.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
 #include "sim/presets.h"
@@ -142,6 +143,7 @@ Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
 /// Takes world instances over: their devices translated, names checked.
 Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics& diagnostics) {
   setup.gravity = content.gravity_mps2;
+  setup.gravity_place = content.gravity_place;
   setup.lights = std::move(content.lights);
   for (model::Instance& instance : content.instances) {
     SL_TRY(translate_devices(instance, diagnostics));
@@ -215,6 +217,10 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     } else {
       setup.instances.push_back(bare_ground());
     }
+    if (auto engine = find_engine(scenario.engine); !engine) {
+      engine.error().place = scenario.engine_place;
+      return std::move(engine.error());
+    }
     setup.name = scenario.name;
     setup.engine = scenario.engine;
     setup.physics = scenario.physics;
@@ -265,7 +271,8 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     if (!fresh)
       return Error{
           "there are two things named '" + instance.name + "'",
-          "the other one is at " + to_string(known->second->place) + "; give one of them another name",
+          (known->second->place.file ? "the other one is at " + to_string(known->second->place) + "; " : "") +
+              "give one of them another name",
           instance.place};
   }
   return setup;

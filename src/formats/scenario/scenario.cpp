@@ -289,9 +289,12 @@ Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
                                 std::span<const Override> overrides, Diagnostics&) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
-  SL_TRY(substitute_variables(root));
+  std::vector<std::pair<std::string, Place>> unused_vars;
+  SL_TRY(substitute_variables(root, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
-  return read_root(root, file);
+  SL_ASSIGN(Scenario scenario, read_root(root, file));
+  scenario.unused_vars = std::move(unused_vars);
+  return scenario;
 }
 
 Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides,

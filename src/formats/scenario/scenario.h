@@ -68,6 +68,7 @@ struct Scenario {
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
   std::vector<RobotGroup> robots;
+  std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 
 /// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,
