@@ -102,6 +102,7 @@ Status read_world(const Xml& world, const ResolvedFrames& frames, Notes& notes, 
   const std::string* const name = world.attribute("name");
   out.world_name = name && !name->empty() ? *name : "world";
   SL_TRY(read_child(world, "gravity", {-1e4, 1e4}, out.gravity_mps2));
+  if (const Xml* const gravity = world.child("gravity")) out.gravity_place = gravity->place;
   SL_TRY(read_physics(world, out));
   Instances instances;
   for (const Xml& child : world.children) {

@@ -30,6 +30,7 @@ namespace sandlot::formats {
 struct SdfContent {
   std::string world_name;  ///< "" for a model file
   Vec3 gravity_mps2{0, 0, -9.81};
+  Place gravity_place;
   std::optional<double> max_step_s;  ///< <physics><max_step_size>
   std::vector<model::Instance>
       instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>
