@@ -176,9 +176,10 @@ TEST(Convert, AUrdfRunsToTheSameHashAsSdf) {
   EXPECT_NE(hash, hash_of_run(folder.write("other.urdf", other)));
 }
 
-TEST(Convert, SdfOfSdfIsTheSameWorld) {
+TEST(Convert, AFileAsSdfIsTheSameWorld) {
   const Folder folder;
-  for (const char* const file : {"worlds/indoor.sdf", "worlds/pile.sdf", "models/rover/model.sdf"}) {
+  for (const char* const file : {"worlds/indoor.sdf", "worlds/pile.sdf", "models/rover/model.sdf",
+                                 "models/turtlebot/turtlebot.urdf", "models/mario/mario.urdf"}) {
     const Converted done = convert(file, folder.file("out.sdf"), true);
     ASSERT_EQ(done.exit_code, 0) << done.printed;
     EXPECT_TRUE(bytes_of(loaded(file)) == bytes_of(loaded(folder.file("out.sdf")))) << file;
