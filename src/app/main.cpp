@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(
-      "list", "List the kinds of devices, controllers, engines and levels");
+      "list", "List the kinds of devices, controllers, engines, levels and Gazebo plugins");
   list_verb->add_option("what", list_options.what,
                         "devices, controllers, engines or levels; all when left out");
   list_verb->add_flag("--verbose", list_options.verbose, "With every field: unit, range, default, meaning");

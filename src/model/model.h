@@ -139,6 +139,8 @@ struct DeviceDecl {
   std::string name;
   std::string kind;
   std::vector<std::string> sdf_types;
+  std::string
+      scope;  ///< of a part of a composed model, such as "arm::": names in `config` are looked up there first
   std::uint32_t link = 0;
   Pose X_LS;
   Node config;  ///< keys of the kind's spec, or the SDF element's children when `kind` is empty

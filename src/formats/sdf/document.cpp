@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "formats/resources.h"
+#include "formats/sdf/urdf.h"
 #include "formats/text.h"
 
 namespace sandlot::formats {
@@ -17,11 +18,9 @@ constexpr std::size_t max_depth = 16;
 
 /// The minor number of version "1.x".
 Result<int> version_of(const Xml& root, Notes& notes) {
-  if (root.name == "robot")
-    return root.error("this is URDF, which is not supported yet", "convert it: gz sdf -p robot.urdf");
   if (root.name != "sdf")
     return root.error("the root element is <" + root.name.substr(0, 60) + ">",
-                      "an SDF file begins with <sdf version=\"1.9\">");
+                      "an SDF file begins with <sdf version=\"1.9\">, a URDF file with <robot>");
   const std::string* const text = root.attribute("version");
   if (!text) return root.error("<sdf> has no version", "write <sdf version=\"1.9\">");
   const std::vector<std::string_view> parts = split(*text, '.');
@@ -65,6 +64,7 @@ class Loader {
 
   Result<Xml> load(std::string_view text, const std::string& file) {
     SL_ASSIGN(Xml root, parse_xml(text, file, options_.limits));
+    if (root.name == "robot") return urdf_to_sdf(root, notes_);
     SL_ASSIGN(const int minor, version_of(root, notes_));
     modernise(root, minor);
     open_.push_back(canonical_path(file));
