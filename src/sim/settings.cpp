@@ -1,15 +1,32 @@
 #include "sim/settings.h"
 
+#include <map>
+
 #include "base/text.h"
 #include "base/units.h"
 #include "devices/kind.h"
 
 namespace sandlot {
 
+namespace {
+
+/// The fields of each kind, listed once: a world may have ten thousand devices.
+const std::vector<FieldInfo>* fields_of(std::string_view kind) {
+  static const auto all = [] {
+    std::map<std::string, std::vector<FieldInfo>, std::less<>> fields;
+    for (const Kind* const one : device_kinds()) fields.emplace(one->name, one->describe());
+    return fields;
+  }();
+  const auto found = all.find(kind);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
 std::optional<double> setting(const model::DeviceDecl& device, std::string_view path) {
-  const auto kind = find_device_kind(device.kind);
-  if (!kind) return std::nullopt;
-  for (const FieldInfo& field : (*kind)->describe()) {
+  const std::vector<FieldInfo>* const fields = fields_of(device.kind);
+  if (!fields) return std::nullopt;
+  for (const FieldInfo& field : *fields) {
     if (field.path != path) continue;
     const Node* node = &device.config;
     for (const std::string_view key : split(path, '/')) node = node ? node->find(key) : nullptr;
