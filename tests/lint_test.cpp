@@ -112,16 +112,24 @@ TEST(Lint, OurOwnScenariosAndModelsHaveNothingSuspicious) {
   for (const auto& folder : std::filesystem::directory_iterator("models"))
     if (std::filesystem::exists(folder.path() / "model.sdf"))
       files.push_back((folder.path() / "model.sdf").string());
-  ASSERT_GE(files.size(), 5u);
+  int checked = 0;
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
     if (!file.ends_with(".yaml") && !file.ends_with(".sdf")) continue;
-    for (const Finding& finding : findings_of(file)) {
+    // Whether they load without a warning is content_test's affair.
+    Diagnostics diagnostics;
+    auto setup = load(file, {}, diagnostics);
+    if (!setup) continue;
+    const auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
+    if (!simulation) continue;
+    ++checked;
+    for (const Finding& finding : lint(**simulation)) {
       // The layers of the pile are meant to tumble, and some boxes start up to 32 mm within each other.
       if (file.find("/pile.") != std::string::npos && finding.rule == "overlap") continue;
       ADD_FAILURE() << finding.text.text();
     }
   }
+  EXPECT_GE(checked, 6);
 }
 
 /// A world without files: one static thing and one that moves.

@@ -99,22 +99,32 @@ void check_link(const model::Link& link, Findings& findings) {
                  "the <pose> of <inertial> is relative to the link", link.place);
 }
 
-/// Joints other than fixed ones pass forces between bodies; a solver that works on their mass matrix loses as many
-/// digits as their masses differ, and an iterative one needs about as many iterations as the ratio.
-void check_ratios(const model::Model& model, Findings& findings) {
-  std::vector<std::uint32_t> lump(model.links.size());
+/// Links that fixed joints make one body bear the same number; the last entry is the world's.
+std::vector<std::uint32_t> lumps_of(const model::Model& model) {
+  std::vector<std::uint32_t> lump(model.links.size() + 1);
   for (std::uint32_t i = 0; i < lump.size(); ++i) lump[i] = i;
   const auto root = [&](std::uint32_t i) {
     while (lump[i] != i) i = lump[i] = lump[lump[i]];
     return i;
   };
+  const auto world = static_cast<std::uint32_t>(model.links.size());
   for (const model::Joint& joint : model.joints)
-    if (joint.type == model::JointType::fixed && joint.parent != model::world_link)
-      lump[root(joint.child)] = root(joint.parent);
+    if (joint.type == model::JointType::fixed)
+      lump[root(joint.child)] = root(joint.parent == model::world_link ? world : joint.parent);
+  for (std::uint32_t i = 0; i < lump.size(); ++i) lump[i] = root(i);
+  return lump;
+}
+
+/// Joints other than fixed ones pass forces between bodies; a solver that works on their mass matrix loses as many
+/// digits as their masses differ, and an iterative one needs about as many iterations as the ratio.
+void check_ratios(const model::Model& model, const std::vector<std::uint32_t>& lump, Findings& findings) {
+  const auto root = [&](std::uint32_t i) { return lump[i]; };
   std::vector<double> mass(lump.size(), 0);
-  for (std::uint32_t i = 0; i < lump.size(); ++i) mass[root(i)] += model.links[i].inertial.mass_kg;
+  for (std::uint32_t i = 0; i < model.links.size(); ++i) mass[root(i)] += model.links[i].inertial.mass_kg;
+  const std::uint32_t still = lump.back();  // what is fixed to the world has no mass that counts
   for (const model::Joint& joint : model.joints) {
     if (joint.type == model::JointType::fixed || joint.parent == model::world_link) continue;
+    if (root(joint.parent) == still || root(joint.child) == still) continue;
     const double a = mass[root(joint.parent)], b = mass[root(joint.child)];
     const double ratio = std::max(a, b) / std::min(a, b);
     if (ratio > 1000)
@@ -132,8 +142,10 @@ void check_inertia(const Simulation& simulation, Findings& findings) {
   for (const model::Instance* instance : simulation.instances()) {
     const model::Model& model = *instance->model;
     if (model.is_static || instance->motion || !known.insert(&model).second) continue;
-    for (const model::Link& link : model.links) check_link(link, findings);
-    check_ratios(model, findings);
+    const std::vector<std::uint32_t> lump = lumps_of(model);
+    for (std::uint32_t i = 0; i < model.links.size(); ++i)
+      if (lump[i] != lump.back()) check_link(model.links[i], findings);
+    check_ratios(model, lump, findings);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 /// The rules of lint.h, one function per group, and what they share.
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -8,6 +7,7 @@
 
 #include "geometry/bounds.h"
 #include "sim/lint/lint.h"
+#include "sim/settings.h"
 
 namespace sandlot::lint_rules {
 
@@ -30,13 +30,6 @@ void check_speed(const Simulation& simulation, Findings& findings);
 void check_gains(const Simulation& simulation, Findings& findings);
 void check_sensors(const Simulation& simulation, Findings& findings);
 void check_units(const Simulation& simulation, Findings& findings);
-
-/// A number that a device was given, or its kind's default, by path: "max_linear_speed", "position/p". Nothing when the
-/// kind has no such number, or it is optional and not given.
-std::optional<double> setting(const model::DeviceDecl& device, std::string_view path);
-
-/// Joints that a device names in keys that end in "joint", as indices of the model.
-std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model);
 
 /// Box around the collision shapes of a model (`visuals`: and around its visuals) in M; planes and terrain aside.
 Bounds bounds_in_model(const model::Model& model, bool visuals);

@@ -10,38 +10,89 @@
 namespace sandlot::lint_rules {
 namespace {
 
-/// What a scanner that has just taken its first scan sees of its own robot; noise and range limits aside.
-void check_scanner(const Simulation& simulation, const Entity& entity, const Simulation::Device& device,
-                   const msg::LaserScan& scan, Findings& findings) {
-  const std::size_t beams = scan.ranges.size();
+/// The beams of a range sensor in its frame, thinned out where there are more than a check needs; none for other devices.
+struct Beams {
+  std::vector<Vec3> directions;
+  double max_m = 0;
+
+  void add(double azimuth, double elevation) {
+    const math::SinCos a = math::sincos(azimuth), e = math::sincos(elevation);
+    directions.push_back({e.cos * a.cos, e.cos * a.sin, e.sin});
+  }
+};
+
+Beams beams_of(const msg::LaserScan& scan) {
+  Beams beams;
+  beams.max_m = static_cast<double>(scan.range_max);
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+    beams.add(static_cast<double>(scan.angle_min) +
+                  static_cast<double>(i) * static_cast<double>(scan.angle_increment),
+              0);
+  return beams;
+}
+
+/// The axis of the cone and eight rays along its edge.
+Beams beams_of(const msg::Range& cone) {
+  Beams beams;
+  beams.max_m = static_cast<double>(cone.max_range);
+  beams.add(0, 0);
+  const double half = 0.5 * static_cast<double>(cone.field_of_view);
+  if (!(half > 0)) return beams;
+  const math::SinCos edge = math::sincos(half);
+  for (int i = 0; i < 8; ++i) {
+    const math::SinCos around = math::sincos(math::tau * i / 8);
+    beams.directions.push_back({edge.cos, edge.sin * around.cos, edge.sin * around.sin});
+  }
+  return beams;
+}
+
+/// A cloud does not say how it was made; the keys of its sensor do.
+Beams beams_of(const model::DeviceDecl& device) {
+  const auto between = [&](const char* low, const char* high, int i, int n) {
+    const double a = setting(device, low).value_or(0), b = setting(device, high).value_or(0);
+    return n > 1 ? a + (b - a) * i / (n - 1) : 0.5 * (a + b);
+  };
+  const auto number = [&](const char* key, double most) {
+    return static_cast<int>(std::clamp(setting(device, key).value_or(0), 0.0, most));
+  };
+  Beams beams;
+  beams.max_m = setting(device, "max_range").value_or(0);
+  const int columns = number("columns", 90), planes = number("planes", 16);
+  for (int plane = 0; plane < planes; ++plane)
+    for (int column = 0; column < columns; ++column)
+      beams.add(between("min_angle", "max_angle", column, columns),
+                between("min_elevation", "max_elevation", plane, planes));
+  return beams;
+}
+
+/// What a range sensor sees of its own robot; noise and range limits aside.
+void check_own_view(const Simulation& simulation, const Entity& entity, const Simulation::Device& device,
+                    const Beams& seen, Findings& findings) {
+  const std::vector<Vec3>& directions = seen.directions;
+  const std::size_t beams = directions.size();
+  if (beams == 0) return;
   const auto bodies = simulation.engine().bodies(entity.id);
   const BodyId carrier = bodies[device.decl.link];
-  std::vector<Vec3> directions(beams);
-  for (std::size_t i = 0; i < beams; ++i) {
-    const math::SinCos a = math::sincos(static_cast<double>(scan.angle_min) +
-                                        static_cast<double>(i) * static_cast<double>(scan.angle_increment));
-    directions[i] = {a.cos, a.sin, 0};
-  }
   std::vector<float> distance(beams);
   std::vector<std::uint32_t> hit(beams, no_body);
   const RayJob job{simulation.engine().states()[carrier.index].X_WB * device.decl.X_LS,
                    directions,
                    0,
-                   static_cast<double>(scan.range_max),
+                   seen.max_m,
                    carrier.index,
                    distance,
                    hit};
   simulation.rays().cast({&job, 1});
   std::vector<std::size_t> hits(bodies.size(), 0);
   std::size_t own = 0;
-  float nearest = scan.range_max;
+  double nearest = seen.max_m;
   for (std::size_t i = 0; i < beams; ++i) {
     if (!std::isfinite(distance[i])) continue;
     const auto link = std::find_if(bodies.begin(), bodies.end(), [&](BodyId b) { return b.index == hit[i]; });
     if (link == bodies.end()) continue;
     ++own;
     ++hits[static_cast<std::size_t>(link - bodies.begin())];
-    nearest = std::min(nearest, distance[i]);
+    nearest = std::min(nearest, static_cast<double>(distance[i]));
   }
   if (2 * own <= beams) return;
   const auto worst = static_cast<std::size_t>(std::max_element(hits.begin(), hits.end()) - hits.begin());
@@ -49,7 +100,7 @@ void check_scanner(const Simulation& simulation, const Entity& entity, const Sim
   findings.add("blinded",
                "device '" + device.decl.name + "' sees its own robot with " + std::to_string(own) + " of " +
                    std::to_string(beams) + " beams, mostly link '" + link.name + "'" + at(link.place) +
-                   " from " + length_text(static_cast<double>(nearest)) + " on",
+                   " from " + length_text(nearest) + " on",
                "move the sensor out of the robot, or put it on that link", device.decl.place);
 }
 
@@ -130,9 +181,13 @@ void check_sensors(const Simulation& simulation, Findings& findings) {
     for (const auto& device : entity->devices) {
       check_joints(device->decl, *entity->instance.model, findings);
       for (const Simulation::Slot& slot : device->topics) {
-        const auto* scan = topic_cast<msg::LaserScan>(static_cast<const TopicBase*>(slot.topic.get()));
-        if (!scan || scan->count == 0) continue;
-        check_scanner(simulation, *entity, *device, scan->message, findings);
+        const TopicBase* const topic = slot.topic.get();
+        Beams beams;
+        if (const auto* scan = topic_cast<msg::LaserScan>(topic)) beams = beams_of(scan->message);
+        else if (const auto* cone = topic_cast<msg::Range>(topic)) beams = beams_of(cone->message);
+        else if (topic_cast<msg::PointCloud2>(topic)) beams = beams_of(device->decl);
+        if (beams.directions.empty() || !(beams.max_m > 0)) continue;
+        check_own_view(simulation, *entity, *device, beams, findings);
         check_below_floor(simulation, *entity, *device, findings);
       }
     }

@@ -25,7 +25,9 @@ std::string move_text(Vec3 v) {
 }
 
 /// One step of a second engine finds the contacts of the poses it starts from.
-void check_overlaps(const Simulation& simulation, Findings& findings) {
+/// @param buried  things of which more has been said already; only asked, never walked through
+void check_overlaps(const Simulation& simulation, const std::set<const model::Instance*>& buried,
+                    Findings& findings) {
   const model::Setup& setup = simulation.setup();
   const auto kind = find_engine(setup.engine);
   if (!kind) return;
@@ -59,6 +61,7 @@ void check_overlaps(const Simulation& simulation, Findings& findings) {
     const auto stays = [](const model::Instance* i) { return i->model->is_static || i->motion; };
     if (stays(thing) || (!thing->is_robot && other->is_robot && !stays(other)))
       std::swap(thing, other), out = -out;
+    if (buried.count(thing) > 0) continue;
     findings.add("overlap",
                  "'" + thing->original_name + "' starts " + length_text(contact.depth_m) + " inside '" +
                      other->original_name + "'" + at(other->place),
@@ -66,8 +69,16 @@ void check_overlaps(const Simulation& simulation, Findings& findings) {
   }
 }
 
-/// The terrain's height above or below a point of the world, and where it was declared.
-void check_below_terrain(const Simulation& simulation, const model::Instance& thing, const Bounds& bounds,
+Bounds bounds_in_world(const model::Instance& instance) {
+  Bounds bounds;
+  for (const model::Link& link : instance.model->links)
+    for (const model::Collision& collision : link.collisions)
+      bounds.include(bounds_of(collision.shape, instance.X_WM * link.X_ML * collision.X_LC));
+  return bounds;
+}
+
+/// Whether a thing lies wholly below some terrain.
+bool check_below_terrain(const Simulation& simulation, const model::Instance& thing, const Bounds& bounds,
                          Findings& findings) {
   for (const model::Instance* ground : simulation.instances()) {
     if (!ground->model->is_static) continue;
@@ -81,13 +92,15 @@ void check_below_terrain(const Simulation& simulation, const model::Instance& th
         if (std::abs(top.x) > 0.5 * field->grid->size_x_m || std::abs(top.y) > 0.5 * field->grid->size_y_m)
           continue;
         const double below = height_at(*field->grid, top.x, top.y) - top.z;
-        if (below > 0)
-          findings.add("below_ground",
-                       "'" + thing.original_name + "' starts below the terrain '" + ground->original_name +
-                           "'" + at(ground->place) + ", its top " + length_text(below) + " under the surface",
-                       "raise it by " + length_text(below + bounds.size().z) + " or more", thing.place);
+        if (!(below > 0)) continue;
+        findings.add("below_ground",
+                     "'" + thing.original_name + "' starts below the terrain '" + ground->original_name +
+                         "'" + at(ground->place) + ", its top " + length_text(below) + " under the surface",
+                     "raise it by " + length_text(below + bounds.size().z) + " or more", thing.place);
+        return true;
       }
   }
+  return false;
 }
 
 /// Distance from the lowest point of an instance down to what carries it: the least over its collision shapes. Nothing
@@ -145,7 +158,13 @@ bool hangs(const model::Model& model) {
 }  // namespace
 
 void check_start(const Simulation& simulation, Findings& findings) {
-  check_overlaps(simulation, findings);
+  std::set<const model::Instance*> buried;
+  for (const model::Instance* instance : simulation.instances()) {
+    const Bounds bounds = bounds_in_world(*instance);
+    if (instance->model->is_static || instance->motion || bounds.empty()) continue;
+    if (check_below_terrain(simulation, *instance, bounds, findings)) buried.insert(instance);
+  }
+  check_overlaps(simulation, buried, findings);
 
   Bounds standing;  // what stands still and ends somewhere
   bool endless = false, anything = false;
@@ -165,12 +184,8 @@ void check_start(const Simulation& simulation, Findings& findings) {
     const model::Instance& instance = entity->instance;
     const model::Model& model = *instance.model;
     if (model.is_static || instance.motion) continue;
-    Bounds bounds;
-    for (const model::Link& link : model.links)
-      for (const model::Collision& collision : link.collisions)
-        bounds.include(bounds_of(collision.shape, instance.X_WM * link.X_ML * collision.X_LC));
+    const Bounds bounds = bounds_in_world(instance);
     if (bounds.empty()) continue;
-    check_below_terrain(simulation, instance, bounds, findings);
     if (!instance.is_robot) continue;
 
     // With an endless floor a robot may stand anywhere; ten times as far out as the world is large, it was not meant to.
