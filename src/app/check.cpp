@@ -21,7 +21,8 @@ nlohmann::ordered_json to_json(const Error& e, const char* severity) {
 /// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics) {
-  SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}, options.paths}, diagnostics));
+  SL_ASSIGN(model::Setup setup,
+            load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
 
