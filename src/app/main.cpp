@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   FileOptions file_options;
   std::vector<std::string> file_sets;
   const auto add_file_verb = [&](const char* name, const char* help, const char* example,
-                                 int (*act)(const FileOptions&)) {
+                                 int (*act)(const FileOptions&)) -> CLI::App* {
     CLI::App* const verb = app.add_subcommand(name, help);
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
     verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
@@ -146,15 +146,20 @@ int main(int argc, char** argv) {
         result = complain(status.error());
       else result = act(file_options);
     });
+    return verb;
   };
-  add_file_verb("check", "Find what is wrong in files, with line and remedy",
-                "Example: sandlot check scenarios/*.yaml", check);
+  CLI::App* const check_verb = add_file_verb(
+      "check", "Find what is wrong or suspicious in files, with line and remedy",
+      "Exit code 2 when a file is wrong, 0 when there are only warnings.\n"
+      "Example: sandlot check --strict scenarios/*.yaml",
+      check);
+  check_verb->add_flag("--strict", file_options.strict, "Warnings count as errors: exit code 2");
   add_file_verb("info", "Print the tree of a scenario or world: links, joints, devices, topics",
                 "Example: sandlot info scenarios/indoor.yaml", info);
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(
-      "list", "List the kinds of devices, controllers, engines and levels");
+      "list", "List the kinds of devices, controllers, engines, levels and Gazebo plugins");
   list_verb->add_option("what", list_options.what,
                         "devices, controllers, engines or levels; all when left out");
   list_verb->add_flag("--verbose", list_options.verbose, "With every field: unit, range, default, meaning");

@@ -11,14 +11,17 @@
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/sdf/sdf.h"
+#include "physics/engine.h"
+#include "sim/modules.h"
 #include "sim/placement.h"
+#include "sim/presets.h"
 
 namespace sandlot {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The file behind what a scenario wrote; a folder stands for its model.sdf.
+/// The file behind what a scenario wrote. A folder stands for its model.sdf or, without one, for its only .urdf.
 Result<std::string> locate(const std::string& written, const std::string& folder_of_file,
                            const formats::SearchPath& path, const Place& place) {
   SL_ASSIGN(const std::string found, formats::find_resource(written, folder_of_file, path, place));
@@ -26,7 +29,21 @@ Result<std::string> locate(const std::string& written, const std::string& folder
   if (!fs::is_directory(found, ignored)) return found;
   const std::string file = (fs::path(found) / "model.sdf").string();
   if (fs::is_regular_file(file, ignored)) return file;
-  return Error{"folder '" + found + "' holds no model.sdf", "name the file", place};
+  std::vector<std::string> robots;
+  for (const auto& entry : fs::directory_iterator(found, ignored))
+    if (entry.path().extension() == ".urdf") robots.push_back(entry.path().string());
+  if (robots.size() == 1) return robots.front();
+  return Error{"folder '" + found + "' holds " +
+                   (robots.empty() ? "no model.sdf" : "several .urdf files and no model.sdf"),
+               "name the file", place};
+}
+
+Result<std::uint32_t> link_named(const model::Model& model, const Node& name, const std::string& path) {
+  if (const auto index = model.find_link(name.text())) return *index;
+  std::vector<std::string> names;
+  for (const model::Link& link : model.links) names.push_back(link.name);
+  return name.error("model '" + model.name + "' has no link '" + name.text() + "'",
+                    suggestion(name.text(), names), path);
 }
 
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
@@ -34,7 +51,7 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
   std::vector<model::DeviceDecl> kept;
   for (model::DeviceDecl& decl : instance.devices) {
     if (decl.kind.empty()) {
-      const Kind* const kind = find_device_kind_for_sdf(decl.sdf_types);
+      const Kind* const kind = find_device_kind_for_sdf(decl);
       if (!kind) {
         diagnostics.warn(
             {"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
@@ -48,6 +65,10 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
       }
       decl.config = std::move(*config);
       decl.kind = kind->name;
+      if (const Node* const link = decl.config.find("link")) {
+        SL_ASSIGN(decl.link, link_named(*instance.model, *link, ""));
+        decl.config.erase("link");
+      }
     }
     kept.push_back(std::move(decl));
   }
@@ -75,13 +96,7 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
                    "give it a kind, or " + suggestion(entry.key, names), entry.key_place, path};
     }
     if (const Node* link = keys.find("link")) {
-      const auto index = instance.model->find_link(link->text());
-      std::vector<std::string> names;
-      for (const model::Link& l : instance.model->links) names.push_back(l.name);
-      if (!index)
-        return link->error("model '" + instance.model->name + "' has no link '" + link->text() + "'",
-                           suggestion(link->text(), names), path + "/link");
-      decl.link = *index;
+      SL_ASSIGN(decl.link, link_named(*instance.model, *link, path + "/link"));
     }
     if (const Node* pose = keys.find("pose")) {
       SL_ASSIGN(decl.X_LS, formats::read_pose(*pose, path + "/pose"));
@@ -92,9 +107,37 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
       decl.config.erase("level");
       decl.config.erase("levels");
     }
+    // A preset goes before what the model said, and what stands beside it before both.
+    SL_TRY(lay_preset(keys, decl.kind));
     merge(decl.config, keys);
     if (fresh) instance.devices.push_back(std::move(decl));
     else *found = std::move(decl);
+  }
+  return {};
+}
+
+/// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
+Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
+                      const formats::Scenario& scenario, const formats::SearchPath& search,
+                      std::span<const std::string> paths, Diagnostics& diagnostics) {
+  for (const formats::Module& module : group.modules) {
+    SL_ASSIGN(const std::string file, locate(module.model, formats::base_folder(scenario, module.model_place),
+                                             search, module.model_place));
+    SL_ASSIGN(model::Instance part, load_instance(file, module.id, {}, diagnostics, paths));
+    part.place = module.place;
+    SL_TRY(merge_devices(part, module.devices));
+    std::uint32_t link = 0;
+    if (!module.link.empty()) {
+      const auto found = robot.model->find_link(module.link);
+      std::vector<std::string> names;
+      for (const model::Link& each : robot.model->links) names.push_back(each.name);
+      if (!found)
+        return Error{"robot '" + group.name + "' has no link '" + module.link + "'",
+                     suggestion(module.link, names), module.link_place, "/modules/" + module.id + "/link"};
+      link = *found;
+    }
+    auto attached = attach_module(robot, part, module.id, link, module.X_LM);
+    if (!attached) return std::move(attached.error());
   }
   return {};
 }
@@ -106,6 +149,7 @@ Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics&
   setup.background = content.background;
   setup.geography = content.geography;
   setup.magnetic_field_T = content.magnetic_field_T;
+  setup.gravity_place = content.gravity_place;
   setup.lights = std::move(content.lights);
   for (model::Instance& instance : content.instances) {
     SL_TRY(translate_devices(instance, diagnostics));
@@ -207,7 +251,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
   const formats::SdfOptions sdf = sdf_options(options.paths, options.skip_missing);
   const formats::SearchPath& search = sdf.path;
   model::Setup setup;
-  if (extension == ".sdf" || extension == ".world") {
+  if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
@@ -222,6 +266,10 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       SL_TRY(take_world(std::move(content), setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
+    }
+    if (auto engine = find_engine(scenario.engine); !engine) {
+      engine.error().place = scenario.engine_place;
+      return std::move(engine.error());
     }
     setup.name = scenario.name;
     setup.engine = scenario.engine;
@@ -251,6 +299,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       pattern.team = group.team;
       pattern.controllers = group.controllers;
       pattern.place = group.place;
+      SL_TRY(attach_modules(pattern, group, scenario, search, options.paths, diagnostics));
       SL_TRY(merge_devices(pattern, group.devices));
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {
@@ -262,7 +311,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       }
     }
   } else {
-    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world (.sdf, .world)"};
+    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world or robot (.sdf, .world, .urdf)"};
   }
   if (options.seed) setup.seed = *options.seed;
   if (options.stop_s) setup.stop = Time::from_s(*options.stop_s);
@@ -272,7 +321,8 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     if (!fresh)
       return Error{
           "there are two things named '" + instance.name + "'",
-          "the other one is at " + to_string(known->second->place) + "; give one of them another name",
+          (known->second->place.file ? "the other one is at " + to_string(known->second->place) + "; " : "") +
+              "give one of them another name",
           instance.place};
   }
   return setup;

@@ -17,7 +17,7 @@ struct LoadOptions {
   bool skip_missing = false;  ///< missing includes, meshes and textures are left out with a warning
 };
 
-/// Loads a scenario (.yaml, .yml) or a world or model (.sdf, .world): what `sandlot run` accepts.
+/// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world) or a robot (.urdf): what `sandlot run` accepts.
 /// Errors carry file and line; warnings go to `diagnostics`, each once per file.
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 

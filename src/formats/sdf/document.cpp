@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "formats/resources.h"
+#include "formats/sdf/urdf.h"
 #include "formats/text.h"
 
 namespace sandlot::formats {
@@ -21,6 +22,7 @@ class Loader {
 
   Result<Xml> load(std::string_view text, const std::string& file) {
     SL_ASSIGN(Xml root, parse_xml(text, file, options_.limits));
+    if (root.name == "robot") return urdf_to_sdf(root, notes_);
     SL_ASSIGN(const int minor, version_of(root, notes_));
     modernise(root, minor);
     open_.push_back(canonical_path(file));

@@ -106,6 +106,7 @@ class ModelReader {
 
   void add(model::DeviceDecl device, const std::string& prefix) {
     device.name = prefix + device.name;
+    device.scope = prefix;
     out_.devices.push_back(std::move(device));
   }
 

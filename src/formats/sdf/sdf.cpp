@@ -173,6 +173,7 @@ Status read_world(const Xml& world, const Reading& in, SdfContent& out) {
     SL_TRY(read_geography(*geography, out, in));
   if (const Xml* const wind = world.child("wind"))
     in.notes.warn(*wind, "<wind> is not used", "the air stands still");
+  if (const Xml* const gravity = world.child("gravity")) out.gravity_place = gravity->place;
   Instances instances;
   const auto joints = joints_by_model(world, in.frames);
   for (const Xml& child : world.children) {

@@ -1,5 +1,5 @@
 #pragma once
-/// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning).
+/// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning), and URDF robots (formats/sdf/urdf.h).
 ///
 /// Each file is taken through four checks: limits on the raw text, well-formedness (tinyxml2), names and references,
 /// and each value as it is read; so every complaint has the line that caused it.
@@ -15,7 +15,7 @@
 ///          sandlot:device are its children as keys, lists written `[1, 2]`.
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
 /// Limits   boxes, spheres, cylinders, capsules, planes; other geometry is left out with a warning. Joints: fixed,
-///          revolute, continuous, prismatic, ball. No merge includes, no URDF, no downloads, no actors. Names with
+///          revolute, continuous, prismatic, ball. No merge includes, no downloads, no actors. Names with
 ///          '::' (worlds saved by old Gazebo versions) are refused.
 #include <string>
 #include <string_view>
@@ -31,6 +31,7 @@ namespace sandlot::formats {
 struct SdfContent {
   std::string world_name;  ///< "" for a model file
   Vec3 gravity_mps2{0, 0, -9.81};
+  Place gravity_place;
   std::optional<double> max_step_s;  ///< <physics><max_step_size>
   std::vector<model::Instance>
       instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>

@@ -62,11 +62,9 @@ void modernise_world(Xml& world) {
 }  // namespace
 
 Result<int> version_of(const Xml& root, Notes& notes) {
-  if (root.name == "robot")
-    return root.error("this is URDF", "give the file the ending .urdf, or write <sdf version=\"1.9\">");
   if (root.name != "sdf")
     return root.error("the root element is <" + root.name.substr(0, 60) + ">",
-                      "an SDF file begins with <sdf version=\"1.9\">");
+                      "an SDF file begins with <sdf version=\"1.9\">, a URDF file with <robot>");
   const std::string* const text = root.attribute("version");
   if (!text) return root.error("<sdf> has no version", "write <sdf version=\"1.9\">");
   const std::vector<std::string_view> parts = split(*text, '.');
