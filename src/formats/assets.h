@@ -24,7 +24,6 @@ struct MeshUse {
   bool centre_submesh = false;  ///< move that part's middle to the origin
   Purpose purpose = Purpose::visual;
   Optimization optimization = Optimization::none;
-  int max_hulls = 16;  ///< of convex_decomposition
 };
 
 struct HeightmapUse {

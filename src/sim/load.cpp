@@ -12,6 +12,7 @@
 #include "formats/resources.h"
 #include "formats/sdf/sdf.h"
 #include "physics/engine.h"
+#include "sim/assets.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
 #include "sim/presets.h"
@@ -119,11 +120,12 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
 /// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
 Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
                       const formats::Scenario& scenario, const formats::SearchPath& search,
-                      std::span<const std::string> paths, Diagnostics& diagnostics) {
+                      const LoadOptions& options, Diagnostics& diagnostics) {
   for (const formats::Module& module : group.modules) {
     SL_ASSIGN(const std::string file, locate(module.model, formats::base_folder(scenario, module.model_place),
                                              search, module.model_place));
-    SL_ASSIGN(model::Instance part, load_instance(file, module.id, {}, diagnostics, paths));
+    SL_ASSIGN(model::Instance part,
+              load_instance(file, module.id, {}, diagnostics, options.paths, options.skip_missing));
     part.place = module.place;
     SL_TRY(merge_devices(part, module.devices));
     std::uint32_t link = 0;
@@ -190,6 +192,7 @@ formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_mi
   formats::SdfOptions out;
   out.path = formats::search_path(paths);
   out.skip_missing = skip_missing;
+  out.assets = asset_reader(skip_missing);
   return out;
 }
 
@@ -299,7 +302,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       pattern.team = group.team;
       pattern.controllers = group.controllers;
       pattern.place = group.place;
-      SL_TRY(attach_modules(pattern, group, scenario, search, options.paths, diagnostics));
+      SL_TRY(attach_modules(pattern, group, scenario, search, options, diagnostics));
       SL_TRY(merge_devices(pattern, group.devices));
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {

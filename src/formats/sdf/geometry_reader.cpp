@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 
 #include "base/text.h"
 #include "formats/sdf/reading.h"
+#include "geometry/mesh.h"
 
 namespace sandlot::formats {
 namespace {
@@ -73,7 +75,7 @@ Error blamed(Error error, const Xml& form) {
 
 Result<std::vector<Shape>> read_mesh_use(const Xml& form, bool collision, const std::string& said,
                                          const Reading& in) {
-  in.notes.unused(form, "uri scale submesh convex_decomposition");
+  in.notes.unused(form, "uri scale submesh", "convex_decomposition");
   MeshUse use;
   SL_ASSIGN(const std::string uri, uri_of(form));
   SL_TRY(read_child(form, "scale", {-1e6, 1e6}, use.scale));
@@ -92,11 +94,6 @@ Result<std::vector<Shape>> read_mesh_use(const Xml& form, bool collision, const 
     else if (!wanted->empty() && *wanted != "none")
       return form.error("optimization '" + wanted->substr(0, 40) + "' of a mesh is not known",
                         "write convex_hull or convex_decomposition");
-  }
-  if (const Xml* const parts = form.child("convex_decomposition")) {
-    double hulls = use.max_hulls;
-    SL_TRY(read_child(*parts, "max_convex_hulls", {1, 1024}, hulls));
-    use.max_hulls = static_cast<int>(hulls);
   }
   if (!in.options.assets.mesh) {
     in.notes.warn(form, "geometry <mesh> is not read here", said + " is left out");
@@ -136,6 +133,33 @@ Result<std::vector<Shape>> read_heightmap_use(const Xml& form, Pose& X_LG, const
   return std::vector<Shape>{std::move(*shape)};
 }
 
+/// Several <polyline>s of one <geometry> are the outline and the holes in it.
+Result<std::vector<Shape>> read_polylines(const Xml& geometry, const Reading& in) {
+  std::vector<std::vector<std::array<double, 2>>> loops;
+  double height_m = 1;
+  const Xml* first = nullptr;
+  for (const Xml& form : geometry.children) {
+    if (form.name != "polyline") continue;
+    in.notes.unused(form, "point* height");
+    if (!first) SL_TRY(read_child(form, "height", size_range, height_m));
+    if (!first) first = &form;
+    std::vector<std::array<double, 2>> loop;
+    for (const Xml& child : form.children) {
+      if (child.name != "point") continue;
+      SL_ASSIGN(const auto point, read_point(child, position_range));
+      loop.push_back(point);
+    }
+    if (loop.size() < 3)
+      return form.error("a <polyline> needs three points at least", "write <point>x y</point>");
+    if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+    loops.push_back(std::move(loop));
+  }
+  auto mesh = std::make_shared<TriangleMesh>(extrude(loops, height_m));
+  if (mesh->triangles.empty())
+    return first->error("this <polyline> bounds no area", "its lines must not cross or touch each other");
+  return std::vector<Shape>{Mesh{std::move(mesh)}};
+}
+
 }  // namespace
 
 Result<std::vector<Shape>> read_shapes(const Xml& owner, Pose& X_LG, const Reading& in) {
@@ -151,6 +175,7 @@ Result<std::vector<Shape>> read_shapes(const Xml& owner, Pose& X_LG, const Readi
   if (primitive) return std::vector<Shape>{*primitive};
   if (form.name == "mesh") return read_mesh_use(form, owner.name == "collision", said, in);
   if (form.name == "heightmap") return read_heightmap_use(form, X_LG, said, in);
+  if (form.name == "polyline") return read_polylines(*geometry, in);
   static const std::vector<std::string> known{"box",       "sphere", "cylinder",  "capsule",
                                               "cone",      "plane",  "ellipsoid", "mesh",
                                               "heightmap", "image",  "polyline",  "empty"};

@@ -199,8 +199,7 @@ TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {
     write(name, "x");
   write_model("part/part.sdf", "name='part'", "<static>1</static>" + link("l", R"(
     <collision name="c"><geometry><mesh optimization="convex_decomposition"><uri>arm.dae</uri><scale>2 2 -2</scale>
-      <submesh><name>hand</name><center>true</center></submesh>
-      <convex_decomposition><max_convex_hulls>7</max_convex_hulls></convex_decomposition></mesh></geometry></collision>
+      <submesh><name>hand</name><center>true</center></submesh></mesh></geometry></collision>
     <visual name="v"><geometry><mesh><uri>arm.dae</uri></mesh></geometry>
       <material><pbr><metal><albedo_map>skin.png</albedo_map></metal></pbr></material></visual>
     <collision name="h"><pose>0 0 0 0 0 1.5707963267948966</pose>
@@ -211,7 +210,6 @@ TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {
   EXPECT_EQ(meshes[0].scale, (Vec3{2, 2, -2}));
   EXPECT_EQ(meshes[0].submesh, "hand");
   EXPECT_TRUE(meshes[0].centre_submesh);
-  EXPECT_EQ(meshes[0].max_hulls, 7);
   EXPECT_EQ(meshes[0].purpose, MeshUse::Purpose::collision);
   EXPECT_EQ(meshes[1].purpose, MeshUse::Purpose::visual);
   const model::Link& l = model().links[0];

@@ -291,6 +291,21 @@ TEST(SdfWorld, SceneGeographyAndPhysics) {
   EXPECT_EQ(r.warnings, std::vector<std::string>{"f.sdf:2: <wind> is not used; the air stands still"});
 }
 
+TEST(SdfGeometry, PolylinesBecomeSolids) {
+  // A square of 2 m with a hole of 1 m, 3 m high: 9 m^3.
+  const auto square = [](double h) {
+    const std::string p = std::to_string(h), m = std::to_string(-h);
+    return "<polyline><point>" + m + " " + m + "</point><point>" + p + " " + m + "</point><point>" + p + " " +
+           p + "</point><point>" + m + " " + p + "</point><height>3</height></polyline>";
+  };
+  const Read r = parse(model("<link name='l'><inertial auto='true'/><collision name='c'><geometry>" +
+                             square(1) + square(0.5) + "</geometry></collision></link>"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
+  EXPECT_NEAR(r.model().links[0].inertial.mass_kg, 9000, 1e-6);
+  EXPECT_NEAR(r.model().links[0].inertial.X_LCo.p.z, 1.5, 1e-9);
+}
+
 TEST(SdfActors, FollowTheirScript) {
   const Read r = parse(world(R"(<actor name="ann"><pose>10 0 0 0 0 1.5707963267948966</pose>
     <skin><filename>walk.dae</filename></skin><animation name="walk"><filename>walk.dae</filename></animation>

@@ -122,6 +122,14 @@ Result<Vec3> read_vec3(const Xml& element, Range range) {
   return Vec3{v[0], v[1], v[2]};
 }
 
+Result<std::array<double, 2>> read_point(const Xml& element, Range range) {
+  std::array<double, 2> v{};
+  std::size_t n = 0;
+  if (!read_numbers(element.text, v, n) || n != 2) return not_numbers(element, "two numbers");
+  for (const double x : v) SL_TRY(in_range(element, x, range));
+  return v;
+}
+
 Result<Color> read_color(const Xml& element) {
   std::array<double, 4> v{0, 0, 0, 1};
   std::size_t n = 0;

@@ -1,5 +1,6 @@
 #pragma once
 /// Values of SDF elements: numbers in range, vectors, poses, colours, each fault with its line.
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -52,6 +53,7 @@ class Notes {
 Result<double> read_double(const Xml& element, Range range);
 Result<bool> read_flag(const Xml& element);
 Result<Vec3> read_vec3(const Xml& element, Range range);
+Result<std::array<double, 2>> read_point(const Xml& element, Range range);
 Result<Color> read_color(const Xml& element);
 /// A <pose>: six numbers, or with rotation_format="quat_xyzw" seven; degrees="true" is understood.
 Result<Pose> read_sdf_pose(const Xml& element);
