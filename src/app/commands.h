@@ -23,6 +23,7 @@ struct RunOptions {
   int threads = 1;
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first
+  bool skip_missing = false;       ///< of the files that the file names
   std::string summary_file;        ///< JSON
   std::string svg_file;
   std::string from_file;  ///< a snapshot to go on from
@@ -36,6 +37,7 @@ struct FileOptions {
   std::vector<std::string> files;
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first
+  bool skip_missing = false;       ///< of the files that the file names
   bool json = false;
   bool strict = false;  ///< check: warnings fail too
 };

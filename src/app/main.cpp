@@ -53,6 +53,8 @@ struct RunFlags {
                     "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
+    verb.add_flag("--skip-missing", options.skip_missing,
+                  "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
@@ -133,6 +135,8 @@ int main(int argc, char** argv) {
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
     verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
         ->allow_extra_args(false);
+    verb->add_flag("--skip-missing", file_options.skip_missing,
+                   "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
     verb->add_option("--path", file_options.paths,
                      "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);

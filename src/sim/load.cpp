@@ -4,12 +4,15 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "base/text.h"
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/sdf/sdf.h"
 #include "physics/engine.h"
+#include "sim/assets.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
 #include "sim/presets.h"
@@ -117,11 +120,12 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
 /// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
 Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
                       const formats::Scenario& scenario, const formats::SearchPath& search,
-                      std::span<const std::string> paths, Diagnostics& diagnostics) {
+                      const LoadOptions& options, Diagnostics& diagnostics) {
   for (const formats::Module& module : group.modules) {
     SL_ASSIGN(const std::string file, locate(module.model, formats::base_folder(scenario, module.model_place),
                                              search, module.model_place));
-    SL_ASSIGN(model::Instance part, load_instance(file, module.id, {}, diagnostics, paths));
+    SL_ASSIGN(model::Instance part,
+              load_instance(file, module.id, {}, diagnostics, options.paths, options.skip_missing));
     part.place = module.place;
     SL_TRY(merge_devices(part, module.devices));
     std::uint32_t link = 0;
@@ -143,6 +147,10 @@ Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
 /// Takes world instances over: their devices translated, names checked.
 Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics& diagnostics) {
   setup.gravity = content.gravity_mps2;
+  setup.ambient = content.ambient;
+  setup.background = content.background;
+  setup.geography = content.geography;
+  setup.magnetic_field_T = content.magnetic_field_T;
   setup.gravity_place = content.gravity_place;
   setup.lights = std::move(content.lights);
   for (model::Instance& instance : content.instances) {
@@ -169,23 +177,59 @@ model::Instance bare_ground() {
   return instance;
 }
 
-Result<model::Setup> load_bare_world(const std::string& path, const formats::SearchPath& search,
+Result<model::Setup> load_bare_world(const std::string& path, const formats::SdfOptions& options,
                                      Diagnostics& diagnostics) {
-  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, {.path = search}));
+  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, options));
   model::Setup setup;
   setup.name = content.world_name.empty() ? fs::path(path).stem().string() : content.world_name;
   if (content.max_step_s) setup.step = Time::from_s(*content.max_step_s);
+  setup.physics = std::move(content.physics);
   SL_TRY(take_world(std::move(content), setup, diagnostics));
   return setup;
 }
+
+formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_missing) {
+  formats::SdfOptions out;
+  out.path = formats::search_path(paths);
+  out.skip_missing = skip_missing;
+  out.assets = asset_reader(skip_missing);
+  return out;
+}
+
+/// Ten robots whose plugin nobody answers to are one thing to know, not ten: warnings that say the same of places in
+/// one file become the first of them.
+void fold(Diagnostics& diagnostics) {
+  struct Seen {
+    std::size_t index;
+    std::set<std::pair<int, int>> places;
+  };
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, Seen> seen;
+  std::vector<Error> kept;
+  for (Error& warning : diagnostics.warnings) {
+    const std::string file = warning.place.file ? *warning.place.file : "";
+    const auto [known, fresh] = seen.try_emplace({file, warning.path, warning.what, warning.fix},
+                                                 Seen{kept.size(), {}});
+    known->second.places.emplace(warning.place.line, warning.place.column);
+    if (fresh) kept.push_back(std::move(warning));
+  }
+  for (const auto& [key, group] : seen) {
+    if (group.places.size() < 2) continue;
+    Error& first = kept[group.index];
+    (first.fix.empty() ? first.what : first.fix) += " (and " + std::to_string(group.places.size() - 1) +
+                                                    " more like it)";
+  }
+  diagnostics.warnings = std::move(kept);
+}
+
+Result<model::Setup> load_all(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace
 
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
-                                      std::span<const std::string> paths) {
+                                      std::span<const std::string> paths, bool skip_missing) {
   SL_ASSIGN(formats::SdfContent content,
-            formats::read_sdf(model_file, diagnostics, {.path = formats::search_path(paths)}));
+            formats::read_sdf(model_file, diagnostics, sdf_options(paths, skip_missing)));
   if (content.instances.size() != 1 || !content.world_name.empty())
     return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
   model::Instance instance = std::move(content.instances.front());
@@ -198,21 +242,30 @@ Result<model::Instance> load_instance(const std::string& model_file, const std::
 }
 
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
+  Result<model::Setup> setup = load_all(path, options, diagnostics);
+  fold(diagnostics);
+  return setup;
+}
+
+namespace {
+
+Result<model::Setup> load_all(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::string extension = fs::path(path).extension().string();
-  const formats::SearchPath search = formats::search_path(options.paths);
+  const formats::SdfOptions sdf = sdf_options(options.paths, options.skip_missing);
+  const formats::SearchPath& search = sdf.path;
   model::Setup setup;
   if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
-    SL_ASSIGN(setup, load_bare_world(path, search, diagnostics));
+    SL_ASSIGN(setup, load_bare_world(path, sdf, diagnostics));
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
       SL_ASSIGN(const std::string world,
                 locate(scenario.world, formats::base_folder(scenario, scenario.world_place), search,
                        scenario.world_place));
-      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, {.path = search}));
+      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, sdf));
       SL_TRY(take_world(std::move(content), setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
@@ -237,7 +290,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
                                                search, group.model_place));
       auto known = loaded.find(file);
       if (known == loaded.end()) {
-        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths);
+        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths, options.skip_missing);
         if (!instance) {
           if (!instance.error().place.file) instance.error().place = group.model_place;
           return std::move(instance.error());
@@ -249,7 +302,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
       pattern.team = group.team;
       pattern.controllers = group.controllers;
       pattern.place = group.place;
-      SL_TRY(attach_modules(pattern, group, scenario, search, options.paths, diagnostics));
+      SL_TRY(attach_modules(pattern, group, scenario, search, options, diagnostics));
       SL_TRY(merge_devices(pattern, group.devices));
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {
@@ -278,4 +331,5 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
   return setup;
 }
 
+}  // namespace
 }  // namespace sandlot

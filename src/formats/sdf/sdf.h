@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/assets.h"
 #include "formats/resources.h"
 #include "formats/xml.h"
 #include "model/model.h"
@@ -35,11 +36,17 @@ struct SdfContent {
   std::vector<model::Instance>
       instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>
   std::vector<model::Light> lights;
+  Node physics;  ///< keys for `physics:` of the engine rigid; null when the file has none
+  Color ambient = model::Setup().ambient, background = model::Setup().background;
+  std::optional<model::Geography> geography;
+  Vec3 magnetic_field_T = model::Setup().magnetic_field_T;
 };
 
 struct SdfOptions {
   XmlLimits limits;
   SearchPath path = search_path();
+  AssetReader assets = {};    ///< without them meshes and heightmaps are left out, with a warning
+  bool skip_missing = false;  ///< what a file names and nobody has is left out with a warning, not an error
 };
 
 Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics,
