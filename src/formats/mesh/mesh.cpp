@@ -140,8 +140,7 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   Parsed parsed{std::move(out.mesh), {}};
   TriangleMesh& mesh = parsed.mesh;
   mesh.source = path;
-  if (!options.submesh.empty() &&
-      std::find(out.names.begin(), out.names.end(), options.submesh) == out.names.end())
+  if (!options.submesh.empty() && !out.found_submesh)
     return out.error("has no submesh '" + options.submesh.substr(0, 80) + "'",
                      suggestion(options.submesh, out.names));
   if (!options.submesh.empty())

@@ -262,6 +262,22 @@ TEST(Mesh, ObjLinesCornersAndErrorsHaveTheirLine) {
   expect_says(complaint("x", "a.fbx"), "known are .dae .stl .obj");
 }
 
+TEST(Mesh, ManyPartsAndManyUnknownMaterials) {
+  // 300 parts: more names than suggestions are made from. Each material that is not there is said once.
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 300; ++i)
+    many += "o part" + std::to_string(i) + "\nusemtl " + (i % 2 == 0 ? "red" : "blue") + "\nf 1 2 3\n";
+  Diagnostics diagnostics;
+  const auto all = parse_mesh(many, "/nowhere/a.obj", {}, diagnostics);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->parts.size(), 300u);
+  EXPECT_EQ(diagnostics.warnings.size(), 2u);
+  const TriangleMesh last = parsed(many, "a.obj", {.submesh = "part299"});
+  EXPECT_EQ(last.triangles.size(), 1u);
+  ASSERT_EQ(last.parts.size(), 1u);
+  EXPECT_EQ(last.parts[0].first_triangle, 0u);
+}
+
 class MeshFiles : public testing::Test {
  protected:
   void SetUp() override {

@@ -39,12 +39,16 @@ bool is_convex(const Loop2& p) {
 }  // namespace
 
 void Builder::note_name(const std::string& name) {
-  if (names.size() < 1000 && std::find(names.begin(), names.end(), name) == names.end())
+  found_submesh = found_submesh || name == options_.submesh;
+  constexpr std::size_t enough_to_suggest_from = 100;
+  if (names.size() < enough_to_suggest_from && std::find(names.begin(), names.end(), name) == names.end())
     names.push_back(name);
 }
 
 void Builder::begin_part(const std::string& name, const Material& material) {
   note_name(name);
+  // An empty part makes room for the next, so that their number is bounded like the triangles.
+  if (!mesh.parts.empty() && mesh.parts.back().triangles == 0) mesh.parts.pop_back();
   const Color c = material.color, otherwise;
   mesh.parts.push_back(
       {.name = name,
