@@ -156,6 +156,9 @@ TEST(Mesh, StlBinaryThatBeginsWithSolidAndAsciiOfSeveralSolids) {
   std::string stl = stl_binary();
   stl.replace(0, 5, "solid");
   expect_tetrahedron(parsed(stl, "a.STL"));
+  std::string upper = stl_ascii();
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  expect_tetrahedron(parsed(upper, "a.stl"));
   const std::string two = stl_ascii("first one") + stl_ascii("second");
   const TriangleMesh both = parsed(two, "two.stl");
   ASSERT_EQ(both.parts.size(), 2u);
@@ -371,6 +374,20 @@ TEST_F(MeshFiles, NothingOutsideTheMeshsFolderIsRead) {
   const std::size_t from = outside.find("data:"), to = outside.find('"', from);
   outside.replace(from, to - from, "../../etc/passwd");
   expect_says(complaint(outside, "a.gltf"), "no file in the mesh's folder");
+}
+
+TEST_F(MeshFiles, BuffersOfGltfComeFromBesideIt) {
+  write("meshes/my buffer.bin", gltf_buffer());
+  std::string text = gltf();
+  const std::size_t from = text.find("data:"), to = text.find('"', from);
+  const auto mesh = read_mesh(write("meshes/a.gltf", text.replace(from, to - from, "my%20buffer.bin")),
+                              {.up = UpAxis::as_written}, diagnostics_);
+  ASSERT_TRUE(mesh) << mesh.error().text();
+  expect_tetrahedron(**mesh);
+  write("meshes/my buffer.bin", gltf_buffer().substr(1));
+  const auto cut = read_mesh(write("meshes/b.gltf", text), {}, diagnostics_);
+  ASSERT_FALSE(cut);
+  expect_says(cut.error().text(), "b.gltf: a buffer has 71 bytes and should have 72");
 }
 
 TEST_F(MeshFiles, UnreadableFiles) {

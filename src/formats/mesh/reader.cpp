@@ -147,6 +147,19 @@ bool integer(std::string_view word, std::int64_t& out) {
   return failed == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* const digits = text.data() + i + 1;
+    const bool escape = text[i] == '%' && i + 2 < text.size() &&
+                        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    out += escape ? static_cast<char>(byte) : text[i];
+    if (escape) i += 2;
+  }
+  return out;
+}
+
 Affine operator*(const Affine& a, const Affine& b) {
   Affine out;
   for (std::size_t row = 0; row < 3; ++row)

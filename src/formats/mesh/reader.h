@@ -103,6 +103,9 @@ class Words {
 bool number(std::string_view word, double& out);
 bool integer(std::string_view word, std::int64_t& out);
 
+/// The text with %20 and the like undone, as URIs have them.
+std::string percent_decoded(std::string_view text);
+
 /// 3x4, row by row: node transforms, which may scale and shear.
 struct Affine {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
