@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 
 #include "base/math.h"
 #include "formats/mesh/reader.h"
@@ -7,6 +8,9 @@
 
 namespace sandlot::formats::mesh {
 namespace {
+
+/// The tree and its numbers take several times the space of the text.
+constexpr std::size_t max_xml_bytes = std::size_t{128} << 20;
 
 /// "#id" as it stands in url and source attributes; links into other files are not followed.
 std::string target(const Xml& from, std::string_view attribute) {
@@ -127,7 +131,7 @@ class Reader {
                                  : step.name == "rotate"                            ? 4
                                  : step.name == "translate" || step.name == "scale" ? 3
                                                                                     : 0;
-      if (step.name == "lookat" || step.name == "skew")
+      if ((step.name == "lookat" || step.name == "skew") && !std::exchange(said_step_, true))
         diagnostics_.warn(step.error("<" + step.name + "> is not used", "apply transforms before exporting"));
       if (wanted == 0) continue;
       std::vector<double> v;
@@ -303,7 +307,7 @@ class Reader {
   }
 
   Status read_primitive(const Xml& primitive, const Inputs& inputs, const Affine& X) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;
+    std::unordered_map<std::uint64_t, std::uint32_t> made;  // only looked up
     std::vector<std::uint32_t> p, vcount, corners;
     const bool turn = X.mirrors();
     const int line = primitive.place.line;
@@ -313,7 +317,7 @@ class Reader {
       if (point >= inputs.points->count || (inputs.uv && uv >= inputs.uv->count))
         return primitive.error("<" + primitive.name + "> names vertex " + std::to_string(point) + " of " +
                                std::to_string(inputs.points->count));
-      const auto [at, is_new] = made.try_emplace({point, uv}, 0);
+      const auto [at, is_new] = made.try_emplace(std::uint64_t{point} << 32 | uv, 0);
       if (is_new) {
         const double* v = inputs.points->values.data() + inputs.points->offset +
                           point * inputs.points->stride;
@@ -334,10 +338,11 @@ class Reader {
       return out_.triangle(corners[0], corners[1], corners[2], line);
     };
     const auto polygon = [&](std::size_t first, std::size_t count) -> Status {
+      if (count < 3) return {};
       corners.clear();
       for (std::size_t i = 0; i < count; ++i) SL_TRY(corner(first + i));
-      if (turn) std::reverse(corners.begin(), corners.end());
-      return count < 3 ? Status() : out_.polygon(corners, line);
+      if (turn) std::reverse(corners.begin() + 1, corners.end());  // the same diagonals
+      return out_.polygon(corners, line);
     };
     if (const Xml* counts = primitive.child("vcount")) SL_TRY(indices_in(*counts, vcount));
     for (const Xml& child : primitive.children) {
@@ -372,13 +377,15 @@ class Reader {
   std::map<std::string, const Xml*, std::less<>> ids_;
   std::map<const Xml*, Source> sources_;  // found by address, never walked through
   std::uint64_t work_ = 0, visits_ = 0;
+  bool said_step_ = false;
 };
 
 }  // namespace
 
 Status read_collada(std::string_view bytes, Builder& out, Diagnostics& diagnostics) {
   SL_ASSIGN(const Xml root,
-            parse_xml(bytes, out.path(), {.max_bytes = out.options().max_bytes, .max_depth = 256}));
+            parse_xml(bytes, out.path(),
+                      {.max_bytes = std::min(out.options().max_bytes, max_xml_bytes), .max_depth = 256}));
   return Reader(root, out, diagnostics).read();
 }
 

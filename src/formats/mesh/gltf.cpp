@@ -137,7 +137,7 @@ class Reader {
         const std::size_t comma = uri.find(";base64,");
         if (comma != std::string::npos) bytes = from_base64(std::string_view(uri).substr(comma + 8));
       } else {
-        SL_ASSIGN(bytes, out_.read_beside(uri));
+        SL_ASSIGN(bytes, out_.read_beside(percent_decoded(uri)));
       }
       std::uint64_t length = 0;
       if (!unsigned_of(buffer, "byteLength", length) || length > bytes.size())

@@ -28,10 +28,10 @@ std::string extension_of(const std::string& path) {
   return out;
 }
 
-std::string decoded(std::string text) {
+/// A texture's name as a path: exporters write URIs and Windows paths.
+std::string decoded(const std::string& name) {
+  std::string text = mesh::percent_decoded(name);
   std::replace(text.begin(), text.end(), '\\', '/');
-  for (std::size_t at = text.find("%20"); at != std::string::npos; at = text.find("%20", at))
-    text.replace(at, 3, " ");
   for (const std::string_view scheme : {"file://", "./"})
     if (starts_with(text, scheme)) text.erase(0, scheme.size());
   return text;
@@ -39,9 +39,9 @@ std::string decoded(std::string text) {
 
 /// The file of a texture, or "".
 std::string find_texture(const std::string& name, const std::string& mesh_path) {
-  if (name.find('\0') != std::string::npos || name.size() > 4000) return "";
   const std::string folder = folder_of(mesh_path), file = decoded(name),
                     bare = fs::path(file).filename().string();
+  if (file.find('\0') != std::string::npos || file.size() > 4000) return "";
   for (const std::string& each : {file, bare, "../materials/textures/" + bare}) {
     const std::string path = beside(folder, each);
     std::error_code failed;
@@ -140,8 +140,7 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   Parsed parsed{std::move(out.mesh), {}};
   TriangleMesh& mesh = parsed.mesh;
   mesh.source = path;
-  if (!options.submesh.empty() &&
-      std::find(out.names.begin(), out.names.end(), options.submesh) == out.names.end())
+  if (!options.submesh.empty() && !out.found_submesh)
     return out.error("has no submesh '" + options.submesh.substr(0, 80) + "'",
                      suggestion(options.submesh, out.names));
   if (!options.submesh.empty())

@@ -156,6 +156,9 @@ TEST(Mesh, StlBinaryThatBeginsWithSolidAndAsciiOfSeveralSolids) {
   std::string stl = stl_binary();
   stl.replace(0, 5, "solid");
   expect_tetrahedron(parsed(stl, "a.STL"));
+  std::string upper = stl_ascii();
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  expect_tetrahedron(parsed(upper, "a.stl"));
   const std::string two = stl_ascii("first one") + stl_ascii("second");
   const TriangleMesh both = parsed(two, "two.stl");
   ASSERT_EQ(both.parts.size(), 2u);
@@ -262,6 +265,22 @@ TEST(Mesh, ObjLinesCornersAndErrorsHaveTheirLine) {
   expect_says(complaint("x", "a.fbx"), "known are .dae .stl .obj");
 }
 
+TEST(Mesh, ManyPartsAndManyUnknownMaterials) {
+  // 300 parts: more names than suggestions are made from. Each material that is not there is said once.
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 300; ++i)
+    many += "o part" + std::to_string(i) + "\nusemtl " + (i % 2 == 0 ? "red" : "blue") + "\nf 1 2 3\n";
+  Diagnostics diagnostics;
+  const auto all = parse_mesh(many, "/nowhere/a.obj", {}, diagnostics);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->parts.size(), 300u);
+  EXPECT_EQ(diagnostics.warnings.size(), 2u);
+  const TriangleMesh last = parsed(many, "a.obj", {.submesh = "part299"});
+  EXPECT_EQ(last.triangles.size(), 1u);
+  ASSERT_EQ(last.parts.size(), 1u);
+  EXPECT_EQ(last.parts[0].first_triangle, 0u);
+}
+
 class MeshFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -355,6 +374,20 @@ TEST_F(MeshFiles, NothingOutsideTheMeshsFolderIsRead) {
   const std::size_t from = outside.find("data:"), to = outside.find('"', from);
   outside.replace(from, to - from, "../../etc/passwd");
   expect_says(complaint(outside, "a.gltf"), "no file in the mesh's folder");
+}
+
+TEST_F(MeshFiles, BuffersOfGltfComeFromBesideIt) {
+  write("meshes/my buffer.bin", gltf_buffer());
+  std::string text = gltf();
+  const std::size_t from = text.find("data:"), to = text.find('"', from);
+  const auto mesh = read_mesh(write("meshes/a.gltf", text.replace(from, to - from, "my%20buffer.bin")),
+                              {.up = UpAxis::as_written}, diagnostics_);
+  ASSERT_TRUE(mesh) << mesh.error().text();
+  expect_tetrahedron(**mesh);
+  write("meshes/my buffer.bin", gltf_buffer().substr(1));
+  const auto cut = read_mesh(write("meshes/b.gltf", text), {}, diagnostics_);
+  ASSERT_FALSE(cut);
+  expect_says(cut.error().text(), "b.gltf: a buffer has 71 bytes and should have 72");
 }
 
 TEST_F(MeshFiles, UnreadableFiles) {

@@ -1,4 +1,5 @@
 #include <map>
+#include <unordered_map>
 
 #include "base/text.h"
 #include "formats/mesh/reader.h"
@@ -48,8 +49,8 @@ struct Obj {
   Builder& out;
   std::vector<Vec3> points;
   std::vector<std::array<float, 2>> uvs;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;  ///< (point, uv + 1) -> vertex
-  std::vector<std::uint32_t> plain;                                       ///< the same without uv
+  std::unordered_map<std::uint64_t, std::uint32_t> made;  ///< (point, uv) -> vertex; only looked up
+  std::vector<std::uint32_t> plain;                       ///< the same without uv
   Materials materials;
   std::string name, material;
   bool part_open = false;
@@ -74,15 +75,16 @@ struct Obj {
     }
     corners.clear();
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      const std::vector<std::string_view> parts = split(word, '/');
+      // point, point/uv, point/uv/normal or point//normal
+      const std::size_t slash = word.find('/');
+      const std::string_view first = word.substr(0, slash),
+                             rest = slash == std::string_view::npos ? "" : word.substr(slash + 1),
+                             second = rest.substr(0, rest.find('/'));
       std::uint32_t point = 0, uv = 0;
-      const auto bad = [&] {
+      const bool has_uv = !second.empty();
+      if (!resolve(first, points.size(), point) || (has_uv && !resolve(second, uvs.size(), uv)))
         return out.error("face corner '" + std::string(word.substr(0, 40)) + "' names no vertex",
                          "there are " + std::to_string(points.size()) + " so far", line);
-      };
-      if (!resolve(parts[0], points.size(), point)) return bad();
-      const bool has_uv = parts.size() > 1 && !parts[1].empty();
-      if (has_uv && !resolve(parts[1], uvs.size(), uv)) return bad();
       constexpr std::uint32_t none = ~std::uint32_t{0};
       if (!has_uv) {
         plain.resize(points.size(), none);
@@ -90,7 +92,7 @@ struct Obj {
         corners.push_back(plain[point]);
         continue;
       }
-      const auto [at, is_new] = made.try_emplace({point, uv}, 0);
+      const auto [at, is_new] = made.try_emplace(std::uint64_t{point} << 32 | uv, 0);
       if (is_new) at->second = out.vertex(points[point], uvs[uv]);
       corners.push_back(at->second);
     }
@@ -142,9 +144,10 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
     } else if (key == "usemtl") {
       obj.material = rest_of(line, words);
       obj.part_open = false;
-      if (!obj.materials.contains(obj.material))
+      // Once for each: unknown ones become known as grey.
+      if (obj.materials.try_emplace(obj.material).second)
         diagnostics.warn(
-            out.error("material '" + obj.material.substr(0, 60) + "' is not in the file's mtllib",
+            out.error("material '" + obj.material.substr(0, 60) + "' is in no mtllib of the file",
                       "it is drawn grey", here));
     } else if (key == "mtllib") {
       const auto text = out.read_beside(rest_of(line, words), here);

@@ -39,12 +39,16 @@ bool is_convex(const Loop2& p) {
 }  // namespace
 
 void Builder::note_name(const std::string& name) {
-  if (names.size() < 1000 && std::find(names.begin(), names.end(), name) == names.end())
+  found_submesh = found_submesh || name == options_.submesh;
+  constexpr std::size_t enough_to_suggest_from = 100;
+  if (names.size() < enough_to_suggest_from && std::find(names.begin(), names.end(), name) == names.end())
     names.push_back(name);
 }
 
 void Builder::begin_part(const std::string& name, const Material& material) {
   note_name(name);
+  // An empty part makes room for the next, so that their number is bounded like the triangles.
+  if (!mesh.parts.empty() && mesh.parts.back().triangles == 0) mesh.parts.pop_back();
   const Color c = material.color, otherwise;
   mesh.parts.push_back(
       {.name = name,
@@ -141,6 +145,19 @@ bool number(std::string_view word, double& out) {
 bool integer(std::string_view word, std::int64_t& out) {
   const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), out);
   return failed == std::errc() && end == word.data() + word.size() && !word.empty();
+}
+
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* const digits = text.data() + i + 1;
+    const bool escape = text[i] == '%' && i + 2 < text.size() &&
+                        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    out += escape ? static_cast<char>(byte) : text[i];
+    if (escape) i += 2;
+  }
+  return out;
 }
 
 Affine operator*(const Affine& a, const Affine& b) {

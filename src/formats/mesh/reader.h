@@ -29,9 +29,9 @@ class Builder {
   }
   Error truncated() const { return error("ends too early", "the file is cut off or damaged"); }
 
-  /// Triangles that follow belong to this part. Parts of other submeshes than the one asked for are skipped by
-  /// wanted(), which a reader may ask before it works.
+  /// Triangles that follow belong to this part.
   void begin_part(const std::string& name, const Material& material);
+  /// Parts of other submeshes than the one asked for need not be read, only noted.
   bool wanted(const std::string& name) const { return options_.submesh.empty() || options_.submesh == name; }
   /// For the error that says which there are.
   void note_name(const std::string& name);
@@ -43,12 +43,12 @@ class Builder {
   /// The error for more triangles than allowed; null when `count` is fine.
   Status check_count(std::uint64_t count, int line = 0) const;
 
-  /// Another file in the mesh's folder or below; an empty optional text with why not.
+  /// Another file in the mesh's folder or below it.
   Result<std::string> read_beside(const std::string& name, int line = 0) const;
 
   TriangleMesh mesh;
-  std::vector<std::string> names;
-  bool uses_texture = false;
+  std::vector<std::string> names;  ///< the first few
+  bool found_submesh = false, uses_texture = false;
 
  private:
   std::string path_;
@@ -102,6 +102,9 @@ class Words {
 /// A finite number or false.
 bool number(std::string_view word, double& out);
 bool integer(std::string_view word, std::int64_t& out);
+
+/// The text with %20 and the like undone, as URIs have them.
+std::string percent_decoded(std::string_view text);
 
 /// 3x4, row by row: node transforms, which may scale and shear.
 struct Affine {

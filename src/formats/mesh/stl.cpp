@@ -1,9 +1,17 @@
+#include <cctype>
+
 #include "formats/mesh/reader.h"
 
 namespace sandlot::formats::mesh {
 namespace {
 
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
+
+std::string lower(std::string_view word) {
+  std::string out(word);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
 
 Status read_binary(std::string_view bytes, std::uint32_t count, Builder& out) {
   SL_TRY(out.check_count(count));
@@ -39,7 +47,7 @@ Status read_ascii(std::string_view bytes, Builder& out) {
     const int here = in.line();
     if (!in.next_line(line)) break;
     Words words(line);
-    const std::string_view word = words.next();
+    const std::string word = lower(words.next());
     if (word == "solid") {
       in_solid = true;
       std::string name;
@@ -61,8 +69,8 @@ Status read_ascii(std::string_view bytes, Builder& out) {
     } else if (word == "endsolid") {
       in_solid = false;
     } else if (!word.empty() && word != "outer" && word != "endloop") {
-      return out.error("'" + std::string(word.substr(0, 40)) + "' is no word of an STL file",
-                       "is the file damaged?", here);
+      return out.error("'" + word.substr(0, 40) + "' is no word of an STL file", "is the file damaged?",
+                       here);
     }
   }
   if (in_solid) return out.truncated();
@@ -73,13 +81,14 @@ Status read_ascii(std::string_view bytes, Builder& out) {
 
 Status read_stl(std::string_view bytes, Builder& out) {
   // Binary files may begin with "solid" too. Their size says what they are; a cut off one has bytes that no text has.
+  const bool solid = lower(bytes.substr(0, 5)) == "solid";
   if (bytes.size() >= header_bytes) {
     Bytes in(bytes.substr(80));
     const auto count = in.get<std::uint32_t>();
     const bool fits = bytes.size() == header_bytes + std::uint64_t{count} * triangle_bytes;
-    const bool text = bytes.substr(0, 5) == "solid" && bytes.find('\0') == std::string_view::npos;
+    const bool text = solid && bytes.find('\0') == std::string_view::npos;
     if (fits || !text) return read_binary(bytes, count, out);
-  } else if (bytes.substr(0, 5) != "solid") {
+  } else if (!solid) {
     return out.error("is no STL file", "an STL file begins with 'solid' or has a header of 84 bytes");
   }
   return read_ascii(bytes, out);
