@@ -182,7 +182,8 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Sdf
   SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, options));
   model::Setup setup;
   setup.name = content.world_name.empty() ? fs::path(path).stem().string() : content.world_name;
-  if (content.max_step_s) setup.step = Time::from_s(*content.max_step_s);
+  // Gazebo's default; a scenario has its own.
+  setup.step = Time::from_s(content.max_step_s.value_or(0.001));
   setup.physics = std::move(content.physics);
   SL_TRY(take_world(std::move(content), setup, diagnostics));
   return setup;
