@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   SL_CHECK(root);
   const auto back = formats::parse_sdf(formats::xml_text(*root, text), "/nowhere/back.sdf", unheard,
                                        {.path = {}});
-  SL_CHECK_MSG(back, back ? "" : back.error().text());
+  SL_CHECK_MSG(back, back.error().what.c_str());
   const model::Model &was = *result->instances[0].model, &is = *back->instances.at(0).model;
   SL_CHECK(was.links.size() == is.links.size() && was.joints.size() == is.joints.size());
   for (std::size_t l = 0; l < was.links.size(); ++l)

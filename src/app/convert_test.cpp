@@ -62,8 +62,10 @@ model::Setup loaded(const std::string& path) {
   return setup ? std::move(*setup) : model::Setup{};
 }
 
-/// The keys of a device in one order: that of an element's children is the order of their lines.
+/// The keys of a device in one order: that of an element's children is the order of their lines. The file that a plugin
+/// names is called differently from another folder.
 void sort_keys(Node& node) {
+  node.erase("parameters");
   for (Node& item : node.items()) sort_keys(item);
   for (Node::Entry& entry : node.entries()) sort_keys(entry.value);
   std::sort(node.entries().begin(), node.entries().end(),

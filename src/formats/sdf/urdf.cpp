@@ -110,7 +110,11 @@ std::string without_colons(std::string name) {
   return name;
 }
 
-Result<std::string> name_of(const Xml& element) { return required(element, "name", "..."); }
+Result<std::string> name_of(const Xml& element) {
+  SL_ASSIGN(std::string name, required(element, "name", "..."));
+  if (name.size() > 200) return element.error("the name of this <" + element.name + "> is too long");
+  return name;
+}
 
 /// Links and joints by name; the same name twice is an error.
 Status list(const Xml& robot, const char* sort, std::vector<const Xml*>& elements,

@@ -109,12 +109,9 @@ class Extensions {
       const auto joint = robot_.joint_index.find(*reference);
       const bool has_link = link != robot_.link_index.end(), has_joint = joint != robot_.joint_index.end();
       if (!has_link && !has_joint) {
-        std::vector<std::string> known;
-        for (const auto* const index : {&robot_.link_index, &robot_.joint_index})
-          for (const auto& [name, i] : *index) known.push_back(name);
         notes_.warn(gazebo,
                     "there is no link or joint '" + reference->substr(0, 60) + "': its <gazebo> is not used",
-                    suggestion(*reference, known));
+                    near_name(*reference));
         continue;
       }
       for (const Xml& child : gazebo.children)
@@ -128,6 +125,15 @@ class Extensions {
   }
 
  private:
+  /// What was meant, perhaps. Comparing names takes its time, so only the first few are helped.
+  std::string near_name(const std::string& reference) {
+    if (++lost_ > 20) return "";
+    std::vector<std::string> known;
+    for (const auto* const index : {&robot_.link_index, &robot_.joint_index})
+      for (const auto& [name, i] : *index) known.push_back(name);
+    return suggestion(reference, known);
+  }
+
   void not_used(const Xml& child) {
     if (child.name.find(':') == std::string::npos)
       notes_.warn(child, "<" + child.name.substr(0, 60) + "> in <gazebo> is not used");
@@ -293,6 +299,7 @@ class Extensions {
   Notes& notes_;
   std::vector<Xml> added_;
   std::size_t copied_ = 0;
+  int lost_ = 0;
 };
 
 // ---- transmissions ----

@@ -154,7 +154,8 @@ Status add_material(const Xml& visual, const Materials& materials, Xml& out, Not
     const auto found = materials.find(name ? *name : "");
     if (found == materials.end()) {
       std::vector<std::string> known;
-      for (const auto& [key, element] : materials) known.push_back(key);
+      for (const auto& [key, element] : materials)
+        if (known.size() < 50) known.push_back(key);  // each visual may ask
       notes.warn(
           *material, "material '" + (name ? name->substr(0, 60) : "") + "' is not defined",
           known.empty() ? "give it a <color rgba=\"r g b a\"/>" : suggestion(name ? *name : "", known));
