@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "app/commands.h"
 #include "base/text.h"
@@ -21,6 +22,7 @@ struct Item {
   std::vector<FieldInfo> fields;
   std::span<const LevelInfo> levels;
   std::vector<std::string> sdf_names;
+  std::span<const Preset> presets = {};
 };
 struct Section {
   std::string key, title, intro;
@@ -30,17 +32,17 @@ struct Section {
 std::vector<Section> sections() {
   Section devices{"devices", "Devices", "Sensors and actuators: `devices:` of a robot in a scenario.", {}};
   for (const Kind* kind : device_kinds()) {
-    Item item{kind->name, kind->help, kind->describe(), kind->levels, {}};
+    Item item{kind->name, kind->help, kind->describe(), kind->levels, {}, kind->presets};
     for (const char* name : kind->sdf_types) item.sdf_names.emplace_back(name);
     devices.items.push_back(std::move(item));
   }
   Section controllers{
       "controllers", "Controllers", "Programs that decide: `controller:` of a robot in a scenario.", {}};
   for (const ControllerKind* kind : controller_kinds())
-    controllers.items.push_back({kind->name, kind->help, kind->describe(), {}, {}});
+    controllers.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
-    engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}});
+    engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
   return {devices, controllers, engines};
 }
 
@@ -67,6 +69,7 @@ void print_text(const Section& section, bool verbose) {
       fmt::print("    level {:<20} {}{}{}\n", level.name, level.help,
                  *level.message ? std::string(" Publishes ") + level.message + "." : "",
                  *level.command ? std::string(" Takes ") + level.command + "." : "");
+    for (const Preset& preset : item.presets) fmt::print("    preset {:<19} {}\n", preset.name, preset.help);
     for (const FieldInfo& field : item.fields) {
       std::string notes;
       if (!limits(field).empty()) notes += ", " + limits(field);
@@ -86,9 +89,55 @@ void print_levels() {
       fmt::print("  {:<16} {:<12} {}\n", kind->name, level.name, level.help);
 }
 
+/// One thing that a Gazebo file or a controller file may name, and what it becomes here.
+struct Mapped {
+  std::string name, element, kind, levels, unused;
+};
+
+std::vector<Mapped> mapped_names() {
+  std::vector<Mapped> out;
+  for (const Kind* kind : device_kinds()) {
+    std::string levels;
+    for (const LevelInfo& level : kind->levels)
+      levels += (levels.empty() ? "" : ", ") + std::string(level.name);
+    for (const std::string_view name : kind->sdf_types) {
+      const std::size_t colon = name.find(':');
+      out.push_back({std::string(name.substr(colon + 1)), std::string(name.substr(0, colon)), kind->name,
+                     levels, kind->sdf_note});
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Mapped& a, const Mapped& b) {
+    return std::tie(a.element, a.name, a.kind) < std::tie(b.element, b.name, b.kind);
+  });
+  return out;
+}
+
+void print_plugins() {
+  fmt::print("plugins\n");
+  for (const Mapped& row : mapped_names()) {
+    fmt::print("  {:<8}{:<54} {:<18} {}\n", row.element, row.name, row.kind, row.levels);
+    if (!row.unused.empty()) fmt::print("  {:<8}  without effect: {}\n", "", row.unused);
+  }
+}
+
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
   return text;
+}
+
+void print_plugin_table() {
+  fmt::print(
+      "\n## Gazebo's sensors and plugins\n\nWhat `<sensor type=\"...\">` and `<plugin>` of SDF and URDF "
+      "files "
+      "become. A plugin is known by its class (the last part of `name`) or by its library (`filename` "
+      "without "
+      "`lib` and `.so`). Where two kinds answer to one name, the element decides: several planes make a "
+      "lidar 3D. "
+      "What is not in the table is named in one warning with its line.\n\n"
+      "| element | name | kind | levels | has no effect |\n|---|---|---|---|---|\n");
+  for (const Mapped& row : mapped_names())
+    fmt::print("| {} | `{}` | [{}](#{}) | {} | {} |\n", row.element, row.name, row.kind, row.kind, row.levels,
+               cell(row.unused));
 }
 
 void print_markdown(const std::vector<Section>& all) {
@@ -109,6 +158,11 @@ void print_markdown(const std::vector<Section>& all) {
         for (const LevelInfo& level : item.levels)
           fmt::print("| `{}` | {} | {} | {} |\n", level.name, level.message, level.command, level.help);
       }
+      if (!item.presets.empty()) {
+        fmt::print("\n| preset | stands for |\n|---|---|\n");
+        for (const Preset& preset : item.presets)
+          fmt::print("| `{}` | {} `{}` |\n", preset.name, cell(preset.help), cell(preset.keys));
+      }
       if (item.fields.empty()) continue;
       fmt::print("\n| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n");
       for (const FieldInfo& field : item.fields)
@@ -116,6 +170,7 @@ void print_markdown(const std::vector<Section>& all) {
                    field.tunable ? ", tunable" : "", field.unit == "1" ? "" : field.unit, limits(field),
                    field.required ? "required" : cell(field.default_value), cell(field.help));
     }
+    if (section.key == "devices") print_plugin_table();
   }
 }
 
@@ -143,6 +198,10 @@ Json to_json(const Section& section) {
     }
     entry["levels"] = levels;
     entry["sdf"] = item.sdf_names;
+    Json presets = Json::array();
+    for (const Preset& preset : item.presets)
+      presets.push_back({{"name", preset.name}, {"help", preset.help}, {"keys", preset.keys}});
+    entry["presets"] = presets;
     entry["fields"] = fields;
     out.push_back(std::move(entry));
   }
@@ -155,14 +214,32 @@ int list(const ListOptions& options) {
   std::vector<Section> chosen = sections();
   if (options.schema) {
     std::vector<formats::KindFields> devices, controllers;
-    for (const Kind* kind : device_kinds()) devices.emplace_back(kind->name, kind->describe());
+    for (const Kind* kind : device_kinds()) {
+      devices.emplace_back(kind->name, kind->describe());
+      if (kind->presets.empty()) continue;
+      FieldInfo preset{"preset", "choice", "", "Ready-made keys; those beside it go before."};
+      for (const Preset& each : kind->presets) preset.choices.emplace_back(each.name);
+      devices.back().second.push_back(std::move(preset));
+    }
     for (const ControllerKind* kind : controller_kinds())
       controllers.emplace_back(kind->name, kind->describe());
     fmt::print("{}\n", formats::scenario_schema(devices, controllers));
     return exit_ok;
   }
+  if (options.what == "plugins" && !options.markdown) {
+    if (!options.json) return print_plugins(), exit_ok;
+    Json rows = Json::array();
+    for (const Mapped& row : mapped_names())
+      rows.push_back({{"element", row.element},
+                      {"name", row.name},
+                      {"kind", row.kind},
+                      {"levels", row.levels},
+                      {"unused", row.unused}});
+    fmt::print("{}\n", Json{{"plugins", rows}}.dump(2));
+    return exit_ok;
+  }
   if (!options.what.empty() && options.what != "levels") {
-    std::vector<std::string> names{"levels"};
+    std::vector<std::string> names{"levels", "plugins"};
     for (const Section& section : chosen) names.push_back(section.key);
     std::erase_if(chosen, [&](const Section& section) { return section.key != options.what; });
     if (chosen.empty())

@@ -13,6 +13,7 @@ SANDLOT_DEVICES(SL_DECLARE)
 #undef SL_DECLARE
 
 Result<std::uint32_t> DeviceBuild::joint_index(std::string_view name, const char* spec_key) const {
+  if (const auto index = instance.model->find_joint(decl.scope + std::string(name))) return *index;
   if (const auto index = instance.model->find_joint(name)) return *index;
   std::vector<std::string> names;
   for (const model::Joint& joint : instance.model->joints) names.push_back(joint.name);
@@ -43,12 +44,30 @@ Result<const Kind*> find_device_kind(std::string_view name) {
   return Error{"no kind of device '" + std::string(name) + "'", suggestion(name, names)};
 }
 
-const Kind* find_device_kind_for_sdf(std::span<const std::string> sdf_types) {
-  for (const std::string& type : sdf_types)
+const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl) {
+  // "plugin:path/libgazebo_ros_imu.so" is "plugin:gazebo_ros_imu".
+  const auto plain = [](std::string_view type) {
+    std::string name(type.substr(0, type.find(':') + 1));
+    std::string_view rest = type.substr(name.size());
+    if (name == "plugin:") {
+      if (const auto slash = rest.rfind('/'); slash != std::string_view::npos) rest.remove_prefix(slash + 1);
+      if (rest.size() > 3 && rest.substr(rest.size() - 3) == ".so") rest.remove_suffix(3);
+      if (rest.size() > 3 && rest.substr(0, 3) == "lib") rest.remove_prefix(3);
+    }
+    return name.append(rest);
+  };
+  const auto answers = [&](const Kind& kind, const std::string& type) {
+    return std::any_of(kind.sdf_types.begin(), kind.sdf_types.end(),
+                       [&](const char* t) { return type == t; }) &&
+           (!kind.accepts || kind.accepts(decl.config));
+  };
+  // Of a sensor its plugins come last in the list; of a plugin its class comes before its library.
+  std::vector<std::string> types;
+  for (const std::string& type : decl.sdf_types) types.push_back(plain(type));
+  if (!types.empty() && types.front().substr(0, 7) == "sensor:") std::reverse(types.begin(), types.end());
+  for (const std::string& type : types)
     for (const Kind* kind : device_kinds())
-      if (std::any_of(kind->sdf_types.begin(), kind->sdf_types.end(),
-                      [&](const char* t) { return type == t; }))
-        return kind;
+      if (answers(*kind, type)) return kind;
   return nullptr;
 }
 

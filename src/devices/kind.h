@@ -34,7 +34,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 1;
+inline constexpr int device_api_version = 2;
 
 /// One level of abstraction of a kind. The first level of a kind is its default.
 struct LevelInfo {
@@ -42,6 +42,13 @@ struct LevelInfo {
   const char* message;  ///< ROS type published on <device>/<level>, or ""
   const char* command;  ///< ROS type accepted on <device>/<level>/command, or ""
   const char* help;
+};
+
+/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys go before.
+struct Preset {
+  const char* name;  ///< "sick_lms200"
+  const char* help;  ///< one sentence; says where the numbers come from
+  const char* keys;  ///< a map in YAML
 };
 
 /// Creates topics and command slots while a device is built; they live as long as the device.
@@ -65,6 +72,7 @@ struct DeviceBuild {
   Time tick;                 ///< length of a tick
   std::uint32_t levels = 1;  ///< bit i: level i is active
   TopicMaker& topics;
+  Vec3 gravity_mps2{0, 0, -9.81};
 
   BodyId body() const { return bodies[decl.link]; }
   /// Frame of the sensor in messages: "robot1/laser".
@@ -135,6 +143,8 @@ class PoolBase {
   virtual Status add(const DeviceBuild& build) = 0;
   /// Removes one device; those behind it move up by one.
   virtual void remove(std::uint32_t index) = 0;
+  /// What an actuator that goes away leaves behind (a joint set free, a base released), into context.actuation.
+  virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
   struct Due {
     std::span<const std::uint32_t> due;
@@ -160,10 +170,16 @@ struct Kind {
   const char* name;  ///< as scenario files spell it: "laser_scanner"
   const char* help;  ///< one sentence
   std::span<const LevelInfo> levels;
-  std::span<const char* const> sdf_types =
-      {};  ///< "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF
-  /// Turns the SDF element into keys of the spec; null when sdf_types is empty. Names what it cannot use.
+  /// "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF and URDF. A plugin is called by its class or
+  /// by its library without "lib" and ".so".
+  std::span<const char* const> sdf_types = {};
+  /// Turns the SDF element into keys of the spec (and `level`, `link`); null when sdf_types is empty. Names what it
+  /// cannot use.
   Result<Node> (*from_sdf)(const Node& element, Diagnostics& diagnostics) = nullptr;
+  /// Tells elements of one type apart when several kinds answer to it; null: takes them all.
+  bool (*accepts)(const Node& element) = nullptr;
+  const char* sdf_note = "";  ///< for the docs: what of those elements has no effect here
+  std::span<const Preset> presets = {};
   int api_version = device_api_version;
   // Filled by make_kind:
   unsigned phases = 0;
@@ -183,6 +199,10 @@ class DevicePool final : public PoolBase {
     return {};
   }
   void remove(std::uint32_t index) override { devices_.erase(devices_.begin() + index); }
+  void release(std::uint32_t index, const Context& context) override {
+    if constexpr (requires { devices_[index].release(context); }) devices_[index].release(context);
+    else (void)index, (void)context;
+  }
   double rate_hz(std::uint32_t index) const override {
     if constexpr (requires { devices_[index].spec.rate_hz; }) return devices_[index].spec.rate_hz;
     else return 0;
@@ -241,7 +261,8 @@ constexpr Kind make_kind(Kind kind) {
 std::span<const Kind* const> device_kinds();
 /// By name, or an error with the nearest one.
 Result<const Kind*> find_device_kind(std::string_view name);
-/// The kind that answers to one of the names an SDF file used, or null.
-const Kind* find_device_kind_for_sdf(std::span<const std::string> sdf_types);
+/// The kind that answers to one of the names an SDF file used for this element, or null. The most telling name
+/// decides: of a sensor the one of the plugin in it.
+const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl);
 
 }  // namespace sandlot

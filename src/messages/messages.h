@@ -85,6 +85,92 @@ struct JointState {
   }
 };
 
+/// sensor_msgs/PointField: where a value stands within a point of a PointCloud2.
+struct PointField {
+  static constexpr std::uint8_t uint16 = 4, float32 = 7;
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = float32;
+  std::uint32_t count = 1;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the value."}, s.name);
+    visit(Field{"offset", "1", "Bytes from the beginning of the point."}, s.offset);
+    visit(Field{"datatype", "1", "4: uint16, 7: float32."}, s.datatype);
+    visit(Field{"count", "1", "How many of them."}, s.count);
+  }
+};
+
+/// sensor_msgs/PointCloud2: `height` rows of `width` points.
+struct PointCloud2 {
+  static constexpr const char* ros_type = "sensor_msgs/msg/PointCloud2";
+  Header header;
+  std::uint32_t height = 0, width = 0;
+  std::vector<PointField> point_fields;
+  bool is_bigendian = false;
+  std::uint32_t point_step = 0, row_step = 0;  ///< [bytes]
+  std::vector<std::uint8_t> data;
+  bool is_dense = false;  ///< false: points without a hit are in it, as NaN
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"header", "", "Stamp and frame."}, s.header);
+    visit(Field{"height", "1", "Rows; 1: the points are in no order."}, s.height);
+    visit(Field{"width", "1", "Points per row."}, s.width);
+    visit(Field{"fields", "", "What a point is made of."}, s.point_fields);
+    visit(Field{"is_bigendian", "", "Order of bytes."}, s.is_bigendian);
+    visit(Field{"point_step", "1", "Bytes per point."}, s.point_step);
+    visit(Field{"row_step", "1", "Bytes per row."}, s.row_step);
+    visit(Field{"data", "", "The points."}, s.data);
+    visit(Field{"is_dense", "", "True when no point is NaN."}, s.is_dense);
+  }
+};
+
+/// sensor_msgs/Range: one distance in a cone. +inf nothing seen, -inf too near (REP 117).
+struct Range {
+  static constexpr const char* ros_type = "sensor_msgs/msg/Range";
+  static constexpr std::uint8_t ultrasound = 0, infrared = 1;
+  Header header;
+  std::uint8_t radiation_type = ultrasound;
+  float field_of_view = 0;             ///< [rad] full opening angle
+  float min_range = 0, max_range = 0;  ///< [m]
+  float range = 0;                     ///< [m]
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"header", "", "Stamp and frame."}, s.header);
+    visit(Field{"radiation_type", "1", "0: ultrasound, 1: infra-red."}, s.radiation_type);
+    visit(Field{"field_of_view", "rad", "Opening angle of the cone."}, s.field_of_view);
+    visit(Field{"min_range", "m", "Shortest distance measured."}, s.min_range);
+    visit(Field{"max_range", "m", "Longest distance measured."}, s.max_range);
+    visit(Field{"range", "m", "Distance."}, s.range);
+  }
+};
+
+/// sensor_msgs/Imu: covariances row-major 3x3.
+struct Imu {
+  static constexpr const char* ros_type = "sensor_msgs/msg/Imu";
+  Header header;
+  Quat orientation;
+  std::array<double, 9> orientation_covariance{};
+  Vec3 angular_velocity;  ///< [rad/s] in header.frame_id
+  std::array<double, 9> angular_velocity_covariance{};
+  Vec3 linear_acceleration;  ///< [m/s^2] specific force, in header.frame_id: (0, 0, 9.81) at rest
+  std::array<double, 9> linear_acceleration_covariance{};
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"header", "", "Stamp and frame."}, s.header);
+    visit(Field{"orientation", "1", "Quaternion w x y z of the sensor in its reference frame."},
+          s.orientation);
+    visit(Field{"orientation_covariance", "", "Row-major 3x3."}, s.orientation_covariance);
+    visit(Field{"angular_velocity", "rad/s", "Rate of turn."}, s.angular_velocity);
+    visit(Field{"angular_velocity_covariance", "", "Row-major 3x3."}, s.angular_velocity_covariance);
+    visit(Field{"linear_acceleration", "m/s^2", "Specific force."}, s.linear_acceleration);
+    visit(Field{"linear_acceleration_covariance", "", "Row-major 3x3."}, s.linear_acceleration_covariance);
+  }
+};
+
+/// std_msgs/Float64MultiArray without its layout: commands for a group of joints.
+struct Float64MultiArray {
+  static constexpr const char* ros_type = "std_msgs/msg/Float64MultiArray";
+  std::vector<double> data;
+  static void fields(auto& s, auto&& visit) { visit(Field{"data", "1", "The values."}, s.data); }
+};
+
 /// nav_msgs/Odometry: pose in header.frame_id, twist in child_frame_id; covariances row-major 6x6.
 struct Odometry {
   static constexpr const char* ros_type = "nav_msgs/msg/Odometry";

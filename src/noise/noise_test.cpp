@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "noise/channel_noise.h"
 #include "noise/drifting_bias.h"
 #include "noise/range_noise.h"
 #include "noise/white.h"
@@ -143,6 +144,49 @@ TEST(RangeNoise, WithoutErrorsTheRangesStayAsTheyAre) {
   corrupt_ranges({}, bias, 0.1, random, 0.5, 3.0, ranges);
   EXPECT_EQ(ranges, (std::vector<float>{0.1f, 5.0f}));
   EXPECT_EQ(bias.bias, 0.7);
+}
+
+TEST(RangeNoise, TheConstantErrorIsAddedAndTheSumRounded) {
+  const RangeNoiseSpec spec{.mean_m = 0.3, .systematic_m = 0, .resolution_m = 0.25};
+  Stream random = stream(0);
+  const double constant = constant_error_m(spec, random);
+  EXPECT_EQ(constant, 0.3);
+  DriftingBias bias;
+  std::vector<float> ranges{1.0f, 1.1f, 9.95f};
+  corrupt_ranges(spec, bias, 0.1, random, 0.5, 10.0, ranges, constant);
+  EXPECT_EQ(ranges, (std::vector<float>{1.25f, 1.5f, 10.0f}));  // 1.3, 1.4, 10.25 cut to the maximum
+}
+
+TEST(ChannelNoise, ItsPartsAddUp) {
+  // Constant 0.5 + drawn; white and the drifting bias are independent: sqrt(0.3^2 + 0.4^2) = 0.5 about it. With a
+  // correlation far below the sample interval samples are independent, too.
+  const ChannelNoiseSpec spec{
+      .white = 0.3, .mean = 0.5, .mean_std = 2, .bias = {.bias_std = 0.4, .correlation_s = 1e-3}};
+  ChannelNoise channel;
+  Stream first = stream(0);
+  channel.reset(spec, first);
+  EXPECT_NE(channel.drawn, 0);
+  double sum = 0, squares = 0;
+  constexpr int n = 40'000;
+  for (int k = 0; k < n; ++k) {
+    Stream random = stream(static_cast<std::uint64_t>(k) + 1);
+    const double e = channel.corrupt(spec, 7, 0.1, random) - 7.5 - channel.drawn;
+    sum += e;
+    squares += e * e;
+  }
+  EXPECT_NEAR(sum / n, 0, 5 * 0.5 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.5, 5 * 0.5 / std::sqrt(2.0 * n));
+  EXPECT_NEAR(spec.variance(0.1), 0.25, 1e-15);
+}
+
+TEST(ChannelNoise, RoundsAndSaturates) {
+  const ChannelNoiseSpec spec{.resolution = 0.5, .limit = 3};
+  ChannelNoise channel;
+  Stream random = stream(0);
+  EXPECT_EQ(channel.corrupt(spec, 1.2, 0.1, random), 1.0);
+  EXPECT_EQ(channel.corrupt(spec, 1.3, 0.1, random), 1.5);
+  EXPECT_EQ(channel.corrupt(spec, 7, 0.1, random), 3);
+  EXPECT_EQ(channel.corrupt(spec, -7, 0.1, random), -3);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "controllers/controllers.h"
+#include "sim/presets.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -151,6 +152,7 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   if (find_device(path))
     return Error{"robot '" + entity.instance.name + "' has two devices named '" + decl.name + "'",
                  "give one of them another name", decl.place};
+  SL_TRY(lay_preset(decl.config, *kind));
   SL_ASSIGN(const std::uint32_t levels, take_levels(decl.config, *kind, decl.place));
   const auto pool = std::find_if(pools_.begin(), pools_.end(), [&](const Pool& p) { return p.kind == kind; });
   SL_CHECK(pool != pools_.end());
@@ -166,7 +168,8 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                           engine_->capabilities(),
                           setup_.step,
                           levels,
-                          maker};
+                          maker,
+                          setup_.gravity};
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   const double rate_hz = pool->pool->rate_hz(index);

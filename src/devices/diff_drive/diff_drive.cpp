@@ -156,6 +156,12 @@ void Drive::sense(PoolView<Drive> pool, const Context& context) {
   }
 }
 
+void Drive::release(const Context& context) {
+  context.actuation.drives.push_back({.base = base, .active = false});
+  for (const auto* side : {&left, &right})
+    for (const Wheel& wheel : *side) context.actuation.joints.push_back({.joint = wheel.joint});
+}
+
 Status Drive::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   SL_TRY(check_levels(after, engine));
   if (before == after) return {};
@@ -282,16 +288,13 @@ constexpr LevelInfo levels[] = {
 // Names and file names of the plugins of Gazebo, Ignition and Gazebo classic.
 constexpr const char* sdf_types[] = {
     "plugin:DiffDrive",
-    "plugin:gz::sim::systems::DiffDrive",
-    "plugin:ignition::gazebo::systems::DiffDrive",
     "plugin:gz-sim-diff-drive-system",
     "plugin:ignition-gazebo-diff-drive-system",
     "plugin:gazebo_ros_diff_drive",
     "plugin:DiffDrivePlugin",
-    "plugin:libgz-sim-diff-drive-system.so",
-    "plugin:libignition-gazebo-diff-drive-system.so",
-    "plugin:libgazebo_ros_diff_drive.so",
-    "plugin:libDiffDrivePlugin.so",
+    "plugin:SkidSteerDrive",
+    "plugin:SkidSteerDrivePlugin",
+    "plugin:gazebo_ros_skid_steer_drive",
 };
 }  // namespace
 
@@ -301,6 +304,7 @@ constinit const Kind kind = make_kind<Drive>({
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,
+    .sdf_note = "topic and frame names, TF, covariances, limits of the jerk",
 });
 
 }  // namespace sandlot::diff_drive

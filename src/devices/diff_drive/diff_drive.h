@@ -115,6 +115,7 @@ struct Drive {
   static void actuate(PoolView<Drive> pool, const Context& context);
   static void pre_substep(PoolView<Drive> pool, const Context& context, double h_s);
   static void sense(PoolView<Drive> pool, const Context& context);
+  void release(const Context& context);
   Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 };
 

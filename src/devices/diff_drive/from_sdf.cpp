@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "devices/diff_drive/diff_drive.h"
-#include "devices/sdf_element.h"
+#include "devices/sdf_noise.h"
 
 namespace sandlot::diff_drive {
 namespace {
@@ -26,18 +26,6 @@ void copy_joints(const Node& element, std::initializer_list<const char*> names, 
     else joints.push(Node::scalar(text(node), node->place()));
   }
   if (!joints.items().empty()) config.set(key, std::move(joints));
-}
-
-/// The first of several spellings that is present, times a factor.
-Status copy_number(const Node& element, std::initializer_list<const char*> names, double factor, Node& config,
-                   const char* key) {
-  for (const char* name : names) {
-    SL_ASSIGN(const auto value, number(element, name));
-    if (!value) continue;
-    config.set(key, scalar(*value * factor, *find(element, name)));
-    return {};
-  }
-  return {};
 }
 
 /// Limits given as a minimum and a maximum are symmetrical here: the larger magnitude counts.
@@ -63,8 +51,12 @@ Status copy_limit(const Node& element, const std::string& quantity, const char* 
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   Node config = Node::map(element.place());
-  copy_joints(element, {"left_joint", "leftJoint"}, config, "left_joint");
-  copy_joints(element, {"right_joint", "rightJoint"}, config, "right_joint");
+  copy_joints(element,
+              {"left_joint", "leftJoint", "left_front", "left_rear", "leftFrontJoint", "leftRearJoint"},
+              config, "left_joint");
+  copy_joints(element,
+              {"right_joint", "rightJoint", "right_front", "right_rear", "rightFrontJoint", "rightRearJoint"},
+              config, "right_joint");
   SL_TRY(copy_number(element, {"wheel_separation", "wheelSeparation"}, 1.0, config, "wheel_separation"));
   SL_TRY(copy_number(element, {"wheel_radius"}, 1.0, config, "wheel_radius"));
   if (!config.find("wheel_radius"))
@@ -85,6 +77,14 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
                 "leftJoint",
                 "right_joint",
                 "rightJoint",
+                "left_front",
+                "left_rear",
+                "right_front",
+                "right_rear",
+                "leftFrontJoint",
+                "leftRearJoint",
+                "rightFrontJoint",
+                "rightRearJoint",
                 "wheel_separation",
                 "wheelSeparation",
                 "wheel_radius",

@@ -1,6 +1,26 @@
 #include "devices/ground_truth/ground_truth.h"
 
+#include "devices/sdf_noise.h"
+
 namespace sandlot::ground_truth {
+namespace {
+
+/// Gazebo's publishers of exact poses.
+Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
+  using namespace sdf_element;
+  Node config = Node::map(element.place());
+  SL_TRY(copy_number(element, {"odom_publish_frequency", "update_frequency", "update_rate", "updateRate"},
+                     1.0, config, "rate"));
+  for (const char* name : {"bodyName", "body_name"})
+    if (find(element, name)) copy(element, name, config, "link");
+  SL_ASSIGN(const auto noise,
+            number(element, find(element, "gaussianNoise") ? "gaussianNoise" : "gaussian_noise"));
+  if (noise && *noise != 0)
+    diagnostics.warn(element.error("noise of an exact pose is not supported and has no effect"));
+  return config;
+}
+
+}  // namespace
 
 Result<GroundTruth> GroundTruth::create(const DeviceBuild& build, Spec spec) {
   GroundTruth truth{spec};
@@ -30,12 +50,23 @@ namespace {
 constexpr LevelInfo levels[] = {
     {"pose", msg::Odometry::ros_type, "", "Exact pose and velocity in the world."},
 };
+constexpr const char* sdf_types[] = {"plugin:OdometryPublisher",
+                                     "plugin:gz-sim-odometry-publisher-system",
+                                     "plugin:ignition-gazebo-odometry-publisher-system",
+                                     "plugin:PosePublisher",
+                                     "plugin:gz-sim-pose-publisher-system",
+                                     "plugin:ignition-gazebo-pose-publisher-system",
+                                     "plugin:gazebo_ros_p3d"};
 }  // namespace
 
 constinit const Kind kind = make_kind<GroundTruth>({
     .name = "ground_truth",
     .help = "Exact pose and velocity of a link.",
     .levels = levels,
+    .sdf_types = sdf_types,
+    .from_sdf = from_sdf,
+    .sdf_note = "topic and frame names, TF, noise, poses of the other links, the plane of OdometryPublisher "
+                "(dimensions)",
 });
 
 }  // namespace sandlot::ground_truth

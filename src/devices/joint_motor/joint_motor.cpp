@@ -25,8 +25,9 @@ void take_command(Motor& motor, Level level, const JointState& joint) {
   if (slot.count == state.taken[level]) return;
   state.taken[level] = slot.count;
   if (!std::isfinite(slot.message.data)) return;  // a message may hold anything; the old command stays
-  if (!state.powered) {
-    state.powered = 1;
+  if (state.powered == stopped) return;
+  if (state.powered == waiting) {
+    state.powered = following;
     state.reference = present(level, joint);
     state.previous_velocity = joint.velocity;
   }
@@ -34,6 +35,50 @@ void take_command(Motor& motor, Level level, const JointState& joint) {
 }
 
 double towards(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
+
+/// The new servo loop begins where the joint is, at the effort of now. With no error left the PID's output is
+/// integral - d * rate; without an integral gain nothing would ever take that value away again.
+void hand_over(Motor& motor, Level level, const JointState& now) {
+  State& state = motor.state;
+  const Gains& gains = level == position ? motor.spec.position : motor.spec.velocity;
+  state.pid.integral = gains.i == 0        ? 0
+                       : level == position ? now.effort + gains.d * now.velocity
+                                           : now.effort;
+  state.previous_velocity = now.velocity;
+  state.command = state.reference = present(level, now);
+}
+
+/// Follows the parameter `active`.
+void start_or_stop(Motor& motor, Level level, const JointState& joint, std::vector<JointTarget>& targets) {
+  State& state = motor.state;
+  if (!motor.spec.active && state.powered != stopped) {
+    if (state.powered == following) targets.push_back({.joint = motor.joint});
+    state.powered = stopped;
+  } else if (motor.spec.active && state.powered == stopped) {
+    state.powered = following;
+    JointState free = joint;
+    free.effort = 0;  // whatever another motor put in: this one begins with none
+    hand_over(motor, level, free);
+  }
+}
+
+/// Speed that the engine itself shall hold, for servo `exact`.
+JointTarget exact_target(Motor& motor, Level level, const JointState& joint, double h_s) {
+  State& state = motor.state;
+  const double fastest = motor.velocity_limit();
+  double speed = 0;
+  if (level == velocity) {
+    speed = state.reference = std::clamp(state.command, -fastest, fastest);
+  } else {
+    state.reference = towards(state.reference, std::clamp(state.command, motor.lower, motor.upper),
+                              fastest * h_s);
+    speed = std::clamp(0.2 * (state.reference - joint.position) / h_s, -fastest, fastest);
+  }
+  return {.joint = motor.joint,
+          .mode = JointTarget::Mode::velocity,
+          .velocity = speed,
+          .max_effort = motor.effort_limit()};
+}
 
 double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
   State& state = motor.state;
@@ -80,6 +125,12 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   motor.upper = bounded ? joint.upper : 1e16;
   motor.joint_effort = joint.max_effort;
   motor.joint_velocity = joint.max_velocity;
+  if (!motor.spec.active) {
+    motor.state.powered = stopped;
+  } else if (motor.spec.initial_command) {
+    motor.state.powered = following;
+    motor.state.command = *motor.spec.initial_command;
+  }
   motor.command[velocity] = build.accept<msg::Float64>(velocity, "velocity");
   motor.command[position] = build.accept<msg::Float64>(position, "position");
   motor.command[effort] = build.accept<msg::Float64>(effort, "effort");
@@ -90,7 +141,10 @@ void Motor::actuate(PoolView<Motor> pool, const Context& context) {
   const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Motor& motor = pool.all[index];
-    take_command(motor, active(pool.levels[index]), joints[motor.joint.index]);
+    const Level level = active(pool.levels[index]);
+    const JointState& joint = joints[motor.joint.index];
+    start_or_stop(motor, level, joint, context.actuation.joints);
+    take_command(motor, level, joint);
   }
 }
 
@@ -98,26 +152,27 @@ void Motor::pre_substep(PoolView<Motor> pool, const Context& context, double h_s
   const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Motor& motor = pool.all[index];
-    if (!motor.state.powered) continue;
-    const double effort_wanted = servo(motor, active(pool.levels[index]), joints[motor.joint.index], h_s);
+    if (motor.state.powered != following) continue;
+    const Level level = active(pool.levels[index]);
+    const JointState& joint = joints[motor.joint.index];
+    if (motor.spec.servo == Servo::exact && level != effort) {
+      context.actuation.joints.push_back(exact_target(motor, level, joint, h_s));
+      continue;
+    }
+    const double effort_wanted = servo(motor, level, joint, h_s);
     context.actuation.joints.push_back(
         {.joint = motor.joint, .mode = JointTarget::Mode::effort, .effort = effort_wanted});
   }
 }
 
+void Motor::release(const Context& context) {
+  if (state.powered == following) context.actuation.joints.push_back({.joint = joint});
+}
+
 Status Motor::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   SL_TRY(check_levels(after));
   if (before == after) return {};
-  const JointState& now = context.engine.joint_states()[joint.index];
-  const Level level = active(after);
-  // With no error left the PID's output is integral - d * rate: start it at the effort of now. Without an integral
-  // gain nothing would ever take that value away again.
-  const Gains& gains = level == position ? spec.position : spec.velocity;
-  state.pid.integral = gains.i == 0        ? 0
-                       : level == position ? now.effort + gains.d * now.velocity
-                                           : now.effort;
-  state.previous_velocity = now.velocity;
-  state.command = state.reference = present(level, now);
+  hand_over(*this, active(after), context.engine.joint_states()[joint.index]);
   return {};
 }
 
@@ -127,12 +182,24 @@ constexpr LevelInfo levels[] = {
     {"position", "", msg::Float64::ros_type, "Follows an angle or length [rad or m]."},
     {"effort", "", msg::Float64::ros_type, "Applies a torque or force [Nm or N]."},
 };
+constexpr const char* sdf_types[] = {"plugin:JointController",
+                                     "plugin:gz-sim-joint-controller-system",
+                                     "plugin:ignition-gazebo-joint-controller-system",
+                                     "plugin:JointPositionController",
+                                     "plugin:gz-sim-joint-position-controller-system",
+                                     "plugin:ignition-gazebo-joint-position-controller-system",
+                                     "plugin:ApplyJointForce",
+                                     "plugin:gz-sim-apply-joint-force-system",
+                                     "plugin:ignition-gazebo-apply-joint-force-system"};
 }  // namespace
 
 constinit const Kind kind = make_kind<Motor>({
     .name = "joint_motor",
     .help = "Motor with a servo loop on one joint: speed, angle or effort.",
     .levels = levels,
+    .sdf_types = sdf_types,
+    .from_sdf = from_sdf,
+    .sdf_note = "topic names, cmd_offset, limits of the integral, a list of joints in one plugin",
 });
 
 }  // namespace sandlot::joint_motor

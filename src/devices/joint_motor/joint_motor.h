@@ -3,11 +3,16 @@
 ///
 /// Levels   `velocity` (the default): follows a speed. `position`: follows an angle (prismatic: a length). `effort`:
 ///          applies a torque (force). Each takes a std_msgs/Float64. Exactly one level is active.
-/// Control  PID (pid.h) from the error to an effort, once per physics sub-step. The reference moves towards the
-///          command at no more than max_velocity; position commands are cut to the joint's limits, efforts to the
-///          smaller of max_effort and the joint's own.
+/// Control  servo `pid`: PID (pid.h) from the error to an effort, once per physics sub-step. Servo `exact`: the engine
+///          holds the joint to the speed with what effort it takes up to the limit; on level position that speed
+///          closes a fifth of the error in each sub-step. The reference moves towards the command at no more than
+///          max_velocity; position commands are cut to the joint's limits, efforts to the smaller of max_effort and
+///          the joint's own.
 /// Output   none; a wheel_encoder shows the joint's state.
-/// Time     a command acts from the tick it arrives in. Before the first one the joint is free.
+/// Time     a command acts from the tick it arrives in. Before the first one the joint is free, unless there is an
+///          `initial_command`.
+/// Stopping the tunable `active: false` sets the joint free; commands that come then are dropped. When it is started
+///          again it holds the angle, speed (level effort: nothing) it finds, until its next command.
 /// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; an
 ///          integral (if the gains have one) starts where the effort continues without a jump.
 /// Noise    none: the loop sees the true angle and speed.
@@ -23,8 +28,17 @@
 
 namespace sandlot::joint_motor {
 
+enum class Servo : std::uint8_t { pid, exact };
+inline std::span<const EnumName<Servo>> enum_names(Servo) {
+  static constexpr EnumName<Servo> names[] = {{"pid", Servo::pid}, {"exact", Servo::exact}};
+  return names;
+}
+
 struct Spec {
   std::string joint;
+  bool active = true;
+  Servo servo = Servo::pid;
+  std::optional<double> initial_command;
   Gains velocity{.p = 1.0};
   Gains position{.p = 10.0, .d = 1.0};
   double max_effort = 1e9;    ///< [Nm] or [N]
@@ -34,6 +48,11 @@ struct Spec {
     visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required,
                 1000},
           s.joint);
+    visit(Field{"active", "", "False: stopped, the joint is free.", 0, 1, Field::tunable}, s.active);
+    visit(Field{"servo", "",
+                "How speed and position are followed: by gains, or exactly up to the largest effort."},
+          s.servo);
+    visit(Field{"initial_command", "", "Command before the first one comes.", -1e9, 1e9}, s.initial_command);
     visit(Field{"velocity", "", "Gains of level velocity: Nm per rad/s (prismatic: N per m/s)."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: Nm per rad (prismatic: N per m)."}, s.position);
     visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9,
@@ -46,10 +65,11 @@ struct Spec {
 };
 
 enum Level : std::uint32_t { velocity, position, effort };
+enum Power : std::uint8_t { waiting, following, stopped };
 
 struct State {
   std::array<std::uint64_t, 3> taken{};  ///< per level: commands seen so far
-  std::uint8_t powered = 0;              ///< 0 until the first command: the joint is free
+  std::uint8_t powered = 0;              ///< a Power
   double command = 0;                    ///< in the active level's unit
   double reference = 0;                  ///< on its way to the command
   double previous_velocity = 0;          ///< for the rate of level velocity
@@ -57,7 +77,7 @@ struct State {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"taken", "1", "Commands seen per level."}, s.taken);
-    visit(Field{"powered", "1", "0: the joint is free."}, s.powered);
+    visit(Field{"powered", "1", "0: free until a command, 1: following, 2: stopped."}, s.powered);
     visit(Field{"command", "", "Command in force."}, s.command);
     visit(Field{"reference", "", "Where the reference is now."}, s.reference);
     visit(Field{"previous_velocity", "", "Joint speed one sub-step ago."}, s.previous_velocity);
@@ -79,11 +99,15 @@ struct Motor {
   static Result<Motor> create(const DeviceBuild& build, Spec spec);
   static void actuate(PoolView<Motor> pool, const Context& context);
   static void pre_substep(PoolView<Motor> pool, const Context& context, double h_s);
+  void release(const Context& context);
   Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 
   double effort_limit() const { return std::min(spec.max_effort, joint_effort); }
   double velocity_limit() const { return std::min(spec.max_velocity, joint_velocity); }
 };
+
+/// Gazebo's JointController, JointPositionController and ApplyJointForce as keys of the spec.
+Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics);
 
 extern const Kind kind;
 

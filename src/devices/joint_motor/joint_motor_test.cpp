@@ -173,6 +173,120 @@ TEST(JointMotor, StateAndTunablesSurviveSaving) {
   EXPECT_EQ(b.engine->joint[0].velocity, a.engine->joint[0].velocity);
 }
 
+TEST(JointMotor, StoppedItLeavesTheJointFreeAndStartedItHoldsWhatItFinds) {
+  Rig rig(kind, test::two_wheels(), 0.001);
+  ASSERT_TRUE(rig.add("motor", gains("position", {{"p", "100"}, {"d", "20"}}), position_bit));
+  rig.command("motor/position", msg::Float64{1.0});
+  for (int k = 0; k < 3000; ++k) rig.act();
+  EXPECT_NEAR(rig.engine->joint[0].position, 1, 1e-6);
+  ASSERT_TRUE(rig.pool->set_parameter(0, "active", Node::scalar("false")));
+  rig.act();
+  EXPECT_EQ(rig.engine->target[0].mode, JointTarget::Mode::free);
+  rig.engine->joint[0] = {2.0, 0.3, 0};  // pushed by hand
+  rig.command("motor/position", msg::Float64{-1.0});
+  rig.act();
+  EXPECT_EQ(rig.engine->joint[0].velocity, 0.3);  // free: nothing brakes it
+  ASSERT_TRUE(rig.pool->set_parameter(0, "active", Node::scalar("true")));
+  const double found = rig.engine->joint[0].position;
+  for (int k = 0; k < 3000; ++k) rig.act();
+  EXPECT_NEAR(rig.engine->joint[0].position, found,
+              1e-6);  // not the command of the meantime, nor the one before
+  rig.command("motor/position", msg::Float64{0.5});
+  for (int k = 0; k < 3000; ++k) rig.act();
+  EXPECT_NEAR(rig.engine->joint[0].position, 0.5, 1e-6);
+}
+
+TEST(JointMotor, BuiltStoppedItWaitsForItsStart) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("motor", config({{"joint", "left"}, {"active", "false"}, {"initial_command", "3"}})));
+  rig.command("motor/velocity", msg::Float64{1.0});
+  rig.act();
+  EXPECT_EQ(rig.engine->target[0].mode, JointTarget::Mode::free);
+  ASSERT_TRUE(rig.pool->set_parameter(0, "active", Node::scalar("true")));
+  rig.act();
+  EXPECT_EQ(rig.engine->target[0].mode, JointTarget::Mode::effort);
+  EXPECT_EQ(rig.engine->joint[0].velocity, 0);  // a command given while it was stopped is dropped
+}
+
+TEST(JointMotor, WhenItGoesTheJointIsFree) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("motor", config({{"joint", "right"}, {"initial_command", "3"}})));
+  rig.act();
+  EXPECT_EQ(rig.engine->target[1].mode, JointTarget::Mode::effort);
+  rig.pool->release(0, rig.context(rig.now));
+  ASSERT_EQ(rig.actuation.joints.size(), 1u);
+  EXPECT_EQ(rig.actuation.joints[0].mode, JointTarget::Mode::free);
+  EXPECT_EQ(rig.actuation.joints[0].joint.index, 1u);
+}
+
+TEST(JointMotor, TheExactServoHoldsTheSpeedAndClosesAFifthOfTheErrorPerSubstep) {
+  Rig rig(kind, test::two_wheels(), 0.01);
+  ASSERT_TRUE(
+      rig.add("motor", config({{"joint", "left"}, {"servo", "exact"}, {"max_effort", "7"}}), position_bit));
+  rig.command("motor/position", msg::Float64{1.0});
+  for (int k = 1; k <= 10; ++k) {
+    rig.act(2);
+    EXPECT_NEAR(rig.engine->joint[0].position, 1 - math::pow(0.8, 2 * k), 1e-12);
+    EXPECT_EQ(rig.engine->target[0].max_effort, 7);
+  }
+  ASSERT_TRUE(rig.switch_level(velocity_bit));
+  rig.command("motor/velocity", msg::Float64{-2.0});
+  rig.act();
+  EXPECT_EQ(rig.engine->joint[0].velocity, -2);
+}
+
+Result<Spec> spec_of(const Node& plugin, std::string& level, Diagnostics& diagnostics) {
+  SL_ASSIGN(Node node, kind.from_sdf(plugin, diagnostics));
+  level = node.find("level")->text();
+  node.erase("level");
+  return read_spec<Spec>(node);
+}
+
+TEST(JointMotorFromSdf, TakesTheThreePluginsOfGazebo) {
+  Diagnostics diagnostics;
+  std::string level;
+  auto spec = spec_of(config({{"@name", "gz::sim::systems::JointController"},
+                              {"joint_name", "left"},
+                              {"initial_velocity", "5"}}),
+                      level, diagnostics);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_EQ(level, "velocity");
+  EXPECT_EQ(spec->servo, Servo::exact);
+  EXPECT_EQ(spec->initial_command, 5);
+
+  spec = spec_of(config({{"@filename", "libignition-gazebo-joint-controller-system.so"},
+                         {"joint_name", "left"},
+                         {"use_force_commands", "true"},
+                         {"p_gain", "0.2"},
+                         {"cmd_max", "8"}}),
+                 level, diagnostics);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_EQ(spec->servo, Servo::pid);
+  EXPECT_EQ(spec->velocity.p, 0.2);
+  EXPECT_EQ(spec->max_effort, 8);
+
+  spec = spec_of(config({{"@name", "gz::sim::systems::JointPositionController"},
+                         {"joint_name", "left"},
+                         {"p_gain", "20"},
+                         {"d_gain", "2"}}),
+                 level, diagnostics);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_EQ(level, "position");
+  EXPECT_EQ(spec->position.p, 20);
+  EXPECT_EQ(spec->position.i, 0.1);
+  EXPECT_EQ(spec->position.d, 2);
+  EXPECT_EQ(spec->initial_command, 0);
+
+  spec = spec_of(config({{"@name", "gz::sim::systems::ApplyJointForce"}, {"joint_name", "left"}}), level,
+                 diagnostics);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_EQ(level, "effort");
+  EXPECT_FALSE(spec->initial_command);
+  EXPECT_TRUE(diagnostics.warnings.empty());
+  EXPECT_EQ(spec_of(config({{"@name", "JointController"}}), level, diagnostics).error().what,
+            "this plugin names no joint");
+}
+
 TEST(JointMotor, RefusesWhatItCannotDrive) {
   model::Model model = test::two_wheels();
   model.joints[1].type = model::JointType::fixed;

@@ -6,7 +6,7 @@
 
 #include "base/math.h"
 #include "devices/parallel.h"
-#include "devices/sdf_element.h"
+#include "devices/sdf_noise.h"
 
 namespace sandlot::laser_scanner {
 namespace {
@@ -26,14 +26,14 @@ void finish(Scanner& scanner, std::uint64_t sample, Time since, const Context& c
     if (range_m < min_m) range_m = -std::numeric_limits<float>::infinity();
   Stream random(context.seed, scanner.key, Purpose::noise, sample);
   corrupt_ranges(spec.noise, scanner.state.bias, since.s(), random, spec.min_range_m, spec.max_range_m,
-                 ranges);
+                 ranges, scanner.constant_m);
   scanner.scan->publish(context.now);
 }
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   using namespace sdf_element;
   Node config = Node::map(element.place());
-  const Node* const sensor = find(element, "lidar") ? find(element, "lidar") : find(element, "ray");
+  const Node* const sensor = lidar(element);
   if (!sensor) return element.error("a laser scanner needs a <lidar> or <ray> element");
   warn_unknown(*sensor, {"scan", "range", "noise"}, "<lidar>", diagnostics);
 
@@ -46,34 +46,10 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   copy(*sensor, "scan/horizontal/max_angle", config, "max_angle");
   copy(*sensor, "range/min", config, "min_range");
   copy(*sensor, "range/max", config, "max_range");
-  // SDF's default is 0: a scan in every step, which is also what 0 means here.
-  config.set("rate", Node::scalar(find(element, "update_rate") ? text(find(element, "update_rate")) : "0",
-                                  find(element, "update_rate") ? find(element, "update_rate")->place()
-                                                               : element.place()));
-
-  SL_ASSIGN(const auto planes, number(*sensor, "scan/vertical/samples"));
-  if (planes && *planes > 1) {
-    Error warning = find(*sensor, "scan/vertical/samples")
-                        ->error("a laser scanner has one plane only: the horizontal one is used");
-    diagnostics.warn(std::move(warning));
-  }
+  copy_rate(element, "update_rate", config);
   if (const Node* const noise = find(*sensor, "noise")) {
-    const Node* const type = find(*noise, "type") ? find(*noise, "type") : find(*noise, "@type");
-    SL_ASSIGN(const auto mean, number(*noise, "mean"));
-    SL_ASSIGN(const auto stddev, number(*noise, "stddev"));
-    if (text(type) == "gaussian") {
-      if (mean && *mean != 0)
-        diagnostics.warn(
-            find(*noise, "mean")
-                ->error("a constant error (<mean>) of a laser scanner is not supported and has no effect"));
-      if (stddev) {
-        Node errors = Node::map(noise->place());
-        errors.set("white", scalar(*stddev, *find(*noise, "stddev")));
-        config.set("noise", std::move(errors));
-      }
-    } else if (text(type) != "none" && !text(type).empty()) {
-      diagnostics.warn(noise->error("noise of type '" + text(type) + "' is not supported and has no effect"));
-    }
+    SL_ASSIGN(Node errors, range_noise(*noise, diagnostics));
+    if (!errors.entries().empty()) config.set("noise", std::move(errors));
   }
   return config;
 }
@@ -104,6 +80,7 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
   }
   Stream random(build.seed, build.key, Purpose::initial, 0);
   scanner.state.bias.reset(spec.noise.bias, random);
+  scanner.constant_m = constant_error_m(spec.noise, random);
 
   scanner.scan = build.publish<msg::LaserScan>(0, "ranges");
   msg::LaserScan& message = scanner.scan->message;
@@ -151,14 +128,49 @@ constexpr LevelInfo levels[] = {
     {"ranges", msg::LaserScan::ros_type, "", "Distances of all beams."},
 };
 constexpr const char* sdf_types[] = {"sensor:lidar", "sensor:gpu_lidar", "sensor:ray", "sensor:gpu_ray"};
+constexpr Preset presets[] = {
+    {"sick_lms200",
+     "SICK LMS200, millimetre mode: 180 deg in steps of 1 deg, 8 m, 75 scans/s (scans and modes from "
+     "Player's driver, errors "
+     "from general knowledge of the data sheet).",
+     "{beams: 181, min_angle: -90 deg, max_angle: 90 deg, min_range: 0.02, max_range: 8, rate: 75,"
+     " noise: {white: 5 mm, systematic: 15 mm, resolution: 1 mm}}"},
+    {"sick_lms200_fine", "SICK LMS200, millimetre mode, in steps of 0.5 deg, 37.5 scans/s (as sick_lms200).",
+     "{beams: 361, min_angle: -90 deg, max_angle: 90 deg, min_range: 0.02, max_range: 8, rate: 37.5,"
+     " noise: {white: 5 mm, systematic: 15 mm, resolution: 1 mm}}"},
+    {"sick_lms200_far", "SICK LMS200, centimetre mode: 80 m, larger errors (as sick_lms200).",
+     "{beams: 181, min_angle: -90 deg, max_angle: 90 deg, min_range: 0.02, max_range: 80, rate: 75,"
+     " noise: {white: 5 mm, systematic: 40 mm, resolution: 10 mm}}"},
+    {"sick_ld",
+     "SICK LD (LD-OEM 1000, LD-LRS): full turn in steps of 0.5 deg, 250 m, 20 turns/s (general knowledge; "
+     "the errors "
+     "are uncertain).",
+     "{beams: 720, min_angle: -180 deg, max_angle: 179.5 deg, min_range: 0.5, max_range: 250, rate: 20,"
+     " noise: {white: 25 mm, systematic: 38 mm, resolution: 3.90625 mm}}"},
+    {"hokuyo_urg04lx",
+     "Hokuyo URG-04LX: 240 deg in 683 beams, 4 m, 10 scans/s (general knowledge of the data sheet: +-10 mm "
+     "up to 1 m).",
+     "{beams: 683, min_angle: -119.8828125 deg, max_angle: 119.8828125 deg, min_range: 0.06, max_range: "
+     "4.095, rate: 10,"
+     " noise: {white: 5 mm, systematic: 10 mm, resolution: 1 mm}}"},
+    {"hokuyo_utm30lx",
+     "Hokuyo UTM-30LX: 270 deg in steps of 0.25 deg, 30 m, 40 scans/s (general knowledge of the data sheet: "
+     "+-30 mm, "
+     "deviation below 10 mm, up to 10 m).",
+     "{beams: 1081, min_angle: -135 deg, max_angle: 135 deg, min_range: 0.1, max_range: 30, rate: 40,"
+     " noise: {white: 10 mm, systematic: 30 mm, resolution: 1 mm}}"},
+};
 }  // namespace
 
 constinit const Kind kind = make_kind<Scanner>({
     .name = "laser_scanner",
-    .help = "Planar scanning range finder (2D lidar, sonar, infra-red ranger).",
+    .help = "Planar scanning range finder (2D lidar).",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,
+    .accepts = [](const Node& element) { return !sdf_element::has_planes(element); },
+    .sdf_note = "topic names, intensities, visibility masks, range/resolution",
+    .presets = presets,
 });
 
 }  // namespace sandlot::laser_scanner

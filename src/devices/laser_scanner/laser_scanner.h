@@ -1,5 +1,5 @@
 #pragma once
-/// Planar scanning range finder (2D lidar; with one beam a sonar or an infra-red ranger).
+/// Planar scanning range finder (2D lidar).
 ///
 /// Frame    sensor frame S: x forward, y left, z up; the beams lie in its xy plane. Beam i leaves S's origin at
 ///          min_angle + i (max_angle - min_angle) / (beams - 1), counter-clockwise positive. A single beam points
@@ -7,8 +7,8 @@
 /// Output   level `ranges`: sensor_msgs/LaserScan, `beams` distances [m] in beam order. +inf: nothing within
 ///          max_range. -inf: nearer than min_range. Never NaN. Convention of ROS REP 117.
 /// Time     all beams are sampled at the same instant, the end of the tick. A real scanner sweeps; see Limits.
-/// Noise    noise/range_noise.h: white noise per beam and a bias that all beams of a scan share; added to finite
-///          distances only, then clamped to [min_range, max_range].
+/// Noise    noise/range_noise.h: white noise per beam, a bias that all beams of a scan share, a constant error and a
+///          resolution; added to finite distances only, then clamped to [min_range, max_range].
 /// Housing  rays start at S's origin, so that what touches the sensor reads -inf and not whatever lies behind it.
 ///          The link that carries the sensor is its housing and is never seen; other links of the robot are.
 /// Limits   no intensities, reflectance, mixed pixels, motion distortion, cross-talk, beam divergence.
@@ -63,6 +63,7 @@ struct Scanner {
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link that carries it
   Pose X_LS;
+  double constant_m = 0;  ///< error of this device, drawn when it was built
   std::vector<Vec3> directions_S;
   Topic<msg::LaserScan>* scan = nullptr;
 

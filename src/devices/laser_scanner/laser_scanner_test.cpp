@@ -184,6 +184,47 @@ TEST(LaserScanner, ABiasIsSharedByTheBeamsOfAScan) {
   EXPECT_NEAR(std::sqrt(squares / scans), 0.05, 5 * 0.05 / std::sqrt(2.0 * scans));
 }
 
+TEST(LaserScanner, AConstantErrorIsDrawnOncePerDeviceWithinItsBound) {
+  // Uniform within +-0.3: of 400 devices the mean has a deviation of 0.3 / sqrt(3 * 400), the mean square (0.03) one of
+  // 0.09 sqrt(4 / 45 / 400).
+  Rig rig(kind, test::two_wheels());
+  constexpr int devices = 400;
+  for (int i = 0; i < devices; ++i)
+    ASSERT_TRUE(rig.add("laser" + std::to_string(i), [] {
+      Node node = config({{"beams", "2"}, {"max_range", "10"}});
+      node.set("noise", config({{"systematic", "30 cm"}, {"mean", "1"}}));
+      return node;
+    }()));
+  const Caster flat([](Vec3, Vec3) { return 5.0; });
+  rig.rays = &flat;
+  rig.sense();
+  double sum = 0, squares = 0;
+  std::vector<float> first;
+  for (int i = 0; i < devices; ++i) {
+    const auto& r = rig.topic<msg::LaserScan>("laser" + std::to_string(i) + "/ranges").message.ranges;
+    const double e = r[0] - 6.0;
+    EXPECT_LE(std::abs(e), 0.3 + float_m);
+    EXPECT_EQ(r[0], r[1]);
+    first.push_back(r[0]);
+    sum += e;
+    squares += e * e;
+  }
+  EXPECT_NEAR(sum / devices, 0, 5 * 0.3 / std::sqrt(3.0 * devices));
+  EXPECT_NEAR(squares / devices, 0.03, 5 * 0.09 * std::sqrt(4.0 / 45 / devices));
+  rig.sense();
+  for (int i = 0; i < devices; ++i)
+    EXPECT_EQ(rig.topic<msg::LaserScan>("laser" + std::to_string(i) + "/ranges").message.ranges[0],
+              first[static_cast<std::size_t>(i)]);
+}
+
+TEST(LaserScanner, DistancesAreMultiplesOfTheResolution) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("laser", with_noise({{"resolution", "25 cm"}}, {})));
+  EXPECT_EQ(scan(rig, Caster([](Vec3, Vec3) { return 4.87; }))[0], 4.75f);
+  EXPECT_EQ(scan(rig, Caster([](Vec3, Vec3) { return 4.88; }))[0], 5.0f);
+  EXPECT_EQ(scan(rig, Caster([](Vec3, Vec3) { return 11.0; }))[0], inf);
+}
+
 TEST(LaserScanner, NoiseTurnsNoHitIntoAMissAndNoMissIntoAHit) {
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("laser", with_noise({{"white", "5"}}, {})));
@@ -304,18 +345,33 @@ TEST(LaserScannerFromSdf, TakesTheElementsOfALidar) {
   EXPECT_TRUE(diagnostics.warnings.empty()) << diagnostics.warnings[0].text();
 }
 
+TEST(LaserScannerFromSdf, TakesConstantErrorsAndQuantisation) {
+  Diagnostics diagnostics;
+  const auto node = kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian_quantized"},
+                                                                   {"mean", "0.1"},
+                                                                   {"stddev", "0.02"},
+                                                                   {"bias_mean", "0.05"},
+                                                                   {"precision", "0.01"},
+                                                                   {"colour", "pink"}})),
+                                  diagnostics);
+  ASSERT_TRUE(node);
+  const auto spec = read_spec<Spec>(*node);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_NEAR(spec->noise.mean_m, 0.15, 1e-15);
+  EXPECT_EQ(spec->noise.white_m, 0.02);
+  EXPECT_EQ(spec->noise.resolution_m, 0.01);
+  ASSERT_EQ(diagnostics.warnings.size(), 1u);
+  EXPECT_EQ(diagnostics.warnings[0].what, "<colour> of <noise> is not supported and has no effect");
+}
+
 TEST(LaserScannerFromSdf, WarnsOfWhatItLeavesOut) {
   Diagnostics diagnostics;
-  ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian"}, {"mean", "0.1"}}), "16"),
-                            diagnostics));
-  ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "gaussian_quantized"}})), diagnostics));
-  ASSERT_EQ(diagnostics.warnings.size(), 3u);
-  EXPECT_EQ(diagnostics.warnings[0].text(),
-            "robot.yaml:1:9: a laser scanner has one plane only: the horizontal one is used");
-  EXPECT_EQ(diagnostics.warnings[1].what,
-            "a constant error (<mean>) of a laser scanner is not supported and has no effect");
-  EXPECT_EQ(diagnostics.warnings[2].what,
-            "noise of type 'gaussian_quantized' is not supported and has no effect");
+  ASSERT_TRUE(kind.from_sdf(sdf({{"samples", "10"}}, config({{"type", "pink"}})), diagnostics));
+  ASSERT_EQ(diagnostics.warnings.size(), 1u);
+  EXPECT_EQ(diagnostics.warnings[0].what, "noise of type 'pink' is not supported and has no effect");
+  EXPECT_TRUE(kind.accepts(sdf({{"samples", "10"}})));
+  EXPECT_TRUE(kind.accepts(sdf({{"samples", "10"}}, Node(), "1")));
+  EXPECT_FALSE(kind.accepts(sdf({{"samples", "10"}}, Node(), "16")));  // the 3D scanner's
 }
 
 TEST(LaserScannerFromSdf, BadNumbersAreErrorsWithPlace) {

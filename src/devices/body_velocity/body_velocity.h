@@ -1,0 +1,71 @@
+#pragma once
+/// Moves a whole robot at a commanded velocity, without wheels: what Gazebo calls velocity control.
+///
+/// Output   none; see ground_truth.
+/// Command  level `ideal`: geometry_msgs/Twist in the frame of the model's first link; linear x and y and angular z
+///          count, the robot stays on the plane it stands on.
+/// Time     a command acts from the tick it arrives in, until the next one or for `command_timeout`.
+/// Limits   in the plane only: z, roll and pitch are physics' own. Obstacles stop it with a force of mass times
+///          max_acceleration.
+/// Noise    none.
+/// Cost     one target per tick, no allocation.
+/// Errors   an engine without ideal drives.
+#include "devices/kind.h"
+#include "messages/messages.h"
+
+namespace sandlot::body_velocity {
+
+struct Spec {
+  Vec3 initial_linear_mps;
+  Vec3 initial_angular_radps;
+  double max_acceleration_mps2 = 1e3;
+  double max_angular_acceleration_radps2 = 1e3;
+  double command_timeout_s = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"initial_linear", "m/s", "Velocity before the first command.", -1e4, 1e4},
+          s.initial_linear_mps);
+    visit(Field{"initial_angular", "rad/s", "Rate of turn before the first command.", -1e4, 1e4},
+          s.initial_angular_radps);
+    visit(Field{"max_acceleration", "m/s^2", "How fast the velocity may change.", 0, 1e9, Field::tunable},
+          s.max_acceleration_mps2);
+    visit(Field{"max_angular_acceleration", "rad/s^2", "How fast the rate of turn may change.", 0, 1e9,
+                Field::tunable},
+          s.max_angular_acceleration_radps2);
+    visit(Field{"command_timeout", "s", "It stops when no command came for so long; 0: never.", 0, 1e6,
+                Field::tunable},
+          s.command_timeout_s);
+  }
+};
+
+struct State {
+  std::uint64_t taken = 0;
+  Time command_time;
+  double vx_mps = 0, vy_mps = 0, wz_radps = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"taken", "1", "Commands seen so far."}, s.taken);
+    visit(Field{"command_time", "ns", "When the last one came."}, s.command_time);
+    visit(Field{"vx", "m/s", "Commanded forwards."}, s.vx_mps);
+    visit(Field{"vy", "m/s", "Commanded to the left."}, s.vy_mps);
+    visit(Field{"wz", "rad/s", "Commanded turn."}, s.wz_radps);
+  }
+};
+
+struct Mover {
+  using Spec = body_velocity::Spec;
+  using State = body_velocity::State;
+  Spec spec;
+  State state;
+
+  BodyId base;
+  Topic<msg::Twist>* command = nullptr;
+
+  static Result<Mover> create(const DeviceBuild& build, Spec spec);
+  static void actuate(PoolView<Mover> pool, const Context& context);
+  void release(const Context& context);
+};
+
+extern const Kind kind;
+
+}  // namespace sandlot::body_velocity
