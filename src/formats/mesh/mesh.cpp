@@ -203,6 +203,50 @@ Cache& cache() {
   return the_cache;
 }
 
+using Meshes = std::vector<std::shared_ptr<const TriangleMesh>>;
+
+/// Hulls that somebody holds, by the mesh they were made from.
+class HullCache {
+ public:
+  /// Empty when there are none.
+  Meshes find(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how) {
+    const std::lock_guard lock(mutex_);
+    return find_locked(mesh, how);
+  }
+  Meshes add(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how, Meshes hulls) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(entries_, [](const auto& each) { return each.second.mesh.expired(); });
+    if (Meshes present = find_locked(mesh, how); !present.empty()) return present;
+    entries_[{mesh.get(), std::string(how)}] = {mesh, {hulls.begin(), hulls.end()}};
+    return hulls;
+  }
+
+ private:
+  struct Entry {
+    std::weak_ptr<const TriangleMesh> mesh;
+    std::vector<std::weak_ptr<const TriangleMesh>> hulls;
+  };
+  Meshes find_locked(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how) const {
+    const auto found = entries_.find({mesh.get(), std::string(how)});
+    // An address may have been given out anew.
+    if (found == entries_.end() || found->second.mesh.lock() != mesh) return {};
+    Meshes out;
+    for (const auto& each : found->second.hulls) {
+      out.push_back(each.lock());
+      if (!out.back()) return {};
+    }
+    return out;
+  }
+  std::mutex mutex_;
+  std::map<std::pair<const TriangleMesh*, std::string>, Entry>
+      entries_;  // found by address, never walked in order
+};
+
+HullCache& hull_cache() {
+  static HullCache the_cache;
+  return the_cache;
+}
+
 /// Empty when the file cannot be looked at; reading it then says why.
 std::string cache_key(const std::string& path, const MeshOptions& o) {
   std::error_code failed;
@@ -259,22 +303,23 @@ Result<std::shared_ptr<const TriangleMesh>> read_mesh(const std::string& path, c
 
 Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
     std::shared_ptr<const TriangleMesh> mesh, std::string_view optimization) {
-  std::vector<std::shared_ptr<const TriangleMesh>> out;
-  const Place place = place_in(mesh->source);
-  const auto add_hull = [&](const TriangleMesh& of) {
-    TriangleMesh hull = convex_hull(of.vertices);
-    hull.source = mesh->source;
-    if (!hull.triangles.empty()) out.push_back(std::make_shared<const TriangleMesh>(std::move(hull)));
-  };
-  if (optimization.empty() || optimization == "none") return std::vector{std::move(mesh)};
-  if (optimization == "convex_hull") add_hull(*mesh);
-  else if (optimization == "convex_decomposition") {
-    for (const TriangleMesh& part : connected_parts(*mesh)) add_hull(part);
-  } else {
+  if (optimization.empty() || optimization == "none") return Meshes{std::move(mesh)};
+  if (optimization != "convex_hull" && optimization != "convex_decomposition")
     return Error{"'" + std::string(optimization.substr(0, 40)) + "' is no way to simplify a mesh",
-                 "known are convex_hull and convex_decomposition", place};
+                 "known are convex_hull and convex_decomposition", place_in(mesh->source)};
+  Meshes out = hull_cache().find(mesh, optimization);
+  if (out.empty()) {
+    const auto add_hull = [&](const TriangleMesh& of) {
+      TriangleMesh hull = convex_hull(of.vertices);
+      hull.source = mesh->source;
+      if (!hull.triangles.empty()) out.push_back(std::make_shared<const TriangleMesh>(std::move(hull)));
+    };
+    if (optimization == "convex_hull") add_hull(*mesh);
+    else
+      for (const TriangleMesh& part : connected_parts(*mesh)) add_hull(part);
+    if (out.empty()) return Error{"is flat: there is no solid around it", "", place_in(mesh->source)};
+    out = hull_cache().add(mesh, optimization, std::move(out));
   }
-  if (out.empty()) return Error{"is flat: there is no solid around it", "", place};
   return out;
 }
 

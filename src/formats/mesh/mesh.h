@@ -12,8 +12,8 @@
 /// Look     one colour and one colour texture per part. A texture is looked for where the file says, beside the mesh by
 ///          its bare name, and in ../materials/textures.
 /// Polygons any simple ones; a polygon that crosses itself, or has more than 1000 corners, becomes a fan.
-/// Limits   no normals, bones, animation, morph targets, lights, cameras, embedded or compressed (Draco) data beyond
-///          data: URIs of buffers; lines and points are skipped. MTL files and buffers come from the mesh's own folder or below it.
+/// Limits   no normals, bones, animation, morph targets, lights, cameras; no Draco compression, no textures inside the
+///          file; lines and points are skipped. MTL files and buffers come from the mesh's own folder or below it.
 /// Errors   a missing, truncated or broken file, NaN, no triangle, too many: the mesh file, its line where it has lines.
 ///          Memory is bounded by a small multiple of the file's size and by max_triangles.
 /// Why ours assimp 5.2.5 crashes or hangs on COLLADA, GLB and MS3D files after a few random changes, has no lines in its
@@ -59,7 +59,8 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& path,
 
 /// What SDF's <mesh optimization="..."> makes of a mesh for collisions.
 /// @param optimization  "": the mesh itself; "convex_hull"; "convex_decomposition": the hull of each connected part,
-///                      parts without volume left out
+///                      parts without volume left out. Asked again for the same mesh, the same hulls as long as
+///                      somebody holds them
 /// Errors   another word; no part has a volume
 Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
     std::shared_ptr<const TriangleMesh> mesh, std::string_view optimization);

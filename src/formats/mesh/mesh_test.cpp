@@ -420,6 +420,10 @@ TEST(CollisionMeshes, HullsOfTheWholeOrOfItsParts) {
   EXPECT_EQ(collision_meshes(mesh, "")->front(), mesh);
   ASSERT_EQ(volumes("convex_hull").size(), 1u);
   EXPECT_NEAR(volumes("convex_hull")[0], 3, 1e-8);
+  const auto hull = collision_meshes(mesh, "convex_hull"), again = collision_meshes(mesh, "convex_hull");
+  EXPECT_EQ(hull->front(), again->front());
+  const auto copy = std::make_shared<const TriangleMesh>(two);
+  EXPECT_NE(collision_meshes(copy, "convex_hull")->front(), hull->front());
   ASSERT_EQ(volumes("convex_decomposition").size(), 2u);
   EXPECT_NEAR(volumes("convex_decomposition")[0], 1, 1e-8);
   expect_says(collision_meshes(mesh, "hull").error().text(), "known are convex_hull");
