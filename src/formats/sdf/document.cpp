@@ -43,7 +43,11 @@ class Loader {
         for (Xml& each : included) children.push_back(std::move(each));
         continue;
       }
+      const std::size_t before = left_out_;
       if (child.name == "world" || child.name == "model") SL_TRY(expand(child, folder));
+      // What held nothing but a missing model is missing as a whole.
+      const bool hollow = left_out_ > before && !child.child("link") && !child.child("model");
+      if (child.name == "model" && hollow) continue;
       if (child.name == "actor") stand_in_for_actor(child);
       children.push_back(std::move(child));
     }
@@ -60,6 +64,7 @@ class Loader {
     auto path = find(*uri, folder);
     if (!path && options_.skip_missing) {
       notes_.warn(*uri, path.error().what, "it is left out");
+      ++left_out_;
       return std::vector<Xml>{};
     }
     if (!path) return std::move(path).error();
@@ -181,6 +186,7 @@ class Loader {
   std::vector<std::string> open_;  ///< from the first file to the one being read
   std::map<std::string, std::pair<Xml, std::size_t>> files_;
   std::size_t elements_ = 0;
+  std::size_t left_out_ = 0;  ///< includes that nobody has
 };
 
 }  // namespace

@@ -154,6 +154,17 @@ Result<std::vector<Shape>> read_polylines(const Xml& geometry, const Reading& in
     if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
     loops.push_back(std::move(loop));
   }
+  // Files give the outline anywhere among the holes: it is the largest.
+  const auto area = [](const std::vector<std::array<double, 2>>& loop) {
+    double twice = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const auto &a = loop[i], &b = loop[(i + 1) % loop.size()];
+      twice += a[0] * b[1] - a[1] * b[0];
+    }
+    return std::abs(twice);
+  };
+  std::stable_sort(loops.begin(), loops.end(),
+                   [&](const auto& a, const auto& b) { return area(a) > area(b); });
   auto mesh = std::make_shared<TriangleMesh>(extrude(loops, height_m));
   if (mesh->triangles.empty())
     return first->error("this <polyline> bounds no area", "its lines must not cross or touch each other");

@@ -163,7 +163,8 @@ TEST_F(SdfFiles, WhatIsMissingStopsOrIsLeftOut) {
            "<visual name='v'><geometry><mesh><uri>gone.dae</uri></mesh></geometry></visual>"
            "<visual name='u'><geometry><sphere/></geometry><material><pbr><metal>"
            "<albedo_map>gone.png</albedo_map></metal></pbr></material></visual>") +
-      "</model><include><uri>https://fuel.gazebosim.org/1.0/Open/models/Far</uri></include></world>";
+      "</model><include><uri>https://fuel.gazebosim.org/1.0/Open/models/Far</uri></include><model "
+      "name='shelf'><include><uri>gone2</uri></include></model></world>";
   options_.assets.mesh = [](const MeshUse&, Diagnostics&) -> Result<std::vector<Shape>> {
     ADD_FAILURE() << "a missing mesh was asked for";
     return std::vector<Shape>{};
@@ -178,7 +179,7 @@ TEST_F(SdfFiles, WhatIsMissingStopsOrIsLeftOut) {
   int missing = 0;
   for (const std::string& warning : warnings_)
     if (warning.find("gone") != std::string::npos || warning.find("Far") != std::string::npos) ++missing;
-  EXPECT_EQ(missing, 4);
+  EXPECT_EQ(missing, 5);
 }
 
 TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {

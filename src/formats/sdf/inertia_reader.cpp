@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -110,7 +111,7 @@ Result<model::Inertial> read_inertial(const Xml& element, const model::Link& lin
     if (auto whole = solid(link, densities_kgpm3)) {
       if (!inertial)
         warn(element, " has no <inertial>",
-             "taken as solid, of the density of water: " + number_text(whole->mass_kg) + " kg");
+             fmt::format("taken as solid, of the density of water: {:.4g} kg", whole->mass_kg));
       return *whole;
     }
     warn(element, computed ? " has no collision to compute its inertia from" : " has no <inertial>",

@@ -196,8 +196,14 @@ class ModelReader {
     if (parent != "world") { SL_ASSIGN(joint.parent, link("parent", parent)); }
     if (joint.parent == joint.child)
       return element.error("joint '" + joint.name + "' joins link '" + child + "' to itself");
-    if (!joints_.emplace(joint.name, static_cast<std::uint32_t>(out_.joints.size())).second)
-      return element.error("the name '" + joint.name + "' is given to two joints", "rename one");
+    const auto index = static_cast<std::uint32_t>(out_.joints.size());
+    bool fresh = joints_.emplace(joint.name, index).second;
+    if (!fresh && !scope.empty()) {
+      // The world and its models name their joints apart.
+      joint.name = "world::" + joint.name;
+      fresh = joints_.emplace(joint.name, index).second;
+    }
+    if (!fresh) return element.error("the name '" + joint.name + "' is given to two joints", "rename one");
     SL_ASSIGN(joint.X_CJ, in_.pose(element));
     const Xml* const mimic = descend(element, {"axis", "mimic"});
     if (mimic) mimics_.push_back({mimic, static_cast<std::uint32_t>(out_.joints.size()), prefix});

@@ -179,6 +179,15 @@ TEST(SdfJoints, OfTheWorldBelongToTheModelOfTheirChild) {
   EXPECT_EQ(r.model().joints[1].parent, 0u) << "a model stands for its first link";
 }
 
+TEST(SdfJoints, OfTheWorldMayHaveTheNameOfOneInAModel) {
+  const std::string fixed = "<joint name='j' type='fixed'><parent>world</parent><child>";
+  const Read r = parse(world("<model name='m'>" + link("a") + link("b") + fixed +
+                             "a</child></joint></model>" + fixed + "m::b</child></joint>"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_EQ(r.model().joints.at(0).name, "j");
+  EXPECT_EQ(r.model().joints.at(1).name, "world::j");
+}
+
 TEST(SdfNames, WithColonsOfFlattenedFilesAreKept) {
   const Read r = parse(
       "<sdf version='1.7'><world name='w'><model name='old::robot'>" + link("arm::upper") +

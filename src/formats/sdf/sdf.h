@@ -14,9 +14,22 @@
 ///          text of an element with attributes as '#text'; of a sensor of a joint also '@joint'. That of a
 ///          sandlot:device are its children as keys, lists written `[1, 2]`.
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
-/// Limits   boxes, spheres, cylinders, capsules, planes; other geometry is left out with a warning. Joints: fixed,
-///          revolute, continuous, prismatic, ball. No merge includes, no downloads, no actors. Names with
-///          '::' (worlds saved by old Gazebo versions) are refused.
+/// Includes models, actors, lights and whole worlds, by everything that formats/resources.h finds; merged by the proxy
+///          frame rule of SDF 1.9. A path is relative to the file that says it. What a file names and nobody has is an
+///          error, or with `skip_missing` a warning.
+/// Inertia  what has no <inertial>, or auto="true", is computed from the collisions, 1000 kg/m^3 unless a <density> says
+///          otherwise; a mesh that is not closed counts as the box around it.
+/// Names    a link and a joint may share one: where a frame is named, the link is meant. `::` in a name, as files that
+///          flattened their nested models have it, is kept; the address is sanitised.
+/// Numbers  limits, efforts, velocities, friction and ranges beyond all bounds (inf, 1e308) mean "none".
+/// Actors   become moving instances; skin and animation are not drawn: without a link of its own an actor is a capsule of
+///          0.25 m radius and 1.8 m height. Waypoints are relative to the actor's <pose>, as in Gazebo Sim.
+/// Static   a nested model that is static in one that is not is fixed to the world, link by link.
+/// Versions 1.2 to 1.4 are read as 1.5 (a warning); of 1.10 to 1.12 auto inertia, densities, cones, the optimization of
+///          meshes, screw_thread_pitch, <mimic> and joints of the world are understood (a warning).
+/// Limits   gearboxes are left out, joints between two models of the world refused. Not used, with a warning: <wind>,
+///          <gripper>, torsional friction, bit masks, added mass, texture blending of heightmaps, plugins of links.
+///          Materials are reduced to colours and one colour texture; material scripts to Gazebo Classic's own colours.
 #include <string>
 #include <string_view>
 #include <vector>

@@ -284,7 +284,7 @@ TEST(Sdf, OlderVersionsMeanTheSame) {
   ASSERT_TRUE(newer.content) << newer.error;
   EXPECT_EQ(newer.warnings,
             std::vector<std::string>{
-                "f.sdf:1: version 1.11 of SDF is newer than 1.9; most of what it added is not understood"});
+                "f.sdf:1: version 1.11 of SDF is newer than 1.9; not all of what it added is understood"});
 }
 
 TEST(Sdf, IncludesFilesAndFolders) {

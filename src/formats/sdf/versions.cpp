@@ -78,7 +78,7 @@ Result<int> version_of(const Xml& root, Notes& notes) {
                "it is read as 1.5 with the axes of joints in the model's frame; convert it if that is wrong");
   if (minor > last_whole)
     notes.warn(root, "version " + *text + " of SDF is newer than 1.9",
-               "most of what it added is not understood");
+               "not all of what it added is understood");
   return static_cast<int>(minor);
 }
 
