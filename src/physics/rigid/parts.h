@@ -69,12 +69,14 @@ struct Link {
 
 struct Joint {
   const model::Joint* decl = nullptr;
-  Body* child = nullptr;     ///< null: fixed to the world
-  Body* parent = nullptr;    ///< likewise
-  Pose X_child, X_parent;    ///< of J in the two bodies (in M where null) in the declared pose
-  dJointID main = nullptr;   ///< hinge, slider or ball; null: nothing moves (fixed, or both sides are)
-  dJointID motor = nullptr;  ///< of a slider (a hinge has its own); friction of a ball
-  dJointID extra = nullptr;  ///< rows for limit, spring with damping, and friction
+  Body* child = nullptr;          ///< null: fixed to the world
+  Body* parent = nullptr;         ///< likewise
+  Pose X_child, X_parent;         ///< of J in the two bodies (in M where null) in the declared pose
+  dJointID main = nullptr;        ///< hinge, slider ...; null: nothing moves (fixed, or both sides are)
+  dJointID motor = nullptr;       ///< of all but a hinge, which has its own; friction of a ball
+  dJointID extra = nullptr;       ///< rows for limit, spring with damping, and friction
+  dJointID second = nullptr;      ///< the same rows about the second axis of a universal joint
+  const Joint* leader = nullptr;  ///< whom it follows (mimic)
   std::unique_ptr<dJointFeedback> feedback;
   bool limited = false;
 
@@ -84,10 +86,11 @@ struct Joint {
   JointTarget target;
   double effort = 0;  ///< that the target put in
 
-  bool turns() const {
-    return decl->type == model::JointType::revolute || decl->type == model::JointType::continuous;
-  }
-  bool slides() const { return decl->type == model::JointType::prismatic; }
+  bool is(model::JointType type) const { return decl->type == type; }
+  bool is_hinge() const { return is(model::JointType::revolute) || is(model::JointType::continuous); }
+  /// Its position is an angle.
+  bool turns() const { return is_hinge() || is(model::JointType::universal) || is(model::JointType::screw); }
+  bool slides() const { return is(model::JointType::prismatic); }
 };
 
 /// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed to.

@@ -82,7 +82,12 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
 void RigidEngine::push_forces(double h) {
   for (Instance* instance : order_) {
     if (instance->bodies.empty()) continue;
-    for (Joint& joint : instance->joints) prepare_joint(joint, h);
+    for (Joint& joint : instance->joints) {
+      prepare_joint(joint, spec_.erp, h);
+      const Body* const mover = joint.child ? joint.child : joint.parent;
+      if (joint.main && joint.is(model::JointType::screw) && mover->awake)
+        couple_thread(world_, contact_joints_, joint, spec_.erp, h);
+    }
     if (instance->drive.active) push_drive(*instance, gravity_, h);
     for (Body& b : instance->bodies) {
       if (!b.awake) continue;
