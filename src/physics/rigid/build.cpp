@@ -149,7 +149,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   library::prepare_thread();
   SL_TRY(check(declared));
   const model::Model& model = *declared.model;
-  SL_ASSIGN(const Lumps lumps, lump_links(model));
+  SL_ASSIGN(const Lumps lumps, lump_links(model, declared.motion.has_value()));
   for (const Lump& lump : lumps.lumps)
     for (const std::uint32_t l : lump.links)
       for (const model::Collision& c : model.links[l].collisions)
@@ -166,6 +166,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   instance.name = declared.name;
   instance.model = declared.model;
   instance.is_robot = declared.is_robot;
+  instance.guided = declared.motion.has_value();
   make_bodies(instance, lumps);
   give_ids(instance);
   make_geoms(instance, lumps);

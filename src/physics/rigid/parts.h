@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -110,9 +111,16 @@ struct Instance {
   std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide
   double mass_kg = 0;
   bool anchored = false;  ///< some joint holds on to the world
+  bool guided = false;    ///< moves along a path: no bodies, but velocity
   // State
+  Velocity V_WM;  ///< of a guided one, in the last step or the next
   DriveTarget drive{.active = false};
   std::uint32_t drive_link = 0;
+
+  std::optional<Pose> destination;  ///< of a guided one, after the next step
+
+  bool is_moving() const { return V_WM.linear != Vec3{} || V_WM.angular != Vec3{}; }
+  Vec3 velocity_at(Vec3 point_W) const { return V_WM.linear + cross(V_WM.angular, point_W - X_WM.p); }
 
   // Scratch of one sub-step.
   std::uint32_t contact_points = 0, contacts_seen = 0;
