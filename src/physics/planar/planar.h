@@ -13,7 +13,8 @@
 /// Contact  discs stop at walls and slide along them; two discs push each other apart in proportion to their inverse
 ///          masses. A drive loses the velocity that a contact took. No restitution, no friction between bodies.
 /// Joints   kinematic: a velocity target is reached at once and ends at the joint's limits; `free` and `effort`
-///          leave the joint where it is.
+///          leave the joint where it is. A universal joint turns about its first axis only, a screw does not slide,
+///          and a joint that is to follow another stays.
 /// Limits   wrenches and gravity have no effect. Discs that move farther than their radius in one step may pass each
 ///          other (never a wall). Stacked discs that press on each other may overlap by about one step's motion.
 /// Cost     per moving body and step 110 ns (1000 bodies) to 140 ns (10,000), plus contacts; the states of links
