@@ -44,6 +44,7 @@ class HandEngine final : public Engine {
   std::span<const BodyId> bodies(InstanceId) const override { return body_ids; }
   std::span<const JointId> joints(InstanceId) const override { return joint_ids; }
   void set_pose(InstanceId, const Pose&) override {}
+  void guide(InstanceId, const Pose&, const Velocity&) override {}
   Pose pose(InstanceId) const override { return body[0].X_WB; }
   std::span<const BodyState> states() const override { return body; }
   std::span<const JointState> joint_states() const override { return joint; }

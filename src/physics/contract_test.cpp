@@ -354,6 +354,68 @@ TEST_P(EngineContract, CountersCount) {
   EXPECT_GE(counters.awake_bodies, 5u);
 }
 
+/// A cylinder on a path.
+model::Instance guided(const std::string& name, Vec3 p) {
+  model::Instance instance = static_of(name, Cylinder{0.2, 0.4}, {p, {}});
+  instance.motion = model::Motion{.keys = {{0, {p, {}}}}};
+  return instance;
+}
+
+TEST_P(EngineContract, AGuidedInstanceIsWhereItWasTold) {
+  World world(kind);
+  world.add(ground());
+  const InstanceId id = world.add(guided("walker", {1, 2, 0.2}));
+  const Pose to{{1.1, 2, 0.3}, quat_from_rpy(0, 0, 0.5)};
+  world.engine->guide(id, to, {{10, 0, 10}, {0, 0, 50}});
+  world.run(1);
+  EXPECT_NEAR(norm(world.state(id).X_WB.p - to.p), 0, 1e-12);
+  EXPECT_NEAR(yaw_of(world.state(id).X_WB.q), 0.5, 1e-12);
+  EXPECT_NEAR(yaw_of(world.engine->pose(id).q), 0.5, 1e-12);
+  EXPECT_NEAR(world.state(id).V_WB.linear.x, 10, 1e-12);
+  EXPECT_NEAR(world.state(id).V_WB.angular.z, 50, 1e-12);
+  world.run(1);  // told nothing, it stands
+  EXPECT_NEAR(norm(world.state(id).X_WB.p - to.p), 0, 1e-12);
+  EXPECT_EQ(world.state(id).V_WB.linear, Vec3{});
+}
+
+TEST_P(EngineContract, AGuidedInstancePushesAndIsNotPushed) {
+  World world(kind);
+  model::Surface smooth;
+  smooth.mu = smooth.mu2 = 0.3;
+  world.add(ground(smooth));
+  const InstanceId walker = world.add(guided("walker", {0, 0, 0.2}));
+  const InstanceId crate = world.add(body_of("crate", Cylinder{0.2, 0.4}, 50, {{0.6, 0, 0.2}, {}}, smooth));
+  world.run(100);  // a crate that is not touched falls asleep
+  std::vector<std::byte> half_walker, half_crate;
+  const auto walk = [&](World& w, int from, int until) {
+    for (int i = from; i < until; ++i) {
+      w.engine->guide(w.ids[1], {{0.005 * (i + 1), 0, 0.2}, {}}, {{0.5, 0, 0}, {}});
+      w.run(1);
+    }
+  };
+  walk(world, 0, 100);
+  half_walker = world.bytes(walker), half_crate = world.bytes(crate);
+  World other(kind);
+  other.add(ground(smooth));
+  other.add(guided("walker", {0, 0, 0.2}));
+  other.add(body_of("crate", Cylinder{0.2, 0.4}, 50, {{0.6, 0, 0.2}, {}}, smooth));
+  other.run(100);
+  ASSERT_TRUE(other.load(walker, half_walker));
+  ASSERT_TRUE(other.load(crate, half_crate));
+  walk(world, 100, 200);
+  walk(other, 100, 200);
+  EXPECT_EQ(world.bytes(crate), other.bytes(crate));
+  EXPECT_EQ(world.bytes(walker), other.bytes(walker));
+  // It walked 1 m and holds the crate at the sum of the radii; restitution is none.
+  EXPECT_NEAR(world.state(walker).X_WB.p.x, 1, 1e-9);
+  EXPECT_NEAR(world.state(crate).X_WB.p.x, 1.4, 0.01);
+  EXPECT_NEAR(world.state(crate).X_WB.p.y, 0, 0.01);
+  bool touch = false;
+  for (const Contact& c : world.engine->contacts())
+    touch = touch || (c.a == world.engine->bodies(walker)[0] && c.b == world.engine->bodies(crate)[0]);
+  EXPECT_TRUE(touch);
+}
+
 std::string engine_name(const ::testing::TestParamInfo<const EngineKind*>& param) {
   return param.param->name;
 }

@@ -112,7 +112,8 @@ class Engine {
   virtual ~Engine() = default;
   virtual Capabilities capabilities() const = 0;
 
-  /// Adds all links and joints of a model at instance.X_WM. An error names what this engine cannot express.
+  /// Adds all links and joints of a model at instance.X_WM. One with a motion is moved by guide() alone: its joints
+  /// hold, and nothing pushes it. An error names what this engine cannot express.
   virtual Result<InstanceId> add(const model::Instance& instance) = 0;
   /// Removes an instance and wakes what rested on it. @pre id is alive
   virtual void remove(InstanceId id) = 0;
@@ -121,6 +122,10 @@ class Engine {
   virtual std::span<const JointId> joints(InstanceId id) const = 0;
   /// Moves a whole instance to a pose, at rest, its joints as they are; wakes it and what rested on it.
   virtual void set_pose(InstanceId id, const Pose& X_WM) = 0;
+  /// Of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the model frame's
+  /// origin) during it, whatever is in its way; contacts feel that velocity. Without a call it stands still.
+  /// @pre it was added with a motion
+  virtual void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) = 0;
   /// Pose of the model frame, from the canonical link.
   virtual Pose pose(InstanceId id) const = 0;
 

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "controllers/controllers.h"
+#include "model/motion.h"
 #include "sim/presets.h"
 #include "sim/simulation.h"
 
@@ -117,7 +118,9 @@ Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diag
   if (find_entity(instance.name))
     return Error{"there are two things named '" + instance.name + "'", "give one of them another name",
                  instance.place};
-  auto id = engine_->add(instance);
+  model::Instance at_present = instance;
+  if (instance.motion) at_present.X_WM = model::pose_at(*instance.motion, now_.s());
+  auto id = engine_->add(at_present);
   if (!id) {
     if (!id.error().place.file) id.error().place = instance.place;
     return std::move(id.error());
@@ -129,6 +132,7 @@ Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diag
   entity->serial = next_serial_++;
   entities_.push_back(std::move(entity));
   Entity& added = *entities_.back();
+  if (added.instance.motion) guided_.push_back(&added);
   by_name_[instance.name] = &added;
   Status status;
   for (const model::DeviceDecl& decl : added.instance.devices)
@@ -299,6 +303,7 @@ void Simulation::remove_entity(std::size_t index) {
   }
   engine_->remove(entity.id);
   by_name_.erase(entity.instance.name);
+  std::erase(guided_, &entity);
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
@@ -377,8 +382,8 @@ void Simulation::rebuild_scene() {
     const auto bodies = engine_->bodies(entity->id);
     for (std::size_t link = 0; link < model.links.size(); ++link)
       for (const model::Collision& collision : model.links[link].collisions)
-        shapes.push_back(
-            {bodies[link].index, collision.X_LC, collision.shape, bodies[link].index, !model.is_static});
+        shapes.push_back({bodies[link].index, collision.X_LC, collision.shape, bodies[link].index,
+                          !model.is_static || entity->instance.motion.has_value()});
   }
   scene_->set_shapes(shapes);
   scene_frame_.revision = revision_;

@@ -13,7 +13,10 @@ Placer::Placer(const std::vector<model::Instance>& world, std::uint64_t seed) : 
     for (const model::Link& link : instance.model->links)
       for (const model::Collision& collision : link.collisions) {
         Obstacle obstacle{instance.X_WM * link.X_ML * collision.X_LC, {}, true};
-        if (std::holds_alternative<Plane>(collision.shape)) continue;
+        // On planes and terrain one stands.
+        if (std::holds_alternative<Plane>(collision.shape) ||
+            std::holds_alternative<Heightfield>(collision.shape))
+          continue;
         if (const auto* box = std::get_if<Box>(&collision.shape)) {
           obstacle.half_m = 0.5 * box->size_m;
           obstacle.round = false;

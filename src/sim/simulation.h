@@ -211,6 +211,7 @@ class Simulation {
   SceneFrame scene_frame_;
 
   std::vector<std::unique_ptr<Entity>> entities_;
+  std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
   std::vector<Pool> pools_;
   std::vector<std::unique_ptr<Rule>> rules_;

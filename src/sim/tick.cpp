@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "devices/parallel.h"
+#include "model/motion.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -98,6 +99,11 @@ void Simulation::physics() {
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
+    for (const Entity* entity : guided_) {
+      const double from_s = now_.s() + substep * h_s;
+      const model::Moved to = model::moved(*entity->instance.motion, from_s, from_s + h_s);
+      engine_->guide(entity->id, to.X_WM, to.V_WM);
+    }
     engine_->step(h_s, hash_combine(mix64(setup_.seed), tick_ * static_cast<std::uint64_t>(setup_.substeps) +
                                                             static_cast<std::uint64_t>(substep)));
     actuation_.wrenches.resize(held);

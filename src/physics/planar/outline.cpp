@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/mesh.h"
+
 namespace sandlot::planar {
 namespace {
 
@@ -81,6 +83,50 @@ void add_polygon(std::vector<Vec2> points, Heights h, std::vector<Outline>& outl
   outlines.push_back(outline);
 }
 
+void add_triangles(const TriangleMesh& mesh, const Pose& X_WC, std::vector<Outline>& outlines,
+                   std::vector<Edge>& edges) {
+  // Both halves of an upright rectangle are the same wall.
+  Vec2 last_low, last_high;
+  Heights last;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 corner[] = {X_WC * mesh.vertices[t[0]], X_WC * mesh.vertices[t[1]],
+                           X_WC * mesh.vertices[t[2]]};
+    Heights h;
+    Vec2 low = flat(corner[0]), high = low;
+    const auto before = [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); };
+    for (const Vec3& c : corner) {
+      h.add({c.z, c.z});
+      if (before(flat(c), low)) low = flat(c);
+      if (before(high, flat(c))) high = flat(c);
+    }
+    const Vec2 along = high - low;
+    const double length = std::sqrt(dot(along, along));
+    if (!(length > 0)) continue;
+    const Vec2 across = (1 / length) * Vec2{-along.y, along.x};
+    double width = 0;
+    for (const Vec3& c : corner) width = std::max(width, std::abs(dot(across, flat(c) - low)));
+    if (width > 1e-6 * length) {
+      add_polygon({flat(corner[0]), flat(corner[1]), flat(corner[2])}, h, outlines, edges);
+      continue;
+    }
+    if (low == last_low && high == last_high && h.min_m == last.min_m && h.max_m == last.max_m) continue;
+    last_low = low, last_high = high, last = h;
+    const Vec2 half = 1e-6 * length * across;
+    add_polygon({low + half, low - half, high + half, high - half}, h, outlines, edges);
+  }
+}
+
+/// Upper part and height of R diag(r^2) R^T: of the ellipse that an ellipsoid casts.
+struct Shadow {
+  double xx, xy, yy, zz;
+};
+Shadow shadow_of(const Ellipsoid& egg, Quat q) {
+  const Vec3 x = egg.radii_m.x * rotate(q, {1, 0, 0}), y = egg.radii_m.y * rotate(q, {0, 1, 0}),
+             z = egg.radii_m.z * rotate(q, {0, 0, 1});
+  return {x.x * x.x + y.x * y.x + z.x * z.x, x.x * x.y + y.x * y.y + z.x * z.y,
+          x.y * x.y + y.y * y.y + z.y * z.y, x.z * x.z + y.z * y.z + z.z * z.z};
+}
+
 std::array<Vec3, 8> corners_of(const Box& box, const Pose& X_WC) {
   std::array<Vec3, 8> corners;
   for (unsigned i = 0; i < 8; ++i)
@@ -106,6 +152,19 @@ Heights heights_of(const Shape& shape, const Pose& X_WC) {
            0.5 * std::abs(axis.z) * can->length_m;
   } else if (const auto* pill = std::get_if<Capsule>(&shape)) {
     half = pill->radius_m + 0.5 * std::abs(axis.z) * pill->length_m;
+  } else if (const auto* egg = std::get_if<Ellipsoid>(&shape)) {
+    half = std::sqrt(shadow_of(*egg, X_WC.q).zz);
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    const double rim = std::sqrt(axis.x * axis.x + axis.y * axis.y) * cone->radius_m;
+    const double apex = 0.5 * cone->length_m * axis.z;
+    return {X_WC.p.z + std::min(apex, -apex - rim), X_WC.p.z + std::max(apex, -apex + rim)};
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    Heights heights;
+    for (const Vec3& v : mesh->mesh->vertices) {
+      const double z = (X_WC * v).z;
+      heights.add({z, z});
+    }
+    return heights;
   } else {
     return {};
   }
@@ -124,11 +183,29 @@ void add_shadow(const Shape& shape, const Pose& X_WC, std::vector<Round>& hull) 
   } else if (const auto* pill = std::get_if<Capsule>(&shape)) {
     for (const double end : {-0.5, 0.5})
       hull.push_back({flat(X_WC.p + end * pill->length_m * axis), pill->radius_m});
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    add_rim(X_WC.p - 0.5 * cone->length_m * axis, axis, cone->radius_m, hull);
+    hull.push_back({flat(X_WC.p + 0.5 * cone->length_m * axis), 0});
+  } else if (const auto* egg = std::get_if<Ellipsoid>(&shape)) {
+    const Shadow s = shadow_of(*egg, X_WC.q);
+    const double tolerance = upright * (s.xx + s.yy);
+    if (std::abs(s.xx - s.yy) < tolerance && std::abs(s.xy) < tolerance)
+      return hull.push_back({flat(X_WC.p), std::sqrt(s.xx)});
+    // The ellipse is the unit circle times the Cholesky factor; so are its tangents.
+    const double a = std::sqrt(s.xx), b = s.xy / a, c = std::sqrt(std::max(s.yy - b * b, 0.0));
+    const double outside = 1 / math::cos(math::pi / facets);
+    for (int i = 0; i < facets; ++i) {
+      const auto [sine, cosine] = math::sincos(math::tau * i / facets);
+      hull.push_back({flat(X_WC.p) + outside * Vec2{a * cosine, b * cosine + c * sine}, 0});
+    }
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    for (const Vec3& v : mesh->mesh->vertices) hull.push_back({flat(X_WC * v), 0});
   }
 }
 
 void add_outlines(const Shape& shape, const Pose& X_WC, std::vector<Outline>& outlines,
                   std::vector<Edge>& edges) {
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) return add_triangles(*mesh->mesh, X_WC, outlines, edges);
   std::vector<Round> hull;
   add_shadow(shape, X_WC, hull);
   if (hull.empty()) return;

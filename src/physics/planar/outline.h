@@ -1,9 +1,13 @@
 #pragma once
 /// What a solid is in the plane: a convex outline, upright over an interval of heights.
 ///
-/// Exact      upright boxes, cylinders and capsules lying flat or standing up; for rays also their lids.
+/// Exact      upright boxes, cylinders, cones' bases and capsules lying flat or standing up; for rays also their lids.
+/// Meshes     each triangle by itself, over its own heights: so a building of one mesh has rooms. Upright triangles are
+///            walls a millionth of their length thick. A slope is as high as its upper end everywhere.
 /// Limits     anything else becomes the upright prism over its shadow: a sphere the cylinder around it, a tilted box
-///            the prism over the convex hull of its corners, an oblique cylinder one over a 32-gon about each cap.
+///            the prism over the convex hull of its corners, an oblique cylinder or cone one over a 32-gon about each
+///            rim, an ellipsoid one over a 32-gon about its shadow.
+/// Errors     terrain has no outline; the engine refuses it.
 #include <cstdint>
 #include <limits>
 #include <span>

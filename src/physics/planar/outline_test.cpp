@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+
+#include "geometry/mesh.h"
+
 namespace sandlot::planar {
 namespace {
 
@@ -93,6 +98,71 @@ TEST(PlanarOutline, ASphereIsACircleAndAPlaneNothing) {
   const Shadow ground(Plane{{0, 0, 1}}, {});
   EXPECT_TRUE(ground.outlines.empty());
   EXPECT_TRUE(heights_of(Plane{{0, 0, 1}}, {}).empty());
+}
+
+TEST(PlanarOutline, ConesAndEllipsoidsCastCirclesAndHulls) {
+  std::vector<Outline> outlines;
+  std::vector<Edge> edges;
+  add_outlines(Cone{0.5, 2}, {{1, 2, 3}, {}}, outlines, edges);
+  ASSERT_EQ(outlines.size(), 1u);
+  EXPECT_EQ(outlines[0].edge_count, 0u);
+  EXPECT_DOUBLE_EQ(outlines[0].radius_m, 0.5);
+  EXPECT_DOUBLE_EQ(outlines[0].heights.min_m, 2);
+  EXPECT_DOUBLE_EQ(outlines[0].heights.max_m, 4);
+  // On its side, apex towards +x: a triangle, 1 m wide where the base is.
+  outlines.clear(), edges.clear();
+  add_outlines(Cone{0.5, 2}, {{0, 0, 1}, quat_from_axis_angle({0, 1, 0}, math::pi / 2)}, outlines, edges);
+  ASSERT_EQ(outlines.size(), 1u);
+  EXPECT_NEAR(nearest(outlines[0], edges, {3, 0}).distance_m, 2, 1e-6);
+  EXPECT_NEAR(nearest(outlines[0], edges, {-3, 0}).distance_m, 2, 1e-6);
+  EXPECT_NEAR(nearest(outlines[0], edges, {-1, 2}).distance_m, 1.5, 1e-2);
+  EXPECT_NEAR(outlines[0].heights.max_m, 1.5, 1e-9);
+  // An ellipsoid turned by 90 degrees about z.
+  outlines.clear(), edges.clear();
+  add_outlines(Ellipsoid{{1, 2, 0.5}}, {{}, quat_from_axis_angle({0, 0, 1}, math::pi / 2)}, outlines, edges);
+  ASSERT_EQ(outlines.size(), 1u);
+  EXPECT_NEAR(nearest(outlines[0], edges, {3, 0}).distance_m, 1, 0.01);  // 32 tangents: 0.5 % outside at most
+  EXPECT_NEAR(nearest(outlines[0], edges, {0, 3}).distance_m, 2, 0.01);
+  EXPECT_NEAR(outlines[0].heights.max_m, 0.5, 1e-12);
+}
+
+TEST(PlanarOutline, AMeshIsItsTrianglesAndKeepsItsRooms) {
+  // A room without a roof: four upright walls of 4 m x 3 m about the origin, from z = 0 to 2.
+  TriangleMesh room;
+  const double x[] = {-2, 2, 2, -2}, y[] = {-1.5, -1.5, 1.5, 1.5};
+  for (std::uint32_t i = 0; i < 4; ++i)
+    for (const double z : {0.0, 2.0}) room.vertices.push_back({x[i], y[i], z});
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % 4);
+    room.triangles.push_back({a, b, b + 1});
+    room.triangles.push_back({a, b + 1, a + 1});
+  }
+  std::vector<Outline> outlines;
+  std::vector<Edge> edges;
+  add_outlines(Mesh{std::make_shared<const TriangleMesh>(room)}, {{10, 0, 0}, {}}, outlines, edges);
+  ASSERT_EQ(outlines.size(), 4u);  // one wall for both halves of a rectangle
+  const auto gap = [&](Vec2 p) {
+    double least = 1e9;
+    for (const Outline& o : outlines) least = std::min(least, nearest(o, edges, p).distance_m);
+    return least;
+  };
+  EXPECT_NEAR(gap({10, 0}), 1.5, 1e-5);
+  EXPECT_NEAR(gap({11.5, 0}), 0.5, 1e-5);
+  EXPECT_NEAR(gap({13, 0}), 1, 1e-5);
+  // From outside through both walls.
+  double first = 1e9, last = -1e9;
+  for (const Outline& o : outlines) {
+    const Chord c = chord(o, edges, {5, 0.3}, {1, 0});
+    if (c.first <= c.last) first = std::min(first, c.first), last = std::max(last, c.last);
+  }
+  EXPECT_NEAR(first, 3, 1e-5);
+  EXPECT_NEAR(last, 7, 1e-5);
+  // A closed box of triangles stands in the way as the box does.
+  outlines.clear(), edges.clear();
+  add_outlines(Mesh{std::make_shared<const TriangleMesh>(tessellate(Box{{2, 1, 1}}))}, {}, outlines, edges);
+  EXPECT_NEAR(gap({2, 0.2}), 1, 1e-5);
+  EXPECT_NEAR(gap({0.3, -1}), 0.5, 1e-5);
+  EXPECT_LE(gap({0.3, 0.1}), 0);
 }
 
 }  // namespace

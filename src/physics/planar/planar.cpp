@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/read.h"
+#include "geometry/mesh.h"
 
 namespace sandlot::planar {
 namespace {
@@ -17,9 +18,18 @@ bool stands_still(const model::Model& model) {
 Status check(const model::Instance& instance) {
   const model::Model& model = *instance.model;
   if (model.links.empty()) return Error{"model '" + model.name + "' has no link", "", model.place};
-  const bool still = stands_still(model);
+  const bool still = stands_still(model) && !instance.motion;
   for (const model::Link& link : model.links)
     for (const model::Collision& collision : link.collisions) {
+      if (std::holds_alternative<Heightfield>(collision.shape))
+        return Error{"the planar engine has no terrain: '" + collision.name + "' is a heightmap",
+                     "use a plane, or engine: rigid", collision.place};
+      constexpr std::size_t most_triangles = 1'000'000;
+      const auto* mesh = std::get_if<Mesh>(&collision.shape);
+      if (mesh && mesh->mesh->triangles.size() > most_triangles)
+        return Error{
+            "mesh '" + collision.name + "' has more than a million triangles, too many for the planar engine",
+            "simplify it, or use engine: rigid", collision.place};
       const auto* plane = std::get_if<Plane>(&collision.shape);
       if (!plane) continue;
       const Vec3 n = rotate((instance.X_WM * link.X_ML * collision.X_LC).q, plane->normal);
@@ -96,7 +106,8 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   map_.discs().resize(instances_.size());
   Instance& instance = instances_[slot];
   instance.alive = true;
-  instance.moves = !stands_still(model);
+  instance.guided = declared.motion.has_value();
+  instance.moves = instance.guided || !stands_still(model);
   instance.created = created_++;
   instance.name = declared.name;
   instance.model = declared.model;
@@ -110,7 +121,7 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
     body_slot_[body] = slot;
     instance.bodies.push_back(body_id(body));
   }
-  instance.inverse_mass_per_kg = 1 / std::max(mass_kg, 1e-9);
+  instance.inverse_mass_per_kg = instance.guided ? 0 : 1 / std::max(mass_kg, 1e-9);
   for (const model::Joint& joint : model.joints) {
     const std::uint32_t index = take_index(free_joints_, motors_);
     joint_states_.resize(motors_.size());
@@ -153,7 +164,8 @@ void PlanarEngine::shape(std::uint32_t slot) {
   stale();
   if (!instance.moves) return;
   const Pose X_HM = Pose{{0, 0, instance.z_m}, instance.tilt} * inverse(model.links[0].X_ML);
-  std::vector<Round> hull;
+  std::vector<Round>& hull = hull_;
+  hull.clear();
   for (const model::Link& link : model.links)
     for (const model::Collision& collision : link.collisions) {
       const Pose X_HC = X_HM * link.X_ML * collision.X_LC;
@@ -201,6 +213,34 @@ void PlanarEngine::set_pose(InstanceId id, const Pose& X_WM) {
   settle(id.index, X_WM);
 }
 
+void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
+  SL_CHECK_MSG(get(id).guided, "guide() needs an instance with a motion");
+  instances_[id.index].destination = {X_WM, V_WM};
+}
+
+/// Takes a guided instance where it is to be.
+void PlanarEngine::lead(std::uint32_t slot) {
+  Instance& instance = instances_[slot];
+  Base& base = bases_[slot];
+  base.v = {};
+  base.w_radps = 0;
+  if (!instance.destination) return;
+  const auto [X_WM, V] = *instance.destination;
+  instance.destination.reset();
+  const Pose X_WB = X_WM * instance.model->links[0].X_ML;
+  const Vec3 v = V.linear + cross(V.angular, X_WB.p - X_WM.p);
+  Quat tilt;
+  base = {{X_WB.p.x, X_WB.p.y}, heading_of(X_WB.q, tilt), {v.x, v.y}, V.angular.z};
+  const Quat change = conjugate(instance.tilt) * tilt;
+  // Rounding alone does not make a new outline.
+  if (std::abs(X_WB.p.z - instance.z_m) > 1e-9 || norm(Vec3{change.x, change.y, change.z}) > 1e-9) {
+    instance.tilt = tilt;
+    instance.z_m = X_WB.p.z;
+    shape(slot);
+  }
+  map_.discs()[slot].centre = base.p + rotate(base.heading, instance.offset);
+}
+
 Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
   const Base& base = bases_[slot];
   const Instance& instance = instances_[slot];
@@ -234,7 +274,7 @@ void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
     SL_CHECK(t.base.index < body_slot_.size());
     const std::uint32_t slot = body_slot_[t.base.index];
     SL_CHECK_MSG(slot != ~0u && t.base.generation == body_generation_[t.base.index], "no such body");
-    if (!instances_[slot].moves) continue;
+    if (!instances_[slot].moves || instances_[slot].guided) continue;
     const Instance& instance = instances_[slot];
     Drive& drive = drives_[slot];
     if (instance.bodies[drive.link] != t.base)

@@ -7,12 +7,14 @@
 ///          collision shapes, just large enough to contain them, over the heights between their lowest and highest
 ///          point. A static instance, or one with a joint to the world, is its shapes' outlines (outline.h).
 ///          Horizontal planes are the ground, on which everything stands.
+/// Paths    an instance with a motion is a disc as well, which pushes and is not pushed, not even by walls.
 /// Motion   ideal drives (drive.h). What has no drive stays where it is unless pushed, and stops at once: friction
 ///          with the ground is infinite between pushes and nothing during them.
 /// Contact  discs stop at walls and slide along them; two discs push each other apart in proportion to their inverse
 ///          masses. A drive loses the velocity that a contact took. No restitution, no friction between bodies.
 /// Joints   kinematic: a velocity target is reached at once and ends at the joint's limits; `free` and `effort`
-///          leave the joint where it is.
+///          leave the joint where it is. A universal joint turns about its first axis only, a screw does not slide,
+///          and a joint that is to follow another stays.
 /// Limits   wrenches and gravity have no effect. Discs that move farther than their radius in one step may pass each
 ///          other (never a wall). Stacked discs that press on each other may overlap by about one step's motion.
 /// Cost     per moving body and step 110 ns (1000 bodies) to 140 ns (10,000), plus contacts; the states of links
@@ -20,7 +22,9 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/engine.h"
@@ -53,6 +57,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::span<const BodyId> bodies(InstanceId id) const override { return get(id).bodies; }
   std::span<const JointId> joints(InstanceId id) const override { return get(id).joints; }
   void set_pose(InstanceId id, const Pose& X_WM) override;
+  void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override;
   std::span<const JointState> joint_states() const override { return joint_states_; }
@@ -73,6 +78,8 @@ class PlanarEngine final : public Engine, private RayCaster {
   /// What changes rarely, or is looked at rarely.
   struct Instance {
     bool alive = false, moves = false;
+    bool guided = false;                                   ///< moves along a path
+    std::optional<std::pair<Pose, Velocity>> destination;  ///< of a guided one, after the next step
     std::uint32_t generation = 0;
     std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
     std::string name;
@@ -132,6 +139,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void stale() { map_fresh_ = links_fresh_ = false; }
 
   void drive(std::uint32_t slot, double h_s);
+  void lead(std::uint32_t slot);
   Vec2 clear_of_walls(std::uint32_t slot, Vec2 from, Vec2 to);
   bool push_out(std::uint32_t slot, Vec2& centre);
   void find_pairs();
@@ -165,6 +173,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   mutable std::vector<BodyState> states_;
 
   // Scratch of step().
+  std::vector<Round> hull_;
   std::vector<Vec2> start_, unhindered_;  ///< by slot: p before the step, disc centre without contacts
   std::vector<std::uint32_t> near_walls_;
   std::vector<Pair> pairs_;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "geometry/height_grid.h"
 #include "physics/planar/test_world.h"
 
 namespace sandlot::planar {
@@ -227,6 +228,16 @@ TEST(PlanarEngine, TurnsAgreeWithTheLibrary) {
     ASSERT_NEAR(t.c, c, 4e-16) << rad;
     ASSERT_NEAR(t.s, s, 4e-16) << rad;
   }
+}
+
+TEST(PlanarEngine, TerrainIsRefusedByName) {
+  World w;
+  HeightGrid grid{2, 2, 1, 1, {0, 0, 0, 0}, {}};
+  model::Instance instance;
+  instance.model = model_of(Heightfield{std::make_shared<const HeightGrid>(grid)}, true);
+  const auto made = w.engine.add(instance);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().what.find("no terrain"), std::string::npos);
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
     Disc& disc = map_.discs()[slot];
     const Vec2 before = disc.centre;
     start_[slot] = bases_[slot].p;
+    if (instances_[slot].guided) {
+      lead(slot);
+      continue;
+    }
     drive(slot, h_s);
     unhindered_[slot] = bases_[slot].p + rotate(bases_[slot].heading, instances_[slot].offset);
     disc.centre = clear_of_walls(slot, before, unhindered_[slot]);
@@ -44,7 +48,7 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
   find_pairs();
   separate_pairs();
   for (const std::uint32_t slot : order_)
-    if (instances_[slot].moves) feel_contacts(slot, h_s);
+    if (instances_[slot].moves && !instances_[slot].guided) feel_contacts(slot, h_s);
   turn_joints(h_s);
   list_contacts();
   stale();
@@ -158,13 +162,14 @@ bool PlanarEngine::separate(const Pair& pair) {
   touch(pair.b, pair.a, no_wall, a.body, a.centre + a.radius_m * n, middle_of_common(a.heights, b.heights), n,
         depth);
   const double wa = instances_[pair.a].inverse_mass_per_kg, wb = instances_[pair.b].inverse_mass_per_kg;
+  if (wa + wb == 0) return false;  // two on their paths
   const double share = wa / (wa + wb);
   const Vec2 a_free = a.centre - (share * depth) * n, b_free = b.centre + ((1 - share) * depth) * n;
-  a.centre = clear_of_walls(pair.a, a.centre, a_free);
-  b.centre = clear_of_walls(pair.b, b.centre, b_free);
+  if (wa > 0) a.centre = clear_of_walls(pair.a, a.centre, a_free);
+  if (wb > 0) b.centre = clear_of_walls(pair.b, b.centre, b_free);
   // Where a wall holds one of them, the other gives way alone.
   const double rest = overlap(n);
-  if (rest > least) {
+  if (rest > least && wa > 0 && wb > 0) {
     if (!(b.centre == b_free)) a.centre = clear_of_walls(pair.a, a.centre, a.centre - rest * n);
     else if (!(a.centre == a_free)) b.centre = clear_of_walls(pair.b, b.centre, b.centre + rest * n);
   }

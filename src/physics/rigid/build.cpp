@@ -104,7 +104,38 @@ Status RigidEngine::check(const model::Instance& instance) const {
     if (joint.type == model::JointType::ball && joint.spring_stiffness > 0)
       return Error{"the engine 'rigid' has no springs on ball joints",
                    "remove the stiffness of '" + joint.name + "'", joint.place};
-    if (joint.type == model::JointType::revolute && !(joint.lower <= joint.upper))
+    if (joint.type == model::JointType::universal) {
+      if (!joint.second || !(std::abs(norm(joint.second->axis_J) - 1) < 1e-6) ||
+          !(std::abs(dot(joint.second->axis_J, joint.axis_J)) < 1e-3))
+        return Error{"the axes of universal joint '" + joint.name + "' are not across each other",
+                     "give it two axes at a right angle", joint.place};
+      if (!(joint.second->lower <= joint.second->upper))
+        return Error{"joint '" + joint.name + "' has its lower limit above its upper one", "exchange them",
+                     joint.place};
+      if (!(joint.second->damping >= 0) || !(joint.second->friction >= 0))
+        return Error{"joint '" + joint.name + "' has a negative damping or friction", "0 switches it off",
+                     joint.place};
+    }
+    if (!(std::abs(joint.thread_pitch_m) < 1e6))
+      return Error{"the thread pitch of joint '" + joint.name + "' is no length",
+                   "give it in metres per turn", joint.place};
+    if (joint.mimic) {
+      const std::uint32_t leader = joint.mimic->joint;
+      const auto has_position = [](const model::Joint& j) {
+        return j.type != model::JointType::fixed && j.type != model::JointType::ball;
+      };
+      if (leader >= model.joints.size() || &model.joints[leader] == &joint ||
+          !has_position(model.joints[leader]) || !has_position(joint))
+        return Error{"joint '" + joint.name + "' cannot follow what it is to follow",
+                     "a joint with an axis follows another one of its model", joint.place};
+      if (!(std::abs(joint.mimic->multiplier) < 1e9 && std::abs(joint.mimic->offset) < 1e9 &&
+            std::abs(joint.mimic->reference) < 1e9))
+        return Error{"the multiplier or offset of mimic joint '" + joint.name + "' is no sound number", "",
+                     joint.place};
+    }
+    const bool bounded = joint.type != model::JointType::fixed && joint.type != model::JointType::ball &&
+                         joint.type != model::JointType::continuous;
+    if (bounded && !(joint.lower <= joint.upper))
       return Error{"joint '" + joint.name + "' has its lower limit above its upper one", "exchange them",
                    joint.place};
     if (!(joint.damping >= 0) || !(joint.friction >= 0) || !(joint.spring_stiffness >= 0))
@@ -118,7 +149,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   library::prepare_thread();
   SL_TRY(check(declared));
   const model::Model& model = *declared.model;
-  SL_ASSIGN(const Lumps lumps, lump_links(model));
+  SL_ASSIGN(const Lumps lumps, lump_links(model, declared.motion.has_value()));
   for (const Lump& lump : lumps.lumps)
     for (const std::uint32_t l : lump.links)
       for (const model::Collision& c : model.links[l].collisions)
@@ -135,6 +166,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   instance.name = declared.name;
   instance.model = declared.model;
   instance.is_robot = declared.is_robot;
+  instance.guided = declared.motion.has_value();
   make_bodies(instance, lumps);
   give_ids(instance);
   make_geoms(instance, lumps);
@@ -200,7 +232,9 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
     if (!joint.main) continue;
     if (!joint.child || !joint.parent) instance.anchored = true;
     else instance.joined.emplace_back(joint.child, joint.parent);
-    if (joint.turns() && joint.child && joint.child->spin_axis_B == Vec3{})
+    if (joint.decl->mimic) joint.leader = &instance.joints[joint.decl->mimic->joint];
+    if (joint.turns() && !joint.is(model::JointType::universal) && joint.child &&
+        joint.child->spin_axis_B == Vec3{})
       joint.child->spin_axis_B = rotate(joint.X_child.q, joint.decl->axis_J);
   }
 }

@@ -13,12 +13,13 @@ namespace {
 double load_on(const Geom& g) {
   return g.body ? g.instance->load_N : std::numeric_limits<double>::infinity();
 }
-bool is_awake(const Geom& g) { return g.body && g.body->awake; }
+/// What moves along a path wakes whom it meets.
+bool is_awake(const Geom& g) { return g.body ? g.body->awake : g.instance->is_moving(); }
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 Vec3 velocity_at(const Geom& g, Vec3 point) {
-  return g.body ? g.body->v + cross(g.body->w, point - g.body->p) : Vec3{};
+  return g.body ? g.body->v + cross(g.body->w, point - g.body->p) : g.instance->velocity_at(point);
 }
 
 }  // namespace
@@ -109,6 +110,9 @@ void RigidEngine::collide_pair(const Pair& pair) {
   if (n == 0) return;
   if (pair.a->body && !pair.a->body->awake) wake(*pair.a->body);
   if (pair.b->body && !pair.b->body->awake) wake(*pair.b->body);
+  // On what moves, however slowly, nobody falls asleep.
+  if (!pair.a->body && is_awake(*pair.a)) pair.b->body->quiet_s = 0;
+  if (!pair.b->body && is_awake(*pair.b)) pair.a->body->quiet_s = 0;
 }
 
 /// All contact points of awake bodies, in the order in which their shapes were made.
@@ -205,6 +209,15 @@ void RigidEngine::attach_contacts(double h) {
         contact.surface.mode |= dContactSlip2;
         contact.surface.slip2 += (speed - creep) / limit;
       }
+    }
+    if (const Geom& mover = a.body ? b : a; !mover.body && mover.instance->is_moving()) {
+      // To ODE it stands still; that its surface moves, it takes as velocities at which the contact comes to rest. They
+      // are those of the one body, along ODE's three directions with its normal into that body.
+      const Vec3 v = velocity_at(mover, point), into = a.body ? normal : -normal;
+      contact.surface.mode |= dContactMotion1 | dContactMotion2 | dContactMotionN;
+      contact.surface.motionN = dot(into, v);
+      contact.surface.motion1 = dot(direction, v);
+      contact.surface.motion2 = dot(cross(into, direction), v);
     }
     // ODE's normal points into the first shape, ours from a towards b.
     contacts_.push_back({a.link, b.link, point, -normal, contact.geom.depth});

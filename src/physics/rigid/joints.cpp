@@ -25,10 +25,31 @@ bool reversed(const Joint& j) { return !j.child; }
 Body& first_body(const Joint& j) { return j.child ? *j.child : *j.parent; }
 Body* second_body(const Joint& j) { return j.child ? j.parent : nullptr; }
 
-/// In the first body, so that it turns with it.
+const Pose& model_pose(const Joint& j) { return first_body(j).instance->X_WM; }
+
+/// In the first body, so that it turns with it; of a universal joint in the parent, of its second axis in the child.
 Vec3 axis_W(const Joint& j) {
+  if (j.is(model::JointType::universal)) return rotate(frame_on_parent(j, model_pose(j)).q, j.decl->axis_J);
   const Pose& X = j.child ? j.X_child : j.X_parent;
   return rotate(first_body(j).q, rotate(X.q, j.decl->axis_J));
+}
+/// Exactly across the first.
+Vec3 second_axis_J(const Joint& j) {
+  const Vec3 first = j.decl->axis_J, second = j.decl->second->axis_J;
+  return normalised(second - dot(first, second) * first);
+}
+/// Within half a turn.
+double second_position(const Joint& j) {
+  const Vec3 first = j.decl->axis_J, third = cross(first, second_axis_J(j));
+  const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
+  const Vec3 in_child = rotate(conjugate(on_child.q) * on_parent.q, first);
+  return math::atan2(dot(in_child, third), dot(in_child, first));
+}
+
+/// Any unit vector across a unit vector.
+Vec3 second_to(Vec3 axis) {
+  const Vec3 other = std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  return normalised(other - dot(other, axis) * axis);
 }
 
 void set_row_motor(dJointID extra, bool turns, int row, double velocity, double max_effort, double cfm) {
@@ -39,19 +60,29 @@ void set_row_motor(dJointID extra, bool turns, int row, double velocity, double 
   if (cfm >= 0) set(extra, group + dParamCFM, cfm);
 }
 
+/// Which of ODE's two bodies carries an axis that is fixed in the child, or in the parent; 0: the world.
+int carrier(const Joint& j, bool child) {
+  if (child) return j.child ? 1 : 0;
+  return !j.parent ? 0 : reversed(j) ? 1 : 2;
+}
+
+void aim_rows(dJointID rows, bool turns, Vec3 axis, int body) {
+  const auto set = turns ? dJointSetAMotorAxis : dJointSetLMotorAxis;
+  for (int i = 0; i < 3; ++i) set(rows, i, body, axis.x, axis.y, axis.z);
+}
+
 /// Three rows about (or along) one axis: limit, spring, friction; each costs nothing until it is used.
-dJointID make_rows(dWorldID world, const Joint& j, Vec3 axis, bool turns) {
+dJointID make_rows(dWorldID world, const Joint& j, Vec3 axis, bool turns, int body = 1) {
   Body* const second = second_body(j);
   const dJointID rows = turns ? dJointCreateAMotor(world, nullptr) : dJointCreateLMotor(world, nullptr);
   dJointAttach(rows, first_body(j).ode, second ? second->ode : nullptr);
   if (turns) {
     dJointSetAMotorMode(rows, dAMotorUser);
     dJointSetAMotorNumAxes(rows, 3);
-    for (int i = 0; i < 3; ++i) dJointSetAMotorAxis(rows, i, 1, axis.x, axis.y, axis.z);
   } else {
     dJointSetLMotorNumAxes(rows, 3);
-    for (int i = 0; i < 3; ++i) dJointSetLMotorAxis(rows, i, 1, axis.x, axis.y, axis.z);
   }
+  aim_rows(rows, turns, axis, body);
   return rows;
 }
 
@@ -102,13 +133,27 @@ void make_joint(dWorldID world, Joint& j) {
   j.limited = j.decl->type != model::JointType::continuous && (j.decl->lower > -1e15 || j.decl->upper < 1e15);
   Body* const second = second_body(j);
   const Vec3 axis = reversed(j) ? -axis_W(j) : axis_W(j);
-  j.main = turns ? dJointCreateHinge(world, nullptr) : dJointCreateSlider(world, nullptr);
+  const int body = j.is(model::JointType::universal) ? carrier(j, false) : 1;
+  switch (j.decl->type) {
+    case model::JointType::universal: j.main = dJointCreateUniversal(world, nullptr); break;
+    case model::JointType::screw: j.main = dJointCreatePiston(world, nullptr); break;
+    case model::JointType::prismatic: j.main = dJointCreateSlider(world, nullptr); break;
+    default: j.main = dJointCreateHinge(world, nullptr);
+  }
   dJointAttach(j.main, first_body(j).ode, second ? second->ode : nullptr);
   j.feedback = std::make_unique<dJointFeedback>();
-  if (!turns) j.motor = make_rows(world, j, axis, false);
-  if ((turns && j.limited) || has_spring(j) || has_friction(j)) j.extra = make_rows(world, j, axis, turns);
+  if (!j.is_hinge()) j.motor = make_rows(world, j, axis, turns, body);
+  if ((turns && j.limited) || has_spring(j) || has_friction(j))
+    j.extra = make_rows(world, j, axis, turns, body);
   if (has_friction(j)) set_row_motor(j.extra, turns, friction_row, 0, j.decl->friction, -1);
   if (j.limited) set_limits(turns ? j.extra : j.main, turns, j.decl->lower, j.decl->upper);
+  if (j.is(model::JointType::universal)) {
+    const model::SecondAxis& other = *j.decl->second;
+    j.second = make_rows(world, j, axis, true);
+    if (other.lower > -1e15 || other.upper < 1e15) set_limits(j.second, true, other.lower, other.upper);
+    if (other.damping > 0) set_row_motor(j.second, true, spring_row, 0, dInfinity, 1 / other.damping);
+    if (other.friction > 0) set_row_motor(j.second, true, friction_row, 0, other.friction, -1);
+  }
   anchor_joint(j, {});
 }
 
@@ -117,7 +162,22 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
   const Vec3 p = j.child ? frame_on_child(j, X_WM).p : frame_on_parent(j, X_WM).p;
   if (j.decl->type == model::JointType::ball) return dJointSetBallAnchor(j.main, p.x, p.y, p.z);
   const Vec3 a = reversed(j) ? -axis_W(j) : axis_W(j);
-  if (j.turns()) {
+  if (j.is(model::JointType::universal)) {
+    // ODE's first axis is that of its first body.
+    const Vec3 first = rotate(frame_on_parent(j, X_WM).q, j.decl->axis_J),
+               second = rotate(frame_on_child(j, X_WM).q, second_axis_J(j));
+    const Vec3 one = reversed(j) ? first : second, two = reversed(j) ? second : first;
+    dJointSetUniversalAnchor(j.main, p.x, p.y, p.z);
+    dJointSetUniversalAxis1(j.main, one.x, one.y, one.z);
+    dJointSetUniversalAxis2(j.main, two.x, two.y, two.z);
+    const double sign = reversed(j) ? -1 : 1;
+    for (const dJointID rows : {j.motor, j.extra})
+      if (rows) aim_rows(rows, true, sign * first, carrier(j, false));
+    aim_rows(j.second, true, sign * second, carrier(j, true));
+  } else if (j.is(model::JointType::screw)) {
+    dJointSetPistonAnchor(j.main, p.x, p.y, p.z);
+    dJointSetPistonAxis(j.main, a.x, a.y, a.z);
+  } else if (j.turns()) {
     dJointSetHingeAnchor(j.main, p.x, p.y, p.z);
     dJointSetHingeAxis(j.main, a.x, a.y, a.z);
   } else {
@@ -125,31 +185,77 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
   }
 }
 
-void destroy_joint(Joint& j) {
-  for (const dJointID ode : {j.main, j.motor, j.extra})
-    if (ode) dJointDestroy(ode);
-  j.main = j.motor = j.extra = nullptr;
+/// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's normal force,
+/// is an equation between velocities at a point: with the point at radius c = pitch / (2 pi) from the axis and the
+/// direction half along the axis, half round it, it says slide - c turn = 0.
+void couple_thread(dWorldID world, dJointGroupID group, const Joint& j, double erp, double h) {
+  const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
+  const Vec3 axis = axis_W(j), radial = rotate(on_parent.q, second_to(j.decl->axis_J));
+  const double per_rad = j.decl->thread_pitch_m / math::tau;
+  const double radius = std::abs(per_rad) > 1e-9 ? std::abs(per_rad) : 1;
+  const double slope = -per_rad / radius, length = std::sqrt(1 + slope * slope);
+  const Vec3 direction = (axis + slope * cross(axis, radial)) / length, at = on_parent.p + radius * radial;
+  const double error = dot(axis, on_child.p - on_parent.p) - per_rad * j.position;
+  const double wanted = -erp * error / h / length;
+  dContact contact{};
+  contact.surface.mode = dContactMu2 | dContactFDir1 | dContactMotion1 | dContactSoftCFM;
+  contact.surface.mu = dInfinity;
+  contact.surface.mu2 = 0;
+  contact.surface.motion1 = reversed(j) ? -wanted : wanted;
+  contact.surface.soft_cfm = 1e9;
+  for (std::size_t k = 0; k < 3; ++k) {
+    contact.geom.pos[k] = at[k];
+    contact.geom.normal[k] = radial[k];
+    contact.fdir1[k] = direction[k];
+  }
+  Body* const second = second_body(j);
+  dJointAttach(dJointCreateContact(world, group, &contact), first_body(j).ode,
+               second ? second->ode : nullptr);
 }
+
+void destroy_joint(Joint& j) {
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second})
+    if (ode) dJointDestroy(ode);
+  j.main = j.motor = j.extra = j.second = nullptr;
+}
+
+namespace {
+
+bool is_driven(const Joint& j) { return j.leader || j.target.mode == JointTarget::Mode::velocity; }
+
+void run_motor(Joint& j, double velocity, double max_effort) {
+  const dJointID motor = j.is_hinge() ? j.main : j.motor;
+  const auto set = j.is_hinge() ? dJointSetHingeParam
+                   : j.turns()  ? dJointSetAMotorParam
+                                : dJointSetLMotorParam;
+  set(motor, dParamVel, std::clamp(velocity, -j.decl->max_velocity, j.decl->max_velocity));
+  set(motor, dParamFMax, max_effort);
+  dJointSetFeedback(motor, is_driven(j) ? j.feedback.get() : nullptr);
+}
+
+}  // namespace
 
 void set_motor(Joint& j) {
-  if (!j.main || j.decl->type == model::JointType::ball) return;
-  const bool driven = j.target.mode == JointTarget::Mode::velocity;
-  const dJointID motor = j.turns() ? j.main : j.motor;
-  const auto set = j.turns() ? dJointSetHingeParam : dJointSetLMotorParam;
-  set(motor, dParamVel,
-      driven ? std::clamp(j.target.velocity, -j.decl->max_velocity, j.decl->max_velocity) : 0);
-  set(motor, dParamFMax, driven ? std::clamp(j.target.max_effort, 0.0, j.decl->max_effort) : 0);
-  dJointSetFeedback(motor, driven ? j.feedback.get() : nullptr);
+  if (!j.main || j.is(model::JointType::ball) || j.leader) return;
+  run_motor(j, is_driven(j) ? j.target.velocity : 0,
+            is_driven(j) ? std::clamp(j.target.max_effort, 0.0, j.decl->max_effort) : 0);
 }
 
-void prepare_joint(Joint& j, double h) {
+void prepare_joint(Joint& j, double erp, double h) {
   if (!j.main || j.decl->type == model::JointType::ball) return;
   const bool turns = j.turns();
   if (turns && j.limited) dJointSetAMotorAngle(j.extra, limit_row, j.position);
+  if (j.second) dJointSetAMotorAngle(j.second, limit_row, second_position(j));
   if (has_spring(j)) {
     const double k = j.decl->spring_stiffness, stiffness = j.decl->damping + h * k;
     set_row_motor(j.extra, turns, spring_row, -k * (j.position - j.decl->spring_reference) / stiffness,
                   dInfinity, 1 / stiffness);
+  }
+  if (j.leader) {
+    const model::Mimic& mimic = *j.decl->mimic;
+    const double wanted = mimic.multiplier * (j.leader->position - mimic.reference) + mimic.offset;
+    const double effort = j.decl->max_effort < 1e15 ? j.decl->max_effort : dInfinity;
+    return run_motor(j, mimic.multiplier * j.leader->velocity + erp * (wanted - j.position) / h, effort);
   }
   if (j.target.mode != JointTarget::Mode::effort) return;
   j.effort = std::clamp(j.target.effort, -j.decl->max_effort, j.decl->max_effort);
@@ -171,7 +277,7 @@ void prepare_joint(Joint& j, double h) {
 
 void measure_effort(Joint& j) {
   if (j.target.mode == JointTarget::Mode::free) j.effort = 0;
-  if (j.target.mode != JointTarget::Mode::velocity || !j.main || !j.feedback) return;
+  if (!is_driven(j) || !j.main || !j.feedback) return;
   const dJointFeedback& f = *j.feedback;
   const Vec3 axis = reversed(j) ? -axis_W(j) : axis_W(j);
   const Vec3 force{f.f1[0], f.f1[1], f.f1[2]};
@@ -205,13 +311,20 @@ void measure_velocity(Joint& j, const Pose& X_WM) {
 void measure_position(Joint& j, double h, const Pose& X_WM) {
   if (!j.main || j.decl->type == model::JointType::ball) return;
   const Pose on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
-  j.velocity = velocity_about(j, rotate(j.child ? on_child.q : on_parent.q, j.decl->axis_J), on_child.p);
+  j.velocity = velocity_about(j, axis_W(j), on_child.p);
   if (j.slides()) {
     j.position = dot(rotate(on_parent.q, j.decl->axis_J), on_child.p - on_parent.p);
     return;
   }
   const Quat turn = conjugate(on_parent.q) * on_child.q;
-  const double angle = 2 * math::atan2(dot({turn.x, turn.y, turn.z}, j.decl->axis_J), turn.w);
+  double angle = 0;
+  if (j.is(model::JointType::universal)) {
+    // The second axis turns about the first.
+    const Vec3 second = second_axis_J(j), turned = rotate(turn, second);
+    angle = math::atan2(dot(turned, cross(j.decl->axis_J, second)), dot(turned, second));
+  } else {
+    angle = 2 * math::atan2(dot({turn.x, turn.y, turn.z}, j.decl->axis_J), turn.w);
+  }
   // The measured angle is exact but wrapped; the velocity says near which turn it must lie.
   const double expected = j.position + h * j.velocity;
   const double turns = std::floor((expected - angle) / math::tau + 0.5);

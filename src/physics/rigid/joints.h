@@ -1,16 +1,24 @@
 #pragma once
 /// Joints on ODE: what each kind of joint is made of, and its position, velocity and effort.
 ///
-/// A revolute or continuous joint is a hinge with its motor; a prismatic one a slider with a linear motor beside it.
+/// A revolute or continuous joint is a hinge with its motor; a prismatic one a slider with a linear motor beside it; a
+/// universal one ODE's, a screw a piston (which slides and turns about one axis), both with angular motors beside.
 /// Limits, spring with damping, and friction are rows of their own (`extra`), made only where the declaration asks for
 /// them, so that a motor at a limit, or against friction, gets its exact effort.
 ///
 ///   limit     unwrapped position, corrected by ERP: overshoot of at most one sub-step's motion
 ///   spring    implicit: (d + h k) v + effort = -k (x - x0), stable for any stiffness and sub-step
 ///   friction  Coulomb: velocity 0 with at most `friction`
+///   thread    slide = pitch / (2 pi) * turn, as one two-sided contact between the flanks of the thread: the two
+///             bodies do not move against each other along the direction that lies on a flank's normal
+///   mimic     a velocity motor with at most the joint's max_effort: the leader's velocity times the multiplier, and
+///             ERP of the position error per sub-step
 ///
-/// Limits   ball joints have damping and friction about each axis of J, no limits, motor or position. max_velocity
-///          bounds velocity targets only.
+/// Universal  position and velocity are those about the first axis, which the parent carries; the second, which the
+///            child carries, is passive. Its limits act within half a turn to either side.
+/// Screw      position is the angle [rad], effort the torque about the axis.
+/// Limits     ball joints have damping and friction about each axis of J, no limits, motor or position. max_velocity
+///            bounds velocity targets only. A leader does not feel its followers; targets of a follower are ignored.
 #include "physics/rigid/parts.h"
 
 namespace sandlot::rigid {
@@ -22,10 +30,13 @@ void make_joint(dWorldID world, Joint& joint);
 void anchor_joint(Joint& joint, const Pose& X_WM);
 void destroy_joint(Joint& joint);
 
+/// The row of a screw's thread for this sub-step, in a group that is emptied after it.
+void couple_thread(dWorldID world, dJointGroupID group, const Joint& joint, double erp, double h_s);
+
 /// Tells ODE about joint.target.
 void set_motor(Joint& joint);
-/// What depends on the state and the sub-step: limits, spring, effort.
-void prepare_joint(Joint& joint, double h_s);
+/// What depends on the state and the sub-step: limits, spring, effort, followers.
+void prepare_joint(Joint& joint, double erp, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);
 /// After the bodies moved: velocity, then position from the old one and `h_s` of that velocity.

@@ -69,7 +69,7 @@ void add_masses(const model::Model& model, Lump& lump) {
 
 }  // namespace
 
-Result<Lumps> lump_links(const model::Model& model) {
+Result<Lumps> lump_links(const model::Model& model, bool held) {
   // Union-find over links; index n stands for the world. The smallest link is the root, the world above all.
   const auto n = static_cast<std::uint32_t>(model.links.size());
   std::vector<std::uint32_t> parent(n + 1);
@@ -86,7 +86,7 @@ Result<Lumps> lump_links(const model::Model& model) {
   for (const model::Joint& joint : model.joints)
     if (joint.type == model::JointType::fixed)
       join(joint.parent == model::world_link ? n : joint.parent, joint.child);
-  if (model.is_static)
+  if (model.is_static || held)
     for (std::uint32_t l = 0; l < n; ++l) join(n, l);
 
   Lumps result;

@@ -42,6 +42,7 @@ struct Lumps {
 };
 
 /// Errors   a movable lump whose mass or inertia is not positive, with the place of its first link.
-Result<Lumps> lump_links(const model::Model& model);
+/// @param held  all links stand as if the model were static
+Result<Lumps> lump_links(const model::Model& model, bool held = false);
 
 }  // namespace sandlot::rigid

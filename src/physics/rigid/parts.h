@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -69,12 +70,14 @@ struct Link {
 
 struct Joint {
   const model::Joint* decl = nullptr;
-  Body* child = nullptr;     ///< null: fixed to the world
-  Body* parent = nullptr;    ///< likewise
-  Pose X_child, X_parent;    ///< of J in the two bodies (in M where null) in the declared pose
-  dJointID main = nullptr;   ///< hinge, slider or ball; null: nothing moves (fixed, or both sides are)
-  dJointID motor = nullptr;  ///< of a slider (a hinge has its own); friction of a ball
-  dJointID extra = nullptr;  ///< rows for limit, spring with damping, and friction
+  Body* child = nullptr;          ///< null: fixed to the world
+  Body* parent = nullptr;         ///< likewise
+  Pose X_child, X_parent;         ///< of J in the two bodies (in M where null) in the declared pose
+  dJointID main = nullptr;        ///< hinge, slider ...; null: nothing moves (fixed, or both sides are)
+  dJointID motor = nullptr;       ///< of all but a hinge, which has its own; friction of a ball
+  dJointID extra = nullptr;       ///< rows for limit, spring with damping, and friction
+  dJointID second = nullptr;      ///< the same rows about the second axis of a universal joint
+  const Joint* leader = nullptr;  ///< whom it follows (mimic)
   std::unique_ptr<dJointFeedback> feedback;
   bool limited = false;
 
@@ -84,10 +87,11 @@ struct Joint {
   JointTarget target;
   double effort = 0;  ///< that the target put in
 
-  bool turns() const {
-    return decl->type == model::JointType::revolute || decl->type == model::JointType::continuous;
-  }
-  bool slides() const { return decl->type == model::JointType::prismatic; }
+  bool is(model::JointType type) const { return decl->type == type; }
+  bool is_hinge() const { return is(model::JointType::revolute) || is(model::JointType::continuous); }
+  /// Its position is an angle.
+  bool turns() const { return is_hinge() || is(model::JointType::universal) || is(model::JointType::screw); }
+  bool slides() const { return is(model::JointType::prismatic); }
 };
 
 /// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed to.
@@ -107,9 +111,16 @@ struct Instance {
   std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide
   double mass_kg = 0;
   bool anchored = false;  ///< some joint holds on to the world
+  bool guided = false;    ///< moves along a path: no bodies, but velocity
   // State
+  Velocity V_WM;  ///< of a guided one, in the last step or the next
   DriveTarget drive{.active = false};
   std::uint32_t drive_link = 0;
+
+  std::optional<Pose> destination;  ///< of a guided one, after the next step
+
+  bool is_moving() const { return V_WM.linear != Vec3{} || V_WM.angular != Vec3{}; }
+  Vec3 velocity_at(Vec3 point_W) const { return V_WM.linear + cross(V_WM.angular, point_W - X_WM.p); }
 
   // Scratch of one sub-step.
   std::uint32_t contact_points = 0, contacts_seen = 0;

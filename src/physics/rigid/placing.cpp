@@ -29,6 +29,7 @@ void RigidEngine::show(const Instance& instance) {
     BodyState& state = states_[instance.link_ids[l].index];
     if (!link.body) {
       state = {instance.X_WM * link.X_BL, {}};
+      if (instance.guided) state.V_WB = {instance.velocity_at(state.X_WB.p), instance.V_WM.angular};
       continue;
     }
     const Body& b = *link.body;
@@ -93,6 +94,8 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   const Pose move = Pose{X_WM.p, normalised(X_WM.q)} * inverse(pose(id));
   std::vector<Pose> moved;
   for (const Body& body : instance.bodies) moved.push_back(move * body.pose());
+  instance.V_WM = {};
+  instance.destination.reset();
   const Pose X_WM_new = instance.bodies.empty() ? X_WM : move * instance.X_WM;
   place(instance, {X_WM_new.p, normalised(X_WM_new.q)});
   for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -106,6 +109,14 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   wake_instance(instance);
   wake_neighbours(instance);
   finite_ = finite_ && is_finite(X_WM);
+}
+
+void RigidEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
+  Instance& instance = alive(id);
+  SL_CHECK_MSG(instance.guided, "guide() needs an instance with a motion");
+  instance.destination = Pose{X_WM.p, normalised(X_WM.q)};
+  instance.V_WM = V_WM;
+  finite_ = finite_ && is_finite(X_WM) && is_finite(V_WM.linear) && is_finite(V_WM.angular);
 }
 
 void RigidEngine::wake(Body& body) {

@@ -39,7 +39,10 @@ std::vector<Sample> sample(const TriangleMesh& mesh) {
     p.at = at;
     p.normal += normal;
   };
-  for (const auto& t : mesh.triangles) {
+  // One point per cell is kept in the end: of a very fine mesh a part of the triangles says enough.
+  const std::size_t stride = 1 + mesh.triangles.size() / 200'000;
+  for (std::size_t at_triangle = 0; at_triangle < mesh.triangles.size(); at_triangle += stride) {
+    const auto& t = mesh.triangles[at_triangle];
     const Vec3 corner[] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
     const Vec3 across = cross(corner[1] - corner[0], corner[2] - corner[0]);
     if (!(norm(across) > 0)) continue;

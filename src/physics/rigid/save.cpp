@@ -42,6 +42,10 @@ void RigidEngine::save(InstanceId id, ByteWriter& w) const {
     write(w, instance.X_WM.p);
     write(w, instance.X_WM.q);
   }
+  if (instance.guided) {
+    write(w, instance.V_WM.linear);
+    write(w, instance.V_WM.angular);
+  }
   write(w, static_cast<std::uint8_t>(instance.drive.active));
   if (instance.drive.active) {
     write(w, instance.drive_link);
@@ -82,6 +86,11 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     read(r, X_WM.q);
     if (!r.ok() || !in_range(X_WM.p) || !is_finite(X_WM)) return false;
     place(instance, X_WM);
+  }
+  if (instance.guided) {
+    read(r, instance.V_WM.linear);
+    read(r, instance.V_WM.angular);
+    if (!r.ok() || !in_range(instance.V_WM.linear) || !in_range(instance.V_WM.angular)) return false;
   }
   std::uint8_t driven = 0;
   read(r, driven);

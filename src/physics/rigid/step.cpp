@@ -81,8 +81,14 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
 
 void RigidEngine::push_forces(double h) {
   for (Instance* instance : order_) {
+    if (instance->guided && !instance->destination) instance->V_WM = {};
     if (instance->bodies.empty()) continue;
-    for (Joint& joint : instance->joints) prepare_joint(joint, h);
+    for (Joint& joint : instance->joints) {
+      prepare_joint(joint, spec_.erp, h);
+      const Body* const mover = joint.child ? joint.child : joint.parent;
+      if (joint.main && joint.is(model::JointType::screw) && mover->awake)
+        couple_thread(world_, contact_joints_, joint, spec_.erp, h);
+    }
     if (instance->drive.active) push_drive(*instance, gravity_, h);
     for (Body& b : instance->bodies) {
       if (!b.awake) continue;
@@ -205,6 +211,12 @@ void RigidEngine::solve_again(double h) {
 
 void RigidEngine::advance(double h) {
   for (Instance* instance : order_) {
+    if (instance->destination) {
+      instance->X_WM = *instance->destination;
+      instance->destination.reset();
+      place_static_geoms(*instance);
+    }
+    if (instance->guided) show(*instance);
     if (instance->bodies.empty()) continue;
     bool any_awake = false;
     for (const Body& b : instance->bodies) any_awake = any_awake || b.awake;
