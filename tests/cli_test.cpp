@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "command.h"
 
 namespace sandlot::test {
@@ -11,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Cli, every_verb_explains_itself_with_an_example) {
-  for (const char* verb : {"run", "demo", "check", "info", "list", "bench", "doctor"}) {
+  for (const char* verb : {"run", "demo", "check", "info", "convert", "list", "bench", "doctor"}) {
     const Printed help = sandlot(std::string(verb) + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.out, HasSubstr("Example: sandlot")) << verb;
@@ -121,10 +123,60 @@ TEST(Cli, info_prints_the_tree) {
   const Printed text = sandlot("info scenarios/indoor.yaml");
   EXPECT_EQ(text.exit_code, 0);
   for (const char* part :
-       {"robot rover", "joint left_wheel_joint", "device rover/laser", "sensor_msgs/msg/LaserScan"})
+       {"robot rover, 4.2 kg, at 1.6 4.65 0, model of models/rover/model.sdf:4", "joint  left_wheel_joint ",
+        "device  rover/laser ", "models/rover/model.sdf:152", "sensor_msgs/msg/LaserScan", "sphere r 0.05",
+        "controller  controller  wander", "1 robot, 7 objects, 43 static things; 9.", "on endless ground"})
     EXPECT_THAT(text.out, HasSubstr(part));
   const auto json = nlohmann::json::parse(sandlot("info --json scenarios/indoor.yaml").out);
   EXPECT_GT(json["instances"].size(), 10u);
+  const auto& rover = json["instances"].back();
+  EXPECT_EQ(rover["name"], "rover");
+  EXPECT_EQ(rover["role"], "robot");
+  EXPECT_EQ(rover["links"].size(), 3u);
+  EXPECT_EQ(rover["links"][1]["collisions"][0]["radius_m"], 0.05);
+  EXPECT_EQ(rover["joints"][0]["axis"], nlohmann::json({0.0, 1.0, 0.0}));
+  EXPECT_TRUE(rover["joints"][0]["lower"].is_null()) << "no limit";
+  EXPECT_EQ(rover["devices"][1]["rate_hz"], 10.0);
+  EXPECT_EQ(rover["devices"][1]["place"]["line"], 152);
+  EXPECT_EQ(json["warnings"].size(), 0u);
+}
+
+TEST(Cli, info_folds_what_is_alike_and_tells_what_was_mapped_and_what_was_not) {
+  const Scratch scratch;
+  std::string world = "<sdf version='1.9'><world name='w'>\n";
+  const auto add_box = [&](const std::string& name, const char* mu) {
+    world += "<model name='" + name +
+             "'><link name='l'><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz>"
+             "</inertia></inertial><collision name='c'><geometry><box><size>1 2 3</size></box></geometry>"
+             "<surface><friction><ode><mu>" +
+             mu + "</mu></ode></friction></surface></collision></link></model>\n";
+  };
+  for (int i = 1; i <= 500; ++i) add_box("box" + std::to_string(i), "1");
+  add_box("slippery", "0.1");
+  world +=
+      "<model name='my robot'><link name='l'><inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy>"
+      "<izz>0.1</izz></inertia></inertial>\n<sensor name='the scan' "
+      "type='gpu_lidar'><update_rate>10</update_rate>"
+      "<lidar><scan><horizontal><samples>5</samples><min_angle>-1</min_angle><max_angle>1</max_angle>"
+      "</horizontal></scan><range><min>0.1</min><max>5</max></range></lidar></sensor>\n"
+      "<sensor name='nose' type='smell'/></link></model>\n</world></sdf>\n";
+  const std::string file = scratch.write("many.sdf", world);
+  const Printed text = sandlot("info " + file);
+  EXPECT_EQ(text.exit_code, 0) << text.out;
+  EXPECT_THAT(text.out, HasSubstr("object  box1 .. box500 (500 alike)  2 kg  box 1 x 2 x 3\n"));
+  EXPECT_THAT(text.out, HasSubstr("object  slippery ")) << "its friction is another";
+  EXPECT_THAT(text.out, HasSubstr("robot my_robot (in the file: \"my robot\"), 1 kg"));
+  EXPECT_THAT(text.out, HasSubstr("device  my_robot/the_scan  laser_scanner  level ranges  10 Hz  on l  "
+                                  "from sensor:gpu_lidar \"the scan\" at " +
+                                  file + ":504"));
+  EXPECT_THAT(text.out, HasSubstr("/my_robot/the_scan/ranges"));
+  EXPECT_THAT(text.out, HasSubstr(file + ":505: 'sensor:smell' is not supported"));
+  EXPECT_LT(std::count(text.out.begin(), text.out.end(), '\n'), 25) << "500 boxes are one line";
+  const auto json = nlohmann::json::parse(sandlot("info --json " + file).out);
+  EXPECT_EQ(json["instances"].size(), 502u);
+  EXPECT_EQ(json["warnings"][0]["place"]["line"], 505);
+  EXPECT_EQ(json["instances"][501]["devices"][0]["mapped_from"][0], "sensor:gpu_lidar");
+  EXPECT_EQ(json["instances"][501]["original_name"], "my robot");
 }
 
 TEST(Cli, doctor_is_content) {

@@ -2,12 +2,14 @@
 /// The verbs of the `sandlot` command. Each takes parsed options and returns an exit code: 0 ok, 1 the run
 /// failed, 2 the input is wrong.
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
+#include "sim/simulation.h"
 
 namespace sandlot::app {
 
@@ -21,6 +23,7 @@ struct RunOptions {
   int threads = 1;
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first
+  bool skip_missing = false;       ///< of the files that the file names
   std::string summary_file;        ///< JSON
   std::string svg_file;
   std::string from_file;  ///< a snapshot to go on from
@@ -34,10 +37,19 @@ struct FileOptions {
   std::vector<std::string> files;
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first
+  bool skip_missing = false;       ///< of the files that the file names
   bool json = false;
+  bool strict = false;  ///< check: warnings fail too
 };
 int check(const FileOptions& options);
 int info(const FileOptions& options);
+
+struct ConvertOptions {
+  std::string in, out;
+  std::vector<std::string> paths;  ///< folders to search first
+  bool force = false;              ///< replace what is there
+};
+int convert(const ConvertOptions& options);
 
 struct ListOptions {
   std::string what;  ///< "" for everything
@@ -58,6 +70,10 @@ int doctor(bool json);
 
 /// The scenario that `sandlot demo NAME` runs; found beside the program or above it.
 Result<std::string> demo_file(const std::string& name);
+
+/// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
+Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
+                                          Diagnostics& diagnostics);
 
 /// Prints an error the way all verbs do and returns exit_bad_input.
 int complain(const Error& error);

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "app/commands.h"
+#include "sim/load.h"
 
 namespace sandlot::app {
 namespace {
@@ -18,6 +19,12 @@ std::atomic<bool> interrupt_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
 }  // namespace
+
+Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
+                                          Diagnostics& diagnostics) {
+  SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
+  return Simulation::create(std::move(setup), {}, diagnostics);
+}
 
 int complain(const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.text().c_str());

@@ -53,6 +53,8 @@ struct RunFlags {
                     "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
+    verb.add_flag("--skip-missing", options.skip_missing,
+                  "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
@@ -96,8 +98,9 @@ int main(int argc, char** argv) {
   int result = exit_ok;
 
   RunFlags run_flags;
-  CLI::App* const run_verb = app.add_subcommand("run", "Run a scenario (.yaml) or a world (.sdf)");
-  run_verb->add_option("file", run_flags.options.file, "Scenario or world");
+  CLI::App* const run_verb = app.add_subcommand("run",
+                                                "Run a scenario (.yaml), a world (.sdf) or a robot (.urdf)");
+  run_verb->add_option("file", run_flags.options.file, "Scenario, world or robot");
   run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
   run_verb->footer(
@@ -127,11 +130,13 @@ int main(int argc, char** argv) {
   FileOptions file_options;
   std::vector<std::string> file_sets;
   const auto add_file_verb = [&](const char* name, const char* help, const char* example,
-                                 int (*act)(const FileOptions&)) {
+                                 int (*act)(const FileOptions&)) -> CLI::App* {
     CLI::App* const verb = app.add_subcommand(name, help);
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
     verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
         ->allow_extra_args(false);
+    verb->add_flag("--skip-missing", file_options.skip_missing,
+                   "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
     verb->add_option("--path", file_options.paths,
                      "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);
@@ -142,11 +147,31 @@ int main(int argc, char** argv) {
         result = complain(status.error());
       else result = act(file_options);
     });
+    return verb;
   };
-  add_file_verb("check", "Find what is wrong in files, with line and remedy",
-                "Example: sandlot check scenarios/*.yaml", check);
+  CLI::App* const check_verb = add_file_verb(
+      "check", "Find what is wrong or suspicious in files, with line and remedy",
+      "Exit code 2 when a file is wrong, 0 when there are only warnings.\n"
+      "Example: sandlot check --strict scenarios/*.yaml",
+      check);
+  check_verb->add_flag("--strict", file_options.strict, "Warnings count as errors: exit code 2");
   add_file_verb("info", "Print the tree of a scenario or world: links, joints, devices, topics",
                 "Example: sandlot info scenarios/indoor.yaml", info);
+
+  ConvertOptions convert_options;
+  CLI::App* const convert_verb = app.add_subcommand(
+      "convert", "Turn URDF, SDF and scenarios into each other, by the extensions of the files");
+  convert_verb->add_option("in", convert_options.in, "What is there: .urdf, .sdf, .world or .yaml")
+      ->required();
+  convert_verb->add_option("out", convert_options.out, "What it becomes: .sdf, .world, .urdf or .yaml")
+      ->required();
+  convert_verb->add_flag("--force", convert_options.force, "Replace the file when it exists");
+  convert_verb
+      ->add_option("--path", convert_options.paths,
+                   "Folder to search for models and other files; may be given several times")
+      ->allow_extra_args(false);
+  convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
+  convert_verb->callback([&] { result = convert(convert_options); });
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(

@@ -34,9 +34,10 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
     if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
     return simulation;
   }
-  SL_ASSIGN(
-      model::Setup setup,
-      load(options.file, {options.overrides, options.seed, options.duration_s, options.paths}, diagnostics));
+  SL_ASSIGN(model::Setup setup,
+            load(options.file,
+                 {options.overrides, options.seed, options.duration_s, options.paths, options.skip_missing},
+                 diagnostics));
   if (!setup.stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);

@@ -13,6 +13,7 @@ SANDLOT_DEVICES(SL_DECLARE)
 #undef SL_DECLARE
 
 Result<std::uint32_t> DeviceBuild::joint_index(std::string_view name, const char* spec_key) const {
+  if (const auto index = instance.model->find_joint(decl.scope + std::string(name))) return *index;
   if (const auto index = instance.model->find_joint(name)) return *index;
   std::vector<std::string> names;
   for (const model::Joint& joint : instance.model->joints) names.push_back(joint.name);

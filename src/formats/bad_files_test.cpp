@@ -77,5 +77,11 @@ TEST(BadFiles, Worlds) {
     check(path, [](const std::string& p, Diagnostics& d) { return read_sdf(p, d); });
 }
 
+TEST(BadFiles, Robots) {
+  ASSERT_GE(files(".urdf").size(), 20u);
+  for (const std::string& path : files(".urdf"))
+    check(path, [](const std::string& p, Diagnostics& d) { return read_sdf(p, d); });
+}
+
 }  // namespace
 }  // namespace sandlot::formats

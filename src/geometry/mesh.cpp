@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <type_traits>
 
 #include "base/math.h"
 #include "geometry/height_grid.h"
+#include "geometry/triangulate.h"
 
 namespace sandlot {
 namespace {
@@ -110,6 +112,63 @@ struct Tessellate {
   TriangleMesh operator()(const Plane&) const { return {}; }
 };
 
+/// For each vertex the first one at its place: files repeat a vertex for each of its normals.
+std::vector<std::uint32_t> places_of(const std::vector<Vec3>& vertices) {
+  const auto key = [&](std::uint32_t i) {
+    return std::array{vertices[i].x + 0.0, vertices[i].y + 0.0, vertices[i].z + 0.0};  // -0 becomes 0
+  };
+  std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? place[order[i - 1]] : order[i];
+  return place;
+}
+
+/// Without points that follow an equal one; the last and the first are neighbours.
+Loop2 without_repeats(const Loop2& loop) {
+  Loop2 out;
+  for (const auto& p : loop)
+    if (out.empty() || out.back() != p) out.push_back(p);
+  while (out.size() > 1 && out.front() == out.back()) out.pop_back();
+  return out;
+}
+
+/// Copies the triangles `chosen` (in order) and what belongs to them.
+TriangleMesh picked(const TriangleMesh& mesh, const std::vector<std::uint32_t>& chosen) {
+  TriangleMesh out;
+  out.source = mesh.source;
+  std::map<std::uint32_t, std::uint32_t> number;
+  std::size_t part = 0;
+  const MeshPart* open = nullptr;
+  for (const std::uint32_t t : chosen) {
+    while (part < mesh.parts.size() && t >= mesh.parts[part].first_triangle + mesh.parts[part].triangles)
+      ++part;
+    if (part < mesh.parts.size()) {
+      if (open != &mesh.parts[part]) {
+        open = &mesh.parts[part];
+        out.parts.push_back(*open);
+        out.parts.back().first_triangle = static_cast<std::uint32_t>(out.triangles.size());
+        out.parts.back().triangles = 0;
+      }
+      ++out.parts.back().triangles;
+    }
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh.triangles[t][i];
+      const auto [found, is_new] = number.try_emplace(v, static_cast<std::uint32_t>(out.vertices.size()));
+      if (is_new) {
+        out.vertices.push_back(mesh.vertices[v]);
+        if (!mesh.texture_uv.empty()) out.texture_uv.push_back(mesh.texture_uv[v]);
+      }
+      corners[i] = found->second;
+    }
+    out.triangles.push_back(corners);
+  }
+  return out;
+}
+
 }  // namespace
 
 MassProperties mass_properties(const TriangleMesh& mesh) {
@@ -160,12 +219,7 @@ MassProperties mass_properties(const Shape& shape) {
 }
 
 bool is_closed(const TriangleMesh& mesh) {
-  // Files repeat a vertex for each of its normals: equal places count as one.
-  std::map<std::array<double, 3>, std::uint32_t> places;
-  std::vector<std::uint32_t> place;
-  for (const Vec3& v : mesh.vertices)
-    place.push_back(
-        places.try_emplace({v.x, v.y, v.z}, static_cast<std::uint32_t>(places.size())).first->second);
+  const std::vector<std::uint32_t> place = places_of(mesh.vertices);
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) edges.push_back({place[t[i]], place[t[(i + 1) % 3]]});
@@ -174,6 +228,75 @@ bool is_closed(const TriangleMesh& mesh) {
   return !edges.empty() && std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
     return e[0] != e[1] && std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
   });
+}
+
+std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
+  // Union of sets, the least vertex of each its name.
+  std::vector<std::uint32_t> parent = places_of(mesh.vertices);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles)
+    for (std::size_t i = 1; i < 3; ++i) {
+      const std::uint32_t a = root(t[0]), b = root(t[i]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  struct Piece {
+    std::vector<std::uint32_t> triangles;
+    double area = 0;
+  };
+  std::map<std::uint32_t, std::size_t> number;
+  std::vector<Piece> pieces;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto [found, is_new] = number.try_emplace(root(a), pieces.size());
+    if (is_new) pieces.emplace_back();
+    Piece& piece = pieces[found->second];
+    piece.triangles.push_back(t);
+    piece.area += norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.area > b.area; });
+  std::vector<TriangleMesh> out;
+  for (const Piece& piece : pieces) out.push_back(picked(mesh, piece.triangles));
+  return out;
+}
+
+TriangleMesh extrude(const std::vector<std::vector<std::array<double, 2>>>& loops_m, double height_m) {
+  TriangleMesh mesh;
+  std::vector<Loop2> loops;
+  for (const Loop2& loop : loops_m) {
+    loops.push_back(without_repeats(loop));
+    for (const auto& [x, y] : loop)
+      if (!std::isfinite(x) || !std::isfinite(y)) return mesh;
+    // The outline counter-clockwise, holes clockwise: then all walls face away from the solid.
+    if ((twice_area(loops.back()) < 0) == (loops.size() == 1))
+      std::reverse(loops.back().begin(), loops.back().end());
+  }
+  if (loops.empty() || !(height_m > 0) || !std::isfinite(height_m) || !is_simple(loops)) return mesh;
+  const auto flat = triangulate(loops);
+  if (flat.empty()) return mesh;
+  for (const Loop2& loop : loops)
+    for (const auto& [x, y] : loop) mesh.vertices.push_back({x, y, 0});
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (std::uint32_t i = 0; i < n; ++i)
+    mesh.vertices.push_back({mesh.vertices[i].x, mesh.vertices[i].y, height_m});
+  for (const auto& [a, b, c] : flat) {
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({a + n, b + n, c + n});
+  }
+  std::uint32_t first = 0;
+  for (const Loop2& loop : loops) {
+    const auto count = static_cast<std::uint32_t>(loop.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t a = first + i, b = first + (i + 1) % count;
+      mesh.triangles.push_back({a, b, b + n});
+      mesh.triangles.push_back({a, b + n, a + n});
+    }
+    first += count;
+  }
+  return mesh;
 }
 
 TriangleMesh tessellate(const Shape& shape, int segments) {

@@ -25,7 +25,7 @@ struct MeshPart {
 struct TriangleMesh {
   std::vector<Vec3> vertices;                           ///< [m] in the shape's frame, scale applied
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
-  std::vector<std::array<float, 2>> texture_uv;         ///< one per vertex, or none at all
+  std::vector<std::array<float, 2>> texture_uv;         ///< one per vertex, or none at all; v runs upwards
   std::vector<MeshPart> parts;                          ///< cover all triangles in order; none: one look
   std::string source;                                   ///< file it came from, for messages; "" for made ones
 };
@@ -49,7 +49,8 @@ bool is_closed(const TriangleMesh& mesh);
 /// Deterministic; O(n log n) on average.
 TriangleMesh convex_hull(const std::vector<Vec3>& points);
 
-/// The pieces of a mesh that hang together by shared vertices, each as a mesh of its own, largest first.
+/// The pieces of a mesh that hang together by shared vertices (vertices at equal places count as one), each as a mesh of
+/// its own, the one of largest surface first.
 std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh);
 
 /// A bounded shape as triangles: exact for boxes, inscribed for round ones. @pre not a Plane
@@ -57,7 +58,8 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh);
 TriangleMesh tessellate(const Shape& shape, int segments = 32);
 
 /// A solid from a polygon in xy, extruded from z = 0 to `height_m`; the way SDF's <polyline> says it. Further loops are
-/// holes. Empty when a loop crosses itself or has no area.
+/// holes. Empty when loops touch or cross, have no area or more than 4096 corners, when a hole lies outside, and when
+/// the height is not positive.
 TriangleMesh extrude(const std::vector<std::vector<std::array<double, 2>>>& loops_m, double height_m);
 
 }  // namespace sandlot

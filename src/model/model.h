@@ -139,6 +139,8 @@ struct DeviceDecl {
   std::string name;
   std::string kind;
   std::vector<std::string> sdf_types;
+  std::string
+      scope;  ///< of a part of a composed model, such as "arm::": names in `config` are looked up there first
   std::uint32_t link = 0;
   Pose X_LS;
   Node config;  ///< keys of the kind's spec, or the SDF element's children when `kind` is empty
@@ -204,6 +206,7 @@ struct Setup {
   std::string engine = "rigid";  ///< "rigid" or "planar"
   Node physics;                  ///< further keys of `physics:`, read by the engine's spec
   Vec3 gravity{0, 0, -9.81};     ///< [m/s^2]
+  Place gravity_place;           ///< where a file gives it; nowhere when none does
   Time step = Time::from_s(0.01);
   int substeps = 1;          ///< physics steps per tick
   int control_interval = 1;  ///< ticks between control steps

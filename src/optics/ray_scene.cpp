@@ -8,10 +8,13 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <unordered_map>
+#include <utility>
 
 #include "base/check.h"
 #include "optics/embree.h"
 #include "optics/solid.h"
+#include "optics/triangles.h"
 
 namespace sandlot {
 namespace {
@@ -19,6 +22,7 @@ namespace {
 using lanes::F;
 using lanes::I;
 using optics::Solid;
+using optics::TriangleTree;
 
 /// What the callback needs beside the packet: Embree hands the context through to it.
 struct Query : embree::QueryContext {
@@ -60,6 +64,7 @@ struct Layer {
   };
   std::vector<Placement> placements;
   std::vector<Solid> solids;
+  std::vector<const TriangleTree*> trees;  ///< of each solid: null but for those made of triangles
   float margin_m = 0;
   RTCGeometry geometry = nullptr;
   RTCScene scene = nullptr;
@@ -69,9 +74,11 @@ struct Layer {
   Layer& operator=(const Layer&) = delete;
   ~Layer() { clear(); }
 
-  void add(const SceneShape& shape) {
-    placements.push_back({shape.group, shape.X_GC});
-    solids.push_back(optics::make_solid(shape.shape, shape.body));
+  void add(const SceneShape& shape, const TriangleTree* tree) {
+    placements.push_back({shape.group, tree ? shape.X_GC * Pose{tree->centre_m(), {}} : shape.X_GC});
+    solids.push_back(tree ? optics::make_triangles(tree->half_size_m(), shape.body)
+                          : optics::make_solid(shape.shape, shape.body));
+    trees.push_back(tree);
   }
   void clear() {
     if (scene) rtcReleaseScene(scene);
@@ -80,6 +87,7 @@ struct Layer {
     geometry = nullptr;
     placements.clear();
     solids.clear();
+    trees.clear();
   }
   /// Makes the (still empty) tree.
   void attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality) {
@@ -129,8 +137,18 @@ void Layer::bounds(const RTCBoundsFunctionArguments* arguments) {
   out.upper_z = static_cast<float>(box.upper[2] + margin);
 }
 
+/// One float beyond `far`, so that of two surfaces at equal distances both are seen and the rule for ties decides.
+F distance_to(const TriangleTree& tree, const Solid& solid, const double* origin, const optics::Rays8& rays,
+              F far, I valid) {
+  alignas(32) int lanes_in[lanes::width];
+  lanes::store(lanes_in, valid);
+  return tree.distance_to(optics::to_local(solid, origin, rays), rays.near,
+                          lanes::choose((far > 0) & (far < largest), F(I(far) + 1), far), lanes_in);
+}
+
 void Layer::intersect(const RTCIntersectFunctionNArguments* arguments) {
-  const auto& solid = static_cast<const Layer*>(arguments->geometryUserPtr)->solids[arguments->primID];
+  const auto& layer = *static_cast<const Layer*>(arguments->geometryUserPtr);
+  const Solid& solid = layer.solids[arguments->primID];
   const auto& query = *static_cast<const Query*>(arguments->context);
   if (solid.body == query.ignore_body && solid.body != no_body) return;
   const unsigned n = arguments->N;
@@ -141,8 +159,10 @@ void Layer::intersect(const RTCIntersectFunctionNArguments* arguments) {
                              lanes::load<F>(at(dir_field + 2), count),
                              lanes::load<F>(at(tnear_field), count)};
     const I valid = lanes::load<I>(arguments->valid + first, count);
-    const F t = optics::distance_to(solid, query.origin, rays);
     F tfar = lanes::load<F>(at(tfar_field), count);
+    const F t = solid.type == Solid::Type::triangles
+                    ? distance_to(*layer.trees[arguments->primID], solid, query.origin, rays, tfar, valid)
+                    : optics::distance_to(solid, query.origin, rays);
     I bodies = lanes::load<I>(at(body_field), count), found = lanes::load<I>(at(found_field), count);
     keep_nearest(valid, t, rays.near, solid.body, tfar, bodies, found);
     lanes::store(at(tfar_field), tfar, count);
@@ -208,6 +228,8 @@ struct RayScene::Impl {
   const char* isa = choose_isa();
   RTCDevice device = nullptr;
   Layer fixed, moving;
+  /// By triangles_of(); looked up only, so its order does not matter.
+  std::unordered_map<const void*, std::unique_ptr<TriangleTree>> trees;
   std::vector<WorldPlane> planes;
   std::uint32_t groups = 0;  ///< that a frame must have
   std::uint64_t revision = 0;
@@ -219,7 +241,23 @@ struct RayScene::Impl {
   ~Impl() {
     fixed.clear();
     moving.clear();
+    trees.clear();
     rtcReleaseDevice(device);
+  }
+
+  /// The tree of a mesh, taken over from the last revision if that had it; null for shapes without triangles.
+  const TriangleTree* tree_of(const Shape& shape, decltype(trees)& old) {
+    const void* const key = optics::triangles_of(shape);
+    if (!key) return nullptr;
+    std::unique_ptr<TriangleTree>& tree = trees[key];
+    if (tree) return tree.get();
+    if (const auto known = old.find(key); known != old.end()) {
+      tree = std::move(known->second);
+    } else {
+      tree = std::make_unique<TriangleTree>(device, shape);
+      arena.execute([&] { tree->commit(); });
+    }
+    return tree.get();
   }
 
   void cast(const RayJob& job) const;
@@ -236,11 +274,12 @@ void RayScene::set_shapes(std::span<const SceneShape> shapes) {
   s.moving.clear();
   s.planes.clear();
   s.groups = 0;
+  auto old_trees = std::exchange(s.trees, {});
   for (const SceneShape& shape : shapes) {
     s.groups = std::max(s.groups, shape.group + 1);
     if (const auto* plane = std::get_if<Plane>(&shape.shape))
       s.planes.push_back({shape.group, shape.X_GC, plane->normal, shape.body});
-    else (shape.moves ? s.moving : s.fixed).add(shape);
+    else (shape.moves ? s.moving : s.fixed).add(shape, s.tree_of(shape.shape, old_trees));
   }
   s.fixed.attach(s.device, RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
   s.moving.attach(s.device, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);

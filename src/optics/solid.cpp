@@ -1,5 +1,6 @@
 #include "optics/solid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,11 +18,7 @@ using lanes::lesser;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-/// The rays in the frame of a solid: one origin, eight directions.
-struct Local {
-  float ox, oy, oz;
-  F dx, dy, dz;
-};
+using Local = LocalRays8;
 
 /// The part of each ray's line inside a convex solid; empty when first > last.
 struct Interval {
@@ -71,6 +68,46 @@ Interval capped(const Local& ray, float radius, float half_length) {
   return meet(tube(ray, radius), slab(ray.oz, ray.dz, half_length));
 }
 
+/// Inside the ellipsoid with these radii about the origin.
+Interval oval(const Local& ray, const float* r) {
+  // From the point of the ray nearest to the centre, so that the squares below do not grow with the distance; then in
+  // space scaled to a unit ball.
+  const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);
+  const F dx = ray.dx / r[0], dy = ray.dy / r[1], dz = ray.dz / r[2];
+  F px = (ray.ox + along * ray.dx) / r[0], py = (ray.oy + along * ray.dy) / r[1],
+    pz = (ray.oz + along * ray.dz) / r[2];
+  const F length2 = dx * dx + dy * dy + dz * dz;
+  const F more = -(px * dx + py * dy + pz * dz) / length2;
+  px = px + more * dx, py = py + more * dy, pz = pz + more * dz;
+  const F half = lanes::root((1 - (px * px + py * py + pz * pz)) / length2);  // NaN: missed
+  return {along + more - half, along + more + half};
+}
+
+/// Inside the cone whose base of `radius` lies at -half and whose apex at +half.
+///
+/// With the apex as origin and k = radius / (2 half) the double cone is f(p, p) = x x + y y - k k z z <= 0. Along a ray
+/// f = a t^2 + 2 b t + c. Flat rays (a > 0) are inside between the roots and steep ones outside of them, below the lower
+/// root when they rise; the slab of the height takes the upper half of the double cone away.
+Interval pointed(const Local& ray, float radius, float half) {
+  const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);
+  const F x = ray.ox + along * ray.dx, y = ray.oy + along * ray.dy, z = ray.oz + along * ray.dz - half;
+  const float k = radius / (2 * half), k2 = k * k;
+  const F a = ray.dx * ray.dx + ray.dy * ray.dy - k2 * (ray.dz * ray.dz);
+  const F b = x * ray.dx + y * ray.dy - k2 * (z * ray.dz);
+  const F c = x * x + y * y - k2 * (z * z);
+  // b b - a c without its cancellation.
+  const F xy = x * ray.dy - y * ray.dx, xz = z * ray.dx - x * ray.dz, yz = z * ray.dy - y * ray.dz;
+  const F square = k2 * (xz * xz + yz * yz) - xy * xy;
+  const I steep = a < 0;
+  const F s = lanes::root(choose(steep, greater(square, all(0.0f)), square));  // NaN: missed
+  const F q = choose(b < 0, s - b, -(b + s));
+  const F one = q / a, other = choose(q == 0, one, c / q);
+  const F low = lesser(one, other), high = greater(one, other);
+  const I rises = ray.dz > 0;
+  return {along + choose(steep, choose(rises, all(-inf), high), low),
+          along + choose(steep, choose(rises, low, all(inf)), high)};
+}
+
 Interval inside(const Solid& solid, const Local& ray) {
   const float* s = solid.size;
   switch (solid.type) {
@@ -81,7 +118,10 @@ Interval inside(const Solid& solid, const Local& ray) {
     }
     case Solid::Type::sphere: return ball(ray.ox, ray.oy, ray.oz, ray, s[0]);
     case Solid::Type::cylinder: return capped(ray, s[0], s[1]);
-    case Solid::Type::capsule: break;
+    case Solid::Type::cone: return meet(pointed(ray, s[0], s[1]), slab(ray.oz, ray.dz, s[1]));
+    case Solid::Type::ellipsoid: return oval(ray, s);
+    case Solid::Type::capsule:
+    case Solid::Type::triangles: break;
   }
   // Convex, so its interval is the union of those of its three parts.
   const Interval top = unless_empty(ball(ray.ox, ray.oy, ray.oz - s[1], ray, s[0]));
@@ -99,13 +139,25 @@ Dimensions dimensions(const Box& s) {
 Dimensions dimensions(const Sphere& s) { return {Solid::Type::sphere, s.radius_m, 0, 0}; }
 Dimensions dimensions(const Cylinder& s) { return {Solid::Type::cylinder, s.radius_m, s.length_m / 2, 0}; }
 Dimensions dimensions(const Capsule& s) { return {Solid::Type::capsule, s.radius_m, s.length_m / 2, 0}; }
-Dimensions dimensions(const Plane&) {
-  SL_CHECK_MSG(false, "a plane is no bounded solid");
-  return {};
+Dimensions dimensions(const Cone& s) { return {Solid::Type::cone, s.radius_m, s.length_m / 2, 0}; }
+Dimensions dimensions(const Ellipsoid& s) {
+  return {Solid::Type::ellipsoid, s.radii_m.x, s.radii_m.y, s.radii_m.z};
 }
 template <class Other>
-Dimensions dimensions(const Other& s) {
-  return {Solid::Type::sphere, bounding_radius_m(s), 0, 0};
+Dimensions dimensions(const Other&) {
+  SL_CHECK_MSG(false, "no primitive solid");
+  return {};
+}
+
+Solid make(Dimensions d, std::uint32_t body) {
+  Solid solid{};
+  solid.size[0] = static_cast<float>(d.a);
+  solid.size[1] = static_cast<float>(d.b);
+  solid.size[2] = static_cast<float>(d.c);
+  solid.body = body;
+  solid.type = d.type;
+  solid.place({});
+  return solid;
 }
 
 }  // namespace
@@ -121,15 +173,11 @@ void Solid::place(const Pose& X_WC) {
 }
 
 Solid make_solid(const Shape& shape, std::uint32_t body) {
-  const Dimensions d = std::visit([](const auto& s) { return dimensions(s); }, shape);
-  Solid solid{};
-  solid.size[0] = static_cast<float>(d.a);
-  solid.size[1] = static_cast<float>(d.b);
-  solid.size[2] = static_cast<float>(d.c);
-  solid.body = body;
-  solid.type = d.type;
-  solid.place({});
-  return solid;
+  return make(std::visit([](const auto& s) { return dimensions(s); }, shape), body);
+}
+
+Solid make_triangles(Vec3 half_size_m, std::uint32_t body) {
+  return make({Solid::Type::triangles, half_size_m.x, half_size_m.y, half_size_m.z}, body);
 }
 
 Bounds bounds(const Solid& solid) {
@@ -139,28 +187,38 @@ Bounds bounds(const Solid& solid) {
                  z = std::abs(solid.axes[6 + i]);
     const double a = solid.size[0], b = solid.size[1], c = solid.size[2];
     double half = a;
-    if (solid.type == Solid::Type::box) half = x * a + y * b + z * c;
+    if (solid.type == Solid::Type::box || solid.type == Solid::Type::triangles) half = x * a + y * b + z * c;
     if (solid.type == Solid::Type::cylinder) half = std::sqrt(x * x + y * y) * a + z * b;
     if (solid.type == Solid::Type::capsule) half = a + z * b;
+    if (solid.type == Solid::Type::ellipsoid) half = std::sqrt(x * x * a * a + y * y * b * b + z * z * c * c);
+    if (solid.type == Solid::Type::cone) {
+      const double disc = std::sqrt(x * x + y * y) * a, apex = b * solid.axes[6 + i];
+      result.lower[i] = solid.position[i] + std::min(apex, -apex - disc);
+      result.upper[i] = solid.position[i] + std::max(apex, -apex + disc);
+      continue;
+    }
     result.lower[i] = solid.position[i] - half;
     result.upper[i] = solid.position[i] + half;
   }
   return result;
 }
 
-F distance_to(const Solid& solid, const double origin[3], const Rays8& rays) {
+LocalRays8 to_local(const Solid& solid, const double origin[3], const Rays8& rays) {
   const double px = origin[0] - solid.position[0];
   const double py = origin[1] - solid.position[1];
   const double pz = origin[2] - solid.position[2];
   const float* m = solid.axes;
   // The same rounded axes turn origin and directions: an error of the axes only turns the solid a little.
-  const Local ray{static_cast<float>(m[0] * px + m[1] * py + m[2] * pz),
-                  static_cast<float>(m[3] * px + m[4] * py + m[5] * pz),
-                  static_cast<float>(m[6] * px + m[7] * py + m[8] * pz),
-                  m[0] * rays.dx + m[1] * rays.dy + m[2] * rays.dz,
-                  m[3] * rays.dx + m[4] * rays.dy + m[5] * rays.dz,
-                  m[6] * rays.dx + m[7] * rays.dy + m[8] * rays.dz};
-  const Interval part = inside(solid, ray);
+  return {static_cast<float>(m[0] * px + m[1] * py + m[2] * pz),
+          static_cast<float>(m[3] * px + m[4] * py + m[5] * pz),
+          static_cast<float>(m[6] * px + m[7] * py + m[8] * pz),
+          m[0] * rays.dx + m[1] * rays.dy + m[2] * rays.dz,
+          m[3] * rays.dx + m[4] * rays.dy + m[5] * rays.dz,
+          m[6] * rays.dx + m[7] * rays.dy + m[8] * rays.dz};
+}
+
+F distance_to(const Solid& solid, const double origin[3], const Rays8& rays) {
+  const Interval part = inside(solid, to_local(solid, origin, rays));
   const F seen = choose(part.first >= rays.near, part.first, part.last);
   return choose(part.first <= part.last, seen, all(inf));
 }

@@ -5,7 +5,10 @@
 ///             world's origin is as sharp as one beside it; from there on single precision. Roots are taken of
 ///             r^2 minus the squared distance of the ray from the centre (never of b^2 - c, which cancels), so
 ///             the error of a distance stays at a few float epsilon times distance and size, divided by the
-///             cosine of incidence.
+///             cosine of incidence. Cones and ellipsoids, too, are met where they are, not where triangles would be; the
+///             discriminant of a cone is built from the minors of origin and direction (Lagrange's identity).
+///             Triangles of meshes and terrain are held in single precision about the middle of their bounds, so
+///             their error grows with the size of the mesh, not with its place in the world.
 /// Source      E. Haines et al., Precision improvements for ray/sphere intersection, Ray Tracing Gems (2019), ch. 7.
 #include <cstdint>
 
@@ -15,20 +18,22 @@
 
 namespace sandlot::optics {
 
-/// A box, sphere, cylinder or capsule placed in the world.
+/// A bounded shape placed in the world. Of triangles it is the box around them; what is inside, a tree knows.
 struct Solid {
-  enum class Type : std::uint32_t { box, sphere, cylinder, capsule };
+  enum class Type : std::uint32_t { box, sphere, cylinder, capsule, cone, ellipsoid, triangles };
   double position[3];  ///< of the shape frame C in W
   float axes[9];       ///< rows: the axes of C in W
-  float size[3];       ///< box: half edges; otherwise radius and half length
+  float size[3];       ///< box, triangles: half edges; ellipsoid: radii; otherwise radius and half length
   std::uint32_t body;
   Type type;
 
   void place(const Pose& X_WC);
 };
 
-/// @pre shape is not a Plane
+/// @pre shape is neither a Plane nor made of triangles
 Solid make_solid(const Shape& shape, std::uint32_t body);
+/// Triangles within a box about the origin of their frame.
+Solid make_triangles(Vec3 half_size_m, std::uint32_t body);
 
 /// The part of space that the solid occupies, without margin.
 struct Bounds {
@@ -42,7 +47,15 @@ struct Rays8 {
   lanes::F near;  ///< surfaces before it are not seen
 };
 
+/// The same rays seen from the solid's frame: one origin, eight directions.
+struct LocalRays8 {
+  float ox, oy, oz;
+  lanes::F dx, dy, dz;
+};
+LocalRays8 to_local(const Solid& solid, const double origin[3], const Rays8& rays);
+
 /// Distance to the first surface of the solid at or behind `near`; NaN or infinite where there is none.
+/// @pre not triangles
 /// @param origin  in W
 lanes::F distance_to(const Solid& solid, const double origin[3], const Rays8& rays);
 

@@ -4,13 +4,18 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "base/text.h"
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/ros2_control/ros2_control.h"
 #include "formats/sdf/sdf.h"
+#include "physics/engine.h"
+#include "sim/assets.h"
 #include "sim/joint_controllers.h"
+#include "sim/modules.h"
 #include "sim/placement.h"
 #include "sim/presets.h"
 
@@ -19,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file behind what a scenario wrote; a folder stands for its model.sdf.
+/// The file behind what a scenario wrote. A folder stands for its model.sdf or, without one, for its only .urdf.
 Result<std::string> locate(const std::string& written, const std::string& folder_of_file,
                            const formats::SearchPath& path, const Place& place) {
   SL_ASSIGN(const std::string found, formats::find_resource(written, folder_of_file, path, place));
@@ -27,7 +32,13 @@ Result<std::string> locate(const std::string& written, const std::string& folder
   if (!fs::is_directory(found, ignored)) return found;
   const std::string file = (fs::path(found) / "model.sdf").string();
   if (fs::is_regular_file(file, ignored)) return file;
-  return Error{"folder '" + found + "' holds no model.sdf", "name the file", place};
+  std::vector<std::string> robots;
+  for (const auto& entry : fs::directory_iterator(found, ignored))
+    if (entry.path().extension() == ".urdf") robots.push_back(entry.path().string());
+  if (robots.size() == 1) return robots.front();
+  return Error{"folder '" + found + "' holds " +
+                   (robots.empty() ? "no model.sdf" : "several .urdf files and no model.sdf"),
+               "name the file", place};
 }
 
 Result<std::uint32_t> link_named(const model::Model& model, const Node& name, const std::string& path) {
@@ -114,10 +125,42 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
   return {};
 }
 
+/// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
+Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
+                      const formats::Scenario& scenario, const formats::SearchPath& search,
+                      const LoadOptions& options, Diagnostics& diagnostics) {
+  for (const formats::Module& module : group.modules) {
+    SL_ASSIGN(const std::string file, locate(module.model, formats::base_folder(scenario, module.model_place),
+                                             search, module.model_place));
+    SL_ASSIGN(model::Instance part,
+              load_instance(file, module.id, {}, diagnostics, options.paths, options.skip_missing));
+    part.place = module.place;
+    SL_TRY(merge_devices(part, module.devices));
+    std::uint32_t link = 0;
+    if (!module.link.empty()) {
+      const auto found = robot.model->find_link(module.link);
+      std::vector<std::string> names;
+      for (const model::Link& each : robot.model->links) names.push_back(each.name);
+      if (!found)
+        return Error{"robot '" + group.name + "' has no link '" + module.link + "'",
+                     suggestion(module.link, names), module.link_place, "/modules/" + module.id + "/link"};
+      link = *found;
+    }
+    auto attached = attach_module(robot, part, module.id, link, module.X_LM);
+    if (!attached) return std::move(attached.error());
+  }
+  return {};
+}
+
 /// Takes world instances over: their devices translated, names checked.
 Status take_world(formats::SdfContent content, const formats::SearchPath& path, model::Setup& setup,
                   Diagnostics& diagnostics) {
   setup.gravity = content.gravity_mps2;
+  setup.ambient = content.ambient;
+  setup.background = content.background;
+  setup.geography = content.geography;
+  setup.magnetic_field_T = content.magnetic_field_T;
+  setup.gravity_place = content.gravity_place;
   setup.lights = std::move(content.lights);
   for (model::Instance& instance : content.instances) {
     SL_TRY(translate_devices(instance, path, diagnostics));
@@ -143,23 +186,59 @@ model::Instance bare_ground() {
   return instance;
 }
 
-Result<model::Setup> load_bare_world(const std::string& path, const formats::SearchPath& search,
+Result<model::Setup> load_bare_world(const std::string& path, const formats::SdfOptions& options,
                                      Diagnostics& diagnostics) {
-  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, {.path = search}));
+  SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, options));
   model::Setup setup;
   setup.name = content.world_name.empty() ? fs::path(path).stem().string() : content.world_name;
   if (content.max_step_s) setup.step = Time::from_s(*content.max_step_s);
-  SL_TRY(take_world(std::move(content), search, setup, diagnostics));
+  setup.physics = std::move(content.physics);
+  SL_TRY(take_world(std::move(content), options.path, setup, diagnostics));
   return setup;
 }
+
+formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_missing) {
+  formats::SdfOptions out;
+  out.path = formats::search_path(paths);
+  out.skip_missing = skip_missing;
+  out.assets = asset_reader(skip_missing);
+  return out;
+}
+
+/// Ten robots whose plugin nobody answers to are one thing to know, not ten: warnings that say the same of places in
+/// one file become the first of them.
+void fold(Diagnostics& diagnostics) {
+  struct Seen {
+    std::size_t index;
+    std::set<std::pair<int, int>> places;
+  };
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, Seen> seen;
+  std::vector<Error> kept;
+  for (Error& warning : diagnostics.warnings) {
+    const std::string file = warning.place.file ? *warning.place.file : "";
+    const auto [known, fresh] = seen.try_emplace({file, warning.path, warning.what, warning.fix},
+                                                 Seen{kept.size(), {}});
+    known->second.places.emplace(warning.place.line, warning.place.column);
+    if (fresh) kept.push_back(std::move(warning));
+  }
+  for (const auto& [key, group] : seen) {
+    if (group.places.size() < 2) continue;
+    Error& first = kept[group.index];
+    (first.fix.empty() ? first.what : first.fix) += " (and " + std::to_string(group.places.size() - 1) +
+                                                    " more like it)";
+  }
+  diagnostics.warnings = std::move(kept);
+}
+
+Result<model::Setup> load_all(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace
 
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
-                                      std::span<const std::string> paths) {
+                                      std::span<const std::string> paths, bool skip_missing) {
   SL_ASSIGN(formats::SdfContent content,
-            formats::read_sdf(model_file, diagnostics, {.path = formats::search_path(paths)}));
+            formats::read_sdf(model_file, diagnostics, sdf_options(paths, skip_missing)));
   if (content.instances.size() != 1 || !content.world_name.empty())
     return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
   model::Instance instance = std::move(content.instances.front());
@@ -172,24 +251,37 @@ Result<model::Instance> load_instance(const std::string& model_file, const std::
 }
 
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
+  Result<model::Setup> setup = load_all(path, options, diagnostics);
+  fold(diagnostics);
+  return setup;
+}
+
+namespace {
+
+Result<model::Setup> load_all(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::string extension = fs::path(path).extension().string();
-  const formats::SearchPath search = formats::search_path(options.paths);
+  const formats::SdfOptions sdf = sdf_options(options.paths, options.skip_missing);
+  const formats::SearchPath& search = sdf.path;
   model::Setup setup;
-  if (extension == ".sdf" || extension == ".world") {
+  if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
-    SL_ASSIGN(setup, load_bare_world(path, search, diagnostics));
+    SL_ASSIGN(setup, load_bare_world(path, sdf, diagnostics));
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
       SL_ASSIGN(const std::string world,
                 locate(scenario.world, formats::base_folder(scenario, scenario.world_place), search,
                        scenario.world_place));
-      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, {.path = search}));
+      SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, sdf));
       SL_TRY(take_world(std::move(content), search, setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
+    }
+    if (auto engine = find_engine(scenario.engine); !engine) {
+      engine.error().place = scenario.engine_place;
+      return std::move(engine.error());
     }
     setup.name = scenario.name;
     setup.engine = scenario.engine;
@@ -207,7 +299,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
                                                search, group.model_place));
       auto known = loaded.find(file);
       if (known == loaded.end()) {
-        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths);
+        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths, options.skip_missing);
         if (!instance) {
           if (!instance.error().place.file) instance.error().place = group.model_place;
           return std::move(instance.error());
@@ -219,6 +311,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
       pattern.team = group.team;
       pattern.controllers = group.controllers;
       pattern.place = group.place;
+      SL_TRY(attach_modules(pattern, group, scenario, search, options, diagnostics));
       for (const std::string& written : group.joint_controllers) {
         const Place& place = group.joint_controllers_place;
         SL_ASSIGN(const std::string found,
@@ -237,7 +330,7 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
       }
     }
   } else {
-    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world (.sdf, .world)"};
+    return Error{"'" + path + "' is neither a scenario (.yaml) nor a world or robot (.sdf, .world, .urdf)"};
   }
   if (options.seed) setup.seed = *options.seed;
   if (options.stop_s) setup.stop = Time::from_s(*options.stop_s);
@@ -247,10 +340,12 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
     if (!fresh)
       return Error{
           "there are two things named '" + instance.name + "'",
-          "the other one is at " + to_string(known->second->place) + "; give one of them another name",
+          (known->second->place.file ? "the other one is at " + to_string(known->second->place) + "; " : "") +
+              "give one of them another name",
           instance.place};
   }
   return setup;
 }
 
+}  // namespace
 }  // namespace sandlot

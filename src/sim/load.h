@@ -14,15 +14,16 @@ struct LoadOptions {
   std::optional<std::uint64_t> seed;        ///< replaces the scenario's
   std::optional<double> stop_s;             ///< replaces the scenario's
   std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
+  bool skip_missing = false;  ///< missing includes, meshes and textures are left out with a warning
 };
 
-/// Loads a scenario (.yaml, .yml) or a world or model (.sdf, .world): what `sandlot run` accepts.
+/// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world) or a robot (.urdf): what `sandlot run` accepts.
 /// Errors carry file and line; warnings go to `diagnostics`, each once per file.
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
 /// Loads one model file as an instance at `X_WM`, ready for a SpawnRequest.
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
-                                      std::span<const std::string> paths = {});
+                                      std::span<const std::string> paths = {}, bool skip_missing = false);
 
 }  // namespace sandlot

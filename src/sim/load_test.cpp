@@ -10,9 +10,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim/simulation.h"
+
 namespace sandlot {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -211,6 +214,69 @@ TEST_F(Files, options_replace_seed_and_stop) {
   EXPECT_EQ(plain->stop->s(), 9);
   EXPECT_EQ(changed->seed, 77u);
   EXPECT_EQ(changed->stop->s(), 2.5);
+}
+
+constexpr const char* head = R"(<?xml version="1.0"?>
+<sdf version="1.9" xmlns:sandlot="urn:sandlot:sdf"><model name="head">
+  <link name="foot"><inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link>
+  <link name="eye"><pose>0 0 0.2 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link>
+  <joint name="neck" type="revolute"><parent>foot</parent><child>eye</child><axis><xyz>0 0 1</xyz></axis></joint>
+  <frame name="lens" attached_to="eye"><pose>0.1 0 0 0 0 0</pose></frame>
+  <sandlot:device name="turn" kind="joint_motor" link="eye"><joint>neck</joint></sandlot:device>
+  <sandlot:device name="look" kind="laser_scanner" link="eye"><beams>5</beams></sandlot:device>
+</model></sdf>)";
+
+TEST_F(Files, modules_are_fixed_to_a_robot_with_their_own_names_places_and_rates) {
+  fs::create_directories(folder / "models" / "head");
+  write("models/head/model.sdf", head);
+  const std::string text =
+      "robots:\n- name: a\n  model: models/bot\n  modules:\n"
+      "  - {id: front, model: models/head, pose: [1, 2, 3, 0, 0, 90 deg], devices: {look: {rate: 20}}}\n"
+      "  - {id: back, model: models/head, pose: [-1, 0, 0, 0, 0, 0], link: 'front::eye'}\n"
+      "  - {id: nose, model: models/bot}\n"
+      "  devices: {back_look: {beams: 7}}\n";
+  auto setup = load_text(text);
+  ASSERT_TRUE(setup) << setup.error().text();
+  const model::Instance& robot = setup->instances.back();
+  const model::Model& composed = *robot.model;
+  ASSERT_EQ(composed.links.size(), 6u);
+  EXPECT_EQ(composed.links[2].name, "front::eye");
+  // (1 2 3) and 0.2 above it, turned to the left: x of the eye is y of the robot.
+  EXPECT_NEAR(norm(composed.links[2].X_ML.p - Vec3{1, 2, 3.2}), 0, 1e-12);
+  EXPECT_NEAR(norm(rotate(composed.links[2].X_ML.q, {1, 0, 0}) - Vec3{0, 1, 0}), 0, 1e-12);
+  // One metre behind that eye is one metre along -y; its own eye 0.2 above.
+  EXPECT_NEAR(norm(composed.links[4].X_ML.p - Vec3{1, 1, 3.4}), 0, 1e-12);
+  EXPECT_EQ(composed.find_joint("front::neck"), 0u);
+  EXPECT_EQ(composed.frames.at(1).name, "back::lens");
+  const auto device = [&](std::string_view name) -> const model::DeviceDecl* {
+    for (const model::DeviceDecl& each : robot.devices)
+      if (each.name == name) return &each;
+    return nullptr;
+  };
+  ASSERT_TRUE(device("front_look") && device("back_turn") && device("nose"));
+  EXPECT_EQ(device("front_look")->config.find("rate")->text(), "20");
+  EXPECT_EQ(device("back_look")->config.find("beams")->text(), "7");
+  EXPECT_EQ(device("nose")->link, 5u) << "a module with one device: the device has the module's name";
+
+  // Each motor turns the neck of its own module: `joint: neck` means back::neck there.
+  auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
+  ASSERT_TRUE(simulation) << simulation.error().text();
+}
+
+TEST_F(Files, faults_of_modules_have_their_lines) {
+  fs::create_directories(folder / "models" / "head");
+  write("models/head/model.sdf", head);
+  const std::string robot = "robots:\n- name: a\n  model: models/bot\n  modules:\n  - ";
+  EXPECT_THAT(error_of(robot + "{id: h, model: models/hat}\n"), HasSubstr("s.yaml:7:"));
+  EXPECT_THAT(error_of(robot + "{id: h, model: models/head, link: bas}\n"),
+              HasSubstr("did you mean 'base'?"));
+  EXPECT_THAT(error_of(robot + "{id: h, model: models/head, pos: [1, 2, 3]}\n"),
+              HasSubstr("did you mean 'pose'?"));
+  EXPECT_THAT(
+      error_of(robot + "{id: h, model: models/head}\n  - {id: h, model: models/head}\n"),
+      AllOf(HasSubstr("s.yaml:8:10: "), HasSubstr("two modules are called 'h'; the other one is at")));
+  EXPECT_THAT(error_of(robot + "{id: eye, model: models/bot}\n"),
+              HasSubstr("two devices have the address 'eye'"));
 }
 
 }  // namespace

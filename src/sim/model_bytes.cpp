@@ -312,6 +312,7 @@ void device(auto& io, auto& d) {
   io.value(d.name);
   io.value(d.kind);
   io.value(d.sdf_types);
+  io.value(d.scope);
   io.value(d.link);
   io.value(d.X_LS);
   node(io, d.config);

@@ -1,5 +1,8 @@
 #include "sim/model_bytes.h"
 
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+
 #include <gtest/gtest.h>
 
 #include "sim/test_world.h"
@@ -26,23 +29,52 @@ model::Setup full_setup() {
   base.inertial = {4, {{0.1, 0, 0}, {}}, {1, 2, 2.5}, {0.1, 0.2, 0.3}};
   base.gravity = false;
   model::Surface surface{0.4, 0.5, {1, 0, 0}, 0.1, 0.2, 0.3, 0.06, 0.2, 1e-5};
-  for (const Shape& shape : {Shape(Box{{1, 2, 3}}), Shape(Sphere{0.5}), Shape(Cylinder{0.2, 0.7}),
-                             Shape(Capsule{0.1, 0.6}), Shape(Plane{{0, 0, 1}})}) {
+  auto mesh = std::make_shared<TriangleMesh>(tessellate(Box{{1, 1, 1}}));
+  mesh->texture_uv.assign(mesh->vertices.size(), {0.25f, 0.75f});
+  mesh->parts = {{"lid", 2, 10, {0.1f, 0.2f, 0.3f, 1}, "wood.png"}};
+  mesh->source = "crate.obj";
+  const auto grid = std::make_shared<HeightGrid>(HeightGrid{2, 3, 4, 5, {0, 1, 2, 3, 4, 5}, "hill.png"});
+  for (const Shape& shape :
+       {Shape(Box{{1, 2, 3}}), Shape(Sphere{0.5}), Shape(Cylinder{0.2, 0.7}), Shape(Capsule{0.1, 0.6}),
+        Shape(Plane{{0, 0, 1}}), Shape(Cone{0.3, 0.9}), Shape(Ellipsoid{{0.1, 0.2, 0.3}}), Shape(Mesh{mesh}),
+        Shape(Heightfield{grid})}) {
     base.collisions.push_back({"c", {{0, 0, 1}, {}}, shape, surface, {}});
-    base.visuals.push_back({"v", {{0, 1, 0}, {}}, shape, {0.1f, 0.2f, 0.3f, 0.4f}, {}});
+    base.visuals.push_back(
+        {"v",
+         {{0, 1, 0}, {}},
+         shape,
+         {{0.1f, 0.2f, 0.3f, 0.4f}, {0.5f, 0, 0, 1}, {0, 0.5f, 0, 1}, 12, "paint.png", false},
+         false,
+         {}});
   }
   model::Link arm = base;
   arm.name = "arm";
   made->links = {base, arm};
   model::Joint joint{
-      "hinge", model::JointType::revolute, 0, 1, {{0, 1, 0}, {}}, {1, 0, 0}, -1, 2, 30, 4, 0.5, 0.6, 7, 0.8,
-      {}};
+      "hinge", model::JointType::revolute, 0, 1, {{0, 1, 0}, {}}, {1, 0, 0}, -1, 2, 30, 4, 0.5, 0.6, 7, 0.8};
+  joint.thread_pitch_m = 0.01;
+  joint.second = model::SecondAxis{{0, 0, 1}, -0.5, 0.6, 0.7, 0.8};
+  joint.mimic = model::Mimic{0, 2, 0.1, 0.2};
   made->joints.push_back(joint);
+  model::Light lamp{model::Light::Type::spot,
+                    "lamp",
+                    {{0, 0, 4}, {}},
+                    {1, 1, 0, 1},
+                    {0, 1, 0, 1},
+                    true,
+                    7,
+                    0.5,
+                    0.6,
+                    0.7,
+                    0.1,
+                    0.2,
+                    3};
+  made->lights.push_back({1, lamp});
   made->frames.push_back({"tip", 1, {{0, 0, 2}, {}}});
   Node config = Node::map();
   config.set("list", Node::sequence()).push(Node::scalar("1.5"));
   config.set("nested", test::map({{"key", "value"}}));
-  made->devices.push_back({"cam", "camera", {"sensor:camera"}, 1, {{1, 1, 1}, {}}, config, {}});
+  made->devices.push_back({"cam", "camera", {"sensor:camera"}, "arm::", 1, {{1, 1, 1}, {}}, config, {}});
   model::Setup setup;
   setup.name = "full";
   setup.engine = "planar";
@@ -53,7 +85,11 @@ model::Setup full_setup() {
   setup.control_interval = 4;
   setup.seed = 99;
   setup.stop = Time::from_s(12);
-  setup.lights.push_back({model::Light::Type::spot, "lamp", {{0, 0, 4}, {}}, {1, 1, 0, 1}});
+  setup.lights.push_back(lamp);
+  setup.ambient = {0.1f, 0.1f, 0.1f, 1};
+  setup.background = {0.2f, 0.2f, 0.2f, 1};
+  setup.geography = model::Geography{0.8, 0.1, 300, 0.2};
+  setup.magnetic_field_T = {1e-5, 2e-5, 3e-5};
   for (const char* name : {"one", "two"}) {
     model::Instance instance = test::placed(name, made, {{5, 6, 7}, {}});
     instance.original_name = std::string(name) + "!";
@@ -61,6 +97,7 @@ model::Setup full_setup() {
     instance.team = "red";
     instance.devices = made->devices;
     instance.controllers.push_back({"brain", "wander", config, {}});
+    instance.motion = model::Motion{{{0, {{1, 2, 3}, {}}}, {4, {{5, 6, 7}, {}}}}, 1.5, false};
     setup.instances.push_back(instance);
   }
   return setup;
@@ -84,6 +121,15 @@ TEST(ModelBytes, what_is_read_writes_the_same_bytes_and_shares_models) {
   EXPECT_EQ(m.devices[0].config.find("list")->items()[0].text(), "1.5");
   EXPECT_EQ(read.stop->s(), 12);
   EXPECT_FALSE(m.links[0].gravity);
+  const auto mesh = std::get<Mesh>(m.links[0].collisions[7].shape).mesh;
+  EXPECT_EQ(mesh, std::get<Mesh>(m.links[1].visuals[7].shape).mesh) << "one mesh, four times used";
+  EXPECT_EQ(mesh->parts.at(0).texture, "wood.png");
+  EXPECT_EQ(std::get<Heightfield>(m.links[0].visuals[8].shape).grid->at(1, 2), 5.0f);
+  EXPECT_EQ(m.links[0].visuals[0].material.emissive.g, 0.5f);
+  EXPECT_EQ(m.joints[0].mimic->offset, 0.1);
+  EXPECT_EQ(m.devices[0].scope, "arm::");
+  EXPECT_EQ(read.instances[1].motion->keys.at(1).X_WM.p.y, 6);
+  EXPECT_EQ(read.geography->elevation_m, 300);
 }
 
 TEST(ModelBytes, every_truncation_is_refused) {
@@ -96,13 +142,21 @@ TEST(ModelBytes, every_truncation_is_refused) {
 }
 
 TEST(ModelBytes, indices_out_of_the_model_are_refused) {
-  for (int broken = 0; broken < 4; ++broken) {
+  for (int broken = 0; broken < 8; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
     if (broken == 1) changed->frames[0].link = 7;
     if (broken == 2) changed->devices[0].link = 2;
     if (broken == 3) changed->links.clear();
+    if (broken == 4) changed->joints[0].mimic->joint = 1;
+    if (broken == 5) changed->lights[0].link = 2;
+    if (broken == 6) setup.instances[1].motion->keys.clear();
+    if (broken == 7) {
+      auto torn = std::make_shared<TriangleMesh>(*std::get<Mesh>(changed->links[0].collisions[7].shape).mesh);
+      torn->triangles[3][1] = 8;
+      changed->links[0].collisions[7].shape = Mesh{torn};
+    }
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;

@@ -22,10 +22,24 @@ constexpr float memory_s = 3;
 constexpr std::size_t memory_size = 240;
 constexpr std::size_t most_sectors = 121;  // of a full turn
 constexpr std::size_t edge_sectors = 5;
+/// Echoes within this share of the radius are of the robot itself: whatever it touches is farther out.
+constexpr double own_share = 0.9;
 constexpr double back_s = 1.0;
 constexpr double back_mps = 0.15;
 
 }  // namespace
+
+void Sectors::learn_own_body(const msg::LaserScan& scan, const Pose& X_BS, double own_radius_m) {
+  own_m.assign(scan.ranges.size(), 0);
+  const double ox = X_BS.p.x, oy = X_BS.p.y, yaw = yaw_of(X_BS.q);
+  const double power = ox * ox + oy * oy - own_radius_m * own_radius_m;
+  if (power >= 0) return;  // a scanner outside the circle sees its robot, if at all, like anything else
+  for (std::size_t i = 0; i < own_m.size(); ++i) {
+    const auto [s, c] = math::sincos(yaw + scan.angle_min + static_cast<double>(i) * scan.angle_increment);
+    const double along = ox * c + oy * s;
+    own_m[i] = static_cast<float>(std::sqrt(along * along - power) - along);
+  }
+}
 
 void Sectors::fill(const msg::LaserScan& scan, const Pose& X_BS) {
   const auto beams = scan.ranges.size();
@@ -42,7 +56,8 @@ void Sectors::fill(const msg::LaserScan& scan, const Pose& X_BS) {
   for (std::size_t i = 0; i < beams; ++i) {
     float range = scan.ranges[i];
     if (std::isnan(range)) continue;
-    range = std::clamp(range, 0.0f, scan.range_max);  // -inf, too near, becomes 0
+    if (range > 0 && i < own_m.size() && range < own_m[i]) continue;  // a mast or post of its own
+    range = std::clamp(range, 0.0f, scan.range_max);                  // -inf, too near, becomes 0
     const double bearing = first + static_cast<double>(i) * step;
     const double place = width > 0 ? (bearing - low) / width : 0;
     const std::size_t k = std::min(count - 1, static_cast<std::size_t>(std::max(0.0, place)));
@@ -254,6 +269,8 @@ void Wander::step(const Observation& obs, Command& cmd) {
   Motion motion;
   if (scan.valid && state.blind_s < 1.0 && !scan.message.ranges.empty()) {
     Stream random = obs.random();
+    if (sectors.own_m.size() != scan.message.ranges.size())
+      sectors.learn_own_body(scan.message, X_BS, own_share * spec.radius_m);
     sectors.fill(scan.message, X_BS);
     remember();
     if (state.mode != Mode::back && scan.fresh && stuck()) enter(Mode::back, random);

@@ -95,7 +95,10 @@ struct Sectors {
   std::vector<float> distance_m;  ///< from the scanner; its maximum where nothing was seen
   float max_m = 0;                ///< range of the scanner
   double first_rad = 0, last_rad = 0;  ///< bearings covered, in the robot's frame
+  std::vector<float> own_m;            ///< per beam: an echo nearer than this is of the robot itself
 
+  /// Learns how far each beam of such a scan runs within `own_radius_m` of the robot's centre.
+  void learn_own_body(const msg::LaserScan& scan, const Pose& X_BS, double own_radius_m);
   void fill(const msg::LaserScan& scan, const Pose& X_BS);
   /// Length free for a disc that moves along `heading_rad` from the robot's centre, at most `most_m`.
   double corridor_m(double heading_rad, double half_width_m, double most_m) const;

@@ -360,5 +360,24 @@ TEST_P(SlowWander, CoversTheFlatWithoutTouchingAWall) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SlowWander, testing::Range(0, 20));
 
+TEST(Wander, EchoesOfItsOwnPostsAreNoObstacles) {
+  // A scanner 0.13 m behind the centre of a robot of radius 0.2 m looks ahead: the rim lies 0.33 m away, a post at 0.25 m is
+  // its own and what the neighbouring beams see counts; something at 0.34 m does not belong to it.
+  msg::LaserScan scan;
+  scan.angle_min = -0.02f;
+  scan.angle_increment = 0.02f;
+  scan.range_max = 10;
+  scan.ranges = {3.0f, 0.25f, 2.5f};
+  Sectors sectors;
+  const Pose X_BS{{-0.13, 0, 0}, {}};
+  sectors.learn_own_body(scan, X_BS, 0.2);
+  EXPECT_NEAR(sectors.own_m[1], 0.33f, 1e-6f);
+  sectors.fill(scan, X_BS);
+  EXPECT_EQ(sectors.distance_m, (std::vector<float>{2.5f}));
+  scan.ranges[1] = 0.34f;
+  sectors.fill(scan, X_BS);
+  EXPECT_EQ(sectors.distance_m, (std::vector<float>{0.34f}));
+}
+
 }  // namespace
 }  // namespace sandlot::controllers::wander

@@ -113,6 +113,27 @@ Status check_devices(const Node& devices, const std::string& path) {
   return {};
 }
 
+Result<Module> read_module(const Node& node, spec::Module& keys, const std::string& path) {
+  Module module;
+  const auto place_of = [&](const char* key) {
+    const Node* const value = node.find(key);
+    return value ? value->place() : node.place();
+  };
+  module.place = place_of("id");
+  module.model_place = place_of("model");
+  module.link_place = place_of("link");
+  if (keys.id.empty()) return node.error("the module's id is empty", "", path + "/id");
+  if (keys.model.empty())
+    return node.error("the module's model is empty", "name a model file", path + "/model");
+  module.id = keys.id;
+  module.model = keys.model;
+  module.link = keys.link;
+  if (!keys.pose.is_null()) { SL_ASSIGN(module.X_LM, read_pose(keys.pose, path + "/pose")); }
+  SL_TRY(check_devices(keys.devices, path + "/devices"));
+  module.devices = std::move(keys.devices);
+  return module;
+}
+
 Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
@@ -139,6 +160,15 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   } else {
     group.placement.kind = robot.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
     group.placement.place = node.place();
+  }
+  for (std::size_t i = 0; i < robot.modules.size(); ++i) {
+    SL_ASSIGN(Module module, read_module(node.find("modules")->items()[i], robot.modules[i],
+                                         path + "/modules/" + std::to_string(i)));
+    for (const Module& other : group.modules)
+      if (sanitised(other.id) == sanitised(module.id))
+        return Error{"two modules are called '" + module.id + "'",
+                     "the other one is at " + to_string(other.place), module.place, path + "/modules"};
+    group.modules.push_back(std::move(module));
   }
   SL_ASSIGN(group.controllers, read_controllers(robot, path));
   SL_TRY(check_devices(robot.devices, path + "/devices"));
@@ -262,9 +292,12 @@ Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
                                 std::span<const Override> overrides, Diagnostics&) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
-  SL_TRY(substitute_variables(root));
+  std::vector<std::pair<std::string, Place>> unused_vars;
+  SL_TRY(substitute_variables(root, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
-  return read_root(root, file);
+  SL_ASSIGN(Scenario scenario, read_root(root, file));
+  scenario.unused_vars = std::move(unused_vars);
+  return scenario;
 }
 
 Result<Scenario> read_scenario(const std::string& path, std::span<const Override> overrides,

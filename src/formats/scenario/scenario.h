@@ -31,12 +31,23 @@ struct Placement {
   Place place;
 };
 
+/// A model fixed to a link of a robot.
+struct Module {
+  std::string id;
+  std::string model;  ///< as RobotGroup::model
+  std::string link;   ///< of the robot; "" for its first
+  Pose X_LM;
+  Node devices;  ///< map: changes to its devices
+  Place place, model_place, link_place;
+};
+
 struct RobotGroup {
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
   std::string model;  ///< file as written (see base_folder), or a name in the search path
   int count = 1;
   Placement placement;
   std::string team;
+  std::vector<Module> modules;
   std::vector<model::ControllerDecl> controllers;
   std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
   Place joint_controllers_place;
@@ -59,6 +70,7 @@ struct Scenario {
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
   std::vector<RobotGroup> robots;
+  std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 
 /// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,

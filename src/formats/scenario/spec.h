@@ -75,6 +75,27 @@ struct Distribution {
   }
 };
 
+struct Module {
+  std::string id;
+  std::string model;
+  Node pose;
+  std::string link;
+  Node devices;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"id", "", "Name of the module in its robot; unique there.", 0, 0, Field::required, 100},
+          s.id);
+    visit(Field{"model", "", "Its model file, or a name in the search path.", 0, 0, Field::required, 4096},
+          s.model);
+    visit(Field{"pose", "m", "Where it sits on the link: as the pose of a robot."}, s.pose);
+    visit(Field{"link", "",
+                "Link of the robot, or id::link of a module above, that carries it; the first if left out.",
+                0, 0, Field::none, 200},
+          s.link);
+    visit(Field{"devices", "", "Changes to its devices, by name: rates, levels, noise."}, s.devices);
+  }
+};
+
 struct Robot {
   std::string name;
   std::string model;
@@ -82,6 +103,7 @@ struct Robot {
   Node pose;
   std::optional<Distribution> distribution;
   std::string team;
+  std::vector<Module> modules;
   Node controller;
   Node controllers;
   std::vector<std::string> joint_controllers;
@@ -98,6 +120,9 @@ struct Robot {
           s.pose);
     visit(Field{"distribution", "", "Where several start."}, s.distribution);
     visit(Field{"team", "", "Team it plays for.", 0, 0, Field::none, 100}, s.team);
+    visit(Field{"modules", "", "Models fixed to its own: scanners, camera heads, arms.", 0, 0, Field::none,
+                1000},
+          s.modules);
     visit(Field{"controller", "", "Kind of its controller, or a map with kind and the kind's keys."},
           s.controller);
     visit(

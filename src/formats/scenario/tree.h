@@ -17,7 +17,8 @@ Status apply_overrides(Node& root, std::span<const Override> overrides);
 
 /// Replaces every ${name} in `root` by the entry of its `vars`; `$${` stands for a plain `${`.
 /// A text that is just `${name}` becomes the variable's value, whatever its type, with the variable's place.
-Status substitute_variables(Node& root);
+/// @param unused  out: entries of `vars` that nobody asked for, in file order
+Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place>>& unused);
 
 /// "--set path=value", the `file` of what an override gives.
 inline constexpr std::string_view override_place = "--set ";

@@ -33,6 +33,10 @@ class Variables {
     for (Node::Entry& entry : node.entries()) SL_TRY(replace(entry.value));
     return {};
   }
+  bool is_used(const std::string& name) const {
+    const auto found = variables_.find(name);
+    return found == variables_.end() || found->second.state != Variable::raw;
+  }
 
  private:
   struct Variable {
@@ -104,12 +108,16 @@ class Variables {
 
 }  // namespace
 
-Status substitute_variables(Node& root) {
+Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place>>& unused) {
   const Node* const vars = root.find("vars");
   if (vars && !vars->is_map() && !vars->is_null())
     return vars->error("expected a map of names and values, found " + describe(*vars), "", "/vars");
   Variables variables(vars);
-  return variables.replace(root);
+  SL_TRY(variables.replace(root));
+  if (const Node* const replaced = root.find("vars"))
+    for (const Node::Entry& entry : replaced->entries())
+      if (!variables.is_used(entry.key)) unused.emplace_back(entry.key, entry.key_place);
+  return {};
 }
 
 }  // namespace sandlot::formats

@@ -61,7 +61,7 @@ bool is_sensor(const model::DeviceDecl& device) {
 
 }  // namespace
 
-Result<model::DeviceDecl> read_sensor(const Xml& element, const ResolvedFrames& frames) {
+Result<model::DeviceDecl> read_sensor(const Xml& element, const Reading& in) {
   model::DeviceDecl device;
   device.place = element.place;
   device.name = *element.attribute("name");
@@ -73,12 +73,7 @@ Result<model::DeviceDecl> read_sensor(const Xml& element, const ResolvedFrames& 
   for (const Xml& child : element.children)
     if (const std::string* const file = child.name == "plugin" ? child.attribute("filename") : nullptr)
       device.sdf_types.push_back("plugin:" + *file);
-  const auto resolved = frames.poses.find(&element);
-  if (resolved != frames.poses.end()) {
-    device.X_LS = resolved->second;
-  } else {
-    SL_ASSIGN(device.X_LS, read_child_pose(element));
-  }
+  SL_ASSIGN(device.X_LS, in.pose(element));
   device.config = node_of(element);
   device.config.erase("pose");
   return device;

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "formats/resources.h"
+#include "formats/sdf/urdf.h"
 #include "formats/text.h"
 
 namespace sandlot::formats {
@@ -15,56 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_depth = 16;
 
-/// The minor number of version "1.x".
-Result<int> version_of(const Xml& root, Notes& notes) {
-  if (root.name == "robot")
-    return root.error("this is URDF, which is not supported yet", "convert it: gz sdf -p robot.urdf");
-  if (root.name != "sdf")
-    return root.error("the root element is <" + root.name.substr(0, 60) + ">",
-                      "an SDF file begins with <sdf version=\"1.9\">");
-  const std::string* const text = root.attribute("version");
-  if (!text) return root.error("<sdf> has no version", "write <sdf version=\"1.9\">");
-  const std::vector<std::string_view> parts = split(*text, '.');
-  double major = 0, minor = 0;
-  const bool numbers = parts.size() == 2 && parts[1].size() <= 2 && parse_number(parts[0], major) &&
-                       parse_number(parts[1], minor);
-  if (!numbers || major != 1 || minor != std::floor(minor) || minor < 0 || minor > 30)
-    return root.error("version '" + text->substr(0, 20) + "' of SDF is not known", "1.5 to 1.9 are read");
-  if (minor < 5)
-    return root.error("version " + *text + " of SDF is too old",
-                      "convert it to 1.5 or newer: gz sdf -p file.sdf");
-  if (minor > 9)
-    notes.warn(root, "version " + *text + " of SDF is newer than 1.9", "what it added is not understood");
-  return static_cast<int>(minor);
-}
-
-/// Rewrites what `minor` says differently from 1.9. The changes are those of libsdformat's *.convert files.
-void modernise(Xml& element, int minor) {
-  if (element.name == "pose" && minor < 7)
-    for (auto& [key, value] : element.attributes)
-      if (key == "frame") key = "relative_to";
-  if (element.name == "axis" && minor < 7) {
-    const Xml* const flag = element.child("use_parent_model_frame");
-    const bool in_model = flag && (flag->text == "1" || flag->text == "true" || flag->text == "True" ||
-                                   flag->text == "TRUE");
-    Xml* const xyz = element.child("xyz");
-    if (in_model && xyz) xyz->set_attribute("expressed_in", "__model__");
-    std::erase_if(element.children, [](const Xml& child) { return child.name == "use_parent_model_frame"; });
-  }
-  if (element.name == "world" && minor < 6 && !element.child("gravity")) {
-    const Xml* const physics = element.child("physics");
-    const Xml* const gravity = physics ? physics->child("gravity") : nullptr;
-    if (gravity) element.children.push_back(Xml(*gravity));
-  }
-  for (Xml& child : element.children) modernise(child, minor);
-}
-
 class Loader {
  public:
   Loader(Notes& notes, const SdfOptions& options) : notes_(notes), options_(options) {}
 
   Result<Xml> load(std::string_view text, const std::string& file) {
     SL_ASSIGN(Xml root, parse_xml(text, file, options_.limits));
+    if (root.name == "robot") return urdf_to_sdf(root, notes_);
     SL_ASSIGN(const int minor, version_of(root, notes_));
     modernise(root, minor);
     open_.push_back(canonical_path(file));
@@ -77,68 +35,114 @@ class Loader {
  private:
   /// Replaces the includes in worlds and models, depth first.
   Status expand(Xml& element, const std::string& folder) {
+    std::vector<Xml> children;
+    children.reserve(element.children.size());
     for (Xml& child : element.children) {
       if (child.name == "include") {
-        SL_ASSIGN(Xml model, include(child, folder));
-        child = std::move(model);
-      } else if (child.name == "world" || child.name == "model") {
-        SL_TRY(expand(child, folder));
+        SL_ASSIGN(std::vector<Xml> included, include(child, element, folder));
+        for (Xml& each : included) children.push_back(std::move(each));
+        continue;
       }
+      if (child.name == "world" || child.name == "model") SL_TRY(expand(child, folder));
+      if (child.name == "actor") stand_in_for_actor(child);
+      children.push_back(std::move(child));
     }
+    element.children = std::move(children);
     return {};
   }
 
-  Result<Xml> include(const Xml& include, const std::string& folder) {
+  /// What takes the place of an <include> in `parent`.
+  Result<std::vector<Xml>> include(const Xml& include, const Xml& parent, const std::string& folder) {
     const Xml* const uri = include.child("uri");
     if (!uri || uri->text.empty())
       return include.error("<include> has no <uri>", "name a model file or folder");
-    if (const std::string* merge = include.attribute("merge"); merge && *merge != "false" && *merge != "0")
-      return include.error("merge=\"true\" is not supported yet", "include the model without it");
     notes_.unused(include, "uri name pose static placement_frame plugin*");
-    SL_ASSIGN(const std::string path, find(*uri, folder));
+    auto path = find(*uri, folder);
+    if (!path && options_.skip_missing) {
+      notes_.warn(*uri, path.error().what, "it is left out");
+      return std::vector<Xml>{};
+    }
+    if (!path) return std::move(path).error();
+    SL_ASSIGN(Xml content, content_of(include, *uri, *path));
+    const std::string* const merge = include.attribute("merge");
+    const bool merging = merge && *merge != "false" && *merge != "0";
+    if (content.name == "world") return world(include, std::move(content), parent);
+    if (content.name != "model" && parent.name != "world")
+      return uri->error("'" + uri->text.substr(0, 160) + "' holds a <" + content.name + ">",
+                        "a <model> can include models only");
+    if (const Xml* name = include.child("name")) content.set_attribute("name", name->text);
+    if (const Xml* frame = include.child("placement_frame")) {
+      if (!include.child("pose"))
+        return frame->error("an <include> with a <placement_frame> needs a <pose>",
+                            "say where that frame is");
+      content.set_attribute("placement_frame", frame->text);
+    }
+    for (const char* const key : {"pose", "static"}) {
+      const Xml* const given = include.child(key);
+      if (!given || (content.name == "light" && *key == 's')) continue;
+      std::erase_if(content.children, [&](const Xml& child) { return child.name == key; });
+      content.children.push_back(*given);
+    }
+    for (const Xml& child : include.children)
+      if (child.name == "plugin") content.children.push_back(child);
+    // Complaints about the instance (its name, its pose) belong to the line that asks for it.
+    content.place = include.place;
+    if (!merging) return std::vector<Xml>{std::move(content)};
+    if (content.name != "model" || parent.name != "model")
+      return include.error("merge=\"true\" works for a model in a <model> only", "include it without merge");
+    return merged(include, content);
+  }
+
+  /// The <model>, <light> or <world> of the file; each file is read once.
+  Result<Xml> content_of(const Xml& include, const Xml& uri, const std::string& path) {
     const std::string canonical = canonical_path(path);
     if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
-      return uri->error("'" + uri->text + "' includes itself", "");
-    if (open_.size() >= max_depth) return uri->error("files are included more than 16 deep");
+      return uri.error("'" + uri.text.substr(0, 160) + "' includes itself", "");
+    if (open_.size() >= max_depth) return uri.error("files are included more than 16 deep");
     auto cached = files_.find(canonical);
     if (cached == files_.end()) {
       auto text = read_text_file(path, options_.limits.max_bytes);
-      if (!text) return uri->error("cannot include '" + path + "': " + text.error().what, text.error().fix);
+      if (!text) return uri.error("cannot include '" + path + "': " + text.error().what, text.error().fix);
       SL_ASSIGN(Xml root, load(*text, path));
-      SL_ASSIGN(Xml model, only_model(root));
-      const std::size_t size = count_elements(model);
-      cached = files_.emplace(canonical, std::pair(std::move(model), size)).first;
+      SL_ASSIGN(Xml content, only_content(root));
+      const std::size_t size = count_elements(content);
+      cached = files_.emplace(canonical, std::pair(std::move(content), size)).first;
     }
     elements_ += cached->second.second;
     if (elements_ > options_.limits.max_elements)
       return include.error("the included files have too many elements together",
                            "at most " + std::to_string(options_.limits.max_elements) + " are read");
-    Xml model = cached->second.first;
-    if (const Xml* name = include.child("name")) model.set_attribute("name", name->text);
-    if (const Xml* frame = include.child("placement_frame"))
-      model.set_attribute("placement_frame", frame->text);
-    for (const char* const key : {"pose", "static"}) {
-      const Xml* const given = include.child(key);
-      if (!given) continue;
-      std::erase_if(model.children, [&](const Xml& child) { return child.name == key; });
-      model.children.push_back(*given);
-    }
-    for (const Xml& child : include.children)
-      if (child.name == "plugin") model.children.push_back(child);
-    // Complaints about the instance (its name, its pose) belong to the line that asks for it.
-    model.place = include.place;
-    return model;
+    return cached->second.first;
   }
 
-  Result<Xml> only_model(const Xml& root) {
-    const Xml* model = nullptr;
+  Result<Xml> only_content(const Xml& root) {
+    const Xml* content = nullptr;
     for (const Xml& child : root.children) {
-      if (child.name != "model") continue;
-      if (model) return child.error("an included file must hold one model, this is its second one");
-      model = &child;
+      const bool thing = child.name == "model" || child.name == "light" || child.name == "world";
+      if (!thing) continue;
+      if (content)
+        return child.error("an included file must hold one " + content->name + ", this is its second thing");
+      content = &child;
     }
-    if (!model) return root.error("an included file must hold a <model>");
-    return *model;
+    if (!content) return root.error("an included file must hold a <model>");
+    return *content;
+  }
+
+  /// What stands in an included world stands in the one that includes it; its sky, physics and plugins do not.
+  Result<std::vector<Xml>> world(const Xml& include, Xml content, const Xml& parent) {
+    if (parent.name != "world")
+      return include.error("a <model> cannot include a world", "include it in a <world>");
+    for (const char* const key : {"pose", "name", "static", "placement_frame"})
+      if (const Xml* const given = include.child(key))
+        return given->error("an included world has no <" + std::string(key) + ">",
+                            "what is in it keeps its place and name");
+    std::vector<Xml> out;
+    for (Xml& child : content.children) {
+      const bool thing = child.name == "model" || child.name == "light" || child.name == "frame" ||
+                         child.name == "joint";
+      if (thing) out.push_back(std::move(child));
+    }
+    return out;
   }
 
   Result<std::string> find(const Xml& uri, const std::string& folder) {

@@ -9,6 +9,18 @@
 
 namespace sandlot::formats {
 
+/// The minor number of version "1.x" of an <sdf> element; a warning for those that are not wholly understood.
+Result<int> version_of(const Xml& root, Notes& notes);
+/// Rewrites what version 1.`minor` says differently from 1.9. The changes are those of libsdformat's *.convert files.
+void modernise(Xml& element, int minor);
+
+/// Makes an <actor> a <model> with the attribute `sandlot:actor`; one without a link gets a capsule the size of a person.
+void stand_in_for_actor(Xml& actor);
+
+/// The elements that take the place of an `<include merge="true">`: those of `model`, in the frame and under the proxy
+/// frame that SDF 1.9 prescribes.
+Result<std::vector<Xml>> merged(const Xml& include, const Xml& model);
+
 /// The <sdf> element of `text`, includes resolved.
 /// Search   formats/resources.h
 Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes,

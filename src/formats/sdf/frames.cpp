@@ -19,12 +19,14 @@ std::string get(const Xml* element, const char* key) {
 /// A world or model with the things in it that have a frame: links, joints, frames, models.
 struct Scope {
   explicit Scope(const Xml& element_) : element(&element_) {
-    for (const Xml& child : element->children) {
-      if (child.name != "link" && child.name != "joint" && child.name != "frame" && child.name != "model")
-        continue;
-      members.emplace(*child.attribute("name"), &child);
+    // A joint may have the name of a link, which is then the one that is meant.
+    for (const bool joints : {false, true})
+      for (const Xml& child : element->children)
+        if (joints ? child.name == "joint"
+                   : child.name == "link" || child.name == "frame" || child.name == "model")
+          members.emplace(*child.attribute("name"), &child);
+    for (const Xml& child : element->children)
       if (child.name == "model") models.emplace(&child, std::make_unique<Scope>(child));
-    }
     canonical = get(element, "canonical_link");
     for (const char* const kind : {"link", "model"})
       if (const Xml* const first = element->child(kind); first && canonical.empty())
@@ -42,19 +44,29 @@ struct Entity {
   const Xml* element;
 };
 
-/// The members that a name passes through: `a::b` is model a, then its member b. Empty for the scope's own frame.
+bool walk(const Scope& scope, std::string_view name, std::vector<Entity>& path) {
+  if (name.empty() || name == "__model__" || name == "world" || name == "__root__") return true;
+  if (const auto found = scope.members.find(name); found != scope.members.end()) {
+    path.push_back({&scope, found->second});
+    return true;
+  }
+  for (std::size_t at = name.rfind("::"); at != std::string_view::npos && at > 0;
+       at = name.rfind("::", at - 1)) {
+    const auto found = scope.members.find(name.substr(0, at));
+    const auto model = found == scope.members.end() ? scope.models.end() : scope.models.find(found->second);
+    if (model == scope.models.end()) continue;
+    path.push_back({&scope, found->second});
+    if (walk(*model->second, name.substr(at + 2), path)) return true;
+    path.pop_back();
+  }
+  return false;
+}
+
+/// The members that a name passes through: `a::b` is a member of that name, else model a, then its member b. Empty for
+/// the scope's own frame.
 std::vector<Entity> path_of(const Scope& scope, std::string_view name) {
   std::vector<Entity> path;
-  const Scope* at = &scope;
-  while (at && !name.empty()) {
-    const std::size_t end = name.find("::");
-    const auto found = at->members.find(name.substr(0, end));
-    if (found == at->members.end()) break;  // __model__, world, __root__: the scope itself
-    path.push_back({at, found->second});
-    name = end == std::string_view::npos ? "" : name.substr(end + 2);
-    const auto model = at->models.find(found->second);
-    at = model == at->models.end() ? nullptr : model->second.get();
-  }
+  if (!walk(scope, name, path)) path.clear();
   return path;
 }
 
@@ -88,6 +100,10 @@ class Resolver {
       } else if (child.name == "model") {
         if (moved || !get(&child, "placement_frame").empty()) SL_TRY(place(entity));
         SL_TRY(resolve(*scope.models.at(&child)));
+      } else if (child.name == "light" && moved) {
+        SL_ASSIGN(const Pose X_SR, pose_of(scope, get(child.child("pose"), "relative_to")));
+        SL_ASSIGN(const Pose X_RP, read_child_pose(child));
+        out.poses[&child] = X_SR * X_RP;
       }
     }
     return {};
@@ -100,10 +116,11 @@ class Resolver {
     return {};
   }
 
-  /// Collisions, visuals and sensors of a link or joint.
+  /// Collisions, visuals, sensors and lights of a link or joint.
   Status resolve_parts(const Entity& owner) {
     for (const Xml& part : owner.element->children) {
-      if (part.name != "collision" && part.name != "visual" && part.name != "sensor") continue;
+      if (part.name != "collision" && part.name != "visual" && part.name != "sensor" && part.name != "light")
+        continue;
       const std::string relative = get(part.child("pose"), "relative_to");
       if (relative.empty()) continue;
       SL_ASSIGN(const Pose X_SO, pose_in_scope(owner));
@@ -128,9 +145,11 @@ class Resolver {
       SL_ASSIGN(const Pose X_SJ, pose_in_scope(joint));
       out.poses[&element] = inverse(X_SC) * X_SJ;
     }
-    const Xml* const axis = element.child("axis");
-    const Xml* const xyz = axis ? axis->child("xyz") : nullptr;
-    if (const std::string frame = get(xyz, "expressed_in"); !frame.empty()) {
+    for (const char* const key : {"axis", "axis2"}) {
+      const Xml* const axis = element.child(key);
+      const Xml* const xyz = axis ? axis->child("xyz") : nullptr;
+      const std::string frame = get(xyz, "expressed_in");
+      if (frame.empty()) continue;
       SL_ASSIGN(const Pose X_SJ, pose_in_scope(joint));
       SL_ASSIGN(const Pose X_SE, pose_of(scope, frame));
       SL_ASSIGN(const Vec3 direction, read_vec3(*xyz, position_range));
@@ -193,23 +212,23 @@ class Resolver {
     std::vector<const Xml*> walked;
     std::string rest = name, body;
     for (;;) {
-      const std::size_t end = rest.find("::");
-      const auto found = scope.members.find(rest.substr(0, end));
-      if (found == scope.members.end()) {
+      const std::vector<Entity> path = path_of(scope, rest);
+      if (path.empty()) {
         if (scope.element->name == "world") body = "world";
         if (scope.element->name == "world" || scope.canonical.empty()) break;
         rest = scope.canonical;
         continue;
       }
-      const Xml& element = *found->second;
+      const Xml& element = *path.front().element;
+      const std::string& own = *element.attribute("name");
       if (element.name == "model") {
-        const std::string inner = body_of(*scope.models.at(&element),
-                                          end == std::string::npos ? "" : rest.substr(end + 2));
-        body = inner.empty() ? "" : found->first + "::" + inner;
+        const std::string inner = path.size() > 1 ? body_of(*path[1].scope, name_from(path, 1))
+                                                  : body_of(*scope.models.at(&element), "");
+        body = inner.empty() ? "" : own + "::" + inner;
         break;
       }
       if (element.name == "link") {
-        body = found->first;
+        body = own;
         break;
       }
       if (const auto known = bodies_.find(&element); known != bodies_.end()) {
@@ -221,6 +240,12 @@ class Resolver {
     }
     for (const Xml* const each : walked) bodies_.emplace(each, body);
     return body;
+  }
+  static std::string name_from(const std::vector<Entity>& path, std::size_t first) {
+    std::string name;
+    for (std::size_t i = first; i < path.size(); ++i)
+      name += (i > first ? "::" : "") + *path[i].element->attribute("name");
+    return name;
   }
 
   std::unordered_map<const Xml*, Pose> known_;

@@ -20,11 +20,10 @@ Result<std::string> name_of(const Xml& element) {
   const bool reserved = *name == "world" || (name->size() >= 4 && starts_with(*name, "__") &&
                                              name->substr(name->size() - 2) == "__");
   if (reserved) return element.error("the name '" + *name + "' is reserved by SDF", "take another one");
-  if (name->find("::") != std::string::npos)
-    return element.error("the name '" + *name + "' holds '::'",
-                         "SDF keeps it for things in nested models; take another name");
   return *name;
 }
+
+constexpr std::size_t max_reference = 8000;  ///< thirty names of 200 characters with what joins them
 
 /// What a world or model can refer to: its links, joints, frames, models by name.
 class Scope {
@@ -35,7 +34,11 @@ class Scope {
       if (!is_one_of(child.name, {"link", "joint", "frame", "model"})) continue;
       SL_ASSIGN(std::string name, name_of(child));
       const auto [known, fresh] = scope.members_.emplace(std::move(name), Member{&child});
-      if (!fresh)
+      if (fresh) continue;
+      const std::string& other = known->second.element->name;
+      // A link and a joint of one name are common: where a frame is named, the link is meant.
+      if (other == "joint" && child.name == "link") known->second.element = &child;
+      else if (!(other == "link" && child.name == "joint"))
         return child.error("the name '" + known->first + "' is given twice in " + said(element),
                            "the other one is the <" + known->second.element->name + "> in " +
                                where(*known->second.element, child));
@@ -56,6 +59,13 @@ class Scope {
     int state = 0;  ///< of the search for circles: 0 new, 1 on the way, 2 done
   };
   std::map<std::string, Member>& members() { return members_; }
+  /// The member that a name is or leads through; null for the scope's own frame.
+  Member* member(const std::string& name) {
+    for (std::size_t end = name.size(); end != std::string::npos && end > 0; end = name.rfind("::", end - 1))
+      if (const auto found = members_.find(name.substr(0, end)); found != members_.end())
+        return &found->second;
+    return nullptr;
+  }
   const Xml* find(const std::string& name) const {
     const auto found = members_.find(name);
     return found == members_.end() ? nullptr : found->second.element;
@@ -127,22 +137,22 @@ class Checker {
     return &scopes_.emplace(&element, std::move(scope)).first->second;
   }
 
-  /// What `a::b::c` means in a scope: each part but the last is a nested model. Null when there is no such thing; the
-  /// element itself for its own frame.
+  /// What `a::b::c` means in a scope: a member, or what is called `c` in the model `a::b`, or `b::c` in the model `a`:
+  /// files that flattened their nested models have names with '::'. Null when there is no such thing; the element itself
+  /// for its own frame. Each nested model is entered once at most, as the name is used up on the way to it.
   const Xml* find(const Xml& element, const std::string& name) {
-    const Xml* at = &element;
-    for (std::size_t from = 0;;) {
-      const std::size_t to = name.find("::", from);
-      const std::string part = name.substr(from, to == std::string::npos ? to : to - from);
-      const auto scope = scope_of(*at);
-      if (!scope) return nullptr;
-      const bool own = part == (at->name == "world" ? "world" : "__model__");
-      const Xml* const found = own ? at : (*scope)->find(part);
-      if (!found || to == std::string::npos) return found;
-      if (own || found->name != "model") return nullptr;
-      at = found;
-      from = to + 2;
+    if (name.size() > max_reference) return nullptr;
+    if (name == (element.name == "world" ? "world" : "__model__")) return &element;
+    const auto scope = scope_of(element);
+    if (!scope) return nullptr;
+    if (const Xml* const found = (*scope)->find(name)) return found;
+    for (std::size_t at = name.rfind("::"); at != std::string::npos && at > 0;
+         at = name.rfind("::", at - 1)) {
+      const Xml* const outer = (*scope)->find(name.substr(0, at));
+      if (!outer || outer->name != "model") continue;
+      if (const Xml* const found = find(*outer, name.substr(at + 2))) return found;
     }
+    return nullptr;
   }
   bool is_link(const Xml& model, const std::string& name) {
     const Xml* const found = find(model, name);
@@ -193,23 +203,23 @@ class Checker {
                                 "' in " + Scope::said(model),
                             suggestion(name, links));
     }
-    if (const Xml* axis = joint.child("axis"))
-      if (const Xml* xyz = axis->child("xyz")) SL_TRY(check_reference(*xyz, "expressed_in", model, scope));
+    for (const char* const key : {"axis", "axis2"})
+      if (const Xml* axis = joint.child(key))
+        if (const Xml* xyz = axis->child("xyz")) SL_TRY(check_reference(*xyz, "expressed_in", model, scope));
     SL_TRY(check_unique(joint, "sensor"));
     return {};
   }
 
-  /// What the pose of a member, or what it is fixed to, starts from: the name of another member or "".
+  /// What the pose of a member, or what it is fixed to, starts from: a name in its scope or "".
   static std::string origin_of(const Xml& element, bool attachment) {
     const auto attribute = [](const Xml* holder, const char* key) -> std::string {
       const std::string* const value = holder ? holder->attribute(key) : nullptr;
-      return value ? value->substr(0, value->find("::")) : "";
+      return value ? *value : "";
     };
     if (attachment)
-      return element.name == "frame" ? attribute(&element, "attached_to")
-             : element.name == "joint" && element.child("child")
-                 ? element.child("child")->text.substr(0, element.child("child")->text.find("::"))
-                 : "";
+      return element.name == "frame"                             ? attribute(&element, "attached_to")
+             : element.name == "joint" && element.child("child") ? element.child("child")->text
+                                                                 : "";
     std::string relative = attribute(element.child("pose"), "relative_to");
     if (relative.empty()) relative = origin_of(element, true);
     return relative;
@@ -226,8 +236,7 @@ class Checker {
           at->state = 1;
           walked.push_back(at);
           const std::string origin = origin_of(*at->element, attachment);
-          const auto next = origin.empty() ? scope.members().end() : scope.members().find(origin);
-          at = next == scope.members().end() ? nullptr : &next->second;
+          at = scope.member(origin);
         }
         if (at && at->state == 1) {
           const Xml* const pose = at->element->child("pose");

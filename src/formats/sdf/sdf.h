@@ -1,5 +1,5 @@
 #pragma once
-/// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning).
+/// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning), and URDF robots (formats/sdf/urdf.h).
 ///
 /// Each file is taken through four checks: limits on the raw text, well-formedness (tinyxml2), names and references,
 /// and each value as it is read; so every complaint has the line that caused it.
@@ -15,12 +15,13 @@
 ///          sandlot:device are its children as keys, lists written `[1, 2]`.
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
 /// Limits   boxes, spheres, cylinders, capsules, planes; other geometry is left out with a warning. Joints: fixed,
-///          revolute, continuous, prismatic, ball. No merge includes, no URDF, no downloads, no actors. Names with
+///          revolute, continuous, prismatic, ball. No merge includes, no downloads, no actors. Names with
 ///          '::' (worlds saved by old Gazebo versions) are refused.
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "formats/assets.h"
 #include "formats/resources.h"
 #include "formats/xml.h"
 #include "model/model.h"
@@ -30,15 +31,22 @@ namespace sandlot::formats {
 struct SdfContent {
   std::string world_name;  ///< "" for a model file
   Vec3 gravity_mps2{0, 0, -9.81};
+  Place gravity_place;
   std::optional<double> max_step_s;  ///< <physics><max_step_size>
   std::vector<model::Instance>
       instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>
   std::vector<model::Light> lights;
+  Node physics;  ///< keys for `physics:` of the engine rigid; null when the file has none
+  Color ambient = model::Setup().ambient, background = model::Setup().background;
+  std::optional<model::Geography> geography;
+  Vec3 magnetic_field_T = model::Setup().magnetic_field_T;
 };
 
 struct SdfOptions {
   XmlLimits limits;
   SearchPath path = search_path();
+  AssetReader assets = {};    ///< without them meshes and heightmaps are left out, with a warning
+  bool skip_missing = false;  ///< what a file names and nobody has is left out with a warning, not an error
 };
 
 Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics,

@@ -8,7 +8,8 @@
 namespace sandlot::formats {
 namespace {
 
-constexpr std::size_t max_warnings = 200;
+constexpr std::size_t max_causes = 200;
+constexpr std::size_t max_places = 100'000;
 
 bool listed(std::string_view names, std::string_view name, bool* several) {
   for (const std::string_view each : split(names, ' ')) {
@@ -59,12 +60,31 @@ Error not_numbers(const Xml& element, const char* wanted) {
 
 }  // namespace
 
-void Notes::warn(const Xml& element, std::string what, std::string fix) {
+Notes::~Notes() {
+  for (const auto& [key, cause] : causes_) {
+    Error& first = diagnostics_.warnings[cause.index];
+    if (cause.more > 0)
+      (first.fix.empty() ? first.what : first.fix) += " (and " + std::to_string(cause.more) +
+                                                      " more like it)";
+  }
+}
+
+void Notes::warn(const Xml& element, std::string what, std::string fix, const std::string& cause) {
   // An included model stands in the world many times, but its lines are the same.
-  if (said_.size() > max_warnings) return;
+  if (places_ > max_places) return;
   if (!said_.emplace(to_string(element.place) + what, element.place.line).second) return;
-  if (said_.size() > max_warnings) diagnostics_.warn({"further warnings are left out", "", element.place});
-  else diagnostics_.warn(element.error(std::move(what), std::move(fix)));
+  ++places_;
+  const std::string file = element.place.file ? *element.place.file : "";
+  const std::string key = file + '\n' + (cause.empty() ? what + '\n' + fix : cause);
+  if (const auto known = causes_.find(key); known != causes_.end()) {
+    ++known->second.more;
+  } else if (causes_.size() < max_causes) {
+    causes_.emplace(key, Cause{diagnostics_.warnings.size()});
+    diagnostics_.warn(element.error(std::move(what), std::move(fix)));
+  } else {
+    diagnostics_.warn({"further warnings are left out", "", element.place});
+    places_ = max_places + 1;
+  }
 }
 
 void Notes::unused(const Xml& element, std::string_view used, std::string_view silent) {
@@ -100,6 +120,14 @@ Result<Vec3> read_vec3(const Xml& element, Range range) {
   if (!read_numbers(element.text, v, n) || n != 3) return not_numbers(element, "three numbers");
   for (const double x : v) SL_TRY(in_range(element, x, range));
   return Vec3{v[0], v[1], v[2]};
+}
+
+Result<std::array<double, 2>> read_point(const Xml& element, Range range) {
+  std::array<double, 2> v{};
+  std::size_t n = 0;
+  if (!read_numbers(element.text, v, n) || n != 2) return not_numbers(element, "two numbers");
+  for (const double x : v) SL_TRY(in_range(element, x, range));
+  return v;
 }
 
 Result<Color> read_color(const Xml& element) {
@@ -147,6 +175,16 @@ Status read_child(const Xml& parent, const char* key, bool& out) {
 
 Status read_child(const Xml& parent, const char* key, Range range, Vec3& out) {
   if (const Xml* const child = parent.child(key)) { SL_ASSIGN(out, read_vec3(*child, range)); }
+  return {};
+}
+
+Status read_capped(const Xml& parent, const char* key, Range range, double& out) {
+  const Xml* const child = parent.child(key);
+  if (!child) return {};
+  double x = 0;
+  if (parse_number(child->text, x) && !std::isnan(x) && (x > range.max || (x < range.min && range.min < 0)))
+    return out = x > 0 ? range.max : range.min, Status();
+  SL_ASSIGN(out, read_double(*child, range));
   return {};
 }
 

@@ -28,22 +28,37 @@ bool has_size(const Shape& shape) {
     bool operator()(const Ellipsoid& e) const {
       return positive(e.radii_m.x) && positive(e.radii_m.y) && positive(e.radii_m.z);
     }
-    bool operator()(const Mesh& m) const { return m.mesh && !m.mesh->triangles.empty(); }
-    bool operator()(const Heightfield& h) const { return h.grid && h.grid->columns > 1 && h.grid->rows > 1; }
+    bool operator()(const Mesh& m) const {
+      if (!m.mesh || m.mesh->triangles.empty()) return false;
+      const auto& corners = m.mesh->vertices;
+      return std::all_of(corners.begin(), corners.end(), [](Vec3 v) { return norm(v) < 1e12; }) &&
+             std::all_of(m.mesh->triangles.begin(), m.mesh->triangles.end(), [&](const auto& t) {
+               return std::max({t[0], t[1], t[2]}) < corners.size();
+             });
+    }
+    bool operator()(const Heightfield& h) const {
+      return h.grid && h.grid->columns > 1 && h.grid->rows > 1 && positive(h.grid->size_x_m) &&
+             positive(h.grid->size_y_m) &&
+             h.grid->height_m.size() ==
+                 static_cast<std::size_t>(h.grid->columns) * static_cast<std::size_t>(h.grid->rows) &&
+             std::all_of(h.grid->height_m.begin(), h.grid->height_m.end(),
+                         [](float z) { return std::abs(z) < 1e9f; });
+    }
   } visitor;
   return std::visit(visitor, shape);
 }
 
 struct MakeGeom {
+  const Triangles* triangles;
+
   dGeomID operator()(const Box& b) const { return dCreateBox(nullptr, b.size_m.x, b.size_m.y, b.size_m.z); }
   dGeomID operator()(const Sphere& s) const { return dCreateSphere(nullptr, s.radius_m); }
   dGeomID operator()(const Cylinder& c) const { return dCreateCylinder(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Capsule& c) const { return dCreateCapsule(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Plane&) const { return dCreatePlane(nullptr, 0, 0, 1, 0); }
-  template <class Other>
-  dGeomID operator()(const Other&) const {
-    SL_CHECK_MSG(false, "check() refused this shape");
-    return nullptr;
+  template <class OfTriangles>
+  dGeomID operator()(const OfTriangles&) const {
+    return triangles->make_geom();
   }
 };
 
@@ -76,9 +91,6 @@ Status RigidEngine::check(const model::Instance& instance) const {
       if (!has_size(c.shape) || !is_finite(c.X_LC))
         return Error{"collision '" + c.name + "' has no valid size or pose", "sizes are positive numbers [m]",
                      c.place};
-      if (c.shape.index() > Shape(Plane{}).index())
-        return Error{std::string("the engine 'rigid' has no shape '") + shape_name(c.shape) + "' yet", "",
-                     c.place};
     }
   }
   for (const model::Joint& joint : model.joints) {
@@ -110,8 +122,9 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   for (const Lump& lump : lumps.lumps)
     for (const std::uint32_t l : lump.links)
       for (const model::Collision& c : model.links[l].collisions)
-        if (!lump.fixed && std::holds_alternative<Plane>(c.shape))
-          return Error{"collision '" + c.name + "' is a plane on a body that moves",
+        if (!lump.fixed &&
+            (std::holds_alternative<Plane>(c.shape) || std::holds_alternative<Heightfield>(c.shape)))
+          return Error{"collision '" + c.name + "' is a " + shape_name(c.shape) + " on a body that moves",
                        "make the model static, or use a box", c.place};
 
   const std::uint32_t slot = take_slot(free_instances_, slots_.size());
@@ -214,7 +227,9 @@ void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
       geom.decl = &c;
       geom.serial = next_serial_++;
       geom.link = instance.link_ids[l];
-      geom.ode = std::visit(MakeGeom{}, c.shape);
+      geom.triangles = triangles_.of(c);
+      geom.size_m = bounding_radius_m(c.shape);
+      geom.ode = std::visit(MakeGeom{geom.triangles.get()}, c.shape);
       dGeomSetData(geom.ode, &geom);
       dGeomSetCategoryBits(geom.ode, geom.body ? moving_bit : standing_bit);
       dGeomSetCollideBits(geom.ode, geom.body ? moving_bit | standing_bit : moving_bit);

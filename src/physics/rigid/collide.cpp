@@ -42,16 +42,64 @@ void RigidEngine::see_pair(Geom* a, Geom* b) {
   (is_awake(*a) || is_awake(*b) ? pairs_ : dormant_).push_back({a->serial, b->serial, a, b});
 }
 
+/// Points of each in the other; ODE's normals point into the first.
+int RigidEngine::collide_meshes(const Pair& pair) {
+  constexpr std::size_t most_of_static = 4000;
+  std::size_t count = 0;
+  const auto ask = [&](const Geom& whose, const Geom& other) {
+    const std::span<const Sample> samples = whose.triangles->samples();
+    if (!whose.body && samples.size() > most_of_static) return count;
+    const std::span<dContactGeom> rest = std::span(points_).subspan(count);
+    const auto* field = std::get_if<Heightfield>(&other.decl->shape);
+    const int found = field ? collide_samples(samples, whose.pose(), *field->grid, other.pose(), rest)
+                            : collide_samples(samples, whose.pose(), ray_, other.ode, rest);
+    count += static_cast<std::size_t>(found);
+    return count;
+  };
+  const std::size_t of_a = ask(*pair.a, *pair.b), all = ask(*pair.b, *pair.a);
+  for (std::size_t i = of_a; i < all; ++i)
+    for (dReal& x : points_[i].normal) x = -x;
+  return static_cast<int>(all);
+}
+
+/// Contacts of shapes that are triangles to ODE.
+int RigidEngine::collide_triangles(const Pair& pair, Hit* found) {
+  constexpr std::size_t most = 512;
+  points_.resize(most);
+  const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
+  const bool plane_a = std::holds_alternative<Plane>(a), plane_b = std::holds_alternative<Plane>(b);
+  int n = 0;
+  if ((plane_a && meets_planes_exactly(b)) || (plane_b && meets_planes_exactly(a))) {
+    dVector4 plane;
+    dGeomPlaneGetParams(plane_a ? pair.a->ode : pair.b->ode, plane);
+    const Geom& round = plane_a ? *pair.b : *pair.a;
+    n = collide_with_plane(round.decl->shape, round.pose(), vec(plane), plane[3], points_);
+    if (plane_a)
+      for (int i = 0; i < n; ++i)
+        for (dReal& x : points_[static_cast<std::size_t>(i)].normal) x = -x;
+  } else if (pair.a->triangles && pair.b->triangles) {
+    n = collide_meshes(pair);
+  } else {
+    n = dCollide(pair.a->ode, pair.b->ode, static_cast<int>(most), points_.data(), sizeof(dContactGeom));
+  }
+  n = reduce_contacts(std::span(points_).first(static_cast<std::size_t>(n)), spec_.max_contacts,
+                      std::min(pair.a->size_m, pair.b->size_m));
+  for (int i = 0; i < n; ++i) found[i].contact.geom = points_[static_cast<std::size_t>(i)];
+  return n;
+}
+
 /// Finds contact points and wakes whom an awake body touches.
 void RigidEngine::collide_pair(const Pair& pair) {
   const std::size_t most = hit_count_ + static_cast<std::size_t>(spec_.max_contacts);
   if (hit_buffer_.size() < most) hit_buffer_.resize(2 * most);
   Hit* const found = &hit_buffer_[hit_count_];
   const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
-  const int n = is_round_pair(a, b) ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
-                                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
-                                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts,
-                                               &found->contact.geom, sizeof(Hit));
+  const int n = pair.a->triangles || pair.b->triangles ? collide_triangles(pair, found)
+                : is_round_pair(a, b)
+                    ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
+                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
+                    : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, &found->contact.geom,
+                               sizeof(Hit));
   for (int i = 0; i < n; ++i) {
     found[i].a = pair.a;
     found[i].b = pair.b;

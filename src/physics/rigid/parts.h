@@ -12,6 +12,7 @@
 
 #include "physics/engine.h"
 #include "physics/rigid/lump.h"
+#include "physics/rigid/triangles.h"
 
 namespace sandlot::rigid {
 
@@ -53,7 +54,9 @@ struct Geom {
   const model::Collision* decl = nullptr;
   std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
   BodyId link;
-  Pose X_BC;  ///< in W where body is null
+  Pose X_BC;                                   ///< in W where body is null
+  std::shared_ptr<const Triangles> triangles;  ///< null for shapes that ODE has itself
+  double size_m = 0;                           ///< radius about C's origin; infinite for planes
 
   Pose pose() const { return body ? body->pose() * X_BC : X_BC; }
 };

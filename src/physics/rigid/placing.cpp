@@ -71,7 +71,8 @@ void RigidEngine::place_static_geoms(Instance& instance) {
       dGeomPlaneSetParams(geom.ode, n.x, n.y, n.z, dot(n, X.p));
     } else {
       dGeomSetPosition(geom.ode, X.p.x, X.p.y, X.p.z);
-      const dQuaternion q = {X.q.w, X.q.x, X.q.y, X.q.z};
+      const Quat q_WO = geom.triangles ? X.q * geom.triangles->q_CO() : X.q;
+      const dQuaternion q = {q_WO.w, q_WO.x, q_WO.y, q_WO.z};
       dGeomSetQuaternion(geom.ode, q);
     }
   }

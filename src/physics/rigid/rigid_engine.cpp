@@ -26,10 +26,13 @@ RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gra
   space_ = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
   dSpaceSetCleanup(space_, 0);
   contact_joints_ = dJointGroupCreate(0);
+  ray_ = dCreateRay(nullptr, 1);
+  dGeomRaySetClosestHit(ray_, 1);
 }
 
 RigidEngine::~RigidEngine() {
   dJointGroupDestroy(contact_joints_);
+  dGeomDestroy(ray_);
   for (Instance* instance : order_) destroy(*instance);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
@@ -131,12 +134,14 @@ void RigidEngine::overlaps(std::span<const OverlapQuery> queries, std::vector<st
     for (std::uint32_t index = 0; index < link_slots_.size(); ++index) {
       const LinkSlot& slot = link_slots_[index];
       if (!slot.instance) continue;
-      for (const model::Collision& c : slot.instance->model->links[slot.link].collisions) {
+      for (const Geom& geom : slot.instance->geoms) {
+        if (geom.link.index != index) continue;
+        const model::Collision& c = *geom.decl;
         const Pose X_WC = states_[index].X_WB * c.X_LC;
-        const double reach = query.radius_m + bounding_radius_m(c.shape);
+        const double reach = query.radius_m + geom.size_m;
         const Vec3 apart = query.centre_W - X_WC.p;
         if (dot(apart, apart) > reach * reach) continue;
-        if (distance_m(c.shape, rotate_inverse(X_WC.q, apart)) > query.radius_m) continue;
+        if (distance_m(c.shape, rotate_inverse(X_WC.q, apart), query.radius_m) > query.radius_m) continue;
         out.push_back(index);
         break;
       }

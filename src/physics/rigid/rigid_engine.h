@@ -4,10 +4,11 @@
 /// Frame    W: z up where gravity points down; everything in SI.
 /// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
 ///          exact rotation of the new angular velocity, spin about the own joint axis first.
-/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h.
+/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h; meshes,
+///          terrain, cones and ellipsoids: see triangles.h.
 /// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
 ///          sub-step builds what ODE needs from that State, so that a restored run continues with the same bits.
-/// Limits   no meshes, height fields or rollers; planes are static; no continuous collision: a body faster than its
+/// Limits   no rollers; planes and terrain are static; no continuous collision: a body faster than its
 ///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
 /// Cost     direct solver cubic, quick solver linear in the contacts of an island.
 /// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() tells.
@@ -102,6 +103,8 @@ class RigidEngine final : public Engine {
   void collide();
   void see_pair(Geom* a, Geom* b);
   void collide_pair(const Pair& pair);
+  int collide_triangles(const Pair& pair, Hit* found);
+  int collide_meshes(const Pair& pair);
   void collide_self(Instance& instance);
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
@@ -136,6 +139,7 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> free_instances_, free_links_, free_joints_;
   std::uint64_t next_serial_ = 1;
 
+  TriangleStore triangles_;
   std::vector<BodyState> states_;
   std::vector<JointState> joint_states_;
   std::vector<Contact> contacts_;
@@ -145,7 +149,9 @@ class RigidEngine final : public Engine {
 
   // Scratch of one sub-step; kept for its capacity.
   std::vector<Pair> pairs_, dormant_;
-  std::vector<Hit> hit_buffer_;  ///< never shrinks: clearing 300 bytes per possible point would show
+  std::vector<dContactGeom> points_;  ///< of one pair, before they are thinned out
+  dGeomID ray_ = nullptr;             ///< in no space; for pairs of meshes
+  std::vector<Hit> hit_buffer_;       ///< never shrinks: clearing 300 bytes per possible point would show
   std::size_t hit_count_ = 0;
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;

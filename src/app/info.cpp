@@ -1,0 +1,64 @@
+#include "app/info.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+
+namespace sandlot::app {
+
+const char* role_of(const model::Instance& instance) {
+  return instance.motion             ? "actor"
+         : instance.is_robot         ? "robot"
+         : instance.model->is_static ? "static"
+                                     : "object";
+}
+
+const char* type_name(model::JointType type) {
+  static constexpr const char* names[] = {"fixed", "revolute",  "continuous", "prismatic",
+                                          "ball",  "universal", "screw"};
+  return names[static_cast<std::size_t>(type)];
+}
+
+const char* type_name(model::Light::Type type) {
+  static constexpr const char* names[] = {"directional", "point", "spot"};
+  return names[static_cast<std::size_t>(type)];
+}
+
+Overview overview_of(const Simulation& simulation) {
+  Overview out;
+  for (const model::Instance* instance : simulation.instances()) {
+    const model::Model& model = *instance->model;
+    ++(instance->motion     ? out.actors
+       : instance->is_robot ? out.robots
+       : model.is_static    ? out.statics
+                            : out.objects);
+    for (const model::Link& link : model.links) {
+      if (!model.is_static && !instance->motion) out.moving_mass_kg += link.inertial.mass_kg;
+      for (const model::Collision& collision : link.collisions) {
+        out.bounds.include(bounds_of(collision.shape, instance->X_WM * link.X_ML * collision.X_LC));
+        out.endless_ground = out.endless_ground || std::holds_alternative<Plane>(collision.shape);
+      }
+    }
+  }
+  return out;
+}
+
+int info(const FileOptions& options) {
+  auto many = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    Diagnostics diagnostics;
+    const auto built = build(file, options, diagnostics);
+    if (!built) {
+      print_warnings(diagnostics);
+      return complain(built.error());
+    }
+    if (options.json) many.push_back(info_json(**built, diagnostics));
+    else std::fputs(info_text(file, **built, diagnostics).c_str(), stdout);
+  }
+  // One file gives one object, so that the common case needs no index.
+  if (options.json) std::printf("%s\n", (many.size() == 1 ? many[0] : many).dump(2).c_str());
+  return exit_ok;
+}
+
+}  // namespace sandlot::app

@@ -1,0 +1,87 @@
+#include "controllers/sequence/sequence.h"
+
+#include <cmath>
+
+#include "base/text.h"
+
+namespace sandlot::controllers::sequence {
+namespace {
+
+Result<double> number_of(const Node& node, const std::string& device) {
+  double value = 0;
+  if (!node.is_scalar() || !parse_number(node.text(), value) || !std::isfinite(value))
+    return node.error("the order for '" + device + "' is no number",
+                      "write a number or [forward, left, turn]", "/steps");
+  return value;
+}
+
+Result<Sequence::Order> order_of(const Description& robot, double at_s, const Node::Entry& entry) {
+  const auto at_key = [&](Error error) {
+    error.place = entry.key_place;
+    error.path = "/steps";
+    return error;
+  };
+  if (!entry.value.is_sequence()) {
+    Sequence::Number number;
+    SL_ASSIGN(number.value.data, number_of(entry.value, entry.key));
+    auto to = robot.actuator<msg::Float64>(entry.key);
+    if (!to) return at_key(std::move(to.error()));
+    number.to = *to;
+    return Sequence::Order{at_s, number};
+  }
+  const std::vector<Node>& items = entry.value.items();
+  if (items.empty() || items.size() > 3)
+    return entry.value.error(
+        "the order for '" + entry.key + "' has " + std::to_string(items.size()) + " numbers",
+        "write [forward, left, turn]", "/steps");
+  Sequence::Motion motion;
+  double* const parts[] = {&motion.value.linear.x, &motion.value.linear.y, &motion.value.angular.z};
+  for (std::size_t i = 0; i < items.size(); ++i) { SL_ASSIGN(*parts[i], number_of(items[i], entry.key)); }
+  auto to = robot.actuator<msg::Twist>(entry.key);
+  if (!to) return at_key(std::move(to.error()));
+  motion.to = *to;
+  return Sequence::Order{at_s, motion};
+}
+
+}  // namespace
+
+Status Sequence::init(const Description& robot) {
+  double latest_s = 0;
+  if (!spec.steps.is_sequence()) return wrong_type(spec.steps, "a list of {at, orders}", "/steps");
+  for (const Node& item : spec.steps.items()) {
+    Step each;
+    SL_TRY(read_fields(item, each, "/steps"));
+    if (!each.orders.is_map())
+      return each.orders.error("the orders of a step are a map of devices", "write orders: {device: value}",
+                               "/steps");
+    if (each.at_s < latest_s)
+      return each.orders.error("this step comes before the one above it", "give the steps in order of time",
+                               "/steps");
+    latest_s = each.at_s;
+    for (const Node::Entry& entry : each.orders.entries()) {
+      SL_ASSIGN(Order order, order_of(robot, each.at_s, entry));
+      orders.push_back(order);
+    }
+  }
+  return {};
+}
+
+void Sequence::step(const Observation& obs, Command& cmd) {
+  // Rounds are counted, not measured: time is integer nanoseconds and the length of a round need not be.
+  double into_s = obs.now().s() - static_cast<double>(state.round) * spec.repeat_s;
+  while (spec.repeat_s > 0 && into_s >= spec.repeat_s - 1e-9) {
+    ++state.round;
+    state.next = 0;
+    into_s = obs.now().s() - static_cast<double>(state.round) * spec.repeat_s;
+  }
+  for (; state.next < orders.size() && orders[state.next].at_s <= into_s + 1e-9; ++state.next)
+    std::visit([&](const auto& order) { cmd.set(order.to, order.value); }, orders[state.next].what);
+}
+
+extern const ControllerKind kind;
+constinit const ControllerKind kind = make_controller<Sequence>({
+    .name = "sequence",
+    .help = "Gives orders to joints and drives at set times.",
+});
+
+}  // namespace sandlot::controllers::sequence

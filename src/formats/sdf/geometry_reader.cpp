@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <array>
+
+#include "base/text.h"
+#include "formats/sdf/reading.h"
+#include "geometry/mesh.h"
+
+namespace sandlot::formats {
+namespace {
+
+constexpr const char* what_to_write =
+    "give it a <box>, <sphere>, <cylinder>, <capsule>, <cone>, <ellipsoid>, <plane>, <mesh>, <heightmap> or "
+    "<polyline>";
+
+/// A length that SDF has a default for.
+Result<double> length_of(const Xml& form, const char* key, double standard, const Reading& in) {
+  if (const Xml* const child = form.child(key)) return read_double(*child, size_range);
+  in.notes.warn(form, "<" + form.name + "> has no <" + key + ">", "taken as " + number_text(standard) + " m");
+  return standard;
+}
+Result<Vec3> lengths_of(const Xml& form, const char* key, const Reading& in) {
+  if (const Xml* const child = form.child(key)) return read_vec3(*child, size_range);
+  in.notes.warn(form, "<" + form.name + "> has no <" + key + ">", "taken as 1 1 1 m");
+  return Vec3{1, 1, 1};
+}
+
+/// The shapes that need no file.
+Result<std::optional<Shape>> read_primitive(const Xml& form, const Reading& in) {
+  if (form.name == "box") {
+    in.notes.unused(form, "size");
+    SL_ASSIGN(const Vec3 edges, lengths_of(form, "size", in));
+    return std::optional<Shape>(Box{edges});
+  }
+  if (form.name == "sphere") {
+    in.notes.unused(form, "radius");
+    SL_ASSIGN(const double radius, length_of(form, "radius", 1, in));
+    return std::optional<Shape>(Sphere{radius});
+  }
+  if (form.name == "cylinder" || form.name == "capsule" || form.name == "cone") {
+    in.notes.unused(form, "radius length");
+    SL_ASSIGN(const double radius, length_of(form, "radius", form.name == "cylinder" ? 1 : 0.5, in));
+    SL_ASSIGN(const double length, length_of(form, "length", 1, in));
+    if (form.name == "cylinder") return std::optional<Shape>(Cylinder{radius, length});
+    if (form.name == "capsule") return std::optional<Shape>(Capsule{radius, length});
+    return std::optional<Shape>(Cone{radius, length});
+  }
+  if (form.name == "ellipsoid") {
+    in.notes.unused(form, "radii");
+    SL_ASSIGN(const Vec3 r, lengths_of(form, "radii", in));
+    return std::optional<Shape>(Ellipsoid{r});
+  }
+  if (form.name == "plane") {
+    in.notes.unused(form, "normal size");
+    Vec3 normal{0, 0, 1};
+    SL_TRY(read_child(form, "normal", position_range, normal));
+    if (!(norm(normal) > 1e-6))
+      return form.error("the normal of this <plane> is zero", "write <normal>0 0 1</normal>");
+    return std::optional<Shape>(Plane{normalised(normal)});
+  }
+  return std::optional<Shape>();
+}
+
+Result<std::string> uri_of(const Xml& form) {
+  const Xml* const uri = form.child("uri");
+  if (!uri || uri->text.empty())
+    return form.error("<" + form.name + "> has no <uri>", "name the file: <uri>meshes/body.dae</uri>");
+  return uri->text;
+}
+
+/// What a reader of assets complains about, with the line that asked if it has no place of its own.
+Error blamed(Error error, const Xml& form) {
+  if (!error.place.file) error.place = form.place;
+  return error;
+}
+
+Result<std::vector<Shape>> read_mesh_use(const Xml& form, bool collision, const std::string& said,
+                                         const Reading& in) {
+  in.notes.unused(form, "uri scale submesh", "convex_decomposition");
+  MeshUse use;
+  SL_ASSIGN(const std::string uri, uri_of(form));
+  SL_TRY(read_child(form, "scale", {-1e6, 1e6}, use.scale));
+  if (use.scale.x == 0 || use.scale.y == 0 || use.scale.z == 0)
+    return form.child("scale")->error("a <mesh> cannot have a scale of 0", "write <scale>1 1 1</scale>");
+  if (const Xml* const submesh = form.child("submesh")) {
+    in.notes.unused(*submesh, "name center");
+    if (const Xml* const name = submesh->child("name")) use.submesh = name->text;
+    SL_TRY(read_child(*submesh, "center", use.centre_submesh));
+  }
+  use.purpose = collision ? MeshUse::Purpose::collision : MeshUse::Purpose::visual;
+  if (const std::string* const wanted = form.attribute("optimization")) {
+    if (*wanted == "convex_hull") use.optimization = MeshUse::Optimization::convex_hull;
+    else if (*wanted == "convex_decomposition")
+      use.optimization = MeshUse::Optimization::convex_decomposition;
+    else if (!wanted->empty() && *wanted != "none")
+      return form.error("optimization '" + wanted->substr(0, 40) + "' of a mesh is not known",
+                        "write convex_hull or convex_decomposition");
+  }
+  if (!in.options.assets.mesh) {
+    in.notes.warn(form, "geometry <mesh> is not read here", said + " is left out");
+    return std::vector<Shape>{};
+  }
+  const std::string without = said + " is left out";
+  SL_ASSIGN(const std::optional<std::string> file, in.find(*form.child("uri"), uri, without.c_str()));
+  if (!file) return std::vector<Shape>{};
+  use.file = *file;
+  auto shapes = in.options.assets.mesh(use, in.notes.diagnostics());
+  if (!shapes) return blamed(std::move(shapes.error()), form);
+  return std::move(*shapes);
+}
+
+Result<std::vector<Shape>> read_heightmap_use(const Xml& form, Pose& X_LG, const std::string& said,
+                                              const Reading& in) {
+  in.notes.unused(form, "uri size pos", "texture* blend* use_terrain_paging sampling");
+  HeightmapUse use;
+  SL_ASSIGN(const std::string uri, uri_of(form));
+  SL_TRY(read_child(form, "size", {0, 1e6}, use.size_m));
+  if (!(use.size_m.x > 0 && use.size_m.y > 0))
+    return form.child("size")->error("a <heightmap> needs an extent in x and y",
+                                     "write <size>129 129 10</size>");
+  Vec3 position;
+  SL_TRY(read_child(form, "pos", position_range, position));
+  X_LG = X_LG * Pose{position, {}};
+  if (!in.options.assets.heightmap) {
+    in.notes.warn(form, "geometry <heightmap> is not read here", said + " is left out");
+    return std::vector<Shape>{};
+  }
+  const std::string without = said + " is left out";
+  SL_ASSIGN(const std::optional<std::string> file, in.find(*form.child("uri"), uri, without.c_str()));
+  if (!file) return std::vector<Shape>{};
+  use.file = *file;
+  auto shape = in.options.assets.heightmap(use, in.notes.diagnostics());
+  if (!shape) return blamed(std::move(shape.error()), form);
+  return std::vector<Shape>{std::move(*shape)};
+}
+
+/// Several <polyline>s of one <geometry> are the outline and the holes in it.
+Result<std::vector<Shape>> read_polylines(const Xml& geometry, const Reading& in) {
+  std::vector<std::vector<std::array<double, 2>>> loops;
+  double height_m = 1;
+  const Xml* first = nullptr;
+  for (const Xml& form : geometry.children) {
+    if (form.name != "polyline") continue;
+    in.notes.unused(form, "point* height");
+    if (!first) SL_TRY(read_child(form, "height", size_range, height_m));
+    if (!first) first = &form;
+    std::vector<std::array<double, 2>> loop;
+    for (const Xml& child : form.children) {
+      if (child.name != "point") continue;
+      SL_ASSIGN(const auto point, read_point(child, position_range));
+      loop.push_back(point);
+    }
+    if (loop.size() < 3)
+      return form.error("a <polyline> needs three points at least", "write <point>x y</point>");
+    if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+    loops.push_back(std::move(loop));
+  }
+  auto mesh = std::make_shared<TriangleMesh>(extrude(loops, height_m));
+  if (mesh->triangles.empty())
+    return first->error("this <polyline> bounds no area", "its lines must not cross or touch each other");
+  return std::vector<Shape>{Mesh{std::move(mesh)}};
+}
+
+}  // namespace
+
+Result<std::vector<Shape>> read_shapes(const Xml& owner, Pose& X_LG, const Reading& in) {
+  const Xml* const geometry = owner.child("geometry");
+  const std::string said = "<" + owner.name + "> '" + *owner.attribute("name") + "'";
+  if (!geometry) return owner.error(said + " has no <geometry>", what_to_write);
+  if (geometry->children.empty()) return geometry->error("<geometry> is empty", what_to_write);
+  const Xml& form = geometry->children.front();
+  for (const Xml& second : geometry->children)
+    if (&second != &form && !(second.name == "polyline" && form.name == "polyline"))
+      in.notes.warn(second, "a second shape in one <geometry> is not used");
+  SL_ASSIGN(const std::optional<Shape> primitive, read_primitive(form, in));
+  if (primitive) return std::vector<Shape>{*primitive};
+  if (form.name == "mesh") return read_mesh_use(form, owner.name == "collision", said, in);
+  if (form.name == "heightmap") return read_heightmap_use(form, X_LG, said, in);
+  if (form.name == "polyline") return read_polylines(*geometry, in);
+  static const std::vector<std::string> known{"box",       "sphere", "cylinder",  "capsule",
+                                              "cone",      "plane",  "ellipsoid", "mesh",
+                                              "heightmap", "image",  "polyline",  "empty"};
+  if (std::find(known.begin(), known.end(), form.name) == known.end())
+    return form.error("unknown geometry <" + form.name.substr(0, 60) + ">", suggestion(form.name, known));
+  if (form.name != "empty")
+    in.notes.warn(form, "geometry <" + form.name + "> is not supported", said + " is left out",
+                  "geometry " + form.name);
+  return std::vector<Shape>{};
+}
+
+}  // namespace sandlot::formats

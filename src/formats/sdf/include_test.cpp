@@ -1,0 +1,232 @@
+/// Files that name other files: models, worlds, meshes; merged, moved, missing.
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "base/math.h"
+#include "formats/sdf/sdf.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+
+namespace sandlot::formats {
+namespace {
+
+class SdfFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "sandlot_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name() + "/";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    options_.path = {};
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories(std::filesystem::path(folder_ + name).parent_path());
+    std::ofstream(folder_ + name) << text;
+  }
+  /// A file with one model.
+  void write_model(const std::string& name, const std::string& attributes, const std::string& content) {
+    write(name, "<sdf version='1.9'><model " + attributes + ">\n" + content + "</model></sdf>");
+  }
+  bool read(const std::string& text) {
+    Diagnostics diagnostics;
+    auto result = parse_sdf("<sdf version='1.9'>" + text + "</sdf>", folder_ + "w.sdf", diagnostics,
+                            options_);
+    warnings_.clear();
+    for (const Error& warning : diagnostics.warnings) warnings_.push_back(warning.text());
+    error_ = result ? "" : result.error().text();
+    if (result) content_ = std::move(*result);
+    return error_.empty();
+  }
+  const model::Model& model() const { return *content_.instances.at(0).model; }
+
+  std::string folder_, error_;
+  SdfOptions options_;
+  SdfContent content_;
+  std::vector<std::string> warnings_;
+};
+
+const std::string body =
+    "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>";
+std::string link(const std::string& name, const std::string& content = "") {
+  return "<link name='" + name + "'>" + body + content + "</link>";
+}
+const std::string quarter = "1.5707963267948966";
+
+void expect_pose(const Pose& X, Vec3 p, double yaw) {
+  EXPECT_NEAR(norm(X.p - p), 0, 1e-12) << X.p.x << " " << X.p.y << " " << X.p.z;
+  EXPECT_NEAR(yaw_of(X.q), yaw, 1e-12);
+}
+
+TEST_F(SdfFiles, MergeTakesLinksJointsFramesAndPlugins) {
+  write_model("arm.sdf", "name='arm'",
+              "<pose>9 9 9 0 0 0</pose><static>true</static>" + link("upper", "<pose>1 0 0 0 0 0</pose>") +
+                  link("lower", "<pose relative_to='upper'>1 0 0 0 0 0</pose>") +
+                  "<frame name='tip'><pose>3 0 0 0 0 0</pose></frame>"
+                  "<joint name='elbow' type='revolute'><parent>upper</parent><child>lower</child>"
+                  "<axis><xyz expressed_in='__model__'>0 1 0</xyz></axis></joint>"
+                  "<joint name='foot' type='fixed'><parent>world</parent><child>__model__</child></joint>"
+                  "<plugin name='p' filename='f'/><model name='n'><pose>0 0 1 0 0 0</pose>" +
+                  link("l") + "</model>");
+  ASSERT_TRUE(read("<model name='m'>" + link("base") +
+                   "<include merge='true'><uri>arm.sdf</uri><pose>10 0 0 0 0 " + quarter +
+                   "</pose></include></model>"))
+      << error_;
+  const model::Model& m = model();
+  EXPECT_FALSE(m.is_static) << "static is the including model's own";
+  ASSERT_EQ(m.links.size(), 4u);
+  EXPECT_EQ(m.links[1].name, "upper");
+  expect_pose(m.links[1].X_ML, {10, 1, 0}, math::pi / 2);
+  expect_pose(m.links[2].X_ML, {10, 2, 0}, math::pi / 2);
+  EXPECT_EQ(m.links[3].name, "n::l");
+  expect_pose(m.links[3].X_ML, {10, 0, 1}, math::pi / 2);
+  // The arm's own y, not the including model's.
+  EXPECT_NEAR(m.joints.at(0).axis_J.y, 1, 1e-12);
+  EXPECT_EQ(m.joints.at(1).child, 1u) << "__model__ is the included model, which stands for its first link";
+  ASSERT_EQ(m.frames.size(), 2u);
+  EXPECT_EQ(m.frames[0].name, "_merged__arm__model__");
+  EXPECT_EQ(m.frames[1].link, 1u);
+  expect_pose(m.frames[1].X_LF, {2, 0, 0}, 0);
+  EXPECT_EQ(m.devices.size(), 1u);
+}
+
+TEST_F(SdfFiles, PlacementFramesSayWhatThePoseIsOf) {
+  // The grip is 2 m ahead of the model and looks left. Put at (5, 0, 1) unturned, the model lies 2 m to the left of
+  // that and looks right.
+  write_model("tool.sdf", "name='tool'",
+              link("l") + "<frame name='grip'><pose>2 0 0 0 0 " + quarter + "</pose></frame>");
+  const std::string include =
+      "<uri>tool.sdf</uri><placement_frame>grip</placement_frame>"
+      "<pose relative_to='f'>0 0 1 0 0 0</pose></include>";
+  const std::string frame = "<frame name='f'><pose>5 0 0 0 0 0</pose></frame>";
+  ASSERT_TRUE(read("<world name='w'>" + frame + "<include>" + include + "</world>")) << error_;
+  expect_pose(content_.instances.at(0).X_WM, {5, 2, 1}, -math::pi / 2);
+  ASSERT_TRUE(
+      read("<model name='m'>" + link("base") + frame + "<include merge='true'>" + include + "</model>"))
+      << error_;
+  expect_pose(model().links.at(1).X_ML, {5, 2, 1}, -math::pi / 2);
+  ASSERT_TRUE(
+      read("<model name='m'>" + link("base") + frame + "<include><name>t</name>" + include + "</model>"))
+      << error_;
+  EXPECT_EQ(model().links.at(1).name, "t::l");
+  expect_pose(model().links.at(1).X_ML, {5, 2, 1}, -math::pi / 2);
+}
+
+TEST_F(SdfFiles, NestedStaticModelsAreFixedToTheWorld) {
+  write_model("post.sdf", "name='post'", link("l"));
+  ASSERT_TRUE(read("<model name='m'>" + link("base") +
+                   "<include><uri>post.sdf</uri><static>true</static></include></model>"))
+      << error_;
+  ASSERT_EQ(model().joints.size(), 1u);
+  EXPECT_EQ(model().joints[0].parent, model::world_link);
+  EXPECT_EQ(model().joints[0].child, 1u);
+}
+
+TEST_F(SdfFiles, WorldsLightsAndActorsMayBeIncluded) {
+  write_model("box.sdf", "name='box'", link("l"));
+  write("inner/yard.sdf",
+        "<sdf version='1.9'><world name='yard'><gravity>0 0 -1</gravity>"
+        "<include><uri>../box.sdf</uri><pose>1 0 0 0 0 0</pose></include>"
+        "<light name='sun' type='directional'/></world></sdf>");
+  write("lamp.sdf", "<sdf version='1.9'><light name='lamp' type='point'/></sdf>");
+  write("ann.sdf", "<sdf version='1.9'><actor name='ann'/></sdf>");
+  ASSERT_TRUE(
+      read("<world name='w'><include><uri>inner/yard.sdf</uri></include>"
+           "<include><uri>lamp.sdf</uri><name>l2</name><pose>0 0 4 0 0 0</pose></include>"
+           "<include><uri>ann.sdf</uri><pose>0 3 0 0 0 0</pose></include></world>"))
+      << error_;
+  EXPECT_EQ(content_.gravity_mps2.z, -9.81) << "the world's own";
+  ASSERT_EQ(content_.instances.size(), 2u);
+  EXPECT_EQ(content_.instances[0].X_WM.p.x, 1);
+  EXPECT_EQ(content_.instances[1].motion->keys.at(0).X_WM.p.y, 3);
+  ASSERT_EQ(content_.lights.size(), 2u);
+  EXPECT_EQ(content_.lights[1].name, "l2");
+  EXPECT_EQ(content_.lights[1].X_PLight.p.z, 4);
+}
+
+TEST_F(SdfFiles, FoldersWithOrWithoutConfig) {
+  write_model("a/model.sdf", "name='a'", link("l"));
+  write("b/model.config", "<model><sdf version='1.10'>new.sdf</sdf><sdf version='1.7'>old.sdf</sdf></model>");
+  write_model("b/old.sdf", "name='b'", link("l"));
+  ASSERT_TRUE(read("<world name='w'><include><uri>a</uri></include><include><uri>b</uri></include></world>"))
+      << error_;
+  EXPECT_EQ(content_.instances.at(1).name, "b");
+}
+
+TEST_F(SdfFiles, WhatIsMissingStopsOrIsLeftOut) {
+  const std::string text =
+      "<world name='w'><include><uri>model://gone</uri></include>\n<model name='m'>" +
+      link("l",
+           "<visual name='v'><geometry><mesh><uri>gone.dae</uri></mesh></geometry></visual>"
+           "<visual name='u'><geometry><sphere/></geometry><material><pbr><metal>"
+           "<albedo_map>gone.png</albedo_map></metal></pbr></material></visual>") +
+      "</model><include><uri>https://fuel.gazebosim.org/1.0/Open/models/Far</uri></include></world>";
+  options_.assets.mesh = [](const MeshUse&, Diagnostics&) -> Result<std::vector<Shape>> {
+    ADD_FAILURE() << "a missing mesh was asked for";
+    return std::vector<Shape>{};
+  };
+  EXPECT_FALSE(read(text));
+  EXPECT_NE(error_.find("w.sdf:1: 'model://gone' is not there"), std::string::npos) << error_;
+  options_.skip_missing = true;
+  ASSERT_TRUE(read(text)) << error_;
+  ASSERT_EQ(content_.instances.size(), 1u);
+  ASSERT_EQ(model().links[0].visuals.size(), 1u);
+  EXPECT_EQ(model().links[0].visuals[0].material.texture, "");
+  int missing = 0;
+  for (const std::string& warning : warnings_)
+    if (warning.find("gone") != std::string::npos || warning.find("Far") != std::string::npos) ++missing;
+  EXPECT_EQ(missing, 4);
+}
+
+TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {
+  std::vector<MeshUse> meshes;
+  std::vector<HeightmapUse> heightmaps;
+  const auto triangle = std::make_shared<const TriangleMesh>(
+      TriangleMesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}});
+  options_.assets.mesh = [&](const MeshUse& use, Diagnostics&) -> Result<std::vector<Shape>> {
+    meshes.push_back(use);
+    return std::vector<Shape>(use.optimization == MeshUse::Optimization::none ? 1 : 3, Mesh{triangle});
+  };
+  options_.assets.heightmap = [&](const HeightmapUse& use, Diagnostics&) -> Result<Shape> {
+    heightmaps.push_back(use);
+    if (use.file.find("bad.png") != std::string::npos) return Error{"this is no picture", ""};
+    return Shape{Heightfield{std::make_shared<const HeightGrid>()}};
+  };
+  for (const char* const name : {"part/arm.dae", "part/hill.png", "part/bad.png", "part/skin.png"})
+    write(name, "x");
+  write_model("part/part.sdf", "name='part'", "<static>1</static>" + link("l", R"(
+    <collision name="c"><geometry><mesh optimization="convex_decomposition"><uri>arm.dae</uri><scale>2 2 -2</scale>
+      <submesh><name>hand</name><center>true</center></submesh></mesh></geometry></collision>
+    <visual name="v"><geometry><mesh><uri>arm.dae</uri></mesh></geometry>
+      <material><pbr><metal><albedo_map>skin.png</albedo_map></metal></pbr></material></visual>
+    <collision name="h"><pose>0 0 0 0 0 1.5707963267948966</pose>
+      <geometry><heightmap><uri>hill.png</uri><size>10 20 3</size><pos>1 0 -1</pos></heightmap></geometry></collision>)"));
+  ASSERT_TRUE(read("<world name='w'><include><uri>part/part.sdf</uri></include></world>")) << error_;
+  ASSERT_EQ(meshes.size(), 2u);
+  EXPECT_EQ(meshes[0].file, folder_ + "part/arm.dae") << "beside the file that says so";
+  EXPECT_EQ(meshes[0].scale, (Vec3{2, 2, -2}));
+  EXPECT_EQ(meshes[0].submesh, "hand");
+  EXPECT_TRUE(meshes[0].centre_submesh);
+  EXPECT_EQ(meshes[0].purpose, MeshUse::Purpose::collision);
+  EXPECT_EQ(meshes[1].purpose, MeshUse::Purpose::visual);
+  const model::Link& l = model().links[0];
+  ASSERT_EQ(l.collisions.size(), 4u);
+  EXPECT_EQ(l.collisions[0].name, "c");
+  EXPECT_EQ(l.collisions[2].name, "c_3");
+  EXPECT_EQ(l.visuals[0].material.texture, folder_ + "part/skin.png");
+  EXPECT_EQ(l.visuals[0].material.diffuse, (Color{1, 1, 1, 1}));
+  EXPECT_EQ(heightmaps.at(0).size_m, (Vec3{10, 20, 3}));
+  expect_pose(l.collisions[3].X_LC, {0, 1, -1}, math::pi / 2);
+  EXPECT_FALSE(read("<model name='m'>\n" +
+                    link("l",
+                         "<collision name='c'><geometry><heightmap><uri>part/bad.png</uri></heightmap>"
+                         "</geometry></collision>") +
+                    "</model>"));
+  EXPECT_NE(error_.find("w.sdf:2: this is no picture"), std::string::npos) << error_;
+}
+
+}  // namespace
+}  // namespace sandlot::formats

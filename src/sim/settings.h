@@ -1,0 +1,19 @@
+#pragma once
+/// What a device was told, read back without knowing its kind: for checks and listings.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/model.h"
+
+namespace sandlot {
+
+/// A number that a device was given, or its kind's default, by path: "max_linear_speed", "position/p". Nothing when the
+/// kind has no such number, or it is optional and not given.
+std::optional<double> setting(const model::DeviceDecl& device, std::string_view path);
+
+/// Joints that a device names in keys that end in "joint" or "joints", as indices of the model, in file order.
+std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model);
+
+}  // namespace sandlot
