@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
+#include "formats/ros2_control/ros2_control.h"
 #include "physics/engine.h"
 
 namespace sandlot::app {
@@ -106,6 +107,8 @@ std::vector<Mapped> mapped_names() {
                      levels, kind->sdf_note});
     }
   }
+  for (const formats::ControllerType& each : formats::controller_types())
+    out.push_back({each.type, "controller", each.kind, each.level, "rates of the loop, topics, tolerances"});
   std::stable_sort(out.begin(), out.end(), [](const Mapped& a, const Mapped& b) {
     return std::tie(a.element, a.name, a.kind) < std::tie(b.element, b.name, b.kind);
   });
@@ -115,8 +118,8 @@ std::vector<Mapped> mapped_names() {
 void print_plugins() {
   fmt::print("plugins\n");
   for (const Mapped& row : mapped_names()) {
-    fmt::print("  {:<8}{:<54} {:<18} {}\n", row.element, row.name, row.kind, row.levels);
-    if (!row.unused.empty()) fmt::print("  {:<8}  without effect: {}\n", "", row.unused);
+    fmt::print("  {:<11}{:<54} {:<18} {}\n", row.element, row.name, row.kind, row.levels);
+    if (!row.unused.empty()) fmt::print("  {:<11}  without effect: {}\n", "", row.unused);
   }
 }
 
@@ -129,7 +132,10 @@ void print_plugin_table() {
   fmt::print(
       "\n## Gazebo's sensors and plugins\n\nWhat `<sensor type=\"...\">` and `<plugin>` of SDF and URDF "
       "files "
-      "become. A plugin is known by its class (the last part of `name`) or by its library (`filename` "
+      "become, and the types of joint controllers in ROS parameter files (`joint_controllers:` of a robot, "
+      "or the "
+      "ros2_control plugin of its model). A plugin is known by its class (the last part of `name`) or by its "
+      "library (`filename` "
       "without "
       "`lib` and `.so`). Where two kinds answer to one name, the element decides: several planes make a "
       "lidar 3D. "

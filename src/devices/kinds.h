@@ -8,6 +8,7 @@
   device(imu)                   \
   device(joint_motor)           \
   device(joint_state)           \
+  device(joint_trajectory)      \
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
   device(range_finder)          \

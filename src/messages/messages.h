@@ -164,11 +164,33 @@ struct Imu {
   }
 };
 
-/// std_msgs/Float64MultiArray without its layout: commands for a group of joints.
-struct Float64MultiArray {
-  static constexpr const char* ros_type = "std_msgs/msg/Float64MultiArray";
-  std::vector<double> data;
-  static void fields(auto& s, auto&& visit) { visit(Field{"data", "1", "The values."}, s.data); }
+/// trajectory_msgs/JointTrajectoryPoint: what the joints named by the trajectory shall be at a time.
+struct JointTrajectoryPoint {
+  std::vector<double> positions;      ///< [rad] or [m]
+  std::vector<double> velocities;     ///< empty: not given
+  std::vector<double> accelerations;  ///< empty: not given
+  std::vector<double> effort;         ///< empty: not given
+  Time time_from_start;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"positions", "rad", "Positions."}, s.positions);
+    visit(Field{"velocities", "rad/s", "Velocities."}, s.velocities);
+    visit(Field{"accelerations", "rad/s^2", "Accelerations."}, s.accelerations);
+    visit(Field{"effort", "Nm", "Efforts."}, s.effort);
+    visit(Field{"time_from_start", "ns", "Time since the start of the trajectory."}, s.time_from_start);
+  }
+};
+
+/// trajectory_msgs/JointTrajectory. A stamp of 0 starts it at once.
+struct JointTrajectory {
+  static constexpr const char* ros_type = "trajectory_msgs/msg/JointTrajectory";
+  Header header;
+  std::vector<std::string> joint_names;
+  std::vector<JointTrajectoryPoint> points;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"header", "", "Start."}, s.header);
+    visit(Field{"joint_names", "", "Joint names."}, s.joint_names);
+    visit(Field{"points", "", "Points in order of time."}, s.points);
+  }
 };
 
 /// nav_msgs/Odometry: pose in header.frame_id, twist in child_frame_id; covariances row-major 6x6.

@@ -213,6 +213,16 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
 }
 
 Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl) {
+  SL_ASSIGN(auto program, make_program(entity, decl));
+  if (find_device(program->path) || find_program(program->path))
+    return Error{"'" + program->path + "' names two things", "give the controller another name", decl.place};
+  entity.programs.push_back(std::move(program));
+  point_programs_at_active_levels(entity);
+  return {};
+}
+
+Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
+    const Entity& entity, const model::ControllerDecl& decl) {
   const auto at = [&](Error error) {
     if (!error.place.file) error.place = decl.place;
     return error;
@@ -223,8 +233,6 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
   program->decl = decl;
   program->path = entity.instance.name + "/" + sanitised(decl.name);
   program->key = entity_key(program->path);
-  if (find_device(program->path) || find_program(program->path))
-    return Error{"'" + program->path + "' names two things", "give the controller another name", decl.place};
 
   Description& description = program->description;
   description.robot = entity.instance.name;
@@ -259,9 +267,7 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
   program->program = std::make_unique<ControllerProgram>(std::move(controller));
   program->topics.resize(description.readings.size());
   program->seen.resize(description.readings.size(), 0);
-  entity.programs.push_back(std::move(program));
-  point_programs_at_active_levels(entity);
-  return {};
+  return program;
 }
 
 void Simulation::plan_next_sample(Device& device) {
@@ -294,17 +300,25 @@ void Simulation::point_programs_at_active_levels(Entity& entity) {
 void Simulation::remove_entity(std::size_t index) {
   Entity& entity = *entities_[index];
   // From the back, so that the indices still to be removed stay right.
-  for (auto device = entity.devices.rbegin(); device != entity.devices.rend(); ++device) {
-    Pool& pool = pools_[(*device)->kind];
-    pool.pool->remove((*device)->index);
-    pool.devices.erase(pool.devices.begin() + (*device)->index);
-    pool.all.pop_back();
-    for (std::uint32_t i = (*device)->index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
-  }
+  for (auto device = entity.devices.rbegin(); device != entity.devices.rend(); ++device)
+    remove_from_pool(**device);
   engine_->remove(entity.id);
   by_name_.erase(entity.instance.name);
   std::erase(guided_, &entity);
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void Simulation::remove_from_pool(const Device& device) {
+  Pool& pool = pools_[device.kind];
+  pool.pool->remove(device.index);
+  pool.devices.erase(pool.devices.begin() + device.index);
+  pool.all.pop_back();
+  for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
+  // A command that was carried out earlier in this tick: its slot goes with the device.
+  std::erase_if(applied_, [&](const Applied& applied) {
+    return std::any_of(device.commands.begin(), device.commands.end(),
+                       [&](const Slot& slot) { return slot.topic.get() == applied.slot; });
+  });
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {

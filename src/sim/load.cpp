@@ -10,9 +10,11 @@
 #include "base/text.h"
 #include "devices/kind.h"
 #include "formats/resources.h"
+#include "formats/ros2_control/ros2_control.h"
 #include "formats/sdf/sdf.h"
 #include "physics/engine.h"
 #include "sim/assets.h"
+#include "sim/joint_controllers.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
 #include "sim/presets.h"
@@ -48,10 +50,16 @@ Result<std::uint32_t> link_named(const model::Model& model, const Node& name, co
 }
 
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
-Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
-  std::vector<model::DeviceDecl> kept;
+Status translate_devices(model::Instance& instance, const formats::SearchPath& path,
+                         Diagnostics& diagnostics) {
+  std::vector<model::DeviceDecl> kept, controllers;
   for (model::DeviceDecl& decl : instance.devices) {
     if (decl.kind.empty()) {
+      if (is_ros_control_plugin(decl)) {
+        SL_ASSIGN(auto more, controllers_of_plugin(decl, path, diagnostics));
+        std::move(more.begin(), more.end(), std::back_inserter(controllers));
+        continue;
+      }
       const Kind* const kind = find_device_kind_for_sdf(decl);
       if (!kind) {
         diagnostics.warn(
@@ -74,7 +82,7 @@ Status translate_devices(model::Instance& instance, Diagnostics& diagnostics) {
     kept.push_back(std::move(decl));
   }
   instance.devices = std::move(kept);
-  return {};
+  return add_devices(instance, std::move(controllers));
 }
 
 /// Lays the scenario's `devices:` upon the model's own: known names change keys, new names need a kind.
@@ -145,7 +153,8 @@ Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
 }
 
 /// Takes world instances over: their devices translated, names checked.
-Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics& diagnostics) {
+Status take_world(formats::SdfContent content, const formats::SearchPath& path, model::Setup& setup,
+                  Diagnostics& diagnostics) {
   setup.gravity = content.gravity_mps2;
   setup.ambient = content.ambient;
   setup.background = content.background;
@@ -154,7 +163,7 @@ Status take_world(formats::SdfContent content, model::Setup& setup, Diagnostics&
   setup.gravity_place = content.gravity_place;
   setup.lights = std::move(content.lights);
   for (model::Instance& instance : content.instances) {
-    SL_TRY(translate_devices(instance, diagnostics));
+    SL_TRY(translate_devices(instance, path, diagnostics));
     instance.is_robot = instance.is_robot || !instance.devices.empty();
     setup.instances.push_back(std::move(instance));
   }
@@ -185,7 +194,7 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Sdf
   // Gazebo's default; a scenario has its own.
   setup.step = Time::from_s(content.max_step_s.value_or(0.001));
   setup.physics = std::move(content.physics);
-  SL_TRY(take_world(std::move(content), setup, diagnostics));
+  SL_TRY(take_world(std::move(content), options.path, setup, diagnostics));
   return setup;
 }
 
@@ -234,7 +243,7 @@ Result<model::Instance> load_instance(const std::string& model_file, const std::
   if (content.instances.size() != 1 || !content.world_name.empty())
     return Error{"'" + model_file + "' is a world, not a model", "name a file with one <model>"};
   model::Instance instance = std::move(content.instances.front());
-  SL_TRY(translate_devices(instance, diagnostics));
+  SL_TRY(translate_devices(instance, formats::search_path(paths), diagnostics));
   instance.name = sanitised(name);
   instance.original_name = name;
   instance.X_WM = X_WM * instance.X_WM;
@@ -267,7 +276,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
                 locate(scenario.world, formats::base_folder(scenario, scenario.world_place), search,
                        scenario.world_place));
       SL_ASSIGN(formats::SdfContent content, formats::read_sdf(world, diagnostics, sdf));
-      SL_TRY(take_world(std::move(content), setup, diagnostics));
+      SL_TRY(take_world(std::move(content), search, setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
     }
@@ -304,6 +313,13 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       pattern.controllers = group.controllers;
       pattern.place = group.place;
       SL_TRY(attach_modules(pattern, group, scenario, search, options, diagnostics));
+      for (const std::string& written : group.joint_controllers) {
+        const Place& place = group.joint_controllers_place;
+        SL_ASSIGN(const std::string found,
+                  formats::find_resource(written, formats::base_folder(scenario, place), search, place));
+        SL_ASSIGN(auto controllers, formats::read_joint_controllers(found, diagnostics));
+        SL_TRY(add_devices(pattern, std::move(controllers)));
+      }
       SL_TRY(merge_devices(pattern, group.devices));
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -80,6 +81,65 @@ TEST_F(Files, a_preset_goes_before_the_models_keys_and_after_those_beside_it) {
       error_of("robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {preset: sick_lms20}\n"),
       HasSubstr("s.yaml:7:19: /preset: device kind 'laser_scanner' has no preset 'sick_lms20'; did you mean "
                 "'sick_lms200'?"));
+}
+
+constexpr const char* arm = R"(<?xml version="1.0"?>
+<sdf version="1.9"><model name="arm"><static>false</static>
+  <link name="base"/><link name="boom"><pose>0 0 1 0 0 0</pose></link>
+  <joint name="lift" type="revolute"><parent>base</parent><child>boom</child><axis><xyz>0 1 0</xyz></axis></joint>
+  PLUGIN
+</model></sdf>)";
+
+std::string arm_with(const std::string& plugin) {
+  std::string text = arm;
+  return text.replace(text.find("PLUGIN"), 6, plugin);
+}
+
+constexpr const char* controllers = R"(
+controller_manager: {ros__parameters: {hold: {type: position_controllers/JointGroupPositionController}}}
+hold: {ros__parameters: {joints: [lift]}}
+)";
+
+TEST_F(Files, joint_controllers_come_from_the_scenario_or_a_plugin_and_can_be_changed) {
+  write("c.yaml", controllers);
+  write("arm.sdf", arm_with(""));
+  auto setup = load_text(
+      "robots:\n- {name: a, model: arm.sdf, joint_controllers: c.yaml, devices: {hold: {max_effort: 7}}}\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  const auto& devices = setup->instances.back().devices;
+  ASSERT_EQ(devices.size(), 1u);
+  EXPECT_EQ(devices[0].kind, "joint_motor");
+  EXPECT_EQ(devices[0].name, "hold");
+  EXPECT_EQ(devices[0].config.find("max_effort")->text(), "7");
+
+  write("plugged.sdf",
+        arm_with("<plugin name='gz_ros2_control::GazeboSimROS2ControlPlugin' "
+                 "filename='gz_ros2_control-system'><parameters>c.yaml</parameters></plugin>"));
+  setup = load_text("robots: [{name: a, model: plugged.sdf}]\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  ASSERT_EQ(setup->instances.back().devices.size(), 1u);
+  EXPECT_EQ(setup->instances.back().devices[0].name, "hold");
+  EXPECT_THAT(error_of("robots: [{name: a, model: plugged.sdf, joint_controllers: c.yaml}]\n"),
+              HasSubstr("the robot has a device named 'hold' already"));
+  EXPECT_THAT(error_of("robots: [{name: a, model: arm.sdf, joint_controllers: d.yaml}]\n"),
+              HasSubstr("s.yaml:3:"));
+}
+
+TEST_F(Files, a_control_plugin_without_its_file_is_warned_of) {
+  write("bare.sdf", arm_with("<plugin name='c' filename='libgazebo_ros_control.so'/>"));
+  write("lost.sdf", arm_with("<plugin name='c' filename='libgazebo_ros2_control.so'>"
+                             "<parameters>nowhere.yaml</parameters></plugin>"));
+  for (const char* model : {"bare.sdf", "lost.sdf"}) {
+    const std::size_t before = diagnostics.warnings.size();
+    const auto setup = load_text(std::string("robots: [{name: a, model: ") + model + "}]\n");
+    ASSERT_TRUE(setup) << setup.error().text();
+    const auto said = [&](const char* what) {
+      return std::any_of(
+          diagnostics.warnings.begin() + static_cast<std::ptrdiff_t>(before), diagnostics.warnings.end(),
+          [&](const Error& warning) { return warning.text().find(what) != std::string::npos; });
+    };
+    EXPECT_TRUE(said(std::string(model) == "bare.sdf" ? "joint_controllers: FILE" : "nowhere.yaml")) << model;
+  }
 }
 
 TEST_F(Files, devices_of_the_scenario_are_laid_upon_the_models_own) {

@@ -47,13 +47,22 @@ struct PoseRequest {
   std::string name;
   Pose X_WM;
 };
+/// A new device for a robot that is there. Its programs go on as they are; those that look devices up find it.
+struct LoadDeviceRequest {
+  std::string robot;
+  model::DeviceDecl device;
+};
+/// Takes a device from its robot; what it held is released. Refused while a program of the robot needs it.
+struct UnloadDeviceRequest {
+  std::string device;
+};
 /// Take a sample at the end of the next tick although none is due.
 struct SampleRequest {
   std::string device;
 };
 
 using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
-                             PoseRequest, SampleRequest>;
+                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest>;
 
 /// What became of a request, in the order they were carried out.
 struct Outcome {

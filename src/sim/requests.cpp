@@ -49,6 +49,8 @@ Status Simulation::carry_out(Request& request, const Source& source, std::uint64
     engine_->set_pose(entity->id, {pose->X_WM.p, normalised(pose->X_WM.q)});
     return {};
   }
+  if (const auto* load = std::get_if<LoadDeviceRequest>(&request)) return mount_device(*load);
+  if (const auto* unload = std::get_if<UnloadDeviceRequest>(&request)) return unmount_device(*unload);
   const auto& sample = std::get<SampleRequest>(request);
   Device* const device = find_device(sample.device);
   if (!device) return Error{"there is no device '" + sample.device + "'"};

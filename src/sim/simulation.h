@@ -162,7 +162,9 @@ class Simulation {
   Status add_entity(const model::Instance& instance, Diagnostics& diagnostics);
   Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
   Status add_program(Entity& entity, const model::ControllerDecl& decl);
+  Result<std::unique_ptr<ProgramEntry>> make_program(const Entity& entity, const model::ControllerDecl& decl);
   void remove_entity(std::size_t index);
+  void remove_from_pool(const Device& device);
   void point_programs_at_active_levels(Entity& entity);
   Entity* find_entity(std::string_view name);
   Device* find_device(std::string_view path);
@@ -190,6 +192,11 @@ class Simulation {
   Slot* active_command_slot(Device& device, std::string_view type, std::string_view level);
   Status set_levels(const LevelRequest& request);
   void apply_program_orders();
+
+  // mount.cpp
+  Status mount_device(const LoadDeviceRequest& request);
+  Status unmount_device(const UnloadDeviceRequest& request);
+  Status describe_anew(Entity& entity);
 
   // state.cpp
   template <class Visit>

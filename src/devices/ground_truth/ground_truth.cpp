@@ -17,6 +17,10 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
             number(element, find(element, "gaussianNoise") ? "gaussianNoise" : "gaussian_noise"));
   if (noise && *noise != 0)
     diagnostics.warn(element.error("noise of an exact pose is not supported and has no effect"));
+  warn_unknown(element,
+               {"odom_publish_frequency", "update_frequency", "update_rate", "updateRate", "bodyName",
+                "body_name", "gaussianNoise", "gaussian_noise"},
+               "a publisher of exact poses", diagnostics);
   return config;
 }
 

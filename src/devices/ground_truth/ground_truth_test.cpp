@@ -47,5 +47,20 @@ TEST(GroundTruth, ServesOnlyThoseThatAreDue) {
   EXPECT_EQ(rig.topic<msg::Odometry>("b/pose").count, 1u);
 }
 
+TEST(GroundTruthFromSdf, TakesRateAndLinkAndNamesTheRest) {
+  Diagnostics diagnostics;
+  const auto node = kind.from_sdf(
+      config(
+          {{"update_rate", "25"}, {"body_name", "mast"}, {"frame_name", "map"}, {"gaussian_noise", "0.01"}}),
+      diagnostics);
+  ASSERT_TRUE(node);
+  EXPECT_EQ(node->find("rate")->text(), "25");
+  EXPECT_EQ(node->find("link")->text(), "mast");  // the loader's
+  ASSERT_EQ(diagnostics.warnings.size(), 2u);
+  EXPECT_EQ(diagnostics.warnings[0].what, "noise of an exact pose is not supported and has no effect");
+  EXPECT_EQ(diagnostics.warnings[1].what,
+            "<frame_name> of a publisher of exact poses is not supported and has no effect");
+}
+
 }  // namespace
 }  // namespace sandlot::ground_truth

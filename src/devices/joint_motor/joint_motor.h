@@ -3,7 +3,7 @@
 ///
 /// Levels   `velocity` (the default): follows a speed. `position`: follows an angle (prismatic: a length). `effort`:
 ///          applies a torque (force). Each takes a std_msgs/Float64. Exactly one level is active.
-/// Control  servo `pid`: PID (pid.h) from the error to an effort, once per physics sub-step. Servo `exact`: the engine
+/// Control  servo `pid`: PID (devices/pid.h) from the error to an effort, once per physics sub-step. Servo `exact`: the engine
 ///          holds the joint to the speed with what effort it takes up to the limit; on level position that speed
 ///          closes a fifth of the error in each sub-step. The reference moves towards the command at no more than
 ///          max_velocity; position commands are cut to the joint's limits, efforts to the smaller of max_effort and
@@ -19,11 +19,11 @@
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.
 /// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints.
-/// Source   pid.h.
+/// Source   devices/pid.h.
 #include <array>
 
-#include "devices/joint_motor/pid.h"
 #include "devices/kind.h"
+#include "devices/pid.h"
 #include "messages/messages.h"
 
 namespace sandlot::joint_motor {

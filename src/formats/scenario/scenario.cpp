@@ -173,6 +173,9 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   SL_ASSIGN(group.controllers, read_controllers(robot, path));
   SL_TRY(check_devices(robot.devices, path + "/devices"));
   group.devices = std::move(robot.devices);
+  group.joint_controllers = std::move(robot.joint_controllers);
+  if (const Node* const files = node.find("joint_controllers"))
+    group.joint_controllers_place = files->place();
   return group;
 }
 

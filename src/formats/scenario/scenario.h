@@ -49,6 +49,8 @@ struct RobotGroup {
   std::string team;
   std::vector<Module> modules;
   std::vector<model::ControllerDecl> controllers;
+  std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
+  Place joint_controllers_place;
   Node devices;  ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
   Place place;
   Place model_place;

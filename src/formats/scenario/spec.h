@@ -106,6 +106,7 @@ struct Robot {
   std::vector<Module> modules;
   Node controller;
   Node controllers;
+  std::vector<std::string> joint_controllers;
   Node devices;
 
   static void fields(auto& s, auto&& visit) {
@@ -127,6 +128,10 @@ struct Robot {
     visit(
         Field{"controllers", "", "Several controllers: a list of maps with name, kind and the kind's keys."},
         s.controllers);
+    visit(Field{"joint_controllers", "",
+                "Files of ROS joint controllers (ros2_control, ros_control), relative to this file.", 0, 0,
+                Field::none, 100},
+          s.joint_controllers);
     visit(Field{"devices", "",
                 "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
           s.devices);

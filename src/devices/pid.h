@@ -18,7 +18,7 @@
 
 #include "base/fields.h"
 
-namespace sandlot::joint_motor {
+namespace sandlot {
 
 struct Gains {
   double p = 0;                ///< [V/U]
@@ -55,4 +55,4 @@ struct Pid {
   }
 };
 
-}  // namespace sandlot::joint_motor
+}  // namespace sandlot
