@@ -13,13 +13,12 @@ import zlib
 
 SIZE_M = 24.0
 SAMPLES = 129
-TOP_M = 1.2  # height of a white pixel
 ROWS_Y = [-4.4, -2.2, 0.0, 2.2, 4.4]
 PLANTS_X = [-6.3 + 1.4 * i for i in range(10)]
 
 
 def height_m(x, y):
-    """Height of the ground, 0 to TOP_M."""
+    """Height of the ground, above 0."""
     return (0.6 + 0.30 * math.sin(2 * math.pi * x / 16) * math.cos(2 * math.pi * y / 22)
             + 0.18 * math.cos(2 * math.pi * (x + y) / 13) + 0.06 * math.sin(2 * math.pi * (x - 2 * y) / 7))
 
@@ -34,10 +33,9 @@ def png16(rows):
 
 
 def heights():
-    """Pixels from the upper left corner: x grows to the right, y upwards."""
+    """Of the pixels, from the upper left corner: x grows to the right, y upwards."""
     step = SIZE_M / (SAMPLES - 1)
-    return [[round(65535 * height_m(-SIZE_M / 2 + i * step, SIZE_M / 2 - j * step) / TOP_M) for i in range(SAMPLES)]
-            for j in range(SAMPLES)]
+    return [[height_m(-SIZE_M / 2 + i * step, SIZE_M / 2 - j * step) for i in range(SAMPLES)] for j in range(SAMPLES)]
 
 
 def solid(kind, name, pose, shape, colour):
@@ -69,8 +67,8 @@ def plant(row, number, x, y):
 """
 
 
-def world():
-    ground = (f"<heightmap><uri>vineyard_heights.png</uri><size>{SIZE_M:g} {SIZE_M:g} {TOP_M:g}</size>"
+def world(top_m):
+    ground = (f"<heightmap><uri>vineyard_heights.png</uri><size>{SIZE_M:g} {SIZE_M:g} {top_m:.6f}</size>"
               "<pos>0 0 0</pos></heightmap>")
     plants = "".join(plant(r, i, x, y) for r, y in enumerate(ROWS_Y) for i, x in enumerate(PLANTS_X))
     return f"""<?xml version="1.0"?>
@@ -103,10 +101,12 @@ def world():
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "worlds")
+    rows = heights()
+    top_m = max(max(row) for row in rows)  # the brightest pixel stands for <size>'s z
     with open(os.path.join(folder, "vineyard_heights.png"), "wb") as file:
-        file.write(png16(heights()))
+        file.write(png16([[round(65535 * h / top_m) for h in row] for row in rows]))
     with open(os.path.join(folder, "vineyard.sdf"), "w", encoding="utf-8") as file:
-        file.write(world())
+        file.write(world(top_m))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@
 #include "base/text.h"
 #include "formats/sdf/sdf.h"
 #include "formats/sdf/write.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
 #include "sim/load.h"
 #include "sim/model_bytes.h"
 #include "sim/simulation.h"
@@ -420,6 +422,37 @@ TEST(Convert, ScenariosBecomeWorldsWithoutWhatSdfCannotSay) {
     EXPECT_NEAR(norm(is.instances[i].X_WM.p - was.instances[i].X_WM.p), 0, 1e-15);
     EXPECT_EQ(is.instances[i].devices.size(), was.instances[i].devices.size());
   }
+}
+
+TEST(Convert, MeshesAndTerrainKeepTheirFilesScalesAndHeights) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path / "meshes");
+  // A tetrahedron in millimetres: 100 mm along each axis.
+  folder.write("meshes/corner.obj",
+               "o corner\nv 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  std::filesystem::copy_file("worlds/vineyard_heights.png", folder.path / "meshes/hills.png");
+  folder.write("w.sdf", R"(<sdf version="1.9"><world name="w">
+    <model name="hills"><static>true</static><link name="l"><collision name="c"><geometry>
+      <heightmap><uri>meshes/hills.png</uri><size>8 6 0.5</size></heightmap></geometry></collision></link></model>
+    <model name="stone"><pose>0 0 1 0 0 0</pose><link name="l">
+      <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
+      <collision name="c"><geometry><mesh><uri>meshes/corner.obj</uri><submesh><name>corner</name><center>true</center></submesh>
+        <scale>0.001 0.001 0.002</scale></mesh></geometry></collision></link></model>
+  </world></sdf>)");
+  folder.write("s.yaml", "version: 1\nworld: w.sdf\n");
+  std::filesystem::create_directory(folder.path / "sub");
+  const Converted done = convert(folder.file("s.yaml"), folder.file("sub/all.sdf"));
+  ASSERT_EQ(done.exit_code, 0) << done.printed;
+  const model::Setup was = loaded(folder.file("w.sdf")), is = loaded(folder.file("sub/all.sdf"));
+  const auto shape = [](const model::Setup& setup, std::size_t i) -> const Shape& {
+    return setup.instances.at(i).model->links.at(0).collisions.at(0).shape;
+  };
+  EXPECT_EQ(std::get<Heightfield>(shape(is, 0)).grid->height_m,
+            std::get<Heightfield>(shape(was, 0)).grid->height_m);
+  EXPECT_EQ(std::get<Heightfield>(shape(is, 0)).grid->size_y_m, 6);
+  EXPECT_EQ(std::get<Mesh>(shape(is, 1)).mesh->vertices, std::get<Mesh>(shape(was, 1)).mesh->vertices);
+  // 0.1 x 0.1 x 0.2 / 6 m^3
+  EXPECT_NEAR(volume_m3(shape(is, 1)), 0.1 * 0.1 * 0.2 / 6, 1e-12);
 }
 
 TEST(Convert, NeverReplacesAFileUnasked) {

@@ -15,6 +15,7 @@ struct HeightGrid {
   double size_x_m = 0, size_y_m = 0;  ///< between the first and the last sample
   std::vector<float> height_m;        ///< columns * rows
   std::string source;                 ///< file it came from, for messages
+  double source_height_m = 1;         ///< height that the file's brightest pixel stands for
 
   float at(int column, int row) const {
     return height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

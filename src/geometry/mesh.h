@@ -27,7 +27,12 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::vector<std::array<float, 2>> texture_uv;         ///< one per vertex, or none at all; v runs upwards
   std::vector<MeshPart> parts;                          ///< cover all triangles in order; none: one look
-  std::string source;                                   ///< file it came from, for messages; "" for made ones
+  /// Where it came from, so that it can be named again and in messages; "" for made ones.
+  std::string source;           ///< file
+  Vec3 source_scale{1, 1, 1};   ///< applied to the file's own vertices
+  std::string source_part;      ///< the only part of the file that was taken; "" for all
+  bool source_centred = false;  ///< that part's middle was moved to the origin
+  bool is_hull = false;         ///< the convex hull of it, or of a part that hangs together
 };
 
 /// What a homogeneous solid bounded by the mesh weighs, from integrals over its triangles.

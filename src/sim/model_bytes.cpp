@@ -116,6 +116,10 @@ void mesh(auto& io, auto& m) {
     i.value(part.texture);
   });
   io.value(m.source);
+  io.value(m.source_scale);
+  io.value(m.source_part);
+  io.value(m.source_centred);
+  io.value(m.is_hull);
 }
 
 void grid(auto& io, auto& g) {
@@ -125,6 +129,7 @@ void grid(auto& io, auto& g) {
   io.value(g.size_y_m);
   io.value(g.height_m);
   io.value(g.source);
+  io.value(g.source_height_m);
 }
 
 bool consistent(const TriangleMesh& m) {

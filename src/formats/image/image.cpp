@@ -64,6 +64,7 @@ Result<HeightGrid> heightmap_of(const Image& image, const std::string& file, Vec
   out.columns = image.width, out.rows = image.height;
   out.size_x_m = size_m.x, out.size_y_m = size_m.y;
   out.source = file;
+  out.source_height_m = size_m.z;
   int brightest = 1;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) brightest = std::max(brightest, int{image.at(x, y, 0)});

@@ -140,6 +140,9 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   Parsed parsed{std::move(out.mesh), {}};
   TriangleMesh& mesh = parsed.mesh;
   mesh.source = path;
+  mesh.source_scale = scale;
+  mesh.source_part = options.submesh;
+  mesh.source_centred = options.centre;
   if (!options.submesh.empty() && !out.found_submesh)
     return out.error("has no submesh '" + options.submesh.substr(0, 80) + "'",
                      suggestion(options.submesh, out.names));
@@ -312,6 +315,7 @@ Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
     const auto add_hull = [&](const TriangleMesh& of) {
       TriangleMesh hull = convex_hull(of.vertices);
       hull.source = mesh->source;
+      hull.is_hull = true;
       if (!hull.triangles.empty()) out.push_back(std::make_shared<const TriangleMesh>(std::move(hull)));
     };
     if (optimization == "convex_hull") add_hull(*mesh);

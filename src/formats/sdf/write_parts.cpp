@@ -1,5 +1,7 @@
 #include "formats/sdf/write_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -93,8 +95,9 @@ std::string text_of(Vec3 v) { return number_text(v.x) + " " + number_text(v.y) +
 
 std::string text_of(const Color& color) {
   std::string out;
+  // The shortest text that is this float again: as a double it would show its binary dust.
   for (const float part : {color.r, color.g, color.b, color.a})
-    out += (out.empty() ? "" : " ") + number_text(static_cast<double>(part));
+    out += fmt::format("{}{}", out.empty() ? "" : " ", part);
   return out;
 }
 
@@ -162,14 +165,28 @@ Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place
   else if (const auto* const plane = std::get_if<Plane>(&shape))
     add(form, "normal", direction_text(plane->normal));
   else if (const auto* const mesh = std::get_if<Mesh>(&shape)) {
-    add(form, "uri", mesh->mesh->source);
-    diagnostics.warn({owner + ": the mesh is named by its file alone",
-                      "scale or sub-mesh have to be added by hand", place});
+    const TriangleMesh& m = *mesh->mesh;
+    if (m.source.empty()) {
+      form.name = "empty";
+      diagnostics.warn({owner + ": its triangles came from no mesh file", "it is left out", place});
+      return out;
+    }
+    add(form, "uri", m.source);
+    if (m.source_scale != Vec3{1, 1, 1}) add(form, "scale", text_of(m.source_scale));
+    if (!m.source_part.empty()) {
+      Xml& part = add(form, "submesh");
+      add(part, "name", m.source_part);
+      if (m.source_centred) add(part, "center", "true");
+    }
+    if (m.is_hull) {
+      form.set_attribute("optimization", "convex_hull");
+      diagnostics.warn({owner + ": is written as the hull of its whole mesh",
+                        "look at it if it was one part of a decomposition", place});
+    }
   } else if (const auto* const ground = std::get_if<Heightfield>(&shape)) {
     add(form, "uri", ground->grid->source);
-    add(form, "size", number_text(ground->grid->size_x_m) + " " + number_text(ground->grid->size_y_m) + " 1");
-    diagnostics.warn(
-        {owner + ": the heightmap is named by its image alone", "its height has to be added by hand", place});
+    const HeightGrid& g = *ground->grid;
+    add(form, "size", text_of(Vec3{g.size_x_m, g.size_y_m, g.source_height_m}));
   }
   return out;
 }

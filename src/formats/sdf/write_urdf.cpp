@@ -139,9 +139,16 @@ class UrdfWriter {
     else if (const auto* const pill = std::get_if<Capsule>(&shape))
       set("radius", pill->radius_m), set("length", pill->length_m);
     else if (const auto* const mesh = std::get_if<Mesh>(&shape)) {
-      form.set_attribute("filename", mesh->mesh->source);
-      warn(owner + ": the mesh is named by its file alone", "scale or sub-mesh have to be added by hand",
-           place);
+      const TriangleMesh& m = *mesh->mesh;
+      if (m.source.empty()) {
+        warn(owner + ": its triangles came from no mesh file", "it is left out", place);
+        return false;
+      }
+      form.set_attribute("filename", m.source);
+      if (m.source_scale != Vec3{1, 1, 1}) form.set_attribute("scale", text_of(m.source_scale));
+      if (!m.source_part.empty() || m.is_hull)
+        warn(owner + ": URDF names whole mesh files only",
+             "the part or hull of '" + m.source + "' becomes all of it", place);
     } else {
       warn(owner + ": URDF has no shape " + std::string(shape_name(shape)), "it is left out", place);
       return false;
