@@ -194,6 +194,9 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Sdf
   // Gazebo's default; a scenario has its own.
   setup.step = Time::from_s(content.max_step_s.value_or(0.001));
   setup.physics = std::move(content.physics);
+  // A robot by itself has nothing to stand on in its file.
+  const bool alone = content.world_name.empty() && !content.instances.front().model->is_static;
+  if (alone && content.instances.front().name != "ground") setup.instances.push_back(bare_ground());
   SL_TRY(take_world(std::move(content), options.path, setup, diagnostics));
   return setup;
 }

@@ -18,6 +18,7 @@ struct LoadOptions {
 };
 
 /// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world) or a robot (.urdf): what `sandlot run` accepts.
+/// What is no scenario runs at its own step, or Gazebo's 1 ms; a model by itself gets a plane to stand on.
 /// Errors carry file and line; warnings go to `diagnostics`, each once per file.
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
