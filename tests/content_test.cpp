@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -55,6 +56,18 @@ TEST(Content, EveryScenarioLoadsAndBuildsWithoutAWarning) {
     EXPECT_TRUE(built(loaded(entry.path().string())));
   }
   EXPECT_GE(files, 3);
+}
+
+TEST(Content, WorldsOfGazeboFindTheirFloorAndSun) {
+  const std::string file = ::testing::TempDir() + "floor_and_sun.sdf";
+  std::ofstream(file) << "<sdf version='1.6'><world name='w'><include><uri>model://sun</uri></include>"
+                         "<include><uri>model://ground_plane</uri></include></world></sdf>";
+  const model::Setup setup = loaded(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(setup.instances.size(), 1u);
+  EXPECT_EQ(setup.instances[0].name, "ground_plane");
+  ASSERT_EQ(setup.lights.size(), 1u);
+  EXPECT_EQ(setup.lights[0].name, "sun");
 }
 
 TEST(Rover, InertiaIsThatOfTheSolidsItNames) {

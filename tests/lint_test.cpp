@@ -195,7 +195,7 @@ TEST(Lint, TheCommandCountsWarningsAsFailuresWhenItIsStrict) {
             std::string::npos)
       << lenient.out;
   EXPECT_NE(lenient.out.find("[overlap]"), std::string::npos);
-  EXPECT_NE(lenient.out.find("ok, 2 things, 1 warnings"), std::string::npos);
+  EXPECT_NE(lenient.out.find("ok, 2 things, 1 warning\n"), std::string::npos);
   EXPECT_EQ(sandlot("check --strict " + file).exit_code, 2);
   EXPECT_EQ(sandlot("check --strict tests/suspicious/overlap_ground_not.sdf").exit_code, 0);
   const auto json = nlohmann::json::parse(sandlot("check --json " + file).out);

@@ -21,6 +21,10 @@ nlohmann::ordered_json to_json(const Error& e, const char* severity, const std::
           {"fix", e.fix}};
 }
 
+std::string counted(std::size_t n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
 /// What lint says of a file that was built.
 std::vector<Finding> lint_file(const std::string& file, const FileOptions& options,
                                const Simulation& simulation) {
@@ -60,9 +64,8 @@ int check(const FileOptions& options) {
                    finding.rule.empty() ? "" : (" [" + finding.rule + "]").c_str());
     if (!built) complain(built.error());
     else
-      fmt::print("{}: {}, {} things, {} warnings\n", file,
-                 options.strict && !findings.empty() ? "refused" : "ok", (*built)->instances().size(),
-                 findings.size());
+      fmt::print("{}: {}, {}, {}\n", file, options.strict && !findings.empty() ? "refused" : "ok",
+                 counted((*built)->instances().size(), "thing"), counted(findings.size(), "warning"));
   }
   if (options.json) fmt::print("{}\n", report.dump(2));
   return result;

@@ -126,7 +126,11 @@ Result<model::Link> read_link(const Xml& element, bool is_static, const Reading&
   for (const Xml& child : element.children) {
     if (child.name == "collision") SL_TRY(read_collision(child, link, densities, density, in));
     if (child.name == "visual") SL_TRY(read_visual(child, link, in));
-    if (child.name == "plugin") in.notes.warn(child, "a plugin of a link is not used", "", "link plugin");
+    if (child.name == "plugin") {
+      const std::string* const name = child.attribute("name");
+      in.notes.warn(child, "plugin '" + (name ? name->substr(0, 100) : "") + "' of a link is not used",
+                    "plugins stand in the <model>", "link plugin");
+    }
   }
   SL_ASSIGN(link.inertial, read_inertial(element, link, densities, is_static, in));
   return link;

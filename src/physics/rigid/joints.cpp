@@ -202,7 +202,8 @@ void couple_thread(dWorldID world, dJointGroupID group, const Joint& j, double e
   contact.surface.mu = dInfinity;
   contact.surface.mu2 = 0;
   contact.surface.motion1 = reversed(j) ? -wanted : wanted;
-  contact.surface.soft_cfm = 1e9;
+  // The normal row carries next to nothing at this, and is not so soft that ODE loses its other rows in rounding.
+  contact.surface.soft_cfm = 1e3;
   for (std::size_t k = 0; k < 3; ++k) {
     contact.geom.pos[k] = at[k];
     contact.geom.normal[k] = radial[k];

@@ -261,5 +261,27 @@ TEST(Linkage, RestoredJointsContinueWithTheSameBits) {
   EXPECT_TRUE(first.engine->check_finite());
 }
 
+TEST(Linkage, AScrewAndLooseWheelsComeDownOnTheGround) {
+  // Contacts that come and go next to a thread once broke ODE's solver off.
+  const Vec3 small{0.01, 0.01, 0.01};
+  model::Model m;
+  m.links.push_back(link_of("base", Box{{1, 1, 0.4}}, 20));
+  m.links[0].inertial.moments = {1, 1, 1};
+  m.links.push_back(bare("nut", 1, {{0, 0, 0.8}, {}}, small));
+  m.links.push_back(bare("wheel", 1, {{0.5, -0.5, 0.3}, {}}, small));
+  m.links.push_back(bare("tool", 0.5, {{-0.5, 0.5, 0.3}, {}}, small));
+  m.joints.push_back(joint_of("thread", model::JointType::screw, 0, 1, {0, 0, 1}));
+  m.joints.back().thread_pitch_m = 0.1;
+  m.joints.push_back(joint_of("spin", model::JointType::continuous, 0, 2, {0, 0, 1}, {{0, 0, 0.05}, {}}));
+  m.joints.back().damping = 0.1;
+  m.joints.push_back(joint_of("fix", model::JointType::fixed, 0, 3, {0, 0, 1}));
+  World world(rigid::engine);
+  world.add(static_of("floor", Box{{20, 20, 0.2}}, {{0, 0, 4}, {}}));
+  const InstanceId id = world.add(instance_of("machine", m, {{-3, -3, 4.6}, {}}, true));
+  world.run(2000, 0.001);
+  ASSERT_TRUE(world.engine->check_finite());
+  EXPECT_NEAR(world.state(id, 0).X_WB.p.z, 4.3, 1e-3);
+}
+
 }  // namespace
 }  // namespace sandlot::rigid

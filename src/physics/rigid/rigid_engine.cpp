@@ -1,6 +1,8 @@
 #include "physics/rigid/rigid_engine.h"
 
 #include <algorithm>
+#include <mutex>
+#include <vector>
 
 #include "base/check.h"
 #include "base/read.h"
@@ -36,7 +38,15 @@ RigidEngine::~RigidEngine() {
   for (Instance* instance : order_) destroy(*instance);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
-  dThreadingFreeImplementation(threading_);
+  // A step that ODE left in the middle leaves jobs behind, and ODE ends the process when they are freed.
+  if (fault_.empty()) {
+    dThreadingFreeImplementation(threading_);
+    return;
+  }
+  static std::mutex mutex;
+  static std::vector<dThreadingImplementationID>& kept = *new std::vector<dThreadingImplementationID>;
+  const std::lock_guard lock(mutex);
+  kept.push_back(threading_);
 }
 
 Capabilities RigidEngine::capabilities() const {
