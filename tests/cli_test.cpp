@@ -170,7 +170,7 @@ TEST(Cli, info_folds_what_is_alike_and_tells_what_was_mapped_and_what_was_not) {
                                   "from sensor:gpu_lidar \"the scan\" at " +
                                   file + ":504"));
   EXPECT_THAT(text.out, HasSubstr("/my_robot/the_scan/ranges"));
-  EXPECT_THAT(text.out, HasSubstr(file + ":505: 'sensor:smell' is not supported"));
+  EXPECT_THAT(text.out, HasSubstr(file + ":505: <sensor type=\"smell\"> is not supported"));
   EXPECT_LT(std::count(text.out.begin(), text.out.end(), '\n'), 25) << "500 boxes are one line";
   const auto json = nlohmann::json::parse(sandlot("info --json " + file).out);
   EXPECT_EQ(json["instances"].size(), 502u);

@@ -47,7 +47,8 @@ struct RunFlags {
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     verb.add_option("--set", sets,
-                    "Change the scenario before it is loaded: path=value, such as physics=planar")
+                    "Change the scenario before it is loaded: path=value, such as physics=planar or "
+                    "'robots[0].pose=[1, 2, 0]'")
         ->allow_extra_args(false);
     verb.add_option("--path", options.paths,
                     "Folder to search for models and other files; may be given several times")

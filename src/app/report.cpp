@@ -22,7 +22,8 @@ void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
       travel.started = true;
       travel.lowest = travel.highest = p;
     } else {
-      travel.distance_m += norm(p - travel.last);
+      const Vec3 step = p - travel.last;
+      travel.distance_m += std::sqrt(step.x * step.x + step.y * step.y);  // falling is not driving
     }
     travel.last = p;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -33,6 +34,30 @@ void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
     travel.cells.emplace(static_cast<int>(std::floor(p.x / cell_m)),
                          static_cast<int>(std::floor(p.y / cell_m)));
   }
+}
+
+/// x y z [m], roll pitch yaw [rad] of a robot's model frame at the end; null when it is gone.
+nlohmann::ordered_json pose_json(const Simulation& simulation, const std::string& robot) {
+  const auto id = simulation.find_instance(robot);
+  if (!id) return nullptr;
+  const Pose X_WM = simulation.engine().pose(*id);
+  const Vec3 rpy = rpy_from_quat(X_WM.q);
+  return {X_WM.p.x, X_WM.p.y, X_WM.p.z, rpy.x, rpy.y, rpy.z};
+}
+
+/// Positions [rad or m] of a robot's moving joints at the end, by name.
+nlohmann::ordered_json joints_json(const Simulation& simulation, const std::string& robot) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  const auto id = simulation.find_instance(robot);
+  if (!id || !simulation.engine().capabilities().joints) return out;
+  for (const model::Instance* instance : simulation.instances()) {
+    if (instance->name != robot) continue;
+    const auto joints = simulation.engine().joints(*id);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      if (instance->model->joints[i].type != model::JointType::fixed)
+        out[instance->model->joints[i].name] = simulation.engine().joint_states()[joints[i].index].position;
+  }
+  return out;
 }
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
@@ -74,7 +99,9 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
     robots.push_back({{"name", t.name},
                       {"distance_m", rounded(t.distance_m, 1e-3)},
                       {"extent_m", {rounded(extent.x, 1e-3), rounded(extent.y, 1e-3)}},
-                      {"covered_m2", 0.25 * static_cast<double>(t.cells.size())}});
+                      {"covered_m2", 0.25 * static_cast<double>(t.cells.size())},
+                      {"pose", pose_json(simulation, t.name)},
+                      {"joints", joints_json(simulation, t.name)}});
   }
   json["robots"] = robots;
   const EngineCounters counters = simulation.engine().counters();

@@ -126,6 +126,8 @@ class Engine {
   /// origin) during it, whatever is in its way; contacts feel that velocity. Without a call it stands still.
   /// @pre it was added with a motion
   virtual void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) = 0;
+  /// The instance is a robot from now on, as if it had been added as one: it does not sleep.
+  virtual void become_robot(InstanceId) {}
   /// Pose of the model frame, from the canonical link.
   virtual Pose pose(InstanceId id) const = 0;
 

@@ -49,6 +49,14 @@ Result<std::uint32_t> link_named(const model::Model& model, const Node& name, co
                     suggestion(name.text(), names), path);
 }
 
+/// What a file called a device, as a user would recognise it.
+std::string sdf_name(const model::DeviceDecl& decl) {
+  if (decl.sdf_types.empty()) return "'" + decl.name + "'";
+  const std::string& type = decl.sdf_types.front();
+  if (starts_with(type, "sensor:")) return "<sensor type=\"" + type.substr(7) + "\">";
+  return "plugin '" + type.substr(starts_with(type, "plugin:") ? 7 : 0) + "'";
+}
+
 /// Devices that an SDF file declared become Sandlot's kinds; those nobody answers to are named and dropped.
 Status translate_devices(model::Instance& instance, const formats::SearchPath& path,
                          Diagnostics& diagnostics) {
@@ -62,9 +70,7 @@ Status translate_devices(model::Instance& instance, const formats::SearchPath& p
       }
       const Kind* const kind = find_device_kind_for_sdf(decl);
       if (!kind) {
-        diagnostics.warn(
-            {"'" + (decl.sdf_types.empty() ? decl.name : decl.sdf_types.front()) + "' is not supported",
-             "it is ignored", decl.place});
+        diagnostics.warn({sdf_name(decl) + " is not supported", "it is ignored", decl.place});
         continue;
       }
       auto config = kind->from_sdf(decl.config, diagnostics);

@@ -25,6 +25,8 @@ Status Simulation::mount_device(const LoadDeviceRequest& request) {
     return described;
   }
   entity->instance.devices.push_back(request.device);
+  // The engine has to know too: a snapshot makes a robot of it.
+  if (!entity->instance.is_robot) engine_->become_robot(entity->id);
   entity->instance.is_robot = true;
   ++revision_;
   return {};

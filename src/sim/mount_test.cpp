@@ -164,6 +164,24 @@ TEST(Mount, EditsGiveTheSameHashesForAnyThreadsAndAfterARestore) {
   }
 }
 
+TEST(Mount, WhatBecameARobotStaysAwakeWithARestoreAsWithout) {
+  // A crate at rest sleeps after half a second; a robot never does, whether it was one from the start or not.
+  const auto run = [](bool restoring) {
+    auto simulation = build(arena("rigid", 0));
+    advance(*simulation, 10);
+    EXPECT_TRUE(ask(*simulation, LoadDeviceRequest{"crate1", device("truth", "ground_truth")}));
+    if (restoring) simulation = again(*simulation);
+    std::vector<std::uint64_t> hashes;
+    for (int tick = 0; tick < 300; ++tick) {
+      advance(*simulation, 1);
+      hashes.push_back(simulation->state_hash());
+    }
+    EXPECT_EQ(simulation->engine().counters().awake_bodies, 1u);
+    return hashes;
+  };
+  EXPECT_EQ(run(false), run(true));
+}
+
 TEST(Mount, AProgramKeepsWhatItNeeds) {
   const auto simulation = build(arena("planar", 1));
   advance(*simulation, 50);

@@ -68,47 +68,30 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
                     diagnostics));
   SL_TRY(copy_limit(element, "angular_acceleration", "acceleration", config, "max_angular_acceleration",
                     diagnostics));
+  // The acceleration of a wheel's rim, in the plugins of gazebo_ros: 0 means none.
+  SL_ASSIGN(const auto rim, number(element, "max_wheel_acceleration"));
+  if (rim && *rim > 0)
+    config.set("max_linear_acceleration", scalar(*rim, *find(element, "max_wheel_acceleration")));
   config.set("max_wheel_effort",
              Node::scalar(unlimited, element.place()));  // then the joint's own limit holds
   SL_TRY(
       copy_number(element, {"max_wheel_torque", "wheelTorque", "torque"}, 1.0, config, "max_wheel_effort"));
-  warn_unknown(element,
-               {"left_joint",
-                "leftJoint",
-                "right_joint",
-                "rightJoint",
-                "left_front",
-                "left_rear",
-                "right_front",
-                "right_rear",
-                "leftFrontJoint",
-                "leftRearJoint",
-                "rightFrontJoint",
-                "rightRearJoint",
-                "wheel_separation",
-                "wheelSeparation",
-                "wheel_radius",
-                "wheel_diameter",
-                "wheelDiameter",
-                "odom_publish_frequency",
-                "update_rate",
-                "updateRate",
-                "max_linear_velocity",
-                "min_linear_velocity",
-                "max_angular_velocity",
-                "min_angular_velocity",
-                "max_velocity",
-                "min_velocity",
-                "max_linear_acceleration",
-                "min_linear_acceleration",
-                "max_angular_acceleration",
-                "min_angular_acceleration",
-                "max_acceleration",
-                "min_acceleration",
-                "max_wheel_torque",
-                "wheelTorque",
-                "torque"},
-               "the differential drive plugin", diagnostics);
+  warn_unknown(
+      element,
+      {"left_joint", "leftJoint", "right_joint", "rightJoint", "left_front", "left_rear", "right_front",
+       "right_rear", "leftFrontJoint", "leftRearJoint", "rightFrontJoint", "rightRearJoint",
+       "wheel_separation", "wheelSeparation", "wheel_radius", "wheel_diameter", "wheelDiameter",
+       "odom_publish_frequency", "update_rate", "updateRate", "max_linear_velocity", "min_linear_velocity",
+       "max_angular_velocity", "min_angular_velocity", "max_velocity", "min_velocity",
+       "max_linear_acceleration", "min_linear_acceleration", "max_angular_acceleration",
+       "min_angular_acceleration", "max_acceleration", "min_acceleration", "max_wheel_torque", "wheelTorque",
+       "torque", "max_wheel_acceleration",
+       // Names of topics and frames, and whether to publish them: ours are fixed, and all are published.
+       "ros", "num_wheel_pairs", "publish_odom", "publish_odom_tf", "publish_wheel_tf", "odometry_frame",
+       "robot_base_frame", "robotNamespace", "commandTopic", "odometryTopic", "odometryFrame",
+       "robotBaseFrame", "publishWheelTF", "publishWheelJointState", "publishOdomTF", "publishTf",
+       "broadcastTF", "legacyMode", "rosDebugLevel"},
+      "the differential drive plugin", diagnostics);
   return config;
 }
 

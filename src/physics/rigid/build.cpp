@@ -333,7 +333,8 @@ void RigidEngine::remove(InstanceId id) {
 
 void RigidEngine::destroy(Instance& instance) {
   for (Joint& joint : instance.joints) destroy_joint(joint);
-  for (Geom& geom : instance.geoms) dGeomDestroy(geom.ode);
+  // The last one first: that is where a body's list of shapes begins, which ODE searches for each.
+  for (std::size_t i = instance.geoms.size(); i-- > 0;) dGeomDestroy(instance.geoms[i].ode);
   if (instance.space) dSpaceDestroy(instance.space);
   for (Body& body : instance.bodies) dBodyDestroy(body.ode);
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <vector>
 
 #include "base/check.h"
 #include "base/hash.h"
@@ -83,6 +84,13 @@ void prepare_thread() {
   });
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   ready = true;
+}
+
+void abandon(void* item) {
+  static std::mutex mutex;
+  static std::vector<void*>& items = *new std::vector<void*>;
+  const std::lock_guard lock(mutex);
+  items.push_back(item);
 }
 
 void seed(std::uint64_t key) { thread_seed = mix64(key ^ 0x6f64655f72616e64u); }

@@ -20,6 +20,9 @@ struct Fault {
   std::string message;
 };
 
+/// Keeps what ODE refuses to destroy after a Fault, so that it still counts as in use.
+void abandon(void* item);
+
 /// Seeds what the quick solver draws in this thread from now on.
 void seed(std::uint64_t key);
 

@@ -1,7 +1,10 @@
 #include "physics/rigid/library.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <ode/ode.h>
+
+#include "physics/test_world.h"
 
 namespace sandlot::rigid::library {
 namespace {
@@ -48,6 +51,21 @@ TEST(RigidLibrary, AnErrorOfOdeCanBeCaughtSoThatTheRunEndsWithItsResults) {
     dDebug(1, "something %s", "broke");
     FAIL() << "dDebug returned";
   } catch (const Fault& fault) { EXPECT_EQ(fault.message, "something broke"); }
+}
+
+TEST(RigidLibrary, AnEngineWhoseStepOdeBrokeOffCanBeDestroyed) {
+  // A grain of 0.1 um, with moments of 1e-33 kg m^2, is sunk into the ground by half its size and pushed out.
+  test::World world(*find_engine("rigid").value());
+  world.add(test::ground());
+  world.add(test::body_of("grain", Box{{1e-7, 1e-7, 1e-7}}, 1e-18, {{}, quat_from_rpy(0.3, 0.2, 0.1)}));
+  Status status;
+  for (int k = 0; k < 2000 && status; ++k) {
+    world.engine->step(0.001, 0);
+    status = world.engine->check_finite();
+  }
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().what, testing::HasSubstr("no longer finite (ODE: "));
+  world.engine.reset();  // would end the process
 }
 
 }  // namespace

@@ -119,6 +119,12 @@ void RigidEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   finite_ = finite_ && is_finite(X_WM) && is_finite(V_WM.linear) && is_finite(V_WM.angular);
 }
 
+void RigidEngine::become_robot(InstanceId id) {
+  Instance& instance = alive(id);
+  instance.is_robot = true;
+  wake_instance(instance);
+}
+
 void RigidEngine::wake(Body& body) {
   if (!body.awake) wake_instance(*body.instance);
   body.quiet_s = 0;

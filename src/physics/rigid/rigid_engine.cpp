@@ -1,7 +1,6 @@
 #include "physics/rigid/rigid_engine.h"
 
 #include <algorithm>
-#include <mutex>
 #include <vector>
 
 #include "base/check.h"
@@ -38,15 +37,10 @@ RigidEngine::~RigidEngine() {
   for (Instance* instance : order_) destroy(*instance);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
-  // A step that ODE left in the middle leaves jobs behind, and ODE ends the process when they are freed.
-  if (fault_.empty()) {
-    dThreadingFreeImplementation(threading_);
-    return;
-  }
-  static std::mutex mutex;
-  static std::vector<dThreadingImplementationID>& kept = *new std::vector<dThreadingImplementationID>;
-  const std::lock_guard lock(mutex);
-  kept.push_back(threading_);
+  // A step that ODE broke off leaves jobs behind, and ODE insists that there are none: its complaint, thrown out of a
+  // destructor, would end the process. The few bytes are not worth that.
+  if (fault_.empty()) dThreadingFreeImplementation(threading_);
+  else library::abandon(threading_);
 }
 
 Capabilities RigidEngine::capabilities() const {
