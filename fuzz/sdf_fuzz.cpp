@@ -6,7 +6,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   sandlot::Diagnostics diagnostics;
   const auto result = sandlot::formats::parse_sdf(
-      text, "/nowhere/fuzz.sdf", diagnostics, {.max_bytes = 1 << 16, .max_depth = 32, .max_elements = 2'000});
+      text, "/nowhere/fuzz.sdf", diagnostics,
+      {.limits = {.max_bytes = 1 << 16, .max_depth = 32, .max_elements = 2'000}});
   if (!result) {
     SL_CHECK(!result.error().what.empty() && result.error().place.file);
     return 0;

@@ -455,6 +455,18 @@ TEST(Convert, MeshesAndTerrainKeepTheirFilesScalesAndHeights) {
   EXPECT_NEAR(volume_m3(shape(is, 1)), 0.1 * 0.1 * 0.2 / 6, 1e-12);
 }
 
+TEST(Convert, LightsOfNestedModelsKeepTheirNames) {
+  const Folder folder;
+  folder.write("robot.sdf", R"(<sdf version="1.9"><model name="robot"><link name="base"/>
+    <model name="arm"><link name="hand"><light name="lamp" type="point"/></link></model></model></sdf>)");
+  const std::string scenario = folder.write("s.yaml",
+                                            "version: 1\nrobots:\n  - {name: r, model: robot.sdf}\n");
+  ASSERT_EQ(convert(scenario, folder.file("world.sdf")).exit_code, 0);
+  const model::Setup back = loaded(folder.file("world.sdf"));
+  ASSERT_EQ(back.instances.back().model->lights.size(), 1u);
+  EXPECT_EQ(back.instances.back().model->lights[0].light.name, "arm::lamp");
+}
+
 TEST(Convert, NeverReplacesAFileUnasked) {
   const Folder folder;
   const std::string urdf = folder.write("a.urdf", turtle());

@@ -47,6 +47,9 @@ void Simulation::save_device(const Device& device, ByteWriter& w) const {
 
 void Simulation::load_device(Device& device, ByteReader& r) {
   read(r, device.levels);
+  // Kinds look for their active levels without asking whether there are any.
+  const std::size_t known = std::max<std::size_t>(pools_[device.kind].kind->levels.size(), 1);
+  if (device.levels == 0 || (known < 32 && device.levels >> known != 0)) return r.fail();
   read(r, device.start);
   read(r, device.sample);
   read(r, device.last);

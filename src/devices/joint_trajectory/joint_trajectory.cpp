@@ -29,6 +29,12 @@ Reference reference(const State& s, std::size_t joints, std::size_t j, double t_
   return {((a * u + b) * u + m0) * u + p0, ((3 * a * u + 2 * b) * u + m0) / span_s};
 }
 
+/// A snapshot may hold anything; its lists are followed without asking.
+bool fits(const State& s, std::size_t joints) {
+  return !s.time_s.empty() && s.position.size() == s.time_s.size() * joints &&
+         (s.velocity.empty() || s.velocity.size() == s.position.size()) && s.pids.size() == joints;
+}
+
 /// The path is one point from now on: where the joints are.
 void hold(Trajectory& device, std::span<const JointState> states) {
   State& state = device.state;
@@ -184,6 +190,7 @@ void Trajectory::actuate(PoolView<Trajectory> pool, const Context& context) {
   const auto states = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Trajectory& device = pool.all[index];
+    if (device.state.held && !fits(device.state, device.joints.size())) hold(device, states);
     if (device.spec.active && !device.state.held) hold(device, states);
     if (!device.spec.active && device.state.held) {
       device.release(context);

@@ -51,6 +51,24 @@ TEST(JointTrajectory, FollowsStraightLinesExactlyAndStaysAtTheEnd) {
   EXPECT_EQ(rig.engine->target[1].mode, JointTarget::Mode::free);  // not its joint
 }
 
+TEST(JointTrajectory, AStateWhoseListsDoNotFitHoldsTheJoints) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("arm", arm()));
+  act(rig, 1);
+  for (const std::size_t points : {0u, 3u}) {
+    State state;
+    state.held = 1;
+    state.time_s.resize(points);
+    ByteWriter w;
+    write_tunables(w, Spec{});
+    write(w, state);
+    rig.load(w.bytes());
+    act(rig, 10);
+    EXPECT_EQ(position(rig, 0), 0);
+    EXPECT_EQ(position(rig, 2), 0);
+  }
+}
+
 TEST(JointTrajectory, WithVelocitiesThePathIsACubic) {
   // From rest at 0 to rest at 1 in 2 s: u^2 (3 - 2 u).
   Rig rig(kind, test::two_wheels());

@@ -250,6 +250,19 @@ TEST(Mesh, ASubmeshIsFoundByNameAndCentred) {
   }
 }
 
+TEST(Mesh, AnObjThatEndsInAContinuedLineIsReadOnceToItsEnd) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const char* face : {"f 1 2 3 \\", "f 1 2 3 \\\n", "f 1 \\\n2 3 \\", "f 1 \\\n2 \\\n3"})
+    EXPECT_EQ(parsed(corners + face, "a.obj").triangles.size(), 1u) << face;
+}
+
+TEST(Mesh, AnObjReadsEachMaterialFileOnce) {
+  Diagnostics diagnostics;
+  const std::string text = "mtllib a.mtl\nmtllib b.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  ASSERT_TRUE(parse_mesh(text, "/nowhere/a.obj", {}, diagnostics));
+  EXPECT_EQ(diagnostics.warnings.size(), 2u);  // neither is there
+}
+
 TEST(Mesh, ObjLinesCornersAndErrorsHaveTheirLine) {
   expect_tetrahedron(parsed("# a comment\n\n" + obj() + "l 1 2\np 1\ns off\n", "a.obj"));
   expect_tetrahedron(

@@ -1,4 +1,5 @@
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "base/text.h"
@@ -108,17 +109,20 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
   Words in(bytes);
   std::string_view line;
   std::string joined;
+  std::set<std::string> libraries;  // that were asked for
   while (true) {
     const int here = in.line();
     if (!in.next_line(line)) break;
     if (line.find('\0') != std::string_view::npos) return out.error("is no text file", "", here);
     if (!line.empty() && line.back() == '\\') {  // goes on in the next line
       joined.clear();
-      do {
+      bool more = true;
+      while (more && !line.empty() && line.back() == '\\') {
         joined.append(line.substr(0, line.size() - 1));
         joined += ' ';
-      } while (in.next_line(line) && !line.empty() && line.back() == '\\');
-      joined.append(line);
+        more = in.next_line(line);
+      }
+      if (more) joined.append(line);
       line = joined;
     }
     Words words(line);
@@ -150,7 +154,9 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
             out.error("material '" + obj.material.substr(0, 60) + "' is in no mtllib of the file",
                       "it is drawn grey", here));
     } else if (key == "mtllib") {
-      const auto text = out.read_beside(rest_of(line, words), here);
+      const std::string file = rest_of(line, words);
+      if (!libraries.insert(file).second) continue;  // some exporters name it before each part
+      const auto text = out.read_beside(file, here);
       if (text) read_mtl(*text, obj.materials);
       else diagnostics.warn(text.error());
     }

@@ -174,8 +174,13 @@ class ModelWriter {
       if (auto material = material_of(visual.material)) add(each, std::move(*material));
       if (!visual.cast_shadows) add(each, "cast_shadows", "false");
     }
-    for (const model::LinkLight& light : model_.lights)
-      if (light.link == l) add(out, light_of(light.light));
+    // The reader puts the names of the nested models before the light's own, as before the link's.
+    const std::string scope = link.name.substr(0, link.name.size() - name.size());
+    for (const model::LinkLight& light : model_.lights) {
+      if (light.link != l) continue;
+      Xml& each = add(out, light_of(light.light));
+      each.set_attribute("name", within(scope, light.light.name).value_or(light.light.name));
+    }
     for (const model::DeviceDecl& device : devices_)
       if (!is_native(device) && is_sensor(device) && device.link == l && writing::joint_of(device).empty())
         add(out, device_of(device, device.X_LS));
