@@ -20,6 +20,9 @@ constexpr Golden goldens[] = {
     {"scenarios/fleet.yaml --duration 20s", "dcf5e57224ad794f"},
     {"scenarios/fleet.yaml --duration 20s --set physics=planar", "298e5f5f27673617"},
     {"scenarios/pile.yaml --duration 10s", "de905fdd039c8d8e"},
+    {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
+    {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},
+    {"scenarios/mario.yaml --duration 10s", "9e2b3e1b2e9c7fa8"},
 };
 
 class GoldenRun : public testing::TestWithParam<Golden> {};

@@ -22,7 +22,8 @@ static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler
 
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics) {
-  SL_ASSIGN(model::Setup setup, load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
+  SL_ASSIGN(model::Setup setup,
+            load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
 

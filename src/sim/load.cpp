@@ -12,6 +12,7 @@
 #include "formats/resources.h"
 #include "formats/ros2_control/ros2_control.h"
 #include "formats/sdf/sdf.h"
+#include "geometry/bounds.h"
 #include "physics/engine.h"
 #include "sim/assets.h"
 #include "sim/joint_controllers.h"
@@ -200,10 +201,19 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Sdf
   // Gazebo's default; a scenario has its own.
   setup.step = Time::from_s(content.max_step_s.value_or(0.001));
   setup.physics = std::move(content.physics);
-  // A robot by itself has nothing to stand on in its file.
   const bool alone = content.world_name.empty() && !content.instances.front().model->is_static;
-  if (alone && content.instances.front().name != "ground") setup.instances.push_back(bare_ground());
   SL_TRY(take_world(std::move(content), options.path, setup, diagnostics));
+  // A robot by itself has nothing to stand on in its file. Many have their origin above the ground.
+  if (alone && setup.instances.front().name != "ground") {
+    const model::Instance& robot = setup.instances.front();
+    Bounds bounds;
+    for (const model::Link& link : robot.model->links)
+      for (const model::Collision& each : link.collisions)
+        bounds.include(bounds_of(each.shape, robot.X_WM * link.X_ML * each.X_LC));
+    model::Instance ground = bare_ground();
+    ground.X_WM.p.z = bounds.empty() ? 0 : std::min(0.0, bounds.low.z);
+    setup.instances.push_back(std::move(ground));
+  }
   return setup;
 }
 

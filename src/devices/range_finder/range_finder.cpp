@@ -155,7 +155,8 @@ constexpr Preset presets[] = {
      "{radiation: infrared, fov: 2 deg, rings: 1, min_range: 0.1, max_range: 0.8, rate: 25,"
      " noise: {white: 5 mm, systematic: 1 cm}}"},
     {"polaroid_6500",
-     "Polaroid 6500 sonar as the Pioneer and the B21 carry it: 15 cm to 5 m, cone of about 30 deg, each fired 3 "
+     "Polaroid 6500 sonar as the Pioneer and the B21 carry it: 15 cm to 5 m, cone of about 30 deg, each "
+     "fired 3 "
      "times a second (general knowledge of the makers' manuals; the error is uncertain).",
      "{radiation: ultrasound, fov: 30 deg, rings: 3, min_range: 0.15, max_range: 5, rate: 3.125,"
      " noise: {white: 1 cm, resolution: 1 cm}}"},

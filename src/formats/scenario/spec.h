@@ -113,7 +113,8 @@ struct Robot {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
                 Field::required, 100},
           s.name);
-    visit(Field{"model", "", "Model file (SDF or URDF), relative to this file, or a folder of models.", 0, 0, Field::required, 4096},
+    visit(Field{"model", "", "Model file (SDF or URDF), relative to this file, or a folder of models.", 0, 0,
+                Field::required, 4096},
           s.model);
     visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
     visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
