@@ -129,16 +129,17 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   Node config = Node::map(element.place());
   std::vector<Node> joints;
   copy_list(element, "joint_name", joints);
-  if (joints.empty()) return element.error("this plugin names no joints", "write a <joint_name> for each");
-  Node& list = config.set("joints", Node::sequence(joints.front().place()));
-  for (const Node& joint : joints) list.push(joint);
+  if (!joints.empty()) {  // none: all joints of the model, as in Gazebo
+    Node& list = config.set("joints", Node::sequence(joints.front().place()));
+    for (const Node& joint : joints) list.push(joint);
+  }
   std::vector<Node> gains[3];
   constexpr const char* names[] = {"position_p_gain", "position_i_gain", "position_d_gain"};
   constexpr const char* keys[] = {"p", "i", "d"};
   for (int k = 0; k < 3; ++k) copy_list(element, names[k], gains[k]);
   if (!gains[0].empty()) {
     Node& all = config.set("gains", Node::sequence(element.place()));
-    for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (std::size_t j = 0; j < (joints.empty() ? gains[0].size() : joints.size()); ++j) {
       Node each = Node::map(element.place());
       for (int k = 0; k < 3; ++k)
         if (j < gains[k].size()) each.set(keys[k], gains[k][j]);
@@ -160,25 +161,31 @@ Result<Trajectory> Trajectory::create(const DeviceBuild& build, Spec spec) {
     const Node* const node = build.decl.config.find(key);
     return node ? node->place() : build.decl.place;
   };
+  const auto can_be_driven = [](const model::Joint& joint) {
+    using enum model::JointType;
+    return joint.type == revolute || joint.type == continuous || joint.type == prismatic;
+  };
   if (spec.joints.empty())
-    return Error{"the list of joints is empty", "name one at least", at("joints"), "/joints"};
+    for (const model::Joint& joint : build.instance.model->joints)
+      if (can_be_driven(joint)) spec.joints.push_back(joint.name);
+  if (spec.joints.empty())
+    return Error{"model '" + build.instance.model->name + "' has no joint that can be driven", "",
+                 build.decl.place};
   if (!spec.gains.empty() && spec.gains.size() != spec.joints.size())
     return Error{"there are " + std::to_string(spec.gains.size()) + " gains for " +
                      std::to_string(spec.joints.size()) + " joints",
                  "write one {p, i, d} for each joint, or none at all", at("gains"), "/gains"};
   Trajectory device{std::move(spec)};
-  using model::JointType;
   for (const std::string& name : device.spec.joints) {
     SL_ASSIGN(const std::uint32_t index, build.joint_index(name, "joints"));
     const model::Joint& joint = build.instance.model->joints[index];
-    if (joint.type != JointType::revolute && joint.type != JointType::continuous &&
-        joint.type != JointType::prismatic)
+    if (!can_be_driven(joint))
       return Error{"joint '" + name + "' cannot be driven",
                    "a trajectory needs revolute, continuous or prismatic joints", at("joints"), "/joints"};
     for (const Joint& other : device.joints)
       if (other.id == build.joints[index])
         return Error{"joint '" + name + "' is named twice", "", at("joints"), "/joints"};
-    const bool bounded = joint.type != JointType::continuous;
+    const bool bounded = joint.type != model::JointType::continuous;
     device.joints.push_back({build.joints[index], bounded ? joint.lower : -1e16, bounded ? joint.upper : 1e16,
                              joint.max_effort, joint.max_velocity});
   }

@@ -33,7 +33,10 @@ struct Spec {
   bool active = true;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"joints", "", "Names of the joints, in order.", 0, 0, Field::required, 1000}, s.joints);
+    visit(Field{"joints", "",
+                "Names of the joints, in order; none: all that can be driven, in the model's order.", 0, 0,
+                Field::none, 1000},
+          s.joints);
     visit(Field{"gains", "", "Gains of each joint, in order [Nm per rad]; none: followed exactly.", 0, 0,
                 Field::none, 1000},
           s.gains);

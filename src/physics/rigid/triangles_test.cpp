@@ -123,7 +123,11 @@ TEST(Terrain, StandsStillOrIsRefused) {
       << made.error().text();
   TriangleMesh broken = tessellate(Box{{1, 1, 1}});
   broken.triangles[3][1] = 8;
-  EXPECT_FALSE(world.engine->add(body_of("mesh", Mesh{std::make_shared<const TriangleMesh>(broken)}, 1)));
+  model::Instance torn = body_of("mesh", Box{{1, 1, 1}}, 1);  // its inertia; no mesh so torn has one
+  model = *torn.model;
+  model.links[0].collisions[0].shape = Mesh{std::make_shared<const TriangleMesh>(broken)};
+  torn.model = std::make_shared<const model::Model>(model);
+  EXPECT_FALSE(world.engine->add(torn));
 }
 
 /// How far and how high a body slides that starts at 2 m/s.
