@@ -182,8 +182,8 @@ TEST(JointTrajectory, NoNamesMeanAllJointsInTheOrderOfTheModel) {
   ASSERT_TRUE(static_cast<bool>(rig.add("arm", config({}))));
   Node three = config({});
   Node& gains = three.set("gains", Node::sequence());
-  for (int i = 0; i < 3; ++i) gains.push(config({{"p", "1"}}));
-  EXPECT_EQ(rig.add("more", std::move(three)).error().what, "there are 3 gains for 2 joints");
+  for (int i = 0; i < 5; ++i) gains.push(config({{"p", "1"}}));
+  EXPECT_EQ(rig.add("more", std::move(three)).error().what, "there are 5 gains for 3 joints");
 }
 
 TEST(JointTrajectoryFromSdf, TakesJointsAndGainsInOrder) {
