@@ -21,7 +21,6 @@ namespace sandlot {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 struct Folder {
   std::filesystem::path path;

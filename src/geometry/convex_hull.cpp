@@ -164,7 +164,9 @@ TriangleMesh convex_hull(const std::vector<Vec3>& points) {
   std::vector<GridPoint> grid;
   grid.reserve(points.size());
   for (const Vec3& p : points) {
-    const auto round = [&](double d) { return static_cast<std::int64_t>(d / extent * steps + 0.5); };
+    const auto round = [&](double d) {
+      return static_cast<std::int64_t>(std::floor(d / extent * steps + 0.5));
+    };
     grid.push_back({round(p.x - low.x), round(p.y - low.y), round(p.z - low.z)});
   }
   Hull hull(std::move(grid));
