@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "messages/messages.h"
 #include "sim/test_world.h"
 
@@ -51,6 +54,58 @@ TEST(Presets, TheKeysBesideAPresetGoBefore) {
   // A snapshot holds the preset by name and lays it again.
   const auto restored = again(**simulation);
   EXPECT_EQ(restored->state_hash(), (*simulation)->state_hash());
+}
+
+/// Errors of one beam that looks at a wall 3 m away, one per tick.
+std::vector<double> errors_of(const char* preset, std::uint64_t seed, int samples) {
+  model::Setup setup;
+  setup.step = Time::from_s(0.001);
+  setup.seed = seed;
+  setup.gravity = {};
+  setup.instances.push_back(with_device(
+      "laser_scanner",
+      map({{"preset", preset}, {"beams", "1"}, {"min_angle", "0"}, {"max_angle", "0"}, {"rate", "0"}})));
+  setup.instances.push_back(placed("wall", one_shape("wall", Box{{0.1, 4, 4}}, 0), {{3.05, 0, 0}, {}}));
+  Diagnostics diagnostics;
+  const auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
+  EXPECT_TRUE(simulation) << (simulation ? "" : simulation.error().text());
+  std::vector<double> out;
+  if (!simulation) return out;
+  const auto* scan = topic_cast<msg::LaserScan>((*simulation)->find_topic("robot/device"));
+  for (int i = 0; i < samples; ++i) {
+    EXPECT_TRUE((*simulation)->tick());
+    out.push_back(static_cast<double>(scan->message.ranges.at(0)) - 3);
+  }
+  return out;
+}
+
+TEST(Presets, TheNoiseOfTheLaserPresetsIsThatOfTheDataSheet) {
+  struct Sheet {
+    const char* preset;
+    double white_m, systematic_m, resolution_m;
+  };
+  constexpr int devices = 12, samples = 400;
+  for (const Sheet& sheet :
+       {Sheet{"sick_lms200", 0.005, 0.015, 0.001}, Sheet{"sick_ld", 0.025, 0.038, 0.00390625}}) {
+    double squares = 0, largest = 0;
+    for (int d = 0; d < devices; ++d) {
+      const std::vector<double> errors = errors_of(sheet.preset, static_cast<std::uint64_t>(d + 1), samples);
+      ASSERT_EQ(errors.size(), static_cast<std::size_t>(samples));
+      double mean = 0;
+      for (const double e : errors) mean += e / samples;
+      for (const double e : errors) squares += (e - mean) * (e - mean);
+      largest = std::max(largest, std::abs(mean));
+      // The systematic error is constant, within its bound; the mean of the samples strays by sigma / sqrt(n), four of them.
+      EXPECT_LT(std::abs(mean), sheet.systematic_m + 4 * sheet.white_m / std::sqrt(samples)) << sheet.preset;
+    }
+    // Rounding to multiples of r adds r^2 / 12. The deviation from n samples strays by sigma / sqrt(2 n); four of that.
+    const double expected = std::sqrt(sheet.white_m * sheet.white_m +
+                                      sheet.resolution_m * sheet.resolution_m / 12);
+    const int n = devices * (samples - 1);
+    EXPECT_NEAR(std::sqrt(squares / n), expected, 4 * expected / std::sqrt(2.0 * n)) << sheet.preset;
+    // Drawn evenly: that all twelve lie in the inner half has a chance of 1 in 4096.
+    EXPECT_GT(largest, 0.5 * sheet.systematic_m) << sheet.preset;
+  }
 }
 
 TEST(Presets, AnUnknownOneIsAnErrorWithTheNearest) {
