@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/math.h"
-#include "devices/parallel.h"
+#include "devices/cast_due.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::laser_scanner {
@@ -96,31 +96,11 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
 }
 
 void Scanner::sense(PoolView<Scanner> pool, const Context& context) {
-  const auto states = context.engine.states();
-  // Several scanners per batch, so that a caster may sort rays of neighbours; few enough to stay on the stack.
-  constexpr std::size_t batch = 16;
-  parallel_for(pool.due.size(), batch, [&](std::size_t begin, std::size_t end) {
-    std::array<RayJob, batch> jobs;
-    while (begin < end) {
-      const std::size_t count = std::min(batch, end - begin);
-      for (std::size_t i = 0; i < count; ++i) {
-        Scanner& scanner = pool.all[pool.due[begin + i]];
-        scanner.scan->message.ranges.resize(scanner.directions_S.size());
-        jobs[i] = {.X_WS = states[scanner.body].X_WB * scanner.X_LS,
-                   .directions = scanner.directions_S,
-                   .min_m = 0,
-                   .max_m = scanner.spec.max_range_m,
-                   .ignore_body = scanner.body,
-                   .distance_m = scanner.scan->message.ranges};
-      }
-      context.rays.cast({jobs.data(), count});
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t index = pool.due[begin + i];
-        finish(pool.all[index], pool.sample[index], pool.since[index], context);
-      }
-      begin += count;
-    }
-  });
+  const auto distances_of = [](Scanner& scanner) -> std::span<float> {
+    scanner.scan->message.ranges.resize(scanner.directions_S.size());
+    return scanner.scan->message.ranges;
+  };
+  cast_due(pool, context, distances_of, finish);
 }
 
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/math.h"
-#include "devices/parallel.h"
+#include "devices/cast_due.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::range_finder {
@@ -110,29 +110,8 @@ Result<Finder> Finder::create(const DeviceBuild& build, Spec spec) {
 }
 
 void Finder::sense(PoolView<Finder> pool, const Context& context) {
-  const auto states = context.engine.states();
-  constexpr std::size_t batch = 16;
-  parallel_for(pool.due.size(), batch, [&](std::size_t begin, std::size_t end) {
-    std::array<RayJob, batch> jobs;
-    while (begin < end) {
-      const std::size_t count = std::min(batch, end - begin);
-      for (std::size_t i = 0; i < count; ++i) {
-        Finder& finder = pool.all[pool.due[begin + i]];
-        jobs[i] = {.X_WS = states[finder.body].X_WB * finder.X_LS,
-                   .directions = finder.directions_S,
-                   .min_m = 0,
-                   .max_m = finder.spec.max_range_m,
-                   .ignore_body = finder.body,
-                   .distance_m = finder.distance_m};
-      }
-      context.rays.cast({jobs.data(), count});
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t index = pool.due[begin + i];
-        finish(pool.all[index], pool.sample[index], pool.since[index], context);
-      }
-      begin += count;
-    }
-  });
+  cast_due(
+      pool, context, [](Finder& finder) -> std::span<float> { return finder.distance_m; }, finish);
 }
 
 namespace {
