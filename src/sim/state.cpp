@@ -8,13 +8,14 @@
 #include <algorithm>
 
 #include "sim/model_bytes.h"
+#include "sim/plugin.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
 namespace {
 
 constexpr std::array<char, 8> magic{'S', 'A', 'N', 'D', 'L', 'O', 'T', 'S'};
-constexpr std::uint32_t snapshot_version = 1;
+constexpr std::uint32_t snapshot_version = 2;
 
 /// Keeps each part of a snapshot readable on its own: a part that reads too much or too little is noticed there.
 template <class Fill>
@@ -220,6 +221,10 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   for (std::uint64_t& serial : serials) read(block, serial);
   if (!block.ok()) return damaged("the model cannot be read");
 
+  for (model::PluginDecl& decl : setup.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+  }
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
   Diagnostics said_before;  // these warnings were given when the run began
   SL_TRY(sim->build(said_before));
