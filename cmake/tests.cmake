@@ -64,3 +64,17 @@ foreach(source IN LISTS sources)
   set_tests_properties(${name} PROPERTIES LABELS unit)
 endforeach()
 set_tests_properties(check_layers PROPERTIES LABELS unit)
+
+# tests/js/*_test.mjs hold messages and recordings against readers that others wrote. `./dev test` installs those.
+find_program(SANDLOT_NODE node)
+if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
+  file(GLOB sources CONFIGURE_DEPENDS tests/js/*_test.mjs)
+  foreach(source IN LISTS sources)
+    get_filename_component(name ${source} NAME_WE)
+    add_test(NAME js_${name} COMMAND ${SANDLOT_NODE} ${source} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
+      ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
+  endforeach()
+else()
+  message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
+endif()

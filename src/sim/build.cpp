@@ -86,6 +86,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
 
 Status Simulation::build(Diagnostics& diagnostics) {
   if (setup_.step.ns <= 0) return Error{"time.step must be positive"};
+  if (setup_.clock.min_step.ns <= 0 || setup_.clock.max_step < setup_.clock.min_step)
+    return Error{"time.min_step must be positive and not above time.max_step"};
+  step_ = setup_.step;
   SL_ASSIGN(const EngineKind* const kind, find_engine(setup_.engine));
   SL_ASSIGN(engine_, kind->create(setup_.physics, setup_.gravity));
   if (const RayCaster* rays = engine_->rays()) {
@@ -202,7 +205,8 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   const double rate_hz = pool->pool->rate_hz(index);
   const double tick_hz = 1e9 / static_cast<double>(setup_.step.ns);
-  if (rate_hz > tick_hz * (1 + 1e-9)) {
+  const bool fixed = setup_.clock.mode == model::Clock::Mode::fixed;
+  if (fixed && rate_hz > tick_hz * (1 + 1e-9)) {
     pool->pool->remove(index);
     const Node* const rate = decl.config.find("rate");
     return Error{
@@ -210,7 +214,7 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
         "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
         "/" + path + "/rate"};
   }
-  if (rate_hz > 0) {
+  if (fixed && rate_hz > 0) {
     const double ticks = tick_hz / rate_hz;
     if (std::abs(ticks - std::round(ticks)) > 1e-6 * ticks)
       diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " +
@@ -349,11 +353,6 @@ void Simulation::remove_from_pool(const Device& device) {
   pool.devices.erase(pool.devices.begin() + device.index);
   pool.all.pop_back();
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
-  // A command that was carried out earlier in this tick: its slot goes with the device.
-  std::erase_if(applied_, [&](const Applied& applied) {
-    return std::any_of(device.commands.begin(), device.commands.end(),
-                       [&](const Slot& slot) { return slot.topic.get() == applied.slot; });
-  });
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {

@@ -134,25 +134,43 @@ void Simulation::for_each_state(Visit&& visit) const {
   }
 }
 
-std::uint64_t Simulation::state_hash() const {
+/// Fills the hash of each part, the run's own first. @return the hash of all
+std::uint64_t Simulation::hash_parts(std::vector<std::uint64_t>& parts) const {
+  parts.clear();
   scratch_.clear();
   save_run(scratch_);
   std::uint64_t hash = hash64(scratch_.bytes());
+  parts.push_back(hash);
   for_each_state([&](const std::string&, std::uint64_t key, auto&& fill) {
     scratch_.clear();
     fill(scratch_);
-    hash = hash_combine(hash, hash64(scratch_.bytes(), key));
+    parts.push_back(hash64(scratch_.bytes(), key));
+    hash = hash_combine(hash, parts.back());
   });
   return hash;
 }
 
+std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
+  auto names = std::make_shared<std::vector<std::string>>(1, "sim");
+  for (const auto& entity : entities_) {
+    names->push_back(entity->instance.name);
+    for (const auto& device : entity->devices) names->push_back(device->path);
+    for (const auto& program : entity->programs) names->push_back(program->path);
+  }
+  return names;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::vector<std::uint64_t> parts;
+  return hash_parts(parts);
+}
+
 std::vector<SubHash> Simulation::sub_hashes() const {
+  std::vector<std::uint64_t> parts;
+  hash_parts(parts);
+  const auto names = name_parts();
   std::vector<SubHash> out;
-  for_each_state([&](const std::string& path, std::uint64_t key, auto&& fill) {
-    scratch_.clear();
-    fill(scratch_);
-    out.push_back({path, hash64(scratch_.bytes(), key)});
-  });
+  for (std::size_t i = 0; i < parts.size(); ++i) out.push_back({(*names)[i], parts[i]});
   return out;
 }
 

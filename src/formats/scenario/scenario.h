@@ -65,6 +65,7 @@ struct Scenario {
   Place engine_place;
   Node physics;          ///< the engine's own keys; a map
   double step_s = 0.01;  ///< length of a tick
+  model::Clock clock;
   int substeps = 1;
   int control_interval = 1;
   std::optional<double> stop_s;
