@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/text.h"
 #include "devices/parallel.h"
 #include "model/motion.h"
 #include "sim/simulation.h"
@@ -226,12 +227,20 @@ void Simulation::control() {
       const Observation obs(now_, entry.topics, entry.seen,
                             Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
       entry.command.clear();
-      const Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      entry.failure = std::move(resumed.failure);
       entry.ended = resumed.waiting_for == Program::Waiting::nothing;
       ++entry.steps;
       for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
     }
   });
+  for (const ProgramEntry* entry : running_) {
+    if (!entry->failure || !failure_) continue;
+    failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
+                         number_text(now_.s()) + " s: " + *entry->failure,
+                     "", entry->decl.place};
+    stop_reason_ = failure_.error().what;
+  }
 }
 
 void Simulation::publish() {
