@@ -12,6 +12,9 @@
 ///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
 ///   };
 ///
+/// A Spec with a member `errors` (noise/chain.h, errors_field) takes part in the factors that scenarios and robots put on
+/// the errors of all their devices.
+///
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
 /// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
 /// one pool: one call per kind and phase, not per device.
@@ -242,10 +245,18 @@ class DevicePool final : public PoolBase {
   void save(std::uint32_t index, ByteWriter& w) const override {
     write_tunables(w, devices_[index].spec);
     write(w, devices_[index].state);
+    // Behind everything else and only where it is not 1: the bytes of a device without it are those of before it was.
+    if constexpr (requires { devices_[index].spec.errors; })
+      if (devices_[index].spec.errors != 1) write(w, devices_[index].spec.errors);
   }
+  /// @pre `r` ends where the device's bytes end
   void load(std::uint32_t index, ByteReader& r) override {
     read_tunables(r, devices_[index].spec);
     read(r, devices_[index].state);
+    if constexpr (requires { devices_[index].spec.errors; }) {
+      devices_[index].spec.errors = 1;
+      if (r.remaining() > 0) read(r, devices_[index].spec.errors);
+    }
   }
 
  private:
