@@ -169,6 +169,14 @@ struct ControllerDecl {
   Place place;
 };
 
+/// A shared library with controllers of the user's own.
+struct PluginDecl {
+  std::string file;
+  std::string name;        ///< as the library calls itself; known once it is loaded
+  std::uint64_t hash = 0;  ///< of the file's bytes, so that a snapshot notices another build
+  Place place;
+};
+
 /// A path that an instance follows whatever happens to it (SDF <actor>): it pushes and is not pushed.
 struct Motion {
   struct Key {
@@ -222,6 +230,7 @@ struct Setup {
   int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
   std::optional<Time> stop;  ///< simulated time at which the run ends by itself
+  std::vector<PluginDecl> plugins;
   std::vector<Instance> instances;
   std::vector<Light> lights;
   Color ambient{0.4f, 0.4f, 0.4f, 1}, background{0.7f, 0.7f, 0.7f, 1};

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "model/motion.h"
+#include "sim/plugin.h"
 #include "sim/presets.h"
 #include "sim/simulation.h"
 
@@ -102,11 +103,34 @@ Status Simulation::build(Diagnostics& diagnostics) {
   };
   for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
+  SL_TRY(gather_controllers(diagnostics));
   set_stop(setup_.stop);
   for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
+  return {};
+}
+
+/// The kinds that `controller:` may name: ours, the program's own, then those of the plugins.
+Status Simulation::gather_controllers(Diagnostics& diagnostics) {
+  std::map<std::string, std::string, std::less<>> owners;
+  const auto add = [&](const ControllerKind* kind, const std::string& owner, const Place& place) -> Status {
+    const auto [known, fresh] = owners.emplace(kind->name, owner);
+    if (!fresh)
+      return Error{owner + " brings a controller '" + kind->name + "', and so does " + known->second,
+                   "give it another name", place, "/plugins"};
+    controller_kinds_.push_back(kind);
+    return {};
+  };
+  for (const ControllerKind* kind : controller_kinds()) SL_TRY(add(kind, "Sandlot", {}));
+  for (const ControllerKind* kind : options_.extra_controllers) SL_TRY(add(kind, "this program", {}));
+  for (model::PluginDecl& decl : setup_.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options_.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+    for (const ControllerKind* kind : plugin->controllers)
+      SL_TRY(add(kind, "plugin '" + plugin->file + "'", decl.place));
+  }
   return {};
 }
 
@@ -176,7 +200,9 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                           setup_.step,
                           levels,
                           maker,
-                          setup_.gravity};
+                          setup_.gravity,
+                          setup_.geography,
+                          setup_.magnetic_field_T};
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   const double rate_hz = pool->pool->rate_hz(index);
@@ -231,8 +257,13 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     if (!error.place.file) error.place = decl.place;
     return error;
   };
-  auto kind = find_controller_kind(decl.kind);
-  if (!kind) return at(std::move(kind.error()));
+  const ControllerKind* kind = nullptr;
+  std::vector<std::string> names;
+  for (const ControllerKind* each : controller_kinds_) {
+    names.emplace_back(each->name);
+    if (decl.kind == each->name) kind = each;
+  }
+  if (!kind) return at({"no controller '" + decl.kind + "'", suggestion(decl.kind, names)});
   auto program = std::make_unique<ProgramEntry>();
   program->decl = decl;
   program->path = entity.instance.name + "/" + sanitised(decl.name);
@@ -265,9 +296,15 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     describe(device->topics, description.readings);
     describe(device->commands, description.actuators);
   }
-  auto controller = (*kind)->create();
-  if (Status status = controller->init(description, decl.config); !status)
-    return at(std::move(status.error()));
+  std::unique_ptr<Controller> controller;
+  Status status;
+  const auto thrown = caught([&] {
+    controller = kind->create();
+    status = controller->init(description, decl.config);
+  });
+  if (thrown)
+    return at({"controller '" + program->path + "' (" + decl.kind + ") threw while it began: " + *thrown});
+  if (!status) return at(std::move(status.error()));
   program->program = std::make_unique<ControllerProgram>(std::move(controller));
   program->topics.resize(description.readings.size());
   program->seen.resize(description.readings.size(), 0);

@@ -360,6 +360,11 @@ void setup_values(auto& io, auto& s) {
   io.value(s.control_interval);
   io.value(s.seed);
   io.value(s.stop);
+  list(io, s.plugins, [](auto& i, auto& p) {
+    i.value(p.file);
+    i.value(p.name);
+    i.value(p.hash);
+  });
   list(io, s.lights, [](auto& i, auto& l) { light(i, l); });
   color(io, s.ambient);
   color(io, s.background);

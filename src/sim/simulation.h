@@ -35,6 +35,9 @@ struct SimulationOptions {
   int threads = 1;           ///< 0: as many as the machine has
   bool run_programs = true;  ///< false: programs are not resumed (commands come from a log)
   std::span<const Kind* const> extra_kinds = {};  ///< beside the built-in ones
+  std::span<const ControllerKind* const> extra_controllers =
+      {};                                   ///< beside the built-in ones and the plugins'
+  std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
 };
 
 class Simulation {
@@ -130,6 +133,7 @@ class Simulation {
     Command command;
     std::uint64_t steps = 0;
     bool ended = false;
+    std::optional<std::string> failure;  ///< in its last step; ends the run
   };
   struct Entity {
     model::Instance instance;
@@ -161,6 +165,7 @@ class Simulation {
 
   // build.cpp
   Status build(Diagnostics& diagnostics);
+  Status gather_controllers(Diagnostics& diagnostics);
   Status add_entity(const model::Instance& instance, Diagnostics& diagnostics);
   Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
   Status add_program(Entity& entity, const model::ControllerDecl& decl);
@@ -227,6 +232,7 @@ class Simulation {
   std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
   std::vector<Pool> pools_;
+  std::vector<const ControllerKind*> controller_kinds_;
   std::vector<std::unique_ptr<Rule>> rules_;
   std::vector<std::unique_ptr<Medium>> media_;
   std::vector<Observer*> observers_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "sim/model_bytes.h"
+#include "sim/plugin.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -238,6 +239,10 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   for (std::uint64_t& serial : serials) read(block, serial);
   if (!block.ok()) return damaged("the model cannot be read");
 
+  for (model::PluginDecl& decl : setup.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+  }
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
   Diagnostics said_before;  // these warnings were given when the run began
   SL_TRY(sim->build(said_before));

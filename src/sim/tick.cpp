@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/text.h"
 #include "devices/parallel.h"
 #include "model/motion.h"
 #include "sim/simulation.h"
@@ -128,6 +129,7 @@ void Simulation::physics() {
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
         pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
@@ -137,9 +139,13 @@ void Simulation::physics() {
       engine_->guide(entity->id, to.X_WM, to.V_WM);
     }
     engine_->step(h_s, hash_combine(mix64(setup_.seed), key(substep)));
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
+        pool.pool->post_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {
     failure_ = std::move(finite);
@@ -221,12 +227,20 @@ void Simulation::control() {
       const Observation obs(now_, entry.topics, entry.seen,
                             Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
       entry.command.clear();
-      const Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      entry.failure = std::move(resumed.failure);
       entry.ended = resumed.waiting_for == Program::Waiting::nothing;
       ++entry.steps;
       for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
     }
   });
+  for (const ProgramEntry* entry : running_) {
+    if (!entry->failure || !failure_) continue;
+    failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
+                         number_text(now_.s()) + " s: " + *entry->failure,
+                     "", entry->decl.place};
+    stop_reason_ = failure_.error().what;
+  }
 }
 
 void Simulation::publish() {

@@ -257,6 +257,13 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   out.control_interval = root.time.control_interval;
   out.stop_s = root.time.stop_s;
   out.seed = root.seed;
+  for (std::size_t i = 0; i < root.plugins.size(); ++i) {
+    const Node& all = *node.find("plugins");
+    const Node& each = all.is_sequence() ? all.items()[i] : all;
+    if (root.plugins[i].empty())
+      return each.error("the plugin's name is empty", "name a shared library", "/plugins");
+    out.plugins.emplace_back(root.plugins[i], each.place());
+  }
   std::int64_t total = 0;
   for (std::size_t i = 0; i < root.robots.size(); ++i) {
     const Node& each = node.find("robots")->items()[i];

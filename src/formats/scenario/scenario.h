@@ -70,6 +70,7 @@ struct Scenario {
   int control_interval = 1;
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
+  std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };

@@ -164,6 +164,7 @@ struct Root {
   Time time;
   std::uint64_t seed = 1;
   Node vars;
+  std::vector<std::string> plugins;
   std::vector<Robot> robots;
   Node include;
 
@@ -179,6 +180,10 @@ struct Root {
     // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
     visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
     visit(Field{"vars", "", "Values that ${name} stands for."}, s.vars);
+    visit(Field{"plugins", "",
+                "Shared libraries with controllers: files relative to this one, or names in the search path.",
+                0, 0, Field::none, 100},
+          s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
