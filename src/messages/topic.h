@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/time.h"
+#include "base/values.h"
 
 namespace sandlot {
 
@@ -27,6 +28,9 @@ class TopicBase {
   /// Takes the message alone from bytes (a command); false when they are not exactly one message.
   virtual bool assign(std::span<const std::byte> bytes) = 0;
   virtual std::unique_ptr<TopicBase> clone() const = 0;
+  /// A number of the message by its path, and all of them.
+  virtual ValueFound value(std::span<const ValueStep> path) const = 0;
+  virtual void list_values(const ValueVisit& visit) const = 0;
 
  private:
   std::string name_;
@@ -65,6 +69,10 @@ class Topic : public TopicBase {
     return true;
   }
   std::unique_ptr<TopicBase> clone() const override { return std::make_unique<Topic>(*this); }
+  ValueFound value(std::span<const ValueStep> path) const override { return value_at(message, path); }
+  void list_values(const ValueVisit& visit) const override {
+    sandlot::list_values(message, "", "", "", visit);
+  }
 };
 
 /// M's topic behind a base pointer, or null when it carries another type.

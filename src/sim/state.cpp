@@ -9,12 +9,13 @@
 
 #include "sim/model_bytes.h"
 #include "sim/simulation.h"
+#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
 
 constexpr std::array<char, 8> magic{'S', 'A', 'N', 'D', 'L', 'O', 'T', 'S'};
-constexpr std::uint32_t snapshot_version = 1;
+constexpr std::uint32_t snapshot_version = 2;
 
 /// Keeps each part of a snapshot readable on its own: a part that reads too much or too little is noticed there.
 template <class Fill>
@@ -102,6 +103,7 @@ void Simulation::save_run(ByteWriter& w) const {
   write(w, refused_commands_);
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
+  watch_->save(w);
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -118,6 +120,7 @@ bool Simulation::load_run(ByteReader& r) {
     ByteReader block = read_block(r);
     medium->load(block);
   }
+  watch_->load(r);
   return r.ok();
 }
 

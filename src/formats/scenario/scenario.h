@@ -70,6 +70,9 @@ struct Scenario {
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
   std::vector<RobotGroup> robots;
+  std::vector<model::ValueDecl> values;
+  std::vector<model::EventDecl> events;
+  std::optional<model::LogDecl> log;
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 
