@@ -29,6 +29,10 @@ struct RunOptions {
   bool skip_missing = false;       ///< of the files that the file names
   std::string summary_file;        ///< JSON
   std::string svg_file;
+  std::string stop_when;                ///< an expression
+  std::string log_file;                 ///< CSV; "": the scenario's
+  std::vector<std::string> log_values;  ///< addresses and expressions; empty: the scenario's
+  std::optional<double> log_rate_hz;
   std::string from_file;  ///< a snapshot to go on from
   std::string snapshot_file;
   std::optional<double> snapshot_at_s;  ///< unset: at the end
@@ -43,6 +47,7 @@ struct FileOptions {
   bool skip_missing = false;       ///< of the files that the file names
   bool json = false;
   bool strict = false;  ///< check: warnings fail too
+  bool values = false;  ///< info: the addresses of all values
 };
 int check(const FileOptions& options);
 int info(const FileOptions& options);

@@ -168,6 +168,9 @@ class PoolBase {
   virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
                               const Context& context) = 0;
   virtual Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) = 0;
+  /// A number of a device's spec or state by its path, and all of them.
+  virtual ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const = 0;
+  virtual void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const = 0;
   virtual void save(std::uint32_t index, ByteWriter& w) const = 0;
   virtual void load(std::uint32_t index, ByteReader& r) = 0;
 };
@@ -241,6 +244,14 @@ class DevicePool final : public PoolBase {
     SL_TRY(set_tunable(changed, path, value));
     devices_[index].spec = std::move(changed);
     return {};
+  }
+  ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const override {
+    return part == ValuePart::state ? value_at(devices_[index].state, path)
+                                    : value_at(devices_[index].spec, path);
+  }
+  void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const override {
+    if (part == ValuePart::state) sandlot::list_values(devices_[index].state, "", "", "", visit);
+    else sandlot::list_values(devices_[index].spec, "", "", "", visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
     write_tunables(w, devices_[index].spec);

@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/time.h"
+#include "base/values.h"
 #include "messages/cdr.h"
 #include "messages/info.h"
 
@@ -29,6 +30,9 @@ class TopicBase {
   /// Takes the message alone from bytes (a command); false when they are not exactly one message.
   virtual bool assign(std::span<const std::byte> bytes) = 0;
   virtual std::unique_ptr<TopicBase> clone() const = 0;
+  /// A number of the message by its path, and all of them.
+  virtual ValueFound value(std::span<const ValueStep> path) const = 0;
+  virtual void list_values(const ValueVisit& visit) const = 0;
 
   virtual const MessageInfo& info() const = 0;
   virtual const void* data() const = 0;  ///< the message, for those that know it by info() alone
@@ -81,6 +85,10 @@ class Topic : public TopicBase {
     SL_TRY(read_cdr(message_info<M>(), bytes, &taken));
     message = std::move(taken);
     return {};
+  }
+  ValueFound value(std::span<const ValueStep> path) const override { return value_at(message, path); }
+  void list_values(const ValueVisit& visit) const override {
+    sandlot::list_values(message, "", "", "", visit);
   }
 };
 

@@ -217,6 +217,35 @@ struct Clock {
   Time min_step = Time::from_s(1e-4), max_step = Time::from_s(0.1);
 };
 
+/// A value that a scenario names: an expression over addresses (sim/expression.h).
+struct ValueDecl {
+  std::string name;
+  std::string expression;
+  Place place;
+};
+
+/// Something that happens when a condition has held for a while.
+struct EventDecl {
+  std::string name;
+  std::string when;  ///< an expression; other than 0: it holds
+  Time hold;         ///< how long it must hold without a break
+  bool once = false;
+  bool stop = false;  ///< it ends the run
+  Place place;
+};
+
+/// Values written to a CSV file while the run goes on. No part of a snapshot: what goes on from one starts another file.
+struct LogDecl {
+  std::string file;
+  double rate_hz = 0;  ///< 0: every tick
+  struct Column {
+    std::string expression;
+    Place place;
+  };
+  std::vector<Column> values;
+  Place place;
+};
+
 /// Everything a Simulation is built from.
 struct Setup {
   std::string name;
@@ -232,6 +261,11 @@ struct Setup {
   std::optional<Time> stop;  ///< simulated time at which the run ends by itself
   std::vector<PluginDecl> plugins;
   std::vector<Instance> instances;
+  std::vector<ValueDecl> values;
+  std::vector<EventDecl> events;
+  std::vector<std::string>
+      addresses;  ///< that values and events use: known although what they name may be gone
+  std::optional<LogDecl> log;
   std::vector<Light> lights;
   Color ambient{0.4f, 0.4f, 0.4f, 1}, background{0.7f, 0.7f, 0.7f, 1};
   std::optional<Geography> geography;

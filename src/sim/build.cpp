@@ -11,6 +11,7 @@
 #include "sim/plugin.h"
 #include "sim/presets.h"
 #include "sim/simulation.h"
+#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -56,7 +57,7 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
 }  // namespace
 
 Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
-    : setup_(std::move(setup)), options_(options) {
+    : setup_(std::move(setup)), options_(options), watch_(std::make_unique<Watch>(*this)) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
   // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
@@ -109,6 +110,7 @@ Status Simulation::build(Diagnostics& diagnostics) {
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
+  SL_TRY(watch_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
 }
 
@@ -132,6 +134,12 @@ Status Simulation::gather_controllers(Diagnostics& diagnostics) {
       SL_TRY(add(kind, "plugin '" + plugin->file + "'", decl.place));
   }
   return {};
+}
+
+Status Simulation::add_event(model::EventDecl decl) {
+  SL_TRY(watch_->add_event(std::move(decl), false, {}));
+  judge();
+  return failure_;
 }
 
 void Simulation::set_stop(std::optional<Time> stop) {
@@ -358,6 +366,11 @@ void Simulation::remove_from_pool(const Device& device) {
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : found->second;
+}
+
+const Simulation::Entity* Simulation::find_entity(std::string_view name) const {
   const auto found = by_name_.find(name);
   return found == by_name_.end() ? nullptr : found->second;
 }

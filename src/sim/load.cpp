@@ -312,6 +312,9 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.substeps = scenario.substeps;
     setup.control_interval = scenario.control_interval;
     setup.seed = scenario.seed;
+    setup.values = scenario.values;
+    setup.events = scenario.events;
+    setup.log = scenario.log;
     if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
     if (options.seed) setup.seed = *options.seed;
     for (const auto& [written, place] : scenario.plugins) {

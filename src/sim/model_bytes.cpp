@@ -347,6 +347,21 @@ void whole_model(auto& io, auto& m) {
   list(io, m.devices, [](auto& i, auto& d) { device(i, d); });
 }
 
+void watched(auto& io, auto& s) {
+  list(io, s.values, [](auto& i, auto& v) {
+    i.value(v.name);
+    i.value(v.expression);
+  });
+  list(io, s.events, [](auto& i, auto& e) {
+    i.value(e.name);
+    i.value(e.when);
+    i.value(e.hold);
+    i.value(e.once);
+    i.value(e.stop);
+  });
+  io.value(s.addresses);
+}
+
 void setup_values(auto& io, auto& s) {
   io.value(s.name);
   io.value(s.engine);
@@ -375,6 +390,7 @@ void setup_values(auto& io, auto& s) {
     i.value(g.heading_rad);
   });
   io.value(s.magnetic_field_T);
+  watched(io, s);
 }
 
 void instance_values(auto& io, auto& x) {

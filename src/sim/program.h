@@ -22,6 +22,9 @@ class Program {
   /// Lets the program run until `until`. Called in parallel with other programs.
   virtual Resumed resume(Time until, const Observation& obs, Command& cmd) = 0;
   virtual Status set_parameter(std::string_view path, const Node& value) = 0;
+  /// A number of its parameters or state by its path, and all of them; none when it keeps them to itself.
+  virtual ValueFound value(ValuePart, std::span<const ValueStep>) const { return {}; }
+  virtual void list_values(ValuePart, const ValueVisit&) const {}
   virtual void save(ByteWriter& w) const = 0;
   virtual void load(ByteReader& r) = 0;
 };
@@ -46,6 +49,12 @@ class ControllerProgram final : public Program {
   }
   Status set_parameter(std::string_view path, const Node& value) override {
     return controller_->set_parameter(path, value);
+  }
+  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
+    return controller_->value(part, path);
+  }
+  void list_values(ValuePart part, const ValueVisit& visit) const override {
+    controller_->list_values(part, visit);
   }
   void save(ByteWriter& w) const override { controller_->save(w); }
   void load(ByteReader& r) override { controller_->load(r); }

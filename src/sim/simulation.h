@@ -31,6 +31,8 @@ class task_arena;
 
 namespace sandlot {
 
+class Watch;
+
 struct SimulationOptions {
   int threads = 1;           ///< 0: as many as the machine has
   bool run_programs = true;  ///< false: programs are not resumed (commands come from a log)
@@ -70,6 +72,10 @@ class Simulation {
 
   /// Sets or clears the simulated time at which the run stops by itself; a run that had stopped may go on.
   void set_stop(std::optional<Time> stop);
+  /// An event beside the scenario's own; no part of State. See sim/watch.h.
+  Status add_event(model::EventDecl decl);
+  /// Named values and events. `watch().happened()`: the events of the latest tick.
+  const Watch& watch() const { return *watch_; }
   void add_observer(Observer* observer) { observers_.push_back(observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
@@ -145,6 +151,8 @@ class Simulation {
   };
   /// What the world holds, in creation order. Valid until the next tick.
   std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
+  const Entity* find_entity(std::string_view name) const;
+  const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
 
  private:
   struct Pool {
@@ -234,6 +242,7 @@ class Simulation {
   std::vector<Pool> pools_;
   std::vector<const ControllerKind*> controller_kinds_;
   std::vector<std::unique_ptr<Rule>> rules_;
+  std::unique_ptr<Watch> watch_;
   std::vector<std::unique_ptr<Medium>> media_;
   std::vector<Observer*> observers_;
 

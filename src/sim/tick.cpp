@@ -7,6 +7,7 @@
 #include "devices/parallel.h"
 #include "model/motion.h"
 #include "sim/simulation.h"
+#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -211,6 +212,13 @@ void Simulation::judge() {
   for (const auto& rule : rules_) {
     auto reason = rule->judge(ctx);
     if (reason && !stop_reason_) stop_reason_ = std::move(reason);
+  }
+  auto judged = watch_->judge(now_);
+  if (judged) {
+    if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
+  } else {
+    if (failure_) failure_ = std::move(judged.error());
+    stop_reason_ = failure_.error().what;
   }
 }
 

@@ -72,6 +72,9 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
+  std::vector<model::ValueDecl> values;
+  std::vector<model::EventDecl> events;
+  std::optional<model::LogDecl> log;
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 

@@ -156,6 +156,38 @@ struct Robot {
   }
 };
 
+struct Event {
+  std::string name;
+  std::string when;
+  double hold_s = 0;
+  bool stop = false, once = false;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the event; unique.", 0, 0, Field::required, 100}, s.name);
+    visit(Field{"when", "", "Expression; the event happens when it holds (is other than 0).", 0, 0,
+                Field::required, 2000},
+          s.when);
+    visit(Field{"for", "s", "How long it must hold without a break.", 0, 9e9}, s.hold_s);
+    visit(Field{"stop", "", "The event ends the run."}, s.stop);
+    visit(Field{"once", "", "It happens at most once."}, s.once);
+  }
+};
+
+struct Log {
+  std::string file;
+  double rate_hz = 0;
+  std::vector<std::string> values;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"file", "", "CSV file to write, relative to where the program runs.", 0, 0, Field::required,
+                4096},
+          s.file);
+    visit(Field{"rate", "Hz", "Lines per simulated second; 0: one per tick.", 0, 1e6}, s.rate_hz);
+    visit(Field{"values", "", "Addresses or expressions, one per column.", 0, 0, Field::required, 2000},
+          s.values);
+  }
+};
+
 struct Root {
   int version = 1;
   std::string name;
@@ -166,6 +198,9 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
+  Node values;
+  std::vector<Event> events;
+  std::optional<Log> log;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -185,6 +220,9 @@ struct Root {
                 0, 0, Field::none, 100},
           s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
+    visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
+    visit(Field{"log", "", "Values written to a CSV file."}, s.log);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };
