@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "base/time.h"
 #include "messages/cdr.h"
 #include "messages/registry.h"
 
@@ -238,11 +239,16 @@ class PathVisitor : public CdrVisitor {
  public:
   using Visit = std::function<void(std::string_view, const MessageValue&)>;
   explicit PathVisitor(const Visit& visit) : visit_(visit) {}
-  void open(const MessageInfo&) override {
+  void open(const MessageInfo& info) override {
     element();
+    in_time_ = !levels_.empty() && is_time(info);
     levels_.push_back({path_.size(), false, 0});
   }
-  void close() override { leave(); }
+  void close() override {
+    leave();
+    if (in_time_) visit_(path_, Time{sec_ * Time::per_s + nanosec_}.s());
+    in_time_ = false;
+  }
   void field(const MessageField& field) override {
     path_.resize(levels_.back().size);
     if (!path_.empty()) path_ += '.';
@@ -254,7 +260,11 @@ class PathVisitor : public CdrVisitor {
     element();
     visit_(path_, text);
   }
-  void number(Wire type, const std::byte* value) override { visit_(path_, to_value(type, value)); }
+  void number(Wire type, const std::byte* value) override {
+    if (!in_time_) return visit_(path_, to_value(type, value));
+    if (type == Wire::int32) sec_ = value_as<std::int32_t>(value);
+    else nanosec_ = value_as<std::uint32_t>(value);
+  }
   void numbers(Wire type, std::span<const std::byte> bytes) override {
     open_list(0);
     for (std::size_t i = 0; i < bytes.size(); i += size_of(type)) {
@@ -280,7 +290,16 @@ class PathVisitor : public CdrVisitor {
     path_.resize(levels_.back().size);
     levels_.pop_back();
   }
+  /// One value to its readers, here as among the addresses of a run. A schema may call anything so: it must look so.
+  static bool is_time(const MessageInfo& info) {
+    return (info.name == "builtin_interfaces/msg/Time" || info.name == "builtin_interfaces/msg/Duration") &&
+           info.fields.size() == 2 && info.fields[0].type == Wire::int32 &&
+           info.fields[1].type == Wire::uint32 && info.fields[0].count == Count::one &&
+           info.fields[1].count == Count::one;
+  }
   const Visit& visit_;
+  bool in_time_ = false;
+  std::int64_t sec_ = 0, nanosec_ = 0;
   std::string path_;
   std::vector<Level> levels_;
 };

@@ -43,7 +43,8 @@ class DynamicSchema {
 /// A number or a text in a message.
 using MessageValue = std::variant<bool, std::int64_t, std::uint64_t, double, std::string_view>;
 
-/// The numbers and texts of a message in the order of the wire, each with its path: "header.stamp.sec", "ranges[3]".
+/// The numbers and texts of a message in the order of the wire, each with its path: "ranges[3]". A time is
+/// one value, "header.stamp", in seconds.
 /// `path` and texts are valid during the call only.
 Status visit_values(const MessageInfo& info, std::span<const std::byte> cdr,
                     const std::function<void(std::string_view path, const MessageValue& value)>& visit);

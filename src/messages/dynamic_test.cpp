@@ -75,9 +75,8 @@ TEST(Dynamic, ReadsWhatOthersWrite) {
     return out;
   }();
   EXPECT_EQ(values_of(schema->info(), cdr),
-            (std::vector<std::string>{"header.stamp.sec=1", "header.stamp.nanosec=2", "header.frame_id=a",
-                                      "waits[0].sec=3", "waits[0].nanosec=4", "parts[0].on=1",
-                                      "parts[1].on=0", "word=hi", "last=-1"}));
+            (std::vector<std::string>{"header.stamp=1.000000", "header.frame_id=a", "waits[0]=3.000000",
+                                      "parts[0].on=1", "parts[1].on=0", "word=hi", "last=-1"}));
   EXPECT_EQ(schema->info().constants.size(), 2u);
   std::string json;
   EXPECT_TRUE(static_cast<bool>(cdr_to_json(schema->info(), cdr, json)));
@@ -93,9 +92,34 @@ TEST(Dynamic, PathsTellEveryElement) {
   Bytes cdr;
   write_cdr(message_info<msg::JointState>(), &joints, cdr);
   EXPECT_EQ(values_of(message_info<msg::JointState>(), cdr),
-            (std::vector<std::string>{"header.stamp.sec=0", "header.stamp.nanosec=0",
-                                      "header.frame_id=", "name[0]=a", "name[1]=b", "position[0]=1.000000",
-                                      "position[1]=2.000000"}));
+            (std::vector<std::string>{"header.stamp=0.000000", "header.frame_id=", "name[0]=a", "name[1]=b",
+                                      "position[0]=1.000000", "position[1]=2.000000"}));
+}
+
+TEST(Dynamic, TimesAreSeconds) {
+  const auto seconds = [](Time stamp) {
+    double found = 0;
+    msg::Header header{stamp, ""};
+    Bytes cdr;
+    write_cdr(message_info<msg::Header>(), &header, cdr);
+    const Status done = visit_values(message_info<msg::Header>(), cdr,
+                                     [&](std::string_view path, const MessageValue& value) {
+                                       if (path == "stamp") found = std::get<double>(value);
+                                     });
+    EXPECT_TRUE(static_cast<bool>(done));
+    return found;
+  };
+  EXPECT_EQ(seconds(Time::from_ns(2'000'000'001)), 2.000000001);
+  EXPECT_EQ(seconds(Time::from_ns(-250'000'000)), -0.25);
+}
+
+TEST(Dynamic, ATypeThatOnlyCallsItselfATimeIsNone) {
+  const auto schema = DynamicSchema::parse(
+      "a/A", "time t\n" + line + "\nMSG: builtin_interfaces/Time\nbool[2] sec\nuint32 nanosec\n");
+  ASSERT_TRUE(static_cast<bool>(schema));
+  const Bytes cdr{{}, std::byte{1}, {}, {}, std::byte{1}, {}, {}, {}, std::byte{7}, {}, {}, {}};
+  EXPECT_EQ(values_of(schema->info(), cdr),
+            (std::vector<std::string>{"t.sec[0]=1", "t.sec[1]=0", "t.nanosec=7"}));
 }
 
 TEST(Dynamic, ASequenceLongerThanItsBoundIsRefused) {
