@@ -200,7 +200,9 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                           setup_.step,
                           levels,
                           maker,
-                          setup_.gravity};
+                          setup_.gravity,
+                          setup_.geography,
+                          setup_.magnetic_field_T};
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   const double rate_hz = pool->pool->rate_hz(index);

@@ -129,6 +129,7 @@ void Simulation::physics() {
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
         pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
@@ -138,9 +139,13 @@ void Simulation::physics() {
       engine_->guide(entity->id, to.X_WM, to.V_WM);
     }
     engine_->step(h_s, hash_combine(mix64(setup_.seed), key(substep)));
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
+        pool.pool->post_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {
     failure_ = std::move(finite);
