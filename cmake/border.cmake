@@ -3,6 +3,7 @@
 #
 # Included by CMakeLists.txt it declares the rule; run by that rule (cmake -P, with OUT and SOURCE) it writes the header.
 if(CMAKE_SCRIPT_MODE_FILE)
+  cmake_minimum_required(VERSION 3.25)
   set(all "")
   foreach(layer base geometry messages control)
     file(GLOB_RECURSE headers RELATIVE ${SOURCE} ${SOURCE}/${layer}/*.h)

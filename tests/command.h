@@ -18,10 +18,10 @@ struct Printed {
   std::string out;  ///< standard output and error together
 };
 
-/// @param arguments  as typed in a shell, after "sandlot "
-inline Printed sandlot(const std::string& arguments) {
+/// @param command  as typed in a shell
+inline Printed shell(const std::string& command) {
   Printed printed;
-  const std::string line = std::string(SANDLOT_BIN) + " " + arguments + " 2>&1 </dev/null";
+  const std::string line = "{ " + command + "; } 2>&1 </dev/null";
   FILE* const pipe = popen(line.c_str(), "r");
   if (!pipe) return printed;
   std::array<char, 4096> buffer;
@@ -30,6 +30,11 @@ inline Printed sandlot(const std::string& arguments) {
   const int status = pclose(pipe);
   printed.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return printed;
+}
+
+/// @param arguments  as typed in a shell, after "sandlot "
+inline Printed sandlot(const std::string& arguments) {
+  return shell(std::string(SANDLOT_BIN) + " " + arguments);
 }
 
 /// A folder that goes when the test ends.

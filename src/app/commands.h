@@ -9,14 +9,15 @@
 
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
-#include "sim/simulation.h"
+#include "sim/experiment.h"
 
 namespace sandlot::app {
 
 inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
 
 /// The whole command: reads the arguments, does what they say. @return the exit code
-int command(int argc, char** argv);
+/// @param hooks  of an experiment in C++, for `run`; null: none
+int command(int argc, char** argv, const Hooks* hooks = nullptr);
 
 struct RunOptions {
   std::string file;
@@ -37,6 +38,8 @@ struct RunOptions {
   std::string snapshot_file;
   std::optional<double> snapshot_at_s;  ///< unset: at the end
   bool json = false;                    ///< print the summary as JSON instead of text
+  const Hooks* hooks = nullptr;         ///< of an experiment in C++
+  std::vector<std::string> lines;       ///< for its console: "at 2s kick ball"
 };
 int run(const RunOptions& options);
 

@@ -122,7 +122,7 @@ struct RunFlags {
 
 }  // namespace
 
-int sandlot::app::command(int argc, char** argv) {
+int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   CLI::App app{"Sandlot simulates many mobile robots with real sensors, and gives the same answer twice.",
                "sandlot"};
   app.require_subcommand(1);
@@ -136,6 +136,13 @@ int sandlot::app::command(int argc, char** argv) {
   run_verb->add_option("file", run_flags.options.file, "Scenario, world or robot");
   run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
+  run_flags.options.hooks = hooks;
+  if (hooks)
+    run_verb
+        ->add_option("--command", run_flags.options.lines,
+                     "A line for this experiment's console, such as help or 'at 2s kick ball'; may be given "
+                     "several times")
+        ->allow_extra_args(false);
   run_verb->footer(
       "Example: sandlot run scenarios/indoor.yaml --duration 60s --set physics=planar --svg run.svg");
   run_verb->callback([&] {

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/report.h"
 #include "app/svg.h"
+#include "base/log.h"
 #include "sim/csv_log.h"
 #include "sim/load.h"
 
@@ -26,7 +27,8 @@ Result<std::vector<std::byte>> read_snapshot(const std::string& path) {
 }
 
 Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
-  const SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
+  SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
+  if (options.hooks) simulation_options.extra_controllers = options.hooks->controllers;
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
     if (!options.overrides.empty())
@@ -127,6 +129,10 @@ int run(const RunOptions& options) {
     if (Status begun = log->begin(); !begun) return complain(begun.error());
     simulation.add_observer(log.get());
   }
+  std::optional<Experiment> experiment;
+  if (options.hooks) experiment.emplace(simulation, *options.hooks);
+  for (const std::string& line : options.lines)
+    if (Status status = experiment->schedule(line); !status) return complain(status.error());
 
   TravelRecorder travel;
   simulation.add_observer(&travel);
@@ -147,14 +153,21 @@ int run(const RunOptions& options) {
     Progress progress(end);
     const auto keep_going = [&](const Simulation& s) {
       progress.update(s);
+      if (experiment)
+        for (const std::string& answer : experiment->take_answers()) log::info(answer);
       if (!snapshot_taken && options.snapshot_at_s && s.now() >= snapshot_at) {
         save_snapshot();
         snapshot_taken = true;
       }
       return !interrupted() && (!log || log->status());
     };
-    if (Status status = sandlot::run(simulation, {options.rate}, report, keep_going); !status)
-      errors.push_back(status.error());
+    Status status = experiment ? experiment->start() : Status();
+    if (status)
+      status = sandlot::run(simulation, {options.rate}, report, keep_going,
+                            experiment ? &*experiment : nullptr);
+    if (!status) errors.push_back(status.error());
+    if (experiment)
+      if (Status ended = experiment->finish(); !ended) errors.push_back(ended.error());
   }
   if (log) {
     if (Status finished = log->finish(); !finished) errors.push_back(finished.error());

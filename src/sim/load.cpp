@@ -290,7 +290,9 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
                    "write a scenario that names this world"};
     SL_ASSIGN(setup, load_bare_world(path, sdf, diagnostics));
   } else if (extension == ".yaml" || extension == ".yml") {
-    SL_ASSIGN(const formats::Scenario scenario, formats::read_scenario(path, options.overrides, diagnostics));
+    SL_ASSIGN(const formats::Scenario scenario,
+              options.text ? formats::parse_scenario(*options.text, path, options.overrides, diagnostics)
+                           : formats::read_scenario(path, options.overrides, diagnostics));
     if (!scenario.world.empty()) {
       SL_ASSIGN(const std::string world,
                 locate(scenario.world, formats::base_folder(scenario, scenario.world_place), search,

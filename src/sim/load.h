@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "formats/scenario/scenario.h"
 #include "model/model.h"
@@ -15,6 +16,8 @@ struct LoadOptions {
   std::optional<double> stop_s;             ///< replaces the scenario's
   std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
   bool skip_missing = false;  ///< missing includes, meshes and textures are left out with a warning
+  /// The text of a scenario, which is not read from its path then.
+  std::optional<std::string_view> text = {};
 };
 
 /// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world) or a robot (.urdf): what `sandlot run` accepts.

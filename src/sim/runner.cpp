@@ -6,7 +6,7 @@
 namespace sandlot {
 
 Status run(Simulation& simulation, const Pace& pace, RunReport& report,
-           const std::function<bool(const Simulation&)>& keep_going) {
+           const std::function<bool(const Simulation&)>& keep_going, Experiment* experiment) {
   using std::chrono::duration;
   using std::chrono::steady_clock;
   const auto begin = steady_clock::now();
@@ -50,7 +50,7 @@ Status run(Simulation& simulation, const Pace& pace, RunReport& report,
         }
       }
     }
-    status = simulation.tick(measured);
+    status = experiment ? experiment->tick(measured) : simulation.tick(measured);
     if (!status || (keep_going && !keep_going(simulation))) break;
   }
   report.ticks += simulation.tick_index() - tick_begin;

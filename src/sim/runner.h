@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "sim/simulation.h"
+#include "sim/experiment.h"
 
 namespace sandlot {
 
@@ -22,8 +22,8 @@ struct RunReport {
 
 /// Ticks until the simulation has a reason to stop, or `keep_going` (called after each tick) says no.
 /// The report is filled also when a tick fails. Each tick of a setup with a continuous clock is as long as the one
-/// before it took, this function's waiting included.
+/// before it took, this function's waiting included. The ticks are the experiment's where there is one.
 Status run(Simulation& simulation, const Pace& pace, RunReport& report,
-           const std::function<bool(const Simulation&)>& keep_going = {});
+           const std::function<bool(const Simulation&)>& keep_going = {}, Experiment* experiment = nullptr);
 
 }  // namespace sandlot

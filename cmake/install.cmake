@@ -1,0 +1,31 @@
+# What `cmake --install` leaves: bin/sandlot, lib/libsandlot.so, the headers for users' own controllers and programs, the CMake
+# package and pkg-config file, and the models, worlds and scenarios. Everything finds everything relative to itself.
+include(CMakePackageConfigHelpers)
+set_target_properties(sandlot PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
+install(TARGETS sandlot RUNTIME DESTINATION bin)
+install(TARGETS sandlot_library LIBRARY DESTINATION lib)
+set(headers ${CMAKE_BINARY_DIR}/public)
+install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
+  -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
+install(DIRECTORY ${headers}/sandlot DESTINATION include)
+install(DIRECTORY models worlds scenarios DESTINATION share/sandlot)
+install(FILES LICENSE DESTINATION share/sandlot)
+
+# Users' inline copies of our functions must give the same bits as ours.
+set(flags -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND flags -fno-tree-slp-vectorize)
+endif()
+if(SANDLOT_MARCH)
+  list(APPEND flags -march=${SANDLOT_MARCH})
+endif()
+if(SANDLOT_SANITIZE)
+  list(APPEND flags -fsanitize=${SANDLOT_SANITIZE})
+endif()
+list(JOIN flags " " flags_text)
+configure_file(cmake/sandlotConfig.cmake.in ${CMAKE_BINARY_DIR}/package/sandlotConfig.cmake @ONLY)
+configure_file(cmake/sandlot.pc.in ${CMAKE_BINARY_DIR}/package/sandlot.pc @ONLY)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/sandlotConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/package/sandlotConfig.cmake ${CMAKE_BINARY_DIR}/package/sandlotConfigVersion.cmake
+  DESTINATION lib/cmake/sandlot)
+install(FILES ${CMAKE_BINARY_DIR}/package/sandlot.pc DESTINATION lib/pkgconfig)

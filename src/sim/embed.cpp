@@ -1,0 +1,112 @@
+#include "sim/embed.h"
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace sandlot {
+namespace {
+
+/// Says the warnings that nobody asked to see.
+class Warnings {
+ public:
+  explicit Warnings(Diagnostics* asked_for) : asked_for_(asked_for) {}
+  ~Warnings() {
+    for (const Error& warning : own_.warnings) log::warning(warning.text());
+  }
+  Warnings(const Warnings&) = delete;
+  Warnings& operator=(const Warnings&) = delete;
+  Diagnostics& get() { return asked_for_ ? *asked_for_ : own_; }
+
+ private:
+  Diagnostics* asked_for_;
+  Diagnostics own_;
+};
+
+Result<const Simulation::Device*> find_device(const Simulation& sim, std::string_view device) {
+  const std::string_view robot = device.substr(0, device.find('/'));
+  std::vector<std::string> robots, devices;
+  for (const auto& entity : sim.entities()) {
+    robots.push_back(entity->instance.name);
+    if (entity->instance.name != robot) continue;
+    for (const auto& each : entity->devices) {
+      devices.push_back(each->path);
+      if (device == each->path) return each.get();
+    }
+    return Error{"there is no device '" + std::string(device) + "'", suggestion(device, devices)};
+  }
+  return Error{"there is nothing named '" + std::string(robot) + "'", suggestion(robot, robots)};
+}
+
+/// The part of "rover/laser/ranges" that names a device, and the level that it may name after it.
+std::pair<std::string_view, std::string_view> split_level(std::string_view name) {
+  const std::size_t first = name.find('/');
+  const std::size_t second = first == std::string_view::npos ? first : name.find('/', first + 1);
+  if (second == std::string_view::npos) return {name, {}};
+  return {name.substr(0, second), name.substr(second + 1)};
+}
+
+Error no_slot(std::string_view device, const char* verb, const char* type,
+              const std::vector<Simulation::Slot>& slots) {
+  std::vector<std::string> types;
+  for (const Simulation::Slot& slot : slots) types.emplace_back(slot.topic->type());
+  return {"'" + std::string(device) + "' " + verb + " no " + type,
+          types.empty() ? "" : suggestion("", types)};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Simulation>> load_simulation(const std::string& file, const EmbedOptions& options,
+                                                    Diagnostics* diagnostics) {
+  Warnings warnings(diagnostics);
+  SL_ASSIGN(model::Setup setup, load(file, options.load, warnings.get()));
+  return Simulation::create(std::move(setup), options.simulation, warnings.get());
+}
+
+Result<std::unique_ptr<Simulation>> load_simulation_text(const std::string& yaml, const std::string& name,
+                                                         const EmbedOptions& options,
+                                                         Diagnostics* diagnostics) {
+  EmbedOptions with_text = options;
+  with_text.load.text = yaml;
+  return load_simulation(name, with_text, diagnostics);
+}
+
+Result<std::unique_ptr<Simulation>> restore_simulation(std::span<const std::byte> snapshot,
+                                                       const SimulationOptions& options,
+                                                       Diagnostics* diagnostics) {
+  Warnings warnings(diagnostics);
+  return Simulation::restore(snapshot, options, warnings.get());
+}
+
+Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view name, const char* type) {
+  const auto [path, level] = split_level(name);
+  SL_ASSIGN(const Simulation::Device* const device, find_device(sim, path));
+  const TopicBase* found = nullptr;
+  for (const Simulation::Slot& slot : device->topics) {
+    if (std::string_view(slot.topic->type()) != type) continue;
+    if (!level.empty()) {
+      if (slot.topic->name() == "/" + std::string(name)) return slot.topic.get();
+      continue;
+    }
+    const bool active = slot.level < 32 && (device->levels >> slot.level & 1) != 0;
+    if (active) return slot.topic.get();
+    if (!found) found = slot.topic.get();
+  }
+  if (found) return found;
+  return no_slot(name, "publishes", type, device->topics);
+}
+
+Status check_commandable(const Simulation& sim, std::string_view name, const char* type) {
+  SL_ASSIGN(const Simulation::Device* const device, find_device(sim, split_level(name).first));
+  for (const Simulation::Slot& slot : device->commands)
+    if (std::string_view(slot.topic->type()) == type) return {};
+  return no_slot(name, "takes", type, device->commands);
+}
+
+Result<Pose> pose(const Simulation& sim, std::string_view instance) {
+  if (const auto id = sim.find_instance(instance)) return sim.engine().pose(*id);
+  std::vector<std::string> names;
+  for (const model::Instance* each : sim.instances()) names.push_back(each->name);
+  return Error{"there is nothing named '" + std::string(instance) + "'", suggestion(instance, names)};
+}
+
+}  // namespace sandlot

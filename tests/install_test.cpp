@@ -1,0 +1,152 @@
+/// The installed package as its users meet it: moved away from where it was installed, found by CMake, with our examples built
+/// against it and nothing else.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string build_folder() { return fs::absolute(SANDLOT_BIN).parent_path().string(); }
+
+/// A value of the build's CMake cache, "" when it has none.
+std::string cached(const std::string& name) {
+  std::ifstream in(build_folder() + "/CMakeCache.txt");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(name + ":", 0) == 0) return line.substr(line.find('=') + 1);
+  return "";
+}
+
+/// Installs, and moves what was installed: nothing may remember its first place.
+struct Package {
+  Scratch scratch;
+  std::string prefix = scratch.file("moved/sandlot");
+  Package() {
+    const Printed installed = shell("cmake --install " + build_folder() + " --prefix " +
+                                    scratch.file("first"));
+    EXPECT_EQ(installed.exit_code, 0) << installed.out;
+    fs::create_directory(scratch.file("moved"));
+    fs::rename(scratch.file("first"), prefix);
+    fs::copy("examples", scratch.file("examples"), fs::copy_options::recursive);
+  }
+  std::string example(const std::string& name) const { return scratch.file("examples/" + name); }
+  std::string built(const std::string& name) const { return scratch.file("build_" + name); }
+
+  void build(const std::string& name) const {
+    std::string configure = "cmake -S " + example(name) + " -B " + built(name) +
+                            " -DCMAKE_PREFIX_PATH=" + prefix +
+                            " -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=" +
+                            cached("CMAKE_CXX_COMPILER");
+    if (const std::string ccache = cached("CCACHE");
+        !ccache.empty() && ccache.find("NOTFOUND") == std::string::npos)
+      configure += " -DCMAKE_CXX_COMPILER_LAUNCHER=" + ccache;
+    for (const std::string& command : {configure, "cmake --build " + built(name)}) {
+      const Printed printed = shell(command);
+      ASSERT_EQ(printed.exit_code, 0) << printed.out;
+    }
+  }
+  Printed run(const std::string& arguments) const { return shell(prefix + "/bin/sandlot " + arguments); }
+};
+
+TEST(SlowInstall, theCommandFindsItsScenariosAndModelsWhereverItStands) {
+  const Package package;
+  const std::string summary = package.scratch.file("s.json");
+  const Printed demo = package.run("demo --duration 1s --summary " + summary);
+  ASSERT_EQ(demo.exit_code, 0) << demo.out;
+  EXPECT_EQ(read_json(summary)["state_hash"],
+            summary_of("scenarios/indoor.yaml --duration 1s")["state_hash"]);
+  EXPECT_THAT(package.run("--version").out, HasSubstr("sandlot 0."));
+}
+
+TEST(SlowInstall, aControllerOfTheUsersOwnDrivesARobot) {
+  const Package package;
+  package.build("controller");
+  const std::string plugin = package.built("controller") + "/my_controllers.so";
+  const std::string run = "run " + package.example("controller/wall.yaml") + " --path " +
+                          package.built("controller");
+
+  // Small: the simulator is not in it.
+  EXPECT_LT(fs::file_size(plugin), 1'000'000u);
+  EXPECT_THAT(package.run("list controllers --plugin " + plugin).out,
+              HasSubstr("Follows the wall on its right."));
+
+  const std::string summary = package.scratch.file("s.json");
+  const Printed printed = package.run(run + " --summary " + summary);
+  ASSERT_EQ(printed.exit_code, 0) << printed.out;
+  // 20 s at 0.3 m/s are 6 m, less what it takes to turn in corners.
+  const auto s = read_json(summary);
+  EXPECT_GT(s["robots"][0]["distance_m"].get<double>(), 3.0);
+  EXPECT_LT(s["robots"][0]["distance_m"].get<double>(), 6.0);
+  ASSERT_EQ(package.run(run + " --threads 2 --summary " + summary).exit_code, 0);
+  EXPECT_EQ(read_json(summary)["state_hash"], s["state_hash"]);
+
+  // One that throws: exit code 1, its name, and what there is so far.
+  const Printed threw = package.run(run + " --set robots.controller.give_up=3 --summary " + summary);
+  EXPECT_EQ(threw.exit_code, 1);
+  EXPECT_THAT(threw.out, AllOf(HasSubstr("rover/controller"), HasSubstr("wall"), HasSubstr("I give up")));
+  EXPECT_DOUBLE_EQ(read_json(summary)["end_time"].get<double>(), 3.0);
+
+  const Printed other = package.run("list controllers --plugin " + build_folder() +
+                                    "/test_plugins/other_api.so");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.out, AllOf(HasSubstr("version 99"), HasSubstr("this Sandlot has version")));
+
+  // By its name, once it is where an installation keeps plugins.
+  fs::create_directory(package.prefix + "/lib/sandlot");
+  fs::copy_file(plugin, package.prefix + "/lib/sandlot/my_controllers.so");
+  EXPECT_EQ(package.run("check " + package.example("controller/wall.yaml")).exit_code, 0);
+}
+
+TEST(SlowInstall, aProgramWithASimulationInsideGivesTheSameStateTwice) {
+  const Package package;
+  package.build("embed");
+  const std::string run = package.built("embed") + "/embed " + package.example("embed/room.yaml");
+  const Printed first = shell(run), second = shell("cd / && " + run);
+  EXPECT_EQ(first.exit_code, 0) << first.out;
+  EXPECT_THAT(first.out, HasSubstr("state "));
+  EXPECT_EQ(first.out, second.out);
+}
+
+TEST(SlowInstall, anExperimentIsTheRunCommandWithHooks) {
+  const Package package;
+  package.build("experiment");
+  const std::string run = package.built("experiment") + "/experiment " +
+                          package.example("experiment/balls.yaml") +
+                          " --duration 9s --json --command 'at 5s move ball1 0 0.5'";
+  const Printed first = shell(run + " --threads 1"), second = shell(run + " --threads 2");
+  EXPECT_EQ(first.exit_code, 0) << first.out;
+  EXPECT_THAT(first.out,
+              AllOf(HasSubstr("touched ground"), HasSubstr("at 5 s: ball1 moved"), HasSubstr("\"ball4")));
+  const auto hash = [](const std::string& out) {
+    const std::size_t at = out.find("\"state_hash\"");
+    return at == std::string::npos ? "" : out.substr(at, 40);
+  };
+  EXPECT_FALSE(hash(first.out).empty());
+  EXPECT_EQ(hash(first.out), hash(second.out));
+  EXPECT_EQ(shell(run + " --command 'at 1s mov ball1 0 0'").exit_code, 2) << "no such command";
+  EXPECT_EQ(shell(run + " --command 'at 1s move ball9 0 0'").exit_code, 1)
+      << "no such ball when its time comes";
+}
+
+TEST(SlowInstall, everyPublicHeaderCompilesByItself) {
+  const Package package;
+  const std::string include = package.prefix + "/include";
+  const Printed printed = shell(
+      "cd " + include + " && find sandlot -name '*.h' | xargs -P2 -I{} " + cached("CMAKE_CXX_COMPILER") +
+      " -std=c++20 -fsyntax-only -Wall -Wextra -Werror -Wno-missing-field-initializers -I. "
+      "-include {} -x c++ /dev/null");
+  EXPECT_EQ(printed.exit_code, 0) << printed.out;
+  std::size_t headers = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(include))
+    headers += entry.path().extension() == ".h";
+  EXPECT_GT(headers, 40u);
+  EXPECT_FALSE(fs::exists(include + "/sandlot/app/commands.h")) << "the command's own affair";
+}
+
+}  // namespace
+}  // namespace sandlot::test
