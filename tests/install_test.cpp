@@ -120,8 +120,7 @@ TEST(SlowInstall, anExperimentIsTheRunCommandWithHooks) {
                           " --duration 9s --json --command 'at 5s move ball1 0 0.5'";
   const Printed first = shell(run + " --threads 1"), second = shell(run + " --threads 2");
   EXPECT_EQ(first.exit_code, 0) << first.out;
-  EXPECT_THAT(first.out,
-              AllOf(HasSubstr("touched ground"), HasSubstr("at 5 s: ball1 moved"), HasSubstr("\"ball4")));
+  EXPECT_THAT(first.out, AllOf(HasSubstr("4 balls"), HasSubstr("at 5 s: ball1 moved")));
   const auto hash = [](const std::string& out) {
     const std::size_t at = out.find("\"state_hash\"");
     return at == std::string::npos ? "" : out.substr(at, 40);

@@ -25,8 +25,9 @@ std::string scenario(const std::string& plugin, const std::string& controller) {
 
 TEST(Plugin, itsControllerDrivesARobot) {
   const Scratch scratch;
-  // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050 rad.
-  const double predicted_rad = 0.01 * 0.01 * (100 * 101 / 2);
+  // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050 rad. Each begins
+  // 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
+  const double predicted_rad = 0.01 * 0.01 * (100 * 101 / 2) - 100 * 0.01 * 0.01 / (2 * 6);
   const std::string here = scratch.write("here.yaml", scenario("good", "spinner"));
   fs::copy_file(plugins() + "/good.so", scratch.file("libgood.so"));
   const std::vector<std::string> ways{
@@ -106,11 +107,11 @@ TEST(Plugin, whatDoesNotFitIsRefusedWithItsPlace) {
   refused(plugins() + "/taken.so", AllOf(HasSubstr("'wander'"), HasSubstr("so does Sandlot")));
   refused(plugins() + "/good.so, " + plugins() + "/good.so", HasSubstr("'spinner'"));
 
-  // Cut short anywhere: never a crash of the loader.
+  // Cut short where the loader would map it: a message, not SIGBUS. (Debug information at the end may be missing.)
   std::ifstream in(plugins() + "/good.so", std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   for (const std::size_t size :
-       {std::size_t{0}, std::size_t{3}, std::size_t{63}, std::size_t{200}, whole.size() / 4})
+       {std::size_t{0}, std::size_t{3}, std::size_t{63}, std::size_t{200}, std::size_t{4096}})
     refused(scratch.write("cut.so", whole.substr(0, size)), HasSubstr("cut.so"));
 }
 

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
        }});
 
   hooks.on_end = [&](Experiment&) -> Status {
+    std::printf("%d balls\n", balls);
     for (const auto& [name, count] : bumps) std::printf("touched %s %d times\n", name.c_str(), count);
     return {};
   };

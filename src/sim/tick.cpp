@@ -247,7 +247,8 @@ void Simulation::control() {
     failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
                          number_text(now_.s()) + " s: " + *entry->failure,
                      "", entry->decl.place};
-    stop_reason_ = failure_.error().what;
+    // At tick 0 nothing runs yet that could stop: the first tick() answers with the failure.
+    if (tick_ > 0) stop_reason_ = failure_.error().what;
   }
 }
 
