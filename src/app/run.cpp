@@ -27,6 +27,8 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
   const SimulationOptions simulation_options{.threads = options.threads};
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
+    if (options.errors)
+      return Error{"--errors cannot change a run that has begun", "leave it out with --from"};
     if (!options.overrides.empty())
       return Error{"--set cannot change a run that has begun", "leave it out with --from"};
     SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot(options.from_file));
@@ -34,10 +36,14 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
     if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
     return simulation;
   }
-  SL_ASSIGN(model::Setup setup,
-            load(options.file,
-                 {options.overrides, options.seed, options.duration_s, options.paths, options.skip_missing},
-                 diagnostics));
+  SL_ASSIGN(model::Setup setup, load(options.file,
+                                     {.overrides = options.overrides,
+                                      .seed = options.seed,
+                                      .stop_s = options.duration_s,
+                                      .paths = options.paths,
+                                      .skip_missing = options.skip_missing,
+                                      .errors = options.errors.value_or(1)},
+                                     diagnostics));
   if (!setup.stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);

@@ -108,6 +108,7 @@ struct Robot {
   Node controllers;
   std::vector<std::string> joint_controllers;
   Node devices;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -136,6 +137,8 @@ struct Robot {
     visit(Field{"devices", "",
                 "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
           s.devices);
+    visit(Field{"errors", "1", "Factor on the errors of all its devices: 0 none, 1 as configured.", 0, 1000},
+          s.errors);
   }
 };
 
@@ -148,6 +151,7 @@ struct Root {
   std::uint64_t seed = 1;
   Node vars;
   std::vector<Robot> robots;
+  double errors = 1;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -163,6 +167,8 @@ struct Root {
     visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
     visit(Field{"vars", "", "Values that ${name} stands for."}, s.vars);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
+          s.errors);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };
