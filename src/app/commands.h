@@ -15,6 +15,9 @@ namespace sandlot::app {
 
 inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
 
+/// The whole command: reads the arguments, does what they say. @return the exit code
+int command(int argc, char** argv);
+
 struct RunOptions {
   std::string file;
   std::optional<double> duration_s;
@@ -27,6 +30,10 @@ struct RunOptions {
   bool skip_missing = false;       ///< of the files that the file names
   std::string summary_file;        ///< JSON
   std::string svg_file;
+  std::string stop_when;                ///< an expression
+  std::string log_file;                 ///< CSV; "": the scenario's
+  std::vector<std::string> log_values;  ///< addresses and expressions; empty: the scenario's
+  std::optional<double> log_rate_hz;
   std::string from_file;  ///< a snapshot to go on from
   std::string snapshot_file;
   std::optional<double> snapshot_at_s;  ///< unset: at the end
@@ -41,6 +48,7 @@ struct FileOptions {
   bool skip_missing = false;       ///< of the files that the file names
   bool json = false;
   bool strict = false;  ///< check: warnings fail too
+  bool values = false;  ///< info: the addresses of all values
 };
 int check(const FileOptions& options);
 int info(const FileOptions& options);
@@ -57,6 +65,7 @@ struct ListOptions {
   bool verbose = false;
   bool json = false;
   bool markdown = false;
+  std::vector<std::string> plugins;  ///< files or names; their controllers are listed too
   bool schema = false;
 };
 int list(const ListOptions& options);

@@ -1,9 +1,13 @@
 #include "app/info.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "sim/values.h"
 
 namespace sandlot::app {
 
@@ -44,6 +48,29 @@ Overview overview_of(const Simulation& simulation) {
   return out;
 }
 
+nlohmann::ordered_json values_json(const Simulation& simulation) {
+  auto out = nlohmann::ordered_json::array();
+  list_values(simulation, "", [&](const ValueEntry& entry) {
+    nlohmann::ordered_json one{{"address", entry.path}, {"unit", entry.unit}, {"help", entry.help}};
+    if (entry.list) one["count"] = entry.count;
+    const bool known = entry.is == ValueFound::Is::value && std::isfinite(entry.value);
+    one["value"] = known ? nlohmann::ordered_json(entry.value) : nlohmann::ordered_json(nullptr);
+    out.push_back(std::move(one));
+  });
+  return out;
+}
+
+std::string values_text(const Simulation& simulation) {
+  std::string out;
+  list_values(simulation, "", [&](const ValueEntry& entry) {
+    std::string address = entry.path;
+    if (entry.list) address += entry.count == 0 ? "[...]" : "[0.." + std::to_string(entry.count - 1) + "]";
+    const std::string value = entry.is == ValueFound::Is::value ? fmt::format("{:.6g}", entry.value) : "-";
+    out += fmt::format("{:<48} {:>12} {:<6} {}\n", address, value, entry.unit, entry.help);
+  });
+  return out;
+}
+
 int info(const FileOptions& options) {
   auto many = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
@@ -52,6 +79,11 @@ int info(const FileOptions& options) {
     if (!built) {
       print_warnings(diagnostics);
       return complain(built.error());
+    }
+    if (options.values) {
+      if (options.json) many.push_back(values_json(**built));
+      else std::fputs(values_text(**built).c_str(), stdout);
+      continue;
     }
     if (options.json) many.push_back(info_json(**built, diagnostics));
     else std::fputs(info_text(file, **built, diagnostics).c_str(), stdout);

@@ -28,4 +28,8 @@ nlohmann::ordered_json info_json(const Simulation& simulation, const Diagnostics
 /// @param file  as the user named it
 std::string info_text(const std::string& file, const Simulation& simulation, const Diagnostics& diagnostics);
 
+/// The addresses of all values with unit and present value; lists of numbers are one entry.
+nlohmann::ordered_json values_json(const Simulation& simulation);
+std::string values_text(const Simulation& simulation);
+
 }  // namespace sandlot::app

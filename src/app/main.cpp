@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/plot.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -27,11 +29,26 @@ struct DurationOption {
   }
 };
 
+/// "-1,1" as a range of an axis.
+Status read_range(const char* flag, const std::string& text, std::optional<std::pair<double, double>>& out) {
+  if (text.empty()) return {};
+  const std::size_t comma = text.find(',');
+  double low = 0, high = 0;
+  if (comma == std::string::npos || !parse_number(text.substr(0, comma), low) ||
+      !parse_number(text.substr(comma + 1), high) || !(low < high) || !std::isfinite(low) ||
+      !std::isfinite(high))
+    return Error{std::string(flag) + ": '" + text + "' is no range",
+                 "write the lower and the upper end: -1,1"};
+  out = {low, high};
+  return {};
+}
+
 struct RunFlags {
   RunOptions options;
   DurationOption duration, snapshot_at;
   std::string rate = "max";
   std::vector<std::string> sets;
+  std::string log_values, log_rate;
   bool headless = false;
 
   void add_to(CLI::App& verb) {
@@ -59,6 +76,13 @@ struct RunFlags {
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
     verb.add_flag("--skip-missing", options.skip_missing,
                   "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
+    verb.add_option("--stop-when", options.stop_when,
+                    "End the run when this expression over addresses holds, such as 'rover.pose.x > 3'");
+    verb.add_option("--log", options.log_file, "Write values to this CSV file while it runs");
+    verb.add_option("--log-values", log_values,
+                    "What to log: addresses and expressions with commas between them (docs/values.md)");
+    verb.add_option("--log-rate", log_rate,
+                    "Lines per simulated second, such as '10 Hz'; one per tick if left out");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
@@ -75,6 +99,14 @@ struct RunFlags {
       if (!parse_number(rate, factor) || !(factor > 0 && factor <= 1e6))
         return Error{"--rate: '" + rate + "' is neither 'max' nor a positive number"};
       options.rate = factor;
+    }
+    options.log_values = split_list(log_values);
+    if (!log_rate.empty()) {
+      auto hz = parse_quantity(log_rate, "Hz");
+      if (!hz) return Error{"--log-rate: " + hz.error().what, hz.error().fix};
+      if (!(*hz >= 0 && *hz <= 1e6))
+        return Error{"--log-rate: must be in [0, 1e6] Hz, is " + number_text(*hz)};
+      options.log_rate_hz = *hz;
     }
     return read_sets(sets, options.overrides);
   }
@@ -93,7 +125,7 @@ struct RunFlags {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int sandlot::app::command(int argc, char** argv) {
   CLI::App app{"Sandlot simulates many mobile robots with real sensors, and gives the same answer twice.",
                "sandlot"};
   app.require_subcommand(1);
@@ -159,8 +191,34 @@ int main(int argc, char** argv) {
       "Example: sandlot check --strict scenarios/*.yaml",
       check);
   check_verb->add_flag("--strict", file_options.strict, "Warnings count as errors: exit code 2");
-  add_file_verb("info", "Print the tree of a scenario or world: links, joints, devices, topics",
-                "Example: sandlot info scenarios/indoor.yaml", info);
+  CLI::App* const info_verb = add_file_verb(
+      "info", "Print the tree of a scenario or world: links, joints, devices, topics",
+      "Example: sandlot info scenarios/indoor.yaml", info);
+  info_verb->add_flag("--values", file_options.values,
+                      "Print the address of every value instead, with unit and value at the start");
+
+  PlotOptions plot_options;
+  std::string plot_y, plot_x_range, plot_y_range;
+  CLI::App* const plot_verb = app.add_subcommand("plot", "Draw columns of CSV files as lines, as an SVG");
+  plot_verb->add_option("files", plot_options.files, "CSV files: a line of names, then numbers")->required();
+  plot_verb->add_option("--out", plot_options.out, "SVG file to write")->required();
+  plot_verb->add_option("--x", plot_options.x, "Column of the horizontal axis")->capture_default_str();
+  plot_verb->add_option("--y", plot_y, "Columns to draw, with commas between them; all others if left out");
+  plot_verb->add_option("--title", plot_options.title, "Title of the figure");
+  plot_verb->add_option("--x-label", plot_options.x_label, "Label of the horizontal axis");
+  plot_verb->add_option("--y-label", plot_options.y_label, "Label of the vertical axis");
+  plot_verb->add_option("--x-range", plot_x_range, "What the horizontal axis shows: 0,10");
+  plot_verb->add_option("--y-range", plot_y_range, "What the vertical axis shows: -1,1");
+  plot_verb
+      ->add_option("--label", plot_options.labels, "Name of a line in the legend; once per line, in order")
+      ->allow_extra_args(false);
+  plot_verb->footer("Example: sandlot plot run.csv --y 'rover.pose.x,rover.pose.y' --out run.svg");
+  plot_verb->callback([&] {
+    plot_options.y = split_list(plot_y);
+    Status status = read_range("--x-range", plot_x_range, plot_options.x_range);
+    if (status) status = read_range("--y-range", plot_y_range, plot_options.y_range);
+    result = status ? plot(plot_options) : complain(status.error());
+  });
 
   ConvertOptions convert_options;
   CLI::App* const convert_verb = app.add_subcommand(
@@ -186,6 +244,10 @@ int main(int argc, char** argv) {
   list_verb->add_flag("--json", list_options.json, "Print as JSON");
   list_verb->add_flag("--markdown", list_options.markdown, "Print as the reference page of the docs");
   list_verb->add_flag("--schema", list_options.schema, "Print the JSON schema of scenario files");
+  list_verb
+      ->add_option("--plugin", list_options.plugins,
+                   "Shared library whose controllers are listed too; may be given several times")
+      ->allow_extra_args(false);
   list_verb->footer("Example: sandlot list devices --verbose");
   list_verb->callback([&] { result = list(list_options); });
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/watch.h"
+
 namespace sandlot::app {
 
 void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
@@ -109,6 +111,13 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
                     {"contacts", counters.contacts},
                     {"awake_bodies", counters.awake_bodies}};
   json["refused_commands"] = simulation.refused_commands();
+  Json events = Json::array();
+  for (const Watch::Event& event : simulation.watch().events())
+    events.push_back({{"name", event.decl.name},
+                      {"count", event.count},
+                      {"first", event.count ? Json(event.first.s()) : Json(nullptr)},
+                      {"last", event.count ? Json(event.last.s()) : Json(nullptr)}});
+  json["events"] = events;
   json["criterion"] = nullptr;
   json["teams"] = Json(teams);
   Json warnings = Json::array(), failures = Json::array();
@@ -139,6 +148,13 @@ std::string as_text(const nlohmann::ordered_json& s) {
     out += fmt::format("robot      {}: drove {:.2f} m, covered {:.2f} m^2\n",
                        robot["name"].get<std::string>(), robot["distance_m"].get<double>(),
                        robot["covered_m2"].get<double>());
+  }
+  for (const auto& event : s["events"]) {
+    const auto count = event["count"].get<std::uint64_t>();
+    out += fmt::format("event      {}: ", event["name"].get<std::string>());
+    if (count == 0) out += "did not happen\n";
+    else if (count == 1) out += fmt::format("at {} s\n", event["first"].get<double>());
+    else out += fmt::format("{} times, first at {} s\n", count, event["first"].get<double>());
   }
   out += fmt::format("stopped    {}\n", s["stopped"].get<std::string>().empty()
                                             ? "by request"

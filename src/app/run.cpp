@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include "app/commands.h"
 #include "app/report.h"
 #include "app/svg.h"
+#include "sim/csv_log.h"
 #include "sim/load.h"
 
 namespace sandlot::app {
@@ -24,7 +26,7 @@ Result<std::vector<std::byte>> read_snapshot(const std::string& path) {
 }
 
 Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
-  const SimulationOptions simulation_options{.threads = options.threads};
+  const SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
     if (options.errors)
@@ -44,9 +46,31 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
                                       .skip_missing = options.skip_missing,
                                       .errors = options.errors.value_or(1)},
                                      diagnostics));
-  if (!setup.stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
+  const bool may_stop = !options.stop_when.empty() ||
+                        std::any_of(setup.events.begin(), setup.events.end(),
+                                    [](const model::EventDecl& event) { return event.stop; });
+  if (!setup.stop && !may_stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);
+}
+
+/// What to log: the scenario's `log` with the command line's words laid over it. Nothing: no log.
+Result<std::optional<model::LogDecl>> log_wanted(const RunOptions& options, const Simulation& simulation) {
+  std::optional<model::LogDecl> log = simulation.setup().log;
+  if (options.log_file.empty() && options.log_values.empty() && !options.log_rate_hz) return log;
+  if (!log) log.emplace();
+  if (!options.log_file.empty()) log->file = options.log_file;
+  if (log->file.empty())
+    return Error{"--log-values and --log-rate say what to log, but not where to", "add --log FILE"};
+  if (options.log_rate_hz) log->rate_hz = *options.log_rate_hz;
+  if (!options.log_values.empty()) {
+    log->values.clear();
+    const Place flag{std::make_shared<const std::string>("--log-values")};
+    for (const std::string& value : options.log_values) log->values.push_back({value, flag});
+  }
+  if (log->values.empty())
+    return Error{"--log says where to, but not what", "add --log-values 'rover.pose.x,rover.pose.y'"};
+  return log;
 }
 
 /// One line on a terminal: how far, how fast, how long still.
@@ -93,6 +117,23 @@ int run(const RunOptions& options) {
     simulation.set_stop(simulation.now() + Time::from_s(*options.duration_s));
   const std::optional<Time> end = simulation.setup().stop;
 
+  if (!options.stop_when.empty()) {
+    const Place flag{std::make_shared<const std::string>("--stop-when")};
+    if (Status added = simulation.add_event({"--stop-when", options.stop_when, {}, false, true, flag});
+        !added)
+      return complain(added.error());
+  }
+  const auto log_decl = log_wanted(options, simulation);
+  if (!log_decl) return complain(log_decl.error());
+  std::unique_ptr<CsvLog> log;
+  if (*log_decl) {
+    auto opened = CsvLog::open(simulation, **log_decl);
+    if (!opened) return complain(opened.error());
+    log = std::move(*opened);
+    if (Status begun = log->begin(); !begun) return complain(begun.error());
+    simulation.add_observer(log.get());
+  }
+
   TravelRecorder travel;
   simulation.add_observer(&travel);
   std::optional<SvgRecorder> svg;
@@ -116,10 +157,13 @@ int run(const RunOptions& options) {
         save_snapshot();
         snapshot_taken = true;
       }
-      return !interrupted();
+      return !interrupted() && (!log || log->status());
     };
     if (Status status = sandlot::run(simulation, {options.rate}, report, keep_going); !status)
       errors.push_back(status.error());
+  }
+  if (log) {
+    if (Status finished = log->finish(); !finished) errors.push_back(finished.error());
   }
   if (!snapshot_taken) save_snapshot();
   const auto summary = summarise(simulation, report, travel, diagnostics, errors);

@@ -18,6 +18,7 @@
 ///   static constexpr const char* list_key                      a list in place of the map is the value of this key
 ///   static constexpr const char* described_as                  lists of it are described once, under this name
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -76,6 +77,18 @@ concept Number = std::is_arithmetic_v<T>;  // bool included; handled first where
 template <class T>
 concept NamedEnum = std::is_enum_v<T> && requires(T t) {
   enum_names(t);
+};
+
+/// A part of a value that goes by a name of its own, such as `x` of a vector or `yaw` of a pose.
+struct Component {
+  const char* name;
+  const char* unit;  ///< "": that of the field
+};
+/// `components(v)` and `component(v, i)` are found by argument lookup.
+template <class T>
+concept Componented = requires(const T& v, std::size_t i) {
+  { components(v) } -> std::convertible_to<std::span<const Component>>;
+  { component(v, i) } -> std::same_as<double>;
 };
 
 template <class T>

@@ -26,7 +26,7 @@
 
 namespace sandlot {
 
-inline constexpr int controller_api_version = 1;
+inline constexpr int controller_api_version = 2;
 
 /// Handle of a device's message of type M, resolved once.
 template <class M>
@@ -153,6 +153,9 @@ class Controller {
   virtual Status init(const Description& robot, const Node& config) = 0;
   virtual void step(const Observation& obs, Command& cmd) = 0;
   virtual Status set_parameter(std::string_view path, const Node& value) = 0;
+  /// A number of the spec or the state by its path, and all of them.
+  virtual ValueFound value(ValuePart part, std::span<const ValueStep> path) const = 0;
+  virtual void list_values(ValuePart part, const ValueVisit& visit) const = 0;
   virtual void save(ByteWriter& w) const = 0;
   virtual void load(ByteReader& r) = 0;
 };
@@ -179,6 +182,13 @@ class ControllerAdapter final : public Controller {
     SL_TRY(set_tunable(changed, path, value));
     controller_.spec = std::move(changed);
     return {};
+  }
+  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
+    return part == ValuePart::state ? value_at(controller_.state, path) : value_at(controller_.spec, path);
+  }
+  void list_values(ValuePart part, const ValueVisit& visit) const override {
+    if (part == ValuePart::state) sandlot::list_values(controller_.state, "", "", "", visit);
+    else sandlot::list_values(controller_.spec, "", "", "", visit);
   }
   void save(ByteWriter& w) const override {
     write_tunables(w, controller_.spec);

@@ -33,6 +33,10 @@ inline bool is_finite(const Pose& X) {
 /// From SDF's `x y z roll pitch yaw`.
 Pose pose_from_rpy(Vec3 p_m, Vec3 rpy_rad);
 
+/// x y z roll pitch yaw.
+std::span<const Component> components(const Pose& X);
+double component(const Pose& X, std::size_t i);
+
 /// Linear and angular velocity of a body in the world: v_WB_W (of the body's origin) and w_WB_W.
 struct Velocity {
   Vec3 linear;   ///< [m/s]

@@ -31,6 +31,18 @@ Vec3 rpy_from_quat(Quat q) {
 
 double yaw_of(Quat q) { return math::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)); }
 
+std::span<const Component> components(const Vec3&) {
+  static constexpr Component names[] = {{"x", ""}, {"y", ""}, {"z", ""}};
+  return names;
+}
+std::span<const Component> components(const Quat&) {
+  static constexpr Component names[] = {{"w", ""},       {"x", ""},        {"y", ""},     {"z", ""},
+                                        {"roll", "rad"}, {"pitch", "rad"}, {"yaw", "rad"}};
+  return names;
+}
+double component(const Vec3& v, std::size_t i) { return v[i]; }
+double component(const Quat& q, std::size_t i) { return i < 4 ? q[i] : rpy_from_quat(q)[i - 4]; }
+
 Quat quat_between(Vec3 from, Vec3 to) {
   const double d = dot(from, to);
   if (d < -1 + 1e-12) {  // opposite: any perpendicular axis will do

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/fields.h"
+
 namespace sandlot {
 
 struct Vec3 {
@@ -75,6 +77,11 @@ Quat quat_from_rpy(double roll_rad, double pitch_rad, double yaw_rad);
 Vec3 rpy_from_quat(Quat q);
 /// Heading about world z of a body's x axis.
 double yaw_of(Quat q);
+/// What the numbers are called in addresses: x y z of a vector; w x y z and roll pitch yaw of a rotation.
+std::span<const Component> components(const Vec3& v);
+std::span<const Component> components(const Quat& q);
+double component(const Vec3& v, std::size_t i);
+double component(const Quat& q, std::size_t i);
 /// The shortest rotation that takes unit vector `from` to unit vector `to`.
 Quat quat_between(Vec3 from, Vec3 to);
 

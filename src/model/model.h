@@ -169,6 +169,14 @@ struct ControllerDecl {
   Place place;
 };
 
+/// A shared library with controllers of the user's own.
+struct PluginDecl {
+  std::string file;
+  std::string name;        ///< as the library calls itself; known once it is loaded
+  std::uint64_t hash = 0;  ///< of the file's bytes, so that a snapshot notices another build
+  Place place;
+};
+
 /// A path that an instance follows whatever happens to it (SDF <actor>): it pushes and is not pushed.
 struct Motion {
   struct Key {
@@ -200,19 +208,64 @@ struct Geography {
   double heading_rad = 0;  ///< of the world's x axis, counter-clockwise from east
 };
 
+/// How long a tick is.
+struct Clock {
+  enum class Mode : std::uint8_t {
+    fixed,       ///< Setup::step
+    continuous,  ///< as long as computing the last one took, within these bounds
+  } mode = Mode::fixed;
+  Time min_step = Time::from_s(1e-4), max_step = Time::from_s(0.1);
+};
+
+/// A value that a scenario names: an expression over addresses (sim/expression.h).
+struct ValueDecl {
+  std::string name;
+  std::string expression;
+  Place place;
+};
+
+/// Something that happens when a condition has held for a while.
+struct EventDecl {
+  std::string name;
+  std::string when;  ///< an expression; other than 0: it holds
+  Time hold;         ///< how long it must hold without a break
+  bool once = false;
+  bool stop = false;  ///< it ends the run
+  Place place;
+};
+
+/// Values written to a CSV file while the run goes on. No part of a snapshot: what goes on from one starts another file.
+struct LogDecl {
+  std::string file;
+  double rate_hz = 0;  ///< 0: every tick
+  struct Column {
+    std::string expression;
+    Place place;
+  };
+  std::vector<Column> values;
+  Place place;
+};
+
 /// Everything a Simulation is built from.
 struct Setup {
   std::string name;
-  std::string engine = "rigid";  ///< "rigid" or "planar"
-  Node physics;                  ///< further keys of `physics:`, read by the engine's spec
-  Vec3 gravity{0, 0, -9.81};     ///< [m/s^2]
-  Place gravity_place;           ///< where a file gives it; nowhere when none does
-  Time step = Time::from_s(0.01);
-  int substeps = 1;          ///< physics steps per tick
+  std::string engine = "rigid";    ///< "rigid" or "planar"
+  Node physics;                    ///< further keys of `physics:`, read by the engine's spec
+  Vec3 gravity{0, 0, -9.81};       ///< [m/s^2]
+  Place gravity_place;             ///< where a file gives it; nowhere when none does
+  Time step = Time::from_s(0.01);  ///< length of a tick; of a continuous clock the first one's
+  Clock clock;
+  int substeps = 1;          ///< physics steps per tick; a longer tick of a continuous clock has more
   int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
   std::optional<Time> stop;  ///< simulated time at which the run ends by itself
+  std::vector<PluginDecl> plugins;
   std::vector<Instance> instances;
+  std::vector<ValueDecl> values;
+  std::vector<EventDecl> events;
+  std::vector<std::string>
+      addresses;  ///< that values and events use: known although what they name may be gone
+  std::optional<LogDecl> log;
   std::vector<Light> lights;
   Color ambient{0.4f, 0.4f, 0.4f, 1}, background{0.7f, 0.7f, 0.7f, 1};
   std::optional<Geography> geography;

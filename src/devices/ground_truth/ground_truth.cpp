@@ -62,11 +62,11 @@ void GroundTruth::sense(PoolView<GroundTruth> pool, const Context& context) {
     GroundTruth& truth = pool.all[index];
     const BodyState& link = context.engine.states()[truth.body];
     msg::Odometry& message = truth.odometry->message;
-    message.pose = link.X_WB * truth.X_LS;
+    message.pose.pose = link.X_WB * truth.X_LS;
     const Vec3 p_LS_W = rotate(link.X_WB.q, truth.X_LS.p);
-    message.twist.linear = rotate_inverse(message.pose.q,
-                                          link.V_WB.linear + cross(link.V_WB.angular, p_LS_W));
-    message.twist.angular = rotate_inverse(message.pose.q, link.V_WB.angular);
+    message.twist.twist.linear = rotate_inverse(message.pose.pose.q,
+                                                link.V_WB.linear + cross(link.V_WB.angular, p_LS_W));
+    message.twist.twist.angular = rotate_inverse(message.pose.pose.q, link.V_WB.angular);
     const Stream random(context.seed, truth.key, Purpose::noise, pool.sample[index]);
     const double dt_s = pool.since[index].s();
     const auto corrupt = [&](const ChainSpec& chain, Axes& axes, Vec3& v) {
@@ -76,21 +76,21 @@ void GroundTruth::sense(PoolView<GroundTruth> pool, const Context& context) {
       v.z = axes.z.corrupt(chain.stages, v.z, dt_s, random, truth.spec.errors);
     };
     const NoiseSpec& noise = truth.spec.noise;
-    corrupt(noise.position, truth.state.position, message.pose.p);
+    corrupt(noise.position, truth.state.position, message.pose.pose.p);
     if (!noise.orientation.stages.empty()) {
-      Vec3 rpy = rpy_from_quat(message.pose.q);
+      Vec3 rpy = rpy_from_quat(message.pose.pose.q);
       corrupt(noise.orientation, truth.state.orientation, rpy);
-      message.pose.q = quat_from_rpy(rpy.x, rpy.y, rpy.z);
+      message.pose.pose.q = quat_from_rpy(rpy.x, rpy.y, rpy.z);
     }
-    corrupt(noise.velocity, truth.state.velocity, message.twist.linear);
-    corrupt(noise.angular_velocity, truth.state.angular_velocity, message.twist.angular);
+    corrupt(noise.velocity, truth.state.velocity, message.twist.twist.linear);
+    corrupt(noise.angular_velocity, truth.state.angular_velocity, message.twist.twist.angular);
     truth.odometry->publish(context.now);
   }
 }
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"pose", msg::Odometry::ros_type, "", "Exact pose and velocity in the world."},
+    {"pose", msg::Odometry::ros_type, "", "Pose and velocity in the world."},
 };
 constexpr const char* sdf_types[] = {"plugin:OdometryPublisher",
                                      "plugin:gz-sim-odometry-publisher-system",
@@ -103,11 +103,11 @@ constexpr const char* sdf_types[] = {"plugin:OdometryPublisher",
 
 constinit const Kind kind = make_kind<GroundTruth>({
     .name = "ground_truth",
-    .help = "Exact pose and velocity of a link.",
+    .help = "Pose and velocity of a link, exact or with errors.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,
-    .sdf_note = "topic and frame names, TF, noise, poses of the other links, the plane of OdometryPublisher "
+    .sdf_note = "topic and frame names, TF, poses of the other links, the plane of OdometryPublisher "
                 "(dimensions)",
 });
 

@@ -30,11 +30,11 @@ TEST(GroundTruth, IsThePoseAndVelocityOfThePointItStandsFor) {
   EXPECT_EQ(topic.message.child_frame_id, "robot1/truth");
   EXPECT_EQ(topic.stamp, Time::from_s(4));
   // S lies at (2, 4) and looks along -x of the world.
-  expect_near(topic.message.pose.p, {2, 4, 0});
-  expect_near(rotate(topic.message.pose.q, {1, 0, 0}), {-1, 0, 0});
+  expect_near(topic.message.pose.pose.p, {2, 4, 0});
+  expect_near(rotate(topic.message.pose.pose.q, {1, 0, 0}), {-1, 0, 0});
   // v_S = (0.5, 0) + 2 z x (0, 1) = (-1.5, 0) in the world, which is 1.5 ahead in S.
-  expect_near(topic.message.twist.linear, {1.5, 0, 0});
-  expect_near(topic.message.twist.angular, {0, 0, 2});
+  expect_near(topic.message.twist.twist.linear, {1.5, 0, 0});
+  expect_near(topic.message.twist.twist.angular, {0, 0, 2});
 }
 
 TEST(GroundTruth, ServesOnlyThoseThatAreDue) {
@@ -70,7 +70,7 @@ TEST(GroundTruth, WithErrorsItIsACameraAboveTheField) {
   double cross = 0;
   for (int k = 0; k < n; ++k) {
     rig.sense();
-    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose;
+    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose.pose;
     const Vec3 p = shown.p - Vec3{1, 2, 3}, r = rpy_from_quat(shown.q) - Vec3{0.1, -0.2, 2.0};
     squares_p += Vec3{p.x * p.x, p.y * p.y, p.z * p.z} / n;
     squares_r += Vec3{r.x * r.x, r.y * r.y, r.z * r.z} / n;
@@ -81,10 +81,10 @@ TEST(GroundTruth, WithErrorsItIsACameraAboveTheField) {
   for (const double v : {squares_r.x, squares_r.y, squares_r.z})
     EXPECT_NEAR(v, 1e-4, 4.5 * 1e-4 * std::sqrt(2.0 / n));
   EXPECT_NEAR(cross, 0, 4.5 * 4e-4 / std::sqrt(n));
-  EXPECT_EQ(rig.topic<msg::Odometry>("exact/pose").message.pose.p, (Vec3{1, 2, 3}));
+  EXPECT_EQ(rig.topic<msg::Odometry>("exact/pose").message.pose.pose.p, (Vec3{1, 2, 3}));
   ASSERT_TRUE(rig.pool->set_parameter(0, "errors", Node::scalar("0")));
   rig.sense();
-  EXPECT_EQ(rig.topic<msg::Odometry>("camera/pose").message.pose.p, (Vec3{1, 2, 3}));
+  EXPECT_EQ(rig.topic<msg::Odometry>("camera/pose").message.pose.pose.p, (Vec3{1, 2, 3}));
   ASSERT_TRUE(rig.pool->set_parameter(0, "noise/position/0/gaussian/std", Node::scalar("5 cm")));
 }
 
@@ -98,7 +98,7 @@ TEST(GroundTruth, ACameraThatLosesItsRobotLosesAllOfIt) {
   int lost = 0;
   for (int k = 0; k < 200; ++k) {
     rig.sense();
-    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose;
+    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose.pose;
     EXPECT_EQ(std::isnan(shown.p.x), std::isnan(shown.p.y));
     EXPECT_EQ(std::isnan(shown.p.x), std::isnan(shown.q.w));
     lost += std::isnan(shown.p.x);

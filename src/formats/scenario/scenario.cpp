@@ -25,6 +25,13 @@ Status refuse_later_keys(const Node& root) {
   return {};
 }
 
+bool is_identifier(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  if (name.empty() || name.size() > 100 || !is_letter(name.front())) return false;
+  return std::all_of(name.begin(), name.end(),
+                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
+}
+
 Result<Placement> read_distribution(const Node& node, const spec::Distribution& read,
                                     const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
@@ -231,6 +238,46 @@ Status read_physics(const Node& node, Scenario& out) {
   return {};
 }
 
+/// `values`, `events` and `log`: their expressions are read when the world they speak of is there.
+Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
+  constexpr std::size_t most_values = 1000, longest = 2000;
+  if (!root.values.is_map() && !root.values.is_null())
+    return wrong_type(root.values, "a map of names to expressions", "/values");
+  if (root.values.entries().size() > most_values)
+    return root.values.error("there are more than 1000 values", "", "/values");
+  for (const Node::Entry& entry : root.values.entries()) {
+    const std::string path = "/values/" + entry.key;
+    if (!is_identifier(entry.key))
+      return Error{"'" + entry.key.substr(0, 60) + "' cannot be the name of a value",
+                   "letters, digits and _, no digit first", entry.key_place, "/values"};
+    if (!entry.value.is_scalar() || entry.value.text().size() > longest)
+      return wrong_type(entry.value, "an expression", path);
+    out.values.push_back({entry.key, entry.value.text(), entry.value.place()});
+  }
+  std::map<std::string, Place> names;
+  for (std::size_t i = 0; i < root.events.size(); ++i) {
+    const spec::Event& event = root.events[i];
+    const Node& each = node.find("events")->items()[i];
+    const std::string path = "/events/" + std::to_string(i);
+    if (event.name.empty()) return each.error("the event's name is empty", "", path + "/name");
+    if (const auto [known, fresh] = names.emplace(event.name, each.place()); !fresh)
+      return each.find("name")->error("two events are called '" + event.name + "'",
+                                      "the other one is at " + to_string(known->second), path + "/name");
+    out.events.push_back({event.name, event.when, ::sandlot::Time::from_s(event.hold_s), event.once,
+                          event.stop, each.find("when")->place()});
+  }
+  if (!root.log) return {};
+  const Node& log = *node.find("log");
+  out.log = model::LogDecl{root.log->file, root.log->rate_hz, {}, log.place()};
+  const Node& columns = *log.find("values");
+  if (root.log->values.empty())
+    return columns.error("the log has no values", "list addresses or expressions", "/log/values");
+  for (std::size_t i = 0; i < root.log->values.size(); ++i)
+    out.log->values.push_back(
+        {root.log->values[i], columns.is_sequence() ? columns.items()[i].place() : columns.place()});
+  return {};
+}
+
 Result<Scenario> read_root(const Node& node, const std::string& file) {
   SL_TRY(refuse_later_keys(node));
   // A file of a later version may differ in every key: its version is the one thing to complain about.
@@ -249,11 +296,23 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   if (const Node* world = node.find("world")) out.world_place = world->place();
   SL_TRY(read_physics(root.physics, out));
   out.step_s = root.time.step_s;
+  if (root.time.clock == spec::Clock::continuous) out.clock.mode = model::Clock::Mode::continuous;
+  out.clock.min_step = Time::from_s(root.time.min_step_s);
+  out.clock.max_step = Time::from_s(root.time.max_step_s);
+  if (out.clock.max_step < out.clock.min_step)
+    return node.find("time")->error("min_step is longer than max_step", "", "/time");
   out.substeps = root.time.substeps;
   out.control_interval = root.time.control_interval;
   out.stop_s = root.time.stop_s;
   out.seed = root.seed;
   out.errors = root.errors;
+  for (std::size_t i = 0; i < root.plugins.size(); ++i) {
+    const Node& all = *node.find("plugins");
+    const Node& each = all.is_sequence() ? all.items()[i] : all;
+    if (root.plugins[i].empty())
+      return each.error("the plugin's name is empty", "name a shared library", "/plugins");
+    out.plugins.emplace_back(root.plugins[i], each.place());
+  }
   std::int64_t total = 0;
   for (std::size_t i = 0; i < root.robots.size(); ++i) {
     const Node& each = node.find("robots")->items()[i];
@@ -264,6 +323,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
     out.robots.push_back(std::move(group));
   }
   SL_TRY(check_names(out.robots));
+  SL_TRY(read_watch(node, root, out));
   return out;
 }
 

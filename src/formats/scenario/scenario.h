@@ -66,12 +66,17 @@ struct Scenario {
   Place engine_place;
   Node physics;          ///< the engine's own keys; a map
   double step_s = 0.01;  ///< length of a tick
+  model::Clock clock;
   int substeps = 1;
   int control_interval = 1;
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
-  double errors = 1;  ///< factor on the errors of all devices
+  double errors = 1;                                   ///< factor on the errors of all devices
+  std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
+  std::vector<model::ValueDecl> values;
+  std::vector<model::EventDecl> events;
+  std::optional<model::LogDecl> log;
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 

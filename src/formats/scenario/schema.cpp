@@ -148,6 +148,8 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   describe_as(keys["physics"],
               {{"type", {"string", "object"}}, {"properties", {{"engine", {{"type", "string"}}}}}});
   describe_as(keys["vars"], {{"type", "object"}});
+  describe_as(keys["values"],
+              {{"type", "object"}, {"additionalProperties", {{"type", {"string", "number"}}}}});
   describe_as(keys["include"], {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}});
   Json& robot = keys["robots"]["items"]["properties"];
   describe_as(robot["pose"], pose_schema(""));
