@@ -24,6 +24,7 @@ struct RunOptions {
   std::optional<double> duration_s;
   std::optional<double> rate;  ///< real time x factor; unset: as fast as possible
   std::optional<std::uint64_t> seed;
+  std::optional<double> errors;
   int threads = 1;
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first

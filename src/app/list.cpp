@@ -10,6 +10,7 @@
 #include "controllers/controllers.h"
 #include "devices/kind.h"
 #include "formats/ros2_control/ros2_control.h"
+#include "noise/chain.h"
 #include "physics/engine.h"
 #include "sim/plugin.h"
 
@@ -45,7 +46,13 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
     engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
-  return {devices, controllers, engines};
+  Section stages{"noise",
+                 "Noise",
+                 "Stages of errors: `noise: [{gaussian: {std: 1 cm}}, ...]`; U is the unit of the values.",
+                 {}};
+  for (const StageSort& sort : stage_sorts())
+    stages.items.push_back({sort.name, sort.help, sort.fields, {}, {}, {}});
+  return {devices, controllers, engines, stages};
 }
 
 std::string limits(const FieldInfo& field) {
@@ -243,7 +250,9 @@ int list(const ListOptions& options) {
       devices.back().second.push_back(std::move(preset));
     }
     for (const ControllerKind* kind : *known) controllers.emplace_back(kind->name, kind->describe());
-    fmt::print("{}\n", formats::scenario_schema(devices, controllers));
+    std::vector<formats::KindFields> stages;
+    for (StageSort& sort : stage_sorts()) stages.emplace_back(sort.name, std::move(sort.fields));
+    fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages));
     return exit_ok;
   }
   if (options.what == "plugins" && !options.markdown) {

@@ -59,6 +59,9 @@ struct RunFlags {
                     "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time")
         ->capture_default_str();
     verb.add_option("--seed", options.seed, "Seed of all random numbers, instead of the scenario's");
+    verb.add_option("--errors", options.errors,
+                    "Factor on the errors of all devices, beside those in the scenario; 0: exact")
+        ->check(CLI::Range(0.0, 1000.0));
     verb.add_option("--threads", options.threads,
                     "Threads; 0: as many as the machine has. The result does not depend on it")
         ->check(CLI::Range(0, 1024))

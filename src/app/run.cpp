@@ -31,6 +31,8 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
   if (options.hooks) simulation_options.extra_controllers = options.hooks->controllers;
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
+    if (options.errors)
+      return Error{"--errors cannot change a run that has begun", "leave it out with --from"};
     if (!options.overrides.empty())
       return Error{"--set cannot change a run that has begun", "leave it out with --from"};
     SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot(options.from_file));
@@ -38,10 +40,14 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
     if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
     return simulation;
   }
-  SL_ASSIGN(model::Setup setup,
-            load(options.file,
-                 {options.overrides, options.seed, options.duration_s, options.paths, options.skip_missing},
-                 diagnostics));
+  SL_ASSIGN(model::Setup setup, load(options.file,
+                                     {.overrides = options.overrides,
+                                      .seed = options.seed,
+                                      .stop_s = options.duration_s,
+                                      .paths = options.paths,
+                                      .skip_missing = options.skip_missing,
+                                      .errors = options.errors.value_or(1)},
+                                     diagnostics));
   const bool may_stop = !options.stop_when.empty() ||
                         std::any_of(setup.events.begin(), setup.events.end(),
                                     [](const model::EventDecl& event) { return event.stop; });

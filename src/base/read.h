@@ -84,7 +84,11 @@ Status read_fields(const Node& node, Spec& spec, const std::string& path = "", s
   for (const Node::Entry& entry : node.entries()) {
     bool found = false;
     for (const std::string& key : known) found = found || key == entry.key;
-    if (!found) return unknown_key(entry, known, path);
+    if (found) continue;
+    Error error = unknown_key(entry, known, path);
+    if constexpr (requires { Spec::list_key; })
+      error.fix += std::string("; ") + Spec::list_key + " are written as a list: [{name: {...}}, ...]";
+    return error;
   }
   if (!status) return status;
   return check_rules(node, spec, path);

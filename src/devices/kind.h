@@ -256,11 +256,10 @@ class DevicePool final : public PoolBase {
   void save(std::uint32_t index, ByteWriter& w) const override {
     write_tunables(w, devices_[index].spec);
     write(w, devices_[index].state);
-    // Behind everything else and only where it is not 1: the bytes of a device without it are those of before it was.
+    // Last and only where it is not 1: the bytes of a device without it are those of before it was.
     if constexpr (requires { devices_[index].spec.errors; })
       if (devices_[index].spec.errors != 1) write(w, devices_[index].spec.errors);
   }
-  /// @pre `r` ends where the device's bytes end
   void load(std::uint32_t index, ByteReader& r) override {
     read_tunables(r, devices_[index].spec);
     read(r, devices_[index].state);

@@ -6,6 +6,14 @@
 #include "base/check.h"
 
 namespace sandlot {
+template Status read_value(const Node&, const Field&, std::vector<StageSpec>&, const std::string&);
+template Status set_part(std::vector<StageSpec>&, const Field&, std::string_view, const Node&,
+                         const std::string&);
+template void write_tunables(ByteWriter&, const StageSpec&);
+template void read_tunables(ByteReader&, StageSpec&);
+template void write(ByteWriter&, const ChannelChain&);
+template void read(ByteReader&, ChannelChain&);
+
 namespace {
 
 /// Calls work(spec, state) with the stage's own types.
@@ -56,6 +64,19 @@ void corrupt_all(const Spec& spec, State& state, std::span<float> values, const 
 
 }  // namespace
 
+std::vector<StageSort> stage_sorts() {
+  std::vector<StageSort> out;
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    const auto one = [&]<class Sort>(const Sort& sort) {
+      out.push_back({Sort::name, Sort::help, {}});
+      describe_struct(sort, "", "U", out.back().fields, false);
+    };
+    (one(std::variant_alternative_t<i + 1, noise_detail::All::Spec>()), ...);
+  }
+  (std::make_index_sequence<StageSpec::sorts - 1>());
+  return out;
+}
+
 double variance_of(std::span<const StageSpec> stages, double dt_s, double errors) {
   double sum = 0;
   for (const StageSpec& each : stages)
@@ -73,7 +94,9 @@ void ChannelChain::reset(std::span<const StageSpec> specs, const Stream& random,
   std::array<std::uint64_t, StageSpec::sorts> before{};
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const std::size_t sort = specs[i].stage.index();
-    keys[i] = hash_combine(hash64(specs[i].name(), hash64(channel)), before[sort]++);
+    const auto* const dropouts = std::get_if<DropoutsSpec>(&specs[i].stage);
+    const bool common = (dropouts && dropouts->whole) || std::holds_alternative<LatencySpec>(specs[i].stage);
+    keys[i] = hash_combine(hash64(specs[i].name(), hash64(common ? "" : channel)), before[sort]++);
     [&]<std::size_t... k>(std::index_sequence<k...>) {
       (void)((sort == k + 1 && (stages[i].state.template emplace<k + 1>(), true)) || ...);
     }

@@ -9,7 +9,8 @@
 ///
 /// Random   each stage draws from a stream of its own, keyed by the device, the channel, the sort of stage and how many of
 ///          that sort come before it. Adding, changing or removing a stage moves no other stage's numbers (but those of
-///          later ones of its own sort), and what comes in does not either.
+///          later ones of its own sort), and what comes in does not either. The stages latency and dropouts with
+///          `whole` leave the channel out, so that all channels of a device that have them agree.
 /// errors   one factor on all of a chain: 0 exact, 1 as configured, 2 twice. It multiplies amplitudes, steps of
 ///          quantise, widths of dead zones, delays and their jitter, and how often values are lost or far off (never
 ///          more often than always). What clip cuts at is what the device can show and stays.
@@ -19,9 +20,12 @@
 /// Source   of each stage in its own header: additive.h, response.h, faults.h, latency.h. Docs: docs/noise.md.
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/bytes.h"
+#include "base/describe.h"
 #include "noise/stage.h"
 
 namespace sandlot {
@@ -34,6 +38,21 @@ inline constexpr Field errors_field{"errors", "1",  "Factor on all errors: 0 non
 /// For a spec that can be a chain: `list_key = "stages"` and `visit(stages_field, s.stages)`.
 inline constexpr Field stages_field{
     "stages", "", "Stages of errors, one after the other.", 0, 0, Field::none, max_stages, 1};
+
+/// Errors of a channel as a list of stages and nothing else.
+struct ChainSpec {
+  static constexpr const char* list_key = "stages";
+  std::vector<StageSpec> stages;
+
+  static void fields(auto& s, auto&& visit) { visit(stages_field, s.stages); }
+};
+
+/// One sort of stage, for lists and the schema; the unit of the values is called U.
+struct StageSort {
+  std::string name, help;
+  std::vector<FieldInfo> fields;
+};
+std::vector<StageSort> stage_sorts();
 
 /// Sum of the variances of the stages about their constant errors, where they have one of their own (walk,
 /// proportional and lost values have none).
@@ -65,5 +84,14 @@ struct ChannelChain {
   void corrupt(std::span<const StageSpec> specs, std::span<float> values, double dt_s, const Stream& random,
                double errors = 1);
 };
+
+// What the field lists of all stages make is compiled once, not with every kind of device.
+extern template Status read_value(const Node&, const Field&, std::vector<StageSpec>&, const std::string&);
+extern template Status set_part(std::vector<StageSpec>&, const Field&, std::string_view, const Node&,
+                                const std::string&);
+extern template void write_tunables(ByteWriter&, const StageSpec&);
+extern template void read_tunables(ByteReader&, StageSpec&);
+extern template void write(ByteWriter&, const ChannelChain&);
+extern template void read(ByteReader&, ChannelChain&);
 
 }  // namespace sandlot

@@ -32,7 +32,7 @@ inline double odds_per_sample(double rate, double per_second, const NoiseSample&
 /// whatever the sample rate. T = 0 loses one sample each: f = 1 - exp(-r dt).
 ///
 /// Of many values at once the chain runs along the values, one after the other, and begins anew in each sample; with
-/// `whole` it runs over the samples and loses all values at once. `hold` shows what the same beam showed before.
+/// `whole` it runs over the samples and loses all values at once, and all channels of a device that has several. `hold` shows what the same beam showed before.
 struct DropoutsSpec {
   static constexpr const char* name = "dropouts";
   static constexpr const char* help = "Values that get lost, alone or in bursts.";
@@ -64,7 +64,7 @@ struct DropoutsSpec {
     visit(Field{"shows", "", "What is shown instead: no number, no hit, the value before, or `value`."},
           s.shows);
     visit(Field{"value", "", "What shows: value shows.", -1e12, 1e12, Field::tunable}, s.value);
-    visit(Field{"whole", "", "Of a scan: all its values are lost at once."}, s.whole);
+    visit(Field{"whole", "", "All values of the device's sample are lost at once."}, s.whole);
   }
   Status check(const Node& node, const std::string& path) const {
     if (rate > 0 && per_second > 0)

@@ -8,6 +8,7 @@
 ///   void advance(state, sample, random) const, double show(state, x, sample) const     once per sample, shared
 ///   corrupt(state, x, sample, random), corrupt(state, span, sample, random)            both written out
 /// and, where they mean something, reset(state, random) and variance(dt_s) about its constant part, at errors = 1.
+#include <concepts>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,7 +37,8 @@ struct StageSpec {
 
   StageSpec() = default;
   template <class Stage>
-  StageSpec(Stage s) : stage(std::move(s)) {}  // NOLINT: a stage of a sort is a stage
+  requires std::constructible_from<noise_detail::All::Spec, Stage> StageSpec(Stage s)
+      : stage(std::move(s)) {}  // NOLINT: a stage of a sort is a stage
 
   /// "gaussian"; "" before it was read.
   const char* name() const {

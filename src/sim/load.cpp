@@ -13,6 +13,7 @@
 #include "formats/ros2_control/ros2_control.h"
 #include "formats/sdf/sdf.h"
 #include "geometry/bounds.h"
+#include "noise/chain.h"
 #include "physics/engine.h"
 #include "sim/assets.h"
 #include "sim/joint_controllers.h"
@@ -131,6 +132,29 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
     else *found = std::move(decl);
   }
   return {};
+}
+
+/// Puts a factor on the errors of all devices of an instance that have any: their key `errors`.
+void scale_errors(model::Instance& instance, double factor) {
+  if (factor == 1) return;
+  for (model::DeviceDecl& decl : instance.devices) {
+    const auto kind = find_device_kind(decl.kind);
+    if (!kind) continue;  // told when it is built
+    const std::vector<FieldInfo> fields = (*kind)->describe();
+    if (std::none_of(fields.begin(), fields.end(),
+                     [](const FieldInfo& f) { return f.path == errors_field.key; }))
+      continue;
+    if (decl.config.is_null()) decl.config = Node::map(decl.place);
+    const Node* const own = decl.config.find(errors_field.key);
+    double value = 1;
+    if (own) {
+      const auto read = read_number(*own, errors_field, errors_field.min, errors_field.max, false, "");
+      if (!read) continue;  // told when it is built
+      value = *read;
+    }
+    Node scaled = Node::scalar(number_text(value * factor), own ? own->place() : decl.place);
+    decl.config.set(errors_field.key, std::move(scaled));
+  }
 }
 
 /// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
@@ -289,6 +313,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
     SL_ASSIGN(setup, load_bare_world(path, sdf, diagnostics));
+    for (model::Instance& instance : setup.instances) scale_errors(instance, options.errors);
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario,
               options.text ? formats::parse_scenario(*options.text, path, options.overrides, diagnostics)
@@ -302,6 +327,8 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     } else {
       setup.instances.push_back(bare_ground());
     }
+    const double errors = options.errors * scenario.errors;
+    for (model::Instance& instance : setup.instances) scale_errors(instance, errors);
     if (auto engine = find_engine(scenario.engine); !engine) {
       engine.error().place = scenario.engine_place;
       return std::move(engine.error());
@@ -352,6 +379,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
         SL_TRY(add_devices(pattern, std::move(controllers)));
       }
       SL_TRY(merge_devices(pattern, group.devices));
+      scale_errors(pattern, errors * group.errors);
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {
         model::Instance instance = pattern;

@@ -216,6 +216,35 @@ TEST_F(Files, options_replace_seed_and_stop) {
   EXPECT_EQ(changed->stop->s(), 2.5);
 }
 
+TEST_F(Files, factors_on_errors_multiply) {
+  const std::string file = write("s.yaml",
+                                 "version: 1\nname: s\nerrors: 2\nrobots:\n"
+                                 "- {name: a, model: models/bot, errors: 3, devices: {eye: {errors: 0.25}}}\n"
+                                 "- {name: b, model: models/bot, errors: 0}\n"
+                                 "- {name: c, model: models/bot, devices: {turn: {kind: body_velocity}}}\n");
+  const auto errors_of = [&](const model::Setup& setup, std::string_view robot) {
+    for (const model::Instance& instance : setup.instances)
+      if (instance.name == robot) {
+        const Node* const errors = instance.devices.front().config.find("errors");
+        return errors ? errors->text() : std::string("none");
+      }
+    return std::string("no robot");
+  };
+  const auto setup = load(file, {}, diagnostics);
+  ASSERT_TRUE(setup) << setup.error().text();
+  EXPECT_EQ(errors_of(*setup, "a"), "1.5");
+  EXPECT_EQ(errors_of(*setup, "b"), "0");
+  EXPECT_EQ(errors_of(*setup, "c"), "2");
+  EXPECT_EQ(setup->instances.back().devices.back().config.find("errors"), nullptr) << "it has no errors";
+  const auto halved = load(file, {.errors = 0.5}, diagnostics);
+  ASSERT_TRUE(halved);
+  EXPECT_EQ(errors_of(*halved, "a"), "0.75");
+  EXPECT_EQ(errors_of(*halved, "c"), "none") << "1 is what it is anyway";
+  EXPECT_THAT(error_of("errors: -1\n"), HasSubstr("/errors: must be in [0, 1000]"));
+  EXPECT_THAT(error_of("robots: [{name: a, model: models/bot, errors: x}]\n"),
+              HasSubstr("/errors: 'x' is not a number"));
+}
+
 constexpr const char* head = R"(<?xml version="1.0"?>
 <sdf version="1.9" xmlns:sandlot="urn:sandlot:sdf"><model name="head">
   <link name="foot"><inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link>

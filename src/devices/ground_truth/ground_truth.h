@@ -1,32 +1,74 @@
 #pragma once
-/// The exact pose and velocity of a point on a link: what no real sensor knows.
+/// The pose and velocity of a point on a link: exact, what no real sensor knows, or with errors, as a camera above the
+/// field or a motion capture system tells it.
 ///
 /// Frame    sensor frame S: the link's frame moved by the device's own pose.
 /// Output   level `pose`: nav_msgs/Odometry. Pose of S in the world (frame "world"); velocity of S's origin and
-///          angular velocity of the link, relative to the world, expressed in S. Covariances are zero: exact.
+///          angular velocity of the link, relative to the world, expressed in S. Covariances are zero.
 /// Time     the end of the tick.
-/// Noise    none, by definition.
+/// Noise    none by default; else noise/chain.h on each of x, y, z, of roll, pitch, yaw and of the components of the
+///          velocities, one chain for three of them. A latency or drop-outs with `whole` that all parts shall share
+///          must be given to all of them.
 /// Limits   none.
 /// Cost     a few multiplications per sample, no allocation.
 #include "devices/kind.h"
 #include "messages/messages.h"
+#include "noise/chain.h"
 
 namespace sandlot::ground_truth {
 
+struct NoiseSpec {
+  ChainSpec position, orientation, velocity, angular_velocity;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"position", "m", "Of x, y and z."}, s.position);
+    visit(Field{"orientation", "rad", "Of roll, pitch and yaw."}, s.orientation);
+    visit(Field{"velocity", "m/s", "Of its three components."}, s.velocity);
+    visit(Field{"angular_velocity", "rad/s", "Of its three components."}, s.angular_velocity);
+  }
+};
+
 struct Spec {
   double rate_hz = 50.0;
+  NoiseSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(Field{"noise", "", "Errors."}, s.noise);
+    visit(errors_field, s.errors);
+  }
+};
+
+/// The chains of three components.
+struct Axes {
+  ChannelChain x, y, z;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"x", "", "Or roll."}, s.x);
+    visit(Field{"y", "", "Or pitch."}, s.y);
+    visit(Field{"z", "", "Or yaw."}, s.z);
+  }
+};
+
+struct State {
+  Axes position, orientation, velocity, angular_velocity;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"position", "", "Errors."}, s.position);
+    visit(Field{"orientation", "", "Errors."}, s.orientation);
+    visit(Field{"velocity", "", "Errors."}, s.velocity);
+    visit(Field{"angular_velocity", "", "Errors."}, s.angular_velocity);
   }
 };
 
 struct GroundTruth {
   using Spec = ground_truth::Spec;
-  using State = NoFields;
+  using State = ground_truth::State;
   Spec spec;
   State state;
 
+  std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link
   Pose X_LS;
   Topic<msg::Odometry>* odometry = nullptr;

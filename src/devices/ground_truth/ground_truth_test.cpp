@@ -47,6 +47,65 @@ TEST(GroundTruth, ServesOnlyThoseThatAreDue) {
   EXPECT_EQ(rig.topic<msg::Odometry>("b/pose").count, 1u);
 }
 
+/// [{name: {key: value}}]
+Node chain(const char* name, std::initializer_list<std::pair<const char*, const char*>> keys) {
+  Node stage = Node::map(), list = Node::sequence();
+  stage.set(name, config(keys));
+  list.push(std::move(stage));
+  return list;
+}
+
+TEST(GroundTruth, WithErrorsItIsACameraAboveTheField) {
+  // Each component has its own error; the orientation errs in roll, pitch and yaw. Bounds: 4.5 deviations.
+  Rig rig(kind, test::two_wheels());
+  Node noise = Node::map(), node = Node::map();
+  noise.set("position", chain("gaussian", {{"std", "2 cm"}}));
+  noise.set("orientation", chain("gaussian", {{"std", "0.01"}}));
+  node.set("noise", std::move(noise));
+  ASSERT_TRUE(rig.add("camera", node));
+  ASSERT_TRUE(rig.add("exact", Node()));
+  rig.engine->body[0].X_WB = {{1, 2, 3}, quat_from_rpy(0.1, -0.2, 2.0)};
+  constexpr int n = 4000;
+  Vec3 squares_p, squares_r;
+  double cross = 0;
+  for (int k = 0; k < n; ++k) {
+    rig.sense();
+    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose.pose;
+    const Vec3 p = shown.p - Vec3{1, 2, 3}, r = rpy_from_quat(shown.q) - Vec3{0.1, -0.2, 2.0};
+    squares_p += Vec3{p.x * p.x, p.y * p.y, p.z * p.z} / n;
+    squares_r += Vec3{r.x * r.x, r.y * r.y, r.z * r.z} / n;
+    cross += p.x * p.y / n;
+  }
+  for (const double v : {squares_p.x, squares_p.y, squares_p.z})
+    EXPECT_NEAR(v, 4e-4, 4.5 * 4e-4 * std::sqrt(2.0 / n));
+  for (const double v : {squares_r.x, squares_r.y, squares_r.z})
+    EXPECT_NEAR(v, 1e-4, 4.5 * 1e-4 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(cross, 0, 4.5 * 4e-4 / std::sqrt(n));
+  EXPECT_EQ(rig.topic<msg::Odometry>("exact/pose").message.pose.pose.p, (Vec3{1, 2, 3}));
+  ASSERT_TRUE(rig.pool->set_parameter(0, "errors", Node::scalar("0")));
+  rig.sense();
+  EXPECT_EQ(rig.topic<msg::Odometry>("camera/pose").message.pose.pose.p, (Vec3{1, 2, 3}));
+  ASSERT_TRUE(rig.pool->set_parameter(0, "noise/position/0/gaussian/std", Node::scalar("5 cm")));
+}
+
+TEST(GroundTruth, ACameraThatLosesItsRobotLosesAllOfIt) {
+  Rig rig(kind, test::two_wheels());
+  Node noise = Node::map(), node = Node::map();
+  noise.set("position", chain("dropouts", {{"rate", "0.3"}, {"whole", "true"}}));
+  noise.set("orientation", chain("dropouts", {{"rate", "0.3"}, {"whole", "true"}}));
+  node.set("noise", std::move(noise));
+  ASSERT_TRUE(rig.add("camera", node));
+  int lost = 0;
+  for (int k = 0; k < 200; ++k) {
+    rig.sense();
+    const Pose shown = rig.topic<msg::Odometry>("camera/pose").message.pose.pose;
+    EXPECT_EQ(std::isnan(shown.p.x), std::isnan(shown.p.y));
+    EXPECT_EQ(std::isnan(shown.p.x), std::isnan(shown.q.w));
+    lost += std::isnan(shown.p.x);
+  }
+  EXPECT_NEAR(lost / 200.0, 0.3, 4.5 * std::sqrt(0.21 / 200));
+}
+
 TEST(GroundTruthFromSdf, TakesRateAndLinkAndNamesTheRest) {
   Diagnostics diagnostics;
   const auto node = kind.from_sdf(
@@ -56,9 +115,14 @@ TEST(GroundTruthFromSdf, TakesRateAndLinkAndNamesTheRest) {
   ASSERT_TRUE(node);
   EXPECT_EQ(node->find("rate")->text(), "25");
   EXPECT_EQ(node->find("link")->text(), "mast");  // the loader's
-  ASSERT_EQ(diagnostics.warnings.size(), 2u);
-  EXPECT_EQ(diagnostics.warnings[0].what, "noise of an exact pose is not supported and has no effect");
-  EXPECT_EQ(diagnostics.warnings[1].what,
+  // Gazebo's publishers put their noise on the velocities.
+  const auto spec = read_spec<NoiseSpec>(*node->find("noise"));
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_TRUE(spec->position.stages.empty() && spec->orientation.stages.empty());
+  EXPECT_EQ(std::get<GaussianSpec>(spec->velocity.stages.at(0).stage).std, 0.01);
+  EXPECT_EQ(std::get<GaussianSpec>(spec->angular_velocity.stages.at(0).stage).std, 0.01);
+  ASSERT_EQ(diagnostics.warnings.size(), 1u);
+  EXPECT_EQ(diagnostics.warnings[0].what,
             "<frame_name> of a publisher of exact poses is not supported and has no effect");
 }
 

@@ -60,6 +60,16 @@ Result<Joints> Joints::create(const DeviceBuild& build, Spec spec) {
       device.joints.push_back(build.joints[index].index);
     }
   }
+  device.key = build.key;
+  const Stream random(build.seed, build.key, Purpose::initial, 0);
+  const auto prepare = [&](const ChainSpec& chain, std::vector<ChannelChain>& channels, const char* what) {
+    channels.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      channels[i].reset(chain.stages, random, std::string(what) + "/" + names[i]);
+  };
+  prepare(device.spec.noise.position, device.state.position, "position");
+  prepare(device.spec.noise.velocity, device.state.velocity, "velocity");
+  prepare(device.spec.noise.effort, device.state.effort, "effort");
   device.message = build.publish<msg::JointState>(0, "joints");
   msg::JointState& message = device.message->message;
   message.header.frame_id = build.frame_id();
@@ -75,11 +85,17 @@ void Joints::sense(PoolView<Joints> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Joints& device = pool.all[index];
     msg::JointState& message = device.message->message;
+    const Stream random(context.seed, device.key, Purpose::noise, pool.sample[index]);
+    const double dt_s = pool.since[index].s();
+    const auto corrupt = [&](const ChainSpec& chain, ChannelChain& channel, double x) {
+      return channel.corrupt(chain.stages, x, dt_s, random, device.spec.errors);
+    };
+    const NoiseSpec& noise = device.spec.noise;
     for (std::size_t i = 0; i < device.joints.size(); ++i) {
       const JointState& joint = states[device.joints[i]];
-      message.position[i] = joint.position;
-      message.velocity[i] = joint.velocity;
-      message.effort[i] = joint.effort;
+      message.position[i] = corrupt(noise.position, device.state.position[i], joint.position);
+      message.velocity[i] = corrupt(noise.velocity, device.state.velocity[i], joint.velocity);
+      message.effort[i] = corrupt(noise.effort, device.state.effort[i], joint.effort);
     }
     device.message->publish(context.now);
   }

@@ -5,7 +5,8 @@
 ///          Angles [rad] (prismatic: [m]) count from the model's declared pose and do not wrap; the effort is what
 ///          motors put in, without limits, friction and springs.
 /// Time     the end of the tick.
-/// Noise    none: see wheel_encoder for a counting sensor.
+/// Noise    noise/chain.h for angles, speeds and efforts, each joint by itself; none by default. See wheel_encoder for
+///          a counting sensor.
 /// Limits   joints with one degree of freedom only; of a universal joint nothing.
 /// Cost     three copies per joint and sample, no allocation.
 /// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints is none:
@@ -14,27 +15,54 @@
 
 #include "devices/kind.h"
 #include "messages/messages.h"
+#include "noise/chain.h"
 
 namespace sandlot::joint_state {
+
+struct NoiseSpec {
+  ChainSpec position, velocity, effort;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"position", "1", "Of each angle [rad] or length [m]."}, s.position);
+    visit(Field{"velocity", "1", "Of each speed [rad/s] or [m/s]."}, s.velocity);
+    visit(Field{"effort", "1", "Of each effort [Nm] or [N]."}, s.effort);
+  }
+};
 
 struct Spec {
   std::vector<std::string> joints;
   double rate_hz = 50.0;
+  NoiseSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(
         Field{"joints", "", "Names of the joints; none: all that turn or slide.", 0, 0, Field::none, 10'000},
         s.joints);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(Field{"noise", "", "Errors."}, s.noise);
+    visit(errors_field, s.errors);
+  }
+};
+
+/// One chain per joint.
+struct State {
+  std::vector<ChannelChain> position, velocity, effort;
+
+  static void fields(auto& s, auto&& visit) {
+    for (auto& chain : s.position) visit(Field{"position", "", "Errors of an angle."}, chain);
+    for (auto& chain : s.velocity) visit(Field{"velocity", "", "Errors of a speed."}, chain);
+    for (auto& chain : s.effort) visit(Field{"effort", "", "Errors of an effort."}, chain);
   }
 };
 
 struct Joints {
   using Spec = joint_state::Spec;
-  using State = NoFields;
+  using State = joint_state::State;
   Spec spec;
   State state;
 
+  std::uint64_t key = 0;
   std::vector<std::uint32_t> joints;  ///< index of each in the engine
   Topic<msg::JointState>* message = nullptr;
 

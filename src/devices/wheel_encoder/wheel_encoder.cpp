@@ -1,5 +1,6 @@
 #include "devices/wheel_encoder/wheel_encoder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/math.h"
@@ -10,7 +11,9 @@ enum Level : std::uint32_t { ticks_level, joint_level };
 }
 
 std::int64_t ticks_at(double angle_rad, int ticks_per_turn) {
-  return static_cast<std::int64_t>(std::floor(angle_rad * ticks_per_turn / math::tau));
+  // Errors may be of any size; what a counter of 64 bits cannot hold is its end.
+  return static_cast<std::int64_t>(
+      std::clamp(std::floor(angle_rad * ticks_per_turn / math::tau), -9e18, 9e18));
 }
 
 Result<Encoder> Encoder::create(const DeviceBuild& build, Spec spec) {
@@ -23,6 +26,8 @@ Result<Encoder> Encoder::create(const DeviceBuild& build, Spec spec) {
                  "/joint"};
   }
   Encoder encoder{std::move(spec)};
+  encoder.key = build.key;
+  encoder.state.reset(encoder.spec.noise.stages, Stream(build.seed, build.key, Purpose::initial, 0));
   encoder.joint = build.joints[index].index;
   encoder.ticks = build.publish<msg::Int64Stamped>(ticks_level, "ticks");
   encoder.ticks->message.header.frame_id = build.frame_id();
@@ -38,7 +43,11 @@ void Encoder::sense(PoolView<Encoder> pool, const Context& context) {
     Encoder& encoder = pool.all[index];
     const JointState& joint = context.engine.joint_states()[encoder.joint];
     if (pool.levels[index] >> ticks_level & 1) {
-      encoder.ticks->message.data = ticks_at(joint.position, encoder.spec.ticks_per_turn);
+      const double angle_rad = encoder.state.corrupt(
+          encoder.spec.noise.stages, joint.position, pool.since[index].s(),
+          Stream(context.seed, encoder.key, Purpose::noise, pool.sample[index]), encoder.spec.errors);
+      if (!std::isnan(angle_rad))
+        encoder.ticks->message.data = ticks_at(angle_rad, encoder.spec.ticks_per_turn);
       encoder.ticks->publish(context.now);
     }
     if (pool.levels[index] >> joint_level & 1) {

@@ -5,12 +5,14 @@
 ///          declared pose of the model. Level `joint`: the exact angle, speed and effort, without quantisation.
 ///          Both may be active at once.
 /// Time     the end of the tick.
-/// Noise    quantisation only.
+/// Noise    level `ticks`: noise/chain.h on the angle [rad], then counting. An angle that is no number (a drop-out)
+///          leaves the count as it was.
 /// Limits   no index pulse, missed edges, counter width, or play between wheel and encoder.
 /// Cost     one division per sample, no allocation.
 /// Errors   a joint that is not there or does not turn.
 #include "devices/kind.h"
 #include "messages/messages.h"
+#include "noise/chain.h"
 
 namespace sandlot::wheel_encoder {
 
@@ -18,21 +20,26 @@ struct Spec {
   std::string joint;
   int ticks_per_turn = 1024;
   double rate_hz = 50.0;
+  ChainSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000},
           s.joint);
     visit(Field{"ticks_per_turn", "1", "Edges counted per turn of the joint.", 1, 1e8}, s.ticks_per_turn);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(Field{"noise", "rad", "Errors of the angle that is counted."}, s.noise);
+    visit(errors_field, s.errors);
   }
 };
 
 struct Encoder {
   using Spec = wheel_encoder::Spec;
-  using State = NoFields;
+  using State = ChannelChain;
   Spec spec;
   State state;
 
+  std::uint64_t key = 0;
   std::uint32_t joint = 0;
   Topic<msg::Int64Stamped>* ticks = nullptr;
   Topic<msg::JointState>* exact = nullptr;

@@ -22,6 +22,34 @@ TEST(WheelEncoder, CountsTheEdgesPassed) {
   EXPECT_EQ(ticks_at(1e9 * math::tau, 1000), 1'000'000'000'000);
 }
 
+TEST(WheelEncoder, ErrsInItsScaleAndHoldsTheCountWhenItLosesTheAngle) {
+  const auto node = [](const char* stage, std::initializer_list<std::pair<const char*, const char*>> keys) {
+    Node out = config({{"joint", "left"}, {"ticks_per_turn", "1000"}}), map = Node::map(),
+         list = Node::sequence();
+    map.set(stage, config(keys));
+    list.push(std::move(map));
+    out.set("noise", std::move(list));
+    return out;
+  };
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("scaled", node("scale", {{"error", "1 %"}}), 3));
+  ASSERT_TRUE(rig.add("lost", node("dropouts", {{"rate", "0"}})));
+  ASSERT_TRUE(rig.add("far", node("dropouts", {{"rate", "1"}, {"shows", "value"}, {"value", "1e12"}})));
+  rig.engine->joint[0].position = 100.0005 * math::tau;
+  rig.sense();
+  EXPECT_EQ(rig.topic<msg::Int64Stamped>("scaled/ticks").message.data, 101'000);
+  EXPECT_EQ(rig.topic<msg::JointState>("scaled/joint").message.position[0], 100.0005 * math::tau);
+  EXPECT_EQ(rig.topic<msg::Int64Stamped>("lost/ticks").message.data, 100'000);
+  EXPECT_EQ(rig.topic<msg::Int64Stamped>("far/ticks").message.data, ticks_at(1e12, 1000));
+  EXPECT_EQ(ticks_at(1e12, 100'000'000), 9'000'000'000'000'000'000);  // no count beyond 64 bits
+  ASSERT_TRUE(rig.pool->set_parameter(0, "errors", Node::scalar("2")));
+  ASSERT_TRUE(rig.pool->set_parameter(1, "noise/0/dropouts/rate", Node::scalar("1")));
+  rig.engine->joint[0].position = 200.0005 * math::tau;
+  rig.sense();
+  EXPECT_EQ(rig.topic<msg::Int64Stamped>("scaled/ticks").message.data, 204'000);
+  EXPECT_EQ(rig.topic<msg::Int64Stamped>("lost/ticks").message.data, 100'000);
+}
+
 TEST(WheelEncoder, EachLevelShowsItsOwnAndAnIdleOneIsSilent) {
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("left_encoder", config({{"joint", "left"}, {"ticks_per_turn", "1000"}}), 1));

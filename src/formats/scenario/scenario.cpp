@@ -153,6 +153,7 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   if (const Node* const model = node.find("model")) group.model_place = model->place();
   group.count = robot.count;
   group.team = robot.team;
+  group.errors = robot.errors;
   if (!robot.pose.is_null() && robot.distribution)
     return robot.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (robot.distribution) {
@@ -304,6 +305,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   out.control_interval = root.time.control_interval;
   out.stop_s = root.time.stop_s;
   out.seed = root.seed;
+  out.errors = root.errors;
   for (std::size_t i = 0; i < root.plugins.size(); ++i) {
     const Node& all = *node.find("plugins");
     const Node& each = all.is_sequence() ? all.items()[i] : all;

@@ -52,6 +52,7 @@ struct RobotGroup {
   std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
   Place joint_controllers_place;
   Node devices;  ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
+  double errors = 1;  ///< factor on the errors of all its devices
   Place place;
   Place model_place;
 };
@@ -70,6 +71,7 @@ struct Scenario {
   int control_interval = 1;
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
+  double errors = 1;                                   ///< factor on the errors of all devices
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
   std::vector<model::ValueDecl> values;
@@ -106,7 +108,9 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
+/// @param stages  what lists of stages of errors may hold (FieldInfo::elements "noise")
 std::string scenario_schema(std::span<const KindFields> devices = {},
-                            std::span<const KindFields> controllers = {});
+                            std::span<const KindFields> controllers = {},
+                            std::span<const KindFields> stages = {});
 
 }  // namespace sandlot::formats

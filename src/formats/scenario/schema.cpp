@@ -33,6 +33,11 @@ Json schema_of_leaf(const FieldInfo& field) {
     out["type"] = {"array", "string"};
     out["items"] = {
         {"type", "array"}, {"items", number(false)}, {"minItems", field.length}, {"maxItems", field.length}};
+  } else if (!field.elements.empty()) {
+    out["type"] = "array";
+    out["items"] = {{"$ref", "#/$defs/" + field.elements}};
+    out["minItems"] = field.min_count;
+    out["maxItems"] = field.max_count;
   }
   if (!field.help.empty()) out["description"] = field.help;
   if (!field.unit.empty() && field.unit != "1") out["x-unit"] = field.unit;
@@ -72,6 +77,12 @@ Json object_of(const std::vector<FieldInfo>& fields) {
     Json& leaf = (*at)["properties"][key];
     const Json described = schema_of_leaf(field);
     if (leaf.is_null()) leaf = described;
+    if (field.for_map) {  // the list alone will do
+      for (const auto& [name, value] : described.items()) {
+        if (name == "type") (*at)[name] = {"object", value};
+        else if (name != "description") (*at)[name] = value;
+      }
+    }
     if (field.required) (*at)["required"].push_back(key);
   }
   return root;
@@ -97,6 +108,14 @@ Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_n
   return out;
 }
 
+/// A map with one key, the name of a stage.
+Json stages_of(std::span<const KindFields> stages) {
+  Json out = empty_object();
+  for (const auto& [name, fields] : stages) out["properties"][name] = object_of(fields);
+  out["minProperties"] = out["maxProperties"] = 1;
+  return out;
+}
+
 Json pose_schema(const char* description) {
   Json numbers = {{"type", "array"}, {"items", {{"type", {"number", "string"}}}}};
   Json planar = numbers, spatial = numbers;
@@ -115,7 +134,8 @@ std::string schema_of(const std::vector<FieldInfo>& fields) {
   return out.dump(2);
 }
 
-std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers) {
+std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers,
+                            std::span<const KindFields> stages) {
   Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sandlot scenario"}};
   root.update(object_of(describe_fields<spec::Root>()));
   // The keys whose form the field lists leave open.
@@ -147,6 +167,7 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
        {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
   describe_as(robot["devices"],
               {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
+  if (!stages.empty()) root["$defs"]["noise"] = stages_of(stages);
   return root.dump(2);
 }
 

@@ -125,6 +125,7 @@ struct Robot {
   Node controllers;
   std::vector<std::string> joint_controllers;
   Node devices;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -153,6 +154,8 @@ struct Robot {
     visit(Field{"devices", "",
                 "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
           s.devices);
+    visit(Field{"errors", "1", "Factor on the errors of all its devices: 0 none, 1 as configured.", 0, 1000},
+          s.errors);
   }
 };
 
@@ -198,6 +201,7 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
+  double errors = 1;
   Node values;
   std::vector<Event> events;
   std::optional<Log> log;
@@ -220,6 +224,8 @@ struct Root {
                 0, 0, Field::none, 100},
           s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
+          s.errors);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
