@@ -2,8 +2,14 @@
 /// The kinds of devices there are: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_DEVICES(device) \
+  device(altimeter)             \
+  device(barometer)             \
   device(body_velocity)         \
+  device(contact)               \
+  device(dc_motor)              \
   device(diff_drive)            \
+  device(force_torque)          \
+  device(gps)                   \
   device(ground_truth)          \
   device(imu)                   \
   device(joint_motor)           \
@@ -11,6 +17,8 @@
   device(joint_trajectory)      \
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
+  device(magnetometer)          \
   device(range_finder)          \
-  device(wheel_encoder)
+  device(wheel_encoder)         \
+  device(wheel_odometry)
 // clang-format on

@@ -27,8 +27,9 @@ class HandEngine final : public Engine {
   std::vector<JointTarget> target;
   std::vector<double> inertia, outside;  ///< per joint; the second is an effort from outside
   std::vector<Contact> contact;          ///< what the test says there is
-  std::vector<JointLoad> load;           ///< likewise
+  std::vector<JointLoad> loads;          ///< likewise
   Watch watched;                         ///< in the last step
+  std::vector<BodyName> names;           ///< what the test calls the bodies
   DriveTarget drive{.active = false};
   bool blocked = false;
   std::size_t drive_targets_given = 0;
@@ -39,7 +40,7 @@ class HandEngine final : public Engine {
         target(model.joints.size()),
         inertia(model.joints.size(), 1.0),
         outside(model.joints.size()),
-        load(model.joints.size()) {
+        loads(model.joints.size()) {
     for (std::uint32_t i = 0; i < body.size(); ++i) {
       body_ids.push_back({i, 1});
       body[i].X_WB = model.links[i].X_ML;
@@ -54,12 +55,13 @@ class HandEngine final : public Engine {
   std::span<const JointId> joints(InstanceId) const override { return joint_ids; }
   void set_pose(InstanceId, const Pose&) override {}
   void guide(InstanceId, const Pose&, const Velocity&) override {}
+  BodyName name(BodyId id) const override { return id.index < names.size() ? names[id.index] : BodyName{}; }
   Pose pose(InstanceId) const override { return body[0].X_WB; }
   std::span<const BodyState> states() const override { return body; }
   std::span<const JointState> joint_states() const override { return joint; }
   std::span<const Contact> contacts() const override { return contact; }
   void watch(const Watch& w) override { watched = w; }
-  std::span<const JointLoad> joint_loads() const override { return load; }
+  std::span<const JointLoad> joint_loads() const override { return loads; }
   void overlaps(std::span<const OverlapQuery>, std::vector<std::uint32_t>&,
                 std::vector<std::uint32_t>&) const override {}
   const RayCaster* rays() const override { return nullptr; }
@@ -80,11 +82,11 @@ class HandEngine final : public Engine {
       if (target[i].mode == JointTarget::Mode::effort) {
         // (inertia + rotor) a = effort + outside - damping (v + a h) - friction
         const JointTarget& t = target[i];
-        const double drive = t.effort + outside[i] - t.damping * j.velocity, rotor = inertia[i] + t.inertia;
-        const double stop = drive +
+        const double push = t.effort + outside[i] - t.damping * j.velocity, rotor = inertia[i] + t.inertia;
+        const double stop = push +
                             j.velocity * (rotor / h_s + t.damping);  // what friction must hold to stop it now
         const double rub = std::clamp(stop, -t.friction, t.friction);
-        acceleration = (drive - rub) / (rotor + t.damping * h_s);
+        acceleration = (push - rub) / (rotor + t.damping * h_s);
         j.effort = t.effort - t.damping * (j.velocity + acceleration * h_s) - t.inertia * acceleration;
       }
       j.position += j.velocity * h_s + 0.5 * acceleration * h_s * h_s;
@@ -127,7 +129,7 @@ class NoRays final : public RayCaster {
 };
 
 /// One pool of a kind, stepped as the simulation does.
-class Rig final : public TopicMaker {
+class Rig : public TopicMaker {
  public:
   model::Instance instance;
   std::unique_ptr<HandEngine> engine;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/bytes.h"
@@ -92,6 +93,15 @@ struct Contact {
   Vec3 normal_W;  ///< unit, from a towards b
   double depth_m = 0;
   Vec3 force_W;  ///< [N] on b, mean over the sub-step, friction included; zero unless somebody watched a or b
+  /// Which collision of its link it was; no_shape: the engine has merged the shapes of a body.
+  std::uint32_t shape_a = no_shape, shape_b = no_shape;
+  static constexpr std::uint32_t no_shape = ~0u;
+};
+
+/// What a BodyId stands for. Valid as long as its instance is.
+struct BodyName {
+  std::string_view instance;
+  const model::Link* link = nullptr;  ///< null: there is no such body
 };
 
 /// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the motor's part
@@ -157,6 +167,7 @@ class Engine {
   virtual void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) = 0;
   /// The instance is a robot from now on, as if it had been added as one: it does not sleep.
   virtual void become_robot(InstanceId) {}
+  virtual BodyName name(BodyId) const { return {}; }
   /// Pose of the model frame, from the canonical link.
   virtual Pose pose(InstanceId id) const = 0;
 

@@ -86,6 +86,14 @@ Capabilities PlanarEngine::capabilities() const {
           .rays = true};
 }
 
+BodyName PlanarEngine::name(BodyId id) const {
+  if (id.index >= body_slot_.size() || body_generation_[id.index] != id.generation) return {};
+  const Instance& instance = instances_[body_slot_[id.index]];
+  for (std::size_t l = 0; l < instance.bodies.size(); ++l)
+    if (instance.alive && instance.bodies[l] == id) return {instance.name, &instance.model->links[l]};
+  return {};
+}
+
 const PlanarEngine::Instance& PlanarEngine::get(InstanceId id) const {
   SL_CHECK(id.index < instances_.size());
   const Instance& instance = instances_[id.index];

@@ -58,6 +58,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::span<const JointId> joints(InstanceId id) const override { return get(id).joints; }
   void set_pose(InstanceId id, const Pose& X_WM) override;
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
+  BodyName name(BodyId id) const override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override;
   std::span<const JointState> joint_states() const override { return joint_states_; }

@@ -261,6 +261,7 @@ void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
       geom.decl = &c;
       geom.serial = next_serial_++;
       geom.link = instance.link_ids[l];
+      geom.number_in_link = static_cast<std::uint32_t>(&c - model.links[l].collisions.data());
       geom.triangles = triangles_.of(c);
       geom.size_m = bounding_radius_m(c.shape);
       geom.ode = std::visit(MakeGeom{geom.triangles.get()}, c.shape);

@@ -220,7 +220,8 @@ void RigidEngine::attach_contacts(double h) {
       contact.surface.motion2 = dot(cross(into, direction), v);
     }
     // ODE's normal points into the first shape, ours from a towards b.
-    contacts_.push_back({a.link, b.link, point, -normal, contact.geom.depth, {}});
+    contacts_.push_back(
+        {a.link, b.link, point, -normal, contact.geom.depth, {}, a.number_in_link, b.number_in_link});
   }
   const bool watching = begin_contacts(hit_count_);
   // In a loop of its own: ODE copies the contact, and would wait for what was only just written there.

@@ -55,6 +55,7 @@ struct Geom {
   const model::Collision* decl = nullptr;
   std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
   BodyId link;
+  std::uint32_t number_in_link = 0;
   Pose X_BC;                                   ///< in W where body is null
   std::shared_ptr<const Triangles> triangles;  ///< null for shapes that ODE has itself
   double size_m = 0;                           ///< radius about C's origin; infinite for planes

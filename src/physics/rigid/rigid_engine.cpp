@@ -54,6 +54,13 @@ Capabilities RigidEngine::capabilities() const {
           .joint_loads = true};
 }
 
+BodyName RigidEngine::name(BodyId id) const {
+  if (id.index >= link_slots_.size()) return {};
+  const LinkSlot& slot = link_slots_[id.index];
+  if (!slot.instance || slot.generation != id.generation) return {};
+  return {slot.instance->name, &slot.instance->model->links[slot.link]};
+}
+
 void RigidEngine::apply(std::span<const Wrench> wrenches) {
   for (const Wrench& wrench : wrenches) {
     SL_CHECK(wrench.body.index < link_slots_.size());

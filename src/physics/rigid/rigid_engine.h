@@ -39,6 +39,7 @@ class RigidEngine final : public Engine {
   void set_pose(InstanceId id, const Pose& X_WM) override;
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   void become_robot(InstanceId id) override;
+  BodyName name(BodyId id) const override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override { return states_; }
   std::span<const JointState> joint_states() const override { return joint_states_; }

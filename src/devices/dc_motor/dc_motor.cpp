@@ -1,0 +1,266 @@
+#include "devices/dc_motor/dc_motor.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/math.h"
+
+namespace sandlot::dc_motor {
+namespace {
+
+Status check_levels(std::uint32_t levels) {
+  if (std::popcount(levels) == 1) return {};
+  return Error{"a DC motor runs at exactly one level",
+               "give 'velocity', 'position', 'voltage', 'pwm' or 'effort'"};
+}
+
+Level active(std::uint32_t levels) { return static_cast<Level>(std::countr_zero(levels)); }
+
+/// What the controller sees of the joint's angle.
+double seen_angle(const Spec& spec, double angle_rad) {
+  if (spec.encoder_counts == 0) return angle_rad;
+  const double per_rad = spec.encoder_counts * spec.gear_ratio / math::tau;
+  return std::floor(angle_rad * per_rad) / per_rad;
+}
+
+/// The controller's turn, if it has come.
+void run_loop(Motor& motor, Level level, const JointState& joint, double h_s) {
+  const Spec& spec = motor.spec;
+  State& state = motor.state;
+  // Half a nanosecond: sums of sub-steps differ from the period by rounding.
+  if (state.loop_since_s > 0 && state.loop_due_s > 0.5e-9) return;
+  const double seen = seen_angle(spec, joint.position);
+  const double since = state.loop_since_s > 0 ? state.loop_since_s : 0;
+  double rate = joint.velocity;
+  if (spec.encoder_counts > 0) rate = since > 0 ? (seen - state.seen_rad) / since : 0;
+  const double period = spec.loop_rate_hz > 0 ? 1 / spec.loop_rate_hz : h_s;
+  const double step = since > 0 ? since : period;
+  if (level == velocity) {
+    const double most = spec.max_acceleration * step;
+    state.target += std::clamp(state.command - state.target, -most, most);
+    state.volts = state.pid.step(spec.velocity, state.target - rate, 0, spec.supply_voltage_V, step);
+  } else {
+    state.volts = state.pid.step(spec.position, state.target - seen, rate, spec.supply_voltage_V, step);
+  }
+  state.seen_rad = seen;
+  state.loop_since_s = 0;
+  state.loop_due_s = std::max(0.0, state.loop_due_s) + period;
+  if (spec.loop_rate_hz == 0) state.loop_due_s = 0;
+}
+
+/// The winding on a voltage behind a resistance, for a sub-step.
+Winding on_voltage(const Spec& spec, double volts, double resistance, double current, double h_s) {
+  Winding w{.volts = volts, .resistance_Ohm = resistance};
+  double mean_keep = 0;  // of the current's distance to its final value, in the mean
+  if (spec.inductance_H > 0) {
+    const double x = resistance * h_s / spec.inductance_H;
+    w.keep = math::exp(-x);
+    mean_keep = x > 1e-6 ? (1 - w.keep) / x : 1 - 0.5 * x;
+  }
+  w.at_rest_A = volts / resistance * (1 - mean_keep) + current * mean_keep;
+  w.per_speed = spec.torque_constant / resistance * (1 - mean_keep);
+  return w;
+}
+
+Winding power(const Motor& motor, Level level, double motor_speed, double h_s) {
+  const Spec& spec = motor.spec;
+  const State& state = motor.state;
+  if (!state.powered) return {.fixed = true};
+  double volts = state.volts;
+  if (level == effort) {
+    const double wanted = std::clamp(
+        state.target / (spec.gear_ratio * spec.gear_efficiency * spec.torque_constant), -spec.max_current_A,
+        spec.max_current_A);
+    // Across winding and supply; the duty that gives it, if there is one below 1, lets the current loop hold it.
+    const double needed = wanted * (spec.resistance_Ohm + spec.supply_resistance_Ohm) +
+                          spec.torque_constant * motor_speed;
+    if (std::abs(needed) <= spec.supply_voltage_V) return {.at_rest_A = wanted, .fixed = true};
+    volts = std::copysign(spec.supply_voltage_V, needed);
+  }
+  const double duty = spec.supply_voltage_V > 0 ? std::clamp(volts / spec.supply_voltage_V, -1.0, 1.0) : 0;
+  Winding w = on_voltage(spec, duty * spec.supply_voltage_V,
+                         spec.resistance_Ohm + duty * duty * spec.supply_resistance_Ohm, state.current_A,
+                         h_s);
+  const double mean = w.at_rest_A - w.per_speed * motor_speed;
+  if (std::abs(mean) > spec.max_current_A)
+    return {.at_rest_A = std::copysign(spec.max_current_A, mean), .fixed = true};
+  return w;
+}
+
+void take_command(Motor& motor, Level level, const JointState& joint) {
+  const Topic<msg::Float64>& slot = *motor.command[level];
+  State& state = motor.state;
+  if (slot.count == state.taken[level]) return;
+  state.taken[level] = slot.count;
+  if (!std::isfinite(slot.message.data)) return;  // a message may hold anything; the old command stays
+  if (!state.powered) state.target = joint.velocity;
+  state.powered = 1;
+  state.command = slot.message.data;
+  if (level != velocity) state.target = state.command;
+}
+
+}  // namespace
+
+Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
+  SL_TRY(check_levels(build.levels));
+  if (!build.engine.joints)
+    return Error{"the engine '" + std::string(build.engine.name) + "' does not simulate joints",
+                 "use the engine 'rigid'"};
+  SL_ASSIGN(const std::uint32_t index, build.joint_index(spec.joint, "joint"));
+  const model::JointType type = build.instance.model->joints[index].type;
+  if (type != model::JointType::revolute && type != model::JointType::continuous) {
+    const Node* const node = build.decl.config.find("joint");
+    return Error{"joint '" + spec.joint + "' does not turn",
+                 "a DC motor needs a revolute or continuous joint", node ? node->place() : build.decl.place,
+                 "/joint"};
+  }
+  Motor motor{std::move(spec)};
+  motor.joint = build.joints[index];
+  const char* const names[] = {"velocity", "position", "voltage", "pwm", "effort"};
+  for (std::uint32_t level = 0; level < level_count; ++level) {
+    motor.command[level] = build.accept<msg::Float64>(level, names[level]);
+    motor.message[level] = build.publish<msg::MotorState>(level, names[level]);
+    motor.message[level]->message.header.frame_id = build.frame_id();
+  }
+  return motor;
+}
+
+void Motor::actuate(PoolView<Motor> pool, const Context& context) {
+  const auto joints = context.engine.joint_states();
+  for (const std::uint32_t index : pool.due) {
+    Motor& motor = pool.all[index];
+    take_command(motor, active(pool.levels[index]), joints[motor.joint.index]);
+  }
+}
+
+void Motor::pre_substep(PoolView<Motor> pool, const Context& context, double h_s) {
+  const auto joints = context.engine.joint_states();
+  for (const std::uint32_t index : pool.due) {
+    Motor& motor = pool.all[index];
+    const Spec& spec = motor.spec;
+    State& state = motor.state;
+    const Level level = active(pool.levels[index]);
+    const JointState& joint = joints[motor.joint.index];
+    if (state.powered) {
+      if (level == velocity || level == position) run_loop(motor, level, joint, h_s);
+      if (level == voltage) state.volts = state.target;
+      if (level == pwm) state.volts = state.target * spec.supply_voltage_V;
+    }
+    const double n = spec.gear_ratio, motor_speed = n * joint.velocity;
+    motor.winding = power(motor, level, motor_speed, h_s);
+    const Winding& w = motor.winding;
+    const double mean_A = w.at_rest_A - w.per_speed * motor_speed;
+    const double efficiency = mean_A * joint.velocity < 0 ? 1 / spec.gear_efficiency : spec.gear_efficiency;
+    const double per_ampere = n * efficiency * spec.torque_constant;
+    context.actuation.joints.push_back(
+        {.joint = motor.joint,
+         .mode = JointTarget::Mode::effort,
+         .effort = per_ampere * w.at_rest_A,
+         .damping = per_ampere * w.per_speed * n + n * n * spec.viscous_friction,
+         .inertia = n * n * spec.rotor_inertia_kgm2,
+         .friction = n * spec.friction_Nm});
+  }
+}
+
+void Motor::post_substep(PoolView<Motor> pool, const Context& context, double h_s) {
+  const auto joints = context.engine.joint_states();
+  for (const std::uint32_t index : pool.due) {
+    Motor& motor = pool.all[index];
+    State& state = motor.state;
+    const Winding& w = motor.winding;
+    const double back_emf = motor.spec.torque_constant * motor.spec.gear_ratio *
+                            joints[motor.joint.index].velocity;
+    state.mean_current_A = w.at_rest_A - w.per_speed * back_emf / motor.spec.torque_constant;
+    if (w.fixed) {
+      state.current_A = w.at_rest_A;
+      state.terminal_V = back_emf + motor.spec.resistance_Ohm * w.at_rest_A;
+    } else {
+      const double final_A = (w.volts - back_emf) / w.resistance_Ohm;
+      state.current_A = final_A + (state.current_A - final_A) * w.keep;
+      state.terminal_V = w.volts - (w.resistance_Ohm - motor.spec.resistance_Ohm) * state.mean_current_A;
+    }
+    if (!state.powered) continue;
+    state.loop_since_s += h_s;
+    state.loop_due_s -= h_s;
+  }
+}
+
+void Motor::sense(PoolView<Motor> pool, const Context& context) {
+  const auto joints = context.engine.joint_states();
+  for (const std::uint32_t index : pool.due) {
+    Motor& motor = pool.all[index];
+    Topic<msg::MotorState>& topic = *motor.message[active(pool.levels[index])];
+    topic.message.target = motor.state.target;
+    topic.message.velocity = joints[motor.joint.index].velocity;
+    topic.message.torque = joints[motor.joint.index].effort;
+    topic.message.voltage = motor.state.terminal_V;
+    topic.message.current = motor.state.mean_current_A;
+    topic.publish(context.now);
+  }
+}
+
+void Motor::release(const Context& context) { context.actuation.joints.push_back({.joint = joint}); }
+
+Status Motor::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
+  SL_TRY(check_levels(after));
+  if (before == after) return {};
+  const JointState& now = context.engine.joint_states()[joint.index];
+  state.loop_since_s = state.loop_due_s = 0;
+  // The new level goes on with what it finds until its first command.
+  switch (active(after)) {
+    case velocity:
+      state.target = now.velocity;
+      state.pid.integral = spec.velocity.i > 0 ? state.volts : 0;
+      break;
+    case position:
+      state.target = now.position;
+      state.pid.integral = spec.position.i > 0 ? state.volts + spec.position.d * now.velocity : 0;
+      break;
+    case voltage: state.target = state.volts; break;
+    case pwm: state.target = spec.supply_voltage_V > 0 ? state.volts / spec.supply_voltage_V : 0; break;
+    case effort:
+      state.target = spec.gear_ratio * spec.gear_efficiency * spec.torque_constant * state.current_A;
+      break;
+  }
+  state.command = state.target;
+  return {};
+}
+
+namespace {
+constexpr LevelInfo levels[] = {
+    {"velocity", msg::MotorState::ros_type, msg::Float64::ros_type, "A PID loop follows a speed [rad/s]."},
+    {"position", msg::MotorState::ros_type, msg::Float64::ros_type, "A PID loop follows an angle [rad]."},
+    {"voltage", msg::MotorState::ros_type, msg::Float64::ros_type, "A voltage at the power stage [V]."},
+    {"pwm", msg::MotorState::ros_type, msg::Float64::ros_type, "A share of the supply voltage, -1 to 1."},
+    {"effort", msg::MotorState::ros_type, msg::Float64::ros_type,
+     "A torque on the joint [Nm], by the current."},
+};
+constexpr Preset presets[] = {
+    {"maxon_re30_24v",
+     "Maxon RE 30, 60 W, 24 V (310007), as its data sheet gives it; friction from the no-load current of "
+     "0.164 A.",
+     "{supply_voltage: 24, resistance: 0.611, inductance: 1.19e-4, torque_constant: 0.0259,"
+     " rotor_inertia: 3.35e-6, friction: 0.00425, max_current: 39.3}"},
+    {"maxon_amax22_12v_gp22",
+     "Maxon A-max 22, 6 W, 12 V with planetary gear GP 22, 19:1 (general knowledge of the data sheets; a "
+     "soccer "
+     "robot's drive).",
+     "{supply_voltage: 12, resistance: 7.62, inductance: 4.9e-4, torque_constant: 0.0135,"
+     " rotor_inertia: 4.1e-7, friction: 2.2e-4, gear_ratio: 19.2, gear_efficiency: 0.84, max_current: 1.57,"
+     " encoder_counts: 2000}"},
+    {"faulhaber_2224_6v",
+     "Faulhaber 2224 006 SR, as its data sheet gives it; friction from the no-load current of 0.029 A.",
+     "{supply_voltage: 6, resistance: 1.94, inductance: 4.5e-5, torque_constant: 0.00692,"
+     " rotor_inertia: 2.7e-7, friction: 2.0e-4, encoder_counts: 2048}"},
+};
+}  // namespace
+
+constinit const Kind kind = make_kind<Motor>({
+    .name = "dc_motor",
+    .help = "DC motor with gear, power stage, encoder and speed controller on one joint.",
+    .levels = levels,
+    .presets = presets,
+});
+
+}  // namespace sandlot::dc_motor

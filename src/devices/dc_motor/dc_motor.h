@@ -1,0 +1,147 @@
+#pragma once
+/// Brushed DC motor with gear, power stage and controller on one joint.
+///
+///   winding   L di/dt = V - R i - k N w          k: torque constant [Nm/A] = back-EMF constant [V s/rad]
+///   shaft     torque on the joint = N eta k i - N^2 (J dw/dt + b w) - N c sign(w)
+///
+/// with the gear ratio N, the joint's speed w, rotor inertia J, viscous friction b and Coulomb friction c, the last three on
+/// the motor's side of the gear. eta is the gear's efficiency; where the load drives the motor it counts as 1 / eta.
+///
+/// Levels   `velocity` (the default): a PID loop to a speed [rad/s]. `position`: to an angle [rad]. Both put out a voltage;
+///          they run at `loop_rate` and see what the encoder shows: counts, and the counts since the last run. `voltage`
+///          [V] and `pwm` [-1, 1] drive the power stage as told; `effort` [Nm on the joint] drives the current that
+///          gives this torque, as far as voltage and current limit reach. Each takes a std_msgs/Float64. Exactly one
+///          level is active; a switch keeps the electrical state and the voltage, and the loop starts anew.
+/// Output   sandlot_msgs/MotorState on each level: target, true speed of the joint, torque on the joint before Coulomb
+///          friction, mean voltage at the terminals and current in the winding over the last sub-step.
+/// Power    the power stage is an ideal bridge on a supply of `supply_voltage` behind `supply_resistance`: at duty d the motor
+///          sees d V_s behind R + d^2 R_s. More than `max_current` is chopped. Until its first command it is open: the
+///          motor coasts, with its friction and inertia.
+/// Time     the winding is integrated exactly over each sub-step for constant voltage and speed (L = 0: at once), with the speed
+///          that the sub-step ends with: the mean current is affine in it, so back-EMF is an implicit damping and no
+///          step is too long. Inertia and friction are the engine's (physics/engine.h, JointTarget).
+/// Noise    quantisation by the encoder.
+/// Limits   no iron losses, saturation, temperature, commutation ripple, gear play or elasticity; regenerated current flows
+///          back into the supply.
+/// Cost     one exponential per sub-step if L > 0, no allocation.
+/// Errors   a joint that is not there or does not turn; an engine without simulated joints.
+/// Source   P. Corke, Robotics, Vision and Control (2011), sec. 9.1 (motor, gear, friction, reflected inertia); controller:
+///          devices/pid.h. Figures: docs/motors.md.
+#include <array>
+
+#include "devices/kind.h"
+#include "devices/pid.h"
+#include "messages/messages.h"
+
+namespace sandlot::dc_motor {
+
+struct Spec {
+  std::string joint;
+  double supply_voltage_V = 12.0, supply_resistance_Ohm = 0.0;
+  double resistance_Ohm = 1.0, inductance_H = 0.0;
+  double torque_constant = 0.02;  ///< [Nm/A]
+  double max_current_A = 1e6;
+  double rotor_inertia_kgm2 = 0.0, friction_Nm = 0.0, viscous_friction = 0.0;
+  double gear_ratio = 1.0, gear_efficiency = 1.0;
+  int encoder_counts = 0;
+  double loop_rate_hz = 0.0;
+  double max_acceleration = 1e9;  ///< [rad/s^2]
+  Gains velocity{.p = 1.0, .i = 10.0};
+  Gains position{.p = 10.0};
+  double rate_hz = 0.0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000},
+          s.joint);
+    visit(Field{"supply_voltage", "V", "Of the battery without load.", 0, 1e5, Field::tunable},
+          s.supply_voltage_V);
+    visit(Field{"supply_resistance", "Ohm", "Of battery and power stage.", 0, 1e6}, s.supply_resistance_Ohm);
+    visit(Field{"resistance", "Ohm", "Of the winding.", 1e-6, 1e6}, s.resistance_Ohm);
+    visit(Field{"inductance", "H", "Of the winding; 0: the current follows at once.", 0, 1e3},
+          s.inductance_H);
+    visit(Field{"torque_constant", "Nm/A", "Torque per current; the back-EMF [V s/rad] is the same number.",
+                1e-9, 1e4},
+          s.torque_constant);
+    visit(Field{"max_current", "A", "More is chopped by the power stage.", 0, 1e6, Field::tunable},
+          s.max_current_A);
+    visit(Field{"rotor_inertia", "kg m^2", "Of the rotor, before the gear.", 0, 1e3}, s.rotor_inertia_kgm2);
+    visit(Field{"friction", "Nm", "Coulomb friction, before the gear.", 0, 1e4}, s.friction_Nm);
+    visit(Field{"viscous_friction", "Nm s/rad", "Before the gear.", 0, 1e4}, s.viscous_friction);
+    visit(Field{"gear_ratio", "1", "Turns of the motor per turn of the joint.", 1e-3, 1e5}, s.gear_ratio);
+    visit(Field{"gear_efficiency", "1", "Of the gear.", 0.01, 1}, s.gear_efficiency);
+    visit(Field{"encoder_counts", "1", "Per turn of the motor; 0: the loop sees the true angle and speed.", 0,
+                1e7},
+          s.encoder_counts);
+    visit(Field{"loop_rate", "Hz", "Of the controller; 0: once per physics step.", 0, 1e6}, s.loop_rate_hz);
+    visit(Field{"max_acceleration", "rad/s^2", "At which the target of level velocity moves to the command.",
+                0, 1e9, Field::tunable},
+          s.max_acceleration);
+    visit(Field{"velocity", "", "Gains of level velocity: V per rad/s."}, s.velocity);
+    visit(Field{"position", "", "Gains of level position: V per rad."}, s.position);
+    visit(Field{"rate", "Hz", "Messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+  }
+};
+
+enum Level : std::uint32_t { velocity, position, voltage, pwm, effort };
+constexpr std::size_t level_count = 5;
+
+struct State {
+  std::array<std::uint64_t, level_count> taken{};  ///< per level: commands seen so far
+  std::uint8_t powered = 0;                        ///< 1: the power stage is on
+  double command = 0;                              ///< in the active level's unit
+  double target = 0;                               ///< on its way to the command
+  double volts = 0;                                ///< what the bridge is told
+  double current_A = 0;                            ///< in the winding, at the end of the sub-step
+  double mean_current_A = 0, terminal_V = 0;       ///< over the last sub-step
+  double loop_due_s = 0;                           ///< until the controller runs again
+  double loop_since_s = 0;                         ///< since it ran; 0: it has not
+  double seen_rad = 0;                             ///< the angle it saw then
+  Pid pid;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"taken", "1", "Commands seen per level."}, s.taken);
+    visit(Field{"powered", "1", "1: the power stage is on."}, s.powered);
+    visit(Field{"command", "", "Command in force."}, s.command);
+    visit(Field{"target", "", "What is followed now."}, s.target);
+    visit(Field{"volts", "V", "What the power stage is told."}, s.volts);
+    visit(Field{"current", "A", "In the winding."}, s.current_A);
+    visit(Field{"mean_current", "A", "Over the last sub-step."}, s.mean_current_A);
+    visit(Field{"terminal_voltage", "V", "Over the last sub-step."}, s.terminal_V);
+    visit(Field{"loop_due", "s", "Until the controller runs again."}, s.loop_due_s);
+    visit(Field{"loop_since", "s", "Since the controller ran."}, s.loop_since_s);
+    visit(Field{"seen", "rad", "Angle that the controller saw last."}, s.seen_rad);
+    visit(Field{"pid", "", "The controller."}, s.pid);
+  }
+};
+
+/// The winding over one sub-step: its mean current is at_rest - per_speed * (motor speed at the end).
+struct Winding {
+  double at_rest_A = 0, per_speed = 0;
+  double volts = 0, resistance_Ohm = 1;  ///< behind which the motor sees the supply
+  double keep = 0;                       ///< of the current's distance to its final value, after the sub-step
+  bool fixed = false;                    ///< the power stage holds the current at at_rest_A
+};
+
+struct Motor {
+  using Spec = dc_motor::Spec;
+  using State = dc_motor::State;
+  Spec spec;
+  State state;
+
+  JointId joint;
+  Winding winding;  ///< of the running sub-step
+  std::array<Topic<msg::Float64>*, level_count> command{};
+  std::array<Topic<msg::MotorState>*, level_count> message{};
+
+  static Result<Motor> create(const DeviceBuild& build, Spec spec);
+  static void actuate(PoolView<Motor> pool, const Context& context);
+  static void pre_substep(PoolView<Motor> pool, const Context& context, double h_s);
+  static void post_substep(PoolView<Motor> pool, const Context& context, double h_s);
+  static void sense(PoolView<Motor> pool, const Context& context);
+  void release(const Context& context);
+  Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
+};
+
+extern const Kind kind;
+
+}  // namespace sandlot::dc_motor

@@ -1,0 +1,92 @@
+#pragma once
+/// Dead reckoning from two sides of wheels, with the errors it has on a real robot.
+///
+/// Frame    B: the canonical link. D: centre of the axle, the mean of the wheel joints' origins, axes as B.
+/// Output   level `odometry`: nav_msgs/Odometry of B: frame "<robot>/odom", child "<robot>/<canonical link>". The pose counts from
+///          where B stood when the device was built. Covariances: of the random errors alone, propagated.
+/// Time     one exact arc per sample (kinematics/differential.h); the twist is the mean over the interval.
+/// Noise    systematic: the robot believes in `wheel_radius` and `wheel_separation`, while its wheels have the radii and the
+///          distance that its model gives them; `left_error`, `right_error` and `separation_error` are the relative errors of
+///          what it believes, on top. Random: over an interval with the distance d and the turn a
+///
+///            var(d) = alpha_3 |d| + alpha_4 |a|      var(a) = alpha_1 |a| + alpha_2 |d|
+///
+///          so that the error of a way does not depend on the sample rate: variances add up. Covariance: P' = F P F^T + G Q G^T
+///          with the Jacobians of the arc's chord. Slip of the wheels shows by itself: the wheels' joints turn.
+/// Limits   wheels that roll; play and width of the tyres are not there.
+/// Cost     one arc, two normals and two products of 3x3 matrices per sample; no allocation.
+/// Errors   joints that are not there, do not turn, or whose axes do not lie across the robot.
+/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 5.4 (alphas; here variances, linear in the way);
+///          J. Borenstein, L. Feng, IEEE Trans. Robotics and Automation 12 (1996) 869-880 (UMBmark: unequal wheel diameters,
+///          wrong wheelbase); R. Siegwart et al., Introduction to Autonomous Mobile Robots, 2nd ed. (2011), sec. 5.2.4.
+#include <array>
+
+#include "devices/kind.h"
+#include "kinematics/differential.h"
+#include "messages/messages.h"
+
+namespace sandlot::wheel_odometry {
+
+struct Spec {
+  std::vector<std::string> left_joint, right_joint;
+  double wheel_radius_m = 0.1, wheel_separation_m = 0.5;
+  double left_error = 0, right_error = 0, separation_error = 0;
+  double alpha_1 = 0, alpha_2 = 0, alpha_3 = 0, alpha_4 = 0;
+  double rate_hz = 50;
+
+  static void fields(auto& s, auto&& visit) {
+    constexpr unsigned required = Field::required;
+    visit(Field{"left_joint", "", "Wheel joint on the left side, or a list of them.", 0, 0, required, 100},
+          s.left_joint);
+    visit(Field{"right_joint", "", "Wheel joint on the right side, or a list of them.", 0, 0, required, 100},
+          s.right_joint);
+    visit(Field{"wheel_radius", "m", "Of the wheels.", 1e-4, 100, required}, s.wheel_radius_m);
+    visit(Field{"wheel_separation", "m", "Between left and right wheels.", 1e-3, 1000, required},
+          s.wheel_separation_m);
+    visit(Field{"left_error", "1", "Relative error of the left wheels' radius.", -0.5, 0.5}, s.left_error);
+    visit(Field{"right_error", "1", "Relative error of the right wheels' radius.", -0.5, 0.5}, s.right_error);
+    visit(Field{"separation_error", "1", "Relative error of the separation.", -0.5, 0.5}, s.separation_error);
+    visit(Field{"alpha_1", "rad^2/rad", "Variance of the heading per turn.", 0, 100}, s.alpha_1);
+    visit(Field{"alpha_2", "rad^2/m", "Variance of the heading per distance.", 0, 100}, s.alpha_2);
+    visit(Field{"alpha_3", "m^2/m", "Variance of the distance per distance.", 0, 100}, s.alpha_3);
+    visit(Field{"alpha_4", "m^2/rad", "Variance of the distance per turn.", 0, 100}, s.alpha_4);
+    visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+  }
+};
+
+struct State {
+  double left_rad = 0, right_rad = 0;  ///< mean wheel angles counted
+  kinematics::PlanarPose X_OD;
+  std::array<double, 6> covariance{};  ///< of x, y, heading: xx xy xt yy yt tt
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"left", "rad", "Left wheel angle counted."}, s.left_rad);
+    visit(Field{"right", "rad", "Right wheel angle counted."}, s.right_rad);
+    visit(Field{"odometry", "m", "Of the axle's centre."}, s.X_OD);
+    visit(Field{"covariance", "", "Of x, y and heading."}, s.covariance);
+  }
+};
+
+struct Wheel {
+  std::uint32_t joint = 0;
+  double sign = 1;  ///< +1: a positive angle rolls forward
+};
+
+struct Odometer {
+  using Spec = wheel_odometry::Spec;
+  using State = wheel_odometry::State;
+  Spec spec;
+  State state;
+
+  std::uint64_t key = 0;
+  std::vector<Wheel> left, right;
+  double dx_m = 0, dy_m = 0;  ///< D in B
+  Topic<msg::Odometry>* odometry = nullptr;
+
+  static Result<Odometer> create(const DeviceBuild& build, Spec spec);
+  static void sense(PoolView<Odometer> pool, const Context& context);
+};
+
+extern const Kind kind;
+
+}  // namespace sandlot::wheel_odometry
