@@ -1,11 +1,11 @@
 # One static library per layer of src/layers.txt, with exactly the dependencies written there.
 
-# sandlot_layer(NAME name DEPENDS layers... THIRD_PARTY names...): every .cpp under src/name, tests and main.cpp
+# sandlot_layer(NAME name DEPENDS layers... THIRD_PARTY names...): every .cpp under src/name, tests and entry.cpp
 # excepted. A folder that has no .cpp (yet) gives an INTERFACE library. No file is ever listed.
 function(sandlot_layer)
   cmake_parse_arguments(arg "" "NAME" "DEPENDS;THIRD_PARTY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/${arg_NAME}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$|/src/${arg_NAME}/main\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$|/src/${arg_NAME}/entry\\.cpp$")
   set(libraries ${arg_DEPENDS})
   list(TRANSFORM libraries PREPEND sandlot_)
   foreach(name IN LISTS arg_THIRD_PARTY)

@@ -15,6 +15,9 @@ namespace sandlot::app {
 
 inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
 
+/// The whole command: reads the arguments, does what they say. @return the exit code
+int command(int argc, char** argv);
+
 struct RunOptions {
   std::string file;
   std::optional<double> duration_s;
@@ -61,6 +64,7 @@ struct ListOptions {
   bool verbose = false;
   bool json = false;
   bool markdown = false;
+  std::vector<std::string> plugins;  ///< files or names; their controllers are listed too
   bool schema = false;
 };
 int list(const ListOptions& options);

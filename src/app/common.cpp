@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "app/commands.h"
+#include "base/program.h"
 #include "sim/load.h"
 
 namespace sandlot::app {
@@ -75,13 +76,13 @@ void catch_interrupts() {
 Result<std::string> demo_file(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
   std::vector<fs::path> folders;
-  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
-    folders.push_back(folder / "scenarios");
-    folders.push_back(folder / "share" / "sandlot" / "scenarios");
-    if (folder == folder.root_path()) break;
-  }
+  for (const std::string& program : program_files())
+    for (fs::path folder = fs::path(program).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+      folders.push_back(folder / "scenarios");
+      folders.push_back(folder / "share" / "sandlot" / "scenarios");
+      if (folder == folder.root_path()) break;
+    }
   folders.emplace_back("scenarios");
   for (const fs::path& folder : folders)
     if (fs::is_regular_file(folder / (name + ".yaml"), error))

@@ -11,6 +11,7 @@
 #include "devices/kind.h"
 #include "formats/ros2_control/ros2_control.h"
 #include "physics/engine.h"
+#include "sim/plugin.h"
 
 namespace sandlot::app {
 namespace {
@@ -30,7 +31,7 @@ struct Section {
   std::vector<Item> items;
 };
 
-std::vector<Section> sections() {
+std::vector<Section> sections(std::span<const ControllerKind* const> controller_table) {
   Section devices{"devices", "Devices", "Sensors and actuators: `devices:` of a robot in a scenario.", {}};
   for (const Kind* kind : device_kinds()) {
     Item item{kind->name, kind->help, kind->describe(), kind->levels, {}, kind->presets};
@@ -39,7 +40,7 @@ std::vector<Section> sections() {
   }
   Section controllers{
       "controllers", "Controllers", "Programs that decide: `controller:` of a robot in a scenario.", {}};
-  for (const ControllerKind* kind : controller_kinds())
+  for (const ControllerKind* kind : controller_table)
     controllers.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
@@ -214,10 +215,24 @@ Json to_json(const Section& section) {
   return out;
 }
 
+/// Our controllers and those of the plugins that were asked for.
+Result<std::vector<const ControllerKind*>> known_controllers(const ListOptions& options) {
+  std::vector<const ControllerKind*> out(controller_kinds().begin(), controller_kinds().end());
+  Diagnostics none;
+  for (const std::string& written : options.plugins) {
+    SL_ASSIGN(const std::string file, find_plugin(written, "", {}, {}));
+    SL_ASSIGN(const Plugin* const plugin, load_plugin({file, "", 0, {}}, {}, none));
+    out.insert(out.end(), plugin->controllers.begin(), plugin->controllers.end());
+  }
+  return out;
+}
+
 }  // namespace
 
 int list(const ListOptions& options) {
-  std::vector<Section> chosen = sections();
+  const auto known = known_controllers(options);
+  if (!known) return complain(known.error());
+  std::vector<Section> chosen = sections(*known);
   if (options.schema) {
     std::vector<formats::KindFields> devices, controllers;
     for (const Kind* kind : device_kinds()) {
@@ -227,8 +242,7 @@ int list(const ListOptions& options) {
       for (const Preset& each : kind->presets) preset.choices.emplace_back(each.name);
       devices.back().second.push_back(std::move(preset));
     }
-    for (const ControllerKind* kind : controller_kinds())
-      controllers.emplace_back(kind->name, kind->describe());
+    for (const ControllerKind* kind : *known) controllers.emplace_back(kind->name, kind->describe());
     fmt::print("{}\n", formats::scenario_schema(devices, controllers));
     return exit_ok;
   }

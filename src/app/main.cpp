@@ -122,7 +122,7 @@ struct RunFlags {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int sandlot::app::command(int argc, char** argv) {
   CLI::App app{"Sandlot simulates many mobile robots with real sensors, and gives the same answer twice.",
                "sandlot"};
   app.require_subcommand(1);
@@ -241,6 +241,10 @@ int main(int argc, char** argv) {
   list_verb->add_flag("--json", list_options.json, "Print as JSON");
   list_verb->add_flag("--markdown", list_options.markdown, "Print as the reference page of the docs");
   list_verb->add_flag("--schema", list_options.schema, "Print the JSON schema of scenario files");
+  list_verb
+      ->add_option("--plugin", list_options.plugins,
+                   "Shared library whose controllers are listed too; may be given several times")
+      ->allow_extra_args(false);
   list_verb->footer("Example: sandlot list devices --verbose");
   list_verb->callback([&] { result = list(list_options); });
 

@@ -26,7 +26,7 @@ Result<std::vector<std::byte>> read_snapshot(const std::string& path) {
 }
 
 Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
-  const SimulationOptions simulation_options{.threads = options.threads};
+  const SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
   if (!options.from_file.empty()) {
     if (options.seed) return Error{"--seed cannot change a run that has begun", "leave it out with --from"};
     if (!options.overrides.empty())

@@ -148,15 +148,31 @@ void read(ByteReader& r, T& value) {
   }
 }
 
-/// The tunable fields of a spec, nested ones included: the part of a spec that is State.
+/// Calls visit(element) for each struct with fields in `member`: itself, what an optional holds, a list's elements.
+template <class Member, class Visit>
+void for_each_struct(Member& member, Visit&& visit) {
+  using T = std::remove_cvref_t<Member>;
+  if constexpr (Fielded<T>) {
+    visit(member);
+  } else if constexpr (is_optional<T>::value || is_vector<T>::value) {
+    if constexpr (!Fielded<typename T::value_type>) return;
+    else if constexpr (is_vector<T>::value)
+      for (auto& element : member) visit(element);
+    else if (member) visit(*member);
+  }
+}
+
+/// The tunable fields of a spec, nested ones included: the part of a spec that is State. How many there are in lists
+/// and optional structs is fixed when the spec was read.
 template <Fielded Spec>
 void write_tunables(ByteWriter& w, const Spec& spec) {
   Spec::fields(spec, [&](const Field& f, const auto& member) {
     using Member = std::remove_cvref_t<decltype(member)>;
+    if (f.flags & Field::apart) return;
     if (f.flags & Field::tunable) {
       if constexpr (!std::is_same_v<Member, Node>) write(w, member);
-    } else if constexpr (Fielded<Member>) {
-      write_tunables(w, member);
+    } else {
+      for_each_struct(member, [&](const auto& part) { write_tunables(w, part); });
     }
   });
 }
@@ -165,10 +181,11 @@ template <Fielded Spec>
 void read_tunables(ByteReader& r, Spec& spec) {
   Spec::fields(spec, [&](const Field& f, auto& member) {
     using Member = std::remove_cvref_t<decltype(member)>;
+    if (f.flags & Field::apart) return;
     if (f.flags & Field::tunable) {
       if constexpr (!std::is_same_v<Member, Node>) read(r, member);
-    } else if constexpr (Fielded<Member>) {
-      read_tunables(r, member);
+    } else {
+      for_each_struct(member, [&](auto& part) { read_tunables(r, part); });
     }
   });
 }

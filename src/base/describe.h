@@ -20,6 +20,9 @@ struct FieldInfo {
   std::string default_value;  ///< as a file would write it
   std::vector<std::string> choices;
   std::size_t length = 0;  ///< of fixed vectors (or of the inner lists), 0 otherwise
+  std::string elements;    ///< of a list whose elements are described elsewhere: under which name
+  bool for_map = false;    ///< this list may be written in place of the map that holds it
+  std::size_t min_count = 0, max_count = 0;  ///< of "list of maps"
 };
 
 /// A value as a file would write it.
@@ -45,6 +48,25 @@ std::string file_text(const T& value) {
     }
     return text + "]";
   }
+}
+
+template <class T>
+void describe_value(const Field& f, const T& value, const std::string& path, std::vector<FieldInfo>& out,
+                    bool optional);
+
+/// The fields of a struct that is the value of a field with the unit `unit`.
+template <Fielded T>
+void describe_struct(const T& value, const std::string& prefix, std::string_view unit,
+                     std::vector<FieldInfo>& out, bool optional) {
+  T::fields(value, [&](const Field& inner, const auto& member) {
+    const std::string own_unit = unit_within(inner.unit, unit);
+    Field f = inner;
+    f.unit = own_unit.c_str();
+    const std::size_t first = out.size();
+    describe_value(f, member, prefix + f.key, out, optional);
+    if constexpr (requires { T::list_key; })
+      if (std::string_view(f.key) == T::list_key) out[first].for_map = true;
+  });
 }
 
 template <class T>
@@ -83,11 +105,11 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
     using Element = typename T::value_type;
     if constexpr (Fielded<Element>) {
       info.type = "list of maps";
+      info.min_count = f.min_count;
+      info.max_count = f.max_count;
+      if constexpr (requires { Element::described_as; }) info.elements = Element::described_as;
       out.push_back(info);
-      Element element{};
-      Element::fields(element, [&](const Field& inner, auto& member) {
-        describe_value(inner, member, path + "[]/" + inner.key, out, false);
-      });
+      if (info.elements.empty()) describe_struct(Element{}, path + "[]/", f.unit, out, false);
       return;
     } else {
       info.type = Number<Element> ? "list of number" : "list of text";
@@ -103,9 +125,7 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
     if (!value && !Fielded<typename T::value_type>) out.back().default_value.clear();  // unset is no value
     return;
   } else {
-    T::fields(value, [&](const Field& inner, const auto& member) {
-      describe_value(inner, member, path + "/" + inner.key, out, optional);
-    });
+    describe_struct(value, path + "/", f.unit, out, optional);
     return;
   }
   out.push_back(std::move(info));
@@ -114,8 +134,7 @@ void describe_value(const Field& f, const T& value, const std::string& path, std
 template <Fielded Spec>
 std::vector<FieldInfo> describe_fields(const Spec& spec = {}) {
   std::vector<FieldInfo> out;
-  Spec::fields(spec,
-               [&](const Field& f, const auto& member) { describe_value(f, member, f.key, out, false); });
+  describe_struct(spec, "", "", out, false);
   return out;
 }
 

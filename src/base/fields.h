@@ -12,12 +12,18 @@
 /// hash and snapshot (base/bytes.h) are derived. Members may be numbers, bool, strings, enumerations with
 /// `enum_names`, fixed vectors (a type with `extent` and operator[]), std::array, std::vector, std::optional
 /// and structs with fields of their own.
+///
+/// A struct may say more of itself:
+///   Status check(const Node&, const std::string& path) const   a rule between its fields, asked whenever one was read
+///   static constexpr const char* list_key                      a list in place of the map is the value of this key
+///   static constexpr const char* described_as                  lists of it are described once, under this name
 #include <array>
 #include <concepts>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -28,16 +34,27 @@ struct Field {
     none = 0,
     tunable = 1,   ///< may change while the run goes on; lives in State
     required = 2,  ///< a file must give it
+    apart = 4,     ///< tunable, but its owner saves it, not write_tunables()
   };
   const char* key;
-  const char* unit;  ///< "m", "rad", "s", ... SI; "1" for pure numbers; "" where units make no sense
+  const char*
+      unit;  ///< "m", "rad", "s", ... SI; "1" for pure numbers; "" where units make no sense. Of a field
+             ///< within a field: "" takes the outer one's unit U, "U/s" derives from it.
   const char* help;
   double min =
       -1e12;          ///< inclusive; finite, so that an infinity is refused too. Also bounds vector elements.
   double max = 1e12;  ///< inclusive
   unsigned flags = none;
   std::size_t max_count = 100'000;  ///< limit on the length of lists and strings
+  std::size_t min_count = 0;        ///< of lists
 };
+
+/// The unit of a field within a field that has the unit `outer`: "" is `outer`, "U/s" is it per second.
+inline std::string unit_within(std::string_view unit, std::string_view outer) {
+  if (unit.empty()) return std::string(outer);
+  if (unit.substr(0, 2) != "U/") return std::string(unit);
+  return outer.empty() ? std::string() : std::string(outer) + std::string(unit.substr(1));
+}
 
 /// One name of an enumeration. `std::span<const EnumName<E>> enum_names(E)` is found by argument lookup.
 template <class E>

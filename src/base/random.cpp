@@ -20,6 +20,16 @@ Stream::Stream(std::uint64_t seed, std::uint64_t entity, Purpose purpose, std::u
   counter_ = {0, low(entity), low(sample), high(sample)};
 }
 
+Stream Stream::fork(std::uint64_t use) const {
+  Stream out = *this;
+  const std::uint64_t key = hash_combine(static_cast<std::uint64_t>(key_[1]) << 32 | key_[0], use);
+  out.key_ = {low(key), high(key)};
+  out.counter_[0] = 0;
+  out.used_ = 4;
+  out.has_spare_ = false;
+  return out;
+}
+
 void Stream::refill() {
   const r123::Philox4x32 philox;
   const r123::Philox4x32::ctr_type counter{{counter_[0], counter_[1], counter_[2], counter_[3]}};

@@ -51,6 +51,9 @@ class Stream {
   std::uint32_t below(std::uint32_t n);
   /// Normal deviate with mean 0 and standard deviation 1.
   double normal();
+  /// A stream of its own for one use among several of this one's: it depends on the stream's key and sample and on
+  /// `use`, not on how many numbers were drawn.
+  Stream fork(std::uint64_t use) const;
 
  private:
   void refill();

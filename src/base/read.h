@@ -42,16 +42,40 @@ std::pair<double, double> number_range(const Field& field) {
 template <class T>
 Status read_value(const Node& node, const Field& field, T& out, const std::string& path);
 
+/// A rule between the fields of a spec, if it has one.
+template <class Spec>
+Status check_rules(const Node& node, const Spec& spec, const std::string& path) {
+  if constexpr (requires { spec.check(node, path); }) return spec.check(node, path);
+  else return (void)node, (void)spec, (void)path, Status();
+}
+
 /// Reads the fields of `spec` that `node` (a map, or null for "all defaults") gives; the others keep their
 /// value. The first fault is returned and `spec` is then half-read: callers throw it away.
+/// @param unit  of the field that `spec` is the value of
 template <Fielded Spec>
-Status read_fields(const Node& node, Spec& spec, const std::string& path = "") {
-  if (!node.is_map() && !node.is_null()) return wrong_type(node, "a map of keys", path);
+Status read_fields(const Node& node, Spec& spec, const std::string& path = "", std::string_view unit = "") {
   std::vector<std::string> known;
   Status status;
-  Spec::fields(spec, [&](const Field& f, auto& member) {
-    known.emplace_back(f.key);
+  if constexpr (requires { Spec::list_key; }) {
+    if (node.is_sequence()) {
+      Spec::fields(spec, [&](const Field& f, auto& member) {
+        if (std::string_view(f.key) != Spec::list_key) return;
+        const std::string own_unit = unit_within(f.unit, unit);
+        Field here = f;
+        here.unit = own_unit.c_str();
+        status = read_value(node, here, member, path);
+      });
+      if (!status) return status;
+      return check_rules(node, spec, path);
+    }
+  }
+  if (!node.is_map() && !node.is_null()) return wrong_type(node, "a map of keys", path);
+  Spec::fields(spec, [&](const Field& inner, auto& member) {
+    known.emplace_back(inner.key);
     if (!status) return;
+    const std::string own_unit = unit_within(inner.unit, unit);
+    Field f = inner;
+    f.unit = own_unit.c_str();
     if (const Node* value = node.find(f.key)) status = read_value(*value, f, member, path + "/" + f.key);
     else if (f.flags & Field::required)
       status = node.error(std::string("key '") + f.key + "' is missing", f.help, path);
@@ -62,7 +86,8 @@ Status read_fields(const Node& node, Spec& spec, const std::string& path = "") {
     for (const std::string& key : known) found = found || key == entry.key;
     if (!found) return unknown_key(entry, known, path);
   }
-  return status;
+  if (!status) return status;
+  return check_rules(node, spec, path);
 }
 
 template <class T>
@@ -108,6 +133,11 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
     if (node.items().size() > field.max_count)
       return node.error("list has " + std::to_string(node.items().size()) + " elements",
                         "at most " + std::to_string(field.max_count) + " are allowed", path);
+    if (node.items().size() < field.min_count)
+      return node.error(node.items().empty() ? "the list is empty" : "the list is too short",
+                        "at least " + std::to_string(field.min_count) +
+                            (field.min_count == 1 ? " element is needed" : " elements are needed"),
+                        path);
     out.clear();
     for (std::size_t i = 0; i < node.items().size(); ++i) {
       typename T::value_type element{};
@@ -121,7 +151,7 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
     out = std::move(value);
   } else {
     static_assert(Fielded<T>, "a field must be a number, text, enumeration, list or a struct with fields");
-    SL_TRY(read_fields(node, out, path));
+    SL_TRY(read_fields(node, out, path, field.unit));
   }
   return {};
 }
@@ -134,25 +164,64 @@ Result<Spec> read_spec(const Node& node, const std::string& path = "") {
   return spec;
 }
 
-/// Sets one tunable field by its path ("noise/white" or "gains/p") while the run goes on.
-/// @param prefix  path of `spec` itself, for messages
 template <Fielded Spec>
-Status set_tunable(Spec& spec, std::string_view field_path, const Node& value,
-                   const std::string& prefix = "") {
+Status set_tunable(Spec& spec, std::string_view field_path, const Node& value, const std::string& prefix = "",
+                   std::string_view unit = "");
+
+/// The part `rest` of one member: of a struct, an optional one, or an element of a list of them.
+template <class T>
+Status set_part(T& member, const Field& f, std::string_view rest, const Node& value,
+                const std::string& path) {
+  if constexpr (Fielded<T>) {
+    return set_tunable(member, rest, value, path, f.unit);
+  } else if constexpr (is_optional<T>::value) {
+    if constexpr (Fielded<typename T::value_type>) {
+      if (member) return set_tunable(*member, rest, value, path, f.unit);
+      return Error{"there is no '" + std::string(f.key) + "' here", "", value.place(), path};
+    }
+  } else if constexpr (is_vector<T>::value) {
+    if constexpr (Fielded<typename T::value_type>) {
+      const std::size_t slash = rest.find('/');
+      double index = 0;
+      if (!parse_number(rest.substr(0, slash), index) || !(index >= 0) || index != std::floor(index) ||
+          index >= static_cast<double>(member.size()))
+        return Error{"no element '" + std::string(rest.substr(0, slash).substr(0, 60)) + "'",
+                     "there are " + std::to_string(member.size()) + ", counted from 0", value.place(), path};
+      if (slash == std::string_view::npos)
+        return Error{"an element of a list is fixed; its parts may be tunable", "", value.place(), path};
+      return set_tunable(member[static_cast<std::size_t>(index)], rest.substr(slash + 1), value,
+                         path + "/" + std::string(rest.substr(0, slash)), f.unit);
+    }
+  }
+  return Error{"'" + std::string(f.key) + "' has no parts", "", value.place(), path};
+}
+
+/// Sets one tunable field by its path ("noise/white", "gains/p", "noise/0/gaussian/std") while the run goes on.
+/// @param prefix  path of `spec` itself, for messages
+/// @param unit    of the field that `spec` is the value of
+template <Fielded Spec>
+Status set_tunable(Spec& spec, std::string_view field_path, const Node& value, const std::string& prefix,
+                   std::string_view unit) {
+  if constexpr (requires { Spec::list_key; }) {
+    if (!field_path.empty() && field_path.front() >= '0' && field_path.front() <= '9')
+      return set_tunable(spec, std::string(Spec::list_key) + "/" + std::string(field_path), value, prefix,
+                         unit);
+  }
   const std::size_t slash = field_path.find('/');
   const std::string_view key = field_path.substr(0, slash);
   std::vector<std::string> known;
   bool found = false;
   Status status;
-  Spec::fields(spec, [&](const Field& f, auto& member) {
-    known.emplace_back(f.key);
-    if (found || key != f.key) return;
+  Spec::fields(spec, [&](const Field& inner, auto& member) {
+    known.emplace_back(inner.key);
+    if (found || key != inner.key) return;
     found = true;
+    const std::string own_unit = unit_within(inner.unit, unit);
+    Field f = inner;
+    f.unit = own_unit.c_str();
     const std::string path = prefix + "/" + f.key;
     if (slash != std::string_view::npos) {
-      if constexpr (Fielded<std::remove_cvref_t<decltype(member)>>)
-        status = set_tunable(member, field_path.substr(slash + 1), value, path);
-      else status = Error{"'" + std::string(f.key) + "' has no parts", "", value.place(), path};
+      status = set_part(member, f, field_path.substr(slash + 1), value, path);
     } else if (!(f.flags & Field::tunable)) {
       status = Error{"'" + std::string(f.key) + "' is fixed once the run has started", "", value.place(),
                      path};
@@ -163,7 +232,8 @@ Status set_tunable(Spec& spec, std::string_view field_path, const Node& value,
   if (!found)
     return Error{"no parameter '" + std::string(key.substr(0, 60)) + "'", suggestion(key, known),
                  value.place(), prefix};
-  return status;
+  if (!status) return status;
+  return check_rules(value, spec, prefix);
 }
 
 }  // namespace sandlot

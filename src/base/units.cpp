@@ -56,8 +56,18 @@ Result<double> parse_quantity(std::string_view text, std::string_view unit) {
     return Error{
         "'" + std::string(text.substr(0, 40)) + "' is not a number",
         unit == "1" ? "write a number" : "write a number, in " + std::string(unit) + " or with its unit"};
-  const std::string_view suffix = trim(text.substr(split));
+  std::string_view suffix = trim(text.substr(split));
   if (suffix.empty() || suffix == unit) return number;
+  // Densities and rates: "0.03 deg/s/sqrt(Hz)" where rad/s/sqrt(Hz) is asked for.
+  for (const std::string_view per : {"/sqrt(Hz)", "/sqrt(s)"}) {
+    const auto ends = [&](std::string_view s) {
+      return s.size() > per.size() && s.substr(s.size() - per.size()) == per;
+    };
+    if (!ends(unit) || !ends(suffix)) continue;
+    unit.remove_suffix(per.size());
+    suffix.remove_suffix(per.size());
+    if (suffix == unit) return number;
+  }
   std::string fitting;
   for (const Unit& u : units) {
     if (u.si != unit) continue;

@@ -1,6 +1,5 @@
 #include "controllers/controllers.h"
 
-#include "base/text.h"
 #include "controllers/kinds.h"
 
 namespace sandlot {
@@ -16,15 +15,6 @@ std::span<const ControllerKind* const> controller_kinds() {
   static const ControllerKind* const table[] = {SANDLOT_CONTROLLERS(SL_ENTRY)};
 #undef SL_ENTRY
   return table;
-}
-
-Result<const ControllerKind*> find_controller_kind(std::string_view name) {
-  std::vector<std::string> names;
-  for (const ControllerKind* kind : controller_kinds()) {
-    if (name == kind->name) return kind;
-    names.emplace_back(kind->name);
-  }
-  return Error{"no controller '" + std::string(name) + "'", suggestion(name, names)};
 }
 
 }  // namespace sandlot

@@ -9,14 +9,18 @@
 ///     Spec spec; State state;
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
-///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, switch_level
+///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
 ///   };
+///
+/// A Spec with a member `errors` (noise/chain.h, errors_field) takes part in the factors that scenarios and robots put on
+/// the errors of all their devices.
 ///
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
 /// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
 /// one pool: one call per kind and phase, not per device.
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,7 +38,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 3;
+inline constexpr int device_api_version = 4;
 
 /// One level of abstraction of a kind. The first level of a kind is its default.
 struct LevelInfo {
@@ -73,6 +77,8 @@ struct DeviceBuild {
   std::uint32_t levels = 1;  ///< bit i: level i is active
   TopicMaker& topics;
   Vec3 gravity_mps2{0, 0, -9.81};
+  std::optional<model::Geography> geography = {};  ///< where the world lies on the Earth, if a file says so
+  Vec3 magnetic_field_T{};                         ///< of the Earth, in W
 
   BodyId body() const { return bodies[decl.link]; }
   /// Frame of the sensor in messages: "robot1/laser".
@@ -105,7 +111,9 @@ struct Actuation {
   std::vector<Wrench> wrenches;
   std::vector<JointTarget> joints;
   std::vector<DriveTarget> drives;
+  Watch watch;  ///< forces of this sub-step that somebody wants to see after it
   void clear() {
+    watch.clear();
     wrenches.clear();
     joints.clear();
     drives.clear();
@@ -125,7 +133,7 @@ struct Context {
 };
 
 /// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
-/// For actuate and pre_substep every device is due.
+/// For actuate, pre_substep and post_substep every device is due.
 template <class Device>
 struct PoolView {
   std::span<Device> all;
@@ -154,6 +162,7 @@ class PoolBase {
   };
   virtual void actuate(const Context& context, const Due& due) = 0;
   virtual void pre_substep(const Context& context, const Due& due, double h_s) = 0;
+  virtual void post_substep(const Context& context, const Due& due, double h_s) = 0;
   virtual void sense(const Context& context, const Due& due) = 0;
   /// State handed over when the active levels of a device change from `before` to `after`.
   virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
@@ -166,7 +175,7 @@ class PoolBase {
   virtual void load(std::uint32_t index, ByteReader& r) = 0;
 };
 
-enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4 };
+enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
 
 /// A kind of device. Function pointers and constants only, so that a plugin can fill one.
 struct Kind {
@@ -217,6 +226,10 @@ class DevicePool final : public PoolBase {
                    [[maybe_unused]] double h_s) override {
     if constexpr (requires { &Device::pre_substep; }) Device::pre_substep(view(due), context, h_s);
   }
+  void post_substep([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due,
+                    [[maybe_unused]] double h_s) override {
+    if constexpr (requires { &Device::post_substep; }) Device::post_substep(view(due), context, h_s);
+  }
   void sense([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
     if constexpr (requires { &Device::sense; }) Device::sense(view(due), context);
   }
@@ -233,20 +246,26 @@ class DevicePool final : public PoolBase {
     return {};
   }
   ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const override {
-    return part == ValuePart::state ? value_at(devices_[index].state, path)
-                                    : value_at(devices_[index].spec, path);
+    return value_at(part, devices_[index].spec, devices_[index].state, path);
   }
   void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const override {
-    if (part == ValuePart::state) sandlot::list_values(devices_[index].state, "", "", "", visit);
-    else sandlot::list_values(devices_[index].spec, "", "", "", visit);
+    sandlot::list_values(part, devices_[index].spec, devices_[index].state, visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
     write_tunables(w, devices_[index].spec);
     write(w, devices_[index].state);
+    // Behind everything else and only where it is not 1: the bytes of a device without it are those of before it was.
+    if constexpr (requires { devices_[index].spec.errors; })
+      if (devices_[index].spec.errors != 1) write(w, devices_[index].spec.errors);
   }
+  /// @pre `r` ends where the device's bytes end
   void load(std::uint32_t index, ByteReader& r) override {
     read_tunables(r, devices_[index].spec);
     read(r, devices_[index].state);
+    if constexpr (requires { devices_[index].spec.errors; }) {
+      devices_[index].spec.errors = 1;
+      if (r.remaining() > 0) read(r, devices_[index].spec.errors);
+    }
   }
 
  private:
@@ -262,6 +281,7 @@ template <class Device>
 constexpr Kind make_kind(Kind kind) {
   kind.phases = (requires { &Device::actuate; } ? phase_actuate : 0u) |
                 (requires { &Device::pre_substep; } ? phase_pre_substep : 0u) |
+                (requires { &Device::post_substep; } ? phase_post_substep : 0u) |
                 (requires { &Device::sense; } ? phase_sense : 0u);
   kind.describe = [] { return describe_fields<typename Device::Spec>(); };
   kind.create_pool = []() -> std::unique_ptr<PoolBase> { return std::make_unique<DevicePool<Device>>(); };

@@ -14,13 +14,21 @@ namespace sandlot::test {
 
 class HandEngine final : public Engine {
  public:
-  Capabilities what{.name = "hand", .joints = true, .contact_drives = true, .ideal_drives = true};
+  Capabilities what{.name = "hand",
+                    .joints = true,
+                    .contact_drives = true,
+                    .ideal_drives = true,
+                    .contact_forces = true,
+                    .joint_loads = true};
   std::vector<BodyId> body_ids;
   std::vector<JointId> joint_ids;
   std::vector<BodyState> body;
   std::vector<JointState> joint;
   std::vector<JointTarget> target;
   std::vector<double> inertia, outside;  ///< per joint; the second is an effort from outside
+  std::vector<Contact> contact;          ///< what the test says there is
+  std::vector<JointLoad> load;           ///< likewise
+  Watch watched;                         ///< in the last step
   DriveTarget drive{.active = false};
   bool blocked = false;
   std::size_t drive_targets_given = 0;
@@ -30,7 +38,8 @@ class HandEngine final : public Engine {
         joint(model.joints.size()),
         target(model.joints.size()),
         inertia(model.joints.size(), 1.0),
-        outside(model.joints.size()) {
+        outside(model.joints.size()),
+        load(model.joints.size()) {
     for (std::uint32_t i = 0; i < body.size(); ++i) {
       body_ids.push_back({i, 1});
       body[i].X_WB = model.links[i].X_ML;
@@ -48,7 +57,9 @@ class HandEngine final : public Engine {
   Pose pose(InstanceId) const override { return body[0].X_WB; }
   std::span<const BodyState> states() const override { return body; }
   std::span<const JointState> joint_states() const override { return joint; }
-  std::span<const Contact> contacts() const override { return {}; }
+  std::span<const Contact> contacts() const override { return contact; }
+  void watch(const Watch& w) override { watched = w; }
+  std::span<const JointLoad> joint_loads() const override { return load; }
   void overlaps(std::span<const OverlapQuery>, std::vector<std::uint32_t>&,
                 std::vector<std::uint32_t>&) const override {}
   const RayCaster* rays() const override { return nullptr; }
@@ -65,9 +76,17 @@ class HandEngine final : public Engine {
       JointState& j = joint[i];
       double acceleration = 0;
       if (target[i].mode == JointTarget::Mode::velocity) j.velocity = target[i].velocity;
-      if (target[i].mode == JointTarget::Mode::effort)
-        acceleration = (target[i].effort + outside[i]) / inertia[i];
-      j.effort = target[i].mode == JointTarget::Mode::effort ? target[i].effort : 0;
+      j.effort = 0;
+      if (target[i].mode == JointTarget::Mode::effort) {
+        // (inertia + rotor) a = effort + outside - damping (v + a h) - friction
+        const JointTarget& t = target[i];
+        const double drive = t.effort + outside[i] - t.damping * j.velocity, rotor = inertia[i] + t.inertia;
+        const double stop = drive +
+                            j.velocity * (rotor / h_s + t.damping);  // what friction must hold to stop it now
+        const double rub = std::clamp(stop, -t.friction, t.friction);
+        acceleration = (drive - rub) / (rotor + t.damping * h_s);
+        j.effort = t.effort - t.damping * (j.velocity + acceleration * h_s) - t.inertia * acceleration;
+      }
       j.position += j.velocity * h_s + 0.5 * acceleration * h_s * h_s;
       j.velocity += acceleration * h_s;
     }
@@ -117,6 +136,8 @@ class Rig final : public TopicMaker {
   const RayCaster* rays = nullptr;
   Time now, tick;
   std::uint64_t tick_index = 0, seed = 1;
+  Vec3 gravity_mps2{0, 0, -9.81}, magnetic_field_T{};
+  std::optional<model::Geography> geography;
   Actuation actuation;
   EmissionBuffer emissions;
   std::vector<std::uint32_t> all, levels;
@@ -134,7 +155,7 @@ class Rig final : public TopicMaker {
     decl.place = {std::make_shared<const std::string>("robot.yaml"), 12, 5};
     const std::string path = "robot1/" + name;
     SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids,
-                      engine->what, tick, level_bits, *this}));
+                      engine->what, tick, level_bits, *this, gravity_mps2, geography, magnetic_field_T}));
     all.push_back(static_cast<std::uint32_t>(all.size()));
     levels.push_back(level_bits);
     sample.push_back(0);
@@ -166,9 +187,11 @@ class Rig final : public TopicMaker {
     const double h_s = tick.s() / substeps;
     for (int i = 0; i < substeps; ++i) {
       pool->pre_substep(context(now + tick), due(), h_s);
+      engine->watch(actuation.watch);
       engine->set_targets(actuation.joints);
       engine->set_drive_targets(actuation.drives);
       engine->step(h_s, 0);
+      pool->post_substep(context(now + tick), due(), h_s);
       actuation.clear();
     }
     now = now + tick;

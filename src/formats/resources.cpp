@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/program.h"
 #include "base/text.h"
 #include "formats/text.h"
 
@@ -163,12 +164,12 @@ Result<std::string> find_resource(const std::string& uri, const std::string& fol
 
 std::string own_folder(const std::string& name) {
   std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
-    for (const fs::path& candidate : {folder / "share" / "sandlot" / name, folder / name})
-      if (fs::is_directory(candidate, failed) && is_there(candidate)) return candidate.string();
-    if (folder == folder.root_path()) break;
-  }
+  for (const std::string& program : program_files())
+    for (fs::path folder = fs::path(program).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+      for (const fs::path& candidate : {folder / "share" / "sandlot" / name, folder / name})
+        if (fs::is_directory(candidate, failed) && is_there(candidate)) return candidate.string();
+      if (folder == folder.root_path()) break;
+    }
   return "";
 }
 

@@ -32,7 +32,8 @@ SearchPath search_path(std::span<const std::string> asked_for = {});
 Result<std::string> find_resource(const std::string& uri, const std::string& folder, const SearchPath& path,
                                   const Place& place);
 
-/// Sandlot's folder `name` ("models", "scenarios"): beside or above the program, or in ../share/sandlot; "" if nowhere.
+/// Sandlot's folder `name` ("models", "scenarios"): beside or above the program or Sandlot's library, or in
+/// ../share/sandlot there; "" if nowhere.
 std::string own_folder(const std::string& name);
 
 }  // namespace sandlot::formats

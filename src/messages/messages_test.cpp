@@ -27,9 +27,9 @@ msg::JointState joint_state() {
 msg::Odometry odometry() {
   msg::Odometry m;
   m.child_frame_id = "base";
-  m.pose.p = {1, 2, 3};
-  m.pose_covariance[35] = 9;
-  m.twist.angular.z = 4;
+  m.pose.pose.p = {1, 2, 3};
+  m.pose.covariance[35] = 9;
+  m.twist.twist.angular.z = 4;
   return m;
 }
 msg::PoseStamped pose_stamped() {

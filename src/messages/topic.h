@@ -11,6 +11,8 @@
 #include "base/bytes.h"
 #include "base/time.h"
 #include "base/values.h"
+#include "messages/cdr.h"
+#include "messages/info.h"
 
 namespace sandlot {
 
@@ -31,6 +33,13 @@ class TopicBase {
   /// A number of the message by its path, and all of them.
   virtual ValueFound value(std::span<const ValueStep> path) const = 0;
   virtual void list_values(const ValueVisit& visit) const = 0;
+
+  virtual const MessageInfo& info() const = 0;
+  virtual const void* data() const = 0;  ///< the message, for those that know it by info() alone
+  /// The message as others read it. Allocates nothing once `out` has the room.
+  void to_cdr(std::vector<std::byte>& out) const { write_cdr(info(), data(), out); }
+  /// Takes the message from CDR; when that fails the old one stays.
+  virtual Status from_cdr(std::span<const std::byte> bytes) = 0;
 
  private:
   std::string name_;
@@ -72,6 +81,14 @@ class Topic : public TopicBase {
   ValueFound value(std::span<const ValueStep> path) const override { return value_at(message, path); }
   void list_values(const ValueVisit& visit) const override {
     sandlot::list_values(message, "", "", "", visit);
+  }
+  const MessageInfo& info() const override { return message_info<M>(); }
+  const void* data() const override { return &message; }
+  Status from_cdr(std::span<const std::byte> bytes) override {
+    M taken{};
+    SL_TRY(read_cdr(message_info<M>(), bytes, &taken));
+    message = std::move(taken);
+    return {};
   }
 };
 

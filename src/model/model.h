@@ -169,6 +169,14 @@ struct ControllerDecl {
   Place place;
 };
 
+/// A shared library with controllers of the user's own.
+struct PluginDecl {
+  std::string file;
+  std::string name;        ///< as the library calls itself; known once it is loaded
+  std::uint64_t hash = 0;  ///< of the file's bytes, so that a snapshot notices another build
+  Place place;
+};
+
 /// A path that an instance follows whatever happens to it (SDF <actor>): it pushes and is not pushed.
 struct Motion {
   struct Key {
@@ -229,18 +237,29 @@ struct LogDecl {
   Place place;
 };
 
+/// How long a tick is.
+struct Clock {
+  enum class Mode : std::uint8_t {
+    fixed,       ///< Setup::step
+    continuous,  ///< as long as computing the last one took, within these bounds
+  } mode = Mode::fixed;
+  Time min_step = Time::from_s(1e-4), max_step = Time::from_s(0.1);
+};
+
 /// Everything a Simulation is built from.
 struct Setup {
   std::string name;
-  std::string engine = "rigid";  ///< "rigid" or "planar"
-  Node physics;                  ///< further keys of `physics:`, read by the engine's spec
-  Vec3 gravity{0, 0, -9.81};     ///< [m/s^2]
-  Place gravity_place;           ///< where a file gives it; nowhere when none does
-  Time step = Time::from_s(0.01);
-  int substeps = 1;          ///< physics steps per tick
+  std::string engine = "rigid";    ///< "rigid" or "planar"
+  Node physics;                    ///< further keys of `physics:`, read by the engine's spec
+  Vec3 gravity{0, 0, -9.81};       ///< [m/s^2]
+  Place gravity_place;             ///< where a file gives it; nowhere when none does
+  Time step = Time::from_s(0.01);  ///< length of a tick; of a continuous clock the first one's
+  Clock clock;
+  int substeps = 1;          ///< physics steps per tick; a longer tick of a continuous clock has more
   int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
   std::optional<Time> stop;  ///< simulated time at which the run ends by itself
+  std::vector<PluginDecl> plugins;
   std::vector<Instance> instances;
   std::vector<ValueDecl> values;
   std::vector<EventDecl> events;

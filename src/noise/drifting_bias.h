@@ -28,8 +28,8 @@ struct DriftingBiasSpec {
   double correlation_s = 100.0;  ///< [s], tau
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"white_density", "", "White noise density, in the channel's unit per sqrt(Hz).", 0, 1e6,
-                Field::tunable},
+    visit(Field{"white_density", "U/sqrt(Hz)", "White noise density, in the channel's unit per sqrt(Hz).", 0,
+                1e6, Field::tunable},
           s.white_density);
     visit(Field{"bias_std", "", "Stationary standard deviation of the bias, in the channel's unit.", 0, 1e6,
                 Field::tunable},
@@ -48,11 +48,12 @@ struct DriftingBias {
 
   /// @param truth  [U]
   /// @param dt_s   [s] since the previous *sample* (not the physics step), > 0
-  double corrupt(const DriftingBiasSpec& s, double truth, double dt_s, Stream& random) {
+  /// @param errors factor on what is added
+  double corrupt(const DriftingBiasSpec& s, double truth, double dt_s, Stream& random, double errors = 1) {
     SL_CHECK(dt_s > 0.0);
     const double keep = math::exp(-dt_s / s.correlation_s);
     bias = keep * bias + s.bias_std * std::sqrt(1.0 - keep * keep) * random.normal();
-    return truth + bias + s.white_density / std::sqrt(dt_s) * random.normal();
+    return truth + errors * bias + errors * s.white_density / std::sqrt(dt_s) * random.normal();
   }
 
   /// Draws the first bias from its stationary distribution, so that a run has no warm-up.

@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/describe.h"
@@ -54,6 +55,11 @@ struct Wrench {
 };
 
 /// What a joint's motor shall do; holds until the next target for this joint.
+///
+/// A motor (mode effort) may be given what belongs to it beside its effort. All of it acts implicitly, on the velocity
+/// that the sub-step ends with, so it is stable whatever its size and that of the load:
+///
+///   effort - damping * v - inertia * dv/dt, and Coulomb friction of at most `friction`
 struct JointTarget {
   enum class Mode : std::uint8_t {
     free,      ///< no motor
@@ -65,6 +71,9 @@ struct JointTarget {
   double velocity = 0;
   double max_effort = 0;
   double effort = 0;
+  double damping = 0;   ///< [Nm s/rad] or [N s/m], >= 0
+  double inertia = 0;   ///< [kg m^2] or [kg], >= 0: of a rotor, seen from the joint
+  double friction = 0;  ///< [Nm] or [N], >= 0
 };
 
 /// Closed-form drive of a whole instance (level `ideal`): its base moves at a velocity in its own plane as if it
@@ -82,6 +91,24 @@ struct Contact {
   Vec3 point_W;   ///< [m]
   Vec3 normal_W;  ///< unit, from a towards b
   double depth_m = 0;
+  Vec3 force_W;  ///< [N] on b, mean over the sub-step, friction included; zero unless somebody watched a or b
+};
+
+/// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the motor's part
+/// is in it. Along the axes of the joint frame J as the child carries it.
+struct JointLoad {
+  Vec3 force_N, torque_Nm;
+};
+
+/// Whose forces the next step shall tell; consumed by it.
+struct Watch {
+  std::vector<BodyId> contacts;  ///< all contacts of these bodies
+  std::vector<JointId> loads;
+  bool empty() const { return contacts.empty() && loads.empty(); }
+  void clear() {
+    contacts.clear();
+    loads.clear();
+  }
 };
 
 /// What lies in a ball: the cheap question behind proximity, spawning and markers.
@@ -96,7 +123,9 @@ struct Capabilities {
   bool joints = false;          ///< joints are simulated (else: kinematic)
   bool contact_drives = false;  ///< wheels drive by contact and friction
   bool ideal_drives = false;
-  bool rays = false;  ///< rays() answers
+  bool rays = false;            ///< rays() answers
+  bool contact_forces = false;  ///< Contact::force_W is told
+  bool joint_loads = false;     ///< joint_loads() answers
 };
 
 /// Counted since the engine was made; reported in the summary.
@@ -145,6 +174,11 @@ class Engine {
   virtual void apply(std::span<const Wrench> wrenches) = 0;
   virtual void set_targets(std::span<const JointTarget> targets) = 0;
   virtual void set_drive_targets(std::span<const DriveTarget> targets) = 0;
+  /// Asks for forces of the next step. Comes before the wrenches of that step. An engine may round differently when it
+  /// is watched, so watching is an input like the others.
+  virtual void watch(const Watch&) {}
+  /// Indexed by JointId::index; valid for the joints whose loads were watched in the last step. Empty without the capability.
+  virtual std::span<const JointLoad> joint_loads() const { return {}; }
 
   /// Advances by h seconds: one sub-step. `stream_key` seeds what the solver draws in this sub-step.
   virtual void step(double h_s, std::uint64_t stream_key) = 0;

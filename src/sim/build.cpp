@@ -8,9 +8,10 @@
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "model/motion.h"
+#include "sim/monitor.h"
+#include "sim/plugin.h"
 #include "sim/presets.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -56,7 +57,7 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
 }  // namespace
 
 Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
-    : setup_(std::move(setup)), options_(options), watch_(std::make_unique<Watch>(*this)) {
+    : setup_(std::move(setup)), options_(options), monitor_(std::make_unique<Monitor>(*this)) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
   // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
@@ -86,6 +87,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
 
 Status Simulation::build(Diagnostics& diagnostics) {
   if (setup_.step.ns <= 0) return Error{"time.step must be positive"};
+  if (setup_.clock.min_step.ns <= 0 || setup_.clock.max_step < setup_.clock.min_step)
+    return Error{"time.min_step must be positive and not above time.max_step"};
+  step_ = setup_.step;
   SL_ASSIGN(const EngineKind* const kind, find_engine(setup_.engine));
   SL_ASSIGN(engine_, kind->create(setup_.physics, setup_.gravity));
   if (const RayCaster* rays = engine_->rays()) {
@@ -100,19 +104,42 @@ Status Simulation::build(Diagnostics& diagnostics) {
   };
   for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
+  SL_TRY(gather_controllers(diagnostics));
   set_stop(setup_.stop);
   for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
-  SL_TRY(watch_->add(setup_.values, setup_.events, setup_.addresses));
+  SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
 }
 
 Status Simulation::add_event(model::EventDecl decl) {
-  SL_TRY(watch_->add_event(std::move(decl), false, {}));
+  SL_TRY(monitor_->add_event(std::move(decl), false, {}));
   judge();
   return failure_;
+}
+
+/// The kinds that `controller:` may name: ours, the program's own, then those of the plugins.
+Status Simulation::gather_controllers(Diagnostics& diagnostics) {
+  std::map<std::string, std::string, std::less<>> owners;
+  const auto add = [&](const ControllerKind* kind, const std::string& owner, const Place& place) -> Status {
+    const auto [known, fresh] = owners.emplace(kind->name, owner);
+    if (!fresh)
+      return Error{owner + " brings a controller '" + kind->name + "', and so does " + known->second,
+                   "give it another name", place, "/plugins"};
+    controller_kinds_.push_back(kind);
+    return {};
+  };
+  for (const ControllerKind* kind : controller_kinds()) SL_TRY(add(kind, "Sandlot", {}));
+  for (const ControllerKind* kind : options_.extra_controllers) SL_TRY(add(kind, "this program", {}));
+  for (model::PluginDecl& decl : setup_.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options_.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+    for (const ControllerKind* kind : plugin->controllers)
+      SL_TRY(add(kind, "plugin '" + plugin->file + "'", decl.place));
+  }
+  return {};
 }
 
 void Simulation::set_stop(std::optional<Time> stop) {
@@ -181,12 +208,15 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                           setup_.step,
                           levels,
                           maker,
-                          setup_.gravity};
+                          setup_.gravity,
+                          setup_.geography,
+                          setup_.magnetic_field_T};
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   const double rate_hz = pool->pool->rate_hz(index);
   const double tick_hz = 1e9 / static_cast<double>(setup_.step.ns);
-  if (rate_hz > tick_hz * (1 + 1e-9)) {
+  const bool fixed = setup_.clock.mode == model::Clock::Mode::fixed;
+  if (fixed && rate_hz > tick_hz * (1 + 1e-9)) {
     pool->pool->remove(index);
     const Node* const rate = decl.config.find("rate");
     return Error{
@@ -194,7 +224,7 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
         "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
         "/" + path + "/rate"};
   }
-  if (rate_hz > 0) {
+  if (fixed && rate_hz > 0) {
     const double ticks = tick_hz / rate_hz;
     if (std::abs(ticks - std::round(ticks)) > 1e-6 * ticks)
       diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " +
@@ -235,8 +265,13 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     if (!error.place.file) error.place = decl.place;
     return error;
   };
-  auto kind = find_controller_kind(decl.kind);
-  if (!kind) return at(std::move(kind.error()));
+  const ControllerKind* kind = nullptr;
+  std::vector<std::string> names;
+  for (const ControllerKind* each : controller_kinds_) {
+    names.emplace_back(each->name);
+    if (decl.kind == each->name) kind = each;
+  }
+  if (!kind) return at({"no controller '" + decl.kind + "'", suggestion(decl.kind, names)});
   auto program = std::make_unique<ProgramEntry>();
   program->decl = decl;
   program->path = entity.instance.name + "/" + sanitised(decl.name);
@@ -269,9 +304,15 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     describe(device->topics, description.readings);
     describe(device->commands, description.actuators);
   }
-  auto controller = (*kind)->create();
-  if (Status status = controller->init(description, decl.config); !status)
-    return at(std::move(status.error()));
+  std::unique_ptr<Controller> controller;
+  Status status;
+  const auto thrown = caught([&] {
+    controller = kind->create();
+    status = controller->init(description, decl.config);
+  });
+  if (thrown)
+    return at({"controller '" + program->path + "' (" + decl.kind + ") threw while it began: " + *thrown});
+  if (!status) return at(std::move(status.error()));
   program->program = std::make_unique<ControllerProgram>(std::move(controller));
   program->topics.resize(description.readings.size());
   program->seen.resize(description.readings.size(), 0);
@@ -322,11 +363,6 @@ void Simulation::remove_from_pool(const Device& device) {
   pool.devices.erase(pool.devices.begin() + device.index);
   pool.all.pop_back();
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
-  // A command that was carried out earlier in this tick: its slot goes with the device.
-  std::erase_if(applied_, [&](const Applied& applied) {
-    return std::any_of(device.commands.begin(), device.commands.end(),
-                       [&](const Slot& slot) { return slot.topic.get() == applied.slot; });
-  });
 }
 
 Simulation::Entity* Simulation::find_entity(std::string_view name) {

@@ -38,7 +38,7 @@ TEST_P(OnBoth, another_seed_gives_another_run) {
 }
 
 struct Watcher : Observer {
-  Wants wants() const override { return {true, true}; }
+  Wants wants() const override { return {.messages = true, .hash = true}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override {
     kept.push_back(frame);  // a slow viewer holds on to all frames
   }
@@ -155,13 +155,15 @@ TEST(Snapshot, damage_is_an_error_and_no_crash) {
 
 /// Commands as they were applied, and the bodies' hash of each tick.
 struct CommandLog : Observer {
-  Wants wants() const override { return {false, true}; }
+  Wants wants() const override { return {.log = true, .hash = true}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override {
-    commands[frame->tick] = frame->commands;
-    for (const SubHash& sub : frame->sub_hashes)
-      if (sub.path == "rover1" || sub.path == "rover2") bodies[frame->tick] ^= sub.hash;
+    log[frame->tick] = frame->log;
+    for (std::size_t i = 0; i < frame->parts.size(); ++i) {
+      const std::string& name = (*frame->part_names)[i];
+      if (name == "rover1" || name == "rover2") bodies[frame->tick] ^= frame->parts[i];
+    }
   }
-  std::map<std::uint64_t, std::vector<FrameCommand>> commands;
+  std::map<std::uint64_t, std::vector<LogEntry>> log;
   std::map<std::uint64_t, std::uint64_t> bodies;
 };
 
@@ -173,14 +175,11 @@ TEST_P(OnBoth, the_command_log_alone_drives_the_bodies_the_same_way) {
   const auto replay = build(arena(GetParam(), 2), {.threads = 1, .run_programs = false});
   replay->add_observer(&replayed);
   for (std::uint64_t tick = 1; tick <= 200; ++tick) {
-    for (const FrameCommand& command : live.commands[tick]) {
-      // "/rover1/drive/ideal/command" -> "rover1/drive/ideal"
-      const std::string target = command.target.substr(1, command.target.rfind('/') - 1);
-      replay->submit(CommandRequest{target, command.type, command.bytes}, command.source);
-    }
+    for (const LogEntry& entry : live.log[tick])
+      replay->submit(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
     advance(*replay, 1);
   }
-  ASSERT_FALSE(live.commands.empty());
+  ASSERT_FALSE(live.log.empty());
   EXPECT_EQ(live.bodies, replayed.bodies);
 }
 

@@ -24,27 +24,36 @@ struct FrameInstance {
   bool is_robot = false;
   Pose X_WM;
   Velocity V_WB;  ///< of the canonical link
+  std::shared_ptr<const model::Model> model;
+  std::vector<Pose> X_WL;  ///< of each link, if asked for
 };
 
-/// A command as it was applied in this tick.
-struct FrameCommand {
+/// One thing that was carried out in a tick, in order. These entries and the first state are the replay.
+struct LogEntry {
+  /// The alternatives of Request in their order, and the measured length of the tick (clock `continuous`).
+  static constexpr std::uint8_t command = 0, step = 255;
+  std::uint8_t kind = command;
   Source source;
   std::uint64_t sequence = 0;
-  std::string target;  ///< slot name, "/rover/drive/ideal/command"
-  std::string type;
-  std::vector<std::byte> bytes;
+  std::string target;            ///< "rover/drive/ideal"; nothing for `step`
+  std::string type;              ///< ROS type of a command
+  std::vector<std::byte> bytes;  ///< command: the message; step: nanoseconds, int64; others: write_request()
+  bool refused = false;
 };
 
 struct Frame {
   std::uint64_t tick = 0;
   Time now;
   std::uint64_t revision = 0;  ///< of the Model: counts spawns, deletions and level changes
+  Time step;                   ///< length of the tick
   std::vector<FrameInstance> instances;
   std::vector<std::shared_ptr<const TopicBase>>
-      topics;  ///< those that got a message in this tick, if asked for
-  std::vector<FrameCommand> commands;
-  std::uint64_t hash = 0;  ///< if asked for
-  std::vector<SubHash> sub_hashes;
+      topics;                        ///< those that got a message in this tick, if asked for
+  std::vector<LogEntry> log;         ///< if asked for
+  std::uint64_t hash = 0;            ///< of all State, if asked for
+  std::vector<std::uint64_t> parts;  ///< and of each entity
+  std::shared_ptr<const std::vector<std::string>>
+      part_names;  ///< of `parts`; another object when they change
 };
 
 /// Something that watches. Called at the end of each tick on the simulation's thread; it must not block.
@@ -53,7 +62,9 @@ class Observer {
   virtual ~Observer() = default;
   struct Wants {
     bool messages = false;
+    bool log = false;
     bool hash = false;
+    bool links = false;
   };
   virtual Wants wants() const { return {}; }
   virtual void on_frame(const std::shared_ptr<const Frame>& frame) = 0;

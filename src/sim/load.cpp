@@ -18,6 +18,7 @@
 #include "sim/joint_controllers.h"
 #include "sim/modules.h"
 #include "sim/placement.h"
+#include "sim/plugin.h"
 #include "sim/presets.h"
 
 namespace sandlot {
@@ -307,6 +308,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.engine = scenario.engine;
     setup.physics = scenario.physics;
     setup.step = Time::from_s(scenario.step_s);
+    setup.clock = scenario.clock;
     setup.substeps = scenario.substeps;
     setup.control_interval = scenario.control_interval;
     setup.seed = scenario.seed;
@@ -315,6 +317,11 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.log = scenario.log;
     if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
     if (options.seed) setup.seed = *options.seed;
+    for (const auto& [written, place] : scenario.plugins) {
+      SL_ASSIGN(std::string file,
+                find_plugin(written, formats::base_folder(scenario, place), options.paths, place));
+      setup.plugins.push_back({std::move(file), "", 0, place});
+    }
     std::map<std::string, model::Instance> loaded;
     Placer placer(setup.instances, setup.seed);
     for (const formats::RobotGroup& group : scenario.robots) {

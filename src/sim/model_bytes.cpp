@@ -368,10 +368,18 @@ void setup_values(auto& io, auto& s) {
   node(io, s.physics);
   io.value(s.gravity);
   io.value(s.step);
+  io.value(s.clock.mode);
+  io.value(s.clock.min_step);
+  io.value(s.clock.max_step);
   io.value(s.substeps);
   io.value(s.control_interval);
   io.value(s.seed);
   io.value(s.stop);
+  list(io, s.plugins, [](auto& i, auto& p) {
+    i.value(p.file);
+    i.value(p.name);
+    i.value(p.hash);
+  });
   list(io, s.lights, [](auto& i, auto& l) { light(i, l); });
   color(io, s.ambient);
   color(io, s.background);
@@ -420,6 +428,13 @@ bool consistent(const model::Model& m) {
   return true;
 }
 
+bool consistent(const model::Instance& x) {
+  if (x.motion && x.motion->keys.empty()) return false;
+  for (const model::DeviceDecl& d : x.devices)
+    if (d.link >= x.model->links.size()) return false;
+  return true;
+}
+
 }  // namespace
 
 void write_setup(ByteWriter& w, const model::Setup& setup,
@@ -451,6 +466,7 @@ void write_setup(ByteWriter& w, const model::Setup& setup,
 bool read_setup(ByteReader& r, model::Setup& setup) {
   Load io{r};
   setup_values(io, setup);
+  if (setup.clock.mode > model::Clock::Mode::continuous) return false;
   std::uint32_t count = 0;
   io.value(count);
   std::vector<std::shared_ptr<const model::Model>> models;
@@ -469,11 +485,47 @@ bool read_setup(ByteReader& r, model::Setup& setup) {
     io.value(index);
     if (!r.ok() || index >= models.size()) return false;
     instance.model = models[index];
-    if (instance.motion && instance.motion->keys.empty()) return false;
-    for (const model::DeviceDecl& d : instance.devices)
-      if (d.link >= instance.model->links.size()) return false;
+    if (!consistent(instance)) return false;
     setup.instances.push_back(std::move(instance));
   }
+  return r.ok();
+}
+
+void write_instance(ByteWriter& w, const model::Instance& instance) {
+  Save io{w};
+  whole_model(io, *instance.model);
+  instance_values(io, instance);
+}
+
+bool read_instance(ByteReader& r, model::Instance& instance) {
+  Load io{r};
+  auto m = std::make_shared<model::Model>();
+  whole_model(io, *m);
+  instance_values(io, instance);
+  if (!r.ok() || !consistent(*m)) return false;
+  instance.model = std::move(m);
+  return consistent(instance);
+}
+
+void write_device(ByteWriter& w, const model::DeviceDecl& decl) {
+  Save io{w};
+  device(io, decl);
+}
+
+bool read_device(ByteReader& r, model::DeviceDecl& decl) {
+  Load io{r};
+  device(io, decl);
+  return r.ok();
+}
+
+void write_node(ByteWriter& w, const Node& n) {
+  Save io{w};
+  node(io, n);
+}
+
+bool read_node(ByteReader& r, Node& n) {
+  Load io{r};
+  node(io, n);
   return r.ok();
 }
 

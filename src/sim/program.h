@@ -1,7 +1,10 @@
 #pragma once
 /// A Program is anything that decides for a robot: a controller in process, later RoBIOS programs and remote
 /// clients. It is resumed once per control interval and says what it waits for.
+#include <exception>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "control/controller.h"
 
@@ -12,7 +15,8 @@ class Program {
   enum class Waiting { control_step, nothing };  ///< `nothing`: it has ended
   struct Resumed {
     Waiting waiting_for = Waiting::control_step;
-    Time local_time;  ///< how far the program has come in its own time
+    Time local_time;                          ///< how far the program has come in its own time
+    std::optional<std::string> failure = {};  ///< why it cannot go on; ends the run
   };
   virtual ~Program() = default;
   /// Lets the program run until `until`. Called in parallel with other programs.
@@ -25,13 +29,23 @@ class Program {
   virtual void load(ByteReader& r) = 0;
 };
 
+/// Calls f, the code of a controller's author. @return what() of the exception that it threw, if it threw one
+template <class F>
+std::optional<std::string> caught(F&& f) {
+  try {
+    f();
+    return std::nullopt;
+  } catch (const std::exception& e) { return e.what(); } catch (...) {
+    return "something that is no std::exception";
+  }
+}
+
 /// A controller as a program: one step per resume.
 class ControllerProgram final : public Program {
  public:
   explicit ControllerProgram(std::unique_ptr<Controller> controller) : controller_(std::move(controller)) {}
   Resumed resume(Time until, const Observation& obs, Command& cmd) override {
-    controller_->step(obs, cmd);
-    return {Waiting::control_step, until};
+    return {Waiting::control_step, until, caught([&] { controller_->step(obs, cmd); })};
   }
   Status set_parameter(std::string_view path, const Node& value) override {
     return controller_->set_parameter(path, value);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/bytes.h"
 #include "base/node.h"
 #include "geometry/pose.h"
 #include "model/model.h"
@@ -16,8 +17,12 @@ namespace sandlot {
 
 /// Who asks.
 struct Source {
-  enum class Kind : std::uint8_t { admin, robot } kind = Kind::admin;
-  std::uint64_t id = 0;  ///< a client's or robot's own number
+  enum class Kind : std::uint8_t {
+    admin,
+    robot,    ///< a client that drives a robot
+    program,  ///< a controller in this process; its orders are carried out after all others
+  } kind = Kind::admin;
+  std::uint64_t id = 0;  ///< a client's own number; of a program, its robot's creation order
 };
 
 /// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".
@@ -63,6 +68,16 @@ struct SampleRequest {
 
 using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
                              PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest>;
+
+/// "command", "parameter", ...: of the alternatives of Request in their order.
+const char* request_kind(std::size_t index);
+/// What a request is about: "rover/drive".
+const std::string& request_target(const Request& request);
+
+/// A request as bytes, for the log. Places (file:line) are not kept.
+void write_request(ByteWriter& w, const Request& request);
+/// Reads what write_request wrote; false when the bytes are not that.
+bool read_request(ByteReader& r, Request& request);
 
 /// What became of a request, in the order they were carried out.
 struct Outcome {

@@ -11,9 +11,36 @@ std::uint64_t Simulation::submit(Request request, Source source) {
   return next_sequence_++;
 }
 
-Status Simulation::carry_out(Request& request, const Source& source, std::uint64_t sequence) {
-  if (const auto* command = std::get_if<CommandRequest>(&request))
-    return apply_command(*command, source, sequence);
+LogEntry& Simulation::log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence) {
+  if (spare_log_.empty()) spare_log_.emplace_back();
+  LogEntry& entry = log_.emplace_back(std::move(spare_log_.back()));
+  spare_log_.pop_back();
+  entry.kind = kind;
+  entry.source = source;
+  entry.sequence = sequence;
+  entry.target.clear();
+  entry.type.clear();
+  entry.bytes.clear();
+  entry.refused = false;
+  return entry;
+}
+
+void Simulation::log_request(const Request& request, const Outcome& outcome) {
+  LogEntry& entry = log_entry(static_cast<std::uint8_t>(request.index()), outcome.source, outcome.sequence);
+  entry.target = request_target(request);
+  entry.refused = !outcome.status;
+  if (const auto* command = std::get_if<CommandRequest>(&request)) {
+    entry.type = command->type;
+    entry.bytes = command->bytes;
+  } else {
+    ByteWriter w;
+    write_request(w, request);
+    entry.bytes = std::move(w.buffer());
+  }
+}
+
+Status Simulation::carry_out(Request& request) {
+  if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command);
   if (const auto* parameter = std::get_if<ParameterRequest>(&request)) {
     if (Device* device = find_device(parameter->target)) {
       SL_TRY(pools_[device->kind].pool->set_parameter(device->index, parameter->field, parameter->value));
@@ -70,19 +97,14 @@ Simulation::Slot* Simulation::active_command_slot(Device& device, std::string_vi
   return nullptr;
 }
 
-Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source,
-                                std::uint64_t sequence) {
+Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes) {
   if (!slot.topic->assign(bytes)) return Error{"the bytes are no " + std::string(slot.topic->type())};
   slot.topic->stamp = now_;
   ++slot.topic->count;
-  applied_.push_back({source, sequence, slot.topic.get(), static_cast<std::uint32_t>(applied_bytes_.size()),
-                      static_cast<std::uint32_t>(bytes.size())});
-  applied_bytes_.insert(applied_bytes_.end(), bytes.begin(), bytes.end());
   return {};
 }
 
-Status Simulation::apply_command(const CommandRequest& command, const Source& source,
-                                 std::uint64_t sequence) {
+Status Simulation::apply_command(const CommandRequest& command) {
   const std::string_view target = command.target;
   Device* device = find_device(target);
   std::string_view level;
@@ -98,7 +120,7 @@ Status Simulation::apply_command(const CommandRequest& command, const Source& so
     ++refused_commands_;
     return Error{"'" + command.target + "' takes no " + command.type + " at its active level"};
   }
-  Status status = give_command(*slot, command.bytes, source, sequence);
+  Status status = give_command(*slot, command.bytes);
   if (!status) ++refused_commands_;
   return status;
 }
@@ -111,10 +133,18 @@ void Simulation::apply_program_orders() {
         Slot* slot = nullptr;
         for (const auto& device : entity->devices)
           if (device->decl.name == entry.device) slot = active_command_slot(*device, entry.type, entry.level);
+        const std::span<const std::byte> bytes = program->command.bytes(order);
         // A level that was switched off under a controller's feet: its commands are refused and counted.
-        if (!slot || !give_command(*slot, program->command.bytes(order),
-                                   {Source::Kind::robot, entity->serial}, program->steps))
-          ++refused_commands_;
+        const bool refused = !slot || !give_command(*slot, bytes);
+        if (refused) ++refused_commands_;
+        if (!wants_.log) continue;
+        LogEntry& logged = log_entry(LogEntry::command, {Source::Kind::program, entity->serial},
+                                     program->steps);
+        logged.target.append(entity->instance.name).append("/").append(sanitised(entry.device));
+        if (!entry.level.empty()) logged.target.append("/").append(entry.level);
+        logged.type = entry.type;
+        logged.bytes.assign(bytes.begin(), bytes.end());
+        logged.refused = refused;
       }
       program->command.clear();
     }

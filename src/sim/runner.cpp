@@ -5,7 +5,7 @@
 
 namespace sandlot {
 
-Status run(Simulation& simulation, const Clock& clock, RunReport& report,
+Status run(Simulation& simulation, const Pace& pace, RunReport& report,
            const std::function<bool(const Simulation&)>& keep_going) {
   using std::chrono::duration;
   using std::chrono::steady_clock;
@@ -17,23 +17,40 @@ Status run(Simulation& simulation, const Clock& clock, RunReport& report,
   auto origin = begin;
   Time sim_origin = sim_begin;
   Status status;
+  const model::Clock& clock = simulation.setup().clock;
+  const bool continuous = clock.mode == model::Clock::Mode::continuous;
+  std::optional<Time> measured;
+  auto cycle_begin = begin;
   while (!simulation.stop_reason()) {
-    if (clock.factor) {
-      const double ahead_s = (simulation.now() - sim_origin).s() / *clock.factor;
+    if (continuous) {
+      const double factor = pace.factor.value_or(1);
+      const auto shortest = std::chrono::duration_cast<steady_clock::duration>(
+          duration<double>(clock.min_step.s() / factor));
+      if (simulation.tick_index() != tick_begin) {
+        std::this_thread::sleep_until(cycle_begin + shortest);
+        const auto now = steady_clock::now();
+        measured = Time::from_s(duration<double>(now - cycle_begin).count() * factor);
+        if (*measured > clock.max_step) ++report.late_ticks;
+        cycle_begin = now;
+      } else {
+        measured = simulation.setup().step;
+      }
+    } else if (pace.factor) {
+      const double ahead_s = (simulation.now() - sim_origin).s() / *pace.factor;
       const auto due = origin + std::chrono::duration_cast<steady_clock::duration>(duration<double>(ahead_s));
       const auto now = steady_clock::now();
       if (due > now) {
         std::this_thread::sleep_until(due);
       } else {
         const double behind_s = duration<double>(now - due).count();
-        if (behind_s * *clock.factor > simulation.setup().step.s()) ++report.late_ticks;
+        if (behind_s * *pace.factor > simulation.setup().step.s()) ++report.late_ticks;
         if (behind_s > resync_s) {
           origin = now;
           sim_origin = simulation.now();
         }
       }
     }
-    status = simulation.tick();
+    status = simulation.tick(measured);
     if (!status || (keep_going && !keep_going(simulation))) break;
   }
   report.ticks += simulation.tick_index() - tick_begin;

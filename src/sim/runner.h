@@ -8,8 +8,9 @@
 
 namespace sandlot {
 
-struct Clock {
-  std::optional<double> factor;  ///< real time x factor; unset: as fast as possible ("step" mode)
+struct Pace {
+  /// Real time x factor; unset: as fast as possible, and real time for a setup with a continuous clock.
+  std::optional<double> factor;
 };
 
 struct RunReport {
@@ -20,8 +21,9 @@ struct RunReport {
 };
 
 /// Ticks until the simulation has a reason to stop, or `keep_going` (called after each tick) says no.
-/// The report is filled also when a tick fails.
-Status run(Simulation& simulation, const Clock& clock, RunReport& report,
+/// The report is filled also when a tick fails. Each tick of a setup with a continuous clock is as long as the one
+/// before it took, this function's waiting included.
+Status run(Simulation& simulation, const Pace& pace, RunReport& report,
            const std::function<bool(const Simulation&)>& keep_going = {});
 
 }  // namespace sandlot

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "sim/test_world.h"
 
 namespace sandlot::test {
@@ -47,6 +50,67 @@ TEST(Runner, the_caller_can_end_it) {
   RunReport report;
   ASSERT_TRUE(run(*simulation, {}, report, [](const Simulation& s) { return s.tick_index() < 30; }));
   EXPECT_EQ(report.ticks, 30u);
+}
+
+/// Lengths of the ticks, and what the log says of them.
+struct Lengths : Observer {
+  Wants wants() const override { return {.log = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    ticks.push_back(frame->step);
+    for (const LogEntry& entry : frame->log) {
+      if (entry.kind != LogEntry::step) continue;
+      Time logged;
+      ByteReader r(entry.bytes);
+      read(r, logged.ns);
+      logged_ticks.push_back(logged);
+    }
+  }
+  std::vector<Time> ticks, logged_ticks;
+};
+
+TEST(Runner, a_continuous_clock_takes_the_time_that_the_last_tick_took) {
+  model::Setup setup = ball(0.3);
+  setup.clock = {model::Clock::Mode::continuous, Time::from_s(1e-3), Time::from_s(0.03)};
+  const auto simulation = build(setup);
+  Lengths lengths;
+  simulation->add_observer(&lengths);
+  RunReport report;
+  // A cycle of at least 5 ms, now and then one of 50 ms: more than the longest tick.
+  const auto slow = [](const Simulation& s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(s.tick_index() % 8 == 5 ? 50 : 5));
+    return true;
+  };
+  ASSERT_TRUE(run(*simulation, {}, report, slow));
+  ASSERT_GE(lengths.ticks.size(), 7u);
+  EXPECT_EQ(lengths.logged_ticks, lengths.ticks);
+  EXPECT_EQ(lengths.ticks[0], setup.step) << "nothing has been measured yet";
+  EXPECT_EQ(lengths.ticks[5], setup.clock.max_step);
+  for (std::size_t i = 1; i < lengths.ticks.size(); ++i) {
+    EXPECT_GE(lengths.ticks[i], Time::from_s(5e-3)) << i;
+    EXPECT_LE(lengths.ticks[i], setup.clock.max_step) << i;
+  }
+  EXPECT_GE(report.late_ticks, 1u);
+  EXPECT_LE(report.sim_s, report.wall_s + setup.step.s()) << "it never runs ahead of the wall clock";
+  // The log alone gives the same run.
+  const auto replay = build(setup);
+  for (const Time length : lengths.logged_ticks) ASSERT_TRUE(replay->tick(length));
+  EXPECT_EQ(replay->now(), simulation->now());
+  EXPECT_EQ(replay->state_hash(), simulation->state_hash());
+}
+
+TEST(Runner, ticks_longer_than_a_sampling_interval_lose_samples_and_do_not_pile_them_up) {
+  model::Setup setup = arena("planar", 1);
+  setup.clock.mode = model::Clock::Mode::continuous;
+  for (auto& device : setup.instances.back().devices)
+    if (device.name == "laser") device.config.set("rate", Node::scalar("20"));
+  const auto simulation = build(setup);
+  const TopicBase* const scan = simulation->find_topic("rover1/laser");
+  ASSERT_TRUE(scan);
+  const std::uint64_t before = scan->count;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation->tick(Time::from_s(0.1)));
+  EXPECT_EQ(scan->count - before, 5u) << "one per tick: there are two intervals in each";
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(simulation->tick(Time::from_s(0.01)));
+  EXPECT_EQ(scan->count - before, 15u) << "0.5 s at 20 Hz, none made up for";
 }
 
 }  // namespace

@@ -31,12 +31,15 @@ class task_arena;
 
 namespace sandlot {
 
-class Watch;
+class Monitor;
 
 struct SimulationOptions {
   int threads = 1;           ///< 0: as many as the machine has
   bool run_programs = true;  ///< false: programs are not resumed (commands come from a log)
   std::span<const Kind* const> extra_kinds = {};  ///< beside the built-in ones
+  std::span<const ControllerKind* const> extra_controllers =
+      {};                                   ///< beside the built-in ones and the plugins'
+  std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
 };
 
 class Simulation {
@@ -52,7 +55,9 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Advances by one step. An error (a state that is no longer finite) ends the run.
-  Status tick();
+  /// @param measured  length of this step instead of the setup's (clock `continuous`): an input like any other, so it
+  ///                  is in the log. It is cut to the setup's shortest and longest step.
+  Status tick(std::optional<Time> measured = std::nullopt);
 
   Time now() const { return now_; }
   std::uint64_t tick_index() const { return tick_; }
@@ -67,17 +72,17 @@ class Simulation {
 
   /// Sets or clears the simulated time at which the run stops by itself; a run that had stopped may go on.
   void set_stop(std::optional<Time> stop);
-  /// An event beside the scenario's own; no part of State. See sim/watch.h.
+  /// An event beside the scenario's own; no part of State. See sim/monitor.h.
   Status add_event(model::EventDecl decl);
-  /// Named values and events. `watch().happened()`: the events of the latest tick.
-  const Watch& watch() const { return *watch_; }
+  /// Named values and events. `monitor().happened()`: the events of the latest tick.
+  const Monitor& monitor() const { return *monitor_; }
   void add_observer(Observer* observer) { observers_.push_back(observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
 
   /// Hash of all State.
   std::uint64_t state_hash() const;
-  /// Hashes of each entity's State, in creation order.
+  /// Hashes of the parts of the State: the run's own ("sim"), then each entity's in creation order.
   std::vector<SubHash> sub_hashes() const;
   /// All State with the Model it belongs to.
   std::vector<std::byte> snapshot() const;
@@ -134,6 +139,7 @@ class Simulation {
     Command command;
     std::uint64_t steps = 0;
     bool ended = false;
+    std::optional<std::string> failure;  ///< in its last step; ends the run
   };
   struct Entity {
     model::Instance instance;
@@ -167,6 +173,7 @@ class Simulation {
 
   // build.cpp
   Status build(Diagnostics& diagnostics);
+  Status gather_controllers(Diagnostics& diagnostics);
   Status add_entity(const model::Instance& instance, Diagnostics& diagnostics);
   Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
   Status add_program(Entity& entity, const model::ControllerDecl& decl);
@@ -179,8 +186,11 @@ class Simulation {
   ProgramEntry* find_program(std::string_view path);
   void rebuild_scene();
   void plan_next_sample(Device& device);
+  std::uint64_t hash_parts(std::vector<std::uint64_t>& parts) const;
+  std::shared_ptr<const std::vector<std::string>> name_parts() const;
 
   // tick.cpp: the phases, in order
+  void set_step(std::optional<Time> measured);
   void take_commands();
   void actuate();
   void physics();
@@ -193,10 +203,11 @@ class Simulation {
   Context context();
 
   // requests.cpp
-  Status carry_out(Request& request, const Source& source, std::uint64_t sequence);
-  Status apply_command(const CommandRequest& command, const Source& source, std::uint64_t sequence);
-  Status give_command(Slot& slot, std::span<const std::byte> bytes, const Source& source,
-                      std::uint64_t sequence);
+  Status carry_out(Request& request);
+  Status apply_command(const CommandRequest& command);
+  Status give_command(Slot& slot, std::span<const std::byte> bytes);
+  LogEntry& log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence);
+  void log_request(const Request& request, const Outcome& outcome);
   Slot* active_command_slot(Device& device, std::string_view type, std::string_view level);
   Status set_levels(const LevelRequest& request);
   void apply_program_orders();
@@ -229,12 +240,15 @@ class Simulation {
   std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
   std::vector<Pool> pools_;
+  std::vector<const ControllerKind*> controller_kinds_;
   std::vector<std::unique_ptr<Rule>> rules_;
-  std::unique_ptr<Watch> watch_;
+  std::unique_ptr<Monitor> monitor_;
   std::vector<std::unique_ptr<Medium>> media_;
   std::vector<Observer*> observers_;
 
   Time now_;
+  Time step_;  ///< length of the tick that is being computed
+  int substeps_ = 1;
   std::uint64_t tick_ = 0;
   std::uint64_t revision_ = 0;
   std::uint64_t next_serial_ = 0;
@@ -251,16 +265,11 @@ class Simulation {
   Actuation actuation_;
   EmissionBuffer emissions_;
   std::vector<ProgramEntry*> running_;
-  struct Applied {
-    Source source;
-    std::uint64_t sequence;
-    const TopicBase* slot;
-    std::uint32_t begin, size;
-  };
-  std::vector<Applied> applied_;
-  std::vector<std::byte> applied_bytes_;
+  Observer::Wants wants_;  ///< of all observers together
+  std::vector<LogEntry> log_, spare_log_, spare_frame_log_;
   std::shared_ptr<Frame> frame_;
-  std::vector<FrameCommand> spare_commands_;
+  std::shared_ptr<const std::vector<std::string>> part_names_;
+  std::uint64_t part_names_revision_ = 0;
   PhaseTimes phase_times_;
   mutable ByteWriter scratch_;
 };

@@ -157,8 +157,9 @@ TEST(Requests, administrators_go_first_then_robots_then_sequence) {
   const auto simulation = build(one_probe(Node::map()), with_probe);
   struct Log : Observer {
     std::vector<double> given;
+    Wants wants() const override { return {.log = true}; }
     void on_frame(const std::shared_ptr<const Frame>& frame) override {
-      for (const FrameCommand& command : frame->commands) {
+      for (const LogEntry& command : frame->log) {
         double x = 0;
         std::memcpy(&x, command.bytes.data(), 8);
         given.push_back(x);
@@ -326,6 +327,87 @@ TEST(Levels, planar_has_no_contact_drive_and_says_so) {
   for (auto& device : setup.instances.back().devices)
     if (device.kind == "diff_drive") device.config.set("level", Node::scalar("contact"));
   EXPECT_NE(error_of(setup).find("contact"), std::string::npos) << error_of(setup);
+}
+
+/// Every kind of request once, as the log carries it.
+std::vector<Request> all_requests() {
+  const model::Setup setup = arena("planar", 1);
+  Node value = Node::map();
+  value.set("gaussian", Node::scalar("1 cm"));
+  return {CommandRequest{"rover1/drive/ideal", "geometry_msgs/msg/Twist", bytes_of(1)},
+          ParameterRequest{"rover1/laser", "noise", value},
+          LevelRequest{"rover1/drive", {"ideal", "contact"}},
+          SpawnRequest{setup.instances.back()},
+          DeleteRequest{"crate1"},
+          PoseRequest{"rover1", {{1, 2, 3}, quat_from_rpy(0.1, 0.2, 0.3)}},
+          SampleRequest{"rover1/laser"},
+          LoadDeviceRequest{"rover1", setup.instances.back().devices[0]},
+          UnloadDeviceRequest{"rover1/laser"}};
+}
+
+TEST(Requests, each_kind_survives_being_bytes) {
+  const std::vector<Request> requests = all_requests();
+  ASSERT_EQ(requests.size(), std::variant_size_v<Request>);
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    ASSERT_EQ(requests[i].index(), i) << "one of each, in order";
+    ByteWriter w, again;
+    write_request(w, requests[i]);
+    ByteReader r(w.bytes());
+    Request read_back;
+    ASSERT_TRUE(read_request(r, read_back)) << request_kind(i);
+    EXPECT_EQ(read_back.index(), i);
+    EXPECT_EQ(request_target(read_back), request_target(requests[i]));
+    write_request(again, read_back);
+    EXPECT_TRUE(std::ranges::equal(again.bytes(), w.bytes())) << request_kind(i);
+    for (std::size_t cut = 0; cut < w.size(); cut += 1 + cut / 4) {
+      ByteReader torn(w.bytes().first(cut));
+      EXPECT_FALSE(read_request(torn, read_back)) << request_kind(i) << " cut at " << cut;
+    }
+  }
+}
+
+TEST(Requests, the_log_of_a_run_repeats_it_with_everything_that_was_asked_of_it) {
+  struct Log : Observer {
+    Wants wants() const override { return {.log = true, .hash = true}; }
+    void on_frame(const std::shared_ptr<const Frame>& frame) override {
+      ticks.push_back(frame->log);
+      hashes.push_back(frame->hash);
+    }
+    std::vector<std::vector<LogEntry>> ticks;
+    std::vector<std::uint64_t> hashes;
+  } live, repeated;
+  const auto original = build(arena("planar", 2));
+  original->add_observer(&live);
+  model::Instance guest = arena("planar", 1).instances.back();
+  guest.name = "guest";
+  guest.X_WM = {{3, 3, 0}, {}};
+  for (int tick = 0; tick < 150; ++tick) {
+    if (tick == 20) original->submit(SpawnRequest{guest});
+    if (tick == 40) original->submit(PoseRequest{"rover1", {{-3, 3, 0}, {}}});
+    if (tick == 50) original->submit(ParameterRequest{"guest/laser", "noise/white", Node::scalar("5 cm")});
+    if (tick == 60) original->submit(DeleteRequest{"rover2"});
+    if (tick == 61) original->submit(DeleteRequest{"rover2"});  // refused: it is gone
+    if (tick == 70) original->submit(SampleRequest{"guest/laser"});
+    advance(*original, 1);
+  }
+  const auto replay = build(arena("planar", 2));
+  replay->add_observer(&repeated);
+  std::size_t asked = 0, refused = 0;
+  for (const auto& entries : live.ticks) {
+    for (const LogEntry& entry : entries) {
+      if (entry.source.kind == Source::Kind::program) continue;
+      ++asked;
+      refused += entry.refused;
+      Request request;
+      ByteReader r(entry.bytes);
+      ASSERT_TRUE(read_request(r, request));
+      replay->submit(std::move(request), entry.source);
+    }
+    advance(*replay, 1);
+  }
+  EXPECT_EQ(asked, 6u);
+  EXPECT_EQ(refused, 1u);
+  EXPECT_EQ(repeated.hashes, live.hashes);
 }
 
 }  // namespace

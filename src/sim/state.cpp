@@ -8,8 +8,9 @@
 #include <algorithm>
 
 #include "sim/model_bytes.h"
+#include "sim/monitor.h"
+#include "sim/plugin.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -103,7 +104,7 @@ void Simulation::save_run(ByteWriter& w) const {
   write(w, refused_commands_);
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
-  watch_->save(w);
+  monitor_->save(w);
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -120,7 +121,7 @@ bool Simulation::load_run(ByteReader& r) {
     ByteReader block = read_block(r);
     medium->load(block);
   }
-  watch_->load(r);
+  monitor_->load(r);
   return r.ok();
 }
 
@@ -136,25 +137,43 @@ void Simulation::for_each_state(Visit&& visit) const {
   }
 }
 
-std::uint64_t Simulation::state_hash() const {
+/// Fills the hash of each part, the run's own first. @return the hash of all
+std::uint64_t Simulation::hash_parts(std::vector<std::uint64_t>& parts) const {
+  parts.clear();
   scratch_.clear();
   save_run(scratch_);
   std::uint64_t hash = hash64(scratch_.bytes());
+  parts.push_back(hash);
   for_each_state([&](const std::string&, std::uint64_t key, auto&& fill) {
     scratch_.clear();
     fill(scratch_);
-    hash = hash_combine(hash, hash64(scratch_.bytes(), key));
+    parts.push_back(hash64(scratch_.bytes(), key));
+    hash = hash_combine(hash, parts.back());
   });
   return hash;
 }
 
+std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
+  auto names = std::make_shared<std::vector<std::string>>(1, "sim");
+  for (const auto& entity : entities_) {
+    names->push_back(entity->instance.name);
+    for (const auto& device : entity->devices) names->push_back(device->path);
+    for (const auto& program : entity->programs) names->push_back(program->path);
+  }
+  return names;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::vector<std::uint64_t> parts;
+  return hash_parts(parts);
+}
+
 std::vector<SubHash> Simulation::sub_hashes() const {
+  std::vector<std::uint64_t> parts;
+  hash_parts(parts);
+  const auto names = name_parts();
   std::vector<SubHash> out;
-  for_each_state([&](const std::string& path, std::uint64_t key, auto&& fill) {
-    scratch_.clear();
-    fill(scratch_);
-    out.push_back({path, hash64(scratch_.bytes(), key)});
-  });
+  for (std::size_t i = 0; i < parts.size(); ++i) out.push_back({(*names)[i], parts[i]});
   return out;
 }
 
@@ -223,6 +242,10 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   for (std::uint64_t& serial : serials) read(block, serial);
   if (!block.ok()) return damaged("the model cannot be read");
 
+  for (model::PluginDecl& decl : setup.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+  }
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
   Diagnostics said_before;  // these warnings were given when the run began
   SL_TRY(sim->build(said_before));

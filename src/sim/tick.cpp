@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/text.h"
 #include "devices/parallel.h"
 #include "model/motion.h"
+#include "sim/monitor.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -28,13 +29,14 @@ void resize_keeping(std::vector<T>& items, std::size_t size, std::vector<T>& spa
 }  // namespace
 
 /// One step of the world. Each phase sees what the phases before it left; see docs/architecture.md section 3.
-Status Simulation::tick() {
+Status Simulation::tick(std::optional<Time> measured) {
   if (!failure_) return failure_;
   arena_->execute([&] {
+    set_step(measured);
     take_commands();  // 1  requests from outside, then what programs ordered in the previous tick
     actuate();        // 2  actuators turn commands into targets and wrenches
     physics();        // 3  sub-steps: servo loops, then the engine
-    now_ = now_ + setup_.step;
+    now_ = now_ + step_;
     ++tick_;
     update_scene();   // 4  new poses into the ray scene
     sense();          // 5  sensors that are due take their samples
@@ -47,14 +49,37 @@ Status Simulation::tick() {
 }
 
 Context Simulation::context() {
-  return {now_, setup_.step, tick_, setup_.seed, *engine_, *rays_, actuation_, emissions_};
+  return {now_, step_, tick_, setup_.seed, *engine_, *rays_, actuation_, emissions_};
+}
+
+/// A clock that measures takes longer sub-steps no further than the setup allows: it takes more of them.
+void Simulation::set_step(std::optional<Time> measured) {
+  wants_ = {};
+  for (const Observer* observer : observers_) {
+    const Observer::Wants wants = observer->wants();
+    wants_.messages = wants_.messages || wants.messages;
+    wants_.log = wants_.log || wants.log;
+    wants_.hash = wants_.hash || wants.hash;
+    wants_.links = wants_.links || wants.links;
+  }
+  for (LogEntry& entry : log_) spare_log_.push_back(std::move(entry));
+  log_.clear();
+  step_ = setup_.step;
+  substeps_ = setup_.substeps;
+  if (!measured) return;
+  step_ = std::clamp(*measured, setup_.clock.min_step, setup_.clock.max_step);
+  const std::int64_t total = step_.ns * setup_.substeps;
+  substeps_ = static_cast<int>(std::max<std::int64_t>(1, (total + setup_.step.ns - 1) / setup_.step.ns));
+  if (!wants_.log) return;
+  LogEntry& entry = log_entry(LogEntry::step, {}, 0);
+  ByteWriter w;
+  write(w, step_.ns);
+  entry.bytes.assign(w.bytes().begin(), w.bytes().end());
 }
 
 void Simulation::take_commands() {
   const PhaseTimer timer(phase_times_, Phase::commands);
   outcomes_.clear();
-  applied_.clear();
-  applied_bytes_.clear();
   {
     const std::lock_guard lock(inbox_mutex_);
     std::swap(carrying_out_, inbox_);
@@ -63,9 +88,10 @@ void Simulation::take_commands() {
     return std::tuple(a.source.kind, a.source.id, a.sequence) <
            std::tuple(b.source.kind, b.source.id, b.sequence);
   });
-  for (Pending& pending : carrying_out_)
-    outcomes_.push_back(
-        {pending.source, pending.sequence, carry_out(pending.request, pending.source, pending.sequence)});
+  for (Pending& pending : carrying_out_) {
+    outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request)});
+    if (wants_.log) log_request(pending.request, outcomes_.back());
+  }
   carrying_out_.clear();
   apply_program_orders();
 }
@@ -75,7 +101,7 @@ void Simulation::actuate() {
   actuation_.clear();
   emissions_.clear();
   Context ctx = context();
-  ctx.now = now_ + setup_.step;
+  ctx.now = now_ + step_;
   for (Pool& pool : pools_) {
     pool.levels.clear();
     for (const Device* device : pool.devices) pool.levels.push_back(device->levels);
@@ -88,15 +114,23 @@ void Simulation::actuate() {
 
 void Simulation::physics() {
   const PhaseTimer timer(phase_times_, Phase::physics);
-  const double h_s = setup_.step.s() / setup_.substeps;
+  const double h_s = step_.s() / substeps_;
   Context ctx = context();
-  ctx.now = now_ + setup_.step;
-  for (int substep = 0; substep < setup_.substeps; ++substep) {
+  ctx.now = now_ + step_;
+  // Of a fixed clock the sub-steps are counted through; a tick of a continuous one may have any number of them.
+  const auto key = [&](int substep) {
+    const auto at = static_cast<std::uint64_t>(substep);
+    return setup_.clock.mode == model::Clock::Mode::fixed
+               ? tick_ * static_cast<std::uint64_t>(setup_.substeps) + at
+               : hash_combine(tick_, at);
+  };
+  for (int substep = 0; substep < substeps_; ++substep) {
     // Wrenches of the actuate phase act over the whole tick, those of pre_substep in their sub-step.
     const std::size_t held = actuation_.wrenches.size();
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
         pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
@@ -105,11 +139,14 @@ void Simulation::physics() {
       const model::Moved to = model::moved(*entity->instance.motion, from_s, from_s + h_s);
       engine_->guide(entity->id, to.X_WM, to.V_WM);
     }
-    engine_->step(h_s, hash_combine(mix64(setup_.seed), tick_ * static_cast<std::uint64_t>(setup_.substeps) +
-                                                            static_cast<std::uint64_t>(substep)));
+    engine_->step(h_s, hash_combine(mix64(setup_.seed), key(substep)));
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
+        pool.pool->post_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {
     failure_ = std::move(finite);
@@ -146,12 +183,17 @@ void Simulation::sense() {
       // The first sample has no predecessor: it counts as one nominal interval after it.
       if (device.sample == 0) {
         const double rate_hz = pool.pool->rate_hz(i);
-        pool.since[i] = rate_hz > 0 ? due_time({}, 1, rate_hz) : setup_.step;
+        pool.since[i] = rate_hz > 0 ? due_time({}, 1, rate_hz) : step_;
       } else {
         pool.since[i] = now_ - device.last;
       }
       device.last = now_;
       ++device.sample;
+      // A tick of a continuous clock may be longer than the interval: the samples it passed over are lost.
+      if (setup_.clock.mode == model::Clock::Mode::continuous && device.due > Time{}) {
+        const double passed = (now_ - device.start).s() * pool.pool->rate_hz(i);
+        device.sample = std::max(device.sample, static_cast<std::uint64_t>(passed) + 1);
+      }
       plan_next_sample(device);
     }
     if (!pool.due.empty()) pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
@@ -171,7 +213,7 @@ void Simulation::judge() {
     auto reason = rule->judge(ctx);
     if (reason && !stop_reason_) stop_reason_ = std::move(reason);
   }
-  auto judged = watch_->judge(now_);
+  auto judged = monitor_->judge(now_);
   if (judged) {
     if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
   } else {
@@ -193,27 +235,31 @@ void Simulation::control() {
       const Observation obs(now_, entry.topics, entry.seen,
                             Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
       entry.command.clear();
-      const Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
+      entry.failure = std::move(resumed.failure);
       entry.ended = resumed.waiting_for == Program::Waiting::nothing;
       ++entry.steps;
       for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
     }
   });
+  for (const ProgramEntry* entry : running_) {
+    if (!entry->failure || !failure_) continue;
+    failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
+                         number_text(now_.s()) + " s: " + *entry->failure,
+                     "", entry->decl.place};
+    stop_reason_ = failure_.error().what;
+  }
 }
 
 void Simulation::publish() {
   const PhaseTimer timer(phase_times_, Phase::publish);
   if (observers_.empty()) return;
-  Observer::Wants wants;
-  for (const Observer* observer : observers_) {
-    wants.messages = wants.messages || observer->wants().messages;
-    wants.hash = wants.hash || observer->wants().hash;
-  }
   // The previous frame is filled again unless somebody still holds it.
   if (!frame_ || frame_.use_count() > 1) frame_ = std::make_shared<Frame>();
   Frame& frame = *frame_;
   frame.tick = tick_;
   frame.now = now_;
+  frame.step = step_;
   frame.revision = revision_;
   frame.instances.resize(entities_.size());
   const auto states = engine_->states();
@@ -224,30 +270,31 @@ void Simulation::publish() {
     out.id = entity.id;
     out.is_robot = entity.instance.is_robot;
     out.X_WM = engine_->pose(entity.id);
-    out.V_WB = states[engine_->bodies(entity.id).front().index].V_WB;
+    const std::span<const BodyId> bodies = engine_->bodies(entity.id);
+    out.V_WB = states[bodies.front().index].V_WB;
+    out.model = entity.instance.model;
+    out.X_WL.clear();
+    if (wants_.links)
+      for (const BodyId body : bodies) out.X_WL.push_back(states[body.index].X_WB);
   }
   frame.topics.clear();
-  if (wants.messages)
+  if (wants_.messages)
     for (const auto& entity : entities_)
       for (const auto& device : entity->devices)
         for (const Slot& slot : device->topics)
           if (slot.topic->count > 0 && slot.topic->stamp == now_) frame.topics.push_back(slot.topic->clone());
-  resize_keeping(frame.commands, applied_.size(), spare_commands_);
-  for (std::size_t i = 0; i < applied_.size(); ++i) {
-    const Applied& applied = applied_[i];
-    const auto* const bytes = applied_bytes_.data() + applied.begin;
-    FrameCommand& out = frame.commands[i];
-    out.source = applied.source;
-    out.sequence = applied.sequence;
-    out.target = applied.slot->name();
-    out.type = applied.slot->type();
-    out.bytes.assign(bytes, bytes + applied.size);
-  }
+  resize_keeping(frame.log, log_.size(), spare_frame_log_);
+  std::copy(log_.begin(), log_.end(), frame.log.begin());
   frame.hash = 0;
-  frame.sub_hashes.clear();
-  if (wants.hash) {
-    frame.sub_hashes = sub_hashes();
-    frame.hash = state_hash();
+  frame.parts.clear();
+  if (wants_.hash) {
+    frame.hash = hash_parts(frame.parts);
+    // Which parts there are changes with the Model alone.
+    if (!part_names_ || part_names_revision_ != revision_) {
+      part_names_ = name_parts();
+      part_names_revision_ = revision_;
+    }
+    frame.part_names = part_names_;
   }
   for (Observer* observer : observers_) observer->on_frame(frame_);
 }

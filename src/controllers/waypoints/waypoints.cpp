@@ -24,7 +24,7 @@ void Waypoints::step(const Observation& obs, Command& cmd) {
   const auto seen = obs.get(odometry);
   msg::Twist twist;
   if (!seen.valid) return cmd.set(drive, twist);
-  const Pose& X_OB = seen.message.pose;
+  const Pose& X_OB = seen.message.pose.pose;
   const auto count = static_cast<std::uint32_t>(spec.points_m.size());
   const auto aim = [&] {
     const auto& point = spec.points_m[state.next];

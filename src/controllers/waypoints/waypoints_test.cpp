@@ -32,7 +32,7 @@ struct Trial {
   }
   void decide(bool with_message = true) {
     if (with_message) {
-      topic.message.pose = {{x, y, 0}, quat_from_axis_angle({0, 0, 1}, theta)};
+      topic.message.pose.pose = {{x, y, 0}, quat_from_axis_angle({0, 0, 1}, theta)};
       topic.publish({});
     }
     const TopicBase* const topics[] = {&topic};

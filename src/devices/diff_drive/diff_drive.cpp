@@ -146,12 +146,12 @@ void Drive::sense(PoolView<Drive> pool, const Context& context) {
     count_wheels(drive, joints);
     Topic<msg::Odometry>& topic = *drive.odometry[is_ideal(pool.levels[index]) ? ideal : contact];
     const Pose X_BD{{drive.dx_m, drive.dy_m, 0}, {}};
-    topic.message.pose = X_BD * to_pose(drive.state.X_OD) * inverse(X_BD);
+    topic.message.pose.pose = X_BD * to_pose(drive.state.X_OD) * inverse(X_BD);
     const DriveVelocity moving = drive.geometry.forward(
         {mean(drive.left, joints, &JointState::velocity), mean(drive.right, joints, &JointState::velocity)});
-    topic.message.twist.linear = {moving.v_mps + moving.omega_radps * drive.dy_m,
-                                  -moving.omega_radps * drive.dx_m, 0};
-    topic.message.twist.angular = {0, 0, moving.omega_radps};
+    topic.message.twist.twist.linear = {moving.v_mps + moving.omega_radps * drive.dy_m,
+                                        -moving.omega_radps * drive.dx_m, 0};
+    topic.message.twist.twist.angular = {0, 0, moving.omega_radps};
     topic.publish(context.now);
   }
 }

@@ -65,15 +65,15 @@ TEST(DiffDrive, OdometryRunsOnExactArcs) {
   };
   // The sums of a few hundred ticks, each rounded: 300 * 2e-16 of metres.
   run(1.0, 0, 200);
-  expect_pose(odometry(rig, "contact").pose, 2, 0, 0, 1e-12);
+  expect_pose(odometry(rig, "contact").pose.pose, 2, 0, 0, 1e-12);
   run(math::pi / 4, math::pi / 4, 200);
-  expect_pose(odometry(rig, "contact").pose, 3, 1, math::pi / 2, 1e-12);
-  EXPECT_NEAR(odometry(rig, "contact").twist.linear.x, math::pi / 4, 1e-12);
-  EXPECT_NEAR(odometry(rig, "contact").twist.angular.z, math::pi / 4, 1e-12);
+  expect_pose(odometry(rig, "contact").pose.pose, 3, 1, math::pi / 2, 1e-12);
+  EXPECT_NEAR(odometry(rig, "contact").twist.twist.linear.x, math::pi / 4, 1e-12);
+  EXPECT_NEAR(odometry(rig, "contact").twist.twist.angular.z, math::pi / 4, 1e-12);
   run(0, math::pi, 100);
-  expect_pose(odometry(rig, "contact").pose, 3, 1, 1.5 * math::pi, 1e-12);
+  expect_pose(odometry(rig, "contact").pose.pose, 3, 1, 1.5 * math::pi, 1e-12);
   run(-1.0, 0, 100);  // backward while looking along -y
-  expect_pose(odometry(rig, "contact").pose, 3, 2, 1.5 * math::pi, 1e-12);
+  expect_pose(odometry(rig, "contact").pose.pose, 3, 2, 1.5 * math::pi, 1e-12);
   EXPECT_EQ(odometry(rig, "contact").header.frame_id, "robot1/odom");
   EXPECT_EQ(odometry(rig, "contact").child_frame_id, "robot1/chassis");
 }
@@ -85,9 +85,9 @@ TEST(DiffDrive, OdometryIsOfTheBaseEvenWhenTheAxleIsElsewhere) {
   rig.command("drive/contact", twist(0, math::pi / 2));
   for (int i = 0; i < 100; ++i) rig.act();
   const msg::Odometry& m = odometry(rig, "contact");
-  expect_pose(m.pose, 0.4, -0.4, math::pi / 2, 1e-12);
-  EXPECT_NEAR(m.twist.linear.x, 0, 1e-12);
-  EXPECT_NEAR(m.twist.linear.y, -0.4 * math::pi / 2, 1e-12);
+  expect_pose(m.pose.pose, 0.4, -0.4, math::pi / 2, 1e-12);
+  EXPECT_NEAR(m.twist.twist.linear.x, 0, 1e-12);
+  EXPECT_NEAR(m.twist.twist.linear.y, -0.4 * math::pi / 2, 1e-12);
 }
 
 TEST(DiffDrive, IdealMovesTheBaseAndItsOdometryFollowsTheTruth) {
@@ -104,7 +104,7 @@ TEST(DiffDrive, IdealMovesTheBaseAndItsOdometryFollowsTheTruth) {
     const double x = dx + r * sine - (dx * cosine - dy * sine);
     const double y = dy + r * (1 - cosine) - (dx * sine + dy * cosine);
     expect_pose(rig.engine->body[0].X_WB, x, y, angle, 1e-11);
-    expect_pose(odometry(rig, "ideal").pose, x, y, angle, 1e-11);
+    expect_pose(odometry(rig, "ideal").pose.pose, x, y, angle, 1e-11);
   }
 }
 
@@ -115,7 +115,7 @@ TEST(DiffDrive, IdealWheelsDoNotTurnWhenTheBaseIsHeld) {
   rig.command("drive/ideal", twist(0.5, 0));
   for (int i = 0; i < 100; ++i) rig.act();
   EXPECT_EQ(rig.engine->joint[0].position, 0);
-  expect_pose(odometry(rig, "ideal").pose, 0, 0, 0, 0);
+  expect_pose(odometry(rig, "ideal").pose.pose, 0, 0, 0, 0);
 }
 
 TEST(DiffDrive, SpeedsAndAccelerationsAreLimited) {
@@ -129,12 +129,12 @@ TEST(DiffDrive, SpeedsAndAccelerationsAreLimited) {
   rig.command("drive/contact", twist(5, 0));
   for (int i = 1; i <= 60; ++i) {
     rig.act(4);
-    EXPECT_NEAR(odometry(rig, "contact").twist.linear.x, std::min(0.8, 2 * 0.01 * i), 1e-12);
+    EXPECT_NEAR(odometry(rig, "contact").twist.twist.linear.x, std::min(0.8, 2 * 0.01 * i), 1e-12);
   }
   rig.command("drive/contact", twist(0.8, -9));
   for (int i = 1; i <= 40; ++i) {
     rig.act();
-    EXPECT_NEAR(odometry(rig, "contact").twist.angular.z, -std::min(2.0, 10 * 0.01 * i), 1e-12);
+    EXPECT_NEAR(odometry(rig, "contact").twist.twist.angular.z, -std::min(2.0, 10 * 0.01 * i), 1e-12);
   }
   // The same limits are what the ideal level hands to the engine.
   ASSERT_TRUE(rig.switch_level(ideal_bit));
@@ -186,7 +186,7 @@ TEST(DiffDrive, ASwitchOfLevelKeepsOdometryCommandAndSpeed) {
   ASSERT_TRUE(rig.add("drive", drive({{"max_linear_acceleration", "1"}}), ideal_bit));
   rig.command("drive/ideal", twist(0.5, 0));
   for (int i = 0; i < 200; ++i) rig.act();
-  const Pose before = odometry(rig, "ideal").pose;
+  const Pose before = odometry(rig, "ideal").pose.pose;
   EXPECT_NEAR(before.p.x, 0.5 * 2 - 0.125, 0.02);
 
   ASSERT_TRUE(rig.switch_level(contact_bit));
@@ -197,7 +197,7 @@ TEST(DiffDrive, ASwitchOfLevelKeepsOdometryCommandAndSpeed) {
   EXPECT_NEAR(rig.engine->target[0].velocity, 5, 1e-9);  // at speed, with no new command
   rig.act();
   EXPECT_EQ(rig.engine->drive_targets_given, given + 1);
-  EXPECT_NEAR(odometry(rig, "contact").pose.p.x, before.p.x + 0.01, 1e-9);
+  EXPECT_NEAR(odometry(rig, "contact").pose.pose.p.x, before.p.x + 0.01, 1e-9);
 
   ASSERT_TRUE(rig.switch_level(ideal_bit));
   rig.act();
@@ -230,7 +230,7 @@ TEST(DiffDrive, GeometryComesFromTheModelWhenItIsNotGiven) {
   rig.act();
   EXPECT_NEAR(rig.engine->target[0].velocity, 5, 1e-12);
   EXPECT_NEAR(rig.engine->target[1].velocity, -5, 1e-12);
-  EXPECT_NEAR(odometry(rig, "contact").twist.linear.x, 0.5, 1e-12);
+  EXPECT_NEAR(odometry(rig, "contact").twist.twist.linear.x, 0.5, 1e-12);
 }
 
 TEST(DiffDrive, SeveralWheelsPerSideShareTheirSpeedAndCountTheirMean) {
@@ -256,7 +256,7 @@ TEST(DiffDrive, SeveralWheelsPerSideShareTheirSpeedAndCountTheirMean) {
   for (const std::size_t joint : {0u, 1u, 3u, 4u}) EXPECT_NEAR(rig.engine->target[joint].velocity, 5, 1e-12);
   rig.engine->joint[3].position += 0.2;  // a rear wheel slips: half of it counts
   rig.engine->joint[4].position += 0.2;
-  EXPECT_NEAR(odometry(rig, "contact").pose.p.x, 0.005 + 0.1 * 0.1, 1e-12);
+  EXPECT_NEAR(odometry(rig, "contact").pose.pose.p.x, 0.005 + 0.1 * 0.1, 1e-12);
 }
 
 TEST(DiffDrive, WhatIsWrongIsSaidAtItsPlace) {
@@ -305,7 +305,7 @@ TEST(DiffDrive, StateSurvivesSaving) {
     b.act();
   }
   EXPECT_EQ(a.saved(), b.saved());
-  EXPECT_EQ(odometry(a, "contact").pose, odometry(b, "contact").pose);
+  EXPECT_EQ(odometry(a, "contact").pose.pose, odometry(b, "contact").pose.pose);
 }
 
 Result<Spec> spec_of(const Node& plugin, Diagnostics& diagnostics) {

@@ -41,11 +41,11 @@ void GroundTruth::sense(PoolView<GroundTruth> pool, const Context& context) {
     GroundTruth& truth = pool.all[index];
     const BodyState& link = context.engine.states()[truth.body];
     msg::Odometry& message = truth.odometry->message;
-    message.pose = link.X_WB * truth.X_LS;
+    message.pose.pose = link.X_WB * truth.X_LS;
     const Vec3 p_LS_W = rotate(link.X_WB.q, truth.X_LS.p);
-    message.twist.linear = rotate_inverse(message.pose.q,
-                                          link.V_WB.linear + cross(link.V_WB.angular, p_LS_W));
-    message.twist.angular = rotate_inverse(message.pose.q, link.V_WB.angular);
+    message.twist.twist.linear = rotate_inverse(message.pose.pose.q,
+                                                link.V_WB.linear + cross(link.V_WB.angular, p_LS_W));
+    message.twist.twist.angular = rotate_inverse(message.pose.pose.q, link.V_WB.angular);
     truth.odometry->publish(context.now);
   }
 }

@@ -30,11 +30,11 @@ TEST(GroundTruth, IsThePoseAndVelocityOfThePointItStandsFor) {
   EXPECT_EQ(topic.message.child_frame_id, "robot1/truth");
   EXPECT_EQ(topic.stamp, Time::from_s(4));
   // S lies at (2, 4) and looks along -x of the world.
-  expect_near(topic.message.pose.p, {2, 4, 0});
-  expect_near(rotate(topic.message.pose.q, {1, 0, 0}), {-1, 0, 0});
+  expect_near(topic.message.pose.pose.p, {2, 4, 0});
+  expect_near(rotate(topic.message.pose.pose.q, {1, 0, 0}), {-1, 0, 0});
   // v_S = (0.5, 0) + 2 z x (0, 1) = (-1.5, 0) in the world, which is 1.5 ahead in S.
-  expect_near(topic.message.twist.linear, {1.5, 0, 0});
-  expect_near(topic.message.twist.angular, {0, 0, 2});
+  expect_near(topic.message.twist.twist.linear, {1.5, 0, 0});
+  expect_near(topic.message.twist.twist.angular, {0, 0, 2});
 }
 
 TEST(GroundTruth, ServesOnlyThoseThatAreDue) {

@@ -39,25 +39,25 @@ void count(Imu& imu, const Motion& now) {
   state.running_s = 0;
 }
 
-Vec3 corrupt(const AxesSpec& spec, Axes& axes, Vec3 truth, double dt_s, Stream& random) {
+Vec3 corrupt(const AxesSpec& spec, Axes& axes, Vec3 truth, double dt_s, Stream& random, double errors) {
   // One after the other: the order of the draws is part of the result.
-  const double x = axes.x.corrupt(spec.x, truth.x, dt_s, random);
-  const double y = axes.y.corrupt(spec.y, truth.y, dt_s, random);
-  const double z = axes.z.corrupt(spec.z, truth.z, dt_s, random);
+  const double x = axes.x.corrupt(spec.x, truth.x, dt_s, random, errors);
+  const double y = axes.y.corrupt(spec.y, truth.y, dt_s, random, errors);
+  const double z = axes.z.corrupt(spec.z, truth.z, dt_s, random, errors);
   return {x, y, z};
 }
 
-void reset(const AxesSpec& spec, Axes& axes, Stream& random) {
-  axes.x.reset(spec.x, random);
-  axes.y.reset(spec.y, random);
-  axes.z.reset(spec.z, random);
+void reset(const AxesSpec& spec, Axes& axes, Stream& random, const std::string& name) {
+  axes.x.reset(spec.x, random, name + "/x");
+  axes.y.reset(spec.y, random, name + "/y");
+  axes.z.reset(spec.z, random, name + "/z");
 }
 
-std::array<double, 9> covariance(const AxesSpec& spec, double dt_s) {
+std::array<double, 9> covariance(const AxesSpec& spec, double dt_s, double errors) {
   std::array<double, 9> out{};
-  out[0] = spec.x.variance(dt_s);
-  out[4] = spec.y.variance(dt_s);
-  out[8] = spec.z.variance(dt_s);
+  out[0] = spec.x.variance(dt_s, errors);
+  out[4] = spec.y.variance(dt_s, errors);
+  out[8] = spec.z.variance(dt_s, errors);
   return out;
 }
 
@@ -172,14 +172,14 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
     case Reference::custom: imu.q_RW = conjugate(quat_from_rpy(rpy.x, rpy.y, rpy.z)); break;
   }
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  reset(spec.gyro, imu.state.gyro, random);
-  reset(spec.accel, imu.state.accel, random);
+  reset(spec.gyro, imu.state.gyro, random, "gyro");
+  reset(spec.accel, imu.state.accel, random, "accel");
   imu.message = build.publish<msg::Imu>(0, "imu");
   msg::Imu& message = imu.message->message;
   message.header.frame_id = build.frame_id();
   const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : build.tick.s();
-  message.angular_velocity_covariance = covariance(spec.gyro, interval_s);
-  message.linear_acceleration_covariance = covariance(spec.accel, interval_s);
+  message.angular_velocity_covariance = covariance(spec.gyro, interval_s, spec.errors);
+  message.linear_acceleration_covariance = covariance(spec.accel, interval_s, spec.errors);
   return imu;
 }
 
@@ -214,8 +214,8 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
     const double dt_s = pool.since[index].s();
     msg::Imu& message = imu.message->message;
     message.orientation = normalised(imu.q_RW * now.q_WS);
-    message.angular_velocity = corrupt(imu.spec.gyro, state.gyro, rate, dt_s, random);
-    message.linear_acceleration = corrupt(imu.spec.accel, state.accel, force, dt_s, random);
+    message.angular_velocity = corrupt(imu.spec.gyro, state.gyro, rate, dt_s, random, imu.spec.errors);
+    message.linear_acceleration = corrupt(imu.spec.accel, state.accel, force, dt_s, random, imu.spec.errors);
     imu.message->publish(context.now);
   }
 }

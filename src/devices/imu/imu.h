@@ -4,7 +4,8 @@
 /// Frame    sensor frame S: the link's frame moved by the device's own pose. Rates and accelerations are given in S.
 /// Output   level `imu`: sensor_msgs/Imu. angular_velocity [rad/s]. linear_acceleration: the specific force [m/s^2],
 ///          acceleration of S's origin less gravity, so (0, 0, 9.81) at rest. orientation of S in the frame that
-///          `reference` names. Covariances are those of the noise configured.
+///          `reference` names. Covariances are those of the noise configured,
+///          at the factor `errors` of the start.
 /// Time     rates and forces are means over the interval since the previous sample, as integrating sensors show them:
 ///          per sub-step h the velocity of S's origin changes by dv and S turns by dq;
 ///
@@ -13,7 +14,7 @@
 ///          with R_m the orientation half way. The orientation is that at the end of the tick. The first sample of a
 ///          device has no interval: it shows the present rate and a force without acceleration.
 /// Noise    noise/channel_noise.h, for each axis of gyro and accel. The orientation is exact.
-/// Limits   no scale or axis errors, temperature, vibration between sub-steps, filter delays. East is the world's x
+/// Limits   no errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East is the world's x
 ///          axis. Setting a robot's pose while it moves shows as a blow in the sample that covers it.
 /// Cost     a few rotations and one arc tangent per sub-step; six noise channels per sample; no allocation.
 /// Errors   a bad spec: place and path of the key.
@@ -57,6 +58,7 @@ struct Spec {
   Reference reference = Reference::world;
   Vec3 reference_rpy_rad;
   AxesSpec gyro, accel;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
@@ -68,8 +70,9 @@ struct Spec {
     visit(Field{"reference_rpy", "rad", "Roll, pitch, yaw of the custom reference frame in the world.", -1e4,
                 1e4},
           s.reference_rpy_rad);
-    visit(Field{"gyro", "", "Errors of the gyroscopes [rad/s]."}, s.gyro);
-    visit(Field{"accel", "", "Errors of the accelerometers [m/s^2]."}, s.accel);
+    visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
+    visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
+    visit(errors_field, s.errors);
   }
 };
 

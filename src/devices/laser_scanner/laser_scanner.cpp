@@ -25,8 +25,8 @@ void finish(Scanner& scanner, std::uint64_t sample, Time since, const Context& c
   for (float& range_m : ranges)
     if (range_m < min_m) range_m = -std::numeric_limits<float>::infinity();
   Stream random(context.seed, scanner.key, Purpose::noise, sample);
-  corrupt_ranges(spec.noise, scanner.state.bias, since.s(), random, spec.min_range_m, spec.max_range_m,
-                 ranges, scanner.constant_m);
+  scanner.state.noise.corrupt(spec.noise, since.s(), random, spec.min_range_m, spec.max_range_m, ranges,
+                              spec.errors);
   scanner.scan->publish(context.now);
 }
 
@@ -79,8 +79,7 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
     scanner.directions_S.push_back({c, s, 0});
   }
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  scanner.state.bias.reset(spec.noise.bias, random);
-  scanner.constant_m = constant_error_m(spec.noise, random);
+  scanner.state.noise.reset(spec.noise, random);
 
   scanner.scan = build.publish<msg::LaserScan>(0, "ranges");
   msg::LaserScan& message = scanner.scan->message;

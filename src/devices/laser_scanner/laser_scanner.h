@@ -32,6 +32,7 @@ struct Spec {
   double max_range_m = 10.0;
   double rate_hz = 10.0;
   RangeNoiseSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"beams", "1", "Number of beams.", 1, 100'000}, s.beams);
@@ -43,15 +44,14 @@ struct Spec {
     visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
     visit(Field{"rate", "Hz", "Scans per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"noise", "m", "Error of the distances."}, s.noise);
+    visit(errors_field, s.errors);
   }
 };
 
 struct State {
-  DriftingBias bias;
+  RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"bias", "m", "Error that all beams share."}, s.bias);
-  }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
 };
 
 struct Scanner {
@@ -63,7 +63,6 @@ struct Scanner {
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link that carries it
   Pose X_LS;
-  double constant_m = 0;  ///< error of this device, drawn when it was built
   std::vector<Vec3> directions_S;
   Topic<msg::LaserScan>* scan = nullptr;
 

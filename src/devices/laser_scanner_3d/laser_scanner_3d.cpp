@@ -114,8 +114,7 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
   }
   scanner.distance_m.resize(beams);
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  scanner.state.bias.reset(spec.noise.bias, random);
-  scanner.constant_m = constant_error_m(spec.noise, random);
+  scanner.state.noise.reset(spec.noise, random);
 
   scanner.cloud = build.publish<msg::PointCloud2>(0, "points");
   msg::PointCloud2& message = scanner.cloud->message;
@@ -155,8 +154,8 @@ void Scanner::sense(PoolView<Scanner> pool, const Context& context) {
     for (float& d : scanner.distance_m)
       if (static_cast<double>(d) < spec.min_range_m) d = -std::numeric_limits<float>::infinity();
     Stream random(context.seed, scanner.key, Purpose::noise, pool.sample[index]);
-    corrupt_ranges(spec.noise, scanner.state.bias, pool.since[index].s(), random, spec.min_range_m,
-                   spec.max_range_m, scanner.distance_m, scanner.constant_m);
+    scanner.state.noise.corrupt(spec.noise, pool.since[index].s(), random, spec.min_range_m, spec.max_range_m,
+                                scanner.distance_m, spec.errors);
     fill_cloud(scanner);
     scanner.cloud->publish(context.now);
   }

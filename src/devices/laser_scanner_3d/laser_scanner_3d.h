@@ -38,6 +38,7 @@ struct Spec {
   double rate_hz = 10.0;
   bool organised = true;
   RangeNoiseSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"columns", "1", "Beams per plane.", 1, 100'000}, s.columns);
@@ -60,15 +61,14 @@ struct Spec {
     visit(Field{"organised", "", "One point for every beam, NaN where nothing was hit; else hits only."},
           s.organised);
     visit(Field{"noise", "m", "Error of the distances."}, s.noise);
+    visit(errors_field, s.errors);
   }
 };
 
 struct State {
-  DriftingBias bias;
+  RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"bias", "m", "Error that all beams share."}, s.bias);
-  }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
 };
 
 struct Scanner {
@@ -80,7 +80,6 @@ struct Scanner {
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link that carries it
   Pose X_LS;
-  double constant_m = 0;           ///< error of this device, drawn when it was built
   std::vector<Vec3> directions_S;  ///< plane by plane
   std::vector<float> distance_m;   ///< of the sample being taken
   Topic<msg::PointCloud2>* cloud = nullptr;

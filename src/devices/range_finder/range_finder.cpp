@@ -17,8 +17,8 @@ void finish(Finder& finder, std::uint64_t sample, Time since, const Context& con
   float nearest = *std::min_element(finder.distance_m.begin(), finder.distance_m.end());
   if (static_cast<double>(nearest) < spec.min_range_m) nearest = -std::numeric_limits<float>::infinity();
   Stream random(context.seed, finder.key, Purpose::noise, sample);
-  corrupt_ranges(spec.noise, finder.state.bias, since.s(), random, spec.min_range_m, spec.max_range_m,
-                 {&nearest, 1}, finder.constant_m);
+  finder.state.noise.corrupt(spec.noise, since.s(), random, spec.min_range_m, spec.max_range_m, {&nearest, 1},
+                             spec.errors);
   finder.range->message.range = nearest;
   finder.range->publish(context.now);
 }
@@ -95,8 +95,7 @@ Result<Finder> Finder::create(const DeviceBuild& build, Spec spec) {
   }
   finder.distance_m.resize(finder.directions_S.size());
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  finder.state.bias.reset(spec.noise.bias, random);
-  finder.constant_m = constant_error_m(spec.noise, random);
+  finder.state.noise.reset(spec.noise, random);
 
   finder.range = build.publish<msg::Range>(0, "range");
   msg::Range& message = finder.range->message;

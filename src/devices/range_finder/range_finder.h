@@ -36,6 +36,7 @@ struct Spec {
   double max_range_m = 4.0;
   double rate_hz = 20.0;
   RangeNoiseSpec noise;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"radiation", "", "What it sends."}, s.radiation);
@@ -45,13 +46,14 @@ struct Spec {
     visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"noise", "m", "Error of the distance."}, s.noise);
+    visit(errors_field, s.errors);
   }
 };
 
 struct State {
-  DriftingBias bias;
+  RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"bias", "m", "Error that drifts."}, s.bias); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
 };
 
 struct Finder {
@@ -63,7 +65,6 @@ struct Finder {
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link that carries it
   Pose X_LS;
-  double constant_m = 0;  ///< error of this device, drawn when it was built
   std::vector<Vec3> directions_S;
   std::vector<float> distance_m;  ///< of the sample being taken
   Topic<msg::Range>* range = nullptr;

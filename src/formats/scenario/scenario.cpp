@@ -295,10 +295,22 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   if (const Node* world = node.find("world")) out.world_place = world->place();
   SL_TRY(read_physics(root.physics, out));
   out.step_s = root.time.step_s;
+  if (root.time.clock == spec::Clock::continuous) out.clock.mode = model::Clock::Mode::continuous;
+  out.clock.min_step = Time::from_s(root.time.min_step_s);
+  out.clock.max_step = Time::from_s(root.time.max_step_s);
+  if (out.clock.max_step < out.clock.min_step)
+    return node.find("time")->error("min_step is longer than max_step", "", "/time");
   out.substeps = root.time.substeps;
   out.control_interval = root.time.control_interval;
   out.stop_s = root.time.stop_s;
   out.seed = root.seed;
+  for (std::size_t i = 0; i < root.plugins.size(); ++i) {
+    const Node& all = *node.find("plugins");
+    const Node& each = all.is_sequence() ? all.items()[i] : all;
+    if (root.plugins[i].empty())
+      return each.error("the plugin's name is empty", "name a shared library", "/plugins");
+    out.plugins.emplace_back(root.plugins[i], each.place());
+  }
   std::int64_t total = 0;
   for (std::size_t i = 0; i < root.robots.size(); ++i) {
     const Node& each = node.find("robots")->items()[i];

@@ -65,10 +65,12 @@ struct Scenario {
   Place engine_place;
   Node physics;          ///< the engine's own keys; a map
   double step_s = 0.01;  ///< length of a tick
+  model::Clock clock;
   int substeps = 1;
   int control_interval = 1;
   std::optional<double> stop_s;
   std::uint64_t seed = 1;
+  std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
   std::vector<model::ValueDecl> values;
   std::vector<model::EventDecl> events;

@@ -14,14 +14,31 @@ inline constexpr double max_distance_m = 1e6;
 inline constexpr double max_angle_rad = 1e4;
 inline constexpr int max_robots = 1'000'000;
 
+enum class Clock : std::uint8_t { fixed, continuous };
+inline std::span<const EnumName<Clock>> enum_names(Clock) {
+  static constexpr EnumName<Clock> names[] = {{"fixed", Clock::fixed}, {"continuous", Clock::continuous}};
+  return names;
+}
+
 struct Time {
+  Clock clock = Clock::fixed;
+  double min_step_s = 1e-4, max_step_s = 0.1;
   double step_s = 0.01;
   int substeps = 1;
   int control_interval = 1;
   std::optional<double> stop_s;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"step", "s", "Length of a tick.", 1e-6, 10}, s.step_s);
+    visit(Field{"clock", "",
+                "fixed: every tick has the same length; continuous: each takes the time that computing the "
+                "last one "
+                "took, so that the run keeps up with the wall clock; that time is recorded."},
+          s.clock);
+    visit(Field{"step", "s", "Length of a tick; of a continuous clock the first one's.", 1e-6, 10}, s.step_s);
+    visit(Field{"min_step", "s", "Shortest tick of a continuous clock.", 1e-6, 10}, s.min_step_s);
+    visit(Field{"max_step", "s",
+                "Longest tick of a continuous clock; the run falls behind when it takes more.", 1e-6, 10},
+          s.max_step_s);
     visit(Field{"substeps", "1", "Physics steps per tick.", 1, 1000}, s.substeps);
     visit(Field{"control_interval", "1", "Ticks from one control step to the next.", 1, 1e6},
           s.control_interval);
@@ -179,6 +196,7 @@ struct Root {
   Time time;
   std::uint64_t seed = 1;
   Node vars;
+  std::vector<std::string> plugins;
   std::vector<Robot> robots;
   Node values;
   std::vector<Event> events;
@@ -197,6 +215,10 @@ struct Root {
     // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
     visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
     visit(Field{"vars", "", "Values that ${name} stands for."}, s.vars);
+    visit(Field{"plugins", "",
+                "Shared libraries with controllers: files relative to this one, or names in the search path.",
+                0, 0, Field::none, 100},
+          s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
@@ -206,6 +228,6 @@ struct Root {
 };
 
 /// Keys of the root that later versions of Sandlot read.
-inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules", "record", "clock"};
+inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules", "record"};
 
 }  // namespace sandlot::formats::scenario_spec

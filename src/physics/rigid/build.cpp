@@ -297,6 +297,7 @@ void RigidEngine::give_ids(Instance& instance) {
     if (index == joint_slots_.size()) {
       joint_slots_.emplace_back();
       joint_states_.emplace_back();
+      loads_.emplace_back();
     }
     joint_slots_[index].instance = &instance;
     joint_slots_[index].joint = j;
@@ -307,6 +308,7 @@ void RigidEngine::give_ids(Instance& instance) {
 void RigidEngine::remove(InstanceId id) {
   library::prepare_thread();
   Instance& instance = alive(id);
+  forget_watch();
   wake_neighbours(instance);
   std::erase_if(contacts_, [&](const Contact& c) {
     const auto mine = [&](BodyId b) { return link_slots_[b.index].instance == &instance; };

@@ -220,12 +220,14 @@ void RigidEngine::attach_contacts(double h) {
       contact.surface.motion2 = dot(cross(into, direction), v);
     }
     // ODE's normal points into the first shape, ours from a towards b.
-    contacts_.push_back({a.link, b.link, point, -normal, contact.geom.depth});
+    contacts_.push_back({a.link, b.link, point, -normal, contact.geom.depth, {}});
   }
+  const bool watching = begin_contacts(hit_count_);
   // In a loop of its own: ODE copies the contact, and would wait for what was only just written there.
   for (const Hit& hit : hits()) {
     const dJointID joint = dJointCreateContact(world_, contact_joints_, &hit.contact);
     dJointAttach(joint, hit.a->body ? hit.a->body->ode : nullptr, hit.b->body ? hit.b->body->ode : nullptr);
+    if (watching) tell_contact(*hit.a, *hit.b, joint);
   }
   counters_.contacts = contacts_.size();
 }

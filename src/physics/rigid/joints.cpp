@@ -188,7 +188,7 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
 /// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's normal force,
 /// is an equation between velocities at a point: with the point at radius c = pitch / (2 pi) from the axis and the
 /// direction half along the axis, half round it, it says slide - c turn = 0.
-void couple_thread(dWorldID world, dJointGroupID group, const Joint& j, double erp, double h) {
+void couple_thread(dWorldID world, dJointGroupID group, Joint& j, double erp, double h) {
   const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
   const Vec3 axis = axis_W(j), radial = rotate(on_parent.q, second_to(j.decl->axis_J));
   const double per_rad = j.decl->thread_pitch_m / math::tau;
@@ -210,8 +210,25 @@ void couple_thread(dWorldID world, dJointGroupID group, const Joint& j, double e
     contact.fdir1[k] = direction[k];
   }
   Body* const second = second_body(j);
-  dJointAttach(dJointCreateContact(world, group, &contact), first_body(j).ode,
-               second ? second->ode : nullptr);
+  j.thread = dJointCreateContact(world, group, &contact);
+  dJointAttach(j.thread, first_body(j).ode, second ? second->ode : nullptr);
+}
+
+void rub(dWorldID world, dJointGroupID group, Joint& j) {
+  Body* const second = second_body(j);
+  const Vec3 axis = reversed(j) ? -axis_W(j) : axis_W(j);
+  const bool turns = j.turns();
+  j.rubbing = turns ? dJointCreateAMotor(world, group) : dJointCreateLMotor(world, group);
+  dJointAttach(j.rubbing, first_body(j).ode, second ? second->ode : nullptr);
+  if (turns) {
+    dJointSetAMotorMode(j.rubbing, dAMotorUser);
+    dJointSetAMotorNumAxes(j.rubbing, 1);
+    dJointSetAMotorAxis(j.rubbing, 0, 0, axis.x, axis.y, axis.z);
+  } else {
+    dJointSetLMotorNumAxes(j.rubbing, 1);
+    dJointSetLMotorAxis(j.rubbing, 0, 0, axis.x, axis.y, axis.z);
+  }
+  set_row_motor(j.rubbing, turns, 0, 0, j.target.friction, -1);
 }
 
 void destroy_joint(Joint& j) {
@@ -222,15 +239,26 @@ void destroy_joint(Joint& j) {
 
 namespace {
 
-bool is_driven(const Joint& j) { return j.leader || j.target.mode == JointTarget::Mode::velocity; }
+/// A motor that brings damping or inertia of its own is a row, not a force.
+bool has_slope(const Joint& j) {
+  return j.target.mode == JointTarget::Mode::effort && (j.target.damping > 0 || j.target.inertia > 0);
+}
+bool is_driven(const Joint& j) {
+  return j.leader || j.target.mode == JointTarget::Mode::velocity || has_slope(j);
+}
+dJointID motor_of(const Joint& j) { return j.is_hinge() ? j.main : j.motor; }
 
-void run_motor(Joint& j, double velocity, double max_effort) {
-  const dJointID motor = j.is_hinge() ? j.main : j.motor;
+void set_motor_parameter(const Joint& j, int parameter, double value) {
   const auto set = j.is_hinge() ? dJointSetHingeParam
                    : j.turns()  ? dJointSetAMotorParam
                                 : dJointSetLMotorParam;
-  set(motor, dParamVel, std::clamp(velocity, -j.decl->max_velocity, j.decl->max_velocity));
-  set(motor, dParamFMax, max_effort);
+  set(motor_of(j), parameter, value);
+}
+
+void run_motor(Joint& j, double velocity, double max_effort) {
+  const dJointID motor = motor_of(j);
+  set_motor_parameter(j, dParamVel, std::clamp(velocity, -j.decl->max_velocity, j.decl->max_velocity));
+  set_motor_parameter(j, dParamFMax, max_effort);
   dJointSetFeedback(motor, is_driven(j) ? j.feedback.get() : nullptr);
 }
 
@@ -238,11 +266,18 @@ void run_motor(Joint& j, double velocity, double max_effort) {
 
 void set_motor(Joint& j) {
   if (!j.main || j.is(model::JointType::ball) || j.leader) return;
-  run_motor(j, is_driven(j) ? j.target.velocity : 0,
-            is_driven(j) ? std::clamp(j.target.max_effort, 0.0, j.decl->max_effort) : 0);
+  const bool by_velocity = j.target.mode == JointTarget::Mode::velocity;
+  run_motor(j, by_velocity ? j.target.velocity : 0,
+            by_velocity ? std::clamp(j.target.max_effort, 0.0, j.decl->max_effort) : 0);
+  if (j.soft_motor && !has_slope(j)) {
+    set_motor_parameter(j, dParamCFM, dWorldGetCFM(dBodyGetWorld(first_body(j).ode)));
+    j.soft_motor = false;
+  }
 }
 
 void prepare_joint(Joint& j, double erp, double h) {
+  j.pushed = 0;
+  j.thread = j.rubbing = nullptr;
   if (!j.main || j.decl->type == model::JointType::ball) return;
   const bool turns = j.turns();
   if (turns && j.limited) dJointSetAMotorAngle(j.extra, limit_row, j.position);
@@ -259,7 +294,17 @@ void prepare_joint(Joint& j, double erp, double h) {
     return run_motor(j, mimic.multiplier * j.leader->velocity + erp * (wanted - j.position) / h, effort);
   }
   if (j.target.mode != JointTarget::Mode::effort) return;
-  j.effort = std::clamp(j.target.effort, -j.decl->max_effort, j.decl->max_effort);
+  const double effort = std::clamp(j.target.effort, -j.decl->max_effort, j.decl->max_effort);
+  if (has_slope(j)) {
+    // The row says v = vel - cfm * effort, which is the motor's law solved for the velocity it ends with.
+    const double slope = j.target.damping + j.target.inertia / h;
+    set_motor_parameter(j, dParamVel, (effort + j.target.inertia / h * j.velocity) / slope);
+    set_motor_parameter(j, dParamFMax, dInfinity);
+    set_motor_parameter(j, dParamCFM, 1 / slope);
+    j.soft_motor = true;
+    return;
+  }
+  j.effort = j.pushed = effort;
   const Vec3 along = j.effort * axis_W(j);
   const auto push = [&](Body* body, double sign) {
     if (!body) return;
@@ -290,6 +335,45 @@ void measure_effort(Joint& j) {
   } else {
     j.effort = dot(force, axis);
   }
+}
+
+void tell(Joint& j) {
+  if (!j.watched_rows) j.watched_rows = std::make_unique<std::array<dJointFeedback, 6>>();
+  auto& rows = *j.watched_rows;
+  rows.fill({});
+  std::size_t next = 0;
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread, j.rubbing}) {
+    dJointFeedback& row = rows[next++];
+    if (ode && !dJointGetFeedback(ode)) dJointSetFeedback(ode, &row);
+  }
+}
+
+void silence(Joint& j) {
+  if (!j.watched_rows) return;
+  const auto& rows = *j.watched_rows;
+  // The last two live no longer than the sub-step.
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second}) {
+    const dJointFeedback* const told = ode ? dJointGetFeedback(ode) : nullptr;
+    if (told >= rows.data() && told < rows.data() + rows.size()) dJointSetFeedback(ode, nullptr);
+  }
+}
+
+Transmitted transmitted(const Joint& j) {
+  Vec3 force, torque;  // on the first body, about its centre
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread, j.rubbing}) {
+    if (!ode) continue;
+    const dJointFeedback* const told = dJointGetFeedback(ode);
+    if (!told) continue;
+    force += Vec3{told->f1[0], told->f1[1], told->f1[2]};
+    torque += Vec3{told->t1[0], told->t1[1], told->t1[2]};
+  }
+  const Body& body = first_body(j);
+  const Vec3 point = (body.pose() * (j.child ? j.X_child : j.X_parent)).p;
+  torque -= cross(point - body.p, force);
+  if (reversed(j)) force = -force, torque = -torque;
+  const Vec3 along = j.pushed * axis_W(j);
+  (j.turns() ? torque : force) += along;
+  return {point, force, torque};
 }
 
 namespace {

@@ -11,6 +11,8 @@
 ///   friction  Coulomb: velocity 0 with at most `friction`
 ///   thread    slide = pitch / (2 pi) * turn, as one two-sided contact between the flanks of the thread: the two
 ///             bodies do not move against each other along the direction that lies on a flank's normal
+///   motor     of its own: effort - (damping + inertia / h) (v - v_before) ..., one row, compliant by the inverse of
+///             that slope; friction of a motor is a row in the contacts' group, made anew in every sub-step
 ///   mimic     a velocity motor with at most the joint's max_effort: the leader's velocity times the multiplier, and
 ///             ERP of the position error per sub-step
 ///
@@ -31,7 +33,9 @@ void anchor_joint(Joint& joint, const Pose& X_WM);
 void destroy_joint(Joint& joint);
 
 /// The row of a screw's thread for this sub-step, in a group that is emptied after it.
-void couple_thread(dWorldID world, dJointGroupID group, const Joint& joint, double erp, double h_s);
+void couple_thread(dWorldID world, dJointGroupID group, Joint& joint, double erp, double h_s);
+/// The row of the motor's own friction, likewise.
+void rub(dWorldID world, dJointGroupID group, Joint& joint);
 
 /// Tells ODE about joint.target.
 void set_motor(Joint& joint);
@@ -39,6 +43,16 @@ void set_motor(Joint& joint);
 void prepare_joint(Joint& joint, double erp, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);
+/// Lets ODE tell the forces of all rows of this joint in this sub-step. @pre prepared
+void tell(Joint& joint);
+/// No longer.
+void silence(Joint& joint);
+/// Sum of what tell() asked for. @pre solved, and the bodies have not moved yet
+struct Transmitted {
+  Vec3 point_W;             ///< origin of J
+  Vec3 force_N, torque_Nm;  ///< on the child, the torque about that point, in W
+};
+Transmitted transmitted(const Joint& joint);
 /// After the bodies moved: velocity, then position from the old one and `h_s` of that velocity.
 void measure_position(Joint& joint, double h_s, const Pose& X_WM);
 /// From the bodies as they are.

@@ -79,13 +79,21 @@ struct Joint {
   dJointID second = nullptr;      ///< the same rows about the second axis of a universal joint
   const Joint* leader = nullptr;  ///< whom it follows (mimic)
   std::unique_ptr<dJointFeedback> feedback;
+  /// Of main, motor, extra, second and the rows that live for one sub-step; made when the joint is watched first.
+  std::unique_ptr<std::array<dJointFeedback, 6>> watched_rows;
   bool limited = false;
+  bool soft_motor = false;  ///< the motor's row has a compliance of its own now; follows from the target
 
   // State
   double position = 0;
   double velocity = 0;  ///< follows from the bodies
   JointTarget target;
   double effort = 0;  ///< that the target put in
+
+  // Scratch of one sub-step.
+  bool told = false;                             ///< its load, or one that depends on it, is watched
+  dJointID thread = nullptr, rubbing = nullptr;  ///< rows of the contacts' group
+  double pushed = 0;                             ///< effort that went in as a force, not as a row
 
   bool is(model::JointType type) const { return decl->type == type; }
   bool is_hinge() const { return is(model::JointType::revolute) || is(model::JointType::continuous); }

@@ -49,7 +49,9 @@ Capabilities RigidEngine::capabilities() const {
           .joints = true,
           .contact_drives = true,
           .ideal_drives = true,
-          .rays = false};
+          .rays = false,
+          .contact_forces = true,
+          .joint_loads = true};
 }
 
 void RigidEngine::apply(std::span<const Wrench> wrenches) {
@@ -71,6 +73,8 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
     const Vec3 arm = rotate(body->q, slot.instance->links[slot.link].X_BL * com_L);
     body->force_N += wrench.force_N;
     body->torque_Nm += wrench.torque_Nm + cross(arm, wrench.force_N);
+    if (!watched_joints_.empty())
+      pushes_.push_back({slot.instance, slot.link, body->p + arm, wrench.force_N, wrench.torque_Nm});
   }
 }
 

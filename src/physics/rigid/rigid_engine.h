@@ -49,6 +49,8 @@ class RigidEngine final : public Engine {
   void apply(std::span<const Wrench> wrenches) override;
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
+  void watch(const Watch& watch) override;
+  std::span<const JointLoad> joint_loads() const override { return loads_; }
   void step(double h_s, std::uint64_t stream_key) override;
   Status check_finite() const override;
   void save(InstanceId id, ByteWriter& w) const override;
@@ -74,6 +76,7 @@ class RigidEngine final : public Engine {
     std::uint32_t generation = 0;
     Instance* instance = nullptr;  ///< null: free
     std::uint32_t link = 0;
+    bool watched = false;  ///< its contacts, in the next sub-step
   };
   struct JointSlot {
     std::uint32_t generation = 0;
@@ -111,8 +114,19 @@ class RigidEngine final : public Engine {
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
 
+  // loads.cpp
+  bool begin_contacts(std::size_t count);
+  void tell_contact(const Geom& a, const Geom& b, dJointID joint);
+  void measure_contacts();
+  void measure_loads(double h_s);
+  JointLoad load_of(const Instance& instance, const Joint& joint, double h_s);
+  JointLoad load_within_body(const Instance& instance, const Joint& joint, double h_s);
+  void find_behind(const Instance& instance, const Joint& joint);
+  void forget_watch();
+
   // step.cpp
   void push_forces(double h_s);
+  void drive(Instance& instance, double h_s);
   void find_islands();
   std::uint32_t root(std::uint32_t node);
   void unite(const Body* a, const Body* b);
@@ -145,6 +159,7 @@ class RigidEngine final : public Engine {
   std::vector<BodyState> states_;
   std::vector<JointState> joint_states_;
   std::vector<Contact> contacts_;
+  std::vector<JointLoad> loads_;
   EngineCounters counters_;
   bool finite_ = true;
   std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
@@ -158,6 +173,18 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;
   bool woke_ = false;
+  // What is watched in the next sub-step: see loads.cpp.
+  struct Push {
+    const Instance* instance;
+    std::uint32_t link;
+    Vec3 point_W, force_N, torque_Nm;
+  };
+  std::vector<std::uint32_t> watched_links_, watched_joints_;  ///< indices of slots
+  std::vector<Push> pushes_;                                   ///< wrenches on links, while loads are watched
+  std::vector<dJointFeedback> contact_feedback_;
+  std::vector<std::uint8_t> told_contacts_;  ///< per contact: 0 not watched, 1 the force told is on b, 2 on a
+  std::vector<std::uint8_t> behind_;         ///< per link: beyond the fixed joint in question
+  std::vector<std::uint32_t> frontier_;
 };
 
 }  // namespace sandlot::rigid

@@ -12,22 +12,39 @@ constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4;
 bool in_range(Vec3 v) { return dot(v, v) < 1e24; }  // false for NaN too
 bool in_range(double x) { return std::abs(x) < 1e300; }
 
+constexpr std::uint8_t motor_flag = 4;  // beside the mode: the target brings damping, inertia or friction
+
 void save_target(ByteWriter& w, const JointTarget& t) {
-  write(w, static_cast<std::uint8_t>(t.mode));
+  const bool motor = t.damping > 0 || t.inertia > 0 || t.friction > 0;
+  const auto flags = static_cast<std::uint8_t>(static_cast<std::uint8_t>(t.mode) | (motor ? motor_flag : 0));
+  write(w, flags);
   if (t.mode == JointTarget::Mode::free) return;
   write(w, t.velocity);
   write(w, t.max_effort);
   write(w, t.effort);
+  if (!(flags & motor_flag)) return;
+  write(w, t.damping);
+  write(w, t.inertia);
+  write(w, t.friction);
 }
 
 bool load_target(ByteReader& r, JointTarget& t) {
   std::uint8_t mode = 0;
   read(r, mode);
+  const bool motor = mode & motor_flag;
+  mode &= static_cast<std::uint8_t>(~motor_flag);
   t = {.joint = t.joint, .mode = static_cast<JointTarget::Mode>(mode)};
   if (t.mode == JointTarget::Mode::free) return r.ok();
   read(r, t.velocity);
   read(r, t.max_effort);
   read(r, t.effort);
+  if (motor) {
+    read(r, t.damping);
+    read(r, t.inertia);
+    read(r, t.friction);
+    for (const double x : {t.damping, t.inertia, t.friction})
+      if (!(x >= 0 && x < 1e300)) return false;
+  }
   return r.ok() && mode <= static_cast<std::uint8_t>(JointTarget::Mode::effort) && in_range(t.velocity) &&
          in_range(t.max_effort) && in_range(t.effort);
 }

@@ -67,6 +67,9 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
     attach_contacts(h);
     find_islands();
     solve(h, stream_key);
+    if (!watched_links_.empty()) measure_contacts();
+    if (!watched_joints_.empty()) measure_loads(h);
+    forget_watch();
   } catch (const library::Fault& fault) {
     finite_ = false;
     fault_ = fault.message;
@@ -88,8 +91,12 @@ void RigidEngine::push_forces(double h) {
       const Body* const mover = joint.child ? joint.child : joint.parent;
       if (joint.main && joint.is(model::JointType::screw) && mover->awake)
         couple_thread(world_, contact_joints_, joint, spec_.erp, h);
+      if (joint.main && joint.target.friction > 0 && !joint.leader && !joint.is(model::JointType::ball) &&
+          joint.target.mode == JointTarget::Mode::effort && mover->awake)
+        rub(world_, contact_joints_, joint);
+      if (joint.told && joint.main) tell(joint);
     }
-    if (instance->drive.active) push_drive(*instance, gravity_, h);
+    if (instance->drive.active) drive(*instance, h);
     for (Body& b : instance->bodies) {
       if (!b.awake) continue;
       put_orientation(b);
@@ -102,6 +109,16 @@ void RigidEngine::push_forces(double h) {
       if (b.torque_Nm != Vec3{}) dBodyAddTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
     }
   }
+}
+
+/// Rails push every body of the instance; who measures loads takes what they do to the base's body as done to the base.
+void RigidEngine::drive(Instance& instance, double h) {
+  const Body* const base = instance.links[instance.drive_link].body;
+  const Vec3 force = base ? base->force_N : Vec3{}, torque = base ? base->torque_Nm : Vec3{};
+  push_drive(instance, gravity_, h);
+  if (base && !watched_joints_.empty())
+    pushes_.push_back(
+        {&instance, instance.drive_link, base->p, base->force_N - force, base->torque_Nm - torque});
 }
 
 std::uint32_t RigidEngine::root(std::uint32_t node) {

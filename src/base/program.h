@@ -1,0 +1,12 @@
+#pragma once
+/// Where this program lies on disk: data, models and plugins are found from there.
+#include <string>
+#include <vector>
+
+namespace sandlot {
+
+/// Absolute paths of the program and, where that is another file, of the library that this code was linked into; links
+/// resolved. A program of a user's own finds Sandlot's data by the second.
+std::vector<std::string> program_files();
+
+}  // namespace sandlot

@@ -1,0 +1,333 @@
+#include "messages/json.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "base/time.h"
+#include "messages/cdr.h"
+#include "messages/typed_array.h"
+#include "messages/utf8.h"
+
+namespace sandlot {
+namespace {
+
+using Json = nlohmann::json;
+using Count = MessageField::Count;
+
+constexpr std::string_view base64_letters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+void add_base64(std::span<const std::byte> bytes, std::string& out) {
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto at = [&](std::size_t k) {
+      return i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0;
+    };
+    const unsigned three = at(0) << 16 | at(1) << 8 | at(2);
+    out += base64_letters[three >> 18];
+    out += base64_letters[three >> 12 & 63];
+    out += i + 1 < bytes.size() ? base64_letters[three >> 6 & 63] : '=';
+    out += i + 2 < bytes.size() ? base64_letters[three & 63] : '=';
+  }
+}
+
+/// False when `text` is not base64.
+bool parse_base64(std::string_view text, std::vector<std::byte>& out) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  if (text.size() % 4 == 1) return false;
+  unsigned bits = 0;
+  int have = 0;
+  for (const char c : text) {
+    const auto value = base64_letters.find(c);
+    if (value == std::string_view::npos) return false;
+    bits = bits << 6 | static_cast<unsigned>(value);
+    if ((have += 6) >= 8) out.push_back(static_cast<std::byte>(bits >> (have -= 8) & 0xFF));
+  }
+  return true;
+}
+
+void add_string(std::string_view text, std::string& out) {
+  out += '"';
+  each_utf8(text, [&](std::string_view piece) {
+    for (const char c : piece) {
+      if (c == '"' || c == '\\') (out += '\\') += c;
+      else if (c == '\n') out += "\\n";
+      else if (c == '\t') out += "\\t";
+      else if (static_cast<unsigned char>(c) < 0x20) {
+        constexpr std::string_view hex = "0123456789abcdef";
+        (((out += "\\u00") += hex[static_cast<unsigned char>(c) >> 4]) += hex[c & 15]);
+      } else {
+        out += c;
+      }
+    }
+  });
+  out += '"';
+}
+
+template <class T>
+void add_as(const std::byte* value, std::string& out) {
+  T number;
+  std::memcpy(&number, value, sizeof number);
+  if constexpr (std::is_floating_point_v<T>)
+    if (!std::isfinite(number)) return void(out += "null");
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  out.append(text.data(), end);
+}
+
+void add_number(Wire type, const std::byte* value, std::string& out) {
+  switch (type) {
+    case Wire::boolean: out += *value != std::byte{0} ? "true" : "false"; break;
+    case Wire::byte:
+    case Wire::character:
+    case Wire::uint8: add_as<std::uint8_t>(value, out); break;
+    case Wire::int8: add_as<std::int8_t>(value, out); break;
+    case Wire::int16: add_as<std::int16_t>(value, out); break;
+    case Wire::uint16: add_as<std::uint16_t>(value, out); break;
+    case Wire::int32: add_as<std::int32_t>(value, out); break;
+    case Wire::uint32: add_as<std::uint32_t>(value, out); break;
+    case Wire::int64: add_as<std::int64_t>(value, out); break;
+    case Wire::uint64: add_as<std::uint64_t>(value, out); break;
+    case Wire::float32: add_as<float>(value, out); break;
+    case Wire::float64: add_as<double>(value, out); break;
+    case Wire::string:
+    case Wire::message: break;
+  }
+}
+
+class Writer : public CdrVisitor {
+ public:
+  explicit Writer(std::string& out) : out_(out) { out_.clear(); }
+  void open(const MessageInfo&) override { separate(), out_ += '{'; }
+  void close() override { out_ += '}'; }
+  void field(const MessageField& field) override { separate(), add_string(field.name, out_), out_ += ':'; }
+  void open_list(std::size_t) override { separate(), out_ += '['; }
+  void close_list() override { out_ += ']'; }
+  void text(std::string_view text) override { separate(), add_string(text, out_); }
+  void number(Wire type, const std::byte* value) override { separate(), add_number(type, value, out_); }
+  void numbers(Wire type, std::span<const std::byte> bytes) override {
+    if (is_octet(type)) {
+      out_ += '"';
+      add_base64(bytes, out_);
+      out_ += '"';
+      return;
+    }
+    out_ += '[';
+    for (std::size_t i = 0; i < bytes.size(); i += size_of(type)) number(type, &bytes[i]);
+    out_ += ']';
+  }
+
+ private:
+  /// A comma, unless this is the first of a list or the value of a field.
+  void separate() {
+    if (!out_.empty() && out_.back() != '{' && out_.back() != '[' && out_.back() != ':') out_ += ',';
+  }
+  std::string& out_;
+};
+
+std::string kind_of(const Json& value) {
+  if (value.is_number()) return value.dump();
+  return value.is_binary() ? "bytes" : value.type_name();
+}
+Error wrong(Wire type, const Json& value) {
+  return {"must be " + std::string(name_of(type)) + ", is " + kind_of(value)};
+}
+
+template <class T>
+bool integer_from(const Json& value, T& out) {
+  using Limits = std::numeric_limits<T>;
+  if (value.is_number_unsigned()) {
+    const auto x = value.get<std::uint64_t>();
+    out = static_cast<T>(x);
+    return x <= static_cast<std::uint64_t>(Limits::max());
+  }
+  if (value.is_number_integer()) {
+    const auto x = value.get<std::int64_t>();
+    out = static_cast<T>(x);
+    return x < 0 ? std::is_signed_v<T> && x >= static_cast<std::int64_t>(Limits::min())
+                 : static_cast<std::uint64_t>(x) <= static_cast<std::uint64_t>(Limits::max());
+  }
+  if (!value.is_number_float()) return false;
+  // 3.0 is 3: some clients know only one kind of number. Beyond 2^53 such a number may not be what was meant.
+  const double x = value.get<double>();
+  if (!(std::abs(x) <= 9007199254740992.0) || std::floor(x) != x) return false;
+  const auto whole = static_cast<std::int64_t>(x);
+  return integer_from(Json(whole), out);
+}
+template <class T>
+bool set_integer(const Json& value, std::byte* to) {
+  T number{};
+  if (!integer_from(value, number)) return false;
+  std::memcpy(to, &number, sizeof number);
+  return true;
+}
+template <class T>
+bool set_float(const Json& value, std::byte* to) {
+  if (!value.is_null() && !value.is_number()) return false;
+  const double x = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+  if (std::isfinite(x) && std::abs(x) > static_cast<double>(std::numeric_limits<T>::max())) return false;
+  const T number = static_cast<T>(x);
+  std::memcpy(to, &number, sizeof number);
+  return true;
+}
+
+bool set_number(Wire type, const Json& value, std::byte* to) {
+  switch (type) {
+    case Wire::boolean:
+      if (!value.is_boolean()) return false;
+      *to = std::byte{value.get<bool>()};
+      return true;
+    case Wire::byte:
+    case Wire::character:
+    case Wire::uint8: return set_integer<std::uint8_t>(value, to);
+    case Wire::int8: return set_integer<std::int8_t>(value, to);
+    case Wire::int16: return set_integer<std::int16_t>(value, to);
+    case Wire::uint16: return set_integer<std::uint16_t>(value, to);
+    case Wire::int32: return set_integer<std::int32_t>(value, to);
+    case Wire::uint32: return set_integer<std::uint32_t>(value, to);
+    case Wire::int64: return set_integer<std::int64_t>(value, to);
+    case Wire::uint64: return set_integer<std::uint64_t>(value, to);
+    case Wire::float32: return set_float<float>(value, to);
+    case Wire::float64: return set_float<double>(value, to);
+    case Wire::string:
+    case Wire::message: break;
+  }
+  return false;
+}
+
+Json number_json(Wire type, const std::byte* value) {
+  std::uint64_t big = 0;
+  if (type == Wire::uint64) return std::memcpy(&big, value, 8), Json(big);
+  std::int64_t whole = 0;
+  if (type == Wire::int64) return std::memcpy(&whole, value, 8), Json(whole);
+  return number_at(type, value);
+}
+
+Status set_message(const MessageInfo& info, const Json& value, void* object);
+
+Status set_one(const MessageField& field, const Json& value, std::byte* to) {
+  if (field.type == Wire::message) return set_message(*field.message, value, to);
+  if (field.type == Wire::string) {
+    if (!value.is_string()) return wrong(field.type, value);
+    *reinterpret_cast<std::string*>(to) = value.get_ref<const std::string&>();
+    return {};
+  }
+  if (!set_number(field.type, value, to)) return wrong(field.type, value);
+  return {};
+}
+
+/// Room for `count` elements of a list, or the error that it cannot have so many.
+Result<std::byte*> room(const MessageField& field, std::size_t count, std::byte* place) {
+  if (field.count == Count::sequence) return static_cast<std::byte*>(field.vector->remade(place, count));
+  if (count != field.length)
+    return Error{"must have " + std::to_string(field.length) + " elements, has " + std::to_string(count)};
+  return place;
+}
+
+Error under(std::string_view key, Error error) {
+  error.path = "/" + std::string(key) + error.path;
+  return error;
+}
+
+/// A list of numbers that came as bytes.
+Status set_bytes(const MessageField& field, Wire type, std::span<const std::byte> bytes, std::byte* place) {
+  const std::size_t size = size_of(type);
+  if (bytes.size() % size) return Error{"is no whole number of elements"};
+  const std::size_t count = bytes.size() / size;
+  SL_ASSIGN(std::byte * to, room(field, count, place));
+  if (type == field.type || (is_octet(type) && is_octet(field.type))) {
+    if (count) std::memcpy(to, bytes.data(), bytes.size());
+    return {};
+  }
+  for (std::size_t i = 0; i < count; ++i, to += field.stride) {
+    const Json value = number_json(type, &bytes[i * size]);
+    if (!set_number(field.type, value, to)) return under(std::to_string(i), wrong(field.type, value));
+  }
+  return {};
+}
+
+Status set_field(const MessageField& field, const Json& value, std::byte* place) {
+  if (field.count == Count::one) return set_one(field, value, place);
+  if (value.is_string() && is_octet(field.type)) {
+    std::vector<std::byte> bytes;
+    if (!parse_base64(value.get_ref<const std::string&>(), bytes)) return Error{"is no base64"};
+    return set_bytes(field, field.type, bytes, place);
+  }
+  if (value.is_binary() && size_of(field.type) && field.type != Wire::boolean) {
+    const auto& binary = value.get_binary();
+    const Wire type = binary.has_subtype() ? typed_array_type(static_cast<std::uint64_t>(binary.subtype()))
+                                           : Wire::uint8;
+    return set_bytes(field, type, std::as_bytes(std::span(binary)), place);
+  }
+  if (!value.is_array())
+    return Error{"must be a list of " +
+                 std::string(field.message ? field.message->name : name_of(field.type)) + ", is " +
+                 kind_of(value)};
+  SL_ASSIGN(std::byte * to, room(field, value.size(), place));
+  for (std::size_t i = 0; i < value.size(); ++i, to += field.stride)
+    if (Status done = set_one(field, value[i], to); !done)
+      return under(std::to_string(i), std::move(done).error());
+  return {};
+}
+
+Status set_time(const MessageInfo& info, const Json& value, void* object) {
+  auto& time = *static_cast<Time*>(object);
+  std::int32_t sec = static_cast<std::int32_t>(time.ns / Time::per_s);
+  std::uint32_t nanosec = static_cast<std::uint32_t>(time.ns % Time::per_s);
+  for (const auto& [key, member] : value.items()) {
+    const bool whole = key == info.fields[0].name;
+    const bool done = whole ? integer_from(member, sec) : integer_from(member, nanosec);
+    if (!done) return under(key, wrong(info.fields[whole ? 0 : 1].type, member));
+  }
+  time = {sec * Time::per_s + nanosec};
+  return {};
+}
+
+Status set_message(const MessageInfo& info, const Json& value, void* object) {
+  if (!value.is_object()) return Error{"must be an object (" + info.name + "), is " + kind_of(value)};
+  const auto known = [&](const std::string& key) -> const MessageField* {
+    for (const MessageField& field : info.fields)
+      if (field.name == key) return &field;
+    return nullptr;
+  };
+  for (const auto& [key, member] : value.items()) {
+    if (known(key)) continue;
+    std::vector<std::string> names;
+    for (const MessageField& field : info.fields) names.push_back(field.name);
+    return Error{info.name + " has no field '" + key.substr(0, 100) + "'", suggestion(key, names)};
+  }
+  if (info.is_time) return set_time(info, value, object);
+  for (const auto& [key, member] : value.items()) {
+    const MessageField& field = *known(key);
+    if (Status done = set_field(field, member, static_cast<std::byte*>(object) + field.offset); !done)
+      return under(key, std::move(done).error());
+  }
+  return {};
+}
+
+}  // namespace
+
+Status cdr_to_json(const MessageInfo& info, std::span<const std::byte> cdr, std::string& out) {
+  Writer writer(out);
+  return walk_cdr(info, cdr, writer);
+}
+
+Status read_json(const MessageInfo& info, const Json& document, void* message) {
+  return set_message(info, document, message);
+}
+
+Status read_json(const MessageInfo& info, std::string_view text, void* message) {
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::exception& e) {  // the library's only way to say where
+    return Error{std::string("is no JSON: ") + e.what()};
+  }
+  return set_message(info, document, message);
+}
+
+}  // namespace sandlot

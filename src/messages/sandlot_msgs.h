@@ -1,0 +1,147 @@
+#pragma once
+/// sandlot_msgs: what no ROS 2 package has.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "messages/geometry_msgs.h"
+
+namespace sandlot::msg {
+
+/// Encoder ticks.
+struct Int64Stamped {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/Int64Stamped";
+  Header header;
+  std::int64_t data = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"data", "1", "The value."}, s.data);
+  }
+};
+
+/// Where two collision shapes touch; after gazebo_msgs/ContactState without `info`.
+struct ContactState {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/ContactState";
+  std::string collision1_name;
+  std::string collision2_name;
+  std::vector<Wrench> wrenches;
+  Wrench total_wrench;
+  std::vector<Vec3> contact_positions;
+  std::vector<Vec3> contact_normals;
+  std::vector<double> depths;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"collision1_name", "", "The shape of the one who measures."}, s.collision1_name);
+    visit(Field{"collision2_name", "", "The other shape."}, s.collision2_name);
+    visit(Field{"wrenches", "", "On shape 1, for each point."}, s.wrenches);
+    visit(Field{"total_wrench", "", "Their sum."}, s.total_wrench);
+    visit(Field{"contact_positions", "m", "The points."}, s.contact_positions);
+    visit(Field{"contact_normals", "1", "At each point, towards shape 1."}, s.contact_normals);
+    visit(Field{"depths", "m", "At each point, how deep."}, s.depths);
+  }
+};
+
+/// All contacts of a device; after gazebo_msgs/ContactsState.
+struct ContactsState {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/ContactsState";
+  Header header;
+  std::vector<ContactState> states;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"states", "", "One for each pair of shapes."}, s.states);
+  }
+};
+
+/// Height and its change; after gz.msgs.Altimeter.
+struct Altimeter {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/Altimeter";
+  Header header;
+  double vertical_position = 0;
+  double vertical_velocity = 0;
+  double vertical_reference = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"vertical_position", "m", "Above the reference."}, s.vertical_position);
+    visit(Field{"vertical_velocity", "m/s", "Up positive."}, s.vertical_velocity);
+    visit(Field{"vertical_reference", "m", "Height of the reference in the world."}, s.vertical_reference);
+  }
+};
+
+/// What a motor is doing.
+struct MotorState {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/MotorState";
+  Header header;
+  double target = 0;
+  double velocity = 0;
+  double torque = 0;
+  double voltage = 0;
+  double current = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"target", "rad/s", "Velocity that its controller follows."}, s.target);
+    visit(Field{"velocity", "rad/s", "Velocity of the output shaft."}, s.velocity);
+    visit(Field{"torque", "Nm", "Torque on the output shaft."}, s.torque);
+    visit(Field{"voltage", "V", "Voltage at its terminals."}, s.voltage);
+    visit(Field{"current", "A", "Current through its winding."}, s.current);
+  }
+};
+
+/// Something carried out at a tick boundary; with the seed these are the replay.
+struct LogEntry {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/LogEntry";
+  Time stamp;
+  std::uint64_t tick = 0;
+  std::uint8_t source_kind = 0;
+  std::uint64_t source_id = 0;
+  std::uint64_t sequence = 0;
+  std::uint8_t kind = 0;
+  std::string target;
+  std::string type;
+  std::vector<std::uint8_t> bytes;
+  bool refused = false;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
+    visit(Field{"tick", "1", "Its number."}, s.tick);
+    visit(Field{"source_kind", "1", "Who asked."}, s.source_kind);
+    visit(Field{"source_id", "1", "Which of them."}, s.source_id);
+    visit(Field{"sequence", "1", "Number of the request of that source."}, s.sequence);
+    visit(Field{"kind", "1", "What was asked."}, s.kind);
+    visit(Field{"target", "", "Address it is for."}, s.target);
+    visit(Field{"type", "", "Type of the bytes."}, s.type);
+    visit(Field{"bytes", "", "The request."}, s.bytes);
+    visit(Field{"refused", "", "It was not carried out."}, s.refused);
+  }
+};
+
+/// Proof of the state after a tick.
+struct StateHash {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/StateHash";
+  Time stamp;
+  std::uint64_t tick = 0;
+  std::uint64_t revision = 0;
+  std::uint64_t hash = 0;
+  std::vector<std::uint64_t> parts;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
+    visit(Field{"tick", "1", "Its number."}, s.tick);
+    visit(Field{"revision", "1", "Revision of the model."}, s.revision);
+    visit(Field{"hash", "1", "Of the whole state."}, s.hash);
+    visit(Field{"parts", "1", "Of each entity, in the order of the latest StateParts."}, s.parts);
+  }
+};
+
+/// The names of StateHash.parts; sent when they change.
+struct StateParts {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/StateParts";
+  Time stamp;
+  std::uint64_t tick = 0;
+  std::uint64_t revision = 0;
+  std::vector<std::string> paths;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
+    visit(Field{"tick", "1", "Its number."}, s.tick);
+    visit(Field{"revision", "1", "Revision of the model."}, s.revision);
+    visit(Field{"paths", "", "Addresses of the entities."}, s.paths);
+  }
+};
+
+}  // namespace sandlot::msg
