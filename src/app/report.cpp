@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/watch.h"
+#include "sim/monitor.h"
 
 namespace sandlot::app {
 
@@ -112,7 +112,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
                     {"awake_bodies", counters.awake_bodies}};
   json["refused_commands"] = simulation.refused_commands();
   Json events = Json::array();
-  for (const Watch::Event& event : simulation.watch().events())
+  for (const Monitor::Event& event : simulation.monitor().events())
     events.push_back({{"name", event.decl.name},
                       {"count", event.count},
                       {"first", event.count ? Json(event.first.s()) : Json(nullptr)},

@@ -39,13 +39,13 @@ struct ValueFound {
     compound,  ///< the path ends early: a struct or a list
   } is = Is::unknown;
   double value = 0;
-  const char* unit = "";  ///< the field's; "s" for times
+  std::string unit = {};  ///< the field's; "s" for times
 };
 
 /// One value, or a list of numbers as a whole.
 struct ValueEntry {
   std::string path;
-  const char* unit = "";
+  std::string unit = {};
   const char* help = "";
   ValueFound::Is is = ValueFound::Is::value;
   double value = 0;       ///< of a list: its first element
@@ -68,14 +68,14 @@ double plain_value(const T& x) {
   else return static_cast<double>(x);
 }
 template <class T>
-constexpr const char* value_unit(const char* field_unit) {
+std::string value_unit(const std::string& field_unit) {
   return std::is_same_v<T, Time> ? "s" : field_unit;
 }
 
 /// Follows `path` from x.
 /// @param unit  that of the field that holds x
 template <class T>
-void find_value(const T& x, const char* unit, std::span<const ValueStep> path, ValueFound& out) {
+void find_value(const T& x, const std::string& unit, std::span<const ValueStep> path, ValueFound& out) {
   using Is = ValueFound::Is;
   out.is = Is::unknown;
   if constexpr (PlainValue<T>) {
@@ -115,20 +115,20 @@ void find_value(const T& x, const char* unit, std::span<const ValueStep> path, V
       const auto names = components(x);
       for (std::size_t i = 0; i < names.size(); ++i)
         if (rest.empty() && step.key == names[i].name) {
-          out = {Is::value, component(x, i), *names[i].unit ? names[i].unit : unit};
+          out = {Is::value, component(x, i), *names[i].unit ? std::string(names[i].unit) : unit};
           return;
         }
     }
     if constexpr (Fielded<T>)
       T::fields(x, [&](const Field& f, const auto& member) {
-        if (step.key == f.key) find_value(member, f.unit, rest, out);
+        if (step.key == f.key) find_value(member, unit_within(f.unit, unit), rest, out);
       });
   }
 }
 
 /// Calls `visit` for every value in x. A list of numbers is one entry, a list of structs goes element by element.
 template <class T>
-void list_values(const T& x, const char* unit, const char* help, const std::string& path,
+void list_values(const T& x, const std::string& unit, const char* help, const std::string& path,
                  const ValueVisit& visit) {
   using Is = ValueFound::Is;
   constexpr std::size_t most_elements = 16;
@@ -146,7 +146,8 @@ void list_values(const T& x, const char* unit, const char* help, const std::stri
   } else if constexpr (Componented<T>) {
     const auto names = components(x);
     for (std::size_t i = 0; i < names.size(); ++i)
-      visit({part(names[i].name), *names[i].unit ? names[i].unit : unit, help, Is::value, component(x, i)});
+      visit({part(names[i].name), *names[i].unit ? std::string(names[i].unit) : unit, help, Is::value,
+             component(x, i)});
   } else if constexpr (ListOfValues<T>) {
     const bool empty = x.size() == 0;
     const double first = empty ? 0 : plain_value(static_cast<typename T::value_type>(*x.begin()));
@@ -160,7 +161,7 @@ void list_values(const T& x, const char* unit, const char* help, const std::stri
       list_values(x[i], unit, help, path + "[" + std::to_string(i) + "]", visit);
   } else if constexpr (Fielded<T>) {
     T::fields(x, [&](const Field& f, const auto& member) {
-      list_values(member, f.unit, f.help, part(f.key), visit);
+      list_values(member, unit_within(f.unit, unit), f.help, part(f.key), visit);
     });
   }
 }
@@ -175,5 +176,14 @@ ValueFound value_at(const T& x, std::span<const ValueStep> path) {
 
 /// Which of the two structs of a device or controller.
 enum class ValuePart : std::uint8_t { parameter, state };
+template <class Spec, class State>
+ValueFound value_at(ValuePart part, const Spec& spec, const State& state, std::span<const ValueStep> path) {
+  return part == ValuePart::state ? value_at(state, path) : value_at(spec, path);
+}
+template <class Spec, class State>
+void list_values(ValuePart part, const Spec& spec, const State& state, const ValueVisit& visit) {
+  if (part == ValuePart::state) list_values(state, "", "", "", visit);
+  else list_values(spec, "", "", "", visit);
+}
 
 }  // namespace sandlot

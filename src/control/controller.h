@@ -184,11 +184,10 @@ class ControllerAdapter final : public Controller {
     return {};
   }
   ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
-    return part == ValuePart::state ? value_at(controller_.state, path) : value_at(controller_.spec, path);
+    return value_at(part, controller_.spec, controller_.state, path);
   }
   void list_values(ValuePart part, const ValueVisit& visit) const override {
-    if (part == ValuePart::state) sandlot::list_values(controller_.state, "", "", "", visit);
-    else sandlot::list_values(controller_.spec, "", "", "", visit);
+    sandlot::list_values(part, controller_.spec, controller_.state, visit);
   }
   void save(ByteWriter& w) const override {
     write_tunables(w, controller_.spec);

@@ -38,7 +38,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 3;
+inline constexpr int device_api_version = 4;
 
 /// One level of abstraction of a kind. The first level of a kind is its default.
 struct LevelInfo {
@@ -246,12 +246,10 @@ class DevicePool final : public PoolBase {
     return {};
   }
   ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const override {
-    return part == ValuePart::state ? value_at(devices_[index].state, path)
-                                    : value_at(devices_[index].spec, path);
+    return value_at(part, devices_[index].spec, devices_[index].state, path);
   }
   void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const override {
-    if (part == ValuePart::state) sandlot::list_values(devices_[index].state, "", "", "", visit);
-    else sandlot::list_values(devices_[index].spec, "", "", "", visit);
+    sandlot::list_values(part, devices_[index].spec, devices_[index].state, visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
     write_tunables(w, devices_[index].spec);

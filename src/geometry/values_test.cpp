@@ -72,7 +72,7 @@ TEST(Values, EveryKindOfNumberIsFoundByItsPath) {
     const ValueFound found = at(path);
     EXPECT_EQ(found.is, Is::value) << path;
     EXPECT_NEAR(found.value, value, 1e-15) << path;  // angles go through a quaternion: a few ulp of 1
-    EXPECT_STREQ(found.unit, unit) << path;
+    EXPECT_EQ(found.unit, unit) << path;
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Values, TheListHoldsWhatCanBeFound) {
     const ValueFound found = at(path + (entry.list ? "[0]" : ""));
     EXPECT_EQ(found.is, entry.is) << path;
     if (found.is == Is::value) { EXPECT_EQ(found.value, entry.value) << path; }
-    EXPECT_STREQ(found.unit, entry.unit) << path;
+    EXPECT_EQ(found.unit, entry.unit) << path;
   }
   EXPECT_TRUE(all.contains("many[0].white"));
   EXPECT_EQ(all.at("noise.ranges").count, 3u);

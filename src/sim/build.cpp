@@ -8,10 +8,10 @@
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "model/motion.h"
+#include "sim/monitor.h"
 #include "sim/plugin.h"
 #include "sim/presets.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -57,7 +57,7 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
 }  // namespace
 
 Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
-    : setup_(std::move(setup)), options_(options), watch_(std::make_unique<Watch>(*this)) {
+    : setup_(std::move(setup)), options_(options), monitor_(std::make_unique<Monitor>(*this)) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
   // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
@@ -110,8 +110,14 @@ Status Simulation::build(Diagnostics& diagnostics) {
   // The instances live in the entities from here on; one copy is enough.
   setup_.instances.clear();
   rebuild_scene();
-  SL_TRY(watch_->add(setup_.values, setup_.events, setup_.addresses));
+  SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
+}
+
+Status Simulation::add_event(model::EventDecl decl) {
+  SL_TRY(monitor_->add_event(std::move(decl), false, {}));
+  judge();
+  return failure_;
 }
 
 /// The kinds that `controller:` may name: ours, the program's own, then those of the plugins.
@@ -134,12 +140,6 @@ Status Simulation::gather_controllers(Diagnostics& diagnostics) {
       SL_TRY(add(kind, "plugin '" + plugin->file + "'", decl.place));
   }
   return {};
-}
-
-Status Simulation::add_event(model::EventDecl decl) {
-  SL_TRY(watch_->add_event(std::move(decl), false, {}));
-  judge();
-  return failure_;
 }
 
 void Simulation::set_stop(std::optional<Time> stop) {

@@ -48,7 +48,8 @@ Result<std::unique_ptr<CsvLog>> CsvLog::open(const Simulation& simulation, const
   if (decl.file.empty()) return Error{"the log has no file", "name one, such as run.csv", decl.place};
   if (decl.values.empty()) return Error{"the log has no values", "list addresses or expressions", decl.place};
   const double tick_hz = 1e9 / static_cast<double>(simulation.setup().step.ns);
-  if (decl.rate_hz > tick_hz * (1 + 1e-9))
+  const bool fixed = simulation.setup().clock.mode == model::Clock::Mode::fixed;
+  if (fixed && decl.rate_hz > tick_hz * (1 + 1e-9))
     return Error{"the log's rate of " + number_text(decl.rate_hz) + " Hz is above the tick rate of " +
                      number_text(tick_hz) + " Hz",
                  "lower the rate or make time.step smaller", decl.place};

@@ -31,7 +31,7 @@ class task_arena;
 
 namespace sandlot {
 
-class Watch;
+class Monitor;
 
 struct SimulationOptions {
   int threads = 1;           ///< 0: as many as the machine has
@@ -72,10 +72,10 @@ class Simulation {
 
   /// Sets or clears the simulated time at which the run stops by itself; a run that had stopped may go on.
   void set_stop(std::optional<Time> stop);
-  /// An event beside the scenario's own; no part of State. See sim/watch.h.
+  /// An event beside the scenario's own; no part of State. See sim/monitor.h.
   Status add_event(model::EventDecl decl);
-  /// Named values and events. `watch().happened()`: the events of the latest tick.
-  const Watch& watch() const { return *watch_; }
+  /// Named values and events. `monitor().happened()`: the events of the latest tick.
+  const Monitor& monitor() const { return *monitor_; }
   void add_observer(Observer* observer) { observers_.push_back(observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
@@ -242,7 +242,7 @@ class Simulation {
   std::vector<Pool> pools_;
   std::vector<const ControllerKind*> controller_kinds_;
   std::vector<std::unique_ptr<Rule>> rules_;
-  std::unique_ptr<Watch> watch_;
+  std::unique_ptr<Monitor> monitor_;
   std::vector<std::unique_ptr<Medium>> media_;
   std::vector<Observer*> observers_;
 

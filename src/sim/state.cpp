@@ -8,9 +8,9 @@
 #include <algorithm>
 
 #include "sim/model_bytes.h"
+#include "sim/monitor.h"
 #include "sim/plugin.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -104,7 +104,7 @@ void Simulation::save_run(ByteWriter& w) const {
   write(w, refused_commands_);
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
-  watch_->save(w);
+  monitor_->save(w);
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -121,7 +121,7 @@ bool Simulation::load_run(ByteReader& r) {
     ByteReader block = read_block(r);
     medium->load(block);
   }
-  watch_->load(r);
+  monitor_->load(r);
   return r.ok();
 }
 

@@ -6,8 +6,8 @@
 #include "base/text.h"
 #include "devices/parallel.h"
 #include "model/motion.h"
+#include "sim/monitor.h"
 #include "sim/simulation.h"
-#include "sim/watch.h"
 
 namespace sandlot {
 namespace {
@@ -213,7 +213,7 @@ void Simulation::judge() {
     auto reason = rule->judge(ctx);
     if (reason && !stop_reason_) stop_reason_ = std::move(reason);
   }
-  auto judged = watch_->judge(now_);
+  auto judged = monitor_->judge(now_);
   if (judged) {
     if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
   } else {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "sim/watch.h"
+#include "sim/monitor.h"
 
 namespace sandlot {
 namespace {
@@ -47,7 +47,7 @@ bool NamedValue::resolve() {
   revision_ = simulation_->revision();
   const auto [thing, rest] = cut(address_);
   if (rest.empty()) {
-    const auto named = simulation_->watch().find_value(address_);
+    const auto named = simulation_->monitor().find_value(address_);
     if (!named) return false;
     index_ = *named;
     return take(What::named, 0, number(0, ""));
@@ -63,7 +63,7 @@ bool NamedValue::resolve() {
     return first == "revision" && take(What::revision, 1, number(0, "1"));
   }
   if (thing == "values") {
-    const auto named = simulation_->watch().find_value(first);
+    const auto named = simulation_->monitor().find_value(first);
     if (!named || path_.size() != 1) return false;
     index_ = *named;
     return take(What::named, 1, number(0, ""));
@@ -171,7 +171,7 @@ ValueFound NamedValue::look() const {
     case What::tick: return number(static_cast<double>(simulation_->tick_index()), "");
     case What::revision: return number(static_cast<double>(simulation_->revision()), "");
     case What::named: {
-      const auto value = simulation_->watch().value(index_);
+      const auto value = simulation_->monitor().value(index_);
       return value ? number(*value, "") : ValueFound{Is::absent};
     }
     case What::model_pose: return value_at(engine.pose(entity_->id), rest);
@@ -306,8 +306,8 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   const auto [thing, rest] = cut(address);
   const Simulation::Entity* const entity = simulation.find_entity(robot_of(thing));
   std::vector<std::string> things{"sim"};
-  if (!simulation.watch().value_names().empty()) things.emplace_back("values");
-  for (const std::string& name : simulation.watch().value_names()) things.push_back(name);
+  if (!simulation.monitor().value_names().empty()) things.emplace_back("values");
+  for (const std::string& name : simulation.monitor().value_names()) things.push_back(name);
   bool known = thing == "sim" || thing == "values" || (entity && entity->instance.name == thing);
   if (entity) {
     things.push_back(entity->instance.name);
@@ -325,7 +325,7 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   std::vector<std::string> addresses;
   if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision"};
   if (thing == "values")
-    for (const std::string& name : simulation.watch().value_names()) addresses.push_back("values." + name);
+    for (const std::string& name : simulation.monitor().value_names()) addresses.push_back("values." + name);
   if (entity)
     list_entity(simulation, *entity, [&](const ValueEntry& entry) {
       if (cut(entry.path).first == thing) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
@@ -400,7 +400,7 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
     visit({"sim.tick", "1", "Ticks so far.", Is::value, static_cast<double>(simulation.tick_index())});
     visit({"sim.revision", "1", "Counts spawns, deletions and level changes.", Is::value,
            static_cast<double>(simulation.revision())});
-    const Watch& watch = simulation.watch();
+    const Monitor& watch = simulation.monitor();
     for (std::uint32_t i = 0; i < watch.value_names().size(); ++i) {
       const auto value = watch.value(i);
       visit({"values." + watch.value_names()[i], "", "Named by the scenario.", value ? Is::value : Is::absent,

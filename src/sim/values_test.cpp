@@ -1,7 +1,7 @@
 #include "sim/values.h"
 
 #include "sim/test_world.h"
-#include "sim/watch.h"
+#include "sim/monitor.h"
 
 namespace sandlot {
 namespace {
@@ -125,14 +125,14 @@ model::Setup watched(std::vector<model::ValueDecl> values, std::vector<model::Ev
   setup.events = std::move(events);
   return setup;
 }
-const Watch::Event& event(const Simulation& simulation, const char* name) {
-  for (const Watch::Event& each : simulation.watch().events())
+const Monitor::Event& event(const Simulation& simulation, const char* name) {
+  for (const Monitor::Event& each : simulation.monitor().events())
     if (each.decl.name == name) return each;
   ADD_FAILURE() << name;
-  return simulation.watch().events().front();
+  return simulation.monitor().events().front();
 }
 
-TEST(Watch, ValuesUseThoseBeforeThem) {
+TEST(Monitor, ValuesUseThoseBeforeThem) {
   // Doubling 60 times: without keeping what has been computed this takes 2^60 evaluations.
   std::vector<model::ValueDecl> values{{"v0", "sim.tick", {}}};
   for (int i = 1; i <= 60; ++i) {
@@ -149,7 +149,7 @@ TEST(Watch, ValuesUseThoseBeforeThem) {
   EXPECT_NE(later.error().text().find("there is no 'b'"), std::string::npos) << later.error().text();
 }
 
-TEST(Watch, EventsCountStretchesAndHold) {
+TEST(Monitor, EventsCountStretchesAndHold) {
   // The condition holds in ticks 10..19 and 30..39 of every 40 (0.1 s long each).
   const std::string wave = "mod(floor(sim.tick / 10), 2) == 1";
   const auto simulation = build(watched({}, {{"edge", wave, {}, false, false, {}},
@@ -159,7 +159,7 @@ TEST(Watch, EventsCountStretchesAndHold) {
   std::vector<std::uint64_t> at;
   for (int i = 0; i < 100; ++i) {
     advance(*simulation, 1);
-    for (const std::string& name : simulation->watch().happened())
+    for (const std::string& name : simulation->monitor().happened())
       if (name == "late") at.push_back(simulation->tick_index());
   }
   EXPECT_EQ(at, (std::vector<std::uint64_t>{15, 35, 55, 75, 95}));
@@ -170,7 +170,7 @@ TEST(Watch, EventsCountStretchesAndHold) {
   EXPECT_EQ(event(*simulation, "once").count, 1u);
 }
 
-TEST(Watch, AnEventStopsTheRunAndItsStateIsSaved) {
+TEST(Monitor, AnEventStopsTheRunAndItsStateIsSaved) {
   const std::vector<model::EventDecl> events{{"end", "sim.time >= 0.2", Time::from_s(0.3), false, true, {}}};
   const auto whole = build(watched({}, events));
   advance(*whole, 49);
@@ -190,7 +190,7 @@ TEST(Watch, AnEventStopsTheRunAndItsStateIsSaved) {
   EXPECT_EQ(restored->state_hash(), whole->state_hash());
 }
 
-TEST(Watch, EventsFromOutsideChangeNoHash) {
+TEST(Monitor, EventsFromOutsideChangeNoHash) {
   const auto plain = build(arena("planar", 1));
   const auto watching = build(arena("planar", 1));
   ASSERT_TRUE(watching->add_event({"stop", "sim.tick >= 7", {}, false, true, {}}));
@@ -200,7 +200,7 @@ TEST(Watch, EventsFromOutsideChangeNoHash) {
   EXPECT_EQ(watching->stop_reason(), "event 'stop': sim.tick >= 7");
 }
 
-TEST(Watch, WhatIsNotFiniteEndsTheRun) {
+TEST(Monitor, WhatIsNotFiniteEndsTheRun) {
   const auto simulation = build(watched({}, {{"bad", "1 / (sim.tick - 5) > 0", {}, false, false, {}}}));
   advance(*simulation, 4);
   const Status status = simulation->tick();
@@ -210,7 +210,7 @@ TEST(Watch, WhatIsNotFiniteEndsTheRun) {
   EXPECT_TRUE(simulation->stop_reason());
 }
 
-TEST(Watch, ARestoredRunAcceptsWhatIsGone) {
+TEST(Monitor, ARestoredRunAcceptsWhatIsGone) {
   model::Setup setup = arena("planar", 2);
   setup.values = {{"gap", "rover1.pose.x - rover2.pose.x", {}}};
   setup.events = {{"near", "gap < -100", {}, false, false, {}}};

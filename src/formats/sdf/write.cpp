@@ -317,6 +317,9 @@ Result<Xml> sdf_of(const model::Setup& setup, Diagnostics& diagnostics) {
   if (!setup.physics.entries().empty()) lost("the engine's keys", setup.physics.place());
   if (setup.seed != 1) lost("the seed");
   if (setup.stop) lost("the stop time");
+  if (!setup.values.empty()) lost("the named values");
+  if (!setup.events.empty()) lost("the events");
+  if (setup.log) lost("the log");
   Xml& scene = add(world, "scene");
   add(scene, "ambient", text_of(setup.ambient));
   add(scene, "background", text_of(setup.background));

@@ -1,4 +1,4 @@
-#include "sim/watch.h"
+#include "sim/monitor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace sandlot {
 
-Status Watch::add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
-                  std::vector<std::string>& known) {
+Status Monitor::add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
+                    std::vector<std::string>& known) {
   const std::vector<std::string> before = known;
   const auto note = [&](const ValueExpression& expression) {
     for (const std::string& address : expression.addresses())
@@ -32,20 +32,20 @@ Status Watch::add(std::span<const model::ValueDecl> values, std::span<const mode
   return {};
 }
 
-Status Watch::add_event(model::EventDecl decl, bool declared, std::span<const std::string> known) {
+Status Monitor::add_event(model::EventDecl decl, bool declared, std::span<const std::string> known) {
   SL_ASSIGN(ValueExpression condition, ValueExpression::compile(simulation_, decl.when, decl.place, known));
   happened_.reserve(events_.size() + 1);
   events_.push_back({std::move(decl), declared, std::move(condition)});
   return {};
 }
 
-std::optional<std::uint32_t> Watch::find_value(std::string_view name) const {
+std::optional<std::uint32_t> Monitor::find_value(std::string_view name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   if (found == names_.end()) return std::nullopt;
   return static_cast<std::uint32_t>(found - names_.begin());
 }
 
-std::optional<double> Watch::value(std::uint32_t index) const {
+std::optional<double> Monitor::value(std::uint32_t index) const {
   // An expression that is being computed asks for those before it: they are ready.
   if (index < computing_) return computed_[index];
   SL_CHECK(computing_ == 0);
@@ -57,17 +57,17 @@ std::optional<double> Watch::value(std::uint32_t index) const {
   return computed_[index];
 }
 
-void Watch::save(ByteWriter& w) const {
+void Monitor::save(ByteWriter& w) const {
   for (const Event& event : events_)
     if (event.declared) Event::state(event, [&](const auto& value) { write(w, value); });
 }
 
-void Watch::load(ByteReader& r) {
+void Monitor::load(ByteReader& r) {
   for (Event& event : events_)
     if (event.declared) Event::state(event, [&](auto& value) { read(r, value); });
 }
 
-Result<std::optional<std::string>> Watch::judge(Time now) {
+Result<std::optional<std::string>> Monitor::judge(Time now) {
   happened_.clear();
   std::optional<std::string> reason;
   for (Event& event : events_) {

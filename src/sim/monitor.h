@@ -16,7 +16,7 @@
 
 namespace sandlot {
 
-class Watch {
+class Monitor {
  public:
   struct Event {
     model::EventDecl decl;
@@ -39,7 +39,7 @@ class Watch {
     }
   };
 
-  explicit Watch(const Simulation& simulation) : simulation_(simulation) {}
+  explicit Monitor(const Simulation& simulation) : simulation_(simulation) {}
   /// Compiles values and then events. The addresses they use are appended to `known`, which also makes addresses
   /// acceptable that name nothing now.
   Status add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
