@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "messages/cdr.h"
-#include "messages/registry.h"
 #include "record/glob.h"
 #include "record/layout.h"
 
@@ -98,14 +97,12 @@ bool FrameWriter::wants(std::string_view topic) const {
                      [&](const auto& glob) { return glob_matches(glob, topic); });
 }
 
-FrameWriter::Target& FrameWriter::target(const std::string& topic, const char* type) {
+FrameWriter::Target& FrameWriter::target(const std::string& topic, const MessageInfo& type) {
   const auto [found, is_new] = targets_.try_emplace(topic);
   Target& target = found->second;
   // Our own topics are the proof: they are recorded whatever is chosen.
   if (!is_new || (!wants(topic) && topic.rfind("/sandlot/", 0) != 0)) return target;
-  const auto info = find_message(type);
-  SL_CHECK_MSG(info, type);
-  target.type = *info;
+  target.type = &type;
   std::uint16_t& schema = schemas_[target.type->name];
   if (schema == 0) schema = writer_.add_schema(target.type->name, "ros2msg", target.type->schema);
   const bool latched = topic == recording::tf_static_topic;
@@ -124,7 +121,7 @@ Status FrameWriter::put(Target& target, Time now, const void* message) {
 
 template <class M>
 Status FrameWriter::put(const char* topic, Time now, const M& message) {
-  return put(target(topic, M::ros_type), now, &message);
+  return put(target(topic, message_info<M>()), now, &message);
 }
 
 Status FrameWriter::put_parts(std::uint64_t tick, std::uint64_t revision, Time now,
@@ -174,7 +171,7 @@ Status FrameWriter::write(const Frame& frame, const msg::TFMessage* tf_static) {
     if (!frame.instances.empty() && wants(recording::tf_topic)) SL_TRY(put_transforms(frame));
   }
   for (const auto& topic : frame.topics)
-    SL_TRY(put(target(topic->name(), topic->type()), frame.now, topic->data()));
+    SL_TRY(put(target(topic->name(), topic->info()), frame.now, topic->data()));
   for (const LogEntry& entry : frame.log) {
     entry_.stamp = frame.now;
     entry_.tick = frame.tick;

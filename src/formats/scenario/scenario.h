@@ -72,6 +72,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
+  std::optional<model::Recording> record;  ///< its file is made absolute or relative to the working folder
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
 

@@ -7,6 +7,7 @@
 #include "base/fields.h"
 #include "base/node.h"
 #include "geometry/vec3.h"
+#include "model/recording.h"
 
 namespace sandlot::formats::scenario_spec {
 
@@ -166,6 +167,7 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
+  std::optional<model::Recording> record;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -185,11 +187,12 @@ struct Root {
                 0, 0, Field::none, 100},
           s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"record", "", "How the run is recorded."}, s.record);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };
 
 /// Keys of the root that later versions of Sandlot read.
-inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules", "record"};
+inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules"};
 
 }  // namespace sandlot::formats::scenario_spec
