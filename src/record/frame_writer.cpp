@@ -84,6 +84,7 @@ Result<FrameWriter> FrameWriter::create(const RecordOptions& options, const Simu
   first.revision = simulation.revision();
   first.hash = simulation.state_hash();
   SL_TRY(out.put_parts(first.tick, first.revision, now, names));
+  out.part_names_ = std::make_shared<const std::vector<std::string>>(std::move(names));
   SL_TRY(out.put(recording::hash_topic, now, first));
   return out;
 }
@@ -187,7 +188,7 @@ Status FrameWriter::write(const Frame& frame, const msg::TFMessage* tf_static) {
     SL_TRY(put(recording::log_topic, frame.now, entry_));
   }
   if (!frame.part_names) return {};
-  if (frame.part_names != part_names_) {
+  if (frame.part_names != part_names_ && (!part_names_ || *frame.part_names != *part_names_)) {
     part_names_ = frame.part_names;
     SL_TRY(put_parts(frame.tick, frame.revision, frame.now, *part_names_));
   }
