@@ -41,6 +41,9 @@ struct RunOptions {
   bool json = false;                    ///< print the summary as JSON instead of text
   const Hooks* hooks = nullptr;         ///< of an experiment in C++
   std::vector<std::string> lines;       ///< for its console: "at 2s kick ball"
+  std::string record_file;              ///< "": as the scenario says
+  std::vector<std::string> record_topics;
+  std::string record_compression;
 };
 int run(const RunOptions& options);
 
@@ -80,6 +83,20 @@ struct BenchOptions {
 int bench(const BenchOptions& options);
 
 int doctor(bool json);
+
+struct RecordingOptions {
+  std::string file;
+  std::string topic;  ///< "" for all
+  std::optional<double> from_s, to_s;
+  std::optional<std::uint64_t> count;
+  bool json = false;
+  bool dry_run = false;  ///< doctor: only say what would be done
+};
+/// Says whether a recording is whole, and repairs it when it is not.
+int doctor_file(const RecordingOptions& options);
+int topic_list(const RecordingOptions& options);
+int topic_echo(const RecordingOptions& options);
+int topic_hz(const RecordingOptions& options);
 
 /// The scenario that `sandlot demo NAME` runs; found beside the program or above it.
 Result<std::string> demo_file(const std::string& name);

@@ -86,6 +86,12 @@ struct RunFlags {
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
+    verb.add_option("--record", options.record_file, "Record the run as an MCAP file");
+    verb.add_option("--record-topics", options.record_topics,
+                    "Record these topics only, such as '/rover/*'; may be given several times")
+        ->allow_extra_args(false);
+    verb.add_option("--record-compression", options.record_compression, "Of the recording's chunks")
+        ->check(CLI::IsMember({"none", "lz4", "zstd"}));
     verb.add_flag("--json", options.json, "Print the summary as JSON");
   }
 
@@ -266,12 +272,52 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   bench_verb->footer("Example: sandlot bench ranges --json");
   bench_verb->callback([&] { result = bench(bench_options); });
 
+  RecordingOptions recording_options;
+  DurationOption from, to;
+  CLI::App* const topic_verb = app.add_subcommand("topic", "Look into a recording: list, echo, hz");
+  topic_verb->require_subcommand(1);
+  topic_verb->footer("Example: sandlot topic list run.mcap");
+  const auto add_topic_verb = [&](const char* name, const char* help, const char* example, bool needs_topic,
+                                  int (*act)(const RecordingOptions&)) {
+    CLI::App* const verb = topic_verb->add_subcommand(name, help);
+    verb->add_option("file", recording_options.file, "The recording, an MCAP file")->required();
+    if (act != topic_list) {
+      CLI::Option* const topic = verb->add_option("topic", recording_options.topic, "Name of the topic");
+      if (needs_topic) topic->required();
+      verb->add_option("--from", from.text, "Begin at this time of the recording");
+      verb->add_option("--to", to.text, "End after this time");
+    }
+    if (act == topic_echo) verb->add_option("--count", recording_options.count, "End after so many messages");
+    verb->add_flag("--json", recording_options.json, "Print as JSON");
+    verb->footer(example);
+    verb->callback([&, act] {
+      Status status = from.read("--from", recording_options.from_s);
+      if (status) status = to.read("--to", recording_options.to_s);
+      result = status ? act(recording_options) : complain(status.error());
+    });
+  };
+  add_topic_verb("list", "The topics of a recording with types and counts",
+                 "Example: sandlot topic list run.mcap", false, topic_list);
+  add_topic_verb("echo", "Print the messages of a topic",
+                 "Example: sandlot topic echo run.mcap /rover/laser/ranges --from 2s --count 1", true,
+                 topic_echo);
+  add_topic_verb("hz", "How often messages came", "Example: sandlot topic hz run.mcap", false, topic_hz);
+
   bool doctor_json = false;
   CLI::App* const doctor_verb = app.add_subcommand(
-      "doctor", "Check this build and machine: libraries, profile, determinism");
+      "doctor", "Check this build and machine, or check a recording and repair it when it is not whole");
+  doctor_verb->add_option("file", recording_options.file,
+                          "A recording (MCAP); this build and machine if left out");
+  doctor_verb->add_flag("--dry-run", recording_options.dry_run,
+                        "Only say what would be done to the recording");
   doctor_verb->add_flag("--json", doctor_json, "Print as JSON");
-  doctor_verb->footer("Example: sandlot doctor");
-  doctor_verb->callback([&] { result = doctor(doctor_json); });
+  doctor_verb->footer(
+      "Exit code 0: whole, or repaired; 1: not whole (--dry-run); 2: no recording.\n"
+      "Example: sandlot doctor run.mcap");
+  doctor_verb->callback([&] {
+    recording_options.json = doctor_json;
+    result = recording_options.file.empty() ? doctor(doctor_json) : doctor_file(recording_options);
+  });
 
   try {
     app.parse(argc, argv);

@@ -11,6 +11,7 @@
 #include "app/report.h"
 #include "app/svg.h"
 #include "base/log.h"
+#include "record/recorder.h"
 #include "sim/csv_log.h"
 #include "sim/load.h"
 
@@ -73,6 +74,24 @@ Result<std::optional<model::LogDecl>> log_wanted(const RunOptions& options, cons
   if (log->values.empty())
     return Error{"--log says where to, but not what", "add --log-values 'rover.pose.x,rover.pose.y'"};
   return log;
+}
+
+/// What to record: the scenario's word, changed by the command line. Nothing when neither asks for it.
+Result<std::optional<RecordOptions>> recording_of(const RunOptions& options, const Simulation& simulation) {
+  RecordOptions out;
+  if (simulation.setup().record) out.recording = *simulation.setup().record;
+  else if (options.record_file.empty()) return std::optional<RecordOptions>();
+  if (!options.record_file.empty()) out.recording.file = options.record_file;
+  if (!options.record_topics.empty()) out.recording.topics = options.record_topics;
+  for (const auto& entry : enum_names(model::Recording::Compression{}))
+    if (options.record_compression == entry.name) out.recording.compression = entry.value;
+  out.version = SANDLOT_VERSION;
+  out.scenario_file = options.file;
+  if (!options.file.empty()) {
+    std::ifstream in(options.file, std::ios::binary);
+    out.scenario_text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  return std::optional(std::move(out));
 }
 
 /// One line on a terminal: how far, how fast, how long still.
@@ -145,6 +164,16 @@ int run(const RunOptions& options) {
   std::optional<SvgRecorder> svg;
   if (!options.svg_file.empty()) simulation.add_observer(&svg.emplace(simulation));
 
+  const auto recording = recording_of(options, simulation);
+  if (!recording) return complain(recording.error());
+  std::unique_ptr<Recorder> recorder;
+  if (*recording) {
+    auto started = Recorder::start(**recording, simulation);
+    if (!started) return complain(started.error());
+    recorder = std::move(*started);
+    simulation.add_observer(recorder.get());
+  }
+
   catch_interrupts();
   std::vector<Error> errors;
   const auto save_snapshot = [&] {
@@ -179,7 +208,30 @@ int run(const RunOptions& options) {
     if (Status finished = log->finish(); !finished) errors.push_back(finished.error());
   }
   if (!snapshot_taken) save_snapshot();
-  const auto summary = summarise(simulation, report, travel, diagnostics, errors);
+  if (recorder) {
+    if (Status status = recorder->finish(); !status) errors.push_back(status.error());
+    const Recorder::Report& done = recorder->report();
+    if (done.dropped_messages > 0 || !done.complete()) {
+      Error warning{fmt::format("the recording lacks {} messages that the disk was too slow for",
+                                done.dropped_messages),
+                    "record fewer topics, a larger queue, or `when_full: wait`"};
+      if (!done.complete())
+        warning.what += fmt::format(", and log and hashes of {} ticks: it cannot be replayed",
+                                    done.lost_frames);
+      std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
+      diagnostics.warn(std::move(warning));
+    }
+  }
+  auto summary = summarise(simulation, report, travel, diagnostics, errors);
+  if (recorder) {
+    const Recorder::Report& done = recorder->report();
+    summary["recording"] = {{"file", (*recording)->recording.file},
+                            {"messages", done.messages},
+                            {"bytes", done.bytes},
+                            {"dropped_messages", done.dropped_messages},
+                            {"lost_ticks", done.lost_frames},
+                            {"complete", done.complete()}};
+  }
   const std::string json_text = summary.dump(2) + "\n";
   std::fputs(options.json ? json_text.c_str() : as_text(summary).c_str(), stdout);
   const auto leave = [&](const std::string& file, const std::string& content) {

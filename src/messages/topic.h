@@ -33,6 +33,10 @@ class TopicBase {
   /// A number of the message by its path, and all of them.
   virtual ValueFound value(std::span<const ValueStep> path) const = 0;
   virtual void list_values(const ValueVisit& visit) const = 0;
+  /// Takes message, stamp and count from a topic of the same type; costs no heap once it has held as much.
+  virtual void copy_from(const TopicBase& other) = 0;
+  /// About what it holds in memory.
+  virtual std::size_t memory_bytes() const = 0;
 
   virtual const MessageInfo& info() const = 0;
   virtual const void* data() const = 0;  ///< the message, for those that know it by info() alone
@@ -45,6 +49,25 @@ class TopicBase {
   std::string name_;
   const char* type_;
 };
+
+/// What a value holds outside itself.
+template <class T>
+std::size_t heap_bytes(const T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return value.size();
+  } else if constexpr (is_vector<T>::value) {
+    std::size_t sum = value.size() * sizeof(typename T::value_type);
+    if constexpr (!RawBytes<typename T::value_type> && !std::is_same_v<T, std::vector<bool>>)
+      for (const auto& element : value) sum += heap_bytes(element);
+    return sum;
+  } else if constexpr (Fielded<T>) {
+    std::size_t sum = 0;
+    T::fields(value, [&](const Field&, const auto& member) { sum += heap_bytes(member); });
+    return sum;
+  } else {
+    return 0;
+  }
+}
 
 /// The latest message of type M.
 template <class M>
@@ -90,6 +113,13 @@ class Topic : public TopicBase {
   void list_values(const ValueVisit& visit) const override {
     sandlot::list_values(message, "", "", "", visit);
   }
+  void copy_from(const TopicBase& other) override {
+    const auto& from = static_cast<const Topic&>(other);
+    stamp = from.stamp;
+    count = from.count;
+    message = from.message;
+  }
+  std::size_t memory_bytes() const override { return sizeof *this + heap_bytes(message); }
 };
 
 /// M's topic behind a base pointer, or null when it carries another type.

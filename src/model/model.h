@@ -13,6 +13,7 @@
 #include "geometry/color.h"
 #include "geometry/pose.h"
 #include "geometry/shape.h"
+#include "model/recording.h"
 
 namespace sandlot::model {
 
@@ -258,7 +259,8 @@ struct Setup {
   int substeps = 1;          ///< physics steps per tick; a longer tick of a continuous clock has more
   int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
-  std::optional<Time> stop;  ///< simulated time at which the run ends by itself
+  std::optional<Time> stop;         ///< simulated time at which the run ends by itself
+  std::optional<Recording> record;  ///< how the run is to be recorded: no part of it, nor of its snapshots
   std::vector<PluginDecl> plugins;
   std::vector<Instance> instances;
   std::vector<ValueDecl> values;

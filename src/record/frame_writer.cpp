@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "messages/cdr.h"
-#include "messages/registry.h"
 #include "record/glob.h"
 #include "record/layout.h"
 
@@ -85,6 +84,7 @@ Result<FrameWriter> FrameWriter::create(const RecordOptions& options, const Simu
   first.revision = simulation.revision();
   first.hash = simulation.state_hash();
   SL_TRY(out.put_parts(first.tick, first.revision, now, names));
+  out.part_names_ = std::make_shared<const std::vector<std::string>>(std::move(names));
   SL_TRY(out.put(recording::hash_topic, now, first));
   return out;
 }
@@ -98,14 +98,12 @@ bool FrameWriter::wants(std::string_view topic) const {
                      [&](const auto& glob) { return glob_matches(glob, topic); });
 }
 
-FrameWriter::Target& FrameWriter::target(const std::string& topic, const char* type) {
+FrameWriter::Target& FrameWriter::target(const std::string& topic, const MessageInfo& type) {
   const auto [found, is_new] = targets_.try_emplace(topic);
   Target& target = found->second;
   // Our own topics are the proof: they are recorded whatever is chosen.
   if (!is_new || (!wants(topic) && topic.rfind("/sandlot/", 0) != 0)) return target;
-  const auto info = find_message(type);
-  SL_CHECK_MSG(info, type);
-  target.type = *info;
+  target.type = &type;
   std::uint16_t& schema = schemas_[target.type->name];
   if (schema == 0) schema = writer_.add_schema(target.type->name, "ros2msg", target.type->schema);
   const bool latched = topic == recording::tf_static_topic;
@@ -124,7 +122,7 @@ Status FrameWriter::put(Target& target, Time now, const void* message) {
 
 template <class M>
 Status FrameWriter::put(const char* topic, Time now, const M& message) {
-  return put(target(topic, M::ros_type), now, &message);
+  return put(target(topic, message_info<M>()), now, &message);
 }
 
 Status FrameWriter::put_parts(std::uint64_t tick, std::uint64_t revision, Time now,
@@ -174,7 +172,7 @@ Status FrameWriter::write(const Frame& frame, const msg::TFMessage* tf_static) {
     if (!frame.instances.empty() && wants(recording::tf_topic)) SL_TRY(put_transforms(frame));
   }
   for (const auto& topic : frame.topics)
-    SL_TRY(put(target(topic->name(), topic->type()), frame.now, topic->data()));
+    SL_TRY(put(target(topic->name(), topic->info()), frame.now, topic->data()));
   for (const LogEntry& entry : frame.log) {
     entry_.stamp = frame.now;
     entry_.tick = frame.tick;
@@ -190,7 +188,7 @@ Status FrameWriter::write(const Frame& frame, const msg::TFMessage* tf_static) {
     SL_TRY(put(recording::log_topic, frame.now, entry_));
   }
   if (!frame.part_names) return {};
-  if (frame.part_names != part_names_) {
+  if (frame.part_names != part_names_ && (!part_names_ || *frame.part_names != *part_names_)) {
     part_names_ = frame.part_names;
     SL_TRY(put_parts(frame.tick, frame.revision, frame.now, *part_names_));
   }

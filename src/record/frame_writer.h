@@ -7,7 +7,8 @@
 /// Units    as the messages say.
 #include <unordered_map>
 
-#include "messages/messages.h"
+#include "messages/sandlot_msgs.h"
+#include "messages/tf2_msgs.h"
 #include "record/mcap/writer.h"
 #include "sim/simulation.h"
 
@@ -42,7 +43,7 @@ class FrameWriter {
     std::uint16_t channel = 0;
   };
   FrameWriter(mcap::Writer writer, const model::Recording& recording);
-  Target& target(const std::string& topic, const char* type);
+  Target& target(const std::string& topic, const MessageInfo& type);
   Status put(Target& target, Time now, const void* message);
   template <class M>
   Status put(const char* topic, Time now, const M& message);

@@ -338,6 +338,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.physics = scenario.physics;
     setup.step = Time::from_s(scenario.step_s);
     setup.clock = scenario.clock;
+    setup.record = scenario.record;
     setup.substeps = scenario.substeps;
     setup.control_interval = scenario.control_interval;
     setup.seed = scenario.seed;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <map>
 
 #include "base/read.h"
@@ -301,6 +302,13 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   out.clock.max_step = Time::from_s(root.time.max_step_s);
   if (out.clock.max_step < out.clock.min_step)
     return node.find("time")->error("min_step is longer than max_step", "", "/time");
+  out.record = root.record;
+  if (out.record) {
+    const Node& record = *node.find("record");
+    if (out.record->file.empty())
+      return record.error("'file' is missing", "for example file: run.mcap", "/record/file");
+    out.record->file = (std::filesystem::path(base_folder(out, record.place())) / out.record->file).string();
+  }
   out.substeps = root.time.substeps;
   out.control_interval = root.time.control_interval;
   out.stop_s = root.time.stop_s;

@@ -7,6 +7,7 @@
 #include "base/fields.h"
 #include "base/node.h"
 #include "geometry/vec3.h"
+#include "model/recording.h"
 
 namespace sandlot::formats::scenario_spec {
 
@@ -205,6 +206,7 @@ struct Root {
   Node values;
   std::vector<Event> events;
   std::optional<Log> log;
+  std::optional<model::Recording> record;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -229,11 +231,12 @@ struct Root {
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
+    visit(Field{"record", "", "How the run is recorded."}, s.record);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };
 
 /// Keys of the root that later versions of Sandlot read.
-inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules", "record"};
+inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules"};
 
 }  // namespace sandlot::formats::scenario_spec

@@ -73,8 +73,10 @@ void write_sample(const std::string& path, Compression compression, std::uint64_
   const auto a = writer->add_channel(schema, "/a", "cdr", {{"offered_qos_profiles", ""}});
   const auto b = writer->add_channel(0, "/b", "json");
   for (std::uint64_t i = 0; i < 40; ++i) {
-    if (i == 7) ASSERT_TRUE(writer->attach("snapshot", "application/octet-stream", 70, bytes("all of it")));
-    if (i == 9) ASSERT_TRUE(writer->add_metadata("sandlot", {{"seed", "5"}, {"version", "0.1"}}));
+    if (i == 7) {
+      ASSERT_TRUE(writer->attach("snapshot", "application/octet-stream", 70, bytes("all of it")));
+    }
+    if (i == 9) { ASSERT_TRUE(writer->add_metadata("sandlot", {{"seed", "5"}, {"version", "0.1"}})); }
     const std::string data = "message " + std::to_string(i) + std::string(60, 'x');
     ASSERT_TRUE(writer->write(i % 3 == 0 ? b : a, i * 10, bytes(data)));
   }
@@ -208,7 +210,7 @@ TEST_P(McapCompressed, cut_anywhere_it_reads_up_to_there_and_repairs) {
     EXPECT_EQ(kept->size(), repaired->kept_messages) << size;
     EXPECT_TRUE(std::equal(kept->begin(), kept->end(), all->begin())) << size;
     // With all data there, the rebuilt file is the one that was written.
-    if (complete == chunks.size()) EXPECT_EQ(bytes_of(path), whole) << size;
+    if (complete == chunks.size()) { EXPECT_EQ(bytes_of(path), whole) << size; }
   }
 }
 
@@ -232,9 +234,10 @@ TEST_P(McapCompressed, every_flipped_bit_is_noticed_and_costs_one_chunk_at_most)
     const auto kept = listing(path);
     ASSERT_TRUE(kept) << at;
     // The header's own length is the one thing that can hide more than a chunk.
-    if (at > 40) EXPECT_GE(kept->size() + 5, all->size()) << at;
-    if (repaired->lost_bytes > 0 && !repaired->before.damages.back().at_end)
+    if (at > 40) { EXPECT_GE(kept->size() + 5, all->size()) << at; }
+    if (repaired->lost_bytes > 0 && !repaired->before.damages.back().at_end) {
       EXPECT_EQ(bytes_of(repaired->kept_original), damaged) << at;
+    }
   }
 }
 
@@ -419,7 +422,7 @@ TEST_F(Mcap, when_the_disk_is_full_what_was_written_stays_readable) {
   // 131 bytes of record per message: eight to a chunk of 1048 bytes + heads and index, so 6 chunks of 1.2 kB fit.
   auto examined = examine(file("f.mcap"));
   ASSERT_TRUE(examined) << examined.error().text();
-  if (!examined->whole()) ASSERT_TRUE(repair(file("f.mcap"), *examined));
+  if (!examined->whole()) { ASSERT_TRUE(repair(file("f.mcap"), *examined)); }
   const auto kept = listing(file("f.mcap"));
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->size() % 8, 0u);

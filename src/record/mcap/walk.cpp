@@ -262,7 +262,9 @@ Status Walk::check_message_index(const RecordHead& head, const ChunkContent& chu
                                 [&](const MessageIndex& i) { return i.channel == index.channel; });
   std::sort(index.records.begin(), index.records.end(), [](auto& a, auto& b) { return a.second < b.second; });
   const bool fits = own == chunk.indexes.end() ? index.records.empty() : index.records == own->records;
-  if (!r.ok() || !fits) return file_->damaged(offset_, "the index of a channel does not fit its chunk");
+  // Nor may it be longer than its entries: with a damaged length it would hide the chunks that follow.
+  if (!r.ok() || r.remaining() != 0 || !fits)
+    return file_->damaged(offset_, "the index of a channel does not fit its chunk");
   return {};
 }
 
@@ -298,7 +300,7 @@ Status Walk::read_metadata(const RecordHead& head, Piece& piece) const {
   Metadata metadata;
   ByteReader r(content);
   get(r, metadata);
-  if (!r.ok()) return file_->damaged(offset_, "the metadata are too short");
+  if (!r.ok() || r.remaining() != 0) return file_->damaged(offset_, "the metadata's own sizes do not fit");
   piece.metadata = {offset_, head.length, metadata.name};
   return {};
 }

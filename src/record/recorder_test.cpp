@@ -1,0 +1,152 @@
+/// What a recorder writes of a run, and that the run does not notice.
+#include "record/recorder.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "messages/cdr.h"
+#include "messages/make_info.h"
+#include "record/glob.h"
+#include "record/layout.h"
+#include "record/mcap/repair.h"
+#include "sim/test_world.h"
+
+namespace sandlot::test {
+namespace {
+
+class RecorderTest : public testing::Test {
+ protected:
+  RecorderTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-record-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~RecorderTest() override { std::filesystem::remove_all(folder_); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::filesystem::path folder_;
+};
+
+/// Runs two rovers for `ticks` of 10 ms with a recorder. @return the hash at the end
+std::uint64_t record(const model::Recording& recording, int ticks, Recorder::Report& report, Status& status) {
+  const auto simulation = build(arena("planar", 2));
+  auto recorder = Recorder::start({.recording = recording, .version = "test"}, *simulation);
+  EXPECT_TRUE(recorder) << recorder.error().text();
+  if (!recorder) return 0;
+  simulation->add_observer(recorder->get());
+  advance(*simulation, ticks);
+  status = (*recorder)->finish();
+  report = (*recorder)->report();
+  return simulation->state_hash();
+}
+
+std::uint64_t hash_without(int ticks) {
+  const auto simulation = build(arena("planar", 2));
+  advance(*simulation, ticks);
+  return simulation->state_hash();
+}
+
+TEST(Glob, stars_and_question_marks) {
+  EXPECT_TRUE(glob_matches("/rover/*", "/rover/laser/ranges"));
+  EXPECT_TRUE(glob_matches("*laser*", "/rover/laser/ranges"));
+  EXPECT_TRUE(glob_matches("/rover?/tf", "/rover1/tf"));
+  EXPECT_TRUE(glob_matches("*a*b", "/aab/ab"));
+  EXPECT_FALSE(glob_matches("/rover/*", "/rover1/laser"));
+  EXPECT_FALSE(glob_matches("/rover", "/rover/laser"));
+  EXPECT_FALSE(glob_matches("", "x"));
+}
+
+TEST_F(RecorderTest, the_proof_is_in_the_file_and_the_run_did_not_notice) {
+  Recorder::Report report;
+  Status status;
+  const std::uint64_t hash = record({.file = file("r.mcap")}, 200, report, status);
+  ASSERT_TRUE(status) << status.error().text();
+  EXPECT_EQ(hash, hash_without(200));
+  EXPECT_EQ(report.frames, 200u);
+  EXPECT_TRUE(report.complete());
+  EXPECT_EQ(report.dropped_messages, 0u);
+  const auto examined = mcap::examine(file("r.mcap"));
+  ASSERT_TRUE(examined);
+  EXPECT_TRUE(examined->whole());
+
+  const auto reader = mcap::Reader::open(file("r.mcap"));
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->summary().statistics.message_count, report.messages);
+  EXPECT_EQ(reader->metadata(recording::end_metadata)->at("complete"), "true");
+  // One hash per tick and that of the beginning; 2 s at 50 Hz of /tf and the one at tick 1, since 0 s was due then.
+  mcap::Cursor hashes = reader->messages({.topics = {recording::hash_topic}});
+  std::uint64_t tick = 0, last = 0;
+  for (;;) {
+    const auto message = hashes.next();
+    ASSERT_TRUE(message);
+    if (!*message) break;
+    msg::StateHash found;
+    ASSERT_TRUE(read_cdr(message_info<msg::StateHash>(), (*message)->data, &found));
+    EXPECT_EQ(found.tick, tick++);
+    EXPECT_EQ((*message)->log_time, static_cast<std::uint64_t>(found.stamp.ns));
+    last = found.hash;
+  }
+  EXPECT_EQ(tick, 201u);
+  EXPECT_EQ(last, hash);
+  const mcap::Channel* const tf = reader->find_channel(recording::tf_topic);
+  ASSERT_TRUE(tf);
+  EXPECT_EQ(reader->summary().statistics.channel_message_counts.at(tf->id), 101u);
+  // The snapshot is the beginning: 200 ticks from it lead to the same end.
+  const auto snapshot = reader->attachment(recording::snapshot_attachment);
+  ASSERT_TRUE(snapshot);
+  Diagnostics diagnostics;
+  const auto again = Simulation::restore(*snapshot, {}, diagnostics);
+  ASSERT_TRUE(again);
+  advance(**again, 200);
+  EXPECT_EQ((*again)->state_hash(), hash);
+}
+
+TEST_F(RecorderTest, only_the_chosen_topics_and_the_proof) {
+  Recorder::Report report;
+  Status status;
+  record({.file = file("r.mcap"), .topics = {"/rover1/laser*"}}, 50, report, status);
+  ASSERT_TRUE(status);
+  const auto reader = mcap::Reader::open(file("r.mcap"));
+  ASSERT_TRUE(reader);
+  bool laser = false;
+  for (const auto& [id, channel] : reader->summary().channels) {
+    const bool chosen = channel.topic.rfind("/rover1/laser", 0) == 0;
+    laser |= chosen;
+    EXPECT_TRUE(chosen || channel.topic.rfind("/sandlot/", 0) == 0) << channel.topic;
+  }
+  EXPECT_TRUE(laser);
+}
+
+TEST_F(RecorderTest, a_pipe_that_nobody_empties_costs_messages_and_not_the_run) {
+  ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
+  const int reader = ::open(file("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  const auto simulation = build(arena("planar", 2));
+  model::Recording recording{.file = file("pipe"), .compression = model::Recording::Compression::none};
+  recording.queue_mb = 1;
+  recording.chunk_mb = 0.01;
+  auto recorder = Recorder::start({.recording = recording, .version = "test"}, *simulation);
+  ASSERT_TRUE(recorder) << recorder.error().text();
+  simulation->add_observer(recorder->get());
+  advance(*simulation, 3000);
+  EXPECT_EQ(simulation->state_hash(), hash_without(3000));
+  ::close(reader);  // the writer's wait ends with a broken pipe, which is no end of the process
+  const Status status = (*recorder)->finish();
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().what, testing::HasSubstr("pipe"));
+  EXPECT_GT((*recorder)->report().dropped_messages, 0u);
+}
+
+TEST_F(RecorderTest, a_place_that_cannot_be_written_is_known_at_the_start) {
+  const auto simulation = build(arena("planar", 1));
+  EXPECT_FALSE(Recorder::start({.recording = {.file = file("no/such/folder.mcap")}}, *simulation));
+  const auto full = Recorder::start({.recording = {.file = "/dev/full"}}, *simulation);
+  ASSERT_FALSE(full);
+  EXPECT_THAT(full.error().what, testing::HasSubstr("/dev/full"));
+}
+
+}  // namespace
+}  // namespace sandlot::test
