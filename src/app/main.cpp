@@ -7,7 +7,7 @@
 
 #include "app/commands.h"
 #include "app/plot.h"
-#include "base/text.h"
+#include "app/topic_export.h"
 #include "base/units.h"
 
 namespace {
@@ -274,7 +274,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
 
   RecordingOptions recording_options;
   DurationOption from, to;
-  CLI::App* const topic_verb = app.add_subcommand("topic", "Look into a recording: list, echo, hz");
+  CLI::App* const topic_verb = app.add_subcommand("topic", "Look into a recording: list, echo, hz, export");
   topic_verb->require_subcommand(1);
   topic_verb->footer("Example: sandlot topic list run.mcap");
   const auto add_topic_verb = [&](const char* name, const char* help, const char* example, bool needs_topic,
@@ -302,6 +302,26 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                  "Example: sandlot topic echo run.mcap /rover/laser/ranges --from 2s --count 1", true,
                  topic_echo);
   add_topic_verb("hz", "How often messages came", "Example: sandlot topic hz run.mcap", false, topic_hz);
+
+  ExportOptions export_options;
+  std::string export_values;
+  CLI::App* const export_verb = topic_verb->add_subcommand("export", "Write numbers of a recording as CSV");
+  export_verb->add_option("file", export_options.recording, "The recording, an MCAP file")->required();
+  export_verb
+      ->add_option("--values", export_values,
+                   "Numbers, parted by commas: /topic.path, or a topic for all numbers in it")
+      ->required();
+  export_verb->add_option("--out", export_options.out, "The CSV file")->required();
+  export_verb->add_option("--from", from.text, "Begin at this time of the recording");
+  export_verb->add_option("--to", to.text, "End after this time");
+  export_verb->footer(
+      "Example: sandlot topic export run.mcap --values '/rover/laser/ranges.ranges[90],/tf' --out run.csv");
+  export_verb->callback([&] {
+    export_options.values = split_list(export_values);
+    Status status = from.read("--from", export_options.from_s);
+    if (status) status = to.read("--to", export_options.to_s);
+    result = status ? topic_export(export_options) : complain(status.error());
+  });
 
   bool doctor_json = false;
   CLI::App* const doctor_verb = app.add_subcommand(

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "base/units.h"
+#include "sim/monitor.h"
 #include "sim/program.h"
 
 namespace sandlot {
@@ -98,7 +99,9 @@ Status Experiment::report_contacts() {
 
 Status Experiment::report_events() {
   // Those that a hook emits while it hears of one come after the next tick, so that two hooks cannot play ping-pong.
-  const std::vector<std::string> happened = std::exchange(emitted_, {});
+  const std::span<const std::string> of_scenario = sim_.monitor().happened();
+  std::vector<std::string> happened(of_scenario.begin(), of_scenario.end());
+  for (std::string& name : std::exchange(emitted_, {})) happened.push_back(std::move(name));
   for (const std::string& name : happened) SL_TRY(call("on_event", hooks_.on_event, name));
   return {};
 }
