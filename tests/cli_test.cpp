@@ -13,7 +13,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Cli, every_verb_explains_itself_with_an_example) {
-  for (const char* verb : {"run", "demo", "check", "info", "convert", "list", "plot", "bench", "doctor"}) {
+  for (const char* verb :
+       {"run", "demo", "check", "info", "convert", "list", "plot", "bench", "doctor", "replay", "diff"}) {
     const Printed help = sandlot(std::string(verb) + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.out, HasSubstr("Example: sandlot")) << verb;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/snapshots.h"
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
 #include "sim/experiment.h"
@@ -36,16 +37,37 @@ struct RunOptions {
   std::vector<std::string> log_values;  ///< addresses and expressions; empty: the scenario's
   std::optional<double> log_rate_hz;
   std::string from_file;  ///< a snapshot to go on from
-  std::string snapshot_file;
-  std::optional<double> snapshot_at_s;  ///< unset: at the end
-  bool json = false;                    ///< print the summary as JSON instead of text
-  const Hooks* hooks = nullptr;         ///< of an experiment in C++
-  std::vector<std::string> lines;       ///< for its console: "at 2s kick ball"
-  std::string record_file;              ///< "": as the scenario says
+  SnapshotOptions snapshots;
+  bool json = false;               ///< print the summary as JSON instead of text
+  const Hooks* hooks = nullptr;    ///< of an experiment in C++
+  std::vector<std::string> lines;  ///< for its console: "at 2s kick ball"
+  std::string record_file;         ///< "": as the scenario says
   std::vector<std::string> record_topics;
   std::string record_compression;
 };
 int run(const RunOptions& options);
+
+struct ReplayOptions {
+  std::string file;     ///< recording
+  bool verify = false;  ///< compare every tick
+  bool logged = false;  ///< the controllers' orders come from the log
+  std::optional<double> until_s;
+  int threads = 1;
+  SnapshotOptions snapshots;
+  std::string summary_file;
+  std::vector<std::string> paths;  ///< folders to search first for plugins
+  bool json = false;
+};
+int replay(const ReplayOptions& options);
+
+struct DiffOptions {
+  std::string a, b;  ///< recordings or snapshot files
+  int threads = 1;
+  std::size_t limit = 20;          ///< values that are shown
+  std::vector<std::string> paths;  ///< folders to search first for plugins
+  bool json = false;
+};
+int diff(const DiffOptions& options);
 
 struct FileOptions {
   std::vector<std::string> files;

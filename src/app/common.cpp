@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "base/program.h"
+#include "record/playback.h"
 #include "sim/load.h"
 
 namespace sandlot::app {
@@ -25,6 +26,7 @@ Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOpt
                                           Diagnostics& diagnostics) {
   SL_ASSIGN(model::Setup setup,
             load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
+  SL_TRY(record::resolve_playbacks(setup, options.paths));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
 

@@ -75,7 +75,15 @@ int info(const FileOptions& options) {
   auto many = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     Diagnostics diagnostics;
-    const auto built = build(file, options, diagnostics);
+    const bool is_snapshot = is_snapshot_file(file);
+    std::vector<std::pair<std::string, std::string>> facts;
+    if (is_snapshot) {
+      auto examined = examine_file(file);
+      if (!examined) return complain(examined.error());
+      facts = std::move(*examined);
+    }
+    const auto built = is_snapshot ? restore_file(file, {.paths = options.paths}, diagnostics)
+                                   : build(file, options, diagnostics);
     if (!built) {
       print_warnings(diagnostics);
       return complain(built.error());
@@ -85,8 +93,14 @@ int info(const FileOptions& options) {
       else std::fputs(values_text(**built).c_str(), stdout);
       continue;
     }
-    if (options.json) many.push_back(info_json(**built, diagnostics));
-    else std::fputs(info_text(file, **built, diagnostics).c_str(), stdout);
+    if (options.json) {
+      auto json = info_json(**built, diagnostics);
+      for (const auto& [name, value] : facts) json["snapshot"][name] = value;
+      many.push_back(std::move(json));
+    } else {
+      for (const auto& [name, value] : facts) std::printf("%-9s %s\n", name.c_str(), value.c_str());
+      std::fputs(info_text(file, **built, diagnostics).c_str(), stdout);
+    }
   }
   // One file gives one object, so that the common case needs no index.
   if (options.json) std::printf("%s\n", (many.size() == 1 ? many[0] : many).dump(2).c_str());

@@ -131,6 +131,8 @@ Json info_json(const Simulation& simulation, const Diagnostics& diagnostics) {
             {"moving_mass_kg", overview.moving_mass_kg},
             {"bounds", of(overview.bounds)},
             {"endless_ground", overview.endless_ground}};
+  if (setup.clock.mode == model::Clock::Mode::continuous)
+    root["clock"] = {{"min_step_s", setup.clock.min_step.s()}, {"max_step_s", setup.clock.max_step.s()}};
   root["stop_s"] = setup.stop ? Json(setup.stop->s()) : Json(nullptr);
   Json& lights = root["lights"] = Json::array();
   for (const model::Light& light : setup.lights) lights.push_back(of(light));

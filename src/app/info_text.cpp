@@ -313,9 +313,15 @@ std::string head_text(const std::string& file, const Simulation& simulation) {
   const model::Setup& setup = simulation.setup();
   const Overview o = overview_of(simulation);
   std::string out = setup.name + "  " + file + "\n";
-  out += fmt::format("  {} physics, step {} s in {}, control every {}, seed {}{}\n", setup.engine,
-                     number_text(setup.step.s()),
-                     counted(static_cast<std::size_t>(setup.substeps), "sub-step"),
+  const model::Clock& clock = setup.clock;
+  const std::string steps = clock.mode == model::Clock::Mode::continuous
+                                ? fmt::format(
+                                      "continuous clock, steps of {} to {} s in sub-steps of at most {} s",
+                                      number_text(clock.min_step.s()), number_text(clock.max_step.s()),
+                                      number_text(setup.step.s() / setup.substeps))
+                                : fmt::format("step {} s in {}", number_text(setup.step.s()),
+                                              counted(static_cast<std::size_t>(setup.substeps), "sub-step"));
+  out += fmt::format("  {} physics, {}, control every {}, seed {}{}\n", setup.engine, steps,
                      counted(static_cast<std::size_t>(setup.control_interval), "tick"), setup.seed,
                      setup.stop ? ", ends at " + number_text(setup.stop->s()) + " s" : "");
   std::vector<std::string> things;

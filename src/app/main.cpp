@@ -45,7 +45,7 @@ Status read_range(const char* flag, const std::string& text, std::optional<std::
 
 struct RunFlags {
   RunOptions options;
-  DurationOption duration, snapshot_at;
+  DurationOption duration, snapshot_at, snapshot_every;
   std::string rate = "max";
   std::vector<std::string> sets;
   std::string log_values, log_rate;
@@ -84,8 +84,14 @@ struct RunFlags {
     verb.add_option("--log-rate", log_rate,
                     "Lines per simulated second, such as '10 Hz'; one per tick if left out");
     verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
-    verb.add_option("--snapshot", options.snapshot_file, "Write a snapshot: at the end, or at --snapshot-at");
+    verb.add_option("--snapshot", options.snapshots.file,
+                    "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
+    verb.add_option("--snapshot-every", snapshot_every.text,
+                    "And one each time so much was simulated, such as 10s: FILE with the time in its name");
+    verb.add_option("--snapshot-keep", options.snapshots.keep,
+                    "Of those of --snapshot-every only the last so many stay; 0: all")
+        ->check(CLI::Range(0, 1'000'000));
     verb.add_option("--record", options.record_file, "Record the run as an MCAP file");
     verb.add_option("--record-topics", options.record_topics,
                     "Record these topics only, such as '/rover/*'; may be given several times")
@@ -97,9 +103,9 @@ struct RunFlags {
 
   Status finish() {
     SL_TRY(duration.read("--duration", options.duration_s));
-    SL_TRY(snapshot_at.read("--snapshot-at", options.snapshot_at_s));
-    if (options.snapshot_at_s && options.snapshot_file.empty())
-      return Error{"--snapshot-at says when, but not where to", "add --snapshot FILE"};
+    SL_TRY(snapshot_at.read("--snapshot-at", options.snapshots.at_s));
+    SL_TRY(snapshot_every.read("--snapshot-every", options.snapshots.every_s));
+    SL_TRY(check(options.snapshots));
     if (rate != "max") {
       double factor = 0;
       if (!parse_number(rate, factor) || !(factor > 0 && factor <= 1e6))
@@ -205,7 +211,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       check);
   check_verb->add_flag("--strict", file_options.strict, "Warnings count as errors: exit code 2");
   CLI::App* const info_verb = add_file_verb(
-      "info", "Print the tree of a scenario or world: links, joints, devices, topics",
+      "info", "Print the tree of a scenario, world or snapshot: links, joints, devices, topics",
       "Example: sandlot info scenarios/indoor.yaml", info);
   info_verb->add_flag("--values", file_options.values,
                       "Print the address of every value instead, with unit and value at the start");
@@ -232,6 +238,56 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     if (status) status = read_range("--y-range", plot_y_range, plot_options.y_range);
     result = status ? plot(plot_options) : complain(status.error());
   });
+
+  ReplayOptions replay_options;
+  DurationOption until, replay_snapshot_at;
+  bool recompute = false;
+  CLI::App* const replay_verb = app.add_subcommand("replay", "Run a recording again, and prove it");
+  replay_verb->add_option("file", replay_options.file, "Recording (.mcap)")->required();
+  replay_verb->add_flag("--verify", replay_options.verify,
+                        "Compare every tick; exit code 1 at the first difference");
+  CLI::Option* const recompute_flag = replay_verb->add_flag("--recompute", recompute,
+                                                            "Controllers run again (unless --logged)");
+  replay_verb
+      ->add_flag("--logged", replay_options.logged, "Controllers do not run: their orders come from the log")
+      ->excludes(recompute_flag);
+  replay_verb->add_option("--until", until.text, "Simulated time at which to end, such as 10s");
+  replay_verb->add_option("--threads", replay_options.threads, "Threads; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  replay_verb->add_option("--snapshot", replay_options.snapshots.file,
+                          "Write a snapshot: at the end, or at --snapshot-at");
+  replay_verb->add_option("--snapshot-at", replay_snapshot_at.text, "Simulated time of the snapshot");
+  replay_verb->add_option("--summary", replay_options.summary_file, "Write what was found as JSON");
+  replay_verb
+      ->add_option("--path", replay_options.paths, "Folder to search for plugins; may be given several times")
+      ->allow_extra_args(false);
+  replay_verb->add_flag("--json", replay_options.json, "Print as JSON");
+  replay_verb->footer("Example: sandlot replay r.mcap --verify");
+  replay_verb->callback([&] {
+    Status status = until.read("--until", replay_options.until_s);
+    if (status) status = replay_snapshot_at.read("--snapshot-at", replay_options.snapshots.at_s);
+    if (status) status = check(replay_options.snapshots);
+    result = status ? replay(replay_options) : complain(status.error());
+  });
+
+  DiffOptions diff_options;
+  CLI::App* const diff_verb = app.add_subcommand("diff",
+                                                 "Find where two recordings or snapshots begin to differ");
+  diff_verb->add_option("a", diff_options.a, "Recording (.mcap) or snapshot")->required();
+  diff_verb->add_option("b", diff_options.b, "Recording (.mcap) or snapshot")->required();
+  diff_verb->add_option("--limit", diff_options.limit, "Show so many values at most")->capture_default_str();
+  diff_verb->add_option("--threads", diff_options.threads, "Threads; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  diff_verb
+      ->add_option("--path", diff_options.paths, "Folder to search for plugins; may be given several times")
+      ->allow_extra_args(false);
+  diff_verb->add_flag("--json", diff_options.json, "Print as JSON");
+  diff_verb->footer(
+      "Exit code 0: no difference in the ticks that both have, 1: a difference, 2: they cannot be compared.\n"
+      "Example: sandlot diff a.mcap b.mcap");
+  diff_verb->callback([&] { result = diff(diff_options); });
 
   ConvertOptions convert_options;
   CLI::App* const convert_verb = app.add_subcommand(
@@ -327,7 +383,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   CLI::App* const doctor_verb = app.add_subcommand(
       "doctor", "Check this build and machine, or check a recording and repair it when it is not whole");
   doctor_verb->add_option("file", recording_options.file,
-                          "A recording (MCAP); this build and machine if left out");
+                          "A recording (MCAP) or a snapshot; this build and machine if left out");
   doctor_verb->add_flag("--dry-run", recording_options.dry_run,
                         "Only say what would be done to the recording");
   doctor_verb->add_flag("--json", doctor_json, "Print as JSON");

@@ -59,6 +59,17 @@ Json contents(const mcap::Summary& summary, const mcap::Header& header) {
 }  // namespace
 
 int doctor_file(const RecordingOptions& options) {
+  if (is_snapshot_file(options.file)) {
+    const auto facts = examine_file(options.file);
+    if (!facts) return complain(facts.error());
+    Json json;
+    for (const auto& [name, value] : *facts) {
+      json[name] = value;
+      if (!options.json) fmt::print("{:<9} {}\n", name, value);
+    }
+    if (options.json) fmt::print("{}\n", json.dump(2));
+    return exit_ok;
+  }
   auto examined = mcap::examine(options.file);
   if (!examined) return complain(examined.error());
   Json json{{"file", options.file}, {"whole", examined->whole()}, {"bytes", examined->file_bytes}};

@@ -78,6 +78,10 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const RunReport& 
   json["wall_seconds"] = report.wall_s;
   json["real_time_factor"] = report.wall_s > 0 ? report.sim_s / report.wall_s : 0.0;
   json["late_ticks"] = report.late_ticks;
+  if (simulation.setup().clock.mode == model::Clock::Mode::continuous)
+    json["step_s"] = {{"mean", report.ticks ? report.sim_s / static_cast<double>(report.ticks) : 0.0},
+                      {"min", report.shortest.s()},
+                      {"max", report.longest.s()}};
   Json phases;
   const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
   for (std::size_t i = 0; i < phase_names.size(); ++i)
@@ -135,6 +139,10 @@ std::string as_text(const nlohmann::ordered_json& s) {
   out += fmt::format("simulated  {:.3f} s in {:.3f} s, {:.1f} x real time, {} ticks\n",
                      s["sim_seconds"].get<double>(), s["wall_seconds"].get<double>(),
                      s["real_time_factor"].get<double>(), s["ticks"].get<std::uint64_t>());
+  if (s.contains("step_s"))
+    out += fmt::format("clock      continuous: steps of {:.3g} ms, from {:.3g} to {:.3g}; {} were cut\n",
+                       1e3 * s["step_s"]["mean"].get<double>(), 1e3 * s["step_s"]["min"].get<double>(),
+                       1e3 * s["step_s"]["max"].get<double>(), s["late_ticks"].get<std::uint64_t>());
   out += "per tick  ";
   for (const auto& [name, us] : s["phase_us"].items())
     out += fmt::format(" {} {:.1f}", name, us.get<double>());

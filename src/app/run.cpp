@@ -9,23 +9,16 @@
 
 #include "app/commands.h"
 #include "app/report.h"
+#include "app/snapshots.h"
 #include "app/svg.h"
 #include "base/log.h"
+#include "record/playback.h"
 #include "record/recorder.h"
 #include "sim/csv_log.h"
 #include "sim/load.h"
 
 namespace sandlot::app {
 namespace {
-
-Result<std::vector<std::byte>> read_snapshot(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return Error{"cannot read the snapshot '" + path + "'"};
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  std::vector<std::byte> bytes(text.size());
-  std::memcpy(bytes.data(), text.data(), text.size());
-  return bytes;
-}
 
 Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
   SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
@@ -36,10 +29,7 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
       return Error{"--errors cannot change a run that has begun", "leave it out with --from"};
     if (!options.overrides.empty())
       return Error{"--set cannot change a run that has begun", "leave it out with --from"};
-    SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot(options.from_file));
-    auto simulation = Simulation::restore(bytes, simulation_options, diagnostics);
-    if (!simulation) simulation.error().place.file = std::make_shared<const std::string>(options.from_file);
-    return simulation;
+    return restore_file(options.from_file, simulation_options, diagnostics);
   }
   SL_ASSIGN(model::Setup setup, load(options.file,
                                      {.overrides = options.overrides,
@@ -49,10 +39,11 @@ Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnosti
                                       .skip_missing = options.skip_missing,
                                       .errors = options.errors.value_or(1)},
                                      diagnostics));
+  SL_TRY(record::resolve_playbacks(setup, options.paths));
   const bool may_stop = !options.stop_when.empty() ||
                         std::any_of(setup.events.begin(), setup.events.end(),
                                     [](const model::EventDecl& event) { return event.stop; });
-  if (!setup.stop && !may_stop && !options.snapshot_at_s && !isatty(STDOUT_FILENO))
+  if (!setup.stop && !may_stop && !options.snapshots.at_s && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);
 }
@@ -176,13 +167,10 @@ int run(const RunOptions& options) {
 
   catch_interrupts();
   std::vector<Error> errors;
-  const auto save_snapshot = [&] {
-    const auto bytes = simulation.snapshot();
-    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (Status status = write_file(options.snapshot_file, content); !status) errors.push_back(status.error());
+  const auto note = [&](Status status) {
+    if (!status) errors.push_back(std::move(status.error()));
   };
-  bool snapshot_taken = options.snapshot_file.empty();
-  const Time snapshot_at = Time::from_s(options.snapshot_at_s.value_or(0));
+  SnapshotFiles snapshots(options.snapshots, simulation);
   RunReport report;
   {
     Progress progress(end);
@@ -190,10 +178,7 @@ int run(const RunOptions& options) {
       progress.update(s);
       if (experiment)
         for (const std::string& answer : experiment->take_answers()) log::info(answer);
-      if (!snapshot_taken && options.snapshot_at_s && s.now() >= snapshot_at) {
-        save_snapshot();
-        snapshot_taken = true;
-      }
+      note(snapshots.after(s));
       return !interrupted() && (!log || log->status());
     };
     Status status = experiment ? experiment->start() : Status();
@@ -207,7 +192,7 @@ int run(const RunOptions& options) {
   if (log) {
     if (Status finished = log->finish(); !finished) errors.push_back(finished.error());
   }
-  if (!snapshot_taken) save_snapshot();
+  note(snapshots.finish(simulation));
   if (recorder) {
     if (Status status = recorder->finish(); !status) errors.push_back(status.error());
     const Recorder::Report& done = recorder->report();

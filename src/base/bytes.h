@@ -177,6 +177,7 @@ void write_tunables(ByteWriter& w, const Spec& spec) {
   });
 }
 
+/// Fails on numbers outside their ranges too: code trusts a spec, and these bytes may be forged.
 template <Fielded Spec>
 void read_tunables(ByteReader& r, Spec& spec) {
   Spec::fields(spec, [&](const Field& f, auto& member) {
@@ -184,6 +185,10 @@ void read_tunables(ByteReader& r, Spec& spec) {
     if (f.flags & Field::apart) return;
     if (f.flags & Field::tunable) {
       if constexpr (!std::is_same_v<Member, Node>) read(r, member);
+      if constexpr (std::is_arithmetic_v<Member> && !std::is_same_v<Member, bool>) {
+        const auto number = static_cast<double>(member);
+        if (!(number >= f.min && number <= f.max)) r.fail();
+      }
     } else {
       for_each_struct(member, [&](auto& part) { read_tunables(r, part); });
     }

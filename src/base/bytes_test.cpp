@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 #include "base/hash.h"
 #include "base/time.h"
@@ -20,7 +21,7 @@ struct Inner {
   double tuned = 1.5;
   int fixed = 2;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"tuned", "m", "", 0, 1, Field::tunable}, s.tuned);
+    visit(Field{"tuned", "m", "", 0, 10, Field::tunable}, s.tuned);
     visit(Field{"fixed", "1", ""}, s.fixed);
   }
 };
@@ -142,7 +143,7 @@ struct Outer {
   Inner inner;
   std::optional<double> b;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"a", "", "", 0, 1, Field::tunable}, s.a);
+    visit(Field{"a", "", "", 0, 10, Field::tunable}, s.a);
     visit(Field{"inner", "", ""}, s.inner);
     visit(Field{"b", "", "", 0, 1, Field::tunable}, s.b);
   }
@@ -161,6 +162,25 @@ TEST(Bytes, TunablesAreThePartOfASpecThatIsState) {
   EXPECT_EQ(back.inner.tuned, 6);
   EXPECT_EQ(back.inner.fixed, 2);  // not State
   EXPECT_EQ(back.b, 8);
+}
+
+struct Share {
+  double share = 0.5;
+  static void fields(auto& s, auto&& visit) { visit(Field{"share", "1", "", 0, 1, Field::tunable}, s.share); }
+};
+
+TEST(Bytes, TunablesOutOfTheirRangeAreNoTunables) {
+  const auto taken = [](double x) {
+    ByteWriter w;
+    write(w, x);
+    ByteReader r(w.bytes());
+    Share spec;
+    read_tunables(r, spec);
+    return r.ok();
+  };
+  EXPECT_TRUE(taken(0));
+  EXPECT_TRUE(taken(1));
+  for (const double x : {-0.001, 1.001, HUGE_VAL, std::nan("")}) EXPECT_FALSE(taken(x)) << x;
 }
 
 TEST(Hash, NeverChanges) {

@@ -9,6 +9,8 @@
 ///     Spec spec; State state;
 ///     Status init(const Description& robot);          // resolves names to handles
 ///     void step(const Observation& obs, Command& cmd);
+///     bool fits() const;                              // only where sizes or indices in State are trusted: asked after
+///                                                     // it was restored from a file, false refuses the snapshot
 ///   };
 ///   const ControllerKind kind = make_controller<Wander>({...});
 #include <cstdint>
@@ -196,6 +198,8 @@ class ControllerAdapter final : public Controller {
   void load(ByteReader& r) override {
     read_tunables(r, controller_.spec);
     read(r, controller_.state);
+    if constexpr (requires { controller_.fits(); })
+      if (!controller_.fits()) r.fail();
   }
 
  private:

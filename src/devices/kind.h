@@ -2,7 +2,6 @@
 /// The border between the simulator and a kind of device (sensor or actuator).
 ///
 /// A kind is one folder under devices/ and one line in devices/kinds.h. It writes a struct
-///
 ///   struct Device {                       // one device in the pool
 ///     using Spec = ...;                   // named fields with a field list; constant but for tunable fields
 ///     using State = ...;                  // plain data with a field list: all that changes
@@ -10,14 +9,12 @@
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
 ///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
+///     bool fits() const;    // only where sizes in State or messages are trusted: false refuses a snapshot
 ///   };
-///
-/// A Spec with a member `errors` (noise/chain.h, errors_field) takes part in the factors that scenarios and robots put on
-/// the errors of all their devices.
-///
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
 /// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
-/// one pool: one call per kind and phase, not per device.
+/// one pool: one call per kind and phase, not per device. A Spec with a member `errors` (noise/chain.h, errors_field)
+/// takes part in the factors that scenarios and robots put on the errors of all their devices.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -258,13 +255,16 @@ class DevicePool final : public PoolBase {
     if constexpr (requires { devices_[index].spec.errors; })
       if (devices_[index].spec.errors != 1) write(w, devices_[index].spec.errors);
   }
-  void load(std::uint32_t index, ByteReader& r) override {
-    read_tunables(r, devices_[index].spec);
-    read(r, devices_[index].state);
-    if constexpr (requires { devices_[index].spec.errors; }) {
-      devices_[index].spec.errors = 1;
-      if (r.remaining() > 0) read(r, devices_[index].spec.errors);
+  void load(std::uint32_t index, ByteReader& r) override {  // r ends where the device's bytes end
+    Device& d = devices_[index];
+    read_tunables(r, d.spec);
+    read(r, d.state);
+    if constexpr (requires { d.spec.errors; }) {
+      if (d.spec.errors = 1; r.remaining() > 0) read(r, d.spec.errors);
+      if (!(d.spec.errors >= 0 && d.spec.errors <= 1e6)) r.fail();
     }
+    if constexpr (requires { d.fits(); })
+      if (!d.fits()) r.fail();
   }
 
  private:
@@ -291,8 +291,7 @@ constexpr Kind make_kind(Kind kind) {
 std::span<const Kind* const> device_kinds();
 /// By name, or an error with the nearest one.
 Result<const Kind*> find_device_kind(std::string_view name);
-/// The kind that answers to one of the names an SDF file used for this element, or null. The most telling name
-/// decides: of a sensor the one of the plugin in it.
+/// The kind that answers to a name an SDF file used for this element, or null; of a sensor its plugin's goes before.
 const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl);
 
 }  // namespace sandlot

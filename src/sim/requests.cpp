@@ -126,6 +126,8 @@ Status Simulation::apply_command(const CommandRequest& command) {
 }
 
 void Simulation::apply_program_orders() {
+  if (!options_.run_programs)
+    return;  // a snapshot may hold orders; the log that drives this run has them too
   for (const auto& entity : entities_)
     for (const auto& program : entity->programs) {
       for (const Command::Order& order : program->command.orders()) {

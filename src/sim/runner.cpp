@@ -1,5 +1,6 @@
 #include "sim/runner.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -50,7 +51,13 @@ Status run(Simulation& simulation, const Pace& pace, RunReport& report,
         }
       }
     }
+    const Time before = simulation.now();
     status = experiment ? experiment->tick(measured) : simulation.tick(measured);
+    const Time length = simulation.now() - before;
+    report.shortest = report.ticks + simulation.tick_index() - tick_begin == 1
+                          ? length
+                          : std::min(report.shortest, length);
+    report.longest = std::max(report.longest, length);
     if (!status || (keep_going && !keep_going(simulation))) break;
   }
   report.ticks += simulation.tick_index() - tick_begin;

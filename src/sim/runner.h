@@ -17,7 +17,9 @@ struct RunReport {
   std::uint64_t ticks = 0;
   double wall_s = 0;
   double sim_s = 0;
-  std::uint64_t late_ticks = 0;  ///< ticks that began more than one step behind the clock
+  std::uint64_t late_ticks =
+      0;  ///< ticks that began more than one step behind the clock; continuous: that were cut
+  Time shortest, longest;  ///< tick
 };
 
 /// Ticks until the simulation has a reason to stop, or `keep_going` (called after each tick) says no.

@@ -11,12 +11,10 @@
 #include "sim/monitor.h"
 #include "sim/plugin.h"
 #include "sim/simulation.h"
+#include "sim/snapshot.h"
 
 namespace sandlot {
 namespace {
-
-constexpr std::array<char, 8> magic{'S', 'A', 'N', 'D', 'L', 'O', 'T', 'S'};
-constexpr std::uint32_t snapshot_version = 2;
 
 /// Keeps each part of a snapshot readable on its own: a part that reads too much or too little is noticed there.
 template <class Fill>
@@ -34,7 +32,62 @@ ByteReader read_block(ByteReader& r) {
   return ByteReader(r.take(size));
 }
 
+Error damaged(const std::string& what) { return {"the snapshot is damaged: " + what, "take it again"}; }
+
+/// A snapshot that is whole, read up to the State.
+struct Opened {
+  std::string profile;
+  model::Setup setup;
+  std::vector<std::uint64_t> serials;
+  ByteReader states{std::span<const std::byte>()};  ///< the blocks of State
+};
+
+Result<Opened> open(std::span<const std::byte> snapshot) {
+  ByteReader r(snapshot);
+  std::array<char, 8> magic{};
+  std::uint32_t version = 0;
+  read(r, magic);
+  if (!r.ok() || magic != snapshot_magic) return Error{"this is no Sandlot snapshot"};
+  read(r, version);
+  if (!r.ok()) return damaged("it is cut short");
+  if (version != snapshot_version)
+    return Error{"the snapshot has version " + std::to_string(version),
+                 "this Sandlot reads version " + std::to_string(snapshot_version)};
+  Opened out;
+  read(r, out.profile);
+  if (!r.ok() || r.remaining() < 8) return damaged("it is cut short");
+  std::uint64_t checksum = 0;
+  ByteReader tail(snapshot.last(8));
+  read(tail, checksum);
+  if (checksum != hash64(snapshot.first(snapshot.size() - 8))) return damaged("its checksum does not fit");
+  r = ByteReader(r.take(r.remaining() - 8));
+  ByteReader block = read_block(r);
+  if (!r.ok() || !read_setup(block, out.setup)) return damaged("the model cannot be read");
+  out.serials.resize(out.setup.instances.size());
+  for (std::uint64_t& serial : out.serials) read(block, serial);
+  if (!block.ok() || block.remaining() != 0) return damaged("the model cannot be read");
+  out.states = r;
+  return out;
+}
+
 }  // namespace
+
+bool is_snapshot(std::span<const std::byte> bytes) {
+  return bytes.size() >= snapshot_magic.size() &&
+         std::memcmp(bytes.data(), snapshot_magic.data(), snapshot_magic.size()) == 0;
+}
+
+Result<SnapshotInfo> examine_snapshot(std::span<const std::byte> bytes) {
+  SL_ASSIGN(Opened opened, open(bytes));
+  SnapshotInfo info{snapshot_version, std::move(opened.profile), std::move(opened.setup), {}, 0, 0};
+  // These begin the run's own State, see Simulation::save_run.
+  ByteReader run = read_block(opened.states);
+  read(run, info.now);
+  read(run, info.tick);
+  read(run, info.revision);
+  if (!run.ok()) return damaged("the run's own state cannot be read");
+  return info;
+}
 
 void Simulation::save_device(const Device& device, ByteWriter& w) const {
   write(w, device.levels);
@@ -56,10 +109,15 @@ void Simulation::load_device(Device& device, ByteReader& r) {
   read(r, device.sample);
   read(r, device.last);
   read(r, device.requested);
+  // Due times are computed from these: what cannot be would overflow.
+  constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
+  if (device.start < Time{} || device.start > now_ || device.last < Time{} || device.last > now_ ||
+      device.sample > most_samples)
+    return r.fail();
   for (Slot& slot : device.topics) slot.topic->load(r);
   for (Slot& slot : device.commands) slot.topic->load(r);
   pools_[device.kind].pool->load(device.index, r);
-  plan_next_sample(device);
+  if (r.ok()) plan_next_sample(device);
 }
 
 void Simulation::save_program(const ProgramEntry& program, ByteWriter& w) {
@@ -113,6 +171,8 @@ bool Simulation::load_run(ByteReader& r) {
   read(r, revision_);
   read(r, next_serial_);
   read(r, refused_commands_);
+  constexpr std::int64_t most_ns = std::int64_t{1} << 61;  // 73 years, and far from an overflow
+  if (now_.ns < 0 || now_.ns > most_ns) return false;
   for (const auto& rule : rules_) {
     ByteReader block = read_block(r);
     rule->load(block);
@@ -193,7 +253,7 @@ const std::string& Simulation::profile() {
 
 std::vector<std::byte> Simulation::snapshot() const {
   ByteWriter w;
-  write(w, magic);
+  write(w, snapshot_magic);
   write(w, snapshot_version);
   write(w, profile());
   write_block(w, [&](ByteWriter& block) {
@@ -212,61 +272,41 @@ std::vector<std::byte> Simulation::snapshot() const {
 Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byte> snapshot,
                                                         const SimulationOptions& options,
                                                         Diagnostics& diagnostics) {
-  const auto damaged = [](const char* what) {
-    return Error{std::string("the snapshot is damaged: ") + what, "take it again"};
-  };
-  ByteReader r(snapshot);
-  std::array<char, 8> found_magic{};
-  std::uint32_t version = 0;
-  std::string found_profile;
-  read(r, found_magic);
-  read(r, version);
-  if (!r.ok() || found_magic != magic) return Error{"this is no Sandlot snapshot"};
-  if (version != snapshot_version)
-    return Error{"the snapshot has version " + std::to_string(version),
-                 "this Sandlot reads version " + std::to_string(snapshot_version)};
-  read(r, found_profile);
-  if (!r.ok() || snapshot.size() < 8) return damaged("it is cut short");
-  std::uint64_t checksum = 0;
-  ByteReader tail(snapshot.last(8));
-  read(tail, checksum);
-  if (checksum != hash64(snapshot.first(snapshot.size() - 8))) return damaged("its checksum does not fit");
-  if (found_profile != profile())
-    diagnostics.warn({"the snapshot was taken with another numeric profile (" + found_profile + ")",
+  SL_ASSIGN(Opened opened, open(snapshot));
+  if (opened.profile != profile())
+    diagnostics.warn({"the snapshot was taken with another numeric profile (" + opened.profile + ")",
                       "this one is " + profile() + "; the run will go on, but with other last bits"});
+  ByteReader& r = opened.states;
+  const auto whole = [](const ByteReader& block) { return block.ok() && block.remaining() == 0; };
 
-  model::Setup setup;
-  ByteReader block = read_block(r);
-  if (!read_setup(block, setup)) return damaged("the model cannot be read");
-  std::vector<std::uint64_t> serials(setup.instances.size());
-  for (std::uint64_t& serial : serials) read(block, serial);
-  if (!block.ok()) return damaged("the model cannot be read");
-
-  for (model::PluginDecl& decl : setup.plugins) {
+  for (model::PluginDecl& decl : opened.setup.plugins) {
     SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
     decl = {plugin->file, plugin->name, plugin->hash, decl.place};
   }
-  std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
+  std::unique_ptr<Simulation> sim(new Simulation(std::move(opened.setup), options));
   Diagnostics said_before;  // these warnings were given when the run began
   SL_TRY(sim->build(said_before));
   ByteReader run = read_block(r);
-  if (!sim->load_run(run)) return damaged("the run's own state cannot be read");
+  if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
     Entity& entity = *sim->entities_[i];
-    entity.serial = serials[i];
+    entity.serial = opened.serials[i];
     ByteReader bodies = read_block(r);
-    if (!sim->engine_->load(entity.id, bodies)) return damaged("bodies cannot be read");
+    if (!sim->engine_->load(entity.id, bodies) || !whole(bodies))
+      return damaged("the bodies of '" + entity.instance.name + "' cannot be read");
     for (const auto& device : entity.devices) {
       ByteReader state = read_block(r);
       sim->load_device(*device, state);
-      if (!state.ok()) return damaged("a device cannot be read");
+      if (!whole(state)) return damaged("the device '" + device->path + "' cannot be read");
     }
     for (const auto& program : entity.programs) {
       ByteReader state = read_block(r);
-      if (!load_program(*program, state)) return damaged("a program cannot be read");
+      if (!load_program(*program, state) || !whole(state))
+        return damaged("the program '" + program->path + "' cannot be read");
     }
     sim->point_programs_at_active_levels(entity);
   }
+  if (!whole(r)) return damaged("there is more in it than belongs there");
   sim->arena_->execute([&] {
     sim->update_scene();
     sim->judge();

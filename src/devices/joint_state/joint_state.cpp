@@ -80,6 +80,12 @@ Result<Joints> Joints::create(const DeviceBuild& build, Spec spec) {
   return device;
 }
 
+bool Joints::fits() const {
+  const msg::JointState& shown = message->message;
+  const std::size_t n = joints.size();
+  return shown.position.size() == n && shown.velocity.size() == n && shown.effort.size() == n;
+}
+
 void Joints::sense(PoolView<Joints> pool, const Context& context) {
   const auto states = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {

@@ -68,6 +68,8 @@ struct Joints {
 
   static Result<Joints> create(const DeviceBuild& build, Spec spec);
   static void sense(PoolView<Joints> pool, const Context& context);
+  /// The lists of the message are as long as they were made.
+  bool fits() const;
 };
 
 extern const Kind kind;

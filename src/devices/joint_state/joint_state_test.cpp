@@ -69,5 +69,19 @@ TEST(JointStateFromSdf, TakesBothSpellings) {
   EXPECT_TRUE(diagnostics.warnings.empty());
 }
 
+TEST(JointStateDevice, RefusesARestoredMessageWithOtherLists) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("joints", Node()));
+  ByteWriter w;
+  rig.pool->save(0, w);
+  ByteReader whole(w.bytes());
+  rig.pool->load(0, whole);
+  EXPECT_TRUE(whole.ok());
+  rig.topic<msg::JointState>("joints/joints").message.effort.pop_back();
+  ByteReader forged(w.bytes());
+  rig.pool->load(0, forged);
+  EXPECT_FALSE(forged.ok());
+}
+
 }  // namespace
 }  // namespace sandlot::joint_state

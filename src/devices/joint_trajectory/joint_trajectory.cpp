@@ -29,12 +29,6 @@ Reference reference(const State& s, std::size_t joints, std::size_t j, double t_
   return {((a * u + b) * u + m0) * u + p0, ((3 * a * u + 2 * b) * u + m0) / span_s};
 }
 
-/// A snapshot may hold anything; its lists are followed without asking.
-bool fits(const State& s, std::size_t joints) {
-  return !s.time_s.empty() && s.position.size() == s.time_s.size() * joints &&
-         (s.velocity.empty() || s.velocity.size() == s.position.size()) && s.pids.size() == joints;
-}
-
 /// The path is one point from now on: where the joints are.
 void hold(Trajectory& device, std::span<const JointState> states) {
   State& state = device.state;
@@ -193,11 +187,21 @@ Result<Trajectory> Trajectory::create(const DeviceBuild& build, Spec spec) {
   return device;
 }
 
+bool Trajectory::fits() const {
+  if (!state.held) return true;
+  // The path is followed by its times without asking: a NaN among them would lead out of the lists.
+  const auto finite = [](double x) { return std::isfinite(x); };
+  return !state.time_s.empty() && state.position.size() == state.time_s.size() * joints.size() &&
+         (state.velocity.empty() || state.velocity.size() == state.position.size()) &&
+         state.pids.size() == joints.size() && std::isfinite(state.elapsed_s) &&
+         std::all_of(state.time_s.begin(), state.time_s.end(), finite) &&
+         std::is_sorted(state.time_s.begin(), state.time_s.end());
+}
+
 void Trajectory::actuate(PoolView<Trajectory> pool, const Context& context) {
   const auto states = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Trajectory& device = pool.all[index];
-    if (device.state.held && !fits(device.state, device.joints.size())) hold(device, states);
     if (device.spec.active && !device.state.held) hold(device, states);
     if (!device.spec.active && device.state.held) {
       device.release(context);

@@ -81,6 +81,8 @@ struct Trajectory {
   static void actuate(PoolView<Trajectory> pool, const Context& context);
   static void pre_substep(PoolView<Trajectory> pool, const Context& context, double h_s);
   void release(const Context& context);
+  /// The lists of the path have lengths that go together, and its times run forward.
+  bool fits() const;
 };
 
 extern const Kind kind;

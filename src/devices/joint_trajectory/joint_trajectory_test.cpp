@@ -51,22 +51,32 @@ TEST(JointTrajectory, FollowsStraightLinesExactlyAndStaysAtTheEnd) {
   EXPECT_EQ(rig.engine->target[1].mode, JointTarget::Mode::free);  // not its joint
 }
 
-TEST(JointTrajectory, AStateWhoseListsDoNotFitHoldsTheJoints) {
+TEST(JointTrajectory, RefusesAStateThatWouldLeadOutOfItsLists) {
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("arm", arm()));
-  act(rig, 1);
-  for (const std::size_t points : {0u, 3u}) {
+  const std::size_t joints = arm().find("joints")->items().size();
+  const auto taken = [&](const auto& change) {
     State state;
     state.held = 1;
-    state.time_s.resize(points);
+    state.time_s = {0, 1};
+    state.position.assign(2 * joints, 0.0);
+    state.pids.resize(joints);
+    change(state);
     ByteWriter w;
     write_tunables(w, Spec{});
     write(w, state);
-    rig.load(w.bytes());
-    act(rig, 10);
-    EXPECT_EQ(position(rig, 0), 0);
-    EXPECT_EQ(position(rig, 2), 0);
-  }
+    ByteReader r(w.bytes());
+    rig.pool->load(0, r);
+    return r.ok();
+  };
+  EXPECT_TRUE(taken([](State&) {}));
+  EXPECT_FALSE(taken([](State& s) { s.time_s.clear(); }));
+  EXPECT_FALSE(taken([](State& s) { s.time_s.push_back(2); }));
+  EXPECT_FALSE(taken([](State& s) { s.velocity.resize(1); }));
+  EXPECT_FALSE(taken([](State& s) { s.pids.clear(); }));
+  EXPECT_FALSE(taken([](State& s) { s.elapsed_s = NAN; }));
+  EXPECT_FALSE(taken([](State& s) { s.time_s[1] = NAN; }));
+  EXPECT_FALSE(taken([](State& s) { s.time_s[0] = 3; }));
 }
 
 TEST(JointTrajectory, WithVelocitiesThePathIsACubic) {

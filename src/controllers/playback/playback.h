@@ -1,0 +1,70 @@
+#pragma once
+/// Drives a robot as another one once drove: gives the velocities of a recording again.
+///
+/// Reads    nothing. The velocities are in `samples`; where a scenario names a recording (`file`), they are put there
+///          while the scenario is loaded, so that a snapshot needs the recording no more.
+/// Orders   a Twist for the drive `to` in every control step: vx, vy [m/s], wz [rad/s] in the robot's frame.
+/// Time     sample times count from the beginning of the recording; the one of time t is given in the first control step
+///          not before start + t / rate, and holds until the next. Before the first and after the last: zero.
+///          With `loop` the recording begins again at the time of its last sample.
+/// Limits   open loop: another robot, or other ground, drifts away from the recorded path. No interpolation.
+/// Cost     a binary search per step.
+/// Errors   no samples, rows that are not four numbers, times that run backwards.
+#include <string>
+#include <vector>
+
+#include "control/controller.h"
+
+namespace sandlot::controllers::playback {
+
+/// One row of `samples`.
+struct Sample {
+  double time_s = 0;
+  double vx_mps = 0, vy_mps = 0, wz_radps = 0;
+};
+
+/// As rows "time vx vy wz", each number exact.
+std::string samples_text(const std::vector<Sample>& samples);
+/// Reads such rows; blanks and commas separate numbers, a line ends a row.
+Result<std::vector<Sample>> read_samples(std::string_view text);
+
+struct Spec {
+  std::string file, topic, commands, to, samples;
+  double start_s = 0;
+  double rate = 1;
+  bool loop = false;
+
+  static void fields(auto& s, auto&& visit) {
+    constexpr std::size_t most_letters = 1'000'000'000;
+    visit(Field{"file", "", "Recording (.mcap), or table (.csv) with the columns time, vx, vy, wz."}, s.file);
+    visit(
+        Field{"topic", "",
+              "Topic of the recording: a Twist, TwistStamped or Odometry. Not needed when there is but one."},
+        s.topic);
+    visit(Field{"commands", "",
+                "Instead of a topic: the recorded commands for this drive, such as rover/drive."},
+          s.commands);
+    visit(Field{"to", "", "Drive of this robot; not needed when it has one only."}, s.to);
+    visit(
+        Field{"samples", "", "Instead of a file: rows of time, vx, vy, wz.", 0, 0, Field::none, most_letters},
+        s.samples);
+    visit(Field{"start", "s", "Simulated time at which the recording begins.", 0, 1e9}, s.start_s);
+    visit(Field{"rate", "1", "2: twice as fast, at the recorded velocities.", 1e-3, 1e3}, s.rate);
+    visit(Field{"loop", "", "Begin again after the last sample.", 0, 1}, s.loop);
+  }
+};
+
+struct Playback {
+  using Spec = playback::Spec;
+  using State = NoFields;
+  Spec spec;
+  State state;
+
+  Actuator<msg::Twist> drive;
+  std::vector<Sample> samples;
+
+  Status init(const Description& robot);
+  void step(const Observation& obs, Command& cmd);
+};
+
+}  // namespace sandlot::controllers::playback

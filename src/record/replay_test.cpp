@@ -1,0 +1,198 @@
+#include "record/replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sim/test_world.h"
+
+namespace sandlot::record {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A recording in memory.
+struct Recorded {
+  std::vector<std::byte> snapshot;
+  std::vector<RecordedTick> ticks;
+};
+
+struct Recorder : Observer {
+  std::vector<RecordedTick>& ticks;
+  explicit Recorder(std::vector<RecordedTick>& out) : ticks(out) {}
+  Wants wants() const override { return {.log = true, .hash = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    ticks.push_back({frame->tick, frame->now, frame->log, frame->hash, frame->parts, frame->part_names});
+  }
+};
+
+struct Requested {
+  std::uint64_t before_tick;  ///< carried out in this one
+  Request request;
+  Source source = {};
+};
+
+/// Records `ticks` ticks from tick `begin` on.
+Recorded record(const model::Setup& setup, std::uint64_t begin, std::uint64_t ticks,
+                const std::vector<Requested>& requests = {}, std::optional<Time> measured = std::nullopt) {
+  Diagnostics diagnostics;
+  auto made = Simulation::create(setup, {}, diagnostics);
+  EXPECT_TRUE(static_cast<bool>(made));
+  Simulation& simulation = **made;
+  for (std::uint64_t i = 0; i < begin; ++i) EXPECT_TRUE(static_cast<bool>(simulation.tick()));
+  Recorded out;
+  out.snapshot = simulation.snapshot();
+  Recorder recorder(out.ticks);
+  simulation.add_observer(&recorder);
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    for (const Requested& each : requests)
+      if (each.before_tick == simulation.tick_index() + 1) simulation.submit(each.request, each.source);
+    // Every tick of another length, some beyond what the clock allows.
+    std::optional<Time> length;
+    if (measured) length = *measured * static_cast<std::int64_t>(1 + i % 7);
+    EXPECT_TRUE(static_cast<bool>(simulation.tick(length)));
+  }
+  return out;
+}
+
+Replay begin(const Recorded& recorded, Replay::Options options = {}) {
+  Diagnostics diagnostics;
+  auto replay = Replay::begin(recorded.snapshot, options, diagnostics);
+  EXPECT_TRUE(static_cast<bool>(replay));
+  return std::move(*replay);
+}
+
+/// What the first difference or error says; "" when there is none.
+std::string verdict(const Recorded& recorded, Replay::Options options = {}) {
+  Replay replay = begin(recorded, options);
+  for (const RecordedTick& tick : recorded.ticks) {
+    auto difference = replay.tick(tick);
+    if (!difference) return difference.error().what;
+    if (*difference) return (*difference)->text();
+  }
+  EXPECT_EQ(replay.simulation().tick_index(), recorded.ticks.back().tick);
+  return "";
+}
+
+Request twist(const std::string& target, double vx_mps) {
+  msg::Twist message;
+  message.linear.x = vx_mps;
+  ByteWriter w;
+  write(w, message);
+  return CommandRequest{target, msg::Twist::ros_type, {w.bytes().begin(), w.bytes().end()}};
+}
+
+/// Two rovers that wander, a third that a client drives, and a lot that is asked of them.
+Recorded eventful(const char* engine, std::uint64_t begin = 33) {
+  model::Setup setup = test::arena(engine, 2);
+  setup.instances.push_back(test::rover("driven", setup.instances.back().model, {-2.5, -2.5, 0}, 0.5, ""));
+  model::Instance guest = test::arena(engine, 1).instances.back();
+  guest.name = "guest";
+  guest.X_WM = {{3, 3, 0}, {}};
+  const Source client{Source::Kind::robot, 4};
+  return record(setup, begin, 90,
+                {{begin + 2, twist("driven/drive", 0.3), client},
+                 {begin + 12, twist("driven/drive/ideal", 0.1), client},
+                 {begin + 12, twist("nobody/drive", 1), client},
+                 {begin + 20, SpawnRequest{guest}},
+                 {begin + 30, PoseRequest{"rover1", {{-3, 3, 0}, {}}}},
+                 {begin + 40, ParameterRequest{"guest/laser", "noise/white", Node::scalar("5 cm")}},
+                 {begin + 50, DeleteRequest{"rover2"}},
+                 {begin + 51, DeleteRequest{"rover2"}}});
+}
+
+TEST(Replay, both_ways_give_every_hash_again_on_both_engines_and_from_the_middle_of_a_control_interval) {
+  for (const char* engine : {"planar", "rigid"})
+    for (const Programs programs : {Programs::recompute, Programs::logged})
+      for (const int threads : {1, 3}) {
+        // The arena's control interval is 5 ticks: 35 is a control step whose orders wait for the next tick.
+        EXPECT_EQ(verdict(eventful(engine, 35), {programs, threads}), "") << engine << threads;
+        EXPECT_EQ(verdict(eventful(engine, 33), {programs, threads}), "") << engine << threads;
+      }
+}
+
+TEST(Replay, lengths_that_a_clock_measured_are_taken_from_the_log) {
+  model::Setup setup = test::arena("planar", 2);
+  setup.clock = {model::Clock::Mode::continuous, Time::from_s(2e-3), Time::from_s(0.02)};
+  Recorded recorded = record(setup, 0, 60, {}, Time::from_s(4e-3));
+  EXPECT_EQ(recorded.ticks.back().log.front().kind, LogEntry::step);
+  EXPECT_EQ(verdict(recorded), "");
+  // One nanosecond more in tick 40.
+  recorded.ticks[39].log.front().bytes.front() ^= std::byte{1};
+  EXPECT_THAT(verdict(recorded), testing::StartsWith("tick 40 ("));
+}
+
+TEST(Replay, a_changed_order_of_a_program_is_found_by_recomputing_and_a_changed_state_by_the_log) {
+  Recorded recorded = eventful("planar");
+  RecordedTick* changed = nullptr;
+  for (RecordedTick& tick : recorded.ticks)
+    if (!changed && tick.tick >= 60)
+      for (LogEntry& entry : tick.log)
+        if (!changed && entry.target.starts_with("rover1/drive")) {
+          entry.bytes[6] ^= std::byte{0x10};
+          changed = &tick;
+        }
+  ASSERT_TRUE(changed);
+  const std::string tick = tick_text(changed->tick, changed->now);
+  EXPECT_THAT(verdict(recorded), testing::AllOf(testing::StartsWith(tick), HasSubstr("rover1/drive"),
+                                                HasSubstr("not what the program orders now")));
+  EXPECT_THAT(verdict(recorded, {Programs::logged}),
+              testing::AllOf(testing::StartsWith(tick), HasSubstr("state differs of"), HasSubstr("rover1")));
+}
+
+TEST(Replay, a_changed_command_of_a_client_shows_in_the_state_of_the_robot_it_was_for) {
+  Recorded recorded = eventful("planar");
+  LogEntry& entry = recorded.ticks[1].log.front();
+  ASSERT_EQ(entry.target, "driven/drive");
+  ByteWriter w;
+  msg::Twist faster;
+  faster.linear.x = 0.4;
+  write(w, faster);
+  entry.bytes.assign(w.bytes().begin(), w.bytes().end());
+  Replay replay = begin(recorded);
+  ASSERT_FALSE((*replay.tick(recorded.ticks[0])).has_value());
+  const auto difference = *replay.tick(recorded.ticks[1]);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->tick, 35u);
+  EXPECT_THAT(difference->parts, ElementsAre("driven", "driven/drive"));
+}
+
+TEST(Replay, names_what_is_wrong_with_a_log) {
+  const auto changed = [](const auto& change) {
+    Recorded recorded = eventful("planar");
+    change(recorded.ticks);
+    return verdict(recorded);
+  };
+  using Ticks = std::vector<RecordedTick>;
+  EXPECT_THAT(changed([](Ticks& t) { t.erase(t.begin() + 4); }), HasSubstr("incomplete: tick 38 is missing"));
+  EXPECT_THAT(changed([](Ticks& t) { t[19].log.front().bytes.pop_back(); }),
+              HasSubstr("the spawn for guest in the log cannot be read"));
+  EXPECT_THAT(changed([](Ticks& t) { t[19].log.front().kind = 77; }), HasSubstr("cannot be read"));
+  EXPECT_THAT(changed([](Ticks& t) { t[19].log.front().target = "host"; }), HasSubstr("cannot be read"));
+  EXPECT_THAT(changed([](Ticks& t) { t[1].log.front().target = "driven/dryve"; }),
+              HasSubstr("is refused now"));
+  EXPECT_THAT(changed([](Ticks& t) { t[1].log.front().source.kind = Source::Kind{9}; }),
+              HasSubstr("no known source"));
+  EXPECT_THAT(changed([](Ticks& t) { t[1].log.erase(t[1].log.begin()); }), HasSubstr("driven"));
+  EXPECT_THAT(changed([](Ticks& t) { t[7].parts[0] ^= 1, t[7].hash ^= 1; }),
+              testing::EndsWith("the state differs of sim"));
+  EXPECT_THAT(changed([](Ticks& t) { t[7].hash ^= 1; }), HasSubstr("the whole"));
+  EXPECT_THAT(changed([](Ticks& t) {
+                for (RecordedTick& tick : t)
+                  if (!tick.log.empty() && tick.log.back().source.kind == Source::Kind::program)
+                    return tick.log.pop_back();
+              }),
+              HasSubstr("that is not in the log"));
+}
+
+TEST(Replay, parts_are_paired_by_name_when_the_models_differ) {
+  const std::vector<std::string> a{"sim", "ball", "box"}, b{"sim", "box", "cone"};
+  EXPECT_THAT(differing_parts(a, std::vector<std::uint64_t>{1, 2, 3}, b, std::vector<std::uint64_t>{1, 3, 4}),
+              ElementsAre("ball", "cone"));
+  EXPECT_THAT(differing_parts(a, std::vector<std::uint64_t>{1, 2, 3}, a, std::vector<std::uint64_t>{1, 5, 4},
+                              std::vector<std::string>{"ball"}),
+              ElementsAre("box"));
+}
+
+}  // namespace
+}  // namespace sandlot::record
