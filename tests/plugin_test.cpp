@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
+#include "control/controller.h"
 
 namespace sandlot::test {
 namespace {
@@ -102,7 +103,7 @@ TEST(Plugin, whatDoesNotFitIsRefusedWithItsPlace) {
   refused("bad.yaml", HasSubstr("no shared library"));
   refused(fs::absolute(SANDLOT_BIN).string(), HasSubstr("cannot load"));  // a program, not a library
   refused(plugins() + "/no_plugin.so", HasSubstr("is no Sandlot plugin"));
-  refused(plugins() + "/other_api.so", AllOf(HasSubstr("version 99"), HasSubstr("has version 1")));
+  refused(plugins() + "/other_api.so", AllOf(HasSubstr("version 99"), HasSubstr("has version " + std::to_string(controller_api_version))));
   refused(plugins() + "/other_build.so", AllOf(HasSubstr("fast-math"), HasSubstr("this Sandlot as [")));
   refused(plugins() + "/taken.so", AllOf(HasSubstr("'wander'"), HasSubstr("so does Sandlot")));
   refused(plugins() + "/good.so, " + plugins() + "/good.so", HasSubstr("'spinner'"));

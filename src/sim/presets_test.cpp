@@ -26,6 +26,7 @@ model::Instance with_device(const char* kind, Node config) {
 Result<std::unique_ptr<Simulation>> simulate(const char* kind, Node config) {
   model::Setup setup;
   setup.step = Time::from_s(0.001);
+  setup.geography = model::Geography{.latitude_rad = 0.8};
   setup.instances.push_back(with_device(kind, std::move(config)));
   Diagnostics diagnostics;
   return Simulation::create(std::move(setup), {}, diagnostics);
@@ -35,7 +36,10 @@ TEST(Presets, EachOfEachKindBuildsARunningDevice) {
   std::size_t count = 0;
   for (const Kind* kind : device_kinds())
     for (const Preset& preset : kind->presets) {
-      auto simulation = simulate(kind->name, map({{"preset", preset.name}}));
+      Node config = map({{"preset", preset.name}});
+      for (const FieldInfo& field : kind->describe())  // what no preset can know
+        if (field.path == "joint") config.set("joint", Node::scalar("left_wheel_joint"));
+      auto simulation = simulate(kind->name, std::move(config));
       ASSERT_TRUE(simulation) << preset.name << ": " << simulation.error().text();
       EXPECT_TRUE((*simulation)->tick());
       EXPECT_NE(std::string(preset.help), "");
