@@ -39,11 +39,15 @@ void run_loop(Motor& motor, Level level, const JointState& joint, double h_s) {
   if (level == velocity) {
     const double most = spec.max_acceleration * step;
     state.target += std::clamp(state.command - state.target, -most, most);
-    state.volts = state.pid.step(spec.velocity, state.target - rate, 0, spec.supply_voltage_V, step);
+    // The first run after a start or a switch has no earlier speed to compare with.
+    const double acceleration = since > 0 ? (rate - state.seen_rad_s) / since : 0;
+    state.volts = state.pid.step(spec.velocity, state.target - rate, acceleration, spec.supply_voltage_V,
+                                 step);
   } else {
     state.volts = state.pid.step(spec.position, state.target - seen, rate, spec.supply_voltage_V, step);
   }
   state.seen_rad = seen;
+  state.seen_rad_s = since > 0 ? rate : joint.velocity;
   state.loop_since_s = 0;
   state.loop_due_s = std::max(0.0, state.loop_due_s) + period;
   if (spec.loop_rate_hz == 0) state.loop_due_s = 0;
