@@ -21,7 +21,8 @@ std::vector<std::vector<std::byte>> real_snapshots() {
   const std::string folder = sandlot::formats::own_folder("scenarios");
   for (const auto& [file, engine] :
        {std::pair{"/indoor.yaml", "planar"}, std::pair{"/indoor.yaml", "rigid"},
-        std::pair{"/fig1_robot.yaml", "rigid"}, std::pair{"/mario.yaml", "rigid"}}) {
+        std::pair{"/fig1_robot.yaml", "rigid"}, std::pair{"/mario.yaml", "rigid"},
+        std::pair{"/../tests/scenarios/all_devices.yaml", "rigid"}}) {
     Diagnostics diagnostics;
     const sandlot::formats::Override overrides[] = {{"physics", engine}};
     auto setup = sandlot::load(folder + file, {.overrides = overrides}, diagnostics);

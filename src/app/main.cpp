@@ -231,6 +231,10 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   plot_verb
       ->add_option("--label", plot_options.labels, "Name of a line in the legend; once per line, in order")
       ->allow_extra_args(false);
+  plot_verb
+      ->add_option("--color", plot_options.colours,
+                   "Colour of a line, such as red or '#1f77b4'; once per line, in order")
+      ->allow_extra_args(false);
   plot_verb->footer("Example: sandlot plot run.csv --y 'rover.pose.x,rover.pose.y' --out run.svg");
   plot_verb->callback([&] {
     plot_options.y = split_list(plot_y);

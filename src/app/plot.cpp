@@ -21,6 +21,14 @@ constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 // Okabe and Ito, https://jfly.uni-koeln.de/color: blue, vermilion, green, purple, orange, sky, black.
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                    "#e69f00", "#56b4e9", "#000000"};
+struct NamedColour {
+  const char* name;
+  const char* code;
+};
+constexpr NamedColour named_colours[] = {
+    {"red", "#d00000"},   {"blue", "#0072b2"},   {"vermilion", "#d55e00"},
+    {"green", "#009e73"}, {"purple", "#cc79a7"}, {"orange", "#e69f00"},
+    {"sky", "#56b4e9"},   {"black", "#000000"},  {"grey", "#888888"}};
 constexpr const char* dashes[] = {"", "7 4", "2 3", "9 3 2 3"};
 
 /// The fields of one line; quotes as in RFC 4180, but no line breaks within them.
@@ -58,6 +66,7 @@ double text_width(std::string_view text, double size) {
 
 struct Line {
   std::string label, name, unit;
+  std::string colour;  ///< "": by its place in the list
   const std::vector<double>* x;
   const std::vector<double>* y;
 };
@@ -72,6 +81,19 @@ Result<std::size_t> column_of(const Table& table, std::string_view wanted) {
   place.file = std::make_shared<const std::string>(table.file);
   return Error{"there is no column '" + std::string(wanted.substr(0, 100)) + "'",
                suggestion(wanted, table.names), place};
+}
+
+/// "#d00000" of "red" or of itself.
+Result<std::string> colour_of(const std::string& wanted) {
+  const bool code = wanted.size() == 7 && wanted[0] == '#' &&
+                    wanted.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+  if (code) return wanted;
+  std::vector<std::string> names;
+  for (const NamedColour& colour : named_colours) {
+    if (wanted == colour.name) return std::string(colour.code);
+    names.emplace_back(colour.name);
+  }
+  return Error{"there is no colour '" + wanted.substr(0, 40) + "'", suggestion(wanted, names)};
 }
 
 Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotOptions& options) {
@@ -92,7 +114,7 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
         const std::string stem = std::filesystem::path(table.file).stem().string();
         label = chosen.size() == 1 ? stem : stem + ": " + label;
       }
-      lines.push_back({label, table.names[y], table.units[y], &table.columns[x], &table.columns[y]});
+      lines.push_back({label, table.names[y], table.units[y], "", &table.columns[x], &table.columns[y]});
     }
   }
   if (lines.empty()) return Error{"there is no column to draw beside '" + options.x + "'"};
@@ -103,6 +125,12 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
     return Error{"there are " + std::to_string(options.labels.size()) + " labels for " +
                  std::to_string(lines.size()) + " lines"};
   for (std::size_t i = 0; i < options.labels.size(); ++i) lines[i].label = options.labels[i];
+  if (options.colours.size() > lines.size())
+    return Error{"there are " + std::to_string(options.colours.size()) + " colours for " +
+                 std::to_string(lines.size()) + " lines"};
+  for (std::size_t i = 0; i < options.colours.size(); ++i) {
+    SL_ASSIGN(lines[i].colour, colour_of(options.colours[i]));
+  }
   return lines;
 }
 
@@ -301,9 +329,10 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
     y += 8;
   }
   const auto style = [&](std::size_t i) {
-    const char* const dash = dashes[i / std::size(colours) % std::size(dashes)];
+    const std::string& own = lines[i].colour;
+    const char* const dash = own.empty() ? dashes[i / std::size(colours) % std::size(dashes)] : "";
     return fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}",
-                       colours[i % std::size(colours)],
+                       own.empty() ? colours[i % std::size(colours)] : own.c_str(),
                        *dash ? fmt::format(" stroke-dasharray=\"{}\"", dash) : "");
   };
   if (lines.size() > 1 || !options.labels.empty()) {

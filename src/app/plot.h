@@ -32,6 +32,8 @@ struct PlotOptions {
   std::vector<std::string> y;  ///< empty: every column but x
   std::string title, x_label, y_label;
   std::vector<std::string> labels;  ///< of the lines in the legend, in order
+  std::vector<std::string>
+      colours;  ///< of the lines, in order: "red", "blue" or "#1f77b4"; the others get their own
   std::optional<std::pair<double, double>> x_range, y_range;
 };
 /// The figure; errors name the nearest column.

@@ -75,6 +75,20 @@ TEST(Plot, PointsLieWhereTheAxesSay) {
   EXPECT_NE(svg->find(">a [m]<"), std::string::npos);
 }
 
+TEST(Plot, LinesTakeTheColoursTheyAreGiven) {
+  const Table t = table("time,a,b\n0,0,1\n1,1,2\n");
+  const auto svg = draw_plot({t}, {.colours = {"red"}});
+  ASSERT_TRUE(svg);
+  // Legend and line of the first; the second keeps the colour of its place.
+  EXPECT_NE(svg->find("stroke=\"#d00000\""), svg->rfind("stroke=\"#d00000\""));
+  EXPECT_EQ(svg->find("#0072b2"), std::string::npos);
+  EXPECT_NE(svg->find("#d55e00"), std::string::npos);
+  EXPECT_NE(draw_plot({t}, {.colours = {"red", "#12aB9f"}})->find("#12aB9f"), std::string::npos);
+  EXPECT_NE(draw_plot({t}, {.colours = {"gren"}}).error().fix.find("green"), std::string::npos);
+  EXPECT_FALSE(draw_plot({t}, {.colours = {"#12\"/><b"}}));
+  EXPECT_FALSE(draw_plot({t}, {.colours = {"red", "red", "red"}}));
+}
+
 TEST(Plot, GapsBreakTheLineAndManyPointsKeepTheirPeaks) {
   std::string text = "time,a\n0,0\n1,1\n2,\n3,1\n4,nan\n5,1\n6,2\n";
   auto svg = draw_plot({table(text)}, {});

@@ -87,6 +87,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
 
 Status Simulation::build(Diagnostics& diagnostics) {
   if (setup_.step.ns <= 0) return Error{"time.step must be positive"};
+  // A forged snapshot or an embedding program may ask for anything.
+  if (setup_.substeps < 1) return Error{"time.substeps must be at least 1"};
+  if (setup_.control_interval < 1) return Error{"time.control_interval must be at least 1"};
   if (setup_.clock.min_step.ns <= 0 || setup_.clock.max_step < setup_.clock.min_step)
     return Error{"time.min_step must be positive and not above time.max_step"};
   step_ = setup_.step;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "messages/messages.h"
+#include "sim/settings.h"
 #include "sim/test_world.h"
 
 namespace sandlot::test {
@@ -46,6 +47,21 @@ TEST(Presets, EachOfEachKindBuildsARunningDevice) {
       ++count;
     }
   EXPECT_GE(count, 10u);
+}
+
+/// The catalogues give what follows from the other numbers too: an error in one of those shows here.
+TEST(Presets, MotorsTurnWithoutLoadAsFastAsTheirCataloguesSay) {
+  for (const auto& [preset, rpm] : {std::pair{"maxon_re30_24v", 8810.0},
+                                    {"maxon_amax22_12v_gp22", 10400.0},
+                                    {"faulhaber_2224_6v", 8200.0}}) {
+    const auto simulation = simulate("dc_motor", map({{"preset", preset}, {"joint", "left_wheel_joint"}}));
+    ASSERT_TRUE(simulation) << simulation.error().text();
+    const model::DeviceDecl& decl = (*simulation)->entities()[0]->devices[0]->decl;
+    const auto number = [&](const char* key) { return setting(decl, key).value_or(std::nan("")); };
+    const double k = number("torque_constant"), no_load_A = number("friction") / k;
+    const double speed = (number("supply_voltage") - number("resistance") * no_load_A) / k;
+    EXPECT_NEAR(speed, rpm * 2 * 3.14159265 / 60, 0.005 * speed) << preset;  // three digits are given
+  }
 }
 
 TEST(Presets, TheKeysBesideAPresetGoBefore) {

@@ -90,6 +90,20 @@ std::string error_of(model::Setup setup) {
   return made ? "" : made.error().text();
 }
 
+TEST(Build, a_setup_that_no_tick_can_follow_is_refused) {
+  const auto refused = [](auto&& spoil) {
+    model::Setup setup = arena("planar", 1);
+    spoil(setup);
+    Diagnostics diagnostics;
+    const auto made = Simulation::create(std::move(setup), {}, diagnostics);
+    return made ? std::string() : made.error().what;
+  };
+  EXPECT_EQ(refused([](model::Setup&) {}), "");
+  EXPECT_NE(refused([](model::Setup& s) { s.control_interval = 0; }), "");
+  EXPECT_NE(refused([](model::Setup& s) { s.substeps = 0; }), "");
+  EXPECT_NE(refused([](model::Setup& s) { s.step = {}; }), "");
+}
+
 TEST(Due, the_first_sample_is_taken_at_time_zero_and_the_kth_at_the_first_tick_not_before_k_over_rate) {
   Diagnostics diagnostics;
   auto made = Simulation::create(one_probe(map({{"rate", "3"}})), with_probe, diagnostics);

@@ -39,11 +39,15 @@ void run_loop(Motor& motor, Level level, const JointState& joint, double h_s) {
   if (level == velocity) {
     const double most = spec.max_acceleration * step;
     state.target += std::clamp(state.command - state.target, -most, most);
-    state.volts = state.pid.step(spec.velocity, state.target - rate, 0, spec.supply_voltage_V, step);
+    // The first run after a start or a switch has no earlier speed to compare with.
+    const double acceleration = since > 0 ? (rate - state.seen_rad_s) / since : 0;
+    state.volts = state.pid.step(spec.velocity, state.target - rate, acceleration, spec.supply_voltage_V,
+                                 step);
   } else {
     state.volts = state.pid.step(spec.position, state.target - seen, rate, spec.supply_voltage_V, step);
   }
   state.seen_rad = seen;
+  state.seen_rad_s = since > 0 ? rate : joint.velocity;
   state.loop_since_s = 0;
   state.loop_due_s = std::max(0.0, state.loop_due_s) + period;
   if (spec.loop_rate_hz == 0) state.loop_due_s = 0;
@@ -238,19 +242,22 @@ constexpr LevelInfo levels[] = {
 };
 constexpr Preset presets[] = {
     {"maxon_re30_24v",
-     "Maxon RE 30, 60 W, 24 V (310007), as its data sheet gives it; friction from the no-load current of "
-     "0.164 A.",
+     "Maxon RE 30, 60 W, 24 V (310007), with the numbers of its catalogue; friction from the no-load current "
+     "of 0.164 A, "
+     "max_current is the stall current.",
      "{supply_voltage: 24, resistance: 0.611, inductance: 1.19e-4, torque_constant: 0.0259,"
      " rotor_inertia: 3.35e-6, friction: 0.00425, max_current: 39.3}"},
     {"maxon_amax22_12v_gp22",
-     "Maxon A-max 22, 6 W, 12 V with planetary gear GP 22, 19:1 (general knowledge of the data sheets; a "
-     "soccer "
-     "robot's drive).",
-     "{supply_voltage: 12, resistance: 7.62, inductance: 4.9e-4, torque_constant: 0.0135,"
-     " rotor_inertia: 4.1e-7, friction: 2.2e-4, gear_ratio: 19.2, gear_efficiency: 0.84, max_current: 1.57,"
+     "Maxon A-max 22, 5 W, 12 V (110121), with the numbers of its catalogue; friction from the no-load "
+     "current of 0.0168 A. "
+     "Planetary gear GP 22, 19:1, and encoder of 500 lines: general knowledge.",
+     "{supply_voltage: 12, resistance: 5.39, inductance: 3.62e-4, torque_constant: 0.0109,"
+     " rotor_inertia: 4.36e-7, friction: 1.83e-4, gear_ratio: 19.2, gear_efficiency: 0.84, max_current: 2.23,"
      " encoder_counts: 2000}"},
     {"faulhaber_2224_6v",
-     "Faulhaber 2224 006 SR, as its data sheet gives it; friction from the no-load current of 0.029 A.",
+     "Faulhaber 2224 006 SR: general knowledge of its data sheet; friction from the no-load current of 0.029 "
+     "A. Encoder of 512 "
+     "lines.",
      "{supply_voltage: 6, resistance: 1.94, inductance: 4.5e-5, torque_constant: 0.00692,"
      " rotor_inertia: 2.7e-7, friction: 2.0e-4, encoder_counts: 2048}"},
 };

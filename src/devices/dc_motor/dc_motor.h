@@ -96,6 +96,7 @@ struct State {
   double loop_due_s = 0;                           ///< until the controller runs again
   double loop_since_s = 0;                         ///< since it ran; 0: it has not
   double seen_rad = 0;                             ///< the angle it saw then
+  double seen_rad_s = 0;                           ///< and the speed
   Pid pid;
 
   static void fields(auto& s, auto&& visit) {
@@ -110,6 +111,7 @@ struct State {
     visit(Field{"loop_due", "s", "Until the controller runs again."}, s.loop_due_s);
     visit(Field{"loop_since", "s", "Since the controller ran."}, s.loop_since_s);
     visit(Field{"seen", "rad", "Angle that the controller saw last."}, s.seen_rad);
+    visit(Field{"seen_speed", "rad/s", "Speed that it saw last."}, s.seen_rad_s);
     visit(Field{"pid", "", "The controller."}, s.pid);
   }
 };

@@ -102,6 +102,22 @@ TEST(DcMotor, TheCurrentRisesWithItsTimeConstant) {
   }
 }
 
+TEST(DcMotor, TheDerivativeGainBrakesWhatSpeedsUp) {
+  Node node = keys();
+  node.set("velocity", config({{"p", "0"}, {"i", "0"}, {"d", "0.5"}}));
+  Bench bench(std::move(node), velocity);
+  bench.engine->inertia[0] = 1e12;
+  bench.joint().velocity = 3;
+  bench.order(3);
+  bench.act();
+  EXPECT_NEAR(bench.reading().voltage, 0, 1e-9) << "the first run has nothing to compare with";
+  bench.joint().velocity = 3.02;
+  bench.act();
+  EXPECT_NEAR(bench.reading().voltage, -0.5 * 0.02 / h, 1e-9);
+  bench.act();
+  EXPECT_NEAR(bench.reading().voltage, 0, 1e-9);
+}
+
 TEST(DcMotor, GearLossesWorkBothWays) {
   Bench bench(keys({{"gear_efficiency", "0.8"}}));
   bench.engine->inertia[0] = 1e12;

@@ -1,5 +1,6 @@
 #include "devices/wheel_odometry/wheel_odometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/math.h"
@@ -79,14 +80,16 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
     const Spec& spec = o.spec;
     State& state = o.state;
     const double left_rad = mean_angle(o.left, joints), right_rad = mean_angle(o.right, joints);
-    const double left_m = spec.wheel_radius_m * (1 + spec.left_error) * (left_rad - state.left_rad);
-    const double right_m = spec.wheel_radius_m * (1 + spec.right_error) * (right_rad - state.right_rad);
+    const double e = spec.errors;
+    const auto believed = [e](double size, double error) { return size * (1 + std::max(-0.5, e * error)); };
+    const double left_m = believed(spec.wheel_radius_m, spec.left_error) * (left_rad - state.left_rad);
+    const double right_m = believed(spec.wheel_radius_m, spec.right_error) * (right_rad - state.right_rad);
     state.left_rad = left_rad;
     state.right_rad = right_rad;
     double d = 0.5 * (left_m + right_m);
-    double a = (right_m - left_m) / (spec.wheel_separation_m * (1 + spec.separation_error));
-    const double var_d = spec.alpha_3 * std::abs(d) + spec.alpha_4 * std::abs(a);
-    const double var_a = spec.alpha_1 * std::abs(a) + spec.alpha_2 * std::abs(d);
+    double a = (right_m - left_m) / believed(spec.wheel_separation_m, spec.separation_error);
+    const double var_d = e * e * (spec.alpha_3 * std::abs(d) + spec.alpha_4 * std::abs(a));
+    const double var_a = e * e * (spec.alpha_1 * std::abs(a) + spec.alpha_2 * std::abs(d));
     if (var_d > 0 || var_a > 0) {
       propagate(state.covariance, d, state.X_OD.theta_rad + 0.5 * a, var_d, var_a);
       Stream random(context.seed, o.key, Purpose::noise, pool.sample[index]);

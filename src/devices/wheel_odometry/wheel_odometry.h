@@ -12,7 +12,8 @@
 ///            var(d) = alpha_3 |d| + alpha_4 |a|      var(a) = alpha_1 |a| + alpha_2 |d|
 ///
 ///          so that the error of a way does not depend on the sample rate: variances add up. Covariance: P' = F P F^T + G Q G^T
-///          with the Jacobians of the arc's chord. Slip of the wheels shows by itself: the wheels' joints turn.
+///          with the Jacobians of the arc's chord. `errors` multiplies relative errors (no wheel and no distance gets below
+///          half its size by that) and, squared, the variances. Slip of the wheels shows by itself: the wheels' joints turn.
 /// Limits   wheels that roll; play and width of the tyres are not there.
 /// Cost     one arc, two normals and two products of 3x3 matrices per sample; no allocation.
 /// Errors   joints that are not there, do not turn, or whose axes do not lie across the robot.
@@ -24,6 +25,7 @@
 #include "devices/kind.h"
 #include "kinematics/differential.h"
 #include "messages/messages.h"
+#include "noise/chain.h"
 
 namespace sandlot::wheel_odometry {
 
@@ -33,6 +35,7 @@ struct Spec {
   double left_error = 0, right_error = 0, separation_error = 0;
   double alpha_1 = 0, alpha_2 = 0, alpha_3 = 0, alpha_4 = 0;
   double rate_hz = 50;
+  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned required = Field::required;
@@ -51,6 +54,7 @@ struct Spec {
     visit(Field{"alpha_3", "m^2/m", "Variance of the distance per distance.", 0, 100}, s.alpha_3);
     visit(Field{"alpha_4", "m^2/rad", "Variance of the distance per turn.", 0, 100}, s.alpha_4);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(errors_field, s.errors);
   }
 };
 

@@ -64,6 +64,22 @@ TEST(WheelOdometry, SystematicErrorsBendTheWay) {
   EXPECT_NEAR(yaw_of(at.pose.pose.q), math::pi / 2 / 1.1, 1e-12);
 }
 
+TEST(WheelOdometry, OneFactorScalesAllOfItsErrors) {
+  Bench exact({{"right_error", "0.01"}, {"separation_error", "0.1"}, {"alpha_2", "1"}, {"errors", "0"}});
+  msg::Odometry at = exact.roll(100, 100, 100);
+  EXPECT_NEAR(at.pose.pose.p.x, 10, 1e-12);
+  EXPECT_NEAR(yaw_of(at.pose.pose.q), 0, 1e-12);
+  for (const double c : at.pose.covariance) EXPECT_EQ(c, 0);
+  Bench twice({{"right_error", "0.01"}, {"errors", "2"}});
+  EXPECT_NEAR(yaw_of(twice.roll(100, 100, 100).pose.pose.q), 0.4, 1e-12);
+  // Variances go by the square: 10 m of 1e-4 rad^2/m, four times.
+  Bench random({{"alpha_2", "1e-4"}, {"errors", "2"}});
+  EXPECT_NEAR(random.roll(100, 100, 100).pose.covariance[35], 4 * 10 * 1e-4, 1e-12);
+  // However large the factor, a wheel stays a wheel.
+  Bench large({{"separation_error", "-0.1"}, {"errors", "10"}});
+  EXPECT_NEAR(yaw_of(large.roll(-1, 1).pose.pose.q), 0.1 * 2 / (0.5 * 0.5), 1e-12);
+}
+
 TEST(WheelOdometry, RandomErrorsGrowWithTheWayWhateverTheRateAndAsTheCovarianceSays) {
   // 4 m straight on: var(x) = alpha_3 d; heading alpha_2 d; y: the heading's random walk integrated, alpha_2 d^3 / 3.
   for (const int samples : {40, 160}) {

@@ -62,6 +62,9 @@ struct MakeGeom {
   }
 };
 
+/// Finite, and turned by a quaternion of length 1: the library takes no other.
+bool is_sound(const Pose& X) { return is_finite(X) && std::abs(norm(X.q) - 1) < 1e-6; }
+
 /// Lets slots grow only where none is free; the newest free one is used again first.
 std::uint32_t take_slot(std::vector<std::uint32_t>& free, std::size_t size) {
   if (free.empty()) return static_cast<std::uint32_t>(size);
@@ -82,13 +85,14 @@ Instance& RigidEngine::alive(InstanceId id) const {
 Status RigidEngine::check(const model::Instance& instance) const {
   const model::Model& model = *instance.model;
   SL_CHECK(!model.links.empty());
-  if (!is_finite(instance.X_WM))
+  if (!is_finite(instance.X_WM) || !std::isfinite(norm(instance.X_WM.q)))
     return Error{"the pose of '" + instance.name + "' is not finite", "", instance.place};
   for (const model::Link& link : model.links) {
-    if (!is_finite(link.X_ML) || !is_finite(link.inertial.X_LCo))
-      return Error{"a pose of link '" + link.name + "' is not finite", "", link.place};
+    if (!is_sound(link.X_ML) || !is_sound(link.inertial.X_LCo))
+      return Error{"a pose of link '" + link.name + "' is not finite, or its quaternion not of length 1", "",
+                   link.place};
     for (const model::Collision& c : link.collisions) {
-      if (!has_size(c.shape) || !is_finite(c.X_LC))
+      if (!has_size(c.shape) || !is_sound(c.X_LC))
         return Error{"collision '" + c.name + "' has no valid size or pose", "sizes are positive numbers [m]",
                      c.place};
     }
@@ -96,6 +100,9 @@ Status RigidEngine::check(const model::Instance& instance) const {
   for (const model::Joint& joint : model.joints) {
     SL_CHECK(joint.child < model.links.size());
     SL_CHECK(joint.parent < model.links.size() || joint.parent == model::world_link);
+    if (!is_sound(joint.X_CJ))
+      return Error{"the pose of joint '" + joint.name + "' is not finite, or its quaternion not of length 1",
+                   "", joint.place};
     if (joint.parent == joint.child)
       return Error{"joint '" + joint.name + "' joins a link to itself", "name two links", joint.place};
     if (!(std::abs(norm(joint.axis_J) - 1) < 1e-6) && joint.type != model::JointType::fixed)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "base/math.h"
 #include "physics/rigid/joints.h"
@@ -231,6 +232,28 @@ TEST(Linkage, WhatCannotBeIsRefusedByName) {
   EXPECT_NE(error(m).find("limit"), std::string::npos);
   m.joints[0].second = model::SecondAxis{{1, 0, 0}};
   EXPECT_EQ(error(m), "");
+  for (const double bad : {0.0, 2.0, 1e300}) {
+    m = followers();
+    m.links[1].X_ML.q = {bad, 0, 0, 0};
+    EXPECT_NE(error(m).find("a pose of link"), std::string::npos) << bad;
+    m = followers();
+    m.joints[0].X_CJ.q = {bad, 0, 0, 0};
+    EXPECT_NE(error(m).find("the pose of joint 'left'"), std::string::npos) << bad;
+  }
+}
+
+TEST(Linkage, AForgedOrientationOfWhatStandsStillIsRefused) {
+  World world(rigid::engine);
+  model::Model m = followers();
+  m.joints.push_back(joint_of("foot", model::JointType::fixed, model::world_link, 0, {0, 0, 1}));
+  const InstanceId id = world.add(instance_of("m", m, {}, true));
+  const auto good = world.bytes(id);
+  ASSERT_TRUE(world.load(id, good));
+  for (const double w : {1e300, std::nan("")}) {
+    auto bytes = good;
+    std::memcpy(&bytes[2 * 4 + 3 * 8], &w, 8);  // behind two counts and a position
+    EXPECT_FALSE(world.load(id, bytes)) << w;
+  }
 }
 
 TEST(Linkage, RestoredJointsContinueWithTheSameBits) {

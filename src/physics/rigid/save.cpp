@@ -101,7 +101,7 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     Pose X_WM;
     read(r, X_WM.p);
     read(r, X_WM.q);
-    if (!r.ok() || !in_range(X_WM.p) || !is_finite(X_WM)) return false;
+    if (!r.ok() || !in_range(X_WM.p) || !std::isfinite(norm(X_WM.q))) return false;
     place(instance, X_WM);
   }
   if (instance.guided) {

@@ -68,6 +68,7 @@ std::vector<Finding> lint(const Simulation& simulation) {
   check_start(simulation, findings);
   check_speed(simulation, findings);
   check_gains(simulation, findings);
+  check_actuators(simulation, findings);
   check_sensors(simulation, findings);
   return findings.take();
 }

@@ -28,6 +28,7 @@ void check_inertia(const Simulation& simulation, Findings& findings);
 void check_start(const Simulation& simulation, Findings& findings);
 void check_speed(const Simulation& simulation, Findings& findings);
 void check_gains(const Simulation& simulation, Findings& findings);
+void check_actuators(const Simulation& simulation, Findings& findings);
 void check_sensors(const Simulation& simulation, Findings& findings);
 void check_units(const Simulation& simulation, Findings& findings);
 
