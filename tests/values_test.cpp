@@ -141,7 +141,9 @@ TEST(Values, WhatARecordingDoesNotHoldIsNamed) {
     return sandlot("topic export " + file + " --out " + out + " --values '" + values + "'");
   };
   EXPECT_EQ(exported("/rover/laser/ranges.ranges[99999]").exit_code, 0) << "lists may grow";
-  for (const char* wrong : {"rangs[3]", "ranges", "ranges[3].x", "header.frame_id", "header[0].stamp.sec"}) {
+  EXPECT_EQ(exported("/rover/laser/ranges").exit_code, 0) << "all there is, times included";
+  for (const char* wrong :
+       {"rangs[3]", "ranges", "ranges[3].x", "header.frame_id", "header[0].stamp", "header.stamp.sec"}) {
     const Printed refused = exported(std::string("/rover/laser/ranges.") + wrong);
     EXPECT_EQ(refused.exit_code, 2) << wrong;
     EXPECT_THAT(refused.out, HasSubstr(std::string("have no number '") + wrong + "'"));

@@ -396,6 +396,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     result = recording_options.file.empty() ? doctor(doctor_json) : doctor_file(recording_options);
   });
 
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("error: {}; --help shows what there is\n", error.what());
+  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? exit_ok : exit_bad_input; }
