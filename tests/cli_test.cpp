@@ -104,6 +104,51 @@ TEST(Cli, check_tells_file_line_and_remedy) {
   EXPECT_EQ(json[0]["severity"], "error");
 }
 
+TEST(Cli, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
+  const Scratch scratch;
+  const std::string log = scratch.write("run.csv", "worth keeping\n");
+  const Printed printed = sandlot(
+      "run scenarios/indoor.yaml --headless --duration 1s --log-values sim.tick --log " + log +
+      " --record /nonexistent/r.mcap");
+  EXPECT_EQ(printed.exit_code, 2);
+  EXPECT_THAT(printed.out, HasSubstr("/nonexistent/r.mcap"));
+  std::string kept;
+  std::getline(std::ifstream(log), kept);
+  EXPECT_EQ(kept, "worth keeping");
+}
+
+TEST(Cli, no_result_of_a_run_overwrites_another_one) {
+  const Scratch scratch;
+  const std::string file = scratch.file("x.csv");
+  const Printed twice = sandlot(
+      "run scenarios/indoor.yaml --headless --duration 1s --log-values sim.tick --log " + file +
+      " --record " + scratch.file("y/../x.csv"));
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.out, HasSubstr("would overwrite"));
+  const std::string scenario = scratch.write("s.yaml", "version: 1\nname: s\nrobots: []\n");
+  EXPECT_EQ(sandlot("run " + scenario + " --duration 1s --summary " + scenario).exit_code, 2);
+  EXPECT_EQ(sandlot("run " + scenario + " --duration 1s --summary /dev/null --svg /dev/null").exit_code, 0);
+}
+
+TEST(Cli, a_snapshot_that_the_run_did_not_reach_is_said_to_be_another) {
+  const Scratch scratch;
+  const Printed printed = sandlot(
+      "run scenarios/indoor.yaml --headless --duration 1s --snapshot-at 9s --snapshot " +
+      scratch.file("s.snapshot"));
+  EXPECT_EQ(printed.exit_code, 0);
+  EXPECT_THAT(printed.out, HasSubstr("the run ended before 9 s"));
+}
+
+TEST(Cli, list_shows_message_types_with_units_and_constants) {
+  EXPECT_THAT(sandlot("list messages").out, HasSubstr("\n  sensor_msgs/msg/LaserScan\n"));
+  const std::string all = sandlot("list messages --verbose").out;
+  for (const char* part : {"float32[]", "STATUS_NO_FIX = -1", "[m]", "float64[36]"})
+    EXPECT_THAT(all, HasSubstr(part));
+  const auto json = nlohmann::json::parse(sandlot("list messages --json").out);
+  EXPECT_GT(json["messages"].size(), 80u);
+  EXPECT_EQ(json["messages"][0]["fields"][0]["type"], "builtin_interfaces/msg/Time");
+}
+
 TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
   const Printed text = sandlot("list --verbose");
   for (const char* kind : {"laser_scanner", "diff_drive", "wheel_encoder", "joint_motor", "ground_truth",

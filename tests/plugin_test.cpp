@@ -99,11 +99,13 @@ TEST(Plugin, whatDoesNotFitIsRefusedWithItsPlace) {
       EXPECT_THAT(printed.out, AllOf(HasSubstr("error: " + file + ":4:"), matcher)) << verb << plugin;
     }
   };
+  refused("no/where.so", HasSubstr("looked for it in "));
   refused("nowhere", AllOf(HasSubstr("'nowhere' is not there"), HasSubstr("libnowhere.so")));
   refused("bad.yaml", HasSubstr("no shared library"));
   refused(fs::absolute(SANDLOT_BIN).string(), HasSubstr("cannot load"));  // a program, not a library
   refused(plugins() + "/no_plugin.so", HasSubstr("is no Sandlot plugin"));
-  refused(plugins() + "/other_api.so", AllOf(HasSubstr("version 99"), HasSubstr("has version " + std::to_string(controller_api_version))));
+  refused(plugins() + "/other_api.so",
+          AllOf(HasSubstr("version 99"), HasSubstr("has version " + std::to_string(controller_api_version))));
   refused(plugins() + "/other_build.so", AllOf(HasSubstr("fast-math"), HasSubstr("this Sandlot as [")));
   refused(plugins() + "/taken.so", AllOf(HasSubstr("'wander'"), HasSubstr("so does Sandlot")));
   refused(plugins() + "/good.so, " + plugins() + "/good.so", HasSubstr("'spinner'"));

@@ -11,6 +11,7 @@ namespace sandlot::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::string content(const std::string& path) {
   std::ifstream in(path);
@@ -48,6 +49,15 @@ TEST(Values, EveryAddressThatInfoListsCanBeLogged) {
   EXPECT_THAT(sandlot("info scenarios/indoor.yaml --values").out, HasSubstr("rover/laser.ranges[0.."));
 }
 
+TEST(Values, InfoListsOfEachStageOfNoiseItsOwnKeysOnly) {
+  const Scratch scratch;
+  const Printed info = sandlot(
+      "info --values " +
+      scratch.write("s.yaml", scenario("    devices: {laser: {noise: [{gaussian: {std: 1 cm}}]}}\n")));
+  EXPECT_THAT(info.out, HasSubstr("rover/laser.noise.stages[0].gaussian.std"));
+  EXPECT_THAT(info.out, Not(HasSubstr("stages[0].drift")));
+}
+
 TEST(Values, LoggingAndStoppingFromOutsideChangeNoHash) {
   const Scratch scratch;
   const auto plain = summary_of("scenarios/indoor.yaml --duration 3s");
@@ -83,7 +93,19 @@ TEST(Values, AConditionThatIsNoNumberFailsTheRun) {
   const Printed run = sandlot(
       "run scenarios/indoor.yaml --duration 1s --stop-when '1 / (sim.tick - 50) > 2'");
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.out, HasSubstr("'1 / (sim.tick - 50) > 2' is no finite number (1) at 0.5 s"));
+  EXPECT_THAT(run.out, HasSubstr("a part of '1 / (sim.tick - 50) > 2' is no finite number at 0.5 s"));
+}
+
+TEST(Values, AConditionThatIsNoNumberAtTheBeginningFailsTheRunToo) {
+  const Scratch scratch;
+  const Printed run = sandlot("run " +
+                              scratch.write("s.yaml",
+                                            "version: 1\nname: s\nrobots: []\nevents: "
+                                            "[{name: e, when: 1 / sim.time > 2}]\n") +
+                              " --duration 1s");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.out, HasSubstr("s.yaml:4:"));
+  EXPECT_THAT(run.out, HasSubstr("stopped    by an error"));
 }
 
 TEST(Values, WrongInputIsRefusedBeforeTheFirstTick) {
@@ -104,6 +126,31 @@ TEST(Values, WrongInputIsRefusedBeforeTheFirstTick) {
   EXPECT_EQ(content(old), "precious\n");
   EXPECT_EQ(
       sandlot("run scenarios/indoor.yaml --duration 1s --log /dev/full --log-values sim.time").exit_code, 2);
+}
+
+TEST(Values, WhatARecordingDoesNotHoldIsNamed) {
+  const Scratch scratch;
+  const std::string file = scratch.file("r.mcap"), out = scratch.file("out.csv");
+  const Printed run = sandlot("run scenarios/indoor.yaml --duration 1s --record " + file +
+                              " --record-topics '/rover/*' --record-topics /rover/lazer/ranges");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("no topic to record fits '/rover/lazer/ranges'; did you mean"));
+  EXPECT_THAT(run.out, Not(HasSubstr("fits '/rover/*'")));
+  EXPECT_THAT(run.out, HasSubstr("recording  " + file + ": "));
+  const auto exported = [&](const std::string& values) {
+    return sandlot("topic export " + file + " --out " + out + " --values '" + values + "'");
+  };
+  EXPECT_EQ(exported("/rover/laser/ranges.ranges[99999]").exit_code, 0) << "lists may grow";
+  EXPECT_EQ(exported("/rover/laser/ranges").exit_code, 0) << "all there is, times included";
+  for (const char* wrong :
+       {"rangs[3]", "ranges", "ranges[3].x", "header.frame_id", "header[0].stamp", "header.stamp.sec"}) {
+    const Printed refused = exported(std::string("/rover/laser/ranges.") + wrong);
+    EXPECT_EQ(refused.exit_code, 2) << wrong;
+    EXPECT_THAT(refused.out, HasSubstr(std::string("have no number '") + wrong + "'"));
+  }
+  const Printed drawn = sandlot("plot " + file + " --out " + scratch.file("x.svg"));
+  EXPECT_EQ(drawn.exit_code, 2);
+  EXPECT_THAT(drawn.out, HasSubstr("topic export"));
 }
 
 TEST(Values, ALogBecomesAFigure) {

@@ -131,8 +131,12 @@ Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOpt
 int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
 
-/// Writes a whole file, or an error with the reason.
+/// Writes a whole file, or an error with the reason. A full disk leaves what was there before.
 Status write_file(const std::string& path, std::string_view content);
+/// Where a file is written until it is whole: beside its place, or there if that is a device or a pipe.
+std::string part_of(const std::string& path);
+/// Gives the whole file its name; what was there is replaced.
+Status put_in_place(const std::string& part, const std::string& path);
 
 /// True once the user has asked to stop (SIGINT, SIGTERM).
 bool interrupted();

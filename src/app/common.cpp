@@ -40,22 +40,31 @@ void print_warnings(const Diagnostics& diagnostics) {
     std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
 }
 
+std::string part_of(const std::string& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  // A device or a pipe is written to: a file renamed over /dev/null would take its place.
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? path : path + ".part";
+}
+
+Status put_in_place(const std::string& part, const std::string& path) {
+  if (part == path || std::rename(part.c_str(), path.c_str()) == 0) return {};
+  const std::string reason = std::strerror(errno);
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  return Error{"cannot write '" + path + "': " + reason};
+}
+
 Status write_file(const std::string& path, std::string_view content) {
-  // Written beside and renamed: a full disk leaves what was there before.
-  const std::string part = path + ".part";
+  const std::string part = part_of(path);
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  const auto failed = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    return Error{std::string(what) + " '" + path + "': " + reason};
-  };
-  if (!out) return failed("cannot write");
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out) return failed("cannot write");
-  if (std::rename(part.c_str(), path.c_str()) != 0) return failed("cannot write");
-  return {};
+  if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  if (out) out.close();
+  if (out) return put_in_place(part, path);
+  const std::string reason = std::strerror(errno);
+  std::error_code ignored;
+  if (part != path) std::filesystem::remove(part, ignored);
+  return Error{"cannot write '" + path + "': " + reason};
 }
 
 bool interrupted() { return interrupt_requested.load(std::memory_order_relaxed); }

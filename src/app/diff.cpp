@@ -189,7 +189,8 @@ int diff(const DiffOptions& options) {
       json["values"].push_back({{"address", v.address},
                                 {"unit", v.unit},
                                 {"a", v.a ? Json(*v.a) : Json()},
-                                {"b", v.b ? Json(*v.b) : Json()}});
+                                {"b", v.b ? Json(*v.b) : Json()},
+                                {"more", v.more}});
     fmt::print("{}\n", json.dump(2));
     return found.differs ? exit_failed : exit_ok;
   }
@@ -204,7 +205,7 @@ int diff(const DiffOptions& options) {
     if (found.parts.size() > 12) parts += fmt::format(" and {} more", found.parts.size() - 12);
     fmt::print("first difference at {}: {}\n", record::tick_text(found.tick, found.now), parts);
     for (const record::ValueDifference& value : found.values.first) fmt::print("  {}\n", value.text());
-    if (found.values.count > found.values.first.size())
+    if (found.values.entries > found.values.first.size())
       fmt::print("  ... {} values differ in all (--limit shows more)\n", found.values.count);
   }
   if (!found.note.empty()) fmt::print("{}\n", found.note);

@@ -66,7 +66,8 @@ std::string values_text(const Simulation& simulation) {
     std::string address = entry.path;
     if (entry.list) address += entry.count == 0 ? "[...]" : "[0.." + std::to_string(entry.count - 1) + "]";
     const std::string value = entry.is == ValueFound::Is::value ? fmt::format("{:.6g}", entry.value) : "-";
-    out += fmt::format("{:<48} {:>12} {:<6} {}\n", address, value, entry.unit, entry.help);
+    out += fmt::format("{:<48} {:>12} {:<6} {}\n", address, value, entry.unit == "1" ? "" : entry.unit,
+                       entry.help);
   });
   return out;
 }

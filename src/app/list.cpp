@@ -10,6 +10,7 @@
 #include "controllers/controllers.h"
 #include "devices/kind.h"
 #include "formats/ros2_control/ros2_control.h"
+#include "messages/registry.h"
 #include "noise/chain.h"
 #include "physics/engine.h"
 #include "sim/plugin.h"
@@ -129,6 +130,43 @@ void print_plugins() {
     fmt::print("  {:<11}{:<54} {:<18} {}\n", row.element, row.name, row.kind, row.levels);
     if (!row.unused.empty()) fmt::print("  {:<11}  without effect: {}\n", "", row.unused);
   }
+}
+
+/// "float32[]", "geometry_msgs/msg/Point[4]": the type of a field as ROS writes it.
+std::string type_text(const MessageField& field) {
+  std::string out = field.message ? field.message->name : name_of(field.type);
+  if (field.count == MessageField::Count::array) out += "[" + std::to_string(field.length) + "]";
+  if (field.count == MessageField::Count::sequence)
+    out += field.length > 0 ? "[<=" + std::to_string(field.length) + "]" : "[]";
+  return out;
+}
+
+void print_messages(bool verbose) {
+  fmt::print("messages\n");
+  for (const MessageInfo* const type : all_messages()) {
+    fmt::print("  {}\n", type->name);
+    if (!verbose) continue;
+    for (const MessageConstant& constant : type->constants)
+      fmt::print("    {:<40} {} = {}\n", name_of(constant.type), constant.name, constant.value);
+    for (const MessageField& field : type->fields)
+      fmt::print("    {:<40} {:<26} {}{}\n", type_text(field), field.name, field.help,
+                 field.unit.empty() || field.unit == "1" ? "" : " [" + field.unit + "]");
+  }
+}
+
+Json messages_json() {
+  Json types = Json::array();
+  for (const MessageInfo* const type : all_messages()) {
+    Json constants = Json::array(), fields = Json::array();
+    for (const MessageConstant& constant : type->constants)
+      constants.push_back(
+          {{"name", constant.name}, {"type", name_of(constant.type)}, {"value", constant.value}});
+    for (const MessageField& field : type->fields)
+      fields.push_back(
+          {{"name", field.name}, {"type", type_text(field)}, {"unit", field.unit}, {"help", field.help}});
+    types.push_back({{"name", type->name}, {"constants", constants}, {"fields", fields}});
+  }
+  return {{"messages", types}};
 }
 
 std::string cell(std::string text) {
@@ -267,8 +305,13 @@ int list(const ListOptions& options) {
     fmt::print("{}\n", Json{{"plugins", rows}}.dump(2));
     return exit_ok;
   }
+  if (options.what == "messages" && !options.markdown) {
+    if (options.json) fmt::print("{}\n", messages_json().dump(2));
+    else print_messages(options.verbose);
+    return exit_ok;
+  }
   if (!options.what.empty() && options.what != "levels") {
-    std::vector<std::string> names{"levels", "plugins"};
+    std::vector<std::string> names{"levels", "messages", "plugins"};
     for (const Section& section : chosen) names.push_back(section.key);
     std::erase_if(chosen, [&](const Section& section) { return section.key != options.what; });
     if (chosen.empty())

@@ -310,9 +310,10 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(
-      "list", "List the kinds of devices, controllers, engines, levels and Gazebo plugins");
-  list_verb->add_option("what", list_options.what,
-                        "devices, controllers, engines, levels or plugins; all when left out");
+      "list", "List the kinds of devices, controllers, engines and noise, message types, and Gazebo plugins");
+  list_verb->add_option(
+      "what", list_options.what,
+      "devices, controllers, engines, noise (these four when left out), levels, messages or plugins");
   list_verb->add_flag("--verbose", list_options.verbose, "With every field: unit, range, default, meaning");
   list_verb->add_flag("--json", list_options.json, "Print as JSON");
   list_verb->add_flag("--markdown", list_options.markdown, "Print as the reference page of the docs");
@@ -399,6 +400,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     result = recording_options.file.empty() ? doctor(doctor_json) : doctor_file(recording_options);
   });
 
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("error: {}; --help shows what there is\n", error.what());
+  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? exit_ok : exit_bad_input; }

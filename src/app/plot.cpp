@@ -218,6 +218,10 @@ Result<Table> read_csv(std::string_view text, const std::string& file) {
   table.file = file;
   Place place;
   place.file = std::make_shared<const std::string>(file);
+  if (text.starts_with("\x89MCAP"))
+    return Error{"this is a recording", "`sandlot topic export` makes a table of its numbers", place};
+  if (text.substr(0, 4096).find('\0') != std::string_view::npos)
+    return Error{"this is no table", "expected lines of text: names, then numbers", place};
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = text.find('\n', at);
     if (end == std::string_view::npos) end = text.size();

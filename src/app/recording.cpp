@@ -208,7 +208,10 @@ int topic_hz(const RecordingOptions& options) {
                     {"hz", hz},
                     {"shortest_s", several ? seconds(t.shortest) : 0.0},
                     {"longest_s", several ? seconds(t.longest) : 0.0}});
-    if (!options.json)
+    if (!options.json && !several)
+      fmt::print("{:<44} {:>9}     {} {}\n", topic, "-", t.count,
+                 t.count == 1 ? "message" : "messages, all at one time");
+    else if (!options.json)
       fmt::print("{:<44} {:>9.3f} Hz  {} messages, {:.6f} to {:.6f} s apart\n", topic, hz, t.count,
                  list.back()["shortest_s"].get<double>(), list.back()["longest_s"].get<double>());
   }

@@ -164,8 +164,13 @@ std::string as_text(const nlohmann::ordered_json& s) {
     else if (count == 1) out += fmt::format("at {} s\n", event["first"].get<double>());
     else out += fmt::format("{} times, first at {} s\n", count, event["first"].get<double>());
   }
+  if (s.contains("recording")) {
+    const auto& r = s["recording"];
+    out += fmt::format("recording  {}: {} messages, {:.2f} MB\n", r["file"].get<std::string>(),
+                       r["messages"].get<std::uint64_t>(), 1e-6 * r["bytes"].get<double>());
+  }
   out += fmt::format("stopped    {}\n", s["stopped"].get<std::string>().empty()
-                                            ? "by request"
+                                            ? (s["errors"].empty() ? "by request" : "by an error")
                                             : s["stopped"].get<std::string>());
   out += fmt::format("state      {} ({})\n", s["state_hash"].get<std::string>(),
                      s["profile"].get<std::string>());

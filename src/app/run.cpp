@@ -4,14 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "app/commands.h"
 #include "app/report.h"
 #include "app/snapshots.h"
 #include "app/svg.h"
 #include "base/log.h"
+#include "base/text.h"
+#include "record/glob.h"
+#include "record/layout.h"
 #include "record/playback.h"
 #include "record/recorder.h"
 #include "sim/csv_log.h"
@@ -19,6 +24,22 @@
 
 namespace sandlot::app {
 namespace {
+
+/// No two of the files of a run, the scenario first and then what it writes, are one. "" is none; devices may be
+/// shared.
+Status check_apart(std::initializer_list<std::string> files) {
+  std::set<std::filesystem::path> known;
+  std::error_code ignored;
+  for (const std::string& file : files) {
+    const auto status = std::filesystem::status(file, ignored);
+    if (file.empty() || (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)))
+      continue;
+    if (!known.insert(std::filesystem::weakly_canonical(file, ignored)).second)
+      return Error{"writing '" + file + "' would overwrite the scenario or another result of the run",
+                   "give it another name"};
+  }
+  return {};
+}
 
 Result<std::unique_ptr<Simulation>> prepare(const RunOptions& options, Diagnostics& diagnostics) {
   SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
@@ -65,6 +86,16 @@ Result<std::optional<model::LogDecl>> log_wanted(const RunOptions& options, cons
   if (log->values.empty())
     return Error{"--log says where to, but not what", "add --log-values 'rover.pose.x,rover.pose.y'"};
   return log;
+}
+
+/// A warning for a pattern that fits no topic: something spawned later may bring one, but more likely it is misspelt.
+std::optional<Error> unmatched(const std::string& pattern, const Simulation& simulation) {
+  std::vector<std::string> known{recording::tf_topic,  recording::tf_static_topic, recording::clock_topic,
+                                 recording::log_topic, recording::hash_topic,      recording::parts_topic};
+  for (const TopicBase* topic : simulation.topics()) known.push_back(topic->name());
+  for (const std::string& topic : known)
+    if (glob_matches(pattern, topic)) return std::nullopt;
+  return Error{"no topic to record fits '" + pattern + "'", suggestion(pattern, known)};
 }
 
 /// What to record: the scenario's word, changed by the command line. Nothing when neither asks for it.
@@ -137,13 +168,19 @@ int run(const RunOptions& options) {
   }
   const auto log_decl = log_wanted(options, simulation);
   if (!log_decl) return complain(log_decl.error());
+  const auto recording = recording_of(options, simulation);
+  if (!recording) return complain(recording.error());
+  if (Status apart = check_apart({options.file, *recording ? (*recording)->recording.file : "",
+                                  *log_decl ? (*log_decl)->file : "", options.svg_file, options.summary_file,
+                                  options.snapshots.file});
+      !apart)
+    return complain(apart.error());
+
   std::unique_ptr<CsvLog> log;
   if (*log_decl) {
     auto opened = CsvLog::open(simulation, **log_decl);
     if (!opened) return complain(opened.error());
     log = std::move(*opened);
-    if (Status begun = log->begin(); !begun) return complain(begun.error());
-    simulation.add_observer(log.get());
   }
   std::optional<Experiment> experiment;
   if (options.hooks) experiment.emplace(simulation, *options.hooks);
@@ -155,14 +192,22 @@ int run(const RunOptions& options) {
   std::optional<SvgRecorder> svg;
   if (!options.svg_file.empty()) simulation.add_observer(&svg.emplace(simulation));
 
-  const auto recording = recording_of(options, simulation);
-  if (!recording) return complain(recording.error());
   std::unique_ptr<Recorder> recorder;
   if (*recording) {
+    for (const std::string& pattern : (*recording)->recording.topics)
+      if (auto warning = unmatched(pattern, simulation)) {
+        std::fprintf(stderr, "warning: %s\n", warning->text().c_str());
+        diagnostics.warn(std::move(*warning));
+      }
     auto started = Recorder::start(**recording, simulation);
     if (!started) return complain(started.error());
     recorder = std::move(*started);
     simulation.add_observer(recorder.get());
+  }
+  if (log) {
+    // Replaces what was there, so it comes after everything that may refuse the run.
+    if (Status begun = log->begin(); !begun) return complain(begun.error());
+    simulation.add_observer(log.get());
   }
 
   catch_interrupts();

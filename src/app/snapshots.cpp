@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "app/commands.h"
+#include "base/log.h"
 #include "base/text.h"
 
 namespace sandlot::app {
@@ -81,6 +82,9 @@ Status SnapshotFiles::after(const Simulation& simulation) {
 Status SnapshotFiles::finish(const Simulation& simulation) {
   if (taken_) return {};
   taken_ = true;
+  if (options_.at_s)
+    log::warning(fmt::format("the run ended before {} s: '{}' is its state at the end, {} s",
+                             number_text(*options_.at_s), options_.file, number_text(simulation.now().s())));
   return write(simulation, options_.file);
 }
 

@@ -1,9 +1,11 @@
 #include "app/topic_export.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -50,13 +52,36 @@ Result<std::vector<std::string>> numbers_in(const Source& source, std::span<cons
   return paths;
 }
 
+/// Whether messages of a type can have a number at `path`, "ranges[3]" or "pose.position.x", however long lists become.
+bool may_hold(const MessageInfo& info, std::string_view path) {
+  const MessageInfo* type = &info;
+  while (type) {
+    const std::string_view step = path.substr(0, path.find('.'));
+    const std::string_view name = step.substr(0, step.find('['));
+    const auto field = std::find_if(type->fields.begin(), type->fields.end(),
+                                    [&](const MessageField& each) { return each.name == name; });
+    const bool indexed = name.size() < step.size();
+    if (field == type->fields.end() || indexed != (field->count != MessageField::Count::one)) return false;
+    const bool is_time = field->message && field->message->is_time;  // one number, in seconds
+    if (is_time || step.size() == path.size())
+      return step.size() == path.size() && (is_time || (!field->message && field->type != Wire::string));
+    path.remove_prefix(step.size() + 1);
+    type = field->message;
+  }
+  return false;
+}
+
 /// A file that is written beside and renamed when it is complete.
 class Output {
  public:
   explicit Output(std::string path)
-      : path_(std::move(path)), part_(path_ + ".part"), out_(part_, std::ios::binary) {}
+      : path_(std::move(path)), part_(part_of(path_)), out_(part_, std::ios::binary) {}
   ~Output() {
-    if (!done_) std::remove(part_.c_str());
+    if (!done_ && part_ != path_) std::remove(part_.c_str());
+  }
+  Status opened() const {  ///< and written, so far
+    if (out_) return {};
+    return Error{"cannot write '" + path_ + "': " + std::strerror(errno)};
   }
   void write(std::string& text) {
     out_.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -64,7 +89,8 @@ class Output {
   }
   Status finish() {
     out_.close();
-    if (!out_ || std::rename(part_.c_str(), path_.c_str()) != 0) return Error{"cannot write '" + path_ + "'"};
+    SL_TRY(opened());
+    SL_TRY(put_in_place(part_, path_));
     done_ = true;
     return {};
   }
@@ -111,9 +137,7 @@ Status export_csv(const ExportOptions& options) {
         if (!known) return at(options.recording, "a message of '" + topic.topic + "': " + known.error().what);
         if (source.wanted.empty()) source.wanted = *known;
         for (const std::string& path : source.wanted)
-          // Lists may grow: of those only the name is checked.
-          if (std::find(known->begin(), known->end(), path) == known->end() &&
-              path.find('[') == std::string::npos)
+          if (!may_hold(source.schema.info(), path))
             return at(options.recording, "messages of '" + topic.topic + "' have no number '" + path + "'",
                       suggestion(path, *known));
       }
@@ -129,6 +153,7 @@ Status export_csv(const ExportOptions& options) {
   }
 
   Output out(options.out);
+  SL_TRY(out.opened());
   std::string text = columns.header();
   mcap::Cursor cursor = reader.messages(query);
   while (true) {

@@ -224,8 +224,12 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
     while (parser.HandleNextDocument(builder)) {}
   } catch (const Refused& refused) { return refused.error; } catch (const YAML::Exception& e) {
     const bool known = !e.mark.is_null();
+    // What most likely happened: {when: a/laser.ranges[3] < 1}.
+    const bool in_flow = e.msg.starts_with("end of map flow") || e.msg.starts_with("end of sequence flow");
     return Error{
-        show_variables(e.msg), "", {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
+        show_variables(e.msg),
+        in_flow ? "close the bracket; within {} and [], a text with brackets or commas needs quotes" : "",
+        {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
   } catch (const std::exception& e) { return Error{std::string("is not YAML: ") + e.what(), "", {name}}; }
   return builder.take();
 }

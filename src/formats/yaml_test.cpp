@@ -60,6 +60,7 @@ TEST(Yaml, RefusesWhatItCannotMean) {
   EXPECT_EQ(error_of("a: 1\n---\nb: 2\n").substr(0, 34), "f.yaml:2:1: a second document begi");
   EXPECT_EQ(error_of("a: &x [*x]\n").substr(0, 36), "f.yaml:1:8: this alias stands for a ");
   EXPECT_NE(error_of("a: 1\n\tb: 2\n"), "");
+  EXPECT_NE(error_of("a: {when: x[3] < 1}\n").find("needs quotes"), std::string::npos);
   EXPECT_EQ(error_of("a: [1\nb: 2\n").substr(0, 9), "f.yaml:2:");
 }
 

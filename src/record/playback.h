@@ -1,7 +1,8 @@
 #pragma once
 /// Puts the velocities of recordings into the `playback` controllers of a setup.
 ///
-/// A controller opens no files, and sim cannot know of recordings: whoever loads a scenario calls this afterwards.
+/// A controller opens no files, and sim cannot know of recordings: whoever loads a scenario by sim/load.h calls this
+/// afterwards; load_simulation (sandlot/embed.h) has.
 #include <span>
 #include <string>
 

@@ -52,6 +52,11 @@ Listing values_of(const Simulation& simulation, const std::string& part) {
   return out;
 }
 
+/// "rover/laser.ranges" of "rover/laser.ranges[3]"; nothing of what is no element of a list.
+std::string_view list_of(std::string_view address) {
+  return address.ends_with(']') ? address.substr(0, address.rfind('[')) : std::string_view();
+}
+
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 }  // namespace
@@ -61,15 +66,25 @@ std::string ValueDifference::text() const {
     if (!x) return std::string("nothing");
     return number_text(*x) + (unit.empty() || unit == "1" ? "" : " " + unit);
   };
-  return address + " " + side(a) + " against " + side(b);
+  std::string out = address + " " + side(a) + " against " + side(b);
+  if (more > 0) out += " (and " + std::to_string(more) + " more of the list)";
+  return out;
 }
 
 ValueDifferences differing_values(const Simulation& a, const Simulation& b,
                                   std::span<const std::string> parts, std::size_t most) {
   ValueDifferences out;
+  std::string list_before;
   const auto add = [&](const std::string& address, const Value* x, const Value* y) {
     if (x && y && same(x->value, y->value)) return;
-    if (++out.count > most) return;
+    ++out.count;
+    const std::string_view list = list_of(address);
+    if (!list.empty() && list == list_before) {
+      if (out.entries <= most) ++out.first.back().more;
+      return;
+    }
+    list_before = list;
+    if (++out.entries > most) return;
     ValueDifference difference{address, x ? x->unit : y->unit, {}, {}};
     if (x) difference.a = x->value;
     if (y) difference.b = y->value;

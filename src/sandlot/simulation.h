@@ -1,3 +1,3 @@
 #pragma once
 /// For programs that have a simulation inside: load, step, read, command, save.
-#include "sim/embed.h"
+#include "sandlot/embed.h"

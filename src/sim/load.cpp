@@ -391,6 +391,8 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       }
     }
   } else {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return Error{"'" + path + "' is not there"};
     return Error{"'" + path + "' is neither a scenario (.yaml) nor a world or robot (.sdf, .world, .urdf)"};
   }
   if (options.seed) setup.seed = *options.seed;

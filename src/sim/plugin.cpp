@@ -147,10 +147,12 @@ Result<std::string> find_plugin(const std::string& written, const std::string& f
     }
     tried += (tried.empty() ? "" : ", ") + (each.empty() ? std::string(".") : each);
   }
-  return Error{"plugin '" + written + "' is not there",
-               "looked for it, " + stem.string() + ".so and lib" + stem.string() + ".so in " + tried +
-                   "; --path FOLDER or SANDLOT_PATH name more folders",
-               place, "/plugins"};
+  return Error{
+      "plugin '" + written + "' is not there",
+      "looked for it" +
+          (stem.extension() == ".so" ? "" : ", " + stem.string() + ".so and lib" + stem.string() + ".so") +
+          " in " + tried + "; --path FOLDER or SANDLOT_PATH name more folders",
+      place, "/plugins"};
 }
 
 Result<const Plugin*> load_plugin(const model::PluginDecl& decl, std::span<const std::string> paths,

@@ -218,7 +218,7 @@ void Simulation::judge() {
     if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
   } else {
     if (failure_) failure_ = std::move(judged.error());
-    stop_reason_ = failure_.error().what;
+    if (tick_ > 0) stop_reason_ = failure_.error().what;  // else the first tick() answers: see control()
   }
 }
 

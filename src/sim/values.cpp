@@ -272,6 +272,13 @@ void list_thing(const Simulation& simulation, const Simulation::Entity& entity, 
   }
 }
 
+/// Parameters that have a value: not the keys of all the stages that a stage of noise is none of.
+ValueVisit given(ValueVisit visit) {
+  return [visit = std::move(visit)](ValueEntry entry) {
+    if (entry.is != Is::absent || entry.list) visit(std::move(entry));
+  };
+}
+
 void list_entity(const Simulation& simulation, const Simulation::Entity& entity, const ValueVisit& visit) {
   list_thing(simulation, entity, visit);
   Lister lister(visit);
@@ -279,7 +286,7 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
     const PoolBase& pool = simulation.pool(*device);
     if (!device->topics.empty())
       list_topic(*device->topics.front().topic, lister.under(device->path, "reading"));
-    pool.list_values(device->index, ValuePart::parameter, lister.under(device->path, "parameter"));
+    pool.list_values(device->index, ValuePart::parameter, given(lister.under(device->path, "parameter")));
     pool.list_values(device->index, ValuePart::state, lister.under(device->path, "state"));
     if (lister.fresh(device->path + ".sample"))
       lister.one(device->path + ".sample", "1", "Index of the next sample.",
@@ -293,7 +300,7 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
       }
   }
   for (const auto& program : entity.programs) {
-    program->program->list_values(ValuePart::parameter, lister.under(program->path, "parameter"));
+    program->program->list_values(ValuePart::parameter, given(lister.under(program->path, "parameter")));
     program->program->list_values(ValuePart::state, lister.under(program->path, "state"));
     if (lister.fresh(program->path + ".steps"))
       lister.one(program->path + ".steps", "1", "Control steps so far.", static_cast<double>(program->steps));

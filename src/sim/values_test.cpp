@@ -1,7 +1,7 @@
 #include "sim/values.h"
 
-#include "sim/test_world.h"
 #include "sim/monitor.h"
+#include "sim/test_world.h"
 
 namespace sandlot {
 namespace {
@@ -205,9 +205,19 @@ TEST(Monitor, WhatIsNotFiniteEndsTheRun) {
   advance(*simulation, 4);
   const Status status = simulation->tick();
   ASSERT_FALSE(status);
-  EXPECT_NE(status.error().what.find("event 'bad': '1 / (sim.tick - 5) > 0'"), std::string::npos);
+  EXPECT_NE(status.error().what.find("event 'bad': a part of '1 / (sim.tick - 5) > 0'"), std::string::npos);
   EXPECT_NE(status.error().what.find("at 0.05 s"), std::string::npos) << status.error().what;
   EXPECT_TRUE(simulation->stop_reason());
+}
+
+TEST(Monitor, WhatIsNotFiniteAtTheBeginningIsToldByTheFirstTick) {
+  const auto simulation = build(watched({}, {{"bad", "1 / sim.tick > 0", {}, false, false, {}}}));
+  EXPECT_FALSE(simulation->stop_reason())
+      << "a run that asks before it ticks would end there, as if all were well";
+  const Status status = simulation->tick();
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().what.find("at 0 s"), std::string::npos);
+  EXPECT_EQ(simulation->tick_index(), 0u);
 }
 
 TEST(Monitor, ARestoredRunAcceptsWhatIsGone) {

@@ -1,7 +1,8 @@
-#include "sim/embed.h"
+#include "sandlot/embed.h"
 
 #include "base/log.h"
 #include "base/text.h"
+#include "record/playback.h"
 
 namespace sandlot {
 namespace {
@@ -59,6 +60,7 @@ Result<std::unique_ptr<Simulation>> load_simulation(const std::string& file, con
                                                     Diagnostics* diagnostics) {
   Warnings warnings(diagnostics);
   SL_ASSIGN(model::Setup setup, load(file, options.load, warnings.get()));
+  SL_TRY(record::resolve_playbacks(setup, options.load.paths));
   return Simulation::create(std::move(setup), options.simulation, warnings.get());
 }
 

@@ -1,9 +1,11 @@
-#include "sim/embed.h"
+#include "sandlot/embed.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 
 namespace sandlot::test {
 namespace {
@@ -54,6 +56,23 @@ TEST(Embed, TheSecondHalfFromASnapshotEndsInTheSameState) {
     or_exit(again->tick());
   }
   EXPECT_EQ(again->state_hash(), sim->state_hash());
+}
+
+TEST(Embed, ARobotPlaysBackAFileAsItDoesInTheCommand) {
+  const std::string file = testing::TempDir() + "sandlot_embed_playback.csv";
+  std::ofstream(file) << "time,vx,vy,wz\n0,0.5,0,0\n1,0,0,0\n";
+  const auto with = [&](const std::string& name) {
+    return load_simulation_text(scenario + ("    controller: {kind: playback, file: " + name + "}\n"));
+  };
+  const auto sim = or_exit(with(file));
+  while (sim->now() < Time::from_s(2)) or_exit(sim->tick());
+  // 0.5 m/s ordered for a second; ramps up and down at 1 m/s^2 alike: 0.5 m, give or take a control step of 50 ms.
+  EXPECT_NEAR(or_exit(pose(*sim, "rover")).p.x, 0.5, 0.025);
+
+  const auto none = with("not_there.mcap");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().text(), testing::AllOf(HasSubstr("scenario.yaml:8"), HasSubstr("not_there.mcap")));
+  std::remove(file.c_str());
 }
 
 TEST(Embed, WhatIsNotThereIsAnErrorThatNamesWhatThereIs) {
