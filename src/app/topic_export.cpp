@@ -1,9 +1,11 @@
 #include "app/topic_export.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -50,27 +52,33 @@ Result<std::vector<std::string>> numbers_in(const Source& source, std::span<cons
   return paths;
 }
 
-/// A file that is written beside and renamed when it is complete.
+/// A file that is put in place when it is complete.
 class Output {
  public:
-  explicit Output(std::string path)
-      : path_(std::move(path)), part_(path_ + ".part"), out_(part_, std::ios::binary) {}
+  explicit Output(const std::string& path)
+      : path_(path), landing_(landing_of(path)), out_(landing_.written, std::ios::binary) {}
   ~Output() {
-    if (!done_) std::remove(part_.c_str());
+    if (!done_) landing_.give_up();
   }
-  void write(std::string& text) {
+  Status write(std::string& text) {
     out_.write(text.data(), static_cast<std::streamsize>(text.size()));
     text.clear();
+    return checked(static_cast<bool>(out_));
   }
   Status finish() {
     out_.close();
-    if (!out_ || std::rename(part_.c_str(), path_.c_str()) != 0) return Error{"cannot write '" + path_ + "'"};
+    SL_TRY(checked(out_ && landing_.land()));
     done_ = true;
     return {};
   }
 
  private:
-  std::string path_, part_;
+  Status checked(bool good) const {
+    if (good) return {};
+    return Error{"cannot write '" + path_ + "': " + std::strerror(errno)};
+  }
+  std::string path_;
+  Landing landing_;
   std::ofstream out_;
   bool done_ = false;
 };
@@ -130,6 +138,7 @@ Status export_csv(const ExportOptions& options) {
 
   Output out(options.out);
   std::string text = columns.header();
+  SL_TRY(out.write(text));
   mcap::Cursor cursor = reader.messages(query);
   while (true) {
     SL_ASSIGN(const mcap::Message* const message, cursor.next());
@@ -145,10 +154,10 @@ Status export_csv(const ExportOptions& options) {
                                         });
     if (!visited)
       return at(options.recording, "a message of '" + message->channel->topic + "': " + visited.error().what);
-    if (text.size() > flush_bytes) out.write(text);
+    if (text.size() > flush_bytes) SL_TRY(out.write(text));
   }
   columns.finish(text);
-  out.write(text);
+  SL_TRY(out.write(text));
   return out.finish();
 }
 
