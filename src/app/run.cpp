@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "app/report.h"
 #include "app/snapshots.h"
 #include "app/svg.h"
@@ -142,7 +143,6 @@ int run(const RunOptions& options) {
     auto opened = CsvLog::open(simulation, **log_decl);
     if (!opened) return complain(opened.error());
     log = std::move(*opened);
-    if (Status begun = log->begin(); !begun) return complain(begun.error());
     simulation.add_observer(log.get());
   }
   std::optional<Experiment> experiment;
@@ -164,6 +164,9 @@ int run(const RunOptions& options) {
     recorder = std::move(*started);
     simulation.add_observer(recorder.get());
   }
+  // From here nothing is refused any more: what an earlier run left in the file goes only now.
+  if (log)
+    if (Status begun = log->begin(); !begun) return complain(begun.error());
 
   catch_interrupts();
   std::vector<Error> errors;
@@ -217,13 +220,13 @@ int run(const RunOptions& options) {
                             {"lost_ticks", done.lost_frames},
                             {"complete", done.complete()}};
   }
-  const std::string json_text = summary.dump(2) + "\n";
-  std::fputs(options.json ? json_text.c_str() : as_text(summary).c_str(), stdout);
+  const std::string summary_text = json_text(summary) + "\n";
+  std::fputs(options.json ? summary_text.c_str() : as_text(summary).c_str(), stdout);
   const auto leave = [&](const std::string& file, const std::string& content) {
     if (file.empty()) return;
     if (Status status = write_file(file, content); !status) errors.push_back(status.error());
   };
-  leave(options.summary_file, json_text);
+  leave(options.summary_file, summary_text);
   if (svg) leave(options.svg_file, svg->draw());
   for (const Error& error : errors) std::fprintf(stderr, "error: %s\n", error.text().c_str());
   return errors.empty() ? exit_ok : exit_failed;
