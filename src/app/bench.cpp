@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "base/text.h"
 
 namespace sandlot::app {
@@ -41,7 +42,7 @@ int bench(const BenchOptions& options) {
                    row.budget);
     }
   }
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  if (options.json) fmt::print("{}\n", json_text(json));
   // A missed budget is news, not a failure: times depend on the machine's other work.
   return exit_ok;
 }

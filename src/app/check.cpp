@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "sim/lint/lint.h"
 
 namespace sandlot::app {
@@ -67,7 +68,7 @@ int check(const FileOptions& options) {
       fmt::print("{}: {}, {}, {}\n", file, options.strict && !findings.empty() ? "refused" : "ok",
                  counted((*built)->instances().size(), "thing"), counted(findings.size(), "warning"));
   }
-  if (options.json) fmt::print("{}\n", report.dump(2));
+  if (options.json) fmt::print("{}\n", json_text(report));
   return result;
 }
 

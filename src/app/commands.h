@@ -130,13 +130,20 @@ Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOpt
 /// Prints an error the way all verbs do and returns exit_bad_input.
 int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
+/// Says so when the output did not arrive, as on a full disk. @return the exit code then, else `code`
+int finish_output(int code);
 
-/// Writes a whole file, or an error with the reason. A full disk leaves what was there before.
+/// Where a file is written until it is whole: beside it, so that a full disk leaves what was there before.
+struct Landing {
+  std::string target;   ///< the file itself, links followed
+  std::string written;  ///< equal to `target` for pipes and devices
+  bool land() const;    ///< @return false with errno when the file cannot be put in place
+  void give_up() const;
+};
+Landing landing_of(const std::string& path);
+
+/// Writes a whole file, or leaves what was there and says why.
 Status write_file(const std::string& path, std::string_view content);
-/// Where a file is written until it is whole: beside its place, or there if that is a device or a pipe.
-std::string part_of(const std::string& path);
-/// Gives the whole file its name; what was there is replaced.
-Status put_in_place(const std::string& part, const std::string& path);
 
 /// True once the user has asked to stop (SIGINT, SIGTERM).
 bool interrupted();

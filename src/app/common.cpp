@@ -35,36 +35,48 @@ int complain(const Error& error) {
   return exit_bad_input;
 }
 
+int finish_output(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  std::fputs("error: not all of the output could be written\n", stderr);
+  return code == exit_ok ? exit_failed : code;
+}
+
 void print_warnings(const Diagnostics& diagnostics) {
   for (const Error& warning : diagnostics.warnings)
     std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
 }
 
-std::string part_of(const std::string& path) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  // A device or a pipe is written to: a file renamed over /dev/null would take its place.
-  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? path : path + ".part";
-}
-
-Status put_in_place(const std::string& part, const std::string& path) {
-  if (part == path || std::rename(part.c_str(), path.c_str()) == 0) return {};
-  const std::string reason = std::strerror(errno);
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  return Error{"cannot write '" + path + "': " + reason};
+Landing landing_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  // A link stays one: what it leads to is replaced.
+  const fs::path real = fs::canonical(path, code);
+  const std::string target = code ? path : real.string();
+  // Pipes and devices such as /dev/stdout cannot be replaced: a rename would put a file in their place.
+  const fs::file_type type = fs::status(target, code).type();
+  const bool beside = type == fs::file_type::not_found || type == fs::file_type::regular;
+  return {target, beside ? target + ".part" : target};
 }
 
 Status write_file(const std::string& path, std::string_view content) {
-  const std::string part = part_of(path);
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  if (out) out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  if (out) out.close();
-  if (out) return put_in_place(part, path);
-  const std::string reason = std::strerror(errno);
-  std::error_code ignored;
-  if (part != path) std::filesystem::remove(part, ignored);
-  return Error{"cannot write '" + path + "': " + reason};
+  const Landing landing = landing_of(path);
+  std::ofstream out(landing.written, std::ios::binary | std::ios::trunc);
+  const auto failed = [&] {
+    const std::string reason = std::strerror(errno);
+    landing.give_up();
+    return Error{"cannot write '" + path + "': " + reason};
+  };
+  if (!out) return failed();
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (!out || !landing.land()) return failed();
+  return {};
+}
+
+bool Landing::land() const { return written == target || std::rename(written.c_str(), target.c_str()) == 0; }
+
+void Landing::give_up() const {
+  if (written != target) std::remove(written.c_str());
 }
 
 bool interrupted() { return interrupt_requested.load(std::memory_order_relaxed); }

@@ -10,8 +10,9 @@ namespace sandlot::app {
 namespace {
 
 TEST(WriteFile, ADeviceIsWrittenToAndKeepsItsPlace) {
-  EXPECT_EQ(part_of("/dev/null"), "/dev/null") << "a superuser's rename would leave a plain file there";
-  EXPECT_EQ(part_of("run.json"), "run.json.part");
+  EXPECT_EQ(landing_of("/dev/null").written, "/dev/null")
+      << "a superuser's rename would leave a plain file there";
+  EXPECT_EQ(landing_of("run.json").written, "run.json.part");
   EXPECT_TRUE(write_file("/dev/null", "text"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_FALSE(write_file("/dev/full", "text"));

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "app/report.h"
 #include "base/text.h"
 #include "record/recording.h"
@@ -78,6 +79,7 @@ Result<Replay> world_at(const Side& side, std::uint64_t tick, const DiffOptions&
 struct Found {
   std::vector<std::string> setups;
   bool differs = false;
+  bool interrupted = false;
   std::uint64_t tick = 0;  ///< first that differs, or last that was compared
   Time now;
   std::uint64_t compared = 0;
@@ -133,7 +135,12 @@ Result<Found> compare(Side& a, Side& b, const DiffOptions& options) {
   SL_TRY(both_at(begin));
   found.compared = 1;
   static const std::vector<std::string> none;
-  while (!found.differs && !interrupted()) {
+  while (!found.differs) {
+    if (interrupted()) {
+      found.note = "interrupted: what comes behind was not compared";
+      found.interrupted = true;
+      break;
+    }
     bool more_a = true, more_b = true;
     do {
       // A recording may tell the hashes of the state that it begins with, or lack a tick.
@@ -176,7 +183,7 @@ int diff(const DiffOptions& options) {
   const Found& found = *compared;
   if (options.json) {
     using Json = nlohmann::ordered_json;
-    Json json{{"same", !found.differs},
+    Json json{{"same", !found.differs && !found.interrupted},
               {"tick", found.tick},
               {"time", found.now.s()},
               {"compared", found.compared},
@@ -191,8 +198,8 @@ int diff(const DiffOptions& options) {
                                 {"a", v.a ? Json(*v.a) : Json()},
                                 {"b", v.b ? Json(*v.b) : Json()},
                                 {"more", v.more}});
-    fmt::print("{}\n", json.dump(2));
-    return found.differs ? exit_failed : exit_ok;
+    fmt::print("{}\n", json_text(json));
+    return found.differs || found.interrupted ? exit_failed : exit_ok;
   }
   for (const std::string& text : found.setups) fmt::print("{}\n", text);
   if (!found.differs) {
@@ -209,7 +216,7 @@ int diff(const DiffOptions& options) {
       fmt::print("  ... {} values differ in all (--limit shows more)\n", found.values.count);
   }
   if (!found.note.empty()) fmt::print("{}\n", found.note);
-  return found.differs ? exit_failed : exit_ok;
+  return found.differs || found.interrupted ? exit_failed : exit_ok;
 }
 
 }  // namespace sandlot::app

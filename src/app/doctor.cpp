@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "app/report.h"
 #include "base/math.h"
 #include "base/random.h"
@@ -99,7 +100,7 @@ int doctor(bool json) {
     list.push_back({{"name", finding.name}, {"ok", finding.ok}, {"detail", finding.detail}});
     if (!json) fmt::print("{:<5} {:<20} {}\n", finding.ok ? "ok" : "BAD", finding.name, finding.detail);
   }
-  if (json) fmt::print("{}\n", list.dump(2));
+  if (json) fmt::print("{}\n", json_text(list));
   return all_ok ? exit_ok : exit_failed;
 }
 

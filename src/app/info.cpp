@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "sim/values.h"
 
 namespace sandlot::app {
@@ -104,7 +105,7 @@ int info(const FileOptions& options) {
     }
   }
   // One file gives one object, so that the common case needs no index.
-  if (options.json) std::printf("%s\n", (many.size() == 1 ? many[0] : many).dump(2).c_str());
+  if (options.json) std::printf("%s\n", json_text(many.size() == 1 ? many[0] : many).c_str());
   return exit_ok;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
@@ -302,7 +303,7 @@ int list(const ListOptions& options) {
                       {"kind", row.kind},
                       {"levels", row.levels},
                       {"unused", row.unused}});
-    fmt::print("{}\n", Json{{"plugins", rows}}.dump(2));
+    fmt::print("{}\n", json_text(Json{{"plugins", rows}}));
     return exit_ok;
   }
   if (options.what == "messages" && !options.markdown) {
@@ -321,7 +322,7 @@ int list(const ListOptions& options) {
   if (options.json) {
     Json json;
     for (const Section& section : chosen) json[section.key] = to_json(section);
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
   } else if (options.markdown) {
     print_markdown(chosen);
   } else if (options.what == "levels") {

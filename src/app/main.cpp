@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 
 #include "app/commands.h"
 #include "app/plot.h"
@@ -405,6 +406,11 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   });
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? exit_ok : exit_bad_input; }
-  return result;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+  } catch (const std::system_error&) {
+    // fmt::print() throws when the output takes no more.
+    return finish_output(exit_failed);
+  }
+  return finish_output(result);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "base/text.h"
 #include "base/time.h"
 #include "messages/dynamic.h"
@@ -67,7 +68,7 @@ int doctor_file(const RecordingOptions& options) {
       json[name] = value;
       if (!options.json) fmt::print("{:<9} {}\n", name, value);
     }
-    if (options.json) fmt::print("{}\n", json.dump(2));
+    if (options.json) fmt::print("{}\n", json_text(json));
     return exit_ok;
   }
   auto examined = mcap::examine(options.file);
@@ -93,7 +94,7 @@ int doctor_file(const RecordingOptions& options) {
     }
   }
   if (options.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
   } else {
     fmt::print("{}: {}, {} messages on {} topics in {} chunks, {:.3f} s to {:.3f} s, written by {}\n",
                options.file, examined->whole() ? "whole" : "not whole",
@@ -134,7 +135,7 @@ int topic_list(const RecordingOptions& options) {
   if (options.json) {
     Json json = contents(summary, reader->header());
     json["list"] = list;
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
     return exit_ok;
   }
   for (const Json& each : list)
@@ -146,7 +147,9 @@ int topic_list(const RecordingOptions& options) {
 int topic_echo(const RecordingOptions& options) {
   const auto reader = open(options);
   if (!reader) return complain(reader.error());
-  const mcap::Channel& channel = *reader->find_channel(options.topic);
+  const mcap::Channel* const found = reader->find_channel(options.topic);
+  if (!found) return complain({"'' is no topic", "`sandlot topic list " + options.file + "` names them"});
+  const mcap::Channel& channel = *found;
   const mcap::Schema* const schema = reader->schema_of(channel);
   const bool is_json = channel.message_encoding == "json";
   if (!is_json && (channel.message_encoding != "cdr" || !schema || schema->encoding != "ros2msg"))
@@ -215,7 +218,7 @@ int topic_hz(const RecordingOptions& options) {
       fmt::print("{:<44} {:>9.3f} Hz  {} messages, {:.6f} to {:.6f} s apart\n", topic, hz, t.count,
                  list.back()["shortest_s"].get<double>(), list.back()["longest_s"].get<double>());
   }
-  if (options.json) fmt::print("{}\n", list.dump(2));
+  if (options.json) fmt::print("{}\n", json_text(list));
   return exit_ok;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "app/report.h"
 #include "base/text.h"
 #include "record/recording.h"
@@ -16,6 +17,7 @@ using record::RecordedTick;
 struct Outcome {
   std::uint64_t ticks = 0;
   bool compared = false;  ///< there were hashes
+  bool interrupted = false;
   std::optional<record::Difference> difference;
   std::optional<Error> error;
   std::vector<Error> other_errors;  ///< of files that were to be written
@@ -28,7 +30,11 @@ Outcome go_through(record::Recording& recording, record::Replay& replay, const R
     if (!status) out.other_errors.push_back(std::move(status.error()));
   };
   const Time until = options.until_s ? Time::from_s(*options.until_s) : Time{INT64_MAX};
-  while (!interrupted() && replay.simulation().now() < until) {
+  while (replay.simulation().now() < until) {
+    if (interrupted()) {
+      out.interrupted = true;
+      break;
+    }
     auto tick = recording.next();
     if (!tick) {
       out.error = std::move(tick.error());
@@ -67,7 +73,7 @@ nlohmann::ordered_json as_json(const Outcome& out, const record::Recording& reco
             {"state_hash", hex(simulation.state_hash())},
             {"profile", Simulation::profile()},
             {"recorded_profile", recording.begin().profile},
-            {"verified", options.verify && out.compared && !out.difference && !out.error},
+            {"verified", options.verify && out.compared && !out.difference && !out.error && !out.interrupted},
             {"difference", nullptr},
             {"torn", nullptr},
             {"error", nullptr}};
@@ -101,7 +107,7 @@ int replay(const ReplayOptions& options) {
   const Simulation& simulation = replay->simulation();
   const auto json = as_json(out, *recording, simulation, options);
   if (options.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
   } else {
     fmt::print("replayed   {} ticks, {} s to {} s\n", out.ticks, number_text(recording->begin().now.s()),
                number_text(simulation.now().s()));
@@ -122,13 +128,18 @@ int replay(const ReplayOptions& options) {
     tell("it was recorded with another numeric profile (" + recording->begin().profile + "), this is " +
          Simulation::profile() + ": last bits differ for that reason");
   if (out.error) tell(out.error->text());
+  if (out.interrupted && options.verify) {
+    tell("interrupted: nothing behind " + record::tick_text(simulation.tick_index(), simulation.now()) +
+         " was compared");
+    failed = true;
+  }
   for (const Error& error : out.other_errors) tell(error.text());
   if (options.verify && !out.compared && !failed) {
     tell("there is nothing to compare with: the recording has no state hashes in these ticks");
     failed = true;
   }
   if (!options.summary_file.empty())
-    if (Status status = write_file(options.summary_file, json.dump(2) + "\n"); !status) {
+    if (Status status = write_file(options.summary_file, json_text(json) + "\n"); !status) {
       tell(status.error().text());
       failed = true;
     }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "app/commands.h"
+#include "app/json_text.h"
 #include "app/report.h"
 #include "app/snapshots.h"
 #include "app/svg.h"
@@ -262,13 +263,13 @@ int run(const RunOptions& options) {
                             {"lost_ticks", done.lost_frames},
                             {"complete", done.complete()}};
   }
-  const std::string json_text = summary.dump(2) + "\n";
-  std::fputs(options.json ? json_text.c_str() : as_text(summary).c_str(), stdout);
+  const std::string summary_text = json_text(summary) + "\n";
+  std::fputs(options.json ? summary_text.c_str() : as_text(summary).c_str(), stdout);
   const auto leave = [&](const std::string& file, const std::string& content) {
     if (file.empty()) return;
     if (Status status = write_file(file, content); !status) errors.push_back(status.error());
   };
-  leave(options.summary_file, json_text);
+  leave(options.summary_file, summary_text);
   if (svg) leave(options.svg_file, svg->draw());
   for (const Error& error : errors) std::fprintf(stderr, "error: %s\n", error.text().c_str());
   return errors.empty() ? exit_ok : exit_failed;

@@ -71,32 +71,33 @@ bool may_hold(const MessageInfo& info, std::string_view path) {
   return false;
 }
 
-/// A file that is written beside and renamed when it is complete.
+/// A file that is put in place when it is complete.
 class Output {
  public:
-  explicit Output(std::string path)
-      : path_(std::move(path)), part_(part_of(path_)), out_(part_, std::ios::binary) {}
+  explicit Output(const std::string& path)
+      : path_(path), landing_(landing_of(path)), out_(landing_.written, std::ios::binary) {}
   ~Output() {
-    if (!done_ && part_ != path_) std::remove(part_.c_str());
+    if (!done_) landing_.give_up();
   }
-  Status opened() const {  ///< and written, so far
-    if (out_) return {};
-    return Error{"cannot write '" + path_ + "': " + std::strerror(errno)};
-  }
-  void write(std::string& text) {
+  Status write(std::string& text) {
     out_.write(text.data(), static_cast<std::streamsize>(text.size()));
     text.clear();
+    return checked(static_cast<bool>(out_));
   }
   Status finish() {
     out_.close();
-    SL_TRY(opened());
-    SL_TRY(put_in_place(part_, path_));
+    SL_TRY(checked(out_ && landing_.land()));
     done_ = true;
     return {};
   }
 
  private:
-  std::string path_, part_;
+  Status checked(bool good) const {
+    if (good) return {};
+    return Error{"cannot write '" + path_ + "': " + std::strerror(errno)};
+  }
+  std::string path_;
+  Landing landing_;
   std::ofstream out_;
   bool done_ = false;
 };
@@ -153,8 +154,8 @@ Status export_csv(const ExportOptions& options) {
   }
 
   Output out(options.out);
-  SL_TRY(out.opened());
   std::string text = columns.header();
+  SL_TRY(out.write(text));
   mcap::Cursor cursor = reader.messages(query);
   while (true) {
     SL_ASSIGN(const mcap::Message* const message, cursor.next());
@@ -170,10 +171,10 @@ Status export_csv(const ExportOptions& options) {
                                         });
     if (!visited)
       return at(options.recording, "a message of '" + message->channel->topic + "': " + visited.error().what);
-    if (text.size() > flush_bytes) out.write(text);
+    if (text.size() > flush_bytes) SL_TRY(out.write(text));
   }
   columns.finish(text);
-  out.write(text);
+  SL_TRY(out.write(text));
   return out.finish();
 }
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/text.h"
 
@@ -113,7 +114,11 @@ void CsvLog::flush() {
 }
 
 Status CsvLog::finish() {
+  if (file_ < 0) return status_;
   flush();
+  // Some file systems tell only here that the disk was full.
+  if (::close(std::exchange(file_, -1)) != 0 && status_ && errno != EINTR)
+    status_ = Error{"cannot write the log '" + path_ + "': " + std::strerror(errno)};
   return status_;
 }
 

@@ -3,8 +3,10 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "base/math.h"
@@ -17,26 +19,39 @@ namespace {
 constexpr std::size_t longest_text = 2000, most_parts = 400, deepest = 40;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Set by an operation that makes something else than a finite number from finite ones.
-thread_local bool broke = false;
+/// What stands for a number that an operation could not make of finite ones. It is a NaN of its own kind, so that it
+/// reaches the result from where it counts, and not from the branch of an if() that is not taken.
+constexpr std::uint64_t broken_bits = 0x7ff8'0000'0000'b10c;
+constexpr double broken = std::bit_cast<double>(broken_bits);
+bool is_broken(double x) {
+  return (std::bit_cast<std::uint64_t>(x) & ~(std::uint64_t{1} << 63)) == broken_bits;
+}
+
+/// Whether broken numbers are marked. Once they are found the expression is computed again without, so that a log shows
+/// the infinity that there is.
+thread_local bool judging = false;
 
 template <class... Numbers>
 bool any_nan(Numbers... x) {
   return (std::isnan(x) || ...);
 }
 template <class... Numbers>
+double nan_of(Numbers... x) {
+  return (is_broken(x) || ...) ? broken : nan;
+}
+template <class... Numbers>
 double checked(double result, Numbers... from) {
-  if (!std::isfinite(result) && (std::isfinite(from) && ...)) broke = true;
-  return result;
+  if (judging && !std::isfinite(result) && (std::isfinite(from) && ...)) return broken;
+  return std::isnan(result) ? nan : result;
 }
 /// The function F with the rules of this language: NaN goes through, and a broken result is noticed.
 template <auto F>
 double one(double x) {
-  return any_nan(x) ? nan : checked(F(x), x);
+  return any_nan(x) ? nan_of(x) : checked(F(x), x);
 }
 template <auto F>
 double two(double x, double y) {
-  return any_nan(x, y) ? nan : checked(F(x, y), x, y);
+  return any_nan(x, y) ? nan_of(x, y) : checked(F(x, y), x, y);
 }
 
 double rounded(double x) { return std::round(x); }
@@ -79,13 +94,15 @@ template <auto F>
 double fold(const double* x, int n) {
   double result = x[0];
   for (int i = 1; i < n; ++i) result = two<F>(result, x[i]);
-  return n == 1 && any_nan(x[0]) ? nan : result;
+  return n == 1 && any_nan(x[0]) ? nan_of(x[0]) : result;
 }
 double clamped(double x, double low, double high) {
-  return any_nan(x, low, high) ? nan : smaller(larger(x, low), high);
+  return any_nan(x, low, high) ? nan_of(x, low, high) : smaller(larger(x, low), high);
 }
+/// Only the branch that is taken counts: if(x == 0, 0, 1 / x) has a value everywhere.
 double choice(double condition, double yes, double no) {
-  return any_nan(condition, yes, no) ? nan : condition != 0 ? yes : no;
+  if (any_nan(condition)) return nan_of(condition, yes, no);
+  return condition != 0 ? yes : no;
 }
 
 constexpr Expression::Function function_list[] = {
@@ -426,14 +443,16 @@ Result<Expression> Expression::compile(std::string_view text, const Names& names
       compiled->parser.DefineConst("c" + std::to_string(i), translation->constants[i]);
     compiled->parser.SetExpr(translation->text);
     // With every input NaN, whatever depends on one is NaN: what breaks now is made of constants alone.
-    broke = false;
-    compiled->parser.Eval();
-    if (broke)
+    judging = true;
+    const double judged = compiled->parser.Eval();
+    judging = false;
+    if (is_broken(judged))
       return placed(translator.at(0, "a part of it that is all constants is no finite number",
                                   "is it a division by 0?"));
     if (compiled->parser.GetNumResults() != 1)
       return placed(translator.at(0, "it holds several expressions", "keep one of them"));
   } catch (const mu::ParserError& error) {
+    judging = false;
     const std::size_t position = static_cast<std::size_t>(std::max(error.GetPos(), 0));
     const std::size_t column = position < translation->column.size() ? translation->column[position]
                                                                      : text.size();
@@ -445,9 +464,11 @@ Result<Expression> Expression::compile(std::string_view text, const Names& names
 Expression::Evaluated Expression::evaluate(std::span<const double> inputs) {
   SL_CHECK(inputs.size() == compiled_->slots.size());
   std::copy(inputs.begin(), inputs.end(), compiled_->slots.begin());
-  broke = false;
+  judging = true;
   const double value = compiled_->parser.Eval();
-  return {value, !broke && std::isfinite(value)};
+  judging = false;
+  if (std::isfinite(value)) return {value, true};
+  return {compiled_->parser.Eval(), false};
 }
 
 std::span<const Expression::Function> Expression::functions() { return function_list; }

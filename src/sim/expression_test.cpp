@@ -148,6 +148,12 @@ TEST(Expression, NothingUndefinedPassesForAnAnswer) {
   EXPECT_FALSE(result("none ^ 0").finite);
   EXPECT_FALSE(result("mod(a.x, gap - 2)").finite);
   EXPECT_FALSE(result("log(a.x - 3) < 0").finite);
+  // The branch that is not taken does not count: this is how to guard a division.
+  EXPECT_TRUE(result("if(a.x == 3, 0, 1 / (a.x - 3)) < 1").finite);
+  EXPECT_EQ(result("if(a.x == 3, 7, 1 / (a.x - 3))").value, 7);
+  EXPECT_EQ(result("if(a.x == 3, 7, none)").value, 7);
+  EXPECT_FALSE(result("if(a.x == 3, 1 / (a.x - 3), 0) > 1").finite);
+  EXPECT_FALSE(result("max(1, -(1 / (a.x - 3)))").finite);
   // A measured infinity (nothing in range) is a number to compare with.
   EXPECT_TRUE(result("far > 5").finite);
   EXPECT_EQ(value("min(far, 5)"), 5);

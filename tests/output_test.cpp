@@ -1,0 +1,97 @@
+/// What the command writes, and what it says when that does not arrive.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string short_run = "run scenarios/indoor.yaml --set physics=planar --duration 0.2s";
+
+TEST(Output, a_full_disk_behind_the_output_is_an_error) {
+  const Scratch scratch;
+  const std::string recording = scratch.file("r.mcap");
+  ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
+  for (const std::string& verb :
+       {short_run, "replay " + recording + " --verify", "topic list " + recording,
+        "topic echo " + recording + " /clock", "diff " + recording + " " + recording, std::string("list")}) {
+    const Printed printed = shell(std::string(SANDLOT_BIN) + " " + verb + " 2>&1 >/dev/full");
+    EXPECT_EQ(printed.exit_code, 1) << verb << printed.out;
+    EXPECT_THAT(printed.out, HasSubstr("not all of the output")) << verb;
+  }
+}
+
+TEST(Output, a_pipe_and_a_link_stay_what_they_are) {
+  const Scratch scratch;
+  ASSERT_EQ(mkfifo(scratch.file("pipe").c_str(), 0600), 0);
+  const Printed piped = shell("cat " + scratch.file("pipe") + " & " + SANDLOT_BIN + " " + short_run +
+                              " --summary " + scratch.file("pipe") + " >/dev/null; wait");
+  EXPECT_THAT(piped.out, HasSubstr("\"state_hash\""));
+  EXPECT_TRUE(std::filesystem::is_fifo(scratch.file("pipe")));
+
+  scratch.write("old.json", "old");
+  std::filesystem::create_symlink("old.json", scratch.file("link.json"));
+  ASSERT_EQ(sandlot(short_run + " --summary " + scratch.file("link.json")).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.file("link.json")));
+  EXPECT_EQ(read_json(scratch.file("old.json")).at("ticks"), 20);
+}
+
+TEST(Output, a_table_goes_into_a_pipe_too) {
+  const Scratch scratch;
+  const std::string recording = scratch.file("r.mcap");
+  ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
+  ASSERT_EQ(mkfifo(scratch.file("pipe").c_str(), 0600), 0);
+  const Printed piped = shell("cat " + scratch.file("pipe") + " & " + SANDLOT_BIN + " topic export " +
+                              recording + " --values /clock --out " + scratch.file("pipe") + "; wait");
+  EXPECT_THAT(piped.out, HasSubstr("time,/clock.clock"));
+  EXPECT_TRUE(std::filesystem::is_fifo(scratch.file("pipe")));
+}
+
+TEST(Output, names_that_are_no_utf8_are_written_all_the_same) {
+  const Scratch scratch;
+  const std::string recording = scratch.file("b\xff.mcap"), summary = scratch.file("s.json");
+  EXPECT_EQ(sandlot(short_run + " --record " + recording + " --summary " + summary).exit_code, 0);
+  EXPECT_THAT(read_json(summary).at("recording").at("file"), HasSubstr("b\xef\xbf\xbd.mcap"));
+  const Printed replayed = sandlot("replay " + recording + " --verify --json");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+  EXPECT_EQ(sandlot("doctor " + recording + " --json").exit_code, 0);
+}
+
+TEST(Output, a_topic_without_a_name_is_refused) {
+  const Scratch scratch;
+  ASSERT_EQ(sandlot(short_run + " --record " + scratch.file("r.mcap")).exit_code, 0);
+  const Printed printed = sandlot("topic echo " + scratch.file("r.mcap") + " ''");
+  EXPECT_EQ(printed.exit_code, 2);
+  EXPECT_THAT(printed.out, HasSubstr("topic list"));
+}
+
+TEST(Output, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
+  const Scratch scratch;
+  const std::string log = scratch.write("run.csv", "time\n1\n");
+  const Printed printed = sandlot(short_run + " --log " + log +
+                                  " --log-values sim.time --record /nowhere/r.mcap");
+  EXPECT_EQ(printed.exit_code, 2);
+  std::ifstream in(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "time\n1\n");
+}
+
+TEST(Output, a_replay_that_was_interrupted_verifies_nothing) {
+  const Scratch scratch;
+  const std::string recording = scratch.file("r.mcap");
+  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 120s --record-topics none --record " + recording)
+                .exit_code,
+            0);
+  const Printed printed = shell("timeout --preserve-status -s TERM 0.6 " + std::string(SANDLOT_BIN) +
+                                " replay " + recording + " --verify");
+  if (printed.exit_code != 1) GTEST_SKIP() << "the signal came too early or too late: " << printed.out;
+  EXPECT_THAT(printed.out, HasSubstr("interrupted: nothing behind tick"));
+  EXPECT_THAT(printed.out, Not(HasSubstr("verified")));
+}
+
+}  // namespace
+}  // namespace sandlot::test
