@@ -28,6 +28,8 @@ while(queue)
   endforeach()
   file(READ ${file} text)
   string(REGEX REPLACE "#include \"(${any_layer})/" "#include \"sandlot/\\1/" text "${text}")
+  # Those of src/sandlot stand at the top.
+  string(REPLACE "#include \"sandlot/sandlot/" "#include \"sandlot/" text "${text}")
   string(REGEX REPLACE "^sandlot/" "" name ${header})
   file(WRITE ${OUT}/sandlot/${name} "${text}")
 endwhile()

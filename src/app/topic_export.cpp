@@ -62,7 +62,9 @@ bool may_hold(const MessageInfo& info, std::string_view path) {
                                     [&](const MessageField& each) { return each.name == name; });
     const bool indexed = name.size() < step.size();
     if (field == type->fields.end() || indexed != (field->count != MessageField::Count::one)) return false;
-    const bool is_time = field->message && field->message->is_time;  // one number, in seconds
+    // One number, in seconds.
+    const bool is_time = field->message && (field->message->name == "builtin_interfaces/msg/Time" ||
+                                            field->message->name == "builtin_interfaces/msg/Duration");
     if (is_time || step.size() == path.size())
       return step.size() == path.size() && (is_time || (!field->message && field->type != Wire::string));
     path.remove_prefix(step.size() + 1);
