@@ -3,6 +3,7 @@
 ///
 /// write(w, x) and read(r, x) handle numbers, enumerations, strings, vectors, optionals, plain structs without
 /// padding and structs with a field list. Reading checks every length: bytes may come from a damaged file.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -84,11 +85,15 @@ void write(ByteWriter& w, const T& value) {
     write(w, static_cast<std::uint8_t>(value.has_value()));
     if (value) write(w, *value);
   } else if constexpr (is_array<T>::value) {
-    for (const auto& element : value) write(w, element);
+    if constexpr (RawBytes<typename T::value_type>) w.raw(value.data(), sizeof value);
+    else
+      for (const auto& element : value) write(w, element);
   } else if constexpr (RawBytes<T>) {
     w.raw(&value, sizeof value);
   } else if constexpr (FixedVector<T>) {
-    for (std::size_t i = 0; i < T::extent; ++i) write(w, value[i]);
+    std::array<std::remove_cvref_t<decltype(value[0])>, T::extent> elements;
+    for (std::size_t i = 0; i < T::extent; ++i) elements[i] = value[i];
+    write(w, elements);
   } else {
     static_assert(Fielded<T>, "state must be plain values or have a field list");
     T::fields(value, [&](const Field&, const auto& member) { write(w, member); });

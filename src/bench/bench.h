@@ -25,9 +25,10 @@ inline Row row(std::string name, std::string unit, double value, double referenc
 }
 
 // The suites; src/app runs them by name.
-std::vector<Row> ranges();   ///< P2, P5: rays of both kinds of world
-std::vector<Row> physics();  ///< P3: steps of the engines
-std::vector<Row> loading();  ///< P8: files to a simulation
+std::vector<Row> ranges();     ///< P2, P5: rays of both kinds of world
+std::vector<Row> physics();    ///< P3: steps of the engines
+std::vector<Row> loading();    ///< P8: files to a simulation
+std::vector<Row> recording();  ///< P11: runs and images into a file
 
 /// Processor time of the calling thread: other work on the machine does not count.
 inline double thread_seconds() {

@@ -67,10 +67,13 @@ void Recorder::on_frame(const std::shared_ptr<const Frame>& frame) {
     item.tf_static = std::make_shared<const msg::TFMessage>(static_transforms(simulation_));
   }
   const auto limit = static_cast<std::size_t>(recording_.queue_mb * 1024 * 1024);
-  std::vector<Item> done;
+  {
+    const std::lock_guard lock(mutex_);
+    returned_.swap(done_);
+  }
+  returned_.clear();
   {
     std::unique_lock lock(mutex_);
-    done.swap(done_);
     ++report_.frames;
     now_ = frame->now;
     if (recording_.when_full == model::Recording::WhenFull::wait)
@@ -133,6 +136,7 @@ Status Recorder::finish() {
   filled_.notify_one();
   thread_.join();
   done_.clear();
+  returned_.clear();
   const Status ended = writer_.finish({{"ticks", std::to_string(report_.frames)},
                                        {"end_ns", std::to_string(now_.ns)},
                                        {"complete", report_.complete() ? "true" : "false"},

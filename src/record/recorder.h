@@ -66,8 +66,8 @@ class Recorder final : public Observer {
   std::mutex mutex_;
   std::condition_variable filled_, emptied_;
   std::vector<Item> queue_;
-  std::vector<Item>
-      done_;  ///< given back, so that frames are freed or filled again by the thread that made them
+  std::vector<Item> done_;      ///< given back, so that frames are filled again by the thread that made them
+  std::vector<Item> returned_;  ///< of the simulation's thread
   std::size_t waiting_bytes_ = 0, small_bytes_ = 0;
   bool ending_ = false, failed_ = false;
   Status status_;

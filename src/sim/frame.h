@@ -56,7 +56,9 @@ struct Frame {
       part_names;  ///< of `parts`; another object when they change
 };
 
-/// Something that watches. Called at the end of each tick on the simulation's thread; it must not block.
+/// Something that watches. Called at the end of each tick on the simulation's thread; it must not block. It may keep
+/// frames and topics and read them in other threads. Once nobody holds them they are filled again, so it lets go of them
+/// on the simulation's thread.
 class Observer {
  public:
   virtual ~Observer() = default;

@@ -6,6 +6,7 @@
 #include <execinfo.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -66,6 +67,13 @@ struct PoseWatcher : Observer {
   std::uint64_t last = 0;
 };
 
+/// Wants all that a recorder wants and holds frames for a while, as its queue does.
+struct Holder : Observer {
+  Wants wants() const override { return {.messages = true, .log = true, .hash = true, .links = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override { held[frame->tick % 20] = frame; }
+  std::array<std::shared_ptr<const Frame>, 20> held;
+};
+
 class Heap : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Engines, Heap, testing::Values("rigid", "planar"),
                          [](const auto& p) { return std::string(p.param); });
@@ -94,6 +102,18 @@ TEST_P(Heap, a_tick_allocates_nothing_after_warm_up) {
   const auto proof = std::make_unique<std::vector<int>>(100);
   counting = false;
   EXPECT_EQ(ours.load(), 2u);
+}
+
+TEST_P(Heap, nor_does_one_whose_frames_are_held_for_a_while) {
+  const auto simulation = build(arena(GetParam(), 10));
+  Holder holder;
+  simulation->add_observer(&holder);
+  advance(*simulation, 1000);
+  ours = of_libraries = 0;
+  counting = true;
+  advance(*simulation, 200);
+  counting = false;
+  EXPECT_EQ(ours.load(), 0u);
 }
 
 }  // namespace

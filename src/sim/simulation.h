@@ -199,8 +199,14 @@ class Simulation {
   void deliver_media();
   void judge();
   void control();
-  void publish();
   Context context();
+
+  // publish.cpp: the last phase
+  struct Publishing;
+  void publish();
+  void fill_instances(Frame& frame) const;
+  void fill_topics(Frame& frame);
+  void fill_hashes(Frame& frame);
 
   // requests.cpp
   Status carry_out(Request& request);
@@ -266,10 +272,8 @@ class Simulation {
   EmissionBuffer emissions_;
   std::vector<ProgramEntry*> running_;
   Observer::Wants wants_;  ///< of all observers together
-  std::vector<LogEntry> log_, spare_log_, spare_frame_log_;
-  std::shared_ptr<Frame> frame_;
-  std::shared_ptr<const std::vector<std::string>> part_names_;
-  std::uint64_t part_names_revision_ = 0;
+  std::vector<LogEntry> log_, spare_log_;
+  std::shared_ptr<Publishing> publishing_;  ///< known to publish.cpp alone
   PhaseTimes phase_times_;
   mutable ByteWriter scratch_;
 };

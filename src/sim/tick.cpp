@@ -10,24 +10,6 @@
 #include "sim/simulation.h"
 
 namespace sandlot {
-namespace {
-
-/// Resizes without giving the memory of elements back: those cut off are kept in `spare` and used again.
-template <class T>
-void resize_keeping(std::vector<T>& items, std::size_t size, std::vector<T>& spare) {
-  while (items.size() > size) {
-    spare.push_back(std::move(items.back()));
-    items.pop_back();
-  }
-  while (items.size() < size) {
-    if (spare.empty()) spare.emplace_back();
-    items.push_back(std::move(spare.back()));
-    spare.pop_back();
-  }
-}
-
-}  // namespace
-
 /// One step of the world. Each phase sees what the phases before it left; see docs/architecture.md section 3.
 Status Simulation::tick(std::optional<Time> measured) {
   if (!failure_) return failure_;
@@ -250,54 +232,6 @@ void Simulation::control() {
     // At tick 0 nothing runs yet that could stop: the first tick() answers with the failure.
     if (tick_ > 0) stop_reason_ = failure_.error().what;
   }
-}
-
-void Simulation::publish() {
-  const PhaseTimer timer(phase_times_, Phase::publish);
-  if (observers_.empty()) return;
-  // The previous frame is filled again unless somebody still holds it.
-  if (!frame_ || frame_.use_count() > 1) frame_ = std::make_shared<Frame>();
-  Frame& frame = *frame_;
-  frame.tick = tick_;
-  frame.now = now_;
-  frame.step = step_;
-  frame.revision = revision_;
-  frame.instances.resize(entities_.size());
-  const auto states = engine_->states();
-  for (std::size_t i = 0; i < entities_.size(); ++i) {
-    const Entity& entity = *entities_[i];
-    FrameInstance& out = frame.instances[i];
-    out.name = entity.instance.name;
-    out.id = entity.id;
-    out.is_robot = entity.instance.is_robot;
-    out.X_WM = engine_->pose(entity.id);
-    const std::span<const BodyId> bodies = engine_->bodies(entity.id);
-    out.V_WB = states[bodies.front().index].V_WB;
-    out.model = entity.instance.model;
-    out.X_WL.clear();
-    if (wants_.links)
-      for (const BodyId body : bodies) out.X_WL.push_back(states[body.index].X_WB);
-  }
-  frame.topics.clear();
-  if (wants_.messages)
-    for (const auto& entity : entities_)
-      for (const auto& device : entity->devices)
-        for (const Slot& slot : device->topics)
-          if (slot.topic->count > 0 && slot.topic->stamp == now_) frame.topics.push_back(slot.topic->clone());
-  resize_keeping(frame.log, log_.size(), spare_frame_log_);
-  std::copy(log_.begin(), log_.end(), frame.log.begin());
-  frame.hash = 0;
-  frame.parts.clear();
-  if (wants_.hash) {
-    frame.hash = hash_parts(frame.parts);
-    // Which parts there are changes with the Model alone.
-    if (!part_names_ || part_names_revision_ != revision_) {
-      part_names_ = name_parts();
-      part_names_revision_ = revision_;
-    }
-    frame.part_names = part_names_;
-  }
-  for (Observer* observer : observers_) observer->on_frame(frame_);
 }
 
 }  // namespace sandlot

@@ -1,7 +1,6 @@
 #include "record/mcap/codec.h"
 
 #include <lz4frame.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -76,12 +75,6 @@ Status decompress_zstd(std::span<const std::byte> stored, std::uint64_t size, st
 
 const char* file_name(Compression compression) {
   return compression == Compression::lz4 ? "lz4" : compression == Compression::zstd ? "zstd" : "";
-}
-
-std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
-  if (bytes.empty()) return before;  // zlib takes a null pointer as the wish to begin anew
-  return static_cast<std::uint32_t>(
-      ::crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 struct Compressor::Context {

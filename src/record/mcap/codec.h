@@ -1,7 +1,8 @@
 #pragma once
 /// Compression of chunks, and the checksum of MCAP.
 ///
-/// Cost     measured on scans and poses of robots: lz4 (fast) 4 times smaller at 700 MB/s, zstd (level 1) 6 times at 300.
+/// Cost     measured on scans, poses and hashes of a dozen robots, in one thread: lz4 (fast) 3.6 times smaller at
+///          1.2 GB/s, zstd (level 1) 5.0 times at 1.0; the checksum runs at 25 GB/s.
 /// Errors   decompress() answers damaged input, and more or less than the promised size, with an error; memory
 ///          grows with what really comes out, never with what was promised.
 #include <cstdint>

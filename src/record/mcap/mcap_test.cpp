@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/hash.h"
 #include "record/mcap/repair.h"
 #include "record/mcap/writer.h"
 
@@ -82,6 +83,19 @@ void write_sample(const std::string& path, Compression compression, std::uint64_
   }
   const Status finished = writer->finish();
   ASSERT_TRUE(finished) << finished.error().text();
+}
+
+TEST(Crc, is_that_of_the_polynomial_for_any_length_and_in_pieces) {
+  std::vector<std::byte> bytes(700);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(mix64(i));
+  std::uint32_t bit_by_bit = ~0u;
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const auto part = std::span<const std::byte>(bytes).first(size);
+    ASSERT_EQ(crc32(part), ~bit_by_bit) << size << " bytes";
+    ASSERT_EQ(crc32(part.subspan(size / 3), crc32(part.first(size / 3))), ~bit_by_bit) << size << " bytes";
+    bit_by_bit ^= std::to_integer<std::uint32_t>(bytes[size]);
+    for (int bit = 0; bit < 8; ++bit) bit_by_bit = (bit_by_bit >> 1) ^ (bit_by_bit & 1 ? 0xedb88320u : 0);
+  }
 }
 
 TEST_F(Mcap, a_tiny_file_has_the_bytes_of_the_specification) {
