@@ -98,18 +98,21 @@ bool FrameWriter::wants(std::string_view topic) const {
                      [&](const auto& glob) { return glob_matches(glob, topic); });
 }
 
-FrameWriter::Target& FrameWriter::target(const std::string& topic, const MessageInfo& type) {
+Result<FrameWriter::Target*> FrameWriter::target(const std::string& topic, const MessageInfo& type) {
   const auto [found, is_new] = targets_.try_emplace(topic);
   Target& target = found->second;
   // Our own topics are the proof: they are recorded whatever is chosen.
-  if (!is_new || (!wants(topic) && topic.rfind("/sandlot/", 0) != 0)) return target;
+  if (!is_new || (!wants(topic) && topic.rfind("/sandlot/", 0) != 0)) return &target;
+  if (!writer_.has_room())
+    return Error{"the recording has as many topics as a file can have, and now comes '" + topic + "'",
+                 "record fewer of them: --record-topics"};
   target.type = &type;
   std::uint16_t& schema = schemas_[target.type->name];
   if (schema == 0) schema = writer_.add_schema(target.type->name, "ros2msg", target.type->schema);
   const bool latched = topic == recording::tf_static_topic;
   target.channel = writer_.add_channel(schema, topic, "cdr",
                                        {{"offered_qos_profiles", latched ? latched_qos : ""}});
-  return target;
+  return &target;
 }
 
 Status FrameWriter::put(Target& target, Time now, const void* message) {
@@ -122,7 +125,8 @@ Status FrameWriter::put(Target& target, Time now, const void* message) {
 
 template <class M>
 Status FrameWriter::put(const char* topic, Time now, const M& message) {
-  return put(target(topic, message_info<M>()), now, &message);
+  SL_ASSIGN(Target* const to, target(topic, message_info<M>()));
+  return put(*to, now, &message);
 }
 
 Status FrameWriter::put_parts(std::uint64_t tick, std::uint64_t revision, Time now,
@@ -171,8 +175,10 @@ Status FrameWriter::write(const Frame& frame, const msg::TFMessage* tf_static) {
     // Frames of which only the log was kept have no instances.
     if (!frame.instances.empty() && wants(recording::tf_topic)) SL_TRY(put_transforms(frame));
   }
-  for (const auto& topic : frame.topics)
-    SL_TRY(put(target(topic->name(), topic->info()), frame.now, topic->data()));
+  for (const auto& topic : frame.topics) {
+    SL_ASSIGN(Target* const to, target(topic->name(), topic->info()));
+    SL_TRY(put(*to, frame.now, topic->data()));
+  }
   for (const LogEntry& entry : frame.log) {
     entry_.stamp = frame.now;
     entry_.tick = frame.tick;

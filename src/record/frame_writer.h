@@ -43,7 +43,7 @@ class FrameWriter {
     std::uint16_t channel = 0;
   };
   FrameWriter(mcap::Writer writer, const model::Recording& recording);
-  Target& target(const std::string& topic, const MessageInfo& type);
+  Result<Target*> target(const std::string& topic, const MessageInfo& type);
   Status put(Target& target, Time now, const void* message);
   template <class M>
   Status put(const char* topic, Time now, const M& message);

@@ -148,5 +148,19 @@ TEST_F(RecorderTest, a_place_that_cannot_be_written_is_known_at_the_start) {
   EXPECT_THAT(full.error().what, testing::HasSubstr("/dev/full"));
 }
 
+TEST_F(RecorderTest, more_topics_than_a_file_can_have_are_an_error) {
+  const auto simulation = build(arena("planar", 1));
+  auto writer = FrameWriter::create({.recording = {.file = file("r.mcap")}, .version = "test"}, *simulation);
+  ASSERT_TRUE(writer) << writer.error().text();
+  Frame frame;
+  for (int i = 0; i < 70'000; ++i)
+    frame.topics.push_back(std::make_shared<Topic<msg::Clock>>("/t" + std::to_string(i)));
+  const Status status = writer->write(frame, nullptr);
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().what, testing::HasSubstr("as many topics as a file can have"));
+  EXPECT_TRUE(writer->finish({}));
+  EXPECT_TRUE(mcap::examine(file("r.mcap"))->whole());
+}
+
 }  // namespace
 }  // namespace sandlot::test

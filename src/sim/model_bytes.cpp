@@ -411,10 +411,18 @@ void instance_values(auto& io, auto& x) {
   });
 }
 
-/// Indices that the rest of the program follows without asking.
+/// An engine stops at an orientation that it cannot make a rotation of.
+bool is_pose(const Pose& X) {
+  const double length = norm(X.q);
+  return is_finite(X) && length > 1e-6 && length < 1e6;
+}
+
+/// Indices that the rest of the program follows without asking, and poses.
 bool consistent(const model::Model& m) {
   const auto links = static_cast<std::uint32_t>(m.links.size());
   if (links == 0) return false;
+  for (const model::Link& l : m.links)
+    if (!is_pose(l.X_ML)) return false;
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
         j.type > model::JointType::screw || (j.mimic && j.mimic->joint >= m.joints.size()))
@@ -430,6 +438,7 @@ bool consistent(const model::Model& m) {
 
 bool consistent(const model::Instance& x) {
   if (x.motion && x.motion->keys.empty()) return false;
+  if (!is_pose(x.X_WM)) return false;
   for (const model::DeviceDecl& d : x.devices)
     if (d.link >= x.model->links.size()) return false;
   return true;

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "sim/test_world.h"
 
 namespace sandlot {
@@ -141,8 +143,8 @@ TEST(ModelBytes, every_truncation_is_refused) {
   }
 }
 
-TEST(ModelBytes, indices_out_of_the_model_are_refused) {
-  for (int broken = 0; broken < 8; ++broken) {
+TEST(ModelBytes, indices_out_of_the_model_and_poses_that_are_none_are_refused) {
+  for (int broken = 0; broken < 11; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -157,6 +159,9 @@ TEST(ModelBytes, indices_out_of_the_model_are_refused) {
       torn->triangles[3][1] = 8;
       changed->links[0].collisions[7].shape = Mesh{torn};
     }
+    if (broken == 8) setup.instances[0].X_WM.q = {1e300, 0, 0, 0};
+    if (broken == 9) setup.instances[0].X_WM.q = {0, 0, 0, 0};
+    if (broken == 10) changed->links[0].X_ML.p.x = std::numeric_limits<double>::infinity();
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;

@@ -44,7 +44,8 @@ ChunkIndex entry_of(const Walk::Piece& piece) {
 Status compare(const InputFile& file, std::uint64_t at, const Summary& told, const Summary& found) {
   const auto same_part = [](const auto& told_part, const auto& found_part) {
     return std::all_of(told_part.begin(), told_part.end(), [&](const auto& one) {
-      return std::find(found_part.begin(), found_part.end(), one) != found_part.end();
+      const auto same = found_part.find(one.first);
+      return same != found_part.end() && same->second == one.second;
     });
   };
   const auto bare = [](std::vector<ChunkIndex> chunks) {

@@ -31,7 +31,7 @@ std::uint16_t Writer::add_schema(std::string name, std::string encoding, std::st
 std::uint16_t Writer::add_channel(std::uint16_t schema, std::string topic, std::string message_encoding,
                                   TextMap metadata) {
   const std::size_t id = summary_.channels.size() + 1;
-  SL_CHECK(id < 0xffff && (schema == 0 || summary_.schemas.contains(schema)));
+  SL_CHECK(has_room() && (schema == 0 || summary_.schemas.contains(schema)));
   const auto number = static_cast<std::uint16_t>(id);
   summary_.channels.emplace(
       number, Channel{number, schema, std::move(topic), std::move(message_encoding), std::move(metadata)});

@@ -36,7 +36,10 @@ class Writer {
 
   /// @return the schema's id
   std::uint16_t add_schema(std::string name, std::string encoding, std::string_view text);
+  /// Ids have 16 bits. @return whether there is one for a further channel
+  bool has_room() const { return summary_.channels.size() + 1 < 0xffff; }
   /// @param schema  0: none
+  /// @pre has_room()
   /// @return the channel's id
   std::uint16_t add_channel(std::uint16_t schema, std::string topic, std::string message_encoding,
                             TextMap metadata = {});
