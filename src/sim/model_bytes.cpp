@@ -411,6 +411,13 @@ void instance_values(auto& io, auto& x) {
   });
 }
 
+/// A tick divides by all of these.
+bool is_timing(const model::Setup& s) {
+  return s.step.ns > 0 && s.substeps > 0 && s.control_interval > 0 &&
+         (s.clock.mode == model::Clock::Mode::fixed ||
+          (s.clock.min_step.ns > 0 && s.clock.min_step <= s.clock.max_step));
+}
+
 /// An engine stops at an orientation that it cannot make a rotation of.
 bool is_pose(const Pose& X) {
   const double length = norm(X.q);
@@ -475,6 +482,7 @@ void write_setup(ByteWriter& w, const model::Setup& setup,
 bool read_setup(ByteReader& r, model::Setup& setup) {
   Load io{r};
   setup_values(io, setup);
+  if (!r.ok() || !is_timing(setup)) return false;
   if (setup.clock.mode > model::Clock::Mode::continuous) return false;
   std::uint32_t count = 0;
   io.value(count);

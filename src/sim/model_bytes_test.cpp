@@ -144,7 +144,7 @@ TEST(ModelBytes, every_truncation_is_refused) {
 }
 
 TEST(ModelBytes, indices_out_of_the_model_and_poses_that_are_none_are_refused) {
-  for (int broken = 0; broken < 11; ++broken) {
+  for (int broken = 0; broken < 13; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -162,6 +162,8 @@ TEST(ModelBytes, indices_out_of_the_model_and_poses_that_are_none_are_refused) {
     if (broken == 8) setup.instances[0].X_WM.q = {1e300, 0, 0, 0};
     if (broken == 9) setup.instances[0].X_WM.q = {0, 0, 0, 0};
     if (broken == 10) changed->links[0].X_ML.p.x = std::numeric_limits<double>::infinity();
+    if (broken == 11) setup.control_interval = 0;
+    if (broken == 12) setup.substeps = 0;
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;
