@@ -83,14 +83,21 @@ TEST(Output, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
 TEST(Output, a_replay_that_was_interrupted_verifies_nothing) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
-  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 120s --record-topics none --record " + recording)
+  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 400s --record-topics none --record " + recording)
                 .exit_code,
             0);
-  const Printed printed = shell("timeout --preserve-status -s TERM 0.6 " + std::string(SANDLOT_BIN) +
-                                " replay " + recording + " --verify");
-  if (printed.exit_code != 1) GTEST_SKIP() << "the signal came too early or too late: " << printed.out;
-  EXPECT_THAT(printed.out, HasSubstr("interrupted: nothing behind tick"));
-  EXPECT_THAT(printed.out, Not(HasSubstr("verified")));
+  // Too early a signal ends the program before it listens, too late a one finds it done: one of these meets it at work.
+  int met = 0;
+  for (const char* after_s : {"0.1", "0.2", "0.4", "0.8", "1.6", "3.2", "6.4", "13"}) {
+    const Printed printed = shell("timeout --preserve-status -s TERM " + std::string(after_s) + " " +
+                                  std::string(SANDLOT_BIN) + " replay " + recording + " --verify");
+    if (printed.exit_code == 0) break;
+    if (printed.exit_code != 1) continue;
+    ++met;
+    EXPECT_THAT(printed.out, HasSubstr("interrupted: nothing behind tick"));
+    EXPECT_THAT(printed.out, Not(HasSubstr("verified")));
+  }
+  EXPECT_GE(met, 1);
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ TEST(Replay, what_is_no_recording_is_refused) {
   refused("replay nowhere.mcap", "nowhere.mcap");
   refused("replay " + scratch.write("empty.mcap", ""), "empty.mcap");
   refused("replay a.mcap --logged --recompute", "--logged");
+  refused("replay a.mcap --logged --snapshot s.snapshot", "--logged does not run the controllers");
   refused("diff README.md README.md", "README.md");
 }
 

@@ -90,6 +90,10 @@ nlohmann::ordered_json as_json(const Outcome& out, const record::Recording& reco
 }  // namespace
 
 int replay(const ReplayOptions& options) {
+  if (options.logged && !options.snapshots.file.empty())
+    return complain(
+        {"--logged does not run the controllers, so a snapshot would hold them as they were at the beginning",
+         "leave --logged out with --snapshot"});
   auto recording = record::Recording::open(options.file);
   if (!recording) return complain(recording.error());
   Diagnostics diagnostics;

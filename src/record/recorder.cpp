@@ -85,6 +85,7 @@ void Recorder::on_frame(const std::shared_ptr<const Frame>& frame) {
       item.bytes = log_bytes(*frame);
       if (failed_ || small_bytes_ + item.bytes > limit / 4) {
         ++report_.lost_frames;
+        if (item.tf_static) revision_ = ~std::uint64_t{0};  // the next frame brings them
         return;
       }
       item.frame = proof_of(*frame);

@@ -60,15 +60,16 @@ Result<Receiver> Receiver::create(const DeviceBuild& build, Spec spec) {
   message.header.frame_id = build.frame_id();
   message.status.status = static_cast<std::int8_t>(spec.status);
   message.status.service = msg::NavSatStatus::gps;
-  const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : build.tick.s();
-  const auto variance = [&](const ChannelNoiseSpec& c) {
-    return c.variance(interval_s, spec.errors) + spec.errors * spec.errors * c.mean_std * c.mean_std;
-  };
-  message.position_covariance[0] = message.position_covariance[4] = variance(spec.horizontal);
-  message.position_covariance[8] = variance(spec.vertical);
   message.position_covariance_type = msg::NavSatFix::covariance_diagonal_known;
   return gps;
 }
+
+namespace {
+/// Of a channel about the truth, what is drawn at the start included.
+double variance_of(const ChannelNoiseSpec& c, double interval_s, double errors) {
+  return c.variance(interval_s, errors) + errors * errors * c.mean_std * c.mean_std;
+}
+}  // namespace
 
 void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
   const auto states = context.engine.states();
@@ -91,9 +92,15 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
     v.z = state.v_up.corrupt(spec.speed, v.z, dt_s, random, spec.errors);
     if (pool.levels[index] >> fix_level & 1) {
       const geodesy::Geodetic place = gps.plane.to_geodetic(p);
-      gps.fix->message.latitude = place.latitude_rad * 180 / math::pi;
-      gps.fix->message.longitude = place.longitude_rad * 180 / math::pi;
-      gps.fix->message.altitude = place.height_m;
+      msg::NavSatFix& message = gps.fix->message;
+      message.latitude = place.latitude_rad * 180 / math::pi;
+      message.longitude = place.longitude_rad * 180 / math::pi;
+      message.altitude = place.height_m;
+      // The errors may be tuned while it runs, so each sample says how large they are now.
+      const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : context.tick.s();
+      message.position_covariance[0] = message.position_covariance[4] = variance_of(spec.horizontal,
+                                                                                    interval_s, spec.errors);
+      message.position_covariance[8] = variance_of(spec.vertical, interval_s, spec.errors);
       gps.fix->publish(context.now);
     }
     if (pool.levels[index] >> velocity_level & 1) {

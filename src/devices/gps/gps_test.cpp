@@ -65,6 +65,9 @@ TEST(Gps, ErrorsHaveTheirSizeAndTheirCorrelation) {
   EXPECT_EQ(first.position_covariance[0], 4);
   EXPECT_EQ(first.position_covariance[4], 4);
   EXPECT_EQ(first.position_covariance[8], 9);
+  ASSERT_TRUE(bench.pool->set_parameter(0, "errors", Node::scalar("0.5")));
+  EXPECT_EQ(bench.fix().position_covariance[8], 9 * 0.25) << "errors are tunable: half as large from now on";
+  ASSERT_TRUE(bench.pool->set_parameter(0, "errors", Node::scalar("1")));
   const double metre = 1 / (geodesy::semi_major_m * deg);
   constexpr int n = 40000;
   double up2 = 0, north2 = 0, up_lag = 0, before = 0, cross = 0;
