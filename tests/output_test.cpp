@@ -83,7 +83,7 @@ TEST(Output, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
 TEST(Output, a_replay_that_was_interrupted_verifies_nothing) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
-  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 400s --record-topics none --record " + recording)
+  ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 150s --record-topics none --record " + recording)
                 .exit_code,
             0);
   // Too early a signal ends the program before it listens, too late a one finds it done: one of these meets it at work.

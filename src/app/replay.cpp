@@ -11,8 +11,6 @@
 namespace sandlot::app {
 namespace {
 
-using record::RecordedTick;
-
 /// How far a replay came and what it found.
 struct Outcome {
   std::uint64_t ticks = 0;

@@ -115,7 +115,9 @@ Status export_csv(const ExportOptions& options) {
   if (!wanted) return at(options.recording, wanted.error().what, wanted.error().fix);
 
   mcap::Query query;
-  const auto ns = [](double s) { return static_cast<std::uint64_t>(s * 1e9 + 0.5); };
+  const auto ns = [](double s) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(0, Time::from_s(s).ns));
+  };
   if (options.from_s) query.from = ns(*options.from_s);
   if (options.to_s) query.to = ns(*options.to_s);
   HeldColumns columns;
