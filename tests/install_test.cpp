@@ -38,7 +38,7 @@ struct Package {
   std::string built(const std::string& name) const { return scratch.file("build_" + name); }
 
   void build(const std::string& name) const {
-    std::string configure = "cmake -S " + example(name) + " -B " + built(name) +
+    std::string configure = "cmake -G Ninja -S " + example(name) + " -B " + built(name) +
                             " -DCMAKE_PREFIX_PATH=" + prefix +
                             " -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=" +
                             cached("CMAKE_CXX_COMPILER");
