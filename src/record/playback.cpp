@@ -16,7 +16,6 @@ namespace {
 using controllers::playback::read_samples;
 using controllers::playback::Sample;
 using controllers::playback::samples_text;
-using controllers::playback::Spec;
 using Samples = std::vector<Sample>;
 
 constexpr std::size_t most_samples = 10'000'000;

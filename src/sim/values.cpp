@@ -334,8 +334,8 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   if (thing == "values")
     for (const std::string& name : simulation.monitor().value_names()) addresses.push_back("values." + name);
   if (entity)
-    list_entity(simulation, *entity, [&](const ValueEntry& entry) {
-      if (cut(entry.path).first == thing) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
+    list_entity(simulation, *entity, [&, wanted = std::string_view(thing)](const ValueEntry& entry) {
+      if (cut(entry.path).first == wanted) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
     });
   if (rest.empty()) {
     std::string example;
