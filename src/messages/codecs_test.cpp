@@ -375,11 +375,10 @@ INSTANTIATE_TEST_SUITE_P(Messages, EveryType, testing::ValuesIn(all_messages().b
                            return name;
                          });
 
-/// For tests/js/messages_test.mjs, which says where to put them.
+/// For tests/js/messages_test.mjs, which says where to put them; else it is only tried.
 TEST(Samples, AreWrittenForOtherReaders) {
   const char* const path = std::getenv("SANDLOT_SAMPLES");
-  if (!path) GTEST_SKIP() << "nobody asks for them";
-  std::ofstream file(path);
+  std::ofstream file(path ? path : "/dev/null");
   for (const MessageInfo* info : all_messages()) {
     const AnyMessage message = sample(*info);
     const Bytes cdr = cdr_of(message);
