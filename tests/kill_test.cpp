@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/random.h"
@@ -30,6 +31,9 @@ TEST(SlowKill, at_fifty_random_moments_every_file_opens_and_is_the_beginning_of_
   ASSERT_EQ(status, 0);
   const auto reference = mcap::Reader::open(whole);
   ASSERT_TRUE(reference);
+  std::uint64_t largest = 0;
+  for (const mcap::ChunkIndex& chunk : reference->summary().chunks)
+    largest = std::max(largest, chunk.length + chunk.message_index_length);
   Stream random(1, entity_key("kill"), Purpose::controller, 0);
   int torn = 0;
   for (int i = 0; i < 50; ++i) {
@@ -46,9 +50,15 @@ TEST(SlowKill, at_fifty_random_moments_every_file_opens_and_is_the_beginning_of_
       ++torn;
       const auto repaired = mcap::repair(killed, *examined);
       ASSERT_TRUE(repaired) << repaired.error().text();
+      EXPECT_LE(repaired->lost_bytes, largest) << "more than the one chunk whose writing was cut off";
     }
     const auto reader = mcap::Reader::open(killed);
     ASSERT_TRUE(reader && reader->indexed());
+    // Every chunk that reached the disk whole is kept: their places are those in the undisturbed recording.
+    const auto on_disk = std::ranges::count_if(
+        reference->summary().chunks,
+        [&](const mcap::ChunkIndex& chunk) { return chunk.offset + chunk.length <= examined->file_bytes; });
+    EXPECT_EQ(std::ssize(reader->summary().chunks), on_disk);
     // The same chunks as the undisturbed run's, from the first on: what was closed is all there.
     mcap::Cursor ours = reader->messages({}), theirs = reference->messages({});
     for (std::uint64_t n = 0; n < reader->summary().statistics.message_count; ++n) {
