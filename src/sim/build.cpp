@@ -357,6 +357,7 @@ void Simulation::remove_entity(std::size_t index) {
   engine_->remove(entity.id);
   by_name_.erase(entity.instance.name);
   std::erase(guided_, &entity);
+  std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity.serial; });
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 

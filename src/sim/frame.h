@@ -21,6 +21,7 @@ struct SubHash {
 struct FrameInstance {
   std::string name;
   InstanceId id;
+  std::uint64_t serial = 0;  ///< creation order over the whole run: nothing else ever has it
   bool is_robot = false;
   Pose X_WM;
   Velocity V_WB;  ///< of the canonical link
@@ -50,6 +51,7 @@ struct Frame {
   std::vector<std::shared_ptr<const TopicBase>>
       topics;                        ///< those that got a message in this tick, if asked for
   std::vector<LogEntry> log;         ///< if asked for
+  std::vector<Contact> contacts;     ///< of the last sub-step, if asked for
   std::uint64_t hash = 0;            ///< of all State, if asked for
   std::vector<std::uint64_t> parts;  ///< and of each entity
   std::shared_ptr<const std::vector<std::string>>
@@ -67,7 +69,9 @@ class Observer {
     bool log = false;
     bool hash = false;
     bool links = false;
+    bool contacts = false;
   };
+  /// Asked at the beginning of each tick.
   virtual Wants wants() const { return {}; }
   virtual void on_frame(const std::shared_ptr<const Frame>& frame) = 0;
 };

@@ -104,6 +104,11 @@ void Simulation::publish() {
   resize_keeping(frame->log, log_.size(), publishing_->spare_log);
   std::copy(log_.begin(), log_.end(), frame->log.begin());
   fill_hashes(*frame);
+  frame->contacts.clear();
+  if (wants_.contacts) {
+    const std::span<const Contact> contacts = engine_->contacts();
+    frame->contacts.assign(contacts.begin(), contacts.end());
+  }
   const std::shared_ptr<const Frame> shown = frame;
   for (Observer* observer : observers_) observer->on_frame(shown);
 }
@@ -116,6 +121,7 @@ void Simulation::fill_instances(Frame& frame) const {
     FrameInstance& out = frame.instances[i];
     out.name = entity.instance.name;
     out.id = entity.id;
+    out.serial = entity.serial;
     out.is_robot = entity.instance.is_robot;
     out.X_WM = engine_->pose(entity.id);
     const std::span<const BodyId> bodies = engine_->bodies(entity.id);

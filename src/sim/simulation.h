@@ -21,6 +21,7 @@
 #include "sim/frame.h"
 #include "sim/phase_timer.h"
 #include "sim/program.h"
+#include "sim/pull.h"
 #include "sim/request.h"
 #include "sim/rule.h"
 
@@ -77,6 +78,7 @@ class Simulation {
   /// Named values and events. `monitor().happened()`: the events of the latest tick.
   const Monitor& monitor() const { return *monitor_; }
   void add_observer(Observer* observer) { observers_.push_back(observer); }
+  void remove_observer(Observer* observer) { std::erase(observers_, observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
 
@@ -194,6 +196,7 @@ class Simulation {
   void take_commands();
   void actuate();
   void physics();
+  void pull();
   void update_scene();
   void sense();
   void deliver_media();
@@ -211,6 +214,7 @@ class Simulation {
   // requests.cpp
   Status carry_out(Request& request);
   Status apply_command(const CommandRequest& command);
+  Status start_pull(const PullRequest& request);
   Status give_command(Slot& slot, std::span<const std::byte> bytes);
   LogEntry& log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence);
   void log_request(const Request& request, const Outcome& outcome);
@@ -231,6 +235,8 @@ class Simulation {
   static void save_program(const ProgramEntry& program, ByteWriter& w);
   static bool load_program(ProgramEntry& program, ByteReader& r);
   void save_run(ByteWriter& w) const;
+  void save_pulls(ByteWriter& w) const;
+  bool load_pulls(ByteReader& r);
   bool load_run(ByteReader& r);
 
   model::Setup setup_;
@@ -267,6 +273,8 @@ class Simulation {
   std::uint64_t next_sequence_ = 0;
   std::vector<Pending> carrying_out_;
   std::vector<Outcome> outcomes_;
+
+  std::vector<Pull> pulls_;  ///< State; those that are over stay until the next tick
 
   Actuation actuation_;
   EmissionBuffer emissions_;

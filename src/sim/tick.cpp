@@ -43,6 +43,7 @@ void Simulation::set_step(std::optional<Time> measured) {
     wants_.log = wants_.log || wants.log;
     wants_.hash = wants_.hash || wants.hash;
     wants_.links = wants_.links || wants.links;
+    wants_.contacts = wants_.contacts || wants.contacts;
   }
   for (LogEntry& entry : log_) spare_log_.push_back(std::move(entry));
   log_.clear();
@@ -112,6 +113,7 @@ void Simulation::physics() {
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
         pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    pull();
     if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
@@ -134,6 +136,19 @@ void Simulation::physics() {
     failure_ = std::move(finite);
     stop_reason_ = failure_.error().what;
   }
+}
+
+/// Adds the forces of all pulls to this sub-step's wrenches.
+void Simulation::pull() {
+  std::erase_if(pulls_, [&](const Pull& pull) { return pull.until <= now_; });
+  for (const Pull& pull : pulls_)
+    for (const auto& entity : entities_) {
+      if (entity->serial != pull.serial) continue;
+      const model::Model& model = *entity->instance.model;
+      const BodyId body = engine_->bodies(entity->id)[pull.link];
+      actuation_.wrenches.push_back(
+          wrench_of(pull, body, engine_->states()[body.index], model.links[pull.link], mass_kg(model)));
+    }
 }
 
 void Simulation::update_scene() {

@@ -1,0 +1,73 @@
+#pragma once
+/// The command language of a running session, shared by terminal, page, scripts and tests. The words: docs/console.md.
+///
+///   Console console(session, {.folders = {"models"}});
+///   console.execute("set rover/laser.noise.white 2 cm", {.may_steer = true}, [](const Answer& a) { ... });
+///
+/// Threads  the simulation's (Session::post brings a line there).
+/// Answers  each line is answered exactly once: at once, or when what it asked for was carried out. While the run is paused a
+///          request is answered at once: "... with the next tick".
+/// Errors   unknown words name the nearest known one; a line that fails has done nothing.
+/// Limits   a line has 4096 characters at most, an address pattern meets at most 10,000 things.
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "sim/session.h"
+
+namespace sandlot {
+
+/// Who says a line.
+struct Speaker {
+  bool may_steer = true;
+  Source source = {};
+};
+
+struct Answer {
+  bool ok = true;
+  std::string text;
+};
+
+class Console {
+ public:
+  struct Options {
+    std::vector<std::string> paths;    ///< folders to search for models (`add`) and files
+    std::string folder = ".";          ///< where store, load and record may write and read: there and below
+    Experiment* experiment = nullptr;  ///< whose commands are known too
+    /// Starts a recording to a file, or ends it (""). Unset: there is none.
+    std::function<Result<std::string>(const std::string& file)> record;
+  };
+  Console(Session& session, Options options);
+
+  using Reply = std::function<void(const Answer&)>;
+  void execute(std::string_view line, const Speaker& speaker, const Reply& reply);
+
+  /// How the last word of `line` may go on, at most 100, sorted: whole words.
+  std::vector<std::string> complete(std::string_view line) const;
+
+  /// "at 2s set rover/laser.noise.white 0.1", or a line without a time: before the first tick. Scripts are such lines,
+  /// `#` begins a comment. Errors name file and line; what is wrong in a word is found now where that can be.
+  Status schedule(std::string_view line, const Place& place = {});
+  Status schedule_script(const std::string& file);
+  /// Says what is due; called before each tick. An error of a line ends the run.
+  Status before_tick();
+  /// What scheduled lines answered since this was last called.
+  std::vector<std::string> take_answers();
+
+ private:
+  struct Scheduled {
+    Time at;
+    std::string text;
+    Place place;
+  };
+  Session& session_;
+  Options options_;
+  std::vector<Scheduled> scheduled_;
+  std::vector<std::string> answers_;
+};
+
+}  // namespace sandlot
