@@ -40,6 +40,7 @@ struct LogEntry {
   std::string type;              ///< ROS type of a command
   std::vector<std::byte> bytes;  ///< command: the message; step: nanoseconds, int64; others: write_request()
   bool refused = false;
+  std::string why;  ///< it was refused; for those who look now, no part of recordings
 };
 
 struct Frame {

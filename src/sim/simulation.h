@@ -158,6 +158,9 @@ class Simulation {
   std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
+  const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  /// Those that programs of this world may be: the built-in ones and the plugins'.
+  std::span<const ControllerKind* const> controller_kinds() const { return controller_kinds_; }
 
  private:
   struct Pool {
