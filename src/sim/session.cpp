@@ -117,6 +117,9 @@ void Session::pause() {
     playing_ = seeking_ = false;
     jump_.reset();
     steps_left_ = 0;
+    // At once: who asks before the loop comes by must not wait for a tick that will not be.
+    if (report_.state == State::playing || report_.state == State::seeking) report_.state = State::paused;
+    report_.real_time_factor = 0;
   });
 }
 
