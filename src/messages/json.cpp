@@ -54,8 +54,11 @@ template <class T>
 void add_as(const std::byte* value, std::string& out) {
   T number;
   std::memcpy(&number, value, sizeof number);
-  if constexpr (std::is_floating_point_v<T>)
+  if constexpr (std::is_floating_point_v<T>) {
     if (!std::isfinite(number)) return void(out += "null");
+    // "-0" is an integer to readers of JSON, and those have no negative zero.
+    if (number == 0 && std::signbit(number)) return void(out += "-0.0");
+  }
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   out.append(text.data(), end);
