@@ -1,7 +1,7 @@
 #pragma once
 /// The command language of a running session, shared by terminal, page, scripts and tests. The words: docs/console.md.
 ///
-///   Console console(session, {.folders = {"models"}});
+///   Console console(session, {.paths = {"models"}});
 ///   console.execute("set rover/laser.noise.white 2 cm", {.may_steer = true}, [](const Answer& a) { ... });
 ///
 /// Threads  the simulation's (Session::post brings a line there).
@@ -10,8 +10,7 @@
 /// Errors   unknown words name the nearest known one; a line that fails has done nothing.
 /// Limits   a line has 4096 characters at most, an address pattern meets at most 10,000 things.
 #include <functional>
-#include <map>
-#include <span>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,8 +52,10 @@ class Console {
   /// `#` begins a comment. Errors name file and line; what is wrong in a word is found now where that can be.
   Status schedule(std::string_view line, const Place& place = {});
   Status schedule_script(const std::string& file);
-  /// Says what is due; called before each tick. An error of a line ends the run.
+  /// Says what is due; called before each tick. An error of a line ends the run, also one that turned up in the tick before.
   Status before_tick();
+  /// Call when the run has ended: an error of the last tick's lines.
+  Status finish();
   /// What scheduled lines answered since this was last called.
   std::vector<std::string> take_answers();
 
@@ -66,8 +67,12 @@ class Console {
   };
   Session& session_;
   Options options_;
-  std::vector<Scheduled> scheduled_;
-  std::vector<std::string> answers_;
+  struct Said;  ///< what scheduled lines answered; outlives the console, as answers may come late
+  void execute(std::string_view line, const Speaker& speaker, const Reply& reply, bool before_tick);
+  Status rehearse(std::string_view line);
+
+  std::vector<Scheduled> scheduled_;  ///< in order of time
+  std::shared_ptr<Said> said_;
 };
 
 }  // namespace sandlot

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "record/layout.h"
+#include "sim/transforms.h"
 
 namespace sandlot {
 namespace {

@@ -40,6 +40,7 @@ struct LogEntry {
   std::string type;              ///< ROS type of a command
   std::vector<std::byte> bytes;  ///< command: the message; step: nanoseconds, int64; others: write_request()
   bool refused = false;
+  std::string why;  ///< it was refused; for those who look now, no part of recordings
 };
 
 struct Frame {
@@ -50,7 +51,7 @@ struct Frame {
   std::vector<FrameInstance> instances;
   std::vector<std::shared_ptr<const TopicBase>>
       topics;                        ///< those that got a message in this tick, if asked for
-  std::vector<LogEntry> log;         ///< if asked for
+  std::vector<LogEntry> log;         ///< if asked for, or its part that is `input`
   std::vector<Contact> contacts;     ///< of the last sub-step, if asked for
   std::uint64_t hash = 0;            ///< of all State, if asked for
   std::vector<std::uint64_t> parts;  ///< and of each entity
@@ -67,6 +68,7 @@ class Observer {
   struct Wants {
     bool messages = false;
     bool log = false;
+    bool input = false;  ///< of the log what came from outside, without the orders of programs
     bool hash = false;
     bool links = false;
     bool contacts = false;

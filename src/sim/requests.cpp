@@ -22,6 +22,7 @@ LogEntry& Simulation::log_entry(std::uint8_t kind, const Source& source, std::ui
   entry.type.clear();
   entry.bytes.clear();
   entry.refused = false;
+  entry.why.clear();
   return entry;
 }
 
@@ -29,6 +30,7 @@ void Simulation::log_request(const Request& request, const Outcome& outcome) {
   LogEntry& entry = log_entry(static_cast<std::uint8_t>(request.index()), outcome.source, outcome.sequence);
   entry.target = request_target(request);
   entry.refused = !outcome.status;
+  if (entry.refused) entry.why = outcome.status.error().text();
   if (const auto* command = std::get_if<CommandRequest>(&request)) {
     entry.type = command->type;
     entry.bytes = command->bytes;

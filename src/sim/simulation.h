@@ -108,6 +108,9 @@ class Simulation {
   };
   std::vector<DeviceView> devices(std::string_view instance) const;
 
+  /// A frame of the present, for those who come between two ticks: instances, and links and contacts if asked for.
+  std::shared_ptr<const Frame> look(const Observer::Wants& wants) const;
+
   const PhaseTimes& phase_times() const { return phase_times_; }
   std::uint64_t refused_commands() const { return refused_commands_; }
 
@@ -155,6 +158,9 @@ class Simulation {
   std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
+  const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  /// Those that programs of this world may be: the built-in ones and the plugins'.
+  std::span<const ControllerKind* const> controller_kinds() const { return controller_kinds_; }
 
  private:
   struct Pool {
@@ -207,7 +213,8 @@ class Simulation {
   // publish.cpp: the last phase
   struct Publishing;
   void publish();
-  void fill_instances(Frame& frame) const;
+  void fill_instances(Frame& frame, bool links) const;
+  void fill_contacts(Frame& frame) const;
   void fill_topics(Frame& frame);
   void fill_hashes(Frame& frame);
 

@@ -41,6 +41,7 @@ void Simulation::set_step(std::optional<Time> measured) {
     const Observer::Wants wants = observer->wants();
     wants_.messages = wants_.messages || wants.messages;
     wants_.log = wants_.log || wants.log;
+    wants_.input = wants_.input || wants.input || wants.log;
     wants_.hash = wants_.hash || wants.hash;
     wants_.links = wants_.links || wants.links;
     wants_.contacts = wants_.contacts || wants.contacts;
@@ -53,7 +54,7 @@ void Simulation::set_step(std::optional<Time> measured) {
   step_ = std::clamp(*measured, setup_.clock.min_step, setup_.clock.max_step);
   const std::int64_t total = step_.ns * setup_.substeps;
   substeps_ = static_cast<int>(std::max<std::int64_t>(1, (total + setup_.step.ns - 1) / setup_.step.ns));
-  if (!wants_.log) return;
+  if (!wants_.input) return;
   LogEntry& entry = log_entry(LogEntry::step, {}, 0);
   ByteWriter w;
   write(w, step_.ns);
@@ -73,7 +74,7 @@ void Simulation::take_commands() {
   });
   for (Pending& pending : carrying_out_) {
     outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request)});
-    if (wants_.log) log_request(pending.request, outcomes_.back());
+    if (wants_.input) log_request(pending.request, outcomes_.back());
   }
   carrying_out_.clear();
   apply_program_orders();

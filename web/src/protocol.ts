@@ -1,0 +1,410 @@
+// What docs/viewer_protocol.md says, as types, and the decoders of its binary channels.
+//
+// The decoders allocate nothing per record: they write into arrays that their caller keeps. Hostile or
+// damaged bytes give `false`, never an exception and never a read beyond the message.
+
+/** [x, y, z, qw, qx, qy, qz], metres. */
+export type Pose = [number, number, number, number, number, number, number];
+export type Vector = [number, number, number];
+/** Red, green, blue, alpha, 0 to 1. */
+export type Color = [number, number, number, number];
+
+export type Shape =
+  | { type: 'box'; size: Vector }
+  | { type: 'sphere'; radius: number }
+  | { type: 'cylinder' | 'capsule' | 'cone'; radius: number; length: number }
+  | { type: 'plane'; normal: Vector }
+  | { type: 'ellipsoid'; radii: Vector }
+  | { type: 'mesh'; mesh: string; scale?: Vector }
+  | { type: 'heightmap'; grid: string };
+
+export interface Material {
+  diffuse: Color;
+  specular?: Color;
+  emissive?: Color;
+  shininess?: number;
+  /** Id of an asset, "t2"; absent or empty: none. */
+  texture?: string;
+  /** The colours of the mesh's parts count, not `diffuse`. */
+  from_mesh?: boolean;
+}
+
+export interface Visual {
+  name: string;
+  pose: Pose;
+  shape: Shape;
+  material: Material;
+  cast_shadows?: boolean;
+}
+
+export interface Collision {
+  name: string;
+  pose: Pose;
+  shape: Shape;
+}
+
+export interface Light {
+  type: 'directional' | 'point' | 'spot';
+  name: string;
+  pose: Pose;
+  color: Color;
+  cast_shadows: boolean;
+  range_m: number;
+  constant: number;
+  linear: number;
+  quadratic: number;
+  inner_rad: number;
+  outer_rad: number;
+}
+
+export interface Link {
+  name: string;
+  /** In the model frame, all joints at 0. */
+  pose: Pose;
+  /** Index of the parent link; -1: the world, or none. */
+  parent: number;
+  /** Index of the joint that carries this link; -1: none. */
+  joint: number;
+  visuals: Visual[];
+  collisions: Collision[];
+  lights?: Light[];
+}
+
+export type JointType = 'revolute' | 'continuous' | 'prismatic' | 'ball' | 'universal' | 'screw' | 'fixed';
+
+export interface Joint {
+  name: string;
+  type: JointType;
+  parent: number;
+  child: number;
+  /** Of J in the child link. */
+  pose: Pose;
+  /** In J. */
+  axis: Vector;
+  lower: number | null;
+  upper: number | null;
+  /** Metres per turn. */
+  thread_pitch_m: number;
+}
+
+export interface Model {
+  id: string;
+  name: string;
+  static: boolean;
+  links: Link[];
+  joints: Joint[];
+}
+
+export interface Topic {
+  name: string;
+  type: string;
+  level: string;
+}
+
+export interface Device {
+  name: string;
+  /** "rover/laser". */
+  path: string;
+  kind: string;
+  /** Index of the link that carries it. */
+  link: number;
+  /** In the link. */
+  pose: Pose;
+  active: string[];
+  topics: Topic[];
+  commands: Topic[];
+}
+
+export interface Controller {
+  name: string;
+  path: string;
+  kind: string;
+}
+
+export interface Instance {
+  id: number;
+  name: string;
+  original: string;
+  model: string;
+  robot: boolean;
+  team: string;
+  /** Of the model frame, when the world was told. */
+  pose: Pose;
+  devices: Device[];
+  controllers: Controller[];
+}
+
+export interface Field {
+  path: string;
+  type: string;
+  unit: string;
+  help: string;
+  min: number | null;
+  max: number | null;
+  tunable: boolean;
+  default: string;
+  choices: string[];
+  length: number;
+}
+
+export interface Level {
+  name: string;
+  message: string;
+  command: string;
+  help: string;
+}
+
+export interface Kind {
+  help: string;
+  levels: Level[];
+  fields: Field[];
+}
+
+export interface World {
+  revision: number;
+  epoch: number;
+  name: string;
+  engine: string;
+  step_s: number;
+  seed: number;
+  gravity: Vector;
+  ambient: Color;
+  background: Color;
+  lights: Light[];
+  models: Model[];
+  instances: Instance[];
+  kinds: Record<string, Kind>;
+}
+
+export type RunState = 'playing' | 'paused' | 'seeking' | 'ended' | 'failed';
+
+export interface Status {
+  state: RunState;
+  time_s: number;
+  tick: number;
+  step_s: number;
+  /** null: as fast as possible. */
+  speed: number | null;
+  real_time_factor: number;
+  late_ticks: number;
+  reason: string;
+  begin_s: number;
+  end_s: number | null;
+  history_s: number[];
+  target_s: number | null;
+  may_steer: boolean;
+  may_rewind: boolean;
+  why_not: string;
+  replay: boolean;
+  recording: { file: string; messages: number; bytes: number } | null;
+  viewers: number;
+  epoch: number;
+  dropped_frames: number;
+}
+
+export interface Command {
+  tick: number;
+  time_s: number;
+  source: 'admin' | 'robot' | 'program';
+  id: number;
+  sequence: number;
+  kind: string;
+  target: string;
+  text: string;
+  refused: boolean;
+  why: string;
+}
+
+export interface Commands {
+  commands: Command[];
+}
+
+/** How a record tells the pose of a link behind the first. */
+export const enum Motion {
+  Fixed = 0,
+  Angle = 1,
+  Slide = 2,
+  Screw = 3,
+  Turn = 4,
+  Free = 5,
+}
+
+/** The motion that a link's joint allows; `joint` undefined: no joint carries it. */
+export function motionOf(joint: Joint | undefined): Motion {
+  switch (joint?.type) {
+    case 'revolute':
+    case 'continuous':
+      return Motion.Angle;
+    case 'prismatic':
+      return Motion.Slide;
+    case 'screw':
+      return Motion.Screw;
+    case 'ball':
+    case 'universal':
+      return Motion.Turn;
+    case 'fixed':
+      return Motion.Fixed;
+    default:
+      return Motion.Free;
+  }
+}
+
+/** Where the decoder puts what it read of one instance: what it expects and what it found. */
+export interface PoseSlot {
+  /** Per link, in the model's order; the first counts as Free. */
+  motions: Uint8Array;
+  /**
+   * Seven numbers per link: Angle, Screw [rad] and Slide [m] use the first, Turn the last four (w x y z),
+   * Free all as a Pose in the world.
+   */
+  values: Float64Array;
+  /** 0: `motions` holds; 1: every link is Free in this message. */
+  form: number;
+}
+
+export interface PosesHeader {
+  key_frame: boolean;
+  epoch: number;
+  revision: number;
+  tick: number;
+  time_s: number;
+  count: number;
+}
+
+export function emptyPosesHeader(): PosesHeader {
+  return { key_frame: false, epoch: 0, revision: 0, tick: 0, time_s: 0, count: 0 };
+}
+
+const POSES_HEADER_BYTES = 28;
+const TURN = (2 * Math.PI) / 65536;
+
+/** Reads the header alone, so that a message of another world can be put away. */
+export function readPosesHeader(view: DataView, header: PosesHeader): boolean {
+  if (view.byteLength < POSES_HEADER_BYTES || view.getUint8(0) !== 1) return false;
+  header.key_frame = (view.getUint8(1) & 1) !== 0;
+  header.epoch = view.getUint16(2, true);
+  header.revision = view.getUint32(4, true);
+  header.tick = readU64(view, 8);
+  header.time_s = readI64(view, 16) * 1e-9;
+  header.count = view.getUint32(24, true);
+  return true;
+}
+
+/**
+ * Decodes a message of /sandlot/poses. `slotOf` gives the place for an instance; undefined: not known here, which
+ * ends the message (a record does not tell its length) and gives false. `moved` is told each instance read.
+ */
+export function decodePoses(
+  bytes: ArrayBuffer | Uint8Array,
+  header: PosesHeader,
+  slotOf: (id: number) => PoseSlot | undefined,
+  moved: (id: number, slot: PoseSlot) => void,
+): boolean {
+  const view = viewOf(bytes);
+  if (!readPosesHeader(view, header)) return false;
+  const end = view.byteLength;
+  let at = POSES_HEADER_BYTES;
+  for (let record = 0; record < header.count; ++record) {
+    if (at + 23 > end) return false;
+    const id = view.getUint32(at, true);
+    const form = view.getUint8(at + 4);
+    const slot = slotOf(id);
+    if (slot === undefined || form > 1) return false;
+    at += 5;
+    slot.form = form;
+    const motions = slot.motions;
+    const values = slot.values;
+    for (let link = 0; link < motions.length; ++link) {
+      const to = link * 7;
+      const motion = link === 0 || form === 1 ? Motion.Free : motions[link];
+      if (at + MOTION_BYTES[motion] > end) return false;
+      switch (motion) {
+        case Motion.Free:
+          values[to] = view.getFloat32(at, true);
+          values[to + 1] = view.getFloat32(at + 4, true);
+          values[to + 2] = view.getFloat32(at + 8, true);
+          readSmallestThree(view, at + 12, values, to + 3);
+          break;
+        case Motion.Angle:
+          values[to] = view.getUint16(at, true) * TURN;
+          break;
+        case Motion.Slide:
+        case Motion.Screw:
+          values[to] = view.getFloat32(at, true);
+          break;
+        case Motion.Turn:
+          readSmallestThree(view, at, values, to + 3);
+          break;
+      }
+      at += MOTION_BYTES[motion];
+    }
+    moved(id, slot);
+  }
+  return at === end;
+}
+
+/** Bytes of a record's part, by Motion. */
+const MOTION_BYTES = [0, 2, 4, 4, 6, 18];
+
+/** An orientation from 48 bits, into values[to ...] as w x y z. */
+export function readSmallestThree(view: DataView, at: number, values: Float64Array, to: number): void {
+  const low = view.getUint32(at, true);
+  const high = view.getUint16(at + 4, true);
+  const left_out = low & 3;
+  const scale = Math.SQRT2 / 32767;
+  // 15 bits each: bits 2 to 16, 17 to 31, 32 to 46.
+  const a = ((low >>> 2) & 0x7fff) * scale - Math.SQRT1_2;
+  const b = ((low >>> 17) & 0x7fff) * scale - Math.SQRT1_2;
+  const c = (high & 0x7fff) * scale - Math.SQRT1_2;
+  const rest = Math.sqrt(Math.max(0, 1 - a * a - b * b - c * c));
+  values[to] = left_out === 0 ? rest : a;
+  values[to + 1] = left_out === 1 ? rest : left_out === 0 ? a : b;
+  values[to + 2] = left_out === 2 ? rest : left_out === 3 ? c : b;
+  values[to + 3] = left_out === 3 ? rest : c;
+}
+
+/** What /sandlot/contacts says: 7 numbers per contact (point, unit normal, depth). */
+export interface Contacts {
+  tick: number;
+  time_s: number;
+  count: number;
+  /** Grows as needed and is kept. */
+  values: Float32Array;
+}
+
+export function emptyContacts(): Contacts {
+  return { tick: 0, time_s: 0, count: 0, values: new Float32Array(7 * 64) };
+}
+
+const CONTACTS_HEADER_BYTES = 20;
+
+export function decodeContacts(bytes: ArrayBuffer | Uint8Array, contacts: Contacts): boolean {
+  const view = viewOf(bytes);
+  contacts.count = 0;
+  if (view.byteLength < CONTACTS_HEADER_BYTES) return false;
+  const count = view.getUint32(16, true);
+  if (view.byteLength !== CONTACTS_HEADER_BYTES + count * 28) return false;
+  contacts.tick = readU64(view, 0);
+  contacts.time_s = readI64(view, 8) * 1e-9;
+  if (contacts.values.length < count * 7) contacts.values = new Float32Array(count * 14);
+  for (let i = 0; i < count * 7; ++i) {
+    contacts.values[i] = view.getFloat32(CONTACTS_HEADER_BYTES + i * 4, true);
+  }
+  contacts.count = count;
+  return true;
+}
+
+function viewOf(bytes: ArrayBuffer | Uint8Array): DataView {
+  return bytes instanceof ArrayBuffer
+    ? new DataView(bytes)
+    : new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+}
+
+/** Exact below 2^53, which is 285 million years of ticks of a microsecond or 104 days in nanoseconds. */
+function readU64(view: DataView, at: number): number {
+  return view.getUint32(at, true) + view.getUint32(at + 4, true) * 4294967296;
+}
+
+function readI64(view: DataView, at: number): number {
+  return view.getUint32(at, true) + view.getInt32(at + 4, true) * 4294967296;
+}
