@@ -26,6 +26,8 @@ export class Body implements PoseSlot {
   readonly slots: Slot[] = [];
   readonly collision_slots: Slot[] = [];
   is_moved = true;
+  /** When a message told of it last, by the browser's clock. */
+  told_ms = -Infinity;
   /** Simulated time of the pose before, and its position and heading: what velocities are taken from. */
   time_s = NaN;
   readonly velocity = new Float64Array(3);

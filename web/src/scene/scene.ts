@@ -10,6 +10,7 @@ import { Assets } from './assets';
 import { Backdrop, type Theme } from './backdrop';
 import { Bodies, type Body } from './bodies';
 import { CameraRig, type CameraMode, type Subject } from './camera';
+import { Foresight } from './foresight';
 import { Hands, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
@@ -55,6 +56,7 @@ export class SceneView {
   private readonly trails: Trails;
   private readonly pull_line: PullLine;
   private readonly hands: Hands | null;
+  private readonly foresight: Foresight;
   private readonly meter = new Meter();
   private readonly overlays: Record<Overlay, boolean> = {
     trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, grid: true, shadows: true, collisions: false, teams: true,
@@ -83,6 +85,7 @@ export class SceneView {
   private disposed = false;
   private width_px = 1;
   private height_px = 1;
+  private applied_ms = 0;
   private draw_calls = 0;
   private triangles = 0;
 
@@ -96,6 +99,7 @@ export class SceneView {
     this.assets = new Assets(options.assetBase, () => this.invalidate());
     this.bodies = new Bodies(this.root, this.assets, () => this.onAssetsJoined());
     this.backdrop = new Backdrop(this.scene);
+    this.foresight = new Foresight(this.bodies, (name, position, yaw_rad) => this.override(name, position, yaw_rad), () => this.touchShadows());
     this.scene.add(this.root);
     this.labels = new Labels(this.scene);
     this.marks = new Marks(this.scene);
@@ -182,6 +186,7 @@ export class SceneView {
     const view = bytes instanceof ArrayBuffer ? new DataView(bytes) : new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     if (this.world === null || !readPosesHeader(view, this.header)) return;
     if (this.header.epoch !== (this.world.epoch & 0xffff)) return;
+    this.applied_ms = begin_ms;
     // A record of a body that is not told yet ends the message; what came before it counts.
     decodePoses(bytes, this.header, this.slot_of, this.on_moved);
     this.trails.advance(this.header.time_s);
@@ -343,7 +348,7 @@ export class SceneView {
     cancelAnimationFrame(this.scheduled);
     this.observer.disconnect();
     this.hands?.dispose();
-    for (const part of [this.bodies, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
+    for (const part of [this.foresight, this.bodies, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
     this.renderer?.dispose();
     this.renderer?.domElement.remove();
     this.message.remove();
@@ -353,7 +358,9 @@ export class SceneView {
 
   private readonly on_moved = (_id: number, slot: unknown): void => {
     const body = slot as Body;
-    if (body.take(this.header.time_s, this.bodies.scratch)) this.bodies.noteMoved(body);
+    if (!body.take(this.header.time_s, this.bodies.scratch)) return;
+    body.told_ms = this.applied_ms;
+    this.bodies.noteMoved(body);
   };
 
   private bodyOf(address: string | null): Body | null {
@@ -537,6 +544,7 @@ export class SceneView {
         this.invalidate();
       },
       drag: (drag) => {
+        this.foresight.drag(drag);
         this.onDrag(drag);
         this.invalidate();
       },
