@@ -34,6 +34,8 @@ export class Backdrop {
   readonly scene: THREE.Scene;
   private readonly sky: THREE.Mesh<THREE.SphereGeometry, THREE.ShaderMaterial>;
   private readonly hemi = new THREE.HemisphereLight();
+  /** From the eye, weak: sides that the sun does not reach keep their shape. */
+  private readonly fill = new THREE.DirectionalLight('#ffffff', 0.4);
   private readonly suns: { light: THREE.DirectionalLight; strength: number }[] = [];
   private readonly lamps: { light: THREE.PointLight | THREE.SpotLight; lamp: { body: { world: Float64Array }; link: number; pose: number[] } | null }[] = [];
   private readonly grounds: Grounds;
@@ -71,7 +73,7 @@ export class Backdrop {
     this.sky.renderOrder = -10;
     this.hemi.position.set(0, 0, 1);
     scene.fog = this.fog;
-    scene.add(this.sky, this.hemi);
+    scene.add(this.sky, this.hemi, this.fill, this.fill.target);
   }
 
   setTheme(theme: Theme): void {
@@ -103,12 +105,15 @@ export class Backdrop {
    */
   follow(camera: THREE.Camera, focus: THREE.Vector3, reach_m: number, map_texels: number): boolean {
     this.grounds.follow(focus);
+    this.fill.position.setFromMatrixPosition(camera.matrixWorld);
+    this.fill.target.position.copy(focus);
+    this.fill.target.updateMatrixWorld();
     const orthographic = camera instanceof THREE.OrthographicCamera;
     this.sky.visible = !orthographic;
     this.fog.near = orthographic ? 1e6 : Math.max(25, 4 * reach_m);
     this.fog.far = orthographic ? 2e6 : Math.max(140, 22 * reach_m);
     // In steps, since each other size of the map moves all edges.
-    const radius_m = Math.min(120, Math.max(2.5, Math.sqrt(2) ** Math.ceil(2 * Math.log2(Math.max(0.1, reach_m)))));
+    const radius_m = Math.min(120, Math.max(3, Math.sqrt(2) ** Math.ceil(2 * Math.log2(Math.max(0.1, 2.2 * reach_m)))));
     return this.fitShadows(focus, radius_m, map_texels);
   }
 

@@ -21,6 +21,7 @@ import { Scans, type Scan } from './overlays/scans';
 import { Trails } from './overlays/trails';
 import { invert, transform, yawOf } from './poses';
 import { pickSlots } from './picking';
+import { makeRenderer } from './renderer';
 
 export type { CameraMode, Drag, RangeReading, Scan, SceneStats, Theme, Tool };
 
@@ -97,7 +98,7 @@ export class SceneView {
     this.message.setAttribute('role', 'status');
     this.renderer = makeRenderer();
     this.assets = new Assets(options.assetBase, () => this.invalidate());
-    this.bodies = new Bodies(this.root, this.assets, () => this.onAssetsJoined());
+    this.bodies = new Bodies(this.root, this.assets, () => this.touchShadows());
     this.backdrop = new Backdrop(this.scene);
     this.foresight = new Foresight(this.bodies, (name, position, yaw_rad) => this.override(name, position, yaw_rad), () => this.touchShadows());
     this.scene.add(this.root);
@@ -178,6 +179,20 @@ export class SceneView {
       this.frameAll();
       this.rig.settle();
     }
+    this.touchShadows();
+  }
+
+  /** Forgets the world and all assets: for a server that was started anew, whose ids mean other things. */
+  reset(): void {
+    this.bodies.clear();
+    this.assets.forget();
+    this.scans.clear();
+    this.marks.clear();
+    this.trails.setBodies([], () => TRAIL, true);
+    this.world = null;
+    this.epoch = -1;
+    this.hovered = this.selected = null;
+    this.selected_address = null;
     this.touchShadows();
   }
 
@@ -348,7 +363,8 @@ export class SceneView {
     cancelAnimationFrame(this.scheduled);
     this.observer.disconnect();
     this.hands?.dispose();
-    for (const part of [this.foresight, this.bodies, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
+    this.bodies.clear();
+    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
     this.renderer?.dispose();
     this.renderer?.domElement.remove();
     this.message.remove();
@@ -366,10 +382,6 @@ export class SceneView {
   private bodyOf(address: string | null): Body | null {
     if (address === null) return null;
     return this.bodies.by_name.get(address) ?? this.bodies.devices.get(address)?.body ?? this.bodies.by_name.get(address.split('/')[0]) ?? null;
-  }
-
-  private onAssetsJoined(): void {
-    this.touchShadows();
   }
 
   private say(text: string): void {
@@ -579,19 +591,4 @@ export class SceneView {
 const flatSize = (box: THREE.Box3): number => (box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y));
 const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
 const TURN = new THREE.Quaternion();
-
-function makeRenderer(): THREE.WebGLRenderer | null {
-  try {
-    const renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
-    renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    renderer.shadowMap.autoUpdate = false;
-    renderer.toneMapping = THREE.NeutralToneMapping;
-    renderer.outputColorSpace = THREE.SRGBColorSpace;
-    renderer.autoClear = true;
-    renderer.info.autoReset = false;
-    return renderer;
-  } catch {
-    return null;
-  }
-}
+const TRAIL = new THREE.Color();
