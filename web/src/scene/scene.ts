@@ -244,7 +244,9 @@ export class SceneView {
     const size = box.getSize(new THREE.Vector3());
     const center = box.getCenter(at);
     center.z = Math.max(box.min.z, 0) + Math.min(size.z, 1) * 0.2;
-    this.rig.frame(center.clone(), Math.max(0.5, 0.4 * flatSize(box)));
+    // What is flat and seen from aslant is half as high as it is wide.
+    const aspect = this.width_px / this.height_px;
+    this.rig.frame(center.clone(), Math.max(0.5, (aspect < 1 ? 0.46 : Math.max(0.3, 0.48 / aspect)) * flatSize(box)));
     this.invalidate();
   }
 
