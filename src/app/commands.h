@@ -44,6 +44,7 @@ struct RunOptions {
   std::string record_file;         ///< "": as the scenario says
   std::vector<std::string> record_topics;
   std::string record_compression;
+  std::optional<int> port;  ///< a viewer may connect there
 };
 int run(const RunOptions& options);
 

@@ -17,7 +17,7 @@ namespace sandlot::server {
 
 std::span<const PageFile> page_files() {
 #define SANDLOT_PAGE_FILE(number, path, type, hash, file) \
-  PageFile{path, type, {sandlot_page_##number, sandlot_page_end_##number}, "\"" hash "\""},
+  PageFile{path, type, {sandlot_page_##number, sandlot_page_end_##number}, hash},
   static const PageFile files[] = {
 #include "server/page_list.h"
   };

@@ -56,7 +56,7 @@ class Server {
 struct PageFile {
   std::string_view path, type;
   std::span<const std::byte> bytes;
-  std::string_view etag;  ///< with its quotes: another one for other bytes
+  std::string_view etag;  ///< without quotes: another one for other bytes
 };
 std::span<const PageFile> page_files();
 /// False: it was built without node or its packages, and "/" says how to get them.

@@ -1,0 +1,589 @@
+// The 3D view: what stands in the world, where it is, and hands to take hold of it.
+//
+// Frame    the world's: z up, metres. Positions in the view are CSS pixels from its upper left corner.
+// Time     draws at most once per animation frame, and only when something has changed.
+// Errors   damaged messages, unknown shapes and missing assets are passed over or drawn as checkered boxes, with one
+//          warning on the console; without WebGL the host shows a sentence instead.
+import * as THREE from 'three';
+import { decodeContacts, decodePoses, emptyContacts, emptyPosesHeader, readPosesHeader, type World } from '../protocol';
+import { Assets } from './assets';
+import { Backdrop, type Theme } from './backdrop';
+import { Bodies, type Body } from './bodies';
+import { CameraRig, type CameraMode, type Subject } from './camera';
+import { Hands, type Drag, type Grip, type Tool } from './hands';
+import { Meter, type SceneStats } from './meter';
+import { Outline } from './outline';
+import { Labels } from './overlays/labels';
+import { Marks, teamColors, type RangeReading } from './overlays/marks';
+import { PullLine } from './overlays/pull';
+import { Scans, type Scan } from './overlays/scans';
+import { Trails } from './overlays/trails';
+import { invert, transform, yawOf } from './poses';
+import { pickSlots } from './picking';
+
+export type { CameraMode, Drag, RangeReading, Scan, SceneStats, Theme, Tool };
+
+export interface Picked {
+  /** Name of the instance; null: the ground. */
+  address: string | null;
+  link: string;
+  point: [number, number, number];
+}
+
+export const OVERLAYS = ['trails', 'names', 'frames', 'velocity', 'contacts', 'scans', 'ranges', 'frusta', 'grid', 'shadows', 'collisions', 'teams'] as const;
+export type Overlay = (typeof OVERLAYS)[number];
+
+const MOST_PIXELS_PER_CSS_PIXEL = 2;
+
+export class SceneView {
+  onSelect: (address: string | null) => void = () => {};
+  onDrag: (drag: Drag) => void = () => {};
+
+  private readonly host: HTMLElement;
+  private readonly message: HTMLElement;
+  private readonly renderer: THREE.WebGLRenderer | null;
+  private readonly scene = new THREE.Scene();
+  private readonly root = new THREE.Group();
+  private readonly assets: Assets;
+  private readonly bodies: Bodies;
+  private readonly backdrop: Backdrop;
+  private readonly rig = new CameraRig();
+  private readonly outline = new Outline();
+  private readonly labels: Labels;
+  private readonly marks: Marks;
+  private readonly scans: Scans;
+  private readonly trails: Trails;
+  private readonly pull_line: PullLine;
+  private readonly hands: Hands | null;
+  private readonly meter = new Meter();
+  private readonly overlays: Record<Overlay, boolean> = {
+    trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, grid: true, shadows: true, collisions: false, teams: true,
+  };
+  private readonly header = emptyPosesHeader();
+  private readonly contacts = emptyContacts();
+  private readonly raycaster = new THREE.Raycaster();
+  private readonly pointer = new THREE.Vector2();
+  private readonly subject: Subject = {
+    position: new THREE.Vector3(), yaw_rad: 0, radius_m: 0.3, eye: new THREE.Vector3(), forward: new THREE.Vector3(), up: new THREE.Vector3(),
+  };
+  private readonly device_pose = new Float64Array(7);
+  private readonly point = [0, 0, 0];
+  private readonly middle = new Float64Array(3);
+  private readonly observer: ResizeObserver;
+  private world: World | null = null;
+  private epoch = -1;
+  private selected: Body | null = null;
+  private selected_address: string | null = null;
+  private hovered: Body | null = null;
+  private follow_name: string | null = null;
+  private scheduled = 0;
+  private last_frame_ms = 0;
+  private dirty = true;
+  private lost = false;
+  private disposed = false;
+  private width_px = 1;
+  private height_px = 1;
+  private draw_calls = 0;
+  private triangles = 0;
+
+  constructor(host: HTMLElement, options: { assetBase: string }) {
+    this.host = host;
+    if (getComputedStyle(host).position === 'static') host.style.position = 'relative';
+    this.message = document.createElement('div');
+    this.message.style.cssText = 'position:absolute;inset:0;display:none;align-items:center;justify-content:center;padding:2rem;text-align:center;font:15px/1.5 system-ui,sans-serif;color:#8a94a3;';
+    this.message.setAttribute('role', 'status');
+    this.renderer = makeRenderer();
+    this.assets = new Assets(options.assetBase, () => this.invalidate());
+    this.bodies = new Bodies(this.root, this.assets, () => this.onAssetsJoined());
+    this.backdrop = new Backdrop(this.scene);
+    this.scene.add(this.root);
+    this.labels = new Labels(this.scene);
+    this.marks = new Marks(this.scene);
+    this.scans = new Scans(this.scene);
+    this.trails = new Trails(this.scene);
+    this.pull_line = new PullLine(this.scene);
+    this.labels.visible = this.overlays.names;
+    this.setTheme('light');
+    this.observer = new ResizeObserver(() => this.resize());
+    if (this.renderer === null) {
+      this.hands = null;
+      this.say('This browser gives no WebGL, so there is no 3D view. Everything else on this page works.');
+    } else {
+      const canvas = this.renderer.domElement;
+      canvas.style.cssText = 'position:absolute;inset:0;width:100%;height:100%;display:block;touch-action:none;outline:none;';
+      canvas.tabIndex = 0;
+      canvas.setAttribute('aria-label', '3D view of the world');
+      canvas.dataset.testid = 'scene';
+      host.append(canvas);
+      canvas.addEventListener('webglcontextlost', (event) => {
+        event.preventDefault();
+        this.lost = true;
+        this.say('The graphics driver has let go of the 3D view. It comes back by itself.');
+      });
+      canvas.addEventListener('webglcontextrestored', () => {
+        this.lost = false;
+        this.say('');
+        this.renderer!.shadowMap.needsUpdate = true;
+        this.invalidate();
+      });
+      this.hands = new Hands(canvas, this.handsHost());
+    }
+    host.append(this.message);
+    this.observer.observe(host);
+    this.resize();
+  }
+
+  get cameraMode(): CameraMode {
+    return this.rig.mode;
+  }
+
+  get tool(): Tool {
+    return this.hands?.tool ?? 'orbit';
+  }
+
+  setTool(tool: Tool): void {
+    if (this.hands) this.hands.tool = tool;
+  }
+
+  setWorld(world: World): void {
+    const fresh = world.epoch !== this.epoch;
+    const is_first = this.world === null || this.world.name !== world.name;
+    this.world = world;
+    this.epoch = world.epoch;
+    const selected_id = this.selected?.instance.id;
+    this.bodies.setWorld(world);
+    this.backdrop.setWorld(world, this.bodies, this.assets);
+    this.backdrop.setShadows(this.overlays.shadows);
+    const teams = teamColors(world.instances.map((i) => i.team));
+    this.marks.setTeams(teams);
+    const robots = this.bodies.list.filter((b) => b.instance.robot);
+    this.trails.setBodies(robots, (body, i) => teams.get(body.instance.team) ?? new THREE.Color().setHSL((0.58 + i * 0.381966) % 1, 0.7, 0.5), fresh);
+    if (fresh) {
+      this.scans.clear();
+      this.marks.clear();
+    }
+    this.scans.keepOnly((path) => this.bodies.devices.has(path));
+    // What was selected may be another object now, or gone.
+    this.hovered = null;
+    this.selected = this.bodyOf(this.selected_address);
+    if (selected_id !== undefined && this.selected === null) {
+      this.selected_address = null;
+      this.onSelect(null);
+    }
+    if (is_first) {
+      this.frameAll();
+      this.rig.settle();
+    }
+    this.touchShadows();
+  }
+
+  applyPoses(bytes: ArrayBuffer | Uint8Array): void {
+    const begin_ms = performance.now();
+    const view = bytes instanceof ArrayBuffer ? new DataView(bytes) : new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    if (this.world === null || !readPosesHeader(view, this.header)) return;
+    if (this.header.epoch !== (this.world.epoch & 0xffff)) return;
+    // A record of a body that is not told yet ends the message; what came before it counts.
+    decodePoses(bytes, this.header, this.slot_of, this.on_moved);
+    this.trails.advance(this.header.time_s);
+    this.dirty = true;
+    this.touchShadows();
+    this.meter.addScript(performance.now() - begin_ms);
+  }
+
+  select(address: string | null): void {
+    this.selected_address = address;
+    this.selected = this.bodyOf(address);
+    this.invalidate();
+  }
+
+  setCamera(mode: CameraMode, target?: string): void {
+    if (target !== undefined) this.follow_name = target.split('/')[0];
+    else if (this.selected && !this.selected.is_static) this.follow_name = this.selected.instance.name;
+    this.rig.setMode(mode, this.subjectNow());
+    this.invalidate();
+  }
+
+  frameAll(): void {
+    const all = new THREE.Box3();
+    const moving = new THREE.Box3();
+    const at = new THREE.Vector3();
+    for (const body of this.bodies.list) {
+      // Terrain and halls count, a landscape of kilometres does not; nor does a plane, which has no parts.
+      if (body.slots.length === 0 || body.radius_m > 60) continue;
+      body.middle(this.middle);
+      const r = 0.7 * body.radius_m;
+      for (const side of [-r, r]) {
+        all.expandByPoint(at.fromArray(this.middle).addScalar(side));
+        if (!body.is_static) moving.expandByPoint(at);
+      }
+    }
+    // A room around what moves belongs into the picture, a town does not.
+    const room_m = flatSize(all);
+    const box = !moving.isEmpty() && room_m > 2 * Math.max(3, flatSize(moving)) ? moving : all;
+    if (box.isEmpty()) box.set(new THREE.Vector3(-2, -2, 0), new THREE.Vector3(2, 2, 0.5));
+    const size = box.getSize(new THREE.Vector3());
+    const center = box.getCenter(at);
+    center.z = Math.max(box.min.z, 0) + Math.min(size.z, 1) * 0.2;
+    this.rig.frame(center.clone(), Math.max(0.5, 0.4 * flatSize(box)));
+    this.invalidate();
+  }
+
+  frame(address: string): void {
+    const body = this.bodyOf(address);
+    if (body === null) return;
+    body.middle(this.middle);
+    this.rig.frame(new THREE.Vector3().fromArray(this.middle), Math.max(0.15, 1.6 * Math.min(body.radius_m, 60)));
+    this.invalidate();
+  }
+
+  setOverlays(wanted: Partial<Record<string, boolean>>): void {
+    for (const name of OVERLAYS) {
+      const show = wanted[name];
+      if (show === undefined || show === this.overlays[name]) continue;
+      this.overlays[name] = show;
+      this.marks.show(name, show);
+      if (name === 'names') this.labels.visible = show;
+      if (name === 'trails') this.trails.visible = show;
+      if (name === 'scans') this.scans.visible = show;
+      if (name === 'grid') this.backdrop.setGrid(show);
+      if (name === 'shadows') this.backdrop.setShadows(show);
+      if (name === 'collisions') this.bodies.setCollisions(show);
+      if (name === 'contacts' && show) this.marks.setContacts(this.contacts);
+    }
+    this.touchShadows();
+  }
+
+  setScan(path: string, scan: Scan | null): void {
+    const found = this.bodies.devices.get(path);
+    if (found === undefined) return;
+    const begin_ms = performance.now();
+    found.body.devicePose(found.device, this.device_pose);
+    this.scans.set(path, scan, this.device_pose);
+    this.meter.addScript(performance.now() - begin_ms);
+    this.invalidate();
+  }
+
+  setRange(path: string, range: RangeReading | null): void {
+    this.marks.setRange(path, range);
+    this.invalidate();
+  }
+
+  setContacts(bytes: ArrayBuffer | Uint8Array): void {
+    if (!decodeContacts(bytes, this.contacts)) return;
+    this.marks.setContacts(this.contacts);
+    if (this.overlays.contacts) this.invalidate();
+  }
+
+  setTheme(theme: Theme): void {
+    this.backdrop.setTheme(theme);
+    this.labels.setTheme(theme);
+    this.outline.setColors(theme === 'light' ? '#0a6cff' : '#5aa9ff', theme === 'light' ? '#ffffff' : '#dbe6f5');
+    this.invalidate();
+  }
+
+  /** What is at a place of the view, the ground included; null: the sky. */
+  pick(x: number, y: number): Picked | null {
+    const ray = this.ray(x, y);
+    const hit = pickSlots(ray, this.bodies.batches.all);
+    const ground = this.groundPoint(ray);
+    if (hit && (ground === null || hit.distance_m <= ground.distanceTo(ray.origin) + 1e-3)) {
+      const body = hit.slot.owner as Body;
+      return { address: body.instance.name, link: body.kin.model.links[hit.slot.link]?.name ?? '', point: hit.point.toArray() };
+    }
+    return ground ? { address: null, link: '', point: ground.toArray() } : null;
+  }
+
+  captureStream(fps: number): MediaStream {
+    if (this.renderer === null) throw new Error('there is no 3D view to record');
+    this.invalidate();
+    return this.renderer.domElement.captureStream(fps);
+  }
+
+  screenshot(): Promise<Blob> {
+    return new Promise((resolve, reject) => {
+      if (this.renderer === null) {
+        reject(new Error('there is no 3D view to take a picture of'));
+        return;
+      }
+      // The drawing buffer is gone after this task: draw, then read.
+      this.draw(performance.now());
+      this.renderer.domElement.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be made'))), 'image/png');
+    });
+  }
+
+  stats(): SceneStats {
+    let instances = 0;
+    for (const batch of this.bodies.batches.all) instances += batch.slots.length;
+    return { ...this.meter.read(performance.now()), draw_calls: this.draw_calls, triangles: this.triangles, instances };
+  }
+
+  /** Latest known pose of an instance's first link; quaternion as w x y z. */
+  pose(name: string): { position: [number, number, number]; quaternion: [number, number, number, number] } | null {
+    const w = this.bodies.by_name.get(name)?.world;
+    return w ? { position: [w[0], w[1], w[2]], quaternion: [w[3], w[4], w[5], w[6]] } : null;
+  }
+
+  /** Shows an instance elsewhere until the next message tells its pose: what a drag asks for, before it is answered. */
+  override(name: string, position: readonly number[], yaw_rad?: number): void {
+    const body = this.bodies.by_name.get(name);
+    if (body === undefined || !position.every(Number.isFinite)) return;
+    const pose = [position[0], position[1], position[2], body.world[3], body.world[4], body.world[5], body.world[6]];
+    if (yaw_rad !== undefined && Number.isFinite(yaw_rad)) {
+      const turn = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), yaw_rad - yawOf(body.world, 0));
+      const q = turn.multiply(new THREE.Quaternion(body.world[4], body.world[5], body.world[6], body.world[3]));
+      pose.splice(3, 4, q.w, q.x, q.y, q.z);
+    }
+    body.override(pose, this.bodies.scratch);
+    this.bodies.noteMoved(body);
+    this.touchShadows();
+  }
+
+  dispose(): void {
+    this.disposed = true;
+    cancelAnimationFrame(this.scheduled);
+    this.observer.disconnect();
+    this.hands?.dispose();
+    for (const part of [this.bodies, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
+    this.renderer?.dispose();
+    this.renderer?.domElement.remove();
+    this.message.remove();
+  }
+
+  private readonly slot_of = (id: number): Body | undefined => this.bodies.by_id.get(id);
+
+  private readonly on_moved = (_id: number, slot: unknown): void => {
+    const body = slot as Body;
+    if (body.take(this.header.time_s, this.bodies.scratch)) this.bodies.noteMoved(body);
+  };
+
+  private bodyOf(address: string | null): Body | null {
+    if (address === null) return null;
+    return this.bodies.by_name.get(address) ?? this.bodies.devices.get(address)?.body ?? this.bodies.by_name.get(address.split('/')[0]) ?? null;
+  }
+
+  private onAssetsJoined(): void {
+    this.touchShadows();
+  }
+
+  private say(text: string): void {
+    this.message.textContent = text;
+    this.message.style.display = text === '' ? 'none' : 'flex';
+  }
+
+  private touchShadows(): void {
+    if (this.renderer) this.renderer.shadowMap.needsUpdate = true;
+    this.invalidate();
+  }
+
+  private invalidate(): void {
+    this.dirty = true;
+    if (this.scheduled !== 0 || this.disposed || this.renderer === null) return;
+    this.scheduled = requestAnimationFrame(this.on_frame);
+  }
+
+  private readonly on_frame = (now_ms: number): void => {
+    this.scheduled = 0;
+    if (this.lost || this.disposed || !this.dirty) return;
+    this.draw(now_ms);
+  };
+
+  private draw(now_ms: number): void {
+    const renderer = this.renderer;
+    if (renderer === null) return;
+    const begin_ms = performance.now();
+    // After a rest the first step is a usual one, not the whole rest.
+    const dt_s = Math.min(0.1, Math.max(0.001, (now_ms - this.last_frame_ms) / 1000));
+    this.last_frame_ms = now_ms;
+    this.dirty = false;
+    if (this.bodies.update()) this.backdrop.placeLamps();
+    const changes = this.rig.update(dt_s, this.subjectNow(), this.is_hidden);
+    const camera = this.rig.camera;
+    camera.updateMatrixWorld();
+    camera.matrixWorldInverse.copy(camera.matrixWorld).invert();
+    if (this.backdrop.follow(camera, this.rig.focus, this.rig.reach_m, this.width_px < 700 ? 1024 : 2048)) renderer.shadowMap.needsUpdate = true;
+    this.marks.update(this.bodies, this.selected);
+    this.labels.update(this.labelled(), camera, this.width_px, this.height_px, this.selected);
+    this.drawPull();
+    const scripted_ms = performance.now();
+    renderer.info.reset();
+    renderer.render(this.scene, camera);
+    this.draw_calls = renderer.info.render.calls;
+    this.triangles = renderer.info.render.triangles;
+    this.outline.render(renderer, camera, this.selected, this.hands?.isDragging ? null : this.hovered, 1.6 * renderer.getPixelRatio());
+    const done_ms = performance.now();
+    this.meter.frame(done_ms, scripted_ms - begin_ms, done_ms - scripted_ms);
+    if (changes) this.invalidate();
+  }
+
+  private readonly labelled_list: Body[] = [];
+  private labelled(): Body[] {
+    const list = this.labelled_list;
+    list.length = 0;
+    if (!this.labels.visible) return list;
+    for (const body of this.bodies.list) if (body.instance.robot || body === this.selected) list.push(body);
+    return list;
+  }
+
+  private drawPull(): void {
+    const pull = this.hands?.pull ?? null;
+    const body = pull ? this.bodies.by_name.get(pull.name) : undefined;
+    if (!pull || !body) {
+      this.pull_line.hide();
+      return;
+    }
+    const link = Math.max(0, body.kin.model.links.findIndex((l) => l.name === pull.link));
+    transform(body.world, 7 * link, ...pull.in_link, this.point);
+    this.pull_line.show(this.point, pull.target, this.rig.reach_m);
+  }
+
+  /** The robot that cameras keep to: the one asked for, else the selected, else the first. */
+  private subjectNow(): Subject | null {
+    let body = this.follow_name === null ? undefined : this.bodies.by_name.get(this.follow_name);
+    body ??= this.selected && !this.selected.is_static ? this.selected : this.bodies.list.find((b) => b.instance.robot);
+    if (body === undefined) return null;
+    const s = this.subject;
+    body.middle(this.middle);
+    s.position.fromArray(this.middle);
+    s.yaw_rad = yawOf(body.world, 0);
+    s.radius_m = body.radius_m;
+    if (this.rig.mode === 'robot') {
+      const camera = body.instance.devices.find((d) => d.kind.startsWith('camera'));
+      let pose: Float64Array = body.world;
+      if (camera) body.devicePose(camera, (pose = this.device_pose));
+      // Without a camera: from the front of the base, two thirds up.
+      const b = body.bounds;
+      if (camera) transform(pose, 0, 0.01, 0, 0, this.point);
+      else transform(pose, 0, b.max.x + 0.02, (b.min.y + b.max.y) / 2, b.min.z + 0.7 * (b.max.z - b.min.z), this.point);
+      s.eye.fromArray(this.point);
+      TURN.set(pose[4], pose[5], pose[6], pose[3]);
+      s.forward.set(1, 0, 0).applyQuaternion(TURN);
+      s.up.set(0, 0, 1).applyQuaternion(TURN);
+    }
+    return s;
+  }
+
+  private readonly is_hidden = (from: THREE.Vector3, to: THREE.Vector3): boolean => {
+    const ray = new THREE.Ray(from, to.clone().sub(from).normalize());
+    const hit = pickSlots(ray, this.bodies.batches.all);
+    return hit !== null && hit.distance_m < from.distanceTo(to) - 1.5 * this.subject.radius_m;
+  };
+
+  private ray(x: number, y: number): THREE.Ray {
+    this.pointer.set((x / this.width_px) * 2 - 1, 1 - (y / this.height_px) * 2);
+    this.raycaster.setFromCamera(this.pointer, this.rig.camera);
+    return this.raycaster.ray;
+  }
+
+  private groundPoint(ray: THREE.Ray): THREE.Vector3 | null {
+    const point = ray.intersectPlane(GROUND, new THREE.Vector3());
+    return point && point.distanceTo(ray.origin) < 2000 ? point : null;
+  }
+
+  private gripAt(x: number, y: number): Grip | null {
+    const hit = pickSlots(this.ray(x, y), this.bodies.batches.all);
+    if (hit === null) return null;
+    const body = hit.slot.owner as Body;
+    if (body.is_static) return null;
+    const inverse = new Float64Array(7);
+    invert(body.world, 7 * hit.slot.link, inverse, 0);
+    transform(inverse, 0, hit.point.x, hit.point.y, hit.point.z, this.point);
+    return {
+      name: body.instance.name,
+      link: body.kin.model.links[hit.slot.link]?.name ?? '',
+      at: hit.point,
+      in_link: [this.point[0], this.point[1], this.point[2]],
+      base: new THREE.Vector3(body.world[0], body.world[1], body.world[2]),
+      yaw_rad: yawOf(body.world, 0),
+    };
+  }
+
+  private handsHost(): ConstructorParameters<typeof Hands>[1] {
+    const canvas = this.renderer!.domElement;
+    return {
+      ray: (x, y) => this.ray(x, y),
+      grip: (x, y) => this.gripAt(x, y),
+      isSelected: (name) => this.selected?.instance.name === name,
+      selectAt: (x, y) => {
+        const address = this.pick(x, y)?.address ?? null;
+        this.select(address);
+        this.onSelect(address);
+      },
+      frameAt: (x, y) => {
+        const address = this.pick(x, y)?.address;
+        if (address) this.frame(address);
+      },
+      hoverAt: (x, y) => {
+        const address = this.pick(x, y)?.address ?? null;
+        const body = this.bodyOf(address);
+        canvas.style.cursor = body === null ? 'default' : body.is_static || this.tool === 'orbit' ? 'pointer' : 'grab';
+        if (body === this.hovered) return;
+        this.hovered = body;
+        this.invalidate();
+      },
+      leave: () => {
+        this.hovered = null;
+        this.invalidate();
+      },
+      orbit: (dx, dy) => {
+        this.rig.orbit(dx, dy);
+        this.invalidate();
+      },
+      pan: (dx, dy) => {
+        this.rig.pan(dx, dy, this.height_px);
+        this.invalidate();
+      },
+      zoom: (factor, x, y) => {
+        this.rig.zoom(factor, this.rig.mode === 'follow' ? null : this.zoomPoint(x, y));
+        this.invalidate();
+      },
+      drag: (drag) => {
+        this.onDrag(drag);
+        this.invalidate();
+      },
+      viewDirection: () => this.rig.camera.getWorldDirection(new THREE.Vector3()),
+    };
+  }
+
+  /** What is under the cursor, or the middle of the view where that is far away. */
+  private zoomPoint(x: number, y: number): THREE.Vector3 | null {
+    const picked = this.pick(x, y);
+    if (picked === null) return null;
+    const point = new THREE.Vector3(...picked.point);
+    return point.distanceTo(this.rig.focus) < 4 * this.rig.reach_m ? point : null;
+  }
+
+  private resize(): void {
+    const width = Math.max(1, this.host.clientWidth);
+    const height = Math.max(1, this.host.clientHeight);
+    this.width_px = width;
+    this.height_px = height;
+    const ratio = Math.min(MOST_PIXELS_PER_CSS_PIXEL, window.devicePixelRatio || 1);
+    this.renderer?.setPixelRatio(ratio);
+    this.renderer?.setSize(width, height, false);
+    this.scans.setPointSize(4.5 * ratio);
+    this.rig.setAspect(width / height);
+    // Drawn at once: a canvas that has been resized is empty until then, which flickers.
+    if (this.renderer && !this.lost && this.world) this.draw(performance.now());
+    this.invalidate();
+  }
+}
+
+const flatSize = (box: THREE.Box3): number => (box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y));
+const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
+const TURN = new THREE.Quaternion();
+
+function makeRenderer(): THREE.WebGLRenderer | null {
+  try {
+    const renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+    renderer.shadowMap.enabled = true;
+    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    renderer.shadowMap.autoUpdate = false;
+    renderer.toneMapping = THREE.NeutralToneMapping;
+    renderer.outputColorSpace = THREE.SRGBColorSpace;
+    renderer.autoClear = true;
+    renderer.info.autoReset = false;
+    return renderer;
+  } catch {
+    return null;
+  }
+}
