@@ -134,7 +134,7 @@ void Session::step(std::uint64_t ticks) {
 Status Session::set_speed(std::optional<double> factor) {
   if (factor && !(*factor >= 0.001 && *factor <= 1000))
     return Error{"a speed of " + number_text(*factor) + " is out of range", "0.001 to 1000, or max"};
-  order([&] { pace_.factor = factor; });
+  order([&] { report_.speed = pace_.factor = factor; });
   return {};
 }
 
@@ -297,6 +297,7 @@ void Session::run_tasks() {
   {
     const std::lock_guard lock(mutex_);
     std::swap(tasks, tasks_);
+    woken_ = false;  // here and not behind the tasks: what comes while they run must wake the loop again
   }
   for (const auto& task : tasks) task(*this);
 }
@@ -449,7 +450,6 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
   while (true) {
     run_tasks();
     std::unique_lock lock(mutex_);
-    woken_ = false;
     if (quit_) break;
     if (obey(lock)) {
       pacer.forget();

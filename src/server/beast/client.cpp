@@ -54,8 +54,8 @@ struct WebSocketClient::Impl {
   ~Impl() {
     if (!thread.joinable()) return;
     net::post(io, [this] {
-      // A good-bye if there is room for it at once; nobody waits for the answer.
-      stream.async_close(ws::close_code::normal, [this](error_code) { io.stop(); });
+      // A good-bye, if the server takes and answers it soon.
+      stream.async_close(ws::close_code::normal, [this](error_code ec) { end(ec); });
     });
     {
       std::unique_lock lock(mutex);

@@ -257,7 +257,6 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       heard = Clock::now();
       if (!allowed()) flood = true;  // closed at the next beat: not from within Beast's reading
     });
-    // A moment in which the request and the stream are both needed; the request is ours until the answer is written.
     stream.async_accept(parser->get(), guarded([this](error_code ec) {
                           parser.reset();
                           if (ec) {
@@ -358,6 +357,9 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                               if (ec) return end();
                               impl.bytes_out += end_of_slice - written;
                               written = end_of_slice;
+                              // A write that had to wait shows that the peer takes what is sent; his pong may be stuck behind it.
+                              if (Clock::now() - progress > std::chrono::milliseconds(100))
+                                heard = Clock::now();
                               progress = Clock::now();
                               if (!last) return write_slice();
                               writing = false;
@@ -411,8 +413,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void on_beat(Clock::time_point now) override {
     if (stage != Stage::open) {
       if (now < deadline) return;
-      if (stage != Stage::head) return end();
-      if (late) return end();
+      if (stage == Stage::upgrade) ++impl.refused;
+      if (stage != Stage::head || late) return end();
       late = true;  // the read that is under way ends with an error and answers
       deadline = now + seconds(1);
       error_code ignored;
@@ -422,7 +424,6 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     if (flood) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
     const double silent_s = std::chrono::duration<double>(now - heard).count();
     if (writing) {
-      // Whoever takes what is written is alive, although his pong may be stuck behind it.
       if (now - progress > seconds(impl.options.stall_s)) {
         ++impl.refused;
         log::debug("a viewer that reads nothing is closed");

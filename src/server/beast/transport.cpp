@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
+#include <new>
 #include <string>
 
 #include "base/log.h"
@@ -230,29 +231,28 @@ std::string Transport::url() const {
 
 bool Transport::send(ClientId client, std::span<const std::byte> head, Payload payload, bool text,
                      bool droppable) {
-  Message message{.head = std::string(reinterpret_cast<const char*>(head.data()), head.size()),
-                  .payload = std::move(payload),
-                  .text = text};
-  const std::size_t weight = message.weight();
   const std::lock_guard lock(impl_->mutex);
   const auto found = impl_->queues.find(client);
   if (found == impl_->queues.end()) return false;
   Queue& queue = *found->second;
   const std::size_t most = impl_->options.queue_bytes;
-  const bool fits = queue.bytes == 0 ||
-                    (queue.bytes + weight <= most && (!droppable || queue.bytes <= most / 2));
-  if (!fits || queue.full) {
-    ++impl_->dropped;
-    if (!droppable) {
-      queue.full = true;
-      impl_->schedule(client, queue);
+  bool sent = false;
+  try {
+    Message message{.head = std::string(reinterpret_cast<const char*>(head.data()), head.size()),
+                    .payload = std::move(payload),
+                    .text = text};
+    const std::size_t weight = message.weight();
+    sent = !queue.full &&
+           (queue.bytes == 0 || (queue.bytes + weight <= most && (!droppable || queue.bytes <= most / 2)));
+    if (sent) {
+      queue.messages.push_back(std::move(message));
+      queue.bytes += weight;
     }
-    return false;
-  }
-  queue.messages.push_back(std::move(message));
-  queue.bytes += weight;
-  impl_->schedule(client, queue);
-  return true;
+  } catch (const std::bad_alloc&) { sent = false; }
+  if (!sent) ++impl_->dropped;
+  if (!sent && !droppable) queue.full = true;
+  if (sent || queue.full) impl_->schedule(client, queue);
+  return sent;
 }
 
 bool Transport::send_text(ClientId client, std::string text) {

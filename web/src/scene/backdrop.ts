@@ -23,7 +23,7 @@ interface Tones {
 
 const TONES: Record<Theme, Tones> = {
   light: { zenith: '#8fb4dc', horizon: '#e9eef3', ground: '#d3d6da', hemi_sky: '#eef4fb', hemi_ground: '#b9b7b2', hemi: 1.55, sun: 2.7, grid: '#3c4654', grid_strength: 0.2, ground_tint: 0.12 },
-  dark: { zenith: '#0c1118', horizon: '#28303c', ground: '#222831', hemi_sky: '#b9c8dd', hemi_ground: '#3a3d45', hemi: 0.8, sun: 1.75, grid: '#b8cbe6', grid_strength: 0.13, ground_tint: 0.82 },
+  dark: { zenith: '#0c1118', horizon: '#28303c', ground: '#222831', hemi_sky: '#c6d2e4', hemi_ground: '#5a5d66', hemi: 1.35, sun: 1.7, grid: '#b8cbe6', grid_strength: 0.13, ground_tint: 0.82 },
 };
 
 /** Half the width of what stands for an endless plane; the fog has swallowed all of it before. */

@@ -204,22 +204,27 @@ export class SceneView {
   }
 
   frameAll(): void {
-    const box = new THREE.Box3();
+    const all = new THREE.Box3();
+    const moving = new THREE.Box3();
     const at = new THREE.Vector3();
     for (const body of this.bodies.list) {
       // Terrain and halls count, a landscape of kilometres does not; nor does a plane, which has no parts.
       if (body.slots.length === 0 || body.radius_m > 60) continue;
       body.middle(this.middle);
-      at.fromArray(this.middle);
-      const r = body.radius_m;
-      box.expandByPoint(at.clone().addScalar(r * 0.7));
-      box.expandByPoint(at.addScalar(-r * 0.7));
+      const r = 0.7 * body.radius_m;
+      for (const side of [-r, r]) {
+        all.expandByPoint(at.fromArray(this.middle).addScalar(side));
+        if (!body.is_static) moving.expandByPoint(at);
+      }
     }
+    // A room around what moves belongs into the picture, a town does not.
+    const room_m = flatSize(all);
+    const box = !moving.isEmpty() && room_m > 2 * Math.max(3, flatSize(moving)) ? moving : all;
     if (box.isEmpty()) box.set(new THREE.Vector3(-2, -2, 0), new THREE.Vector3(2, 2, 0.5));
     const size = box.getSize(new THREE.Vector3());
     const center = box.getCenter(at);
     center.z = Math.max(box.min.z, 0) + Math.min(size.z, 1) * 0.2;
-    this.rig.frame(center.clone(), Math.max(0.5, 0.42 * Math.hypot(size.x, size.y)));
+    this.rig.frame(center.clone(), Math.max(0.5, 0.4 * flatSize(box)));
     this.invalidate();
   }
 
@@ -387,7 +392,7 @@ export class SceneView {
     if (renderer === null) return;
     const begin_ms = performance.now();
     // After a rest the first step is a usual one, not the whole rest.
-    const dt_s = Math.min(0.05, Math.max(0.001, (now_ms - this.last_frame_ms) / 1000));
+    const dt_s = Math.min(0.1, Math.max(0.001, (now_ms - this.last_frame_ms) / 1000));
     this.last_frame_ms = now_ms;
     this.dirty = false;
     if (this.bodies.update()) this.backdrop.placeLamps();
@@ -563,6 +568,7 @@ export class SceneView {
   }
 }
 
+const flatSize = (box: THREE.Box3): number => (box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y));
 const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
 const TURN = new THREE.Quaternion();
 
