@@ -1,0 +1,320 @@
+// Puts the page together: connection, store, scene, panels, keys.
+import {Client} from '../net/client';
+import {socketAddress, targetOf} from '../net/address';
+import {MatrixPanel} from '../plots/matrix';
+import {PlotsPanel} from '../plots/plots_panel';
+import type {Status, World} from '../protocol';
+import {SceneView} from '../scene/scene';
+import {freeName, openAdd} from '../ui/add_dialog';
+import {Bar, speeds} from '../ui/bar';
+import {CommandsPanel} from '../ui/commands';
+import {ConsolePanel} from '../ui/console';
+import {h} from '../ui/dom';
+import {Frame} from '../ui/frame';
+import {GraphPanel} from '../ui/graph';
+import {openHelp} from '../ui/help';
+import {Inspector} from '../ui/inspector';
+import {LogPanel} from '../ui/log';
+import {Toasts} from '../ui/overlays';
+import {openPalette} from '../ui/palette';
+import {saveBlob} from '../ui/save';
+import {CameraMode, cameras, overlays, SceneTools, Tool} from '../ui/scene_tools';
+import {Teleop} from '../ui/teleop';
+import {TopicsPanel} from '../ui/topics';
+import {Tree} from '../ui/tree';
+import {Video} from '../ui/video';
+import {Actions, keyOf} from './actions';
+import type {Context} from './context';
+import {dragLine} from './drags';
+import {word} from './format';
+import {Parameters} from './parameters';
+import {SensorOverlays} from './sensors';
+import {remember, remembered} from './settings';
+import {plain, Steer} from './steer';
+import {Store} from './store';
+import {actionTable, Doers} from './tables';
+
+export class App {
+  readonly store = new Store();
+  readonly client: Client;
+  readonly scene: SceneView;
+  readonly plots: PlotsPanel;
+  private readonly steer: Steer;
+  private readonly actions: Actions;
+  private readonly toasts = new Toasts();
+  private readonly frame: Frame;
+  private readonly bar: Bar;
+  private readonly tools: SceneTools;
+  private readonly teleop: Teleop;
+  private readonly tree: Tree;
+  private readonly console: ConsolePanel;
+  private readonly context: Context;
+  private readonly video: Video;
+
+  constructor(root: HTMLElement) {
+    this.setTheme(this.preferredTheme());
+    const {target, cleanHref} = targetOf(location, sessionStorage);
+    if (cleanHref !== location.href) history.replaceState(null, '', cleanHref);
+    this.client = new Client({address: () => socketAddress(target)});
+    this.steer = new Steer(this.client, this.store);
+    this.actions = new Actions(() => this.store.whyNotSteer(), (text) => this.toasts.show(text, 'warning'));
+    this.actions.add(...actionTable(this.doers()));
+
+    const sceneElement = h('div', {class: 'scene-canvas', testid: 'scene'});
+    // The scene looks at its host's size: it must be in the page, with the frame's style, before it is made.
+    const stage = h('div', {class: 'frame'}, h('main', {class: 'scene-host'}, sceneElement));
+    root.append(stage);
+    this.scene = new SceneView(sceneElement, {assetBase: '/assets'});
+    this.context = {
+      client: this.client, store: this.store, steer: this.steer, parameters: new Parameters(this.client), actions: this.actions, scene: this.scene,
+      toast: (text, kind, button) => this.toasts.show(text, kind, button), openPane: (id) => this.frame.open(id),
+      plot: (address, unit) => {
+        this.frame.open('plots');
+        this.plots.addValue(address, unit);
+      },
+      showMatrix: (topic) => {
+        this.frame.open('matrix');
+        matrix.choose(topic);
+      },
+    };
+    this.bar = new Bar(this.context);
+    this.frame = new Frame(this.bar.element);
+    this.frame.sceneHost.append(sceneElement);
+    stage.remove();
+    root.append(this.frame.element, this.toasts.element);
+
+    this.teleop = new Teleop(this.context);
+    this.video = new Video(this.context);
+    this.tree = new Tree(this.context);
+    const inspector = new Inspector(this.context, this.teleop);
+    this.frame.left.append(this.tree.element);
+    this.frame.right.append(inspector.element);
+    this.plots = new PlotsPanel(this.context);
+    this.console = new ConsolePanel(this.context);
+    const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
+    const matrix = new MatrixPanel(this.context);
+    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['console', 'Console', this.console], ['log', 'Log', log], ['topics', 'Topics', new TopicsPanel(this.context)],
+      ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
+      this.frame.addPane({id, title, panel});
+    }
+    this.frame.addPhoneTab('tree', 'World', 'list');
+    this.frame.addPhoneTab('inspect', 'Inspect', 'sliders');
+    this.frame.addPhoneTab('dock', 'Plots', 'plot', 'plots');
+    this.frame.addPhoneTab('dock', 'Console', 'terminal', 'console');
+    this.frame.addPhoneTab('dock', 'Log', 'help', 'log');
+    this.frame.onShown = () => {
+      this.tree.setVisible(this.frame.shows('left'));
+      inspector.setVisible(this.frame.shows('right'));
+    };
+    this.frame.onShown();
+
+    this.tools = new SceneTools(this.context, this.teleop, this.video, this.frame.sceneHost);
+    this.frame.sceneHost.append(...this.tools.elements);
+    const sensors = new SensorOverlays(this.client, this.store, this.scene);
+    this.tools.onOverlays = () => {
+      sensors.show(this.tools.on.scans ?? false, this.tools.on.ranges ?? false);
+      this.listenContacts(this.tools.on.contacts ?? false);
+    };
+    this.tools.onOverlays();
+
+    this.wire();
+    this.scene.setTheme(this.theme());
+    this.keys();
+    this.client.connect();
+  }
+
+  private wire(): void {
+    const {client, store, scene} = this;
+    client.onInfo.on((info) => {
+      // A server that is not ours has no roles: who is connected may do what it offers.
+      store.setRole(info.metadata?.sandlot_role ?? 'admin');
+    });
+    client.onState.on((state) => {
+      if (state !== 'open') store.setRole('');
+    });
+    client.subscribe('/sandlot/world', (message) => store.setWorld(message.value() as World), {background: true});
+    client.subscribe('/sandlot/status', (message) => store.setStatus(message.value() as Status), {background: true});
+    client.subscribe('/sandlot/poses', (message) => scene.applyPoses(message.bytes));
+    document.addEventListener('visibilitychange', () => client.setHidden(document.hidden && !this.video.active));
+    client.setHidden(document.hidden);
+    client.onStatus.on((status) => {
+      if (status.level > 0) this.toasts.show(status.message, status.level > 1 ? 'error' : 'warning');
+    });
+    let framed = false;
+    store.onWorld.on((world) => {
+      scene.setWorld(world);
+      if (framed) return;
+      framed = true;
+      scene.frameAll();
+    });
+    store.onSelection.on((address) => scene.select(address));
+    let state = '';
+    store.onStatus.on((status) => {
+      if (status.state === 'failed' && state !== 'failed' && status.reason) this.toasts.show(`The run failed: ${status.reason}`, 'error');
+      state = status.state;
+    });
+    this.steer.onError.on((text) => this.toasts.show(text, 'error'));
+    scene.onSelect = (address) => store.select(address);
+    scene.onDrag = (drag) => {
+      const reason = store.whyNotSteer();
+      if (reason !== null) {
+        if (drag.phase === 'start') this.toasts.show(reason, 'warning');
+        return;
+      }
+      const line = dragLine(drag);
+      if (line !== null) this.steer.drag(line);
+    };
+  }
+
+  private stopContacts: (() => void) | null = null;
+
+  private listenContacts(on: boolean): void {
+    if (on === (this.stopContacts !== null)) return;
+    this.stopContacts?.();
+    this.stopContacts = on ? this.client.subscribe('/sandlot/contacts', (message) => this.scene.setContacts(message.bytes)) : null;
+  }
+
+  // --- the theme
+
+  private preferredTheme(): 'light' | 'dark' {
+    const kept = remembered<string>('theme', '');
+    return kept === 'light' || kept === 'dark' ? kept : matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 'dark';
+  }
+
+  private theme(): 'light' | 'dark' {
+    return document.documentElement.dataset.theme === 'light' ? 'light' : 'dark';
+  }
+
+  private setTheme(theme: 'light' | 'dark'): void {
+    document.documentElement.dataset.theme = theme;
+  }
+
+  // --- keys
+
+  private keys(): void {
+    addEventListener('keydown', (event) => {
+      const key = keyOf(event);
+      if (key === null || event.defaultPrevented) return;
+      const target = event.target as HTMLElement;
+      const typing = target.matches('input:not([type=checkbox]):not([type=range]), select, textarea, [contenteditable]');
+      const modal = document.querySelector('dialog[open]') !== null;
+      if (modal || (typing && !key.startsWith('ctrl+')) || (typing && ['ctrl+d', 'ctrl+i', 'ctrl+b'].includes(key))) return;
+      if (this.teleop.key(key, true)) {
+        event.preventDefault();
+        return;
+      }
+      // Buttons and the tree have keys of their own.
+      if ((key === 'space' || key === 'enter') && target.matches('button, [role=tab], summary, input')) return;
+      if (event.repeat && key !== '.') return;
+      if (this.actions.press(key)) event.preventDefault();
+    });
+    addEventListener('keyup', (event) => {
+      const key = keyOf(event);
+      if (key !== null) this.teleop.key(key.replace(/^.*\+(?=.)/, ''), false);
+    });
+  }
+
+  private doers(): Doers {
+    const selected = (): string | null => this.store.selected()?.instance.name ?? null;
+    const need = (run: (name: string) => void) => (): void => {
+      const name = selected();
+      if (name === null) this.toasts.show('Select a robot or an object first');
+      else run(name);
+    };
+    const speed = (by: number) => (): void => {
+      const now = this.store.status?.speed ?? Number.POSITIVE_INFINITY;
+      const next = by > 0 ? speeds.find((s) => s > now) : [...speeds].reverse().find((s) => s < now);
+      void this.steer.say(`speed ${next ?? (by > 0 ? 'max' : speeds[0])}`);
+    };
+    const robot = (by: number) => (): void => {
+      const robots = (this.store.world?.instances ?? []).filter((i) => i.robot);
+      const at = robots.findIndex((r) => r.name === selected());
+      this.store.select(robots[(Math.max(at, by > 0 ? -1 : 0) + by + robots.length) % robots.length]?.name ?? null);
+    };
+    const camera = ([mode]: [CameraMode, string]): [string, () => void] => [`camera.${mode}`, () => {
+      const target = this.store.selection ?? this.store.world?.instances.find((i) => i.robot)?.name;
+      this.scene.setCamera(mode, target ?? undefined);
+      this.tools.show();
+    }];
+    const pane = (id: string): [string, () => void] => [`pane.${id}`, () => this.frame.open(id)];
+    const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
+    return {
+      ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
+      ...Object.fromEntries(['plots', 'log', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      'time.play': () => this.steer.togglePlay(),
+      'time.step': () => void this.steer.say('step'),
+      'time.reset': () => void this.steer.say('reset'),
+      'time.slower': speed(-1),
+      'time.faster': speed(1),
+      'time.max': () => void this.steer.say('speed max'),
+      'time.record': () => void this.steer.say(this.store.status?.recording ? 'record off' : `record ${(this.store.world?.name ?? 'run').replace(/[^\w-]+/g, '-')}.mcap`),
+      'scene.frame': () => (this.store.selection === null ? this.scene.frameAll() : this.scene.frame(this.store.selection)),
+      'robots.follow': need((name) => {
+        this.scene.setCamera('follow', name);
+        this.tools.show();
+      }),
+      'robots.drive': need((name) => (this.teleop.armed === name ? this.teleop.disarm() : this.teleop.arm(name))),
+      'robots.next': robot(1),
+      'robots.previous': robot(-1),
+      'scene.add': () => openAdd(this.context, (what, put) => this.tools.place(what, put)),
+      'scene.duplicate': need((name) => this.duplicate(name)),
+      'scene.remove': need((name) => void this.remove(name)),
+      'scene.screenshot': () => void this.scene.screenshot().then((blob) => saveBlob(blob, 'sandlot.png'), (error: unknown) => this.toasts.show(String(error), 'error')),
+      'scene.video': () => this.video.toggle(),
+      'panels.filter': () => {
+        if (!this.frame.shows('left')) this.frame.toggle('left');
+        this.tree.focusFilter();
+      },
+      'panels.console': () => {
+        this.frame.open('console');
+        this.console.focus();
+      },
+      'panels.left': () => this.frame.toggle('left'),
+      'panels.right': () => this.frame.toggle('right'),
+      'panels.dock': () => this.frame.toggle('dock'),
+      'page.palette': () => openPalette(this.context),
+      'page.theme': () => {
+        this.setTheme(this.theme() === 'dark' ? 'light' : 'dark');
+        remember('theme', this.theme());
+        this.scene.setTheme(this.theme());
+        this.bar.showTheme();
+        this.plots.themeChanged();
+      },
+      'page.help': () => openHelp(this.actions),
+      'page.escape': () => {
+        if (!this.tools.cancel()) this.store.select(null);
+      },
+    };
+  }
+
+  /** Where it stood is kept for the undo. A robot that comes back is a new one: its state is that of a start. */
+  private async remove(name: string): Promise<void> {
+    const {store, scene} = this;
+    const instance = store.instance(name);
+    const pose = scene.pose(name);
+    const index = store.world?.instances.indexOf(instance as never) ?? -1;
+    const answer = await this.steer.remove(name);
+    if (!answer.ok || !instance) return;
+    if (store.selection === name) store.select(null);
+    const model = store.world?.models.find((m) => m.id === instance.model)?.name ?? '';
+    this.toasts.show(`Removed ${name}`, 'info', pose && index >= 0 && model ? {label: 'Undo', run: () => void this.steer.say(this.addLine(model, name, pose))} : undefined);
+  }
+
+  private addLine(model: string, name: string, pose: {position: number[]; quaternion: number[]}, shift_m = 0): string {
+    const [w = 1, x = 0, y = 0, z = 0] = pose.quaternion;
+    const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+    const [px = 0, py = 0, pz = 0] = pose.position;
+    return ['add', word(model), word(name), ...[px + shift_m, py, pz, yaw].map((v) => plain(Math.round(v * 1e4) / 1e4))].join(' ');
+  }
+
+  private duplicate(name: string): void {
+    const instance = this.store.instance(name);
+    const pose = this.scene.pose(name);
+    const model = this.store.world?.models.find((m) => m.id === instance?.model);
+    if (!instance || !pose || !model) return;
+    const copy = freeName(`${name.replace(/\d+$/, '')}2`, (n) => this.store.instance(n) !== undefined);
+    void this.steer.say(this.addLine(model.name, copy, pose, 0.6)).then((answer) => {
+      if (answer.ok) setTimeout(() => this.store.select(copy), 250);
+    });
+  }
+}

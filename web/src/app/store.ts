@@ -1,0 +1,101 @@
+// What the page knows of the run. Panels listen here; none of them asks the connection for the world itself.
+import type {Device, Instance, Status, World} from '../protocol';
+import {Signal} from '../net/signal';
+
+export interface Selected {
+  address: string;
+  instance: Instance;
+  device: Device | null;
+}
+
+export class Store {
+  world: World | null = null;
+  status: Status | null = null;
+  role = '';
+  selection: string | null = null;
+  /** Simulated time of the newest message, by any of the channels that tell it. */
+  time_s = 0;
+  epoch = -1;
+
+  readonly onWorld = new Signal<World>();
+  readonly onStatus = new Signal<Status>();
+  readonly onSelection = new Signal<string | null>();
+  readonly onRole = new Signal<string>();
+  /** Time began anew (reset, jump, another file): what was kept by time is of another past. */
+  readonly onEpoch = new Signal<number>();
+
+  private readonly byName = new Map<string, Instance>();
+  private readonly devices = new Map<string, {instance: Instance; device: Device}>();
+  private readonly controllers = new Map<string, Instance>();
+
+  setWorld(world: World): void {
+    if (!Array.isArray(world.instances) || !Array.isArray(world.models)) throw new Error('a world without instances or models');
+    world.kinds ??= {};
+    this.world = world;
+    this.byName.clear();
+    this.devices.clear();
+    this.controllers.clear();
+    for (const instance of world.instances) {
+      this.byName.set(instance.name, instance);
+      for (const device of instance.devices ?? []) this.devices.set(device.path, {instance, device});
+      for (const controller of instance.controllers ?? []) this.controllers.set(controller.path, instance);
+    }
+    this.setEpoch(world.epoch);
+    this.onWorld.emit(world);
+    if (this.selection !== null && !this.find(this.selection)) this.select(null);
+  }
+
+  setStatus(status: Status): void {
+    status.history_s ??= [];
+    this.status = status;
+    this.time_s = status.time_s;
+    this.setEpoch(status.epoch);
+    this.onStatus.emit(status);
+  }
+
+  private setEpoch(epoch: number): void {
+    if (typeof epoch !== 'number' || epoch === this.epoch) return;
+    const first = this.epoch < 0;
+    this.epoch = epoch;
+    if (!first) this.onEpoch.emit(epoch);
+  }
+
+  setRole(role: string): void {
+    if (role === this.role) return;
+    this.role = role;
+    this.onRole.emit(role);
+  }
+
+  select(address: string | null): void {
+    if (address !== null && !this.find(address)) address = null;
+    if (address === this.selection) return;
+    this.selection = address;
+    this.onSelection.emit(address);
+  }
+
+  instance(name: string): Instance | undefined {
+    return this.byName.get(name);
+  }
+
+  /** "rover", "rover/laser" or "rover/controller". */
+  find(address: string): Selected | null {
+    const instance = this.byName.get(address);
+    if (instance) return {address, instance, device: null};
+    const device = this.devices.get(address);
+    if (device) return {address, instance: device.instance, device: device.device};
+    const owner = this.controllers.get(address);
+    return owner ? {address, instance: owner, device: null} : null;
+  }
+
+  selected(): Selected | null {
+    return this.selection === null ? null : this.find(this.selection);
+  }
+
+  /** Null when this page may steer, else why not, in words for a tooltip. */
+  whyNotSteer(): string | null {
+    if (this.role === '') return 'Not connected';
+    if (this.role !== 'admin') return 'You are watching: only an administrator can steer';
+    if (this.status && !this.status.may_steer) return this.status.why_not || 'This run cannot be steered';
+    return null;
+  }
+}

@@ -1,0 +1,201 @@
+// What is selected: its pose, its drive, its devices; or a device with its levels, readings and parameters.
+import type {Context, Panel} from '../app/context';
+import {word} from '../app/format';
+import type {Selected} from '../app/store';
+import type {Device, Field} from '../protocol';
+import {clear, h, setReason} from './dom';
+import {DriveSection} from './drive_section';
+import {FieldRow} from './field_row';
+import {FieldView, fieldViews} from './forms';
+import {icon} from './icons';
+import {heading, PoseSection} from './pose_section';
+import {Readings} from './readings';
+import {teamColor} from './teams';
+import type {Teleop} from './teleop';
+
+interface Part {
+  element: HTMLElement;
+  steering?(): void;
+  close?(): void;
+}
+
+export class Inspector implements Panel {
+  private readonly head = h('div', {class: 'inspector-head'});
+  private readonly body = h('div', {class: 'inspector-body'});
+  readonly element = h('div', {class: 'inspector', testid: 'inspector'}, this.head, this.body);
+  private parts: Part[] = [];
+  private shown = '';
+  private visible = true;
+
+  constructor(private readonly context: Context, private readonly teleop: Teleop) {
+    context.store.onSelection.on(() => this.show());
+    context.store.onWorld.on(() => this.show());
+    context.store.onRole.on(() => this.steering());
+    context.client.onState.on(() => this.show(true));
+    let may: boolean | null = null;
+    context.store.onStatus.on((status) => {
+      if (status.may_steer === may) return;
+      may = status.may_steer;
+      this.steering();
+    });
+    this.show();
+  }
+
+  setVisible(visible: boolean): void {
+    if (visible === this.visible) return;
+    this.visible = visible;
+    this.show(true);
+  }
+
+  private steering(): void {
+    for (const part of this.parts) part.steering?.();
+  }
+
+  private show(again = false): void {
+    const {store} = this.context;
+    const selected = this.visible ? store.selected() : null;
+    // A world that changed elsewhere leaves the form, with what somebody is typing in it, as it is.
+    const key = selected ? JSON.stringify([selected.address, store.epoch, selected.device ?? [selected.instance.id, selected.instance.team, selected.instance.controllers, selected.instance.devices]]) : '';
+    if (key === this.shown && !again) return;
+    this.shown = key;
+    for (const part of this.parts) part.close?.();
+    this.parts = [];
+    clear(this.head);
+    clear(this.body);
+    if (!selected) {
+      this.body.append(h('div', {class: 'empty tall'}, icon('cursor', 20), h('p', {}, 'Select a robot or an object, here or in the scene.')));
+      return;
+    }
+    this.header(selected);
+    const controller = selected.instance.controllers?.find((c) => c.path === selected.address);
+    if (selected.device) this.device(selected.device);
+    else if (controller) this.controller(controller.path, controller.kind);
+    else this.instance(selected);
+    for (const part of this.parts) this.body.append(part.element);
+  }
+
+  private header({address, instance, device}: Selected): void {
+    const {store, actions} = this.context;
+    const own = address === instance.name;
+    const chips = h('div', {class: 'chips'});
+    const chip = (text: string, color = ''): void => void chips.append(h('span', {class: 'chip', style: color ? {color} : {}}, text));
+    if (own) {
+      chip(instance.robot ? 'Robot' : store.world?.models.find((m) => m.id === instance.model)?.static ? 'Static' : 'Object');
+      if (instance.team) chip(instance.team, teamColor(instance.team, store.world));
+      if (instance.original && instance.original !== instance.name) chip(instance.original);
+    } else {
+      const kind = device?.kind ?? instance.controllers.find((c) => c.path === address)?.kind ?? '';
+      chip(kind.replace(/_/g, ' '));
+    }
+    const title = own ? h('h2', {class: 'ellipsis', title: instance.name}, instance.name) :
+      h('h2', {class: 'ellipsis', title: address}, h('button', {class: 'plain crumb', title: `Select ${instance.name}`, on: {click: () => store.select(instance.name)}}, instance.name), h('span', {class: 'faint'}, '/'), address.slice(instance.name.length + 1));
+    const buttons = h('div', {class: 'buttons'});
+    const button = (id: string, name: string, steers: boolean): HTMLButtonElement => {
+      const element = h('button', {class: 'plain icon-only', 'aria-label': actions.titleOf(id), title: actions.titleOf(id), on: {click: () => actions.run(id)}}, icon(name));
+      if (steers) this.parts.push({element: h('span'), steering: () => setReason(element, store.whyNotSteer(), actions.titleOf(id))});
+      buttons.append(element);
+      return element;
+    };
+    button('robots.follow', 'follow', false);
+    button('scene.frame', 'frame', false);
+    if (own) {
+      button('scene.duplicate', 'copy', true);
+      button('scene.remove', 'trash', true);
+    }
+    this.parts.forEach((part) => part.steering?.());
+    this.head.append(h('div', {class: 'title'}, title, buttons), chips);
+    const help = device ? store.world?.kinds[device.kind]?.help : undefined;
+    if (help) this.head.append(h('p', {class: 'help dim'}, help));
+  }
+
+  private instance(selected: Selected): void {
+    const {instance} = selected;
+    const world = this.context.store.world;
+    const fixed = world?.models.find((m) => m.id === instance.model)?.static ?? false;
+    this.parts.push(new PoseSection(this.context, instance.name, !fixed));
+    if (instance.robot) this.parts.push(new DriveSection(this.context, this.teleop, instance));
+    const list = (title: string, symbol: string, rows: {path: string; name: string; detail: string}[]): void => {
+      if (rows.length === 0) return;
+      this.parts.push({element: h('section', {class: 'block'}, heading(title), ...rows.map((row) =>
+        h('button', {class: 'plain part-row', title: row.path, on: {click: () => this.context.store.select(row.path)}}, icon(symbol, 14), h('span', {}, row.name), h('span', {class: 'faint ellipsis'}, row.detail), icon('chevron', 12))))});
+    };
+    list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
+    list('Controllers', 'brain', (instance.controllers ?? []).map((c) => ({path: c.path, name: c.name, detail: c.kind.replace(/_/g, ' ')})));
+  }
+
+  private device(device: Device): void {
+    const kind = this.context.store.world?.kinds[device.kind];
+    if (kind && kind.levels?.length > 0) this.levels(device, kind.levels);
+    const views = fieldViews(device.path, kind?.fields ?? []);
+    this.parts.push(new Readings(this.context, device.path, new Set(views.map((v) => v.address)), (device.topics ?? []).map((t) => t.name)));
+    this.form(views);
+  }
+
+  private controller(path: string, kindName: string): void {
+    const fields: Field[] = this.context.store.world?.kinds[kindName]?.fields ?? [];
+    const views = fieldViews(path, fields);
+    this.form(views);
+    this.parts.push(new Readings(this.context, path, new Set(views.map((v) => v.address)), []));
+  }
+
+  private levels(device: Device, levels: {name: string; message: string; command: string; help: string}[]): void {
+    const {store, steer} = this.context;
+    const buttons = levels.map((level) => {
+      const active = device.active?.includes(level.name) ?? false;
+      const title = [level.help, level.message && `publishes ${level.message}`, level.command && `takes ${level.command}`].filter((t) => t).join('\n');
+      const button = h('button', {class: 'small', 'aria-pressed': String(active), testid: `level-${level.name}`, on: {click: () => {
+        const wanted = levels.map((l) => l.name).filter((name) => (name === level.name ? !active : device.active?.includes(name)));
+        void steer.say(`level ${word(device.path)} ${wanted.map(word).join(' ')}`.trimEnd());
+      }}}, level.name);
+      return {button, title};
+    });
+    const part: Part = {
+      element: h('section', {class: 'block'}, heading('Levels'), h('div', {class: 'levels'}, ...buttons.map((b) => b.button))),
+      steering: () => buttons.forEach(({button, title}) => setReason(button, store.whyNotSteer(), title)),
+    };
+    part.steering?.();
+    this.parts.push(part);
+  }
+
+  private form(views: FieldView[]): void {
+    const {parameters, store} = this.context;
+    if (views.length === 0) return;
+    const ordered = [...views].sort((a, b) => Number(b.tunable) - Number(a.tunable));
+    const section = h('section', {class: 'block form'});
+    const rows = new Map<string, FieldRow>();
+    const put = (into: HTMLElement, list: FieldView[]): void => {
+      let group = '';
+      for (const view of list) {
+        if (view.group !== group) {
+          group = view.group;
+          into.append(h('h4', {}, group));
+        }
+        const row = new FieldRow(view, parameters);
+        rows.set(view.address, row);
+        into.append(row.element);
+      }
+    };
+    const tunable = ordered.filter((v) => v.tunable);
+    const fixed = ordered.filter((v) => !v.tunable);
+    section.append(heading('Parameters'));
+    if (tunable.length === 0) section.append(h('div', {class: 'none faint'}, 'Nothing here changes while running'));
+    put(section, tunable);
+    if (fixed.length > 0) {
+      const more = h('details', {class: 'fixed-fields'}, h('summary', {}, `Fixed while running (${fixed.length})`));
+      put(more, fixed);
+      section.append(more);
+    }
+    const steering = (): void => rows.forEach((row) => row.setReason(store.whyNotSteer()));
+    const show = (names: Iterable<string>): void => {
+      for (const name of names) rows.get(name)?.show(parameters.values.get(name));
+    };
+    const stopChange = parameters.onChange.on(show);
+    const stopLook = parameters.look(tunable.map((v) => v.address));
+    show([...rows.keys()].filter((name) => parameters.values.has(name)));
+    steering();
+    this.parts.push({element: section, steering, close: () => {
+      stopChange();
+      stopLook();
+    }});
+  }
+}

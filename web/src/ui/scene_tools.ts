@@ -1,0 +1,161 @@
+// What floats over the scene: tools, cameras, overlays, video; the stick and the note of the robot that is driven; the veil while there
+// is no connection.
+import type {Context} from '../app/context';
+import {remember, remembered} from '../app/settings';
+import {h, setReason, setText} from './dom';
+import {icon} from './icons';
+import {openMenu} from './overlays';
+import {Stick} from './stick';
+import type {Teleop} from './teleop';
+import type {Video} from './video';
+
+export type Tool = 'orbit' | 'move' | 'pull';
+export type CameraMode = 'orbit' | 'static' | 'follow' | 'tv' | 'race' | 'top' | 'robot';
+
+export const cameras: [CameraMode, string][] = [
+  ['orbit', 'Orbit'], ['static', 'Fixed'], ['follow', 'Follow'], ['tv', 'TV'], ['race', 'Race'], ['top', 'From above'], ['robot', 'Robot’s own'],
+];
+
+export const overlays: [string, string, boolean][] = [
+  ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['names', 'Names', false], ['trails', 'Trails', false], ['scans', 'Laser scans', true], ['ranges', 'Range cones', true],
+  ['frusta', 'Camera views', false], ['velocity', 'Velocities', false], ['frames', 'Frames', false], ['contacts', 'Contacts', false], ['collisions', 'Collision shapes', false], ['teams', 'Team colours', true],
+];
+
+export class SceneTools {
+  tool: Tool = 'orbit';
+  readonly on: Record<string, boolean> = {...Object.fromEntries(overlays.map(([id, , standard]) => [id, standard])), ...remembered<Record<string, boolean>>('overlays', {})};
+  private readonly tools = new Map<Tool, HTMLButtonElement>();
+  private readonly camera = h('button', {class: 'plain', 'aria-haspopup': 'menu', testid: 'camera'}, icon('camera'), h('span'));
+  private readonly layers = h('button', {class: 'plain icon-only', 'aria-haspopup': 'menu', 'aria-label': 'Overlays', title: 'Overlays', testid: 'overlays'}, icon('layers'));
+  private readonly film = h('button', {class: 'plain', 'aria-label': 'Record video', testid: 'video'}, icon('video'), h('span'));
+  private readonly banner = h('div', {class: 'scene-banner', hidden: true, role: 'status'});
+  private readonly stickHost = h('div', {class: 'stick-host', hidden: true});
+  private readonly veil = h('div', {class: 'veil', hidden: true, testid: 'veil'});
+  readonly elements: HTMLElement[];
+  private placing: {what: string; put: (x: number, y: number) => void} | null = null;
+  private veilTimer: ReturnType<typeof setTimeout> | undefined;
+  /** Told of overlays that were switched. */
+  onOverlays: () => void = () => undefined;
+
+  constructor(private readonly context: Context, private readonly teleop: Teleop, private readonly video: Video, private readonly host: HTMLElement) {
+    const {actions, store, client} = context;
+    const toolButton = (tool: Tool, id: string, symbol: string, label: string): HTMLButtonElement => {
+      const button = h('button', {class: 'plain icon-only', 'aria-label': label, 'aria-pressed': 'false', testid: `tool-${tool}`, on: {click: () => actions.run(id)}}, icon(symbol));
+      this.tools.set(tool, button);
+      return button;
+    };
+    this.camera.addEventListener('click', () => openMenu(this.camera, cameras.map(([mode, label], i) => ({label, key: String(i + 1), checked: context.scene.cameraMode === mode, run: () => actions.run(`camera.${mode}`)}))));
+    this.layers.addEventListener('click', () => openMenu(this.layers, overlays.map(([id, label]) => ({label, checked: this.on[id] ?? false, key: {grid: 'G', trails: 'T', names: 'N'}[id], run: () => this.toggle(id)})), true));
+    this.film.addEventListener('click', () => actions.run('scene.video'));
+    const photo = h('button', {class: 'plain icon-only', 'aria-label': 'Save a picture', title: actions.titleOf('scene.screenshot'), testid: 'screenshot', on: {click: () => actions.run('scene.screenshot')}}, icon('image'));
+    const stick = new Stick((x, y) => {
+      teleop.stick.forward = y;
+      teleop.stick.turn = -x;
+    });
+    this.stickHost.append(stick.element);
+    this.elements = [
+      h('div', {class: 'float top-left', role: 'toolbar', 'aria-label': 'Tools'}, toolButton('orbit', 'tool.orbit', 'cursor', 'Look around'), toolButton('move', 'tool.move', 'move', 'Move things'), toolButton('pull', 'tool.pull', 'pull', 'Pull things')),
+      h('div', {class: 'float top-right', role: 'toolbar', 'aria-label': 'View'}, this.camera, this.layers, this.film, photo), this.banner, this.stickHost, this.veil,
+    ];
+    this.camera.title = 'Camera (1 to 7)';
+    host.addEventListener('click', (event) => this.click(event), true);
+    store.onRole.on(() => this.show());
+    client.onState.on(() => this.showVeil());
+    teleop.onChange.on(() => this.show());
+    video.onChange = () => this.show();
+    setInterval(() => {
+      if (video.active) this.show();
+    }, 1000);
+    this.context.scene.setOverlays(this.on);
+    this.show();
+    this.showVeil();
+  }
+
+  toggle(id: string): void {
+    this.on[id] = !this.on[id];
+    remember('overlays', this.on);
+    this.context.scene.setOverlays({[id]: this.on[id]});
+    this.onOverlays();
+  }
+
+  setTool(tool: Tool): void {
+    this.tool = this.tool === tool ? 'orbit' : tool;
+    this.context.scene.setTool(this.tool);
+    this.show();
+  }
+
+  /** The next click in the scene says where. */
+  place(what: string, put: (x: number, y: number) => void): void {
+    this.placing = {what, put};
+    this.show();
+  }
+
+  /** True when there was something to give up. */
+  cancel(): boolean {
+    if (this.placing) this.placing = null;
+    else if (this.teleop.armed !== null) this.teleop.disarm();
+    else if (this.tool !== 'orbit') this.setTool('orbit');
+    else return false;
+    this.show();
+    return true;
+  }
+
+  private click(event: MouseEvent): void {
+    if (!this.placing || (event.target as Element).closest('.float, .scene-banner, .stick-host, .veil')) return;
+    const box = this.host.getBoundingClientRect();
+    const at = this.context.scene.pick(event.clientX - box.left, event.clientY - box.top)?.point;
+    event.stopPropagation();
+    event.preventDefault();
+    if (!at) {
+      this.context.toast('There is no ground there', 'warning');
+      return;
+    }
+    const {put} = this.placing;
+    this.placing = null;
+    this.show();
+    put(at[0], at[1]);
+  }
+
+  show(): void {
+    const {store, actions, scene} = this.context;
+    const reason = store.whyNotSteer();
+    for (const [tool, button] of this.tools) {
+      button.setAttribute('aria-pressed', String(this.tool === tool));
+      setReason(button, tool === 'orbit' ? null : reason, actions.titleOf(`tool.${tool}`));
+    }
+    setText(this.camera.lastElementChild as Element, cameras.find(([mode]) => mode === scene.cameraMode)?.[1] ?? '');
+    this.film.classList.toggle('filming', this.video.active);
+    setText(this.film.lastElementChild as Element, this.video.active ? this.video.elapsed() : '');
+    this.film.title = this.video.active ? 'Stop and save the video' : actions.titleOf('scene.video');
+    const armed = this.teleop.armed;
+    this.stickHost.hidden = armed === null;
+    this.banner.hidden = armed === null && this.placing === null;
+    this.banner.classList.toggle('armed', armed !== null);
+    if (this.placing) {
+      this.banner.replaceChildren(h('span', {}, `Click where ${this.placing.what} shall stand`), h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Cancel'));
+    } else if (armed !== null) {
+      const how = this.teleop.gamepad ? 'gamepad, W A S D or stick' : 'W A S D, arrows or stick';
+      this.banner.replaceChildren(icon('gamepad'), h('span', {}, 'Driving ', h('b', {}, armed)), h('span', {class: 'dim how'}, how), h('button', {class: 'small', on: {click: () => this.teleop.disarm()}}, 'Stop'));
+    }
+  }
+
+  private showVeil(): void {
+    const {client} = this.context;
+    clearTimeout(this.veilTimer);
+    if (client.state === 'open') {
+      this.veil.hidden = true;
+      return;
+    }
+    // A blink of the connection is not worth a veil.
+    this.veilTimer = setTimeout(() => {
+      if (client.state === 'open') return;
+      const known = this.context.store.world !== null;
+      this.veil.hidden = false;
+      this.veil.replaceChildren(h('div', {class: 'card'},
+          h('h2', {}, known ? 'The connection is gone' : 'Connecting'),
+          h('p', {}, known ? 'The run may have ended, or the network is away. What you see is the last that came; the page comes back by itself.' :
+              'Waiting for the simulator. Is it running, with a port? For example: sandlot run FILE --port 8080'),
+          client.closeReason ? h('p', {class: 'mono'}, client.closeReason) : null, h('button', {class: 'main', on: {click: () => client.connect()}}, 'Try now')));
+    }, this.context.store.world ? 1200 : 800);
+  }
+}

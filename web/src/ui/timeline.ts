@@ -1,0 +1,108 @@
+// The line of time: what has been, snapshots that are kept, and, where the end is known, what is to come. Click or drag to jump.
+import type {Context} from '../app/context';
+import {formatTime} from '../app/format';
+import {ticker} from '../app/ticker';
+import {h, setTitle} from './dom';
+
+/** Times that the line spans. A live run without an end grows to the right: the newest time is the end. */
+export function spanOf(status: {begin_s: number; end_s: number | null; time_s: number; history_s: number[]; replay: boolean}): [number, number] {
+  const begin = Math.min(status.begin_s, ...status.history_s.slice(0, 1));
+  const newest = Math.max(status.time_s, status.history_s[status.history_s.length - 1] ?? status.time_s);
+  const end = status.end_s !== null && Number.isFinite(status.end_s) ? Math.max(status.end_s, newest) : newest;
+  return [begin, Math.max(end, begin + 1e-9)];
+}
+
+export class Timeline {
+  private readonly past = h('div', {class: 'past'});
+  private readonly marks = h('div', {class: 'marks'});
+  private readonly head = h('div', {class: 'head'});
+  private readonly hint = h('div', {class: 'hint mono', hidden: true});
+  readonly element = h('div', {class: 'timeline', role: 'slider', tabindex: '0', 'aria-label': 'Time', testid: 'timeline'},
+      h('div', {class: 'rail'}, this.past), this.marks, this.head, this.hint);
+  private marksKey = '';
+  private held_s: number | null = null;
+
+  constructor(private readonly context: Context) {
+    context.store.onStatus.on(() => ticker.request(this.update));
+    context.store.onRole.on(() => ticker.request(this.update));
+    this.element.addEventListener('pointermove', (event) => this.hover(event));
+    this.element.addEventListener('pointerleave', () => {
+      if (this.held_s === null) this.hint.hidden = true;
+    });
+    this.element.addEventListener('pointerdown', (event) => {
+      if (this.reason() !== null || event.button !== 0) return;
+      this.element.setPointerCapture(event.pointerId);
+      this.held_s = this.timeAt(event.clientX);
+      ticker.request(this.update);
+    });
+    this.element.addEventListener('pointerup', () => this.release(true));
+    this.element.addEventListener('pointercancel', () => this.release(false));
+    this.element.addEventListener('keydown', (event) => {
+      const status = context.store.status;
+      const by = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+      if (by === 0 || !status || this.reason() !== null) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const [begin, end] = spanOf(status);
+      context.steer.jump(Math.max(begin, Math.min(end, status.time_s + by * Math.max(status.step_s, (end - begin) / 50))));
+    });
+  }
+
+  private reason(): string | null {
+    const status = this.context.store.status;
+    return this.context.store.whyNotSteer() ?? (status && !status.may_rewind ? status.why_not || 'This run keeps no snapshots to go back to' : null);
+  }
+
+  private release(jump: boolean): void {
+    if (this.held_s !== null && jump) this.context.steer.jump(this.held_s);
+    this.held_s = null;
+    this.hint.hidden = true;
+    ticker.request(this.update);
+  }
+
+  private timeAt(x_px: number): number {
+    const status = this.context.store.status;
+    const box = this.element.getBoundingClientRect();
+    const part = Math.max(0, Math.min(1, (x_px - box.left - 8) / Math.max(1, box.width - 16)));
+    if (!status) return 0;
+    const [begin, end] = spanOf(status);
+    const at = begin + part * (end - begin);
+    // Whole steps: there is no time between them.
+    return status.step_s > 0 ? Math.round(at / status.step_s) * status.step_s : at;
+  }
+
+  private hover(event: PointerEvent): void {
+    const status = this.context.store.status;
+    if (!status) return;
+    const time_s = this.timeAt(event.clientX);
+    if (this.held_s !== null) this.held_s = time_s;
+    const box = this.element.getBoundingClientRect();
+    const reason = this.reason();
+    this.hint.hidden = false;
+    this.hint.textContent = reason ?? formatTime(time_s);
+    this.hint.style.left = `${Math.max(30, Math.min(box.width - 30, event.clientX - box.left))}px`;
+    ticker.request(this.update);
+  }
+
+  private readonly update = (): void => {
+    const status = this.context.store.status;
+    const reason = this.reason();
+    this.element.classList.toggle('off', !status || reason !== null);
+    if (!status) return;
+    setTitle(this.element, reason === null ? '' : reason);
+    const [begin, end] = spanOf(status);
+    const part = (time_s: number): number => Math.max(0, Math.min(1, (time_s - begin) / (end - begin)));
+    const shown = this.held_s ?? status.target_s ?? status.time_s;
+    this.past.style.transform = `scaleX(${part(status.time_s)})`;
+    this.head.style.left = `calc(8px + (100% - 16px) * ${part(shown).toFixed(4)})`;
+    this.element.setAttribute('aria-valuemin', String(begin));
+    this.element.setAttribute('aria-valuemax', String(end));
+    this.element.setAttribute('aria-valuenow', String(status.time_s));
+    this.element.setAttribute('aria-valuetext', formatTime(status.time_s));
+    const thinned = status.history_s.length > 400 ? status.history_s.filter((_, i) => i % Math.ceil(status.history_s.length / 400) === 0) : status.history_s;
+    const key = status.replay ? '' : thinned.map((t) => part(t).toFixed(3)).join();
+    if (key === this.marksKey) return;
+    this.marksKey = key;
+    this.marks.replaceChildren(...(status.replay ? [] : thinned.map((t) => h('i', {class: 'mark', style: {left: `${(part(t) * 100).toFixed(2)}%`}}))));
+  };
+}
