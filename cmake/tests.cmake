@@ -62,8 +62,15 @@ foreach(source IN LISTS sources)
 endforeach()
 set_tests_properties(check_layers PROPERTIES LABELS unit)
 
+# The page's own tests, and the check of its types, for which nothing has to run.
+if(SANDLOT_PAGE)
+  add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
+  add_test(NAME page_units COMMAND ${SANDLOT_NODE} test/run.mjs WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
+  set_tests_properties(page_types page_units PROPERTIES LABELS unit TIMEOUT 120)
+endif()
+
 # tests/js/*_test.mjs hold messages and recordings against readers that others wrote. `./dev test` installs those.
-find_program(SANDLOT_NODE node)
 if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
   file(GLOB sources CONFIGURE_DEPENDS tests/js/*_test.mjs)
   foreach(source IN LISTS sources)
@@ -72,6 +79,8 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
     set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
+  # A browser that draws with the processor takes its time.
+  set_tests_properties(js_page_test PROPERTIES LABELS slow TIMEOUT 600)
 else()
   message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
 endif()

@@ -147,6 +147,14 @@ TEST(Cli, list_shows_message_types_with_units_and_constants) {
   const auto json = nlohmann::json::parse(sandlot("list messages --json").out);
   EXPECT_GT(json["messages"].size(), 80u);
   EXPECT_EQ(json["messages"][0]["fields"][0]["type"], "int32");
+  EXPECT_THAT(sandlot("list messages").out, HasSubstr("\n  sandlot_msgs/srv/Console\n"));
+  for (const auto& message : json["messages"])
+    EXPECT_EQ(message["name"].get<std::string>().find("/srv/"), std::string::npos) << message["name"];
+  for (const auto& service : json["services"])
+    if (service["name"] == "simulation_interfaces/srv/StepSimulation") {
+      EXPECT_EQ(service["request"]["fields"][0]["type"], "uint64");
+      EXPECT_EQ(service["response"]["fields"][0]["type"], "simulation_interfaces/msg/Result");
+    }
 }
 
 TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {

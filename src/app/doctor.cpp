@@ -9,6 +9,7 @@
 #include "app/report.h"
 #include "base/math.h"
 #include "base/random.h"
+#include "server/server.h"
 #include "sim/load.h"
 
 namespace sandlot::app {
@@ -93,6 +94,10 @@ int doctor(bool json) {
   for (const EngineKind* engine : engine_kinds()) findings.push_back(repeatable(*engine));
   const auto demo = demo_file("indoor");
   findings.push_back({"demo scenario", static_cast<bool>(demo), demo ? *demo : demo.error().text()});
+  // A program without it simulates as well: no fault.
+  findings.push_back(
+      {"page", true,
+       server::has_page() ? "built in" : "not built in: `./dev build` installs node and what else it needs"});
   bool all_ok = true;
   auto list = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/json_text.h"
+#include "base/field_json.h"
 #include "base/text.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
@@ -142,32 +143,53 @@ std::string type_text(const MessageField& field) {
   return out;
 }
 
+void print_members(const MessageInfo& type) {
+  for (const MessageConstant& constant : type.constants)
+    fmt::print("    {:<40} {} = {}\n", name_of(constant.type), constant.name, constant.value);
+  for (const MessageField& field : type.fields)
+    fmt::print("    {:<40} {:<26} {}{}\n", type_text(field), field.name, field.help,
+               field.unit.empty() || field.unit == "1" ? "" : " [" + field.unit + "]");
+}
+
+bool is_side_of_service(const MessageInfo& type) { return type.name.find("/srv/") != std::string::npos; }
+
 void print_messages(bool verbose) {
   fmt::print("messages\n");
   for (const MessageInfo* const type : all_messages()) {
+    if (is_side_of_service(*type)) continue;
     fmt::print("  {}\n", type->name);
+    if (verbose) print_members(*type);
+  }
+  fmt::print("services\n");
+  for (const ServiceInfo& service : all_services()) {
+    fmt::print("  {}\n", service.name);
     if (!verbose) continue;
-    for (const MessageConstant& constant : type->constants)
-      fmt::print("    {:<40} {} = {}\n", name_of(constant.type), constant.name, constant.value);
-    for (const MessageField& field : type->fields)
-      fmt::print("    {:<40} {:<26} {}{}\n", type_text(field), field.name, field.help,
-                 field.unit.empty() || field.unit == "1" ? "" : " [" + field.unit + "]");
+    print_members(*service.request);
+    fmt::print("    ---\n");
+    print_members(*service.response);
   }
 }
 
+Json message_json(const MessageInfo& type) {
+  Json constants = Json::array(), fields = Json::array();
+  for (const MessageConstant& constant : type.constants)
+    constants.push_back(
+        {{"name", constant.name}, {"type", name_of(constant.type)}, {"value", constant.value}});
+  for (const MessageField& field : type.fields)
+    fields.push_back(
+        {{"name", field.name}, {"type", type_text(field)}, {"unit", field.unit}, {"help", field.help}});
+  return {{"name", type.name}, {"constants", constants}, {"fields", fields}};
+}
+
 Json messages_json() {
-  Json types = Json::array();
-  for (const MessageInfo* const type : all_messages()) {
-    Json constants = Json::array(), fields = Json::array();
-    for (const MessageConstant& constant : type->constants)
-      constants.push_back(
-          {{"name", constant.name}, {"type", name_of(constant.type)}, {"value", constant.value}});
-    for (const MessageField& field : type->fields)
-      fields.push_back(
-          {{"name", field.name}, {"type", type_text(field)}, {"unit", field.unit}, {"help", field.help}});
-    types.push_back({{"name", type->name}, {"constants", constants}, {"fields", fields}});
-  }
-  return {{"messages", types}};
+  Json types = Json::array(), services = Json::array();
+  for (const MessageInfo* const type : all_messages())
+    if (!is_side_of_service(*type)) types.push_back(message_json(*type));
+  for (const ServiceInfo& service : all_services())
+    services.push_back({{"name", service.name},
+                        {"request", message_json(*service.request)},
+                        {"response", message_json(*service.response)}});
+  return {{"messages", types}, {"services", services}};
 }
 
 std::string cell(std::string text) {
@@ -238,15 +260,8 @@ Json to_json(const Section& section) {
                         {"takes", level.command},
                         {"help", level.help}});
     for (const FieldInfo& f : item.fields) {
-      Json field{{"key", f.path},
-                 {"type", f.type},
-                 {"unit", f.unit},
-                 {"help", f.help},
-                 {"default", f.default_value},
-                 {"required", f.required},
-                 {"tunable", f.tunable}};
-      if (f.type == "number" || f.type == "integer") field["min"] = f.min, field["max"] = f.max;
-      if (!f.choices.empty()) field["choices"] = f.choices;
+      Json field{{"key", f.path}};
+      field.update(field_json(f));
       fields.push_back(std::move(field));
     }
     entry["levels"] = levels;

@@ -203,6 +203,18 @@ TEST(Json, ByHand) {
   EXPECT_EQ(base64("foobar"), R"("data":"Zm9vYmFy"})");
 }
 
+TEST(Json, KeepsTheSignOfZero) {
+  const AnyMessage zero = [] {
+    AnyMessage made(info_of("std_msgs/Float64"));
+    static_cast<msg::Float64*>(made.data())->data = -0.0;
+    return made;
+  }();
+  EXPECT_EQ(zero.to_json(), R"({"data":-0.0})");
+  const auto again = message_from_json(zero.info(), zero.to_json());
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(std::signbit(static_cast<const msg::Float64*>(again->data())->data));
+}
+
 TEST(Json, WhatIsMissingKeepsItsDefault) {
   const auto pose = message_from_json(info_of("geometry_msgs/Pose"), R"({"position":{"y":2}})");
   EXPECT_EQ(pose->to_json(), R"({"position":{"x":0,"y":2,"z":0},"orientation":{"x":0,"y":0,"z":0,"w":1}})");

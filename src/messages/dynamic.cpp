@@ -28,6 +28,8 @@ bool is_name(std::string_view text) {
 /// pkg/Type
 bool is_type_name(std::string_view text) {
   const auto slash = text.find('/');
+  if (const auto rest = text.substr(slash + 1); slash != std::string_view::npos && starts_with(rest, "srv/"))
+    return is_name(text.substr(0, slash)) && is_name(rest.substr(4));  // one side of a service
   return slash != std::string_view::npos && is_name(text.substr(0, slash)) && is_name(text.substr(slash + 1));
 }
 

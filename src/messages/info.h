@@ -80,7 +80,7 @@ struct MessageInfo {
   void (*destroy)(void*) = nullptr;
 };
 
-/// The type of a C++ message. Instantiated for all of messages/types.def; others include messages/make_info.h.
+/// The type of a C++ message. Instantiated for all of messages/types.def and services.def; others include messages/make_info.h.
 template <class M>
 const MessageInfo& message_info();
 

@@ -1,5 +1,6 @@
 #include "messages/json.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -50,30 +51,15 @@ bool parse_base64(std::string_view text, std::vector<std::byte>& out) {
   return true;
 }
 
-void add_string(std::string_view text, std::string& out) {
-  out += '"';
-  each_utf8(text, [&](std::string_view piece) {
-    for (const char c : piece) {
-      if (c == '"' || c == '\\') (out += '\\') += c;
-      else if (c == '\n') out += "\\n";
-      else if (c == '\t') out += "\\t";
-      else if (static_cast<unsigned char>(c) < 0x20) {
-        constexpr std::string_view hex = "0123456789abcdef";
-        (((out += "\\u00") += hex[static_cast<unsigned char>(c) >> 4]) += hex[c & 15]);
-      } else {
-        out += c;
-      }
-    }
-  });
-  out += '"';
-}
-
 template <class T>
 void add_as(const std::byte* value, std::string& out) {
   T number;
   std::memcpy(&number, value, sizeof number);
-  if constexpr (std::is_floating_point_v<T>)
+  if constexpr (std::is_floating_point_v<T>) {
     if (!std::isfinite(number)) return void(out += "null");
+    // "-0" is an integer to readers of JSON, and those have no negative zero.
+    if (number == 0 && std::signbit(number)) return void(out += "-0.0");
+  }
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   out.append(text.data(), end);
@@ -104,10 +90,10 @@ class Writer : public CdrVisitor {
   explicit Writer(std::string& out) : out_(out) { out_.clear(); }
   void open(const MessageInfo&) override { separate(), out_ += '{'; }
   void close() override { out_ += '}'; }
-  void field(const MessageField& field) override { separate(), add_string(field.name, out_), out_ += ':'; }
+  void field(const MessageField& field) override { separate(), append_json(field.name, out_), out_ += ':'; }
   void open_list(std::size_t) override { separate(), out_ += '['; }
   void close_list() override { out_ += ']'; }
-  void text(std::string_view text) override { separate(), add_string(text, out_); }
+  void text(std::string_view text) override { separate(), append_json(text, out_); }
   void number(Wire type, const std::byte* value) override { separate(), add_number(type, value, out_); }
   void numbers(Wire type, std::span<const std::byte> bytes) override {
     if (is_octet(type)) {
@@ -310,6 +296,33 @@ Status set_message(const MessageInfo& info, const Json& value, void* object) {
 }
 
 }  // namespace
+
+void append_json(std::string_view text, std::string& out) {
+  out += '"';
+  // Most texts are names: what needs no second look goes at once.
+  const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+  const auto odd = std::find_if_not(text.begin(), text.end(), plain);
+  out.append(text.begin(), odd);
+  text.remove_prefix(static_cast<std::size_t>(odd - text.begin()));
+  each_utf8(text, [&](std::string_view piece) {
+    for (const char c : piece) {
+      if (c == '"' || c == '\\') (out += '\\') += c;
+      else if (c == '\n') out += "\\n";
+      else if (c == '\t') out += "\\t";
+      else if (static_cast<unsigned char>(c) < 0x20) {
+        constexpr std::string_view hex = "0123456789abcdef";
+        (((out += "\\u00") += hex[static_cast<unsigned char>(c) >> 4]) += hex[c & 15]);
+      } else {
+        out += c;
+      }
+    }
+  });
+  out += '"';
+}
+
+void append_json(double number, std::string& out) {
+  add_as<double>(reinterpret_cast<const std::byte*>(&number), out);
+}
 
 Status cdr_to_json(const MessageInfo& info, std::span<const std::byte> cdr, std::string& out) {
   Writer writer(out);

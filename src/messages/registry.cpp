@@ -10,6 +10,7 @@
 #include "messages/make_info.h"
 #include "messages/messages.h"
 #include "messages/rcl_interfaces.h"
+#include "messages/services.h"
 #include "messages/simulation_interfaces.h"
 #include "messages/tf2_msgs.h"
 #include "messages/visualization_msgs.h"
@@ -19,6 +20,11 @@ namespace sandlot {
 #define SL_MESSAGE(type) template const MessageInfo& message_info<type>();
 #include "messages/types.def"
 #undef SL_MESSAGE
+#define SL_SERVICE(type)                                     \
+  template const MessageInfo& message_info<type::Request>(); \
+  template const MessageInfo& message_info<type::Response>();
+#include "messages/services.def"
+#undef SL_SERVICE
 
 namespace {
 
@@ -29,7 +35,19 @@ std::vector<const MessageInfo*> make_list() {
 #define SL_MESSAGE(type) list.push_back(&message_info<type>());
 #include "messages/types.def"
 #undef SL_MESSAGE
+  for (const ServiceInfo& service : all_services())
+    list.insert(list.end(), {service.request, service.response});
   std::sort(list.begin(), list.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
+  return list;
+}
+
+std::vector<ServiceInfo> make_services() {
+  std::vector<ServiceInfo> list;
+#define SL_SERVICE(type) \
+  list.push_back({type::ros_type, &message_info<type::Request>(), &message_info<type::Response>()});
+#include "messages/services.def"
+#undef SL_SERVICE
+  std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return list;
 }
 
@@ -50,6 +68,26 @@ Result<const MessageInfo*> find_message(std::string_view name) {
   for (const MessageInfo* info : all) known.push_back(short_name(info->name));
   const std::string near = nearest(short_name(name), known);
   return Error{"there is no message type '" + std::string(name) + "'",
+               near.empty() ? "" : "did you mean '" + near + "'?"};
+}
+
+std::span<const ServiceInfo> all_services() {
+  static const std::vector<ServiceInfo> list = make_services();
+  return list;
+}
+
+Result<const ServiceInfo*> find_service(std::string_view name) {
+  std::string full(name);
+  const auto slash = full.find('/');
+  if (slash != std::string::npos && full.find('/', slash + 1) == std::string::npos)
+    full.insert(slash, "/srv");
+  std::vector<std::string> known;
+  for (const ServiceInfo& service : all_services()) {
+    if (service.name == full) return &service;
+    known.push_back(service.name);
+  }
+  const std::string near = nearest(full, known);
+  return Error{"there is no service type '" + std::string(name) + "'",
                near.empty() ? "" : "did you mean '" + near + "'?"};
 }
 

@@ -17,6 +17,16 @@ std::span<const MessageInfo* const> all_messages();
 /// The type of a name, `sensor_msgs/LaserScan` or `sensor_msgs/msg/LaserScan`; the error names the nearest.
 Result<const MessageInfo*> find_message(std::string_view name);
 
+/// A type of service: what is asked and what is answered.
+struct ServiceInfo {
+  std::string name;  ///< "sandlot_msgs/srv/Console"
+  const MessageInfo *request, *response;
+};
+/// Every type of service, in order of name. Their messages are among all_messages().
+std::span<const ServiceInfo> all_services();
+/// The type of a name, `sandlot_msgs/srv/Console` or `sandlot_msgs/Console`; the error names the nearest.
+Result<const ServiceInfo*> find_service(std::string_view name);
+
 /// A message of some type.
 class AnyMessage {
  public:

@@ -144,4 +144,15 @@ struct StateParts {
   }
 };
 
+/// Numbers that somebody watches.
+struct Samples {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/Samples";
+  Time stamp;
+  std::vector<double> values;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
+    visit(Field{"values", "", "In the order they were asked for; NaN where one has no value."}, s.values);
+  }
+};
+
 }  // namespace sandlot::msg

@@ -1,5 +1,5 @@
 #pragma once
-/// simulation_interfaces 2.1.0: what simulators are asked for in one common form. Its services and action are not here yet.
+/// simulation_interfaces 2.1.0: what simulators are asked for in one common form. Its services: messages/services.h.
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,8 +1,7 @@
 #pragma once
 /// Turns frames of a simulation into the messages of a recording: device topics, /tf, /clock, the log and the hashes.
 ///
-/// Frames   `world` is the root; `<instance>/<link>` lies in it for canonical links, in the canonical link for others;
-///          `<instance>/<device>` lies in its link (/tf_static). REP-105 names the rest.
+/// Frames   of /tf and /tf_static: sim/transforms.h.
 /// Time     every message of a frame carries the frame's simulated time.
 /// Units    as the messages say.
 #include <unordered_map>
@@ -64,8 +63,5 @@ class FrameWriter {
   std::int64_t tf_sample_ = 0;
   std::uint64_t messages_ = 0;
 };
-
-/// Where the devices are mounted, and where what never moves stands.
-msg::TFMessage static_transforms(const Simulation& simulation);
 
 }  // namespace sandlot

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "record/layout.h"
+#include "sim/transforms.h"
 
 namespace sandlot {
 namespace {
@@ -114,6 +115,8 @@ void Recorder::run() {
         lock.lock();
         status_ = status;
         failed_ = !status_;
+        report_.messages = writer_.messages();
+        report_.bytes = writer_.bytes();
       }
       // After an error the rest of the batch is lost.
       if (failed_) {
@@ -126,6 +129,11 @@ void Recorder::run() {
     }
     batch.clear();
   }
+}
+
+Recorder::Report Recorder::so_far() {
+  const std::lock_guard lock(mutex_);
+  return report_;
 }
 
 Status Recorder::finish() {

@@ -134,7 +134,7 @@ Status Simulation::gather_controllers(Diagnostics& diagnostics) {
     controller_kinds_.push_back(kind);
     return {};
   };
-  for (const ControllerKind* kind : controller_kinds()) SL_TRY(add(kind, "Sandlot", {}));
+  for (const ControllerKind* kind : sandlot::controller_kinds()) SL_TRY(add(kind, "Sandlot", {}));
   for (const ControllerKind* kind : options_.extra_controllers) SL_TRY(add(kind, "this program", {}));
   for (model::PluginDecl& decl : setup_.plugins) {
     SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options_.paths, diagnostics));
@@ -357,6 +357,7 @@ void Simulation::remove_entity(std::size_t index) {
   engine_->remove(entity.id);
   by_name_.erase(entity.instance.name);
   std::erase(guided_, &entity);
+  std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity.serial; });
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 

@@ -53,6 +53,7 @@ class Experiment {
   Experiment(Simulation& sim, const Hooks& hooks) : sim_(sim), hooks_(hooks) {}
   Simulation& simulation() { return sim_; }
   const Simulation& simulation() const { return sim_; }
+  std::span<const ConsoleCommand> commands() const { return hooks_.commands; }
 
   Status start();
   /// One tick with everything around it; arguments as Simulation::tick().

@@ -21,6 +21,7 @@ struct SubHash {
 struct FrameInstance {
   std::string name;
   InstanceId id;
+  std::uint64_t serial = 0;  ///< creation order over the whole run: nothing else ever has it
   bool is_robot = false;
   Pose X_WM;
   Velocity V_WB;  ///< of the canonical link
@@ -39,6 +40,7 @@ struct LogEntry {
   std::string type;              ///< ROS type of a command
   std::vector<std::byte> bytes;  ///< command: the message; step: nanoseconds, int64; others: write_request()
   bool refused = false;
+  std::string why;  ///< it was refused; for those who look now, no part of recordings
 };
 
 struct Frame {
@@ -49,7 +51,8 @@ struct Frame {
   std::vector<FrameInstance> instances;
   std::vector<std::shared_ptr<const TopicBase>>
       topics;                        ///< those that got a message in this tick, if asked for
-  std::vector<LogEntry> log;         ///< if asked for
+  std::vector<LogEntry> log;         ///< if asked for, or its part that is `input`
+  std::vector<Contact> contacts;     ///< of the last sub-step, if asked for
   std::uint64_t hash = 0;            ///< of all State, if asked for
   std::vector<std::uint64_t> parts;  ///< and of each entity
   std::shared_ptr<const std::vector<std::string>>
@@ -65,9 +68,12 @@ class Observer {
   struct Wants {
     bool messages = false;
     bool log = false;
+    bool input = false;  ///< of the log what came from outside, without the orders of programs
     bool hash = false;
     bool links = false;
+    bool contacts = false;
   };
+  /// Asked at the beginning of each tick.
   virtual Wants wants() const { return {}; }
   virtual void on_frame(const std::shared_ptr<const Frame>& frame) = 0;
 };

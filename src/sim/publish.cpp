@@ -99,16 +99,34 @@ void Simulation::publish() {
   frame->now = now_;
   frame->step = step_;
   frame->revision = revision_;
-  fill_instances(*frame);
+  fill_instances(*frame, wants_.links);
   fill_topics(*frame);
   resize_keeping(frame->log, log_.size(), publishing_->spare_log);
   std::copy(log_.begin(), log_.end(), frame->log.begin());
   fill_hashes(*frame);
+  frame->contacts.clear();
+  if (wants_.contacts) fill_contacts(*frame);
   const std::shared_ptr<const Frame> shown = frame;
   for (Observer* observer : observers_) observer->on_frame(shown);
 }
 
-void Simulation::fill_instances(Frame& frame) const {
+std::shared_ptr<const Frame> Simulation::look(const Observer::Wants& wants) const {
+  auto frame = std::make_shared<Frame>();
+  frame->tick = tick_;
+  frame->now = now_;
+  frame->step = step_;
+  frame->revision = revision_;
+  fill_instances(*frame, wants.links);
+  if (wants.contacts) fill_contacts(*frame);
+  return frame;
+}
+
+void Simulation::fill_contacts(Frame& frame) const {
+  const std::span<const Contact> contacts = engine_->contacts();
+  frame.contacts.assign(contacts.begin(), contacts.end());
+}
+
+void Simulation::fill_instances(Frame& frame, bool links) const {
   frame.instances.resize(entities_.size());
   const auto states = engine_->states();
   for (std::size_t i = 0; i < entities_.size(); ++i) {
@@ -116,13 +134,14 @@ void Simulation::fill_instances(Frame& frame) const {
     FrameInstance& out = frame.instances[i];
     out.name = entity.instance.name;
     out.id = entity.id;
+    out.serial = entity.serial;
     out.is_robot = entity.instance.is_robot;
     out.X_WM = engine_->pose(entity.id);
     const std::span<const BodyId> bodies = engine_->bodies(entity.id);
     out.V_WB = states[bodies.front().index].V_WB;
     out.model = entity.instance.model;
     out.X_WL.clear();
-    if (wants_.links)
+    if (links)
       for (const BodyId body : bodies) out.X_WL.push_back(states[body.index].X_WB);
   }
 }

@@ -28,6 +28,10 @@ struct Save {
   bool operator()(const SampleRequest& x) { return write(w, x.device), true; }
   bool operator()(const LoadDeviceRequest& x) { return write(w, x.robot), write_device(w, x.device), true; }
   bool operator()(const UnloadDeviceRequest& x) { return write(w, x.device), true; }
+  bool operator()(const PullRequest& x) {
+    write(w, x.name), write(w, x.link);
+    return write(w, x.point_L), write(w, x.target_W), write(w, x.hold), true;
+  }
 };
 
 struct Load {
@@ -41,6 +45,10 @@ struct Load {
   bool operator()(SampleRequest& x) { return read(r, x.device), r.ok(); }
   bool operator()(LoadDeviceRequest& x) { return read(r, x.robot), read_device(r, x.device); }
   bool operator()(UnloadDeviceRequest& x) { return read(r, x.device), r.ok(); }
+  bool operator()(PullRequest& x) {
+    read(r, x.name), read(r, x.link);
+    return read(r, x.point_L), read(r, x.target_W), read(r, x.hold), r.ok();
+  }
 };
 
 struct Target {
@@ -53,6 +61,7 @@ struct Target {
   const std::string& operator()(const SampleRequest& x) const { return x.device; }
   const std::string& operator()(const LoadDeviceRequest& x) const { return x.robot; }
   const std::string& operator()(const UnloadDeviceRequest& x) const { return x.device; }
+  const std::string& operator()(const PullRequest& x) const { return x.name; }
 };
 
 }  // namespace
@@ -61,7 +70,8 @@ static_assert(std::is_same_v<std::variant_alternative_t<0, Request>, CommandRequ
 
 const char* request_kind(std::size_t index) {
   static constexpr std::array<const char*, std::variant_size_v<Request>> names{
-      "command", "parameter", "level", "spawn", "delete", "pose", "sample", "load device", "unload device"};
+      "command", "parameter", "level",       "spawn",         "delete",
+      "pose",    "sample",    "load device", "unload device", "pull"};
   return index < names.size() ? names[index] : "unknown";
 }
 

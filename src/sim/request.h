@@ -61,13 +61,20 @@ struct LoadDeviceRequest {
 struct UnloadDeviceRequest {
   std::string device;
 };
+/// Pulls at a thing with a spring for a while (sim/pull.h); `hold` 0 lets go.
+struct PullRequest {
+  std::string name;
+  std::string link;        ///< "": the first
+  Vec3 point_L, target_W;  ///< [m]
+  Time hold = Time::from_s(0.25);
+};
 /// Take a sample at the end of the next tick although none is due.
 struct SampleRequest {
   std::string device;
 };
 
 using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
-                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest>;
+                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest>;
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);

@@ -22,6 +22,7 @@ LogEntry& Simulation::log_entry(std::uint8_t kind, const Source& source, std::ui
   entry.type.clear();
   entry.bytes.clear();
   entry.refused = false;
+  entry.why.clear();
   return entry;
 }
 
@@ -29,6 +30,7 @@ void Simulation::log_request(const Request& request, const Outcome& outcome) {
   LogEntry& entry = log_entry(static_cast<std::uint8_t>(request.index()), outcome.source, outcome.sequence);
   entry.target = request_target(request);
   entry.refused = !outcome.status;
+  if (entry.refused) entry.why = outcome.status.error().text();
   if (const auto* command = std::get_if<CommandRequest>(&request)) {
     entry.type = command->type;
     entry.bytes = command->bytes;
@@ -76,12 +78,39 @@ Status Simulation::carry_out(Request& request) {
     engine_->set_pose(entity->id, {pose->X_WM.p, normalised(pose->X_WM.q)});
     return {};
   }
+  if (const auto* pull = std::get_if<PullRequest>(&request)) return start_pull(*pull);
   if (const auto* load = std::get_if<LoadDeviceRequest>(&request)) return mount_device(*load);
   if (const auto* unload = std::get_if<UnloadDeviceRequest>(&request)) return unmount_device(*unload);
   const auto& sample = std::get<SampleRequest>(request);
   Device* const device = find_device(sample.device);
   if (!device) return Error{"there is no device '" + sample.device + "'"};
   device->requested = true;
+  return {};
+}
+
+Status Simulation::start_pull(const PullRequest& request) {
+  const Entity* const entity = find_entity(request.name);
+  if (!entity) return Error{"there is nothing named '" + request.name + "'"};
+  const model::Model& model = *entity->instance.model;
+  std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity->serial; });
+  if (request.hold <= Time{}) return {};
+  if (engine_->capabilities().planar)
+    return Error{"the planar engine takes no forces", "drag '" + request.name + "', or use physics: rigid"};
+  if (model.is_static || entity->instance.motion)
+    return Error{"'" + request.name + "' cannot be moved by forces"};
+  const auto link = request.link.empty() ? std::optional<std::uint32_t>(0) : model.find_link(request.link);
+  if (!link) {
+    std::vector<std::string> known;
+    for (const model::Link& each : model.links) known.push_back(each.name);
+    return Error{"'" + request.name + "' has no link '" + request.link + "'",
+                 suggestion(request.link, known)};
+  }
+  if (!is_finite(request.point_L) || !is_finite(request.target_W) || norm(request.point_L) > 1e6 ||
+      norm(request.target_W) > 1e6)
+    return Error{"the pull is not finite"};
+  if (request.hold > Time::from_s(longest_pull_s))
+    return Error{"a pull lasts " + number_text(longest_pull_s) + " s at most", "ask again before it ends"};
+  pulls_.push_back({entity->serial, *link, request.point_L, request.target_W, now_ + request.hold});
   return {};
 }
 

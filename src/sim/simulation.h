@@ -21,6 +21,7 @@
 #include "sim/frame.h"
 #include "sim/phase_timer.h"
 #include "sim/program.h"
+#include "sim/pull.h"
 #include "sim/request.h"
 #include "sim/rule.h"
 
@@ -77,6 +78,7 @@ class Simulation {
   /// Named values and events. `monitor().happened()`: the events of the latest tick.
   const Monitor& monitor() const { return *monitor_; }
   void add_observer(Observer* observer) { observers_.push_back(observer); }
+  void remove_observer(Observer* observer) { std::erase(observers_, observer); }
   void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
   void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
 
@@ -105,6 +107,9 @@ class Simulation {
     std::vector<const TopicBase*> topics, commands;
   };
   std::vector<DeviceView> devices(std::string_view instance) const;
+
+  /// A frame of the present, for those who come between two ticks: instances, and links and contacts if asked for.
+  std::shared_ptr<const Frame> look(const Observer::Wants& wants) const;
 
   const PhaseTimes& phase_times() const { return phase_times_; }
   std::uint64_t refused_commands() const { return refused_commands_; }
@@ -153,6 +158,9 @@ class Simulation {
   std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
+  const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  /// Those that programs of this world may be: the built-in ones and the plugins'.
+  std::span<const ControllerKind* const> controller_kinds() const { return controller_kinds_; }
 
  private:
   struct Pool {
@@ -194,6 +202,7 @@ class Simulation {
   void take_commands();
   void actuate();
   void physics();
+  void pull();
   void update_scene();
   void sense();
   void deliver_media();
@@ -204,13 +213,15 @@ class Simulation {
   // publish.cpp: the last phase
   struct Publishing;
   void publish();
-  void fill_instances(Frame& frame) const;
+  void fill_instances(Frame& frame, bool links) const;
+  void fill_contacts(Frame& frame) const;
   void fill_topics(Frame& frame);
   void fill_hashes(Frame& frame);
 
   // requests.cpp
   Status carry_out(Request& request);
   Status apply_command(const CommandRequest& command);
+  Status start_pull(const PullRequest& request);
   Status give_command(Slot& slot, std::span<const std::byte> bytes);
   LogEntry& log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence);
   void log_request(const Request& request, const Outcome& outcome);
@@ -231,6 +242,8 @@ class Simulation {
   static void save_program(const ProgramEntry& program, ByteWriter& w);
   static bool load_program(ProgramEntry& program, ByteReader& r);
   void save_run(ByteWriter& w) const;
+  void save_pulls(ByteWriter& w) const;
+  bool load_pulls(ByteReader& r);
   bool load_run(ByteReader& r);
 
   model::Setup setup_;
@@ -267,6 +280,8 @@ class Simulation {
   std::uint64_t next_sequence_ = 0;
   std::vector<Pending> carrying_out_;
   std::vector<Outcome> outcomes_;
+
+  std::vector<Pull> pulls_;  ///< State; those that are over stay until the next tick
 
   Actuation actuation_;
   EmissionBuffer emissions_;

@@ -163,6 +163,25 @@ void Simulation::save_run(ByteWriter& w) const {
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
   monitor_->save(w);
+  if (!pulls_.empty()) write_block(w, [&](ByteWriter& block) { save_pulls(block); });
+}
+
+void Simulation::save_pulls(ByteWriter& w) const {
+  for (const Pull& pull : pulls_) Pull::state(pull, [&](const auto& member) { write(w, member); });
+}
+
+bool Simulation::load_pulls(ByteReader& r) {
+  while (r.ok() && r.remaining() > 0) {
+    Pull pull;
+    Pull::state(pull, [&](auto& member) { read(r, member); });
+    const auto entity = std::find_if(entities_.begin(), entities_.end(),
+                                     [&](const auto& each) { return each->serial == pull.serial; });
+    if (!r.ok() || entity == entities_.end() || pull.link >= (*entity)->instance.model->links.size() ||
+        !is_finite(pull.point_L) || !is_finite(pull.target_W))
+      return false;
+    pulls_.push_back(pull);
+  }
+  return r.ok();
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -182,7 +201,9 @@ bool Simulation::load_run(ByteReader& r) {
     medium->load(block);
   }
   monitor_->load(r);
-  return r.ok();
+  if (!r.ok() || r.remaining() == 0) return r.ok();
+  ByteReader pulls = read_block(r);
+  return r.ok() && load_pulls(pulls);
 }
 
 /// Calls visit(path, key, fill) for each entity's part of the State, in creation order.
@@ -286,11 +307,11 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   std::unique_ptr<Simulation> sim(new Simulation(std::move(opened.setup), options));
   Diagnostics said_before;  // these warnings were given when the run began
   SL_TRY(sim->build(said_before));
+  for (std::size_t i = 0; i < sim->entities_.size(); ++i) sim->entities_[i]->serial = opened.serials[i];
   ByteReader run = read_block(r);
   if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
     Entity& entity = *sim->entities_[i];
-    entity.serial = opened.serials[i];
     ByteReader bodies = read_block(r);
     if (!sim->engine_->load(entity.id, bodies) || !whole(bodies))
       return damaged("the bodies of '" + entity.instance.name + "' cannot be read");

@@ -41,8 +41,10 @@ void Simulation::set_step(std::optional<Time> measured) {
     const Observer::Wants wants = observer->wants();
     wants_.messages = wants_.messages || wants.messages;
     wants_.log = wants_.log || wants.log;
+    wants_.input = wants_.input || wants.input || wants.log;
     wants_.hash = wants_.hash || wants.hash;
     wants_.links = wants_.links || wants.links;
+    wants_.contacts = wants_.contacts || wants.contacts;
   }
   for (LogEntry& entry : log_) spare_log_.push_back(std::move(entry));
   log_.clear();
@@ -52,7 +54,7 @@ void Simulation::set_step(std::optional<Time> measured) {
   step_ = std::clamp(*measured, setup_.clock.min_step, setup_.clock.max_step);
   const std::int64_t total = step_.ns * setup_.substeps;
   substeps_ = static_cast<int>(std::max<std::int64_t>(1, (total + setup_.step.ns - 1) / setup_.step.ns));
-  if (!wants_.log) return;
+  if (!wants_.input) return;
   LogEntry& entry = log_entry(LogEntry::step, {}, 0);
   ByteWriter w;
   write(w, step_.ns);
@@ -72,7 +74,7 @@ void Simulation::take_commands() {
   });
   for (Pending& pending : carrying_out_) {
     outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request)});
-    if (wants_.log) log_request(pending.request, outcomes_.back());
+    if (wants_.input) log_request(pending.request, outcomes_.back());
   }
   carrying_out_.clear();
   apply_program_orders();
@@ -112,6 +114,7 @@ void Simulation::physics() {
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
         pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+    pull();
     if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
@@ -134,6 +137,19 @@ void Simulation::physics() {
     failure_ = std::move(finite);
     stop_reason_ = failure_.error().what;
   }
+}
+
+/// Adds the forces of all pulls to this sub-step's wrenches.
+void Simulation::pull() {
+  std::erase_if(pulls_, [&](const Pull& pull) { return pull.until <= now_; });
+  for (const Pull& pull : pulls_)
+    for (const auto& entity : entities_) {
+      if (entity->serial != pull.serial) continue;
+      const model::Model& model = *entity->instance.model;
+      const BodyId body = engine_->bodies(entity->id)[pull.link];
+      actuation_.wrenches.push_back(
+          wrench_of(pull, body, engine_->states()[body.index], model.links[pull.link], mass_kg(model)));
+    }
 }
 
 void Simulation::update_scene() {

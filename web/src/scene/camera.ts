@@ -82,8 +82,14 @@ export class CameraRig {
       this.blend_fov = this.perspective.fov;
       this.blend = mode === 'top' ? 1 : 0;
     }
+    const was = this.mode;
     this.mode = mode;
     this.stand_age_s = Infinity;
+    if (mode === 'top' && (was === 'race' || was === 'tv' || was === 'robot')) {
+      // Their distance is that of a chase; a plan wants some surroundings.
+      this.goal.target.copy(this.now.target);
+      this.goal.distance = this.now.distance = Math.max(8, this.goal.distance);
+    }
     if (subject) {
       this.race_yaw = subject.yaw_rad;
       if (mode === 'follow') {

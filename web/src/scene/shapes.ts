@@ -55,31 +55,41 @@ function surfaceOf(material: Material): Surface {
 
 const clamp01 = (v: number): number => Math.min(1, Math.max(0, Number.isFinite(v) ? v : 1));
 
-/** A primitive as a unit geometry and the scale that makes it; undefined: it cannot be scaled from one. */
+/**
+ * A primitive as a unit geometry and the scale that makes it; undefined: it cannot be scaled from one. Small round things
+ * have fewer facets: a thousand casters of a thousand triangles are a million that nobody sees.
+ */
 function unitOf(shape: Shape): { key: string; scale: [number, number, number] } | undefined {
   switch (shape.type) {
     case 'box':
       return { key: 'box', scale: shape.size };
     case 'sphere':
-      return { key: 'sphere', scale: [shape.radius, shape.radius, shape.radius] };
+      return { key: `sphere${fineness(shape.radius)}`, scale: [shape.radius, shape.radius, shape.radius] };
     case 'ellipsoid':
-      return { key: 'sphere', scale: shape.radii };
+      return { key: `sphere${fineness(Math.max(...shape.radii))}`, scale: shape.radii };
     case 'cylinder':
     case 'cone':
-      return { key: shape.type, scale: [shape.radius, shape.radius, shape.length] };
+      return { key: `${shape.type}${fineness(shape.radius)}`, scale: [shape.radius, shape.radius, shape.length] };
     default:
       return undefined;
   }
 }
 
+/** Facets around, by radius: a chord's sagitta stays below a millimetre or so. */
+function fineness(radius_m: number): number {
+  return radius_m < 0.04 ? 14 : radius_m < 0.15 ? 24 : radius_m < 1 ? 40 : 72;
+}
+
 function unitGeometry(key: string): THREE.BufferGeometry {
-  switch (key) {
+  const [, name, count] = /^([a-z]+)(\d*)$/.exec(key) ?? [];
+  const facets = Number(count);
+  switch (name) {
     case 'sphere':
-      return new THREE.SphereGeometry(1, 32, 20).rotateX(Math.PI / 2);
+      return new THREE.SphereGeometry(1, facets, Math.round(facets * 0.6)).rotateX(Math.PI / 2);
     case 'cylinder':
-      return new THREE.CylinderGeometry(1, 1, 1, 36).rotateX(Math.PI / 2);
+      return new THREE.CylinderGeometry(1, 1, 1, facets).rotateX(Math.PI / 2);
     case 'cone':
-      return new THREE.ConeGeometry(1, 1, 36).rotateX(Math.PI / 2);
+      return new THREE.ConeGeometry(1, 1, facets).rotateX(Math.PI / 2);
     default:
       return new THREE.BoxGeometry(1, 1, 1);
   }

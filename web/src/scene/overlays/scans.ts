@@ -31,7 +31,7 @@ export class Scans {
     vertexShader: `attribute float strength; varying float alpha;
       void main() { alpha = strength; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
     fragmentShader: `varying float alpha;
-      void main() { gl_FragColor = vec4(1.0, 0.25, 0.12, alpha * alpha * 0.16 + 0.018);
+      void main() { gl_FragColor = vec4(1.0, 0.25, 0.12, alpha * alpha * 0.09 + 0.008);
         #include <colorspace_fragment>
       }`,
   });

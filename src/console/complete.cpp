@@ -1,0 +1,181 @@
+/// How the last word of a line may go on.
+#include <algorithm>
+
+#include "base/text.h"
+#include "console/command.h"
+#include "console/words.h"
+#include "devices/kind.h"
+#include "sim/values.h"
+
+namespace sandlot {
+namespace {
+
+using console::Argument;
+using console::Verb;
+using Entity = Simulation::Entity;
+
+constexpr std::size_t most_candidates = 100;
+
+class Candidates {
+ public:
+  explicit Candidates(std::string prefix) : prefix_(std::move(prefix)) {}
+  const std::string& prefix() const { return prefix_; }
+  void add(std::string word) {
+    if (starts_with(word, prefix_)) words_.push_back(std::move(word));
+  }
+  /// Sorted; where they are too many, cut after the next / or . so that they become fewer.
+  std::vector<std::string> take() && {
+    tidy();
+    if (words_.size() > most_candidates) {
+      for (std::string& word : words_)
+        if (const std::size_t cut = word.find_first_of("/.[", prefix_.size()); cut != std::string::npos)
+          word.resize(cut + 1);
+      tidy();
+    }
+    if (words_.size() > most_candidates) words_.resize(most_candidates);
+    return std::move(words_);
+  }
+
+ private:
+  void tidy() {
+    std::sort(words_.begin(), words_.end());
+    words_.erase(std::unique(words_.begin(), words_.end()), words_.end());
+  }
+  std::string prefix_;
+  std::vector<std::string> words_;
+};
+
+std::string_view robot_of(std::string_view address) { return address.substr(0, address.find_first_of("/.")); }
+
+/// Addresses below things: names of things first, then all of the one thing that is left.
+template <class Tail, class List>
+void complete_addresses(const Simulation& simulation, Candidates& out, const Tail& tail, const List& list) {
+  const std::string_view robot = robot_of(out.prefix());
+  if (robot.size() < out.prefix().size()) {
+    if (const Entity* const entity = simulation.find_entity(robot)) list(*entity);
+    return;
+  }
+  const Entity* only = nullptr;
+  std::size_t count = 0;
+  for (const auto& entity : simulation.entities()) {
+    const std::string after = tail(*entity);
+    if (after.empty() || !starts_with(entity->instance.name, robot)) continue;
+    only = ++count == 1 ? entity.get() : nullptr;
+    out.add(entity->instance.name + after);
+  }
+  if (only) list(*only);
+}
+
+std::vector<std::string> device_paths(const Entity& entity, bool programs) {
+  std::vector<std::string> out;
+  for (const auto& device : entity.devices) out.push_back(device->path);
+  if (programs)
+    for (const auto& program : entity.programs) out.push_back(program->path);
+  return out;
+}
+
+std::string slash_if_devices(const Entity& entity) {
+  return entity.devices.empty() && entity.programs.empty() ? "" : "/";
+}
+
+void complete_values(const Simulation& simulation, Candidates& out) {
+  if (robot_of(out.prefix()).size() == out.prefix().size()) {
+    out.add("sim.");
+  } else if (starts_with(out.prefix(), "sim.")) {
+    for (const char* each : {"sim.time", "sim.tick", "sim.revision"}) out.add(each);
+    return;
+  }
+  complete_addresses(
+      simulation, out, [](const Entity&) { return std::string("."); },
+      [&](const Entity& entity) {
+        list_values(simulation, entity.instance.name, [&](const ValueEntry& entry) { out.add(entry.path); });
+      });
+}
+
+void complete_argument(const Simulation& simulation, const Console::Options& options, Argument argument,
+                       const std::vector<std::string>& before, Candidates& out) {
+  const auto device_named = [&](const std::string& path) -> const Simulation::Device* {
+    if (const Entity* const entity = simulation.find_entity(robot_of(path)))
+      for (const auto& device : entity->devices)
+        if (device->path == path) return device.get();
+    return nullptr;
+  };
+  switch (argument) {
+    case Argument::none: break;
+    case Argument::command:
+      for (std::string& name : console::command_names(options)) out.add(std::move(name));
+      break;
+    case Argument::list:
+      for (const char* each : {"entities", "models", "topics", "parameters"}) out.add(each);
+      for (const auto& entity : simulation.entities()) out.add(entity->instance.name);
+      if (out.prefix().find('/') != std::string::npos)
+        if (const Entity* const entity = simulation.find_entity(robot_of(out.prefix())))
+          for (std::string& path : device_paths(*entity, true)) out.add(std::move(path));
+      break;
+    case Argument::thing:
+      for (const auto& entity : simulation.entities()) out.add(entity->instance.name);
+      break;
+    case Argument::device:
+    case Argument::target:
+      complete_addresses(simulation, out, slash_if_devices, [&](const Entity& entity) {
+        for (const auto& device : entity.devices)
+          if (argument == Argument::device || !device->commands.empty()) out.add(device->path);
+      });
+      break;
+    case Argument::level:
+      if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
+        if (const auto kind = find_device_kind(device->decl.kind))
+          for (const LevelInfo& level : (*kind)->levels) out.add(level.name);
+      break;
+    case Argument::link:
+      if (const Entity* const entity = before.empty() ? nullptr : simulation.find_entity(before.front()))
+        for (const model::Link& link : entity->instance.model->links) out.add(link.name);
+      break;
+    case Argument::parameter:
+      complete_addresses(simulation, out, slash_if_devices, [&](const Entity& entity) {
+        for (const std::string& path : device_paths(entity, true))
+          for (const console::Parameter& parameter : console::parameters_of(simulation, entity, path))
+            out.add(parameter.address());
+      });
+      break;
+    case Argument::value: complete_values(simulation, out); break;
+    case Argument::type:
+      if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
+        for (const Simulation::Slot& slot : device->commands) out.add(slot.topic->type());
+      break;
+    case Argument::model:
+      for (const char* each : {"box", "sphere", "cylinder", "copy"}) out.add(each);
+      for (const console::ModelFile& file : console::model_files(options)) out.add(file.name);
+      for (const auto& entity : simulation.entities())
+        if (!entity->instance.model->is_static) out.add(entity->instance.name);
+      break;
+    case Argument::off: out.add("off"); break;
+    case Argument::speed: out.add("max"); break;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> Console::complete(std::string_view line) const {
+  if (line.size() > console::most_letters) return {};
+  std::vector<console::Word> words = console::plain_words_of(line);
+  const bool fresh = words.empty() || words.back().end < line.size();
+  std::string prefix = fresh ? "" : words.back().text;
+  if (!fresh) words.pop_back();
+  if (prefix.size() > console::most_pattern) return {};
+  Candidates out(std::move(prefix));
+  const Simulation& simulation = std::as_const(session_).simulation();
+  if (words.empty()) {
+    complete_argument(simulation, options_, Argument::command, {}, out);
+    return std::move(out).take();
+  }
+  const Verb* const command = console::find_command(words.front().text);
+  if (!command) return {};
+  std::vector<std::string> before;
+  for (std::size_t i = 1; i < words.size(); ++i) before.push_back(words[i].text);
+  const std::size_t place = std::min(before.size(), command->arguments.size() - 1);
+  complete_argument(simulation, options_, command->arguments[place], before, out);
+  return std::move(out).take();
+}
+
+}  // namespace sandlot

@@ -1,0 +1,297 @@
+#include "console/console.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "console/test_talk.h"
+
+namespace sandlot {
+namespace {
+
+using test::Talk;
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+TEST(Console, SetsAParameterAndTellsWhen) {
+  Talk talk(test::arena("rigid", 1));
+  EXPECT_EQ(talk.ok("show rover1/laser.noise.white"), "rover1/laser.noise.white = 0.01 m");
+  EXPECT_EQ(talk.ok("set rover1/laser.noise.white 2 cm"),
+            "rover1/laser.noise.white = 0.02 m with the next tick");
+  EXPECT_EQ(talk.ok("show rover1/laser.noise.white"), "rover1/laser.noise.white = 0.01 m");
+  talk.step();
+  EXPECT_EQ(talk.ok("show rover1/laser.noise.white"), "rover1/laser.noise.white = 0.02 m");
+}
+
+TEST(Console, WhileItRunsTheAnswerNamesTheTick) {
+  Talk talk(test::arena("rigid", 1));
+  talk.ok("run max");
+  const std::string answer = talk.ok("set rover1/laser.noise.white = 30mm");
+  EXPECT_TRUE(has(answer, "rover1/laser.noise.white = 0.03 m from tick ")) << answer;
+  talk.ok("pause");
+  EXPECT_EQ(talk.ok("view rover1/laser.noise.white"), "rover1/laser.noise.white = 0.03 m");
+}
+
+TEST(Console, PatternsSetManyAndNothingElse) {
+  Talk talk(test::arena("rigid", 3));
+  EXPECT_EQ(talk.ok("set rover[12]/laser.noise.white 0.05"),
+            "rover1/laser.noise.white = 0.05 m with the next tick\n"
+            "rover2/laser.noise.white = 0.05 m with the next tick");
+  talk.step();
+  EXPECT_EQ(talk.ok("show */laser.noise.white"),
+            "rover1/laser.noise.white = 0.05 m\nrover2/laser.noise.white = 0.05 m\nrover3/laser.noise.white "
+            "= 0.01 m");
+  EXPECT_EQ(talk.ok("show **.noise.white"), talk.ok("show */laser.noise.white"));
+}
+
+TEST(Console, WrongValuesAreAnsweredAtOnce) {
+  Talk talk(test::arena("rigid", 1));
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white -1"), "must be"))
+      << talk.say("set rover1/laser.noise.white -1").text;
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white 2 kg"), "unit 'kg' does not fit"));
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.wite 1"), "rover1/laser.noise.white"));
+  EXPECT_TRUE(has(talk.refused("set rover1/laserr.noise.white 1"), "did you mean 'rover1/laser'"));
+  EXPECT_TRUE(has(talk.refused("set rober1/laser.noise.white 1"), "did you mean 'rover1'"));
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.beams 10"), "fixed once the run has started"));
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white"), "needs more words"));
+  EXPECT_TRUE(has(talk.refused("set rover1 1"), "is no parameter"));
+}
+
+TEST(Console, ControllersHaveParametersToo) {
+  Talk talk(test::arena("rigid", 1));
+  const std::string list = talk.ok("list parameters");
+  EXPECT_TRUE(has(list, "rover1/controller.speed = ")) << list;
+  talk.ok("set rover1/controller.speed 0.125");
+  talk.step();
+  EXPECT_EQ(talk.ok("show rover1/controller.speed"), "rover1/controller.speed = 0.125 m/s");
+}
+
+TEST(Console, UnknownWordsNameTheNearest) {
+  Talk talk(test::arena("rigid", 1));
+  EXPECT_TRUE(has(talk.refused("puase"), "did you mean 'pause'"));
+  EXPECT_TRUE(has(talk.refused("help puase"), "did you mean 'pause'"));
+  EXPECT_TRUE(has(talk.refused("list topcs"), "did you mean 'topics'"));
+  EXPECT_TRUE(has(talk.refused("pause now"), "stands alone"));
+  EXPECT_EQ(talk.ok(""), "");
+  EXPECT_EQ(talk.ok("  \t "), "");
+  EXPECT_FALSE(talk.say(std::string(5000, 'x')).ok);
+  EXPECT_FALSE(talk.say("echo a\nb").ok);
+}
+
+TEST(Console, SpectatorsLookAndDoNotSteer) {
+  Talk talk(test::arena("rigid", 1));
+  for (const char* line :
+       {"pause", "run", "step", "speed 2", "reset", "jump 0", "set rover1/laser.noise.white 0.02",
+        "pose rover1 1 1", "drag rover1 1 1", "add box 1 1", "remove rover1", "store a", "load a",
+        "record a.mcap", "level rover1/drive ideal", "sample rover1/laser", "quit",
+        "pull rover1 base_link 0 0 0 0 0 1", "command rover1/drive Twist {}"})
+    EXPECT_TRUE(has(talk.refused(line, false), "you may watch, not steer")) << line;
+  for (const char* line :
+       {"help", "list", "show rover1.pose.x", "time", "hash", "values", "events", "echo hello"})
+    EXPECT_TRUE(talk.say(line, false).ok) << line;
+  EXPECT_EQ(talk.session.report().tick, 0u);
+}
+
+TEST(Console, PosesAndDrags) {
+  Talk talk(test::arena("rigid", 1));
+  talk.ok("pose crate1 1 m 50 cm 0.2 90 deg");
+  talk.step();
+  // At rest on the ground: a tick of 10 ms moves it by nothing that the solver does not allow (its ERP), under 1 mm.
+  EXPECT_NEAR(talk.place("crate1").x, 1, 1e-3);
+  EXPECT_NEAR(talk.place("crate1").y, 0.5, 1e-3);
+  EXPECT_NEAR(
+      talk.ask([](const Simulation& s) { return yaw_of(s.engine().pose(s.find_entity("crate1")->id).q); }),
+      math::pi / 2, 1e-3);
+  talk.ok("drag crate1 -1 0.25");
+  talk.step();
+  EXPECT_NEAR(talk.place("crate1").x, -1, 1e-3);
+  EXPECT_NEAR(talk.place("crate1").z, 0.2, 1e-3);
+  EXPECT_NEAR(
+      talk.ask([](const Simulation& s) { return yaw_of(s.engine().pose(s.find_entity("crate1")->id).q); }),
+      math::pi / 2, 1e-3);
+  EXPECT_TRUE(has(talk.ok("pose crate1"), "crate1 is at -1"));
+  EXPECT_TRUE(has(talk.refused("pose crate1 1"), "a pose is X Y"));
+  EXPECT_TRUE(has(talk.refused("pose crate1 1 x"), "Y: 'x' is not a number"));
+  EXPECT_TRUE(has(talk.refused("drag crate1 1 1 1 1"), "turns nothing"));
+  EXPECT_TRUE(has(talk.refused("pose crate3 1 1"), "did you mean 'crate"));
+}
+
+TEST(Console, PullsWithASpring) {
+  Talk talk(test::arena("rigid", 1));
+  const Vec3 before = talk.place("crate1");
+  for (int i = 0; i < 40; ++i) {
+    talk.ok("pull crate1 link 0 0 0 0.4 -1.1 1.2");
+    talk.step(10);
+  }
+  // Critically damped with w = 2 pi / s: after 4 s it hangs g / w^2 below the target.
+  EXPECT_NEAR(talk.place("crate1").z, 1.2 - 9.81 / (4 * math::pi * math::pi), 0.02);
+  EXPECT_NEAR(talk.place("crate1").y, -1.1, 0.02);
+  EXPECT_GT(talk.place("crate1").z, before.z + 0.5);
+  talk.ok("pull crate1 off");
+  EXPECT_TRUE(has(talk.refused("pull crate1 lnk 0 0 0 0 0 1"), "did you mean 'link'"));
+  EXPECT_TRUE(has(talk.refused("pull crate1 link 0 0 0 0 0"), "TZ is missing"));
+}
+
+TEST(Console, AddsThingsThatStandOnWhatIsThere) {
+  Talk talk(test::arena("rigid", 1));
+  EXPECT_TRUE(has(talk.ok("add box 1 -1 size=0.4 mass=2 color=red"), "box (box) at 1 -1 0.2 m"));
+  EXPECT_TRUE(has(talk.ok("add sphere ball 1 2 size=20cm"), "ball (sphere) at 1 2 0.1 m"));
+  talk.step();
+  // On top of the first: 0.4 m of it and half of its own 0.2 m.
+  EXPECT_TRUE(has(talk.ok("add box 1 -1 size=0.2"), "box2 (box) at 1 -1 0.5 m"));
+  talk.step(100);
+  EXPECT_NEAR(talk.place("box").z, 0.2, 2e-3);
+  EXPECT_NEAR(talk.place("box2").z, 0.5, 4e-3);
+  const auto mass = talk.ask(
+      [](const Simulation& s) { return mass_kg(*s.find_entity("box")->instance.model); });
+  EXPECT_DOUBLE_EQ(mass, 2);
+  EXPECT_TRUE(has(talk.refused("add box box 0 0"), "'box3' is free"));
+  EXPECT_TRUE(has(talk.refused("add bxo 0 0"), "did you mean 'box'"));
+  EXPECT_TRUE(has(talk.refused("add box 0 0 size=1,2"), "size=X,Y,Z"));
+  EXPECT_TRUE(has(talk.refused("add box 0 0 colr=red"), "did you mean 'color'"));
+}
+
+TEST(Console, AddsACopyOfARobot) {
+  Talk talk(test::arena("rigid", 1));
+  talk.ok("add copy of rover1 as ann 2 -1 0 90 deg");
+  talk.ok("add rover1 bob 2 -2");
+  talk.step();
+  EXPECT_EQ(talk.ok("show ann/laser.parameter.max_range"), "ann/laser.parameter.max_range = 6 m");
+  EXPECT_NEAR(talk.place("ann").x, 2, 0.01);
+  // The rover's wheels touch the ground when its frame is on it.
+  EXPECT_NEAR(talk.place("bob").z, 0, 2e-3);
+  EXPECT_EQ(talk.ok("remove [ab]*"), "ann removed with the next tick\nbob removed with the next tick");
+  talk.step();
+  EXPECT_FALSE(talk.ask([](const Simulation& s) { return s.find_entity("ann") != nullptr; }));
+}
+
+TEST(Console, AddsAModelFile) {
+  Talk talk(test::arena("rigid", 1));
+  const auto models = nlohmann::json::parse(talk.ok("list models --json"));
+  bool found = false;
+  for (const auto& model : models) found = found || model["name"] == "models/rover/model.sdf";
+  EXPECT_TRUE(found) << models.dump();
+  talk.ok("add models/rover/model.sdf ann 2 -1");
+  talk.ok("add rover bob 2 -2");
+  talk.step();
+  EXPECT_TRUE(has(talk.ok("list ann"), "ann/laser  laser_scanner"));
+  EXPECT_TRUE(talk.ask([](const Simulation& s) { return s.find_entity("bob")->instance.is_robot; }));
+  EXPECT_FALSE(talk.say("add ../../../etc/passwd 1 1").ok);
+  EXPECT_FALSE(talk.say("add /etc/passwd 1 1").ok);
+}
+
+TEST(Console, CommandsADevice) {
+  model::Setup setup = test::arena("rigid", 1, "");
+  Talk talk(std::move(setup));
+  const Vec3 before = talk.place("rover1");
+  talk.ok("command rover1/drive Twist {\"linear\": {\"x\": 0.3}}");
+  talk.step(200);
+  // 2 s at 0.3 m/s, less the time to get there; the drive's own limits make that well under half a second.
+  EXPECT_NEAR(norm(talk.place("rover1") - before), 0.6, 0.15);
+  EXPECT_TRUE(has(talk.refused("command rover1/drive Twist {\"linear\": 3}"), "linear"));
+  EXPECT_TRUE(has(talk.refused("command rover1/drive Image {}"), "takes no Image"));
+  EXPECT_TRUE(has(talk.refused("command rover1/drve Twist {}"), "did you mean 'rover1/drive'"));
+}
+
+TEST(Console, StepsSpeedsAndTellsTheTime) {
+  Talk talk(test::arena("rigid", 1));
+  talk.step(7);
+  EXPECT_EQ(talk.session.report().tick, 7u);
+  EXPECT_TRUE(has(talk.ok("time"), "0.07 s, tick 7, paused"));
+  EXPECT_EQ(talk.ok("speed 0.5"), "real time x 0.5");
+  EXPECT_EQ(talk.session.report().speed, 0.5);
+  EXPECT_EQ(talk.ok("speed max"), "as fast as possible");
+  EXPECT_FALSE(talk.session.report().speed);
+  EXPECT_FALSE(talk.say("speed 1e9").ok);
+  EXPECT_FALSE(talk.say("speed fast").ok);
+  EXPECT_FALSE(talk.say("step 0.5").ok);
+  EXPECT_FALSE(talk.say("step -1").ok);
+}
+
+TEST(Console, ShowsExpressionsAndStructs) {
+  Talk talk(test::arena("rigid", 1));
+  EXPECT_EQ(talk.ok("show crate1.pose.x*2 'crate1.pose.y + 1'"),
+            "crate1.pose.x*2 = 0.8\ncrate1.pose.y + 1 = -1.1");
+  EXPECT_TRUE(has(talk.ok("show crate1.pose"), "crate1.pose.x = 0.4 m\ncrate1.pose.y = -2.1 m\n"))
+      << talk.ok("show crate1.pose");
+  EXPECT_TRUE(has(talk.refused("show crate1.pose.xx"), "crate1.pose"));
+  const auto rows = nlohmann::json::parse(talk.ok("show sim.tick sim.time --json"));
+  EXPECT_EQ(rows[0]["address"], "sim.tick");
+  EXPECT_EQ(rows[1]["unit"], "s");
+}
+
+TEST(Console, ListsADeviceForThePage) {
+  Talk talk(test::arena("rigid", 1));
+  talk.step();
+  const auto rows = nlohmann::json::parse(talk.ok("list rover1/laser --json"));
+  bool ranges = false, white = false;
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["address"].get<std::string>().rfind("rover1/laser", 0), 0u);
+    if (row["address"] == "rover1/laser.ranges") ranges = row["count"] == 61;
+    if (row["address"] == "rover1/laser.noise.white") white = row["value"] == 0.01 && row["unit"] == "m";
+  }
+  EXPECT_TRUE(ranges);
+  EXPECT_TRUE(white);
+  const auto things = nlohmann::json::parse(talk.ok("list entities --json"));
+  EXPECT_EQ(things.size(), 10u);  // ground, four walls, two pillars, two crates, the rover
+  EXPECT_TRUE(has(talk.ok("ls topics"), "/rover1/laser/ranges  sensor_msgs/msg/LaserScan  1"));
+  EXPECT_TRUE(has(talk.refused("list rover1/lasr"), "did you mean 'rover1/laser'"));
+}
+
+TEST(Console, StoresAndLoads) {
+  test::Folder folder;
+  Talk talk(test::arena("rigid", 1), {.folder = folder.path.string()});
+  talk.step(20);
+  const std::string hash = talk.ok("hash");
+  talk.ok("store a.snapshot");
+  talk.step(20);
+  EXPECT_NE(talk.ok("hash"), hash);
+  EXPECT_TRUE(has(talk.ok("load a.snapshot"), "at 0.2 s, tick 20"));
+  EXPECT_EQ(talk.ok("hash"), hash);
+  talk.ok("store a.snapshot");  // a snapshot may be replaced
+  std::ofstream(folder.path / "scenario.yaml") << "version: 1\n";
+  EXPECT_TRUE(has(talk.refused("store scenario.yaml"), "is no snapshot"));
+  EXPECT_TRUE(has(talk.refused("load scenario.yaml"), "is no snapshot"));
+  EXPECT_TRUE(has(talk.refused("store ../a"), "not within the run's folder"));
+  EXPECT_TRUE(has(talk.refused("store x/../../a"), "not within the run's folder"));
+  EXPECT_TRUE(has(talk.refused("store /usr/a"), "not within the run's folder"));
+  std::filesystem::create_directory_symlink("/usr", folder.path / "out");
+  EXPECT_TRUE(has(talk.refused("store out/a"), "not within the run's folder"));
+  EXPECT_TRUE(has(talk.refused("load b.snapshot"), "there is no file"));
+}
+
+TEST(Console, RecordsByWhatItIsGiven) {
+  test::Folder folder;
+  std::string asked;
+  Talk talk(test::arena("rigid", 1), {.folder = folder.path.string(), .record = [&](const std::string& file) {
+                                        asked = file.empty() ? "off" : file;
+                                        return Result<std::string>("fine");
+                                      }});
+  EXPECT_EQ(talk.ok("record run.mcap"), "fine");
+  EXPECT_EQ(asked, (folder.path / "run.mcap").string());
+  talk.ok("record off");
+  EXPECT_EQ(asked, "off");
+  EXPECT_FALSE(talk.say("record run.txt").ok);
+  EXPECT_FALSE(talk.say("record ../run.mcap").ok);
+  Talk without(test::arena("rigid", 1));
+  EXPECT_TRUE(has(without.refused("record run.mcap"), "nothing can be recorded"));
+}
+
+TEST(Console, CompletesWordsAndAddresses) {
+  Talk talk(test::arena("rigid", 12));
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(talk.complete("pa"), (Words{"pause"}));
+  EXPECT_EQ(talk.complete("set rover1"), (Words{"rover1/", "rover10/", "rover11/", "rover12/"}));
+  const Words laser = talk.complete("set rover2/laser.noise.w");
+  EXPECT_EQ(laser, (Words{"rover2/laser.noise.white"}));
+  EXPECT_EQ(talk.complete("show rover2.pose.y"), (Words{"rover2.pose.y", "rover2.pose.yaw"}));
+  EXPECT_EQ(talk.complete("level rover2/drive "), (Words{"contact", "ideal"}));
+  EXPECT_EQ(talk.complete("command rover2/d"), (Words{"rover2/drive"}));
+  EXPECT_EQ(talk.complete("pull crate1 "), (Words{"link"}));
+  EXPECT_EQ(talk.complete("pause x"), Words{});
+  EXPECT_EQ(talk.complete("nonsense x"), Words{});
+  EXPECT_EQ(talk.complete("remove crate"), (Words{"crate1", "crate2"}));
+  EXPECT_LE(talk.complete("show rover2/").size(), 100u);
+}
+
+}  // namespace
+}  // namespace sandlot

@@ -1,0 +1,220 @@
+/// The table of commands.
+#include "base/text.h"
+#include "console/command.h"
+
+namespace sandlot::console {
+namespace {
+
+using A = Argument;
+
+const std::vector<Verb>& table() {
+  static const std::vector<Verb> commands{
+      {"help", "?", "[WORD]", "All commands, or one of them in full.", false, 0, {A::command}, say_help},
+      {"list",
+       "ls",
+       "[entities|models|topics|parameters|NAME|NAME/DEVICE] [--json]",
+       "What there is: in the world, to be added, to be set, or of one thing or device.",
+       false,
+       0,
+       {A::list},
+       say_list},
+      {"show",
+       "view get",
+       "ADDRESS... [--json]",
+       "Values with their units: addresses, with * ? [ab] **, or expressions such as 'rover.pose.x * 2'.",
+       false,
+       1,
+       {A::value},
+       say_show},
+      {"set",
+       "",
+       "ADDRESS VALUE",
+       "Changes parameters: set */laser.noise.white 2 cm",
+       true,
+       2,
+       {A::parameter, A::none},
+       say_set,
+       true},
+      {"level",
+       "",
+       "DEVICE LEVEL...",
+       "Which levels of abstraction of a device are active.",
+       true,
+       2,
+       {A::device, A::level},
+       say_level,
+       true},
+      {"command",
+       "",
+       "TARGET TYPE JSON",
+       "One message for a device: command rover/drive Twist {\"linear\": {\"x\": 0.5}}",
+       true,
+       3,
+       {A::target, A::type, A::none},
+       say_command,
+       true,
+       true},
+      {"sample",
+       "",
+       "DEVICE",
+       "A device measures in the next tick although it is not due.",
+       true,
+       1,
+       {A::device},
+       say_sample,
+       true},
+      {"pause", "", "", "Stops the clock.", true, 0, {A::none}, say_pause},
+      {"run", "play", "[SPEED]", "Lets it go on.", true, 0, {A::speed}, say_run},
+      {"step", "", "[N]", "So many ticks, one by default, then pause.", true, 0, {A::none}, say_step},
+      {"speed",
+       "",
+       "[X|max]",
+       "Real time x that factor, or as fast as possible; alone: what it is.",
+       true,
+       0,
+       {A::speed},
+       say_speed},
+      {"reset", "", "", "Back to the beginning.", true, 0, {A::none}, say_reset, false, false, true},
+      {"jump",
+       "rewind",
+       "TIME",
+       "To a simulated time, back or ahead: jump 12 s, jump -2 s (from now).",
+       true,
+       1,
+       {A::none},
+       say_jump,
+       false,
+       false,
+       true},
+      {"pose",
+       "",
+       "NAME [X Y [Z] [YAW]] | NAME X Y Z ROLL PITCH YAW",
+       "Puts a thing somewhere, in m and rad (\"90 deg\"); what is left out stays; alone: where it is.",
+       true,
+       1,
+       {A::thing, A::none},
+       say_pose,
+       true},
+      {"drag",
+       "",
+       "NAME X Y [Z]",
+       "Moves a thing as it stands.",
+       true,
+       3,
+       {A::thing, A::none},
+       say_drag,
+       true},
+      {"pull",
+       "",
+       "NAME LINK PX PY PZ TX TY TZ | NAME off",
+       "A spring from a point of a link to a target in the world, for 0.25 s unless said again.",
+       true,
+       2,
+       {A::thing, A::link, A::none},
+       say_pull,
+       true},
+      {"add",
+       "",
+       "MODEL [NAME] X Y [Z] [YAW] [size=...] [color=...] [mass=...]",
+       "A box, sphere or cylinder, a model file, or another of what stands there (add copy of rover as ann 1 "
+       "2).",
+       true,
+       3,
+       {A::model, A::none},
+       say_add,
+       true},
+      {"remove",
+       "delete",
+       "NAME",
+       "Takes things away; * ? [ab] in the name.",
+       true,
+       1,
+       {A::thing},
+       say_remove,
+       true},
+      {"store", "", "FILE", "Writes the state to a snapshot file.", true, 1, {A::none}, say_store},
+      {"load", "", "FILE", "Goes on from a snapshot file.", true, 1, {A::none}, say_load, false, false, true},
+      {"record", "", "FILE|off", "Begins a recording, or ends it.", true, 1, {A::off}, say_record},
+      {"at",
+       "",
+       "TIME LINE",
+       "Says a line later, in simulated time: at 12 s pause",
+       true,
+       2,
+       {A::none},
+       say_at,
+       false,
+       true},
+      {"time", "", "", "Simulated time, tick, speed, and whether it runs.", false, 0, {A::none}, say_time},
+      {"hash", "", "", "The hash of all state: equal runs have equal ones.", false, 0, {A::none}, say_hash},
+      {"values", "", "[--json]", "The values that the scenario names.", false, 0, {A::none}, say_values},
+      {"events",
+       "",
+       "[--json]",
+       "The events of the scenario and how often they happened.",
+       false,
+       0,
+       {A::none},
+       say_events},
+      {"echo", "", "TEXT", "Says the text back; for scripts.", false, 0, {A::none}, say_echo, false, true},
+      {"quit", "", "", "Ends the run.", true, 0, {A::none}, say_quit},
+  };
+  return commands;
+}
+
+}  // namespace
+
+std::span<const Verb> commands() { return table(); }
+
+const Verb* find_command(std::string_view name) {
+  for (const Verb& command : table()) {
+    if (name == command.name) return &command;
+    for (const std::string_view other : split(command.others, ' '))
+      if (!other.empty() && name == other) return &command;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> command_names(const Console::Options& options) {
+  std::vector<std::string> out;
+  for (const Verb& command : table()) {
+    out.emplace_back(command.name);
+    for (const std::string_view other : split(command.others, ' '))
+      if (!other.empty()) out.emplace_back(other);
+  }
+  if (options.experiment)
+    for (const ConsoleCommand& own : options.experiment->commands()) out.push_back(own.name);
+  return out;
+}
+
+Said say_help(Call& call) {
+  if (!call.words.empty()) {
+    const std::string& word = call.words.front();
+    if (const Verb* const command = find_command(word)) {
+      std::string text = std::string(command->name) + (*command->usage ? " " : "") + command->usage + "\n" +
+                         command->help;
+      if (*command->others) text += std::string("\nAlso: ") + command->others;
+      if (command->steers) text += "\nChanges the run: not for spectators.";
+      return std::optional(text);
+    }
+    if (call.options.experiment)
+      for (const ConsoleCommand& own : call.options.experiment->commands())
+        if (own.name == word) return std::optional(own.name + "\n" + own.help);
+    return Error{"there is no command '" + word.substr(0, 60) + "'",
+                 suggestion(word, command_names(call.options))};
+  }
+  std::size_t width = 0;
+  for (const Verb& command : table()) width = std::max(width, std::string_view(command.name).size());
+  std::string text;
+  const auto add = [&](const std::string& name, const std::string& help) {
+    text += (text.empty() ? "" : "\n") + name +
+            std::string(std::max(width, name.size()) - name.size() + 2, ' ') + help;
+  };
+  for (const Verb& command : table()) add(command.name, command.help);
+  if (call.options.experiment)
+    for (const ConsoleCommand& own : call.options.experiment->commands()) add(own.name, own.help);
+  text += "\n`help WORD` says what follows a word.";
+  return std::optional(text);
+}
+
+}  // namespace sandlot::console

@@ -1,0 +1,495 @@
+/// Commands about values, parameters and devices.
+#include "sim/values.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "base/units.h"
+#include "console/command.h"
+#include "console/words.h"
+#include "devices/kind.h"
+#include "formats/yaml.h"
+#include "messages/registry.h"
+#include "sim/monitor.h"
+
+namespace sandlot::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Is = ValueFound::Is;
+
+std::string_view thing_of(std::string_view address) { return address.substr(0, address.find('.')); }
+std::string_view robot_of(std::string_view address) { return address.substr(0, address.find_first_of("/.")); }
+std::string_view without_slash(std::string_view address) {
+  if (!address.empty() && address.front() == '/') address.remove_prefix(1);
+  return address;
+}
+
+std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json row(const ValueEntry& entry) {
+  return {{"address", entry.path},
+          {"unit", entry.unit},
+          {"help", entry.help},
+          {"value", entry.is == Is::value ? Json(entry.value) : Json()},
+          {"count", entry.list ? entry.count : 0}};
+}
+
+std::string line_of(const Simulation& simulation, const ValueEntry& entry) {
+  if (entry.list) {
+    constexpr std::size_t most = 12;
+    std::string text = entry.path + " = [";
+    for (std::size_t i = 0; i < entry.count && i < most; ++i) {
+      auto element = NamedValue::find_or_wait(simulation, entry.path + "[" + std::to_string(i) + "]");
+      const auto value = element.read();
+      text += (i ? ", " : "") + (value ? number_text(*value) : "-");
+    }
+    text += entry.count > most ? ", ...]" : "]";
+    if (!entry.unit.empty() && entry.unit != "1") text += " " + entry.unit;
+    return text + (entry.count > most ? " (" + std::to_string(entry.count) + " values)" : "");
+  }
+  if (entry.is != Is::value) return entry.path + " has no value";
+  return entry.path + " = " + with_unit(entry.value, entry.unit);
+}
+
+/// All values whose address fits, or that belong to a thing or device that fits.
+Status gather(Call& call, std::string_view pattern, std::vector<ValueEntry>& out) {
+  if (pattern.size() > most_pattern)
+    return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
+  const Simulation& simulation = call.simulation();
+  const bool whole_things = pattern.find('.') == std::string_view::npos;
+  const bool plain = !is_pattern(pattern, true);
+  bool too_many = false;
+  const auto take = [&](ValueEntry entry) {
+    const std::string_view thing = thing_of(entry.path);
+    const bool fitting = plain ? thing == pattern ||
+                                     (thing.size() > pattern.size() && starts_with(thing, pattern) &&
+                                      thing[pattern.size()] == '/' &&
+                                      pattern.find('/') != std::string_view::npos)
+                               : fits(pattern, whole_things ? thing : std::string_view(entry.path), true);
+    if (!fitting) return;
+    if (out.size() == most_matches) too_many = true;
+    else out.push_back(std::move(entry));
+  };
+  if (robot_of(pattern) == "sim" || robot_of(pattern) == "values") {
+    list_values(simulation, "", [&](ValueEntry entry) {
+      const std::string_view thing = thing_of(entry.path);
+      if (thing == "sim" || thing == "values") take(std::move(entry));
+    });
+  }
+  const std::string_view robot = robot_of(pattern);
+  const bool deep = robot.find("**") != std::string_view::npos;
+  for (const auto& entity : simulation.entities()) {
+    if (too_many) break;
+    const std::string& name = entity->instance.name;
+    if (plain ? name != robot : !deep && !fits(robot, name)) continue;
+    list_values(simulation, name, take);
+  }
+  if (too_many)
+    return Error{"'" + std::string(pattern) + "' meets more than " + std::to_string(most_matches) + " values",
+                 "narrow it down"};
+  return {};
+}
+
+/// The bytes of a message as a command carries them.
+std::vector<std::byte> bytes_of(const TopicBase& slot, const AnyMessage& message) {
+  std::vector<std::byte> cdr;
+  message.to_cdr(cdr);
+  const std::unique_ptr<TopicBase> copy = slot.clone();
+  SL_CHECK(copy->from_cdr(cdr));
+  ByteWriter head, all;
+  write(head, copy->stamp);
+  write(head, copy->count);
+  copy->save(all);  // stamp, count, message
+  return {all.bytes().begin() + static_cast<std::ptrdiff_t>(head.size()), all.bytes().end()};
+}
+
+bool is_of_type(const TopicBase& slot, std::string_view type) {
+  const std::string_view full = slot.type();
+  return long_name(type) == full || full.substr(full.rfind('/') + 1) == type;
+}
+
+struct SlotFound {
+  const TopicBase* slot = nullptr;
+  std::string target;
+};
+
+/// The slot that a target and a type name; active ones go first.
+Result<SlotFound> find_slot(Call& call, std::string_view target, std::string_view type) {
+  target = without_slash(target);
+  if (target.size() > 8 && target.substr(target.size() - 8) == "/command") target.remove_suffix(8);
+  const Simulation::Entity* const entity = call.simulation().find_entity(robot_of(target));
+  std::vector<std::string> takes, known;
+  SlotFound found;
+  bool there = false, active = false;
+  if (entity)
+    for (const auto& device : entity->devices) {
+      if (!device->commands.empty()) known.push_back(device->path);
+      const bool whole = device->path == target;
+      if (!whole && !starts_with(target, device->path + "/")) continue;
+      const auto kind = find_device_kind(device->decl.kind);
+      for (const Simulation::Slot& slot : device->commands) {
+        const bool always = !kind || slot.level >= (*kind)->levels.size();
+        const std::string level = always ? "" : (*kind)->levels[slot.level].name;
+        if (!whole && target.substr(device->path.size() + 1) != level) continue;
+        there = true;
+        takes.emplace_back(slot.topic->type());
+        if (!is_of_type(*slot.topic, type)) continue;
+        const bool awake = always || (device->levels >> slot.level & 1);
+        if (!found.slot || (awake && !active))
+          found = {slot.topic.get(), std::string(target)}, active = awake;
+      }
+    }
+  if (found.slot) return found;
+  if (there)
+    return Error{"'" + std::string(target) + "' takes no " + std::string(type.substr(0, 60)),
+                 suggestion(type, takes)};
+  call.unknown_thing = true;
+  return Error{"there is no device '" + std::string(target.substr(0, 100)) + "' that takes commands",
+               suggestion(target, known)};
+}
+
+}  // namespace
+
+Said say_show(Call& call) {
+  std::vector<std::string> lines;
+  Json rows = Json::array();
+  const Simulation& simulation = call.simulation();
+  for (const std::string& word : call.words) {
+    const std::string_view address = without_slash(word);
+    if (auto value = NamedValue::find(simulation, address)) {
+      const auto number = value->read();
+      ValueEntry entry{value->address(), value->unit(), "", number ? Is::value : Is::absent,
+                       number.value_or(0)};
+      lines.push_back(line_of(simulation, entry));
+      rows.push_back(row(entry));
+      continue;
+    }
+    std::vector<ValueEntry> entries;
+    SL_TRY(gather(call, address, entries));
+    // "rover/laser.ranges" is a list; it goes as a whole.
+    if (entries.empty() && !is_pattern(address, true)) {
+      list_values(simulation, robot_of(address), [&](ValueEntry entry) {
+        if (entry.list && entry.path == address) entries.push_back(std::move(entry));
+      });
+      if (entries.empty() && address.find_first_of(" +*(<>=") == std::string_view::npos) {
+        // The part of a struct: rover.pose
+        list_values(simulation, robot_of(address), [&](ValueEntry entry) {
+          if (entries.size() < most_matches && starts_with(entry.path, std::string(address) + "."))
+            entries.push_back(std::move(entry));
+        });
+      }
+    }
+    if (entries.empty()) {
+      SL_ASSIGN(ValueExpression expression, ValueExpression::compile(simulation, word));
+      const auto number = expression.evaluate();
+      ValueEntry entry{expression.text(), expression.unit(), "", number ? Is::value : Is::absent,
+                       number ? number->value : 0};
+      lines.push_back(line_of(simulation, entry));
+      rows.push_back(row(entry));
+      continue;
+    }
+    for (const ValueEntry& entry : entries) {
+      if (!call.json) lines.push_back(line_of(simulation, entry));
+      else rows.push_back(row(entry));
+    }
+  }
+  if (call.json) return std::optional(json_text(rows));
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return std::optional(std::move(text));
+}
+
+Said say_set(Call& call) {
+  const std::string_view address = without_slash(call.words.front());
+  if (address.size() > most_pattern)
+    return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
+  std::string_view written = call.rest(1);
+  if (!written.empty() && written.front() == '=') written = trim(written.substr(1));
+  auto parsed = formats::parse_yaml(written, "");
+  if (!parsed)
+    return Error{"'" + std::string(written.substr(0, 60)) + "' is no value: " + parsed.error().what};
+  if (parsed->is_null()) return Error{"a value is missing", "set ADDRESS VALUE"};
+  Node value = std::move(*parsed);
+  const std::string_view thing = thing_of(address);
+  if (thing.size() == address.size() || thing.find('/') == std::string_view::npos) {
+    if (!is_pattern(thing) || thing.size() == address.size())
+      return Error{"'" + std::string(address) + "' is no parameter",
+                   "write DEVICE.PARAMETER: rover/laser.noise.white"};
+  }
+  std::string_view path = address.substr(thing.size() + 1);
+  if (starts_with(path, "parameter.")) path.remove_prefix(10);
+  const bool plain = !is_pattern(thing) && !is_pattern(path, true);
+
+  const Simulation& simulation = call.simulation();
+  std::vector<Parameter> matching;
+  std::vector<std::string> near;
+  bool met_thing = false;
+  const auto look = [&](const Simulation::Entity& entity, const std::string& target) {
+    if (plain ? target != thing : !fits(thing, target)) return;
+    met_thing = true;
+    for (Parameter& parameter : parameters_of(simulation, entity, target)) {
+      const std::string whole = parameter.address();
+      const std::string_view own = std::string_view(whole).substr(target.size() + 1);
+      if (plain ? own == path : fits(path, own, true)) matching.push_back(std::move(parameter));
+      else if (near.size() < 200) near.push_back(whole);
+    }
+  };
+  const std::string_view robot = robot_of(thing);
+  for (const auto& entity : simulation.entities()) {
+    const std::string& name = entity->instance.name;
+    if (plain ? name != robot : robot.find("**") == std::string_view::npos && !fits(robot, name)) continue;
+    for (const auto& device : entity->devices) look(*entity, device->path);
+    for (const auto& program : entity->programs) look(*entity, program->path);
+    if (matching.size() > most_matches)
+      return Error{
+          "'" + std::string(address) + "' meets more than " + std::to_string(most_matches) + " parameters",
+          "narrow it down"};
+  }
+  if (matching.empty()) {
+    if (!met_thing) {
+      call.unknown_thing = true;
+      if (plain)
+        return match_devices(call, thing) ? Error{"there is no device '" + std::string(thing) + "'"}
+                                          : match_devices(call, thing).error();
+      return Error{"no device fits '" + std::string(thing) + "'"};
+    }
+    if (plain) {
+      std::string slashes;
+      for (const char c : path)
+        if (c != ']') slashes += c == '.' || c == '[' ? '/' : c;
+      const Parameter wanted{std::string(thing), slashes, ""};
+      SL_TRY(check_parameter(simulation, wanted, value));
+    }
+    return Error{
+        "no parameter '" + std::string(path.substr(0, 100)) + "' of '" + std::string(thing) + "' can be set",
+        suggestion(address, near)};
+  }
+  std::vector<Asked> asked;
+  for (Parameter& parameter : matching) {
+    if (Status fine = check_parameter(simulation, parameter, value); !fine) {
+      fine.error().place = {};
+      fine.error().path = parameter.address();
+      return std::move(fine.error());
+    }
+    std::string text = parameter.address() + " = ";
+    const auto number = value.is_scalar()
+                            ? parse_quantity(value.text(), parameter.unit.empty() ? "1" : parameter.unit)
+                            : Result<double>(Error{});
+    text += number ? with_unit(*number, parameter.unit) : std::string(written.substr(0, 100));
+    asked.push_back(
+        {ParameterRequest{std::move(parameter.target), std::move(parameter.path), value}, std::move(text)});
+  }
+  return submit(call, std::move(asked));
+}
+
+Said say_level(Call& call) {
+  SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, without_slash(call.words.front())));
+  const std::vector<std::string> levels(call.words.begin() + 1, call.words.end());
+  std::vector<Asked> asked;
+  for (const std::string& path : devices) {
+    const Simulation::Entity* const entity = call.simulation().find_entity(robot_of(path));
+    for (const auto& device : entity->devices) {
+      const auto kind = find_device_kind(device->decl.kind);
+      if (device->path != path || !kind) continue;
+      std::vector<std::string> known;
+      for (const LevelInfo& level : (*kind)->levels) known.emplace_back(level.name);
+      for (const std::string& level : levels)
+        if (std::find(known.begin(), known.end(), level) == known.end())
+          return Error{"device '" + path + "' has no level '" + level.substr(0, 60) + "'",
+                       suggestion(level, known)};
+    }
+    std::string text = path + " at level";
+    for (const std::string& level : levels) text += " " + level;
+    asked.push_back({LevelRequest{path, levels}, std::move(text)});
+  }
+  return submit(call, std::move(asked));
+}
+
+Said say_command(Call& call) {
+  SL_ASSIGN(const SlotFound found, find_slot(call, call.words[0], call.words[1]));
+  SL_ASSIGN(const AnyMessage message, message_from_json(found.slot->info(), call.rest(2)));
+  CommandRequest request{found.target, found.slot->type(), bytes_of(*found.slot, message)};
+  return submit(call, {{std::move(request), found.target + " got a " + found.slot->type()}});
+}
+
+Said say_sample(Call& call) {
+  SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, without_slash(call.words.front())));
+  std::vector<Asked> asked;
+  for (const std::string& path : devices) asked.push_back({SampleRequest{path}, path + " measures"});
+  return submit(call, std::move(asked));
+}
+
+Said say_values(Call& call) {
+  const Monitor& monitor = call.simulation().monitor();
+  if (monitor.value_names().empty() && !call.json)
+    return std::optional<std::string>("the scenario names none");
+  Json rows = Json::array();
+  std::string text;
+  for (std::uint32_t i = 0; i < monitor.value_names().size(); ++i) {
+    const auto value = monitor.value(i);
+    const std::string& name = monitor.value_names()[i];
+    rows.push_back({{"name", name}, {"value", value ? Json(*value) : Json()}});
+    text += (text.empty() ? "" : "\n") + name + (value ? " = " + number_text(*value) : " has no value");
+  }
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+Said say_events(Call& call) {
+  const Monitor& monitor = call.simulation().monitor();
+  if (monitor.events().empty() && !call.json) return std::optional<std::string>("the scenario has none");
+  Json rows = Json::array();
+  std::string text;
+  for (const Monitor::Event& event : monitor.events()) {
+    rows.push_back({{"name", event.decl.name},
+                    {"when", event.decl.when},
+                    {"count", event.count},
+                    {"last_s", event.count > 0 ? Json(event.last.s()) : Json()}});
+    text += (text.empty() ? "" : "\n") + event.decl.name + " (" + event.decl.when + ") ";
+    text += event.count == 0 ? std::string("has not happened")
+                             : "happened " + std::to_string(event.count) + " x, last at " +
+                                   number_text(event.last.s()) + " s";
+  }
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+namespace {
+
+std::string kind_of(const Simulation::Entity& entity) {
+  return entity.instance.is_robot ? "robot" : entity.instance.model->is_static ? "static" : "object";
+}
+
+Said list_entities(Call& call, std::span<const Simulation::Entity* const> things) {
+  Json rows = Json::array();
+  std::string text;
+  for (const Simulation::Entity* thing : things) {
+    const Pose X = call.simulation().engine().pose(thing->id);
+    const model::Instance& instance = thing->instance;
+    rows.push_back({{"name", instance.name},
+                    {"kind", kind_of(*thing)},
+                    {"model", instance.model->name},
+                    {"team", instance.team},
+                    {"pose", {X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z}}});
+    if (!call.json)
+      text += (text.empty() ? "" : "\n") + instance.name + "  " + kind_of(*thing) + "  " +
+              instance.model->name + "  at " + number_text(X.p.x) + " " + number_text(X.p.y) + " " +
+              number_text(X.p.z) + " m";
+  }
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+Said list_topics(Call& call) {
+  Json rows = Json::array();
+  std::string text;
+  for (const TopicBase* topic : call.simulation().topics()) {
+    rows.push_back({{"name", topic->name()}, {"type", topic->type()}, {"count", topic->count}});
+    text += (text.empty() ? "" : "\n") + topic->name() + "  " + topic->type() + "  " +
+            std::to_string(topic->count);
+  }
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+Said list_parameters(Call& call) {
+  Json rows = Json::array();
+  std::string text;
+  std::size_t count = 0;
+  const Simulation& simulation = call.simulation();
+  const auto add = [&](const Simulation::Entity& entity, const std::string& target) {
+    for (const Parameter& parameter : parameters_of(simulation, entity, target)) {
+      if (++count > most_matches) return;
+      auto found = NamedValue::find(simulation,
+                                    target + ".parameter." + parameter.address().substr(target.size() + 1));
+      if (std::optional<double> value; found && (value = found->read())) {
+        rows.push_back({{"address", parameter.address()}, {"unit", parameter.unit}, {"value", *value}});
+        text += (text.empty() ? "" : "\n") + parameter.address() + " = " + with_unit(*value, parameter.unit);
+      } else {
+        rows.push_back({{"address", parameter.address()}, {"unit", parameter.unit}, {"value", Json()}});
+        text += (text.empty() ? "" : "\n") + parameter.address();
+      }
+    }
+  };
+  for (const auto& entity : simulation.entities()) {
+    for (const auto& device : entity->devices) add(*entity, device->path);
+    for (const auto& program : entity->programs) add(*entity, program->path);
+  }
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+Said list_models(Call& call) {
+  Json rows = Json::array();
+  std::string text;
+  const auto add = [&](const std::string& name, const std::string& help) {
+    rows.push_back({{"name", name}, {"help", help}});
+    text += (text.empty() ? "" : "\n") + name + (help.empty() ? "" : "  " + help);
+  };
+  add("box", "size=X,Y,Z color=... mass=...");
+  add("sphere", "size=DIAMETER color=... mass=...");
+  add("cylinder", "size=DIAMETER,HEIGHT color=... mass=...");
+  for (const ModelFile& file : model_files(call.options)) add(file.name, file.help);
+  return std::optional(call.json ? json_text(rows) : text);
+}
+
+Said list_one(Call& call, std::string_view address) {
+  std::vector<ValueEntry> entries;
+  SL_TRY(gather(call, address, entries));
+  if (call.json) {
+    Json rows = Json::array();
+    for (const ValueEntry& entry : entries) rows.push_back(row(entry));
+    return std::optional(json_text(rows));
+  }
+  std::string text;
+  const auto add = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
+  const Simulation::Entity& entity = *call.simulation().find_entity(robot_of(address));
+  for (const auto& device : entity.devices) {
+    if (address != entity.instance.name && address != device->path) continue;
+    std::string line = device->path + "  " + device->decl.kind;
+    if (const auto kind = find_device_kind(device->decl.kind))
+      for (std::size_t i = 0; i < (*kind)->levels.size(); ++i)
+        line += std::string(i ? ", " : "  ") + (*kind)->levels[i].name + (device->levels >> i & 1 ? "*" : "");
+    add(line);
+  }
+  for (const auto& program : entity.programs)
+    if (address == entity.instance.name || address == program->path)
+      add(program->path + "  " + program->decl.kind);
+  for (const ValueEntry& entry : entries) add(line_of(call.simulation(), entry));
+  return std::optional(std::move(text));
+}
+
+}  // namespace
+
+Said say_list(Call& call) {
+  const std::string what = call.words.empty() ? "entities" : std::string(without_slash(call.words.front()));
+  if (call.words.size() > 1) return Error{"'list' lists one thing at a time"};
+  const Simulation& simulation = call.simulation();
+  // A thing of that name goes before the word.
+  const Simulation::Entity* const entity = simulation.find_entity(robot_of(what));
+  if (entity) {
+    bool known = what == entity->instance.name;
+    std::vector<std::string> paths;
+    for (const auto& device : entity->devices) paths.push_back(device->path);
+    for (const auto& program : entity->programs) paths.push_back(program->path);
+    known = known || std::find(paths.begin(), paths.end(), what) != paths.end();
+    if (known) return list_one(call, what);
+    if (what.find('/') != std::string::npos && !is_pattern(what))
+      return Error{"'" + entity->instance.name + "' has no device '" + what.substr(0, 100) + "'",
+                   suggestion(what, paths)};
+  }
+  if (what == "entities") {
+    std::vector<const Simulation::Entity*> all;
+    for (const auto& each : simulation.entities()) all.push_back(each.get());
+    return list_entities(call, all);
+  }
+  if (what == "topics") return list_topics(call);
+  if (what == "parameters") return list_parameters(call);
+  if (what == "models") return list_models(call);
+  if (is_pattern(what)) {
+    SL_ASSIGN(const std::vector<const Simulation::Entity*> things, match_things(call, what));
+    return list_entities(call, things);
+  }
+  std::vector<std::string> known{"entities", "models", "topics", "parameters"};
+  for (const auto& each : simulation.entities()) known.push_back(each->instance.name);
+  return Error{"there is no '" + what.substr(0, 100) + "' to list", suggestion(what, known)};
+}
+
+}  // namespace sandlot::console

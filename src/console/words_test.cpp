@@ -1,0 +1,82 @@
+#include "console/words.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace sandlot::console {
+namespace {
+
+std::vector<std::string> texts(std::string_view line) {
+  std::vector<std::string> out;
+  const auto words = words_of(line);
+  if (!words) return {"error: " + words.error().what};
+  for (const Word& word : *words) out.push_back(word.text);
+  return out;
+}
+
+TEST(Words, QuotesKeepBlanks) {
+  EXPECT_EQ(texts("  set a.b\t'2 cm' \"x y\"z "), (std::vector<std::string>{"set", "a.b", "2 cm", "x yz"}));
+  EXPECT_EQ(texts("say ''"), (std::vector<std::string>{"say", ""}));
+  EXPECT_EQ(texts("say 'it"), (std::vector<std::string>{"error: a quote is not closed in 'say 'it'"}));
+  EXPECT_EQ((*words_of("pose 'a b' 1"))[1].end, 10u);
+}
+
+TEST(Words, PatternsStopAtSlashesAndDotsUnlessDoubled) {
+  EXPECT_TRUE(fits("rover*", "rover12"));
+  EXPECT_FALSE(fits("rover*", "rover12/laser"));
+  EXPECT_TRUE(fits("*/laser", "rover12/laser"));
+  EXPECT_FALSE(fits("*/laser", "a/b/laser"));
+  EXPECT_TRUE(fits("**/laser", "a/b/laser"));
+  EXPECT_TRUE(fits("**", "a/b.c"));
+  EXPECT_TRUE(fits("r?ver", "rover"));
+  EXPECT_FALSE(fits("r?ver", "rver"));
+  EXPECT_TRUE(fits("rover[1-35]", "rover5"));
+  EXPECT_FALSE(fits("rover[1-35]", "rover4"));
+  EXPECT_TRUE(fits("rover[!1-3]", "rover4"));
+  EXPECT_FALSE(fits("rover[!1-3]", "rover2"));
+  EXPECT_TRUE(fits("rover[", "rover["));
+  EXPECT_TRUE(fits("", ""));
+  EXPECT_FALSE(fits("", "a"));
+}
+
+TEST(Words, BracketsWithDigitsAreIndicesInPaths) {
+  EXPECT_TRUE(fits("*.ranges[3]", "laser.ranges[3]", true));
+  EXPECT_FALSE(fits("*.ranges[3]", "laser.ranges3", true));
+  EXPECT_TRUE(fits("rover[3]", "rover3"));
+  EXPECT_FALSE(is_pattern("a.ranges[3]", true));
+  EXPECT_TRUE(is_pattern("rover[3]"));
+}
+
+/// A hostile pattern costs its length times that of the name, not two to the power of its stars.
+TEST(Words, ManyStarsCostLittle) {
+  std::string pattern, name(300, 'a');
+  for (int i = 0; i < 100; ++i) pattern += "*a";
+  EXPECT_FALSE(fits(pattern + "b", name));
+  EXPECT_TRUE(fits(pattern, name));
+}
+
+TEST(Words, QuantitiesMayBeTwoWords) {
+  const std::vector<std::string> words{"90", "deg", "2cm", "3", "4 m"};
+  std::span<const std::string> rest = words;
+  EXPECT_DOUBLE_EQ(*take_quantity(rest, "YAW", "rad"), std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(*take_quantity(rest, "X", "m"), 0.02);
+  EXPECT_DOUBLE_EQ(*take_quantity(rest, "Y", "m"), 3);
+  EXPECT_DOUBLE_EQ(*take_quantity(rest, "Z", "m"), 4);
+  EXPECT_TRUE(rest.empty());
+  EXPECT_EQ(take_quantity(rest, "Z", "m").error().what, "Z is missing");
+}
+
+TEST(Words, Colours) {
+  const Color orange = *read_color("#ff8000");
+  EXPECT_FLOAT_EQ(orange.r, 1);
+  EXPECT_FLOAT_EQ(orange.g, 128 / 255.0f);
+  EXPECT_FLOAT_EQ(orange.b, 0);
+  EXPECT_EQ(*read_color("1,0.5,0"), (Color{1, 0.5f, 0, 1}));
+  EXPECT_FALSE(read_color("1,2,0"));
+  EXPECT_FALSE(read_color("#ff80"));
+  EXPECT_EQ(read_color("redd").error().fix.find("did you mean 'red'") != std::string::npos, true);
+}
+
+}  // namespace
+}  // namespace sandlot::console

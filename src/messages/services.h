@@ -1,0 +1,272 @@
+#pragma once
+/// Services that Sandlot answers, as pairs of messages: its own, and those of simulation_interfaces 2.1.0.
+///
+/// A service type has a name and two messages, Request and Response, named as ROS 2 names them: `pkg/srv/Name_Request` and
+/// `pkg/srv/Name_Response`. messages/services.def lists them; messages/registry.h finds them by name.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "messages/simulation_interfaces.h"
+
+namespace sandlot::msg {
+
+/// Says one line of the console.
+struct Console {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/Console";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Console_Request";
+    std::string line;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"line", "", "A line of the console language."}, s.line);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Console_Response";
+    bool ok = false;
+    std::string text;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"ok", "", "It was done."}, s.ok);
+      visit(Field{"text", "", "The answer, or why it was not done."}, s.text);
+    }
+  };
+};
+
+/// How the last word of a console line may go on.
+struct Complete {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/Complete";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Complete_Request";
+    std::string line;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"line", "", "The line up to the cursor."}, s.line);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Complete_Response";
+    std::vector<std::string> candidates;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"candidates", "", "Whole words that may stand in place of the last one."}, s.candidates);
+    }
+  };
+};
+
+/// Asks for numbers on a channel of their own.
+struct WatchValues {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/Watch";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Watch_Request";
+    std::vector<std::string> values;
+    double rate_hz = 0;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"values", "", "Addresses of values, or expressions."}, s.values);
+      visit(Field{"rate_hz", "Hz", "How often; 0: every tick."}, s.rate_hz);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Watch_Response";
+    bool ok = false;
+    std::string text;
+    std::string topic;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"ok", "", "The channel is there."}, s.ok);
+      visit(Field{"text", "", "Why not."}, s.text);
+      visit(Field{"topic", "", "Of the channel; its messages are sandlot_msgs/msg/Samples."}, s.topic);
+    }
+  };
+};
+
+}  // namespace sandlot::msg
+
+namespace sandlot::msg::simulation {
+
+/// What the simulator can do.
+struct GetSimulatorFeatures {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulatorFeatures";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulatorFeatures_Request";
+    static void fields(auto&, auto&&) {}
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulatorFeatures_Response";
+    SimulatorFeatures features;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"features", "", "All that it can do."}, s.features);
+    }
+  };
+};
+
+/// What the simulator is doing.
+struct GetSimulationState {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulationState";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulationState_Request";
+    static void fields(auto&, auto&&) {}
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulationState_Response";
+    SimulationState state;
+    Result result;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"state", "", "Now."}, s.state);
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+/// Play, pause, stop, quit.
+struct SetSimulationState {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/SetSimulationState";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/SetSimulationState_Request";
+    SimulationState state;
+    static void fields(auto& s, auto&& visit) { visit(Field{"state", "", "That it shall have."}, s.state); }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/SetSimulationState_Response";
+    static constexpr std::uint8_t already_in_target_state = 101;
+    static constexpr std::uint8_t state_transition_error = 102;
+    static constexpr std::uint8_t incorrect_transition = 103;
+    Result result;
+    static void constants(auto&& visit) {
+      visit("ALREADY_IN_TARGET_STATE", already_in_target_state);
+      visit("STATE_TRANSITION_ERROR", state_transition_error);
+      visit("INCORRECT_TRANSITION", incorrect_transition);
+    }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+/// Some ticks, then pause.
+struct StepSimulation {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/StepSimulation";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/StepSimulation_Request";
+    std::uint64_t steps = 1;
+    static void fields(auto& s, auto&& visit) { visit(Field{"steps", "1", "How many."}, s.steps); }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/StepSimulation_Response";
+    Result result;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+/// Back to the beginning.
+struct ResetSimulation {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/ResetSimulation";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/ResetSimulation_Request";
+    static constexpr std::uint8_t scope_default = 0;
+    static constexpr std::uint8_t scope_time = 1;
+    static constexpr std::uint8_t scope_state = 2;
+    static constexpr std::uint8_t scope_spawned = 4;
+    static constexpr std::uint8_t scope_all = 255;
+    std::uint8_t scope = 0;
+    static void constants(auto&& visit) {
+      visit("SCOPE_DEFAULT", scope_default);
+      visit("SCOPE_TIME", scope_time);
+      visit("SCOPE_STATE", scope_state);
+      visit("SCOPE_SPAWNED", scope_spawned);
+      visit("SCOPE_ALL", scope_all);
+    }
+    static void fields(auto& s, auto&& visit) { visit(Field{"scope", "1", "SCOPE_..., added up."}, s.scope); }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/ResetSimulation_Response";
+    Result result;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+/// The names of what stands in the world.
+struct GetEntities {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntities";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntities_Request";
+    EntityFilters filters;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"filters", "", "Which; empty ones let all through."}, s.filters);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntities_Response";
+    Result result;
+    std::vector<std::string> entities;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"entities", "", "Their names."}, s.entities);
+    }
+  };
+};
+
+/// Where an entity is and how it moves.
+struct GetEntityState {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntityState";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntityState_Request";
+    std::string entity;
+    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Its name."}, s.entity); }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntityState_Response";
+    Result result;
+    EntityState state;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"state", "", "Of the entity."}, s.state);
+    }
+  };
+};
+
+/// Puts an entity somewhere.
+struct SetEntityState {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/SetEntityState";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/SetEntityState_Request";
+    std::string entity;
+    EntityState state;
+    bool set_pose = false, set_twist = false, set_acceleration = false;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"entity", "", "Its name."}, s.entity);
+      visit(Field{"state", "", "That it shall have."}, s.state);
+      visit(Field{"set_pose", "", "The pose counts."}, s.set_pose);
+      visit(Field{"set_twist", "", "The twist counts."}, s.set_twist);
+      visit(Field{"set_acceleration", "", "The acceleration counts."}, s.set_acceleration);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/SetEntityState_Response";
+    static constexpr std::uint8_t invalid_pose = 101;
+    Result result;
+    static void constants(auto&& visit) { visit("INVALID_POSE", invalid_pose); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+/// Takes an entity out of the world.
+struct DeleteEntity {
+  static constexpr const char* ros_type = "simulation_interfaces/srv/DeleteEntity";
+  struct Request {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/DeleteEntity_Request";
+    std::string entity;
+    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Its name."}, s.entity); }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "simulation_interfaces/srv/DeleteEntity_Response";
+    Result result;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"result", "", "How the request ended."}, s.result);
+    }
+  };
+};
+
+}  // namespace sandlot::msg::simulation

@@ -1,0 +1,136 @@
+#include "server/server.h"
+
+#include <future>
+
+#include "server/hub.h"
+
+namespace sandlot::server {
+namespace {
+
+HttpAnswer text_answer(int status, std::string_view text) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+  auto owned = std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
+  HttpAnswer out;
+  out.status = status;
+  out.body = *owned;
+  out.owned = std::move(owned);
+  return out;
+}
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(const ServerOptions& options, Session& the_session, Console& console)
+      : session(the_session),
+        feed(std::make_shared<Feed>(the_session, mailbox, assets, options.poses_hz)),
+        hub(the_session, console, options, mailbox, feed, assets) {}
+
+  HttpAnswer get(std::string_view target) const;
+  /// Brings `f` to the hub's thread; nothing after close().
+  void wake(void (Hub::*f)()) {
+    const std::lock_guard lock(mutex);
+    if (transport) transport->post([this, f] { (hub.*f)(); });
+  }
+
+  Session& session;
+  wire::Assets assets;
+  std::shared_ptr<Mailbox> mailbox = std::make_shared<Mailbox>();
+  std::shared_ptr<Feed> feed;
+  Hub hub;
+  std::function<void()> others_on_change;
+
+  std::mutex mutex;  ///< of `transport`, as long as others use it
+  Transport* transport = nullptr;
+  std::unique_ptr<Transport> owned;
+  bool stopped = false;
+};
+
+HttpAnswer Server::Impl::get(std::string_view target) const {
+  constexpr std::string_view asset = "/assets/";
+  if (target.substr(0, asset.size()) == asset) {
+    const auto body = assets.get(target.substr(asset.size()));
+    if (!body) return text_answer(404, body.error().text() + "\n");
+    HttpAnswer out;
+    out.type = body->type;
+    out.owned = body->bytes;
+    out.body = *body->bytes;
+    return out;
+  }
+  for (const PageFile& file : page_files())
+    if (file.path == target || (target == "/" && file.path == "/index.html")) {
+      HttpAnswer out;
+      out.type = file.type;
+      out.body = file.bytes;
+      out.etag = file.etag;
+      std::erase(out.etag, '"');
+      return out;
+    }
+  return text_answer(404, "there is no " + std::string(target.substr(0, 200)) + " here\n");
+}
+
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Session& session,
+                                              Console& console) {
+  auto impl = std::make_unique<Impl>(options, session, console);
+  Impl* const self = impl.get();
+  TransportOptions transport = options.transport;
+  for (const std::string_view name : foxglove::subprotocols) transport.subprotocols.emplace_back(name);
+  // The transport's thread runs before start() has returned; it waits until the hub knows the transport.
+  const auto ready = std::make_shared<std::promise<void>>();
+  const std::shared_future<void> is_ready = ready->get_future().share();
+  Handler handler;
+  handler.get = [self](std::string_view target) { return self->get(target); };
+  handler.connected = [self, is_ready](ClientId id, bool may_steer, std::string_view) {
+    is_ready.wait();
+    self->hub.connected(id, may_steer);
+  };
+  handler.message = [self, is_ready](ClientId id, std::span<const std::byte> bytes, bool text) {
+    is_ready.wait();
+    self->hub.message(id, bytes, text);
+  };
+  handler.disconnected = [self, is_ready](ClientId id) {
+    is_ready.wait();
+    self->hub.disconnected(id);
+  };
+  handler.timer = [self, is_ready] {
+    is_ready.wait();
+    self->hub.timer();
+  };
+  SL_ASSIGN(impl->owned, Transport::start(transport, std::move(handler)));
+  impl->hub.use(*impl->owned);
+  impl->transport = impl->owned.get();
+  ready->set_value();
+  impl->mailbox->open([self] { self->wake(&Hub::drain); });
+  impl->others_on_change = session.on_change;
+  session.on_change = [self] {
+    if (self->others_on_change) self->others_on_change();
+    self->wake(&Hub::state_changed);
+  };
+  return std::unique_ptr<Server>(new Server(std::move(impl)));
+}
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() { stop(); }
+
+std::string Server::url() const { return impl_->owned->url(); }
+
+Counters Server::counters() const {
+  Counters out = impl_->owned->counters();
+  out.refused += impl_->hub.counts().refused;
+  out.dropped += impl_->hub.counts().dropped;
+  return out;
+}
+
+void Server::stop() {
+  if (std::exchange(impl_->stopped, true)) return;
+  impl_->session.on_change = impl_->others_on_change;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->transport = nullptr;
+  }
+  impl_->mailbox->open(nullptr);
+  impl_->owned->stop();
+  impl_->mailbox->close();
+  impl_->feed->leave();
+}
+
+}  // namespace sandlot::server

@@ -1,0 +1,65 @@
+#pragma once
+/// Serves a run to viewers: the page, the Foxglove protocol, services, parameters, publishing. What is said: docs/viewer_protocol.md.
+///
+///   Session session(...);
+///   SL_ASSIGN(auto server, Server::start({.transport = {.port = 8765}}, session, console));
+///   ... session.run(report) ...
+///   server->stop();
+///
+/// The run   is never changed by who looks: messages are copied on the simulation's thread only while somebody has subscribed, and
+///           encoded and sent by the server's own thread. When that falls behind, frames are left out.
+/// Errors    start(): the address cannot be bound.
+/// Cost      on the simulation's thread: filling frames with what is subscribed, at most 30 times a second for poses.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "console/console.h"
+#include "server/transport.h"
+#include "sim/session.h"
+
+namespace sandlot::server {
+
+struct ServerOptions {
+  TransportOptions transport;
+  std::string name;     ///< of the run, shown by viewers
+  std::string version;  ///< of Sandlot
+  double poses_hz = 30;
+  struct Recording {
+    std::string file;
+    std::uint64_t messages = 0, bytes = 0;
+  };
+  /// What is being recorded; asked by the server's thread. Unset: nothing.
+  std::function<std::optional<Recording>()> recording = {};
+};
+
+class Server {
+ public:
+  /// @pre session and console outlive the server; called before session.run(). Session::on_change is taken, what was there
+  /// is called as before.
+  static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Session& session,
+                                               Console& console);
+  ~Server();
+  std::string url() const;
+  Counters counters() const;
+  /// Says good-bye to all viewers. @pre session.run() has returned, or this is its thread
+  void stop();
+
+ private:
+  struct Impl;
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A file of the page by its path ("/main.js"; "/" is index.html): in the program, put there by the build.
+struct PageFile {
+  std::string_view path, type;
+  std::span<const std::byte> bytes;
+  std::string_view etag;  ///< without quotes: another one for other bytes
+};
+std::span<const PageFile> page_files();
+/// False: it was built without node or its packages, and "/" says how to get them.
+bool has_page();
+
+}  // namespace sandlot::server

@@ -1,0 +1,496 @@
+#include "wire/foxglove.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/bytes.h"
+#include "base/text.h"
+
+namespace sandlot::foxglove {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int most_depth = 32;
+/// Commas and brackets in one text: a bound on the values that parsing it makes.
+constexpr std::size_t most_marks = 8 * most_entries;
+
+/// What a client wrote, as an error sentence may repeat it.
+std::string shown(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out + (text.size() > 60 ? "...'" : "'");
+}
+
+/// Judges how deep and how large the document will be before anything is made of it.
+Status check_size(std::string_view text) {
+  if (text.size() > most_text_bytes)
+    return Error{"a message of " + std::to_string(text.size()) + " bytes",
+                 "at most " + std::to_string(most_text_bytes)};
+  int depth = 0;
+  std::size_t marks = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      else if (c == '"') quoted = false;
+      continue;
+    }
+    if (c == '"') quoted = true;
+    else if (c == '[' || c == '{') ++depth, ++marks;
+    else if (c == ']' || c == '}') --depth;
+    else if (c == ',') ++marks;
+    if (depth > most_depth)
+      return Error{"a message nested more than " + std::to_string(most_depth) + " deep"};
+    if (marks > most_marks) return Error{"a message of more than " + std::to_string(most_marks) + " values"};
+  }
+  return {};
+}
+
+Result<Json> parse(std::string_view text) {
+  SL_TRY(check_size(text));
+  std::vector<std::set<std::string>> keys;
+  std::string twice;
+  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
+    return true;
+  };
+  Json document = Json::parse(text, watch, false);
+  if (document.is_discarded()) return Error{"a message that is not JSON"};
+  if (!document.is_object()) return Error{"a message that is no JSON object"};
+  if (!twice.empty()) return Error{"a message with the key " + shown(twice) + " twice"};
+  return document;
+}
+
+/// One message, with sentences about what is wrong with it.
+class Reader {
+ public:
+  Reader(const Json& object, std::string name) : object_(object), name_(std::move(name)) {}
+  Error error(std::string what) const { return Error{name_ + ": " + std::move(what)}; }
+
+  Result<std::uint32_t> number(const char* key) const {
+    const auto found = object_.find(key);
+    if (found == object_.end()) return error("'" + std::string(key) + "' is missing");
+    return id(*found, key);
+  }
+  /// "" when it may be missing and is.
+  Result<std::string> text(const char* key, bool required) const {
+    const auto found = object_.find(key);
+    if (found == object_.end())
+      return required ? Result<std::string>(error("'" + std::string(key) + "' is missing")) : std::string();
+    return name(*found, key);
+  }
+  Result<std::vector<std::uint32_t>> numbers(const char* key) const {
+    SL_ASSIGN(const Json* const list, this->list(key));
+    std::vector<std::uint32_t> out;
+    out.reserve(list->size());
+    for (const Json& each : *list) { SL_ASSIGN(out.emplace_back(), id(each, key)); }
+    SL_TRY(no_two(out, key));
+    return out;
+  }
+  Result<std::vector<std::string>> texts(const char* key) const {
+    SL_ASSIGN(const Json* const list, this->list(key));
+    std::vector<std::string> out;
+    out.reserve(list->size());
+    for (const Json& each : *list) { SL_ASSIGN(out.emplace_back(), name(each, key)); }
+    return out;
+  }
+  /// Calls take(reader of the object) for each object of a list.
+  template <class Take>
+  Status objects(const char* key, Take&& take) const {
+    SL_ASSIGN(const Json* const list, this->list(key));
+    std::size_t place = 0;
+    for (const Json& each : *list) {
+      const std::string path = name_ + ": " + key + "[" + std::to_string(place++) + "]";
+      if (!each.is_object()) return Error{path + " is no object"};
+      SL_TRY(take(Reader(each, path)));
+    }
+    return {};
+  }
+  Status no_two(std::vector<std::uint32_t> ids, const char* key) const {
+    std::sort(ids.begin(), ids.end());
+    const auto twice = std::adjacent_find(ids.begin(), ids.end());
+    if (twice == ids.end()) return {};
+    return error("'" + std::string(key) + "' has " + std::to_string(*twice) + " twice");
+  }
+  const Json* find(const char* key) const {
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+  }
+
+ private:
+  Result<std::uint32_t> id(const Json& value, const char* key) const {
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xFFFFFFFFu)
+      return static_cast<std::uint32_t>(value.get<std::uint64_t>());
+    return error("'" + std::string(key) + "' must be a whole number from 0 to 4294967295");
+  }
+  Result<std::string> name(const Json& value, const char* key) const {
+    if (!value.is_string()) return error("'" + std::string(key) + "' must be a text");
+    const auto& text = value.get_ref<const std::string&>();
+    if (text.size() > most_name_bytes)
+      return error("'" + std::string(key) + "' is longer than " + std::to_string(most_name_bytes) + " bytes");
+    return text;
+  }
+  Result<const Json*> list(const char* key) const {
+    const auto found = object_.find(key);
+    if (found == object_.end()) return error("'" + std::string(key) + "' is missing");
+    if (!found->is_array()) return error("'" + std::string(key) + "' must be a list");
+    if (found->size() > most_entries)
+      return error("'" + std::string(key) + "' has more than " + std::to_string(most_entries) + " entries");
+    return &*found;
+  }
+  const Json& object_;
+  std::string name_;
+};
+
+Status read_value(const Reader& in, Parameter& out) {
+  const Json* const value = in.find("value");
+  if (!value || value->is_null()) return {};
+  if (value->is_boolean()) return out.value = value->get<bool>(), Status();
+  if (value->is_number()) return out.value = value->get<double>(), Status();
+  if (value->is_string()) return out.value = value->get<std::string>(), Status();
+  if (!value->is_array()) return in.error("'value' must be a number, a text, true, false, or a list");
+  if (!value->empty() && value->front().is_string()) {
+    auto& texts = out.value.emplace<std::vector<std::string>>();
+    for (const Json& each : *value) {
+      if (!each.is_string()) return in.error("'value' mixes texts with other things");
+      texts.push_back(each.get<std::string>());
+    }
+    return {};
+  }
+  auto& numbers = out.value.emplace<std::vector<double>>();
+  for (const Json& each : *value) {
+    if (!each.is_number()) return in.error("'value' must be a list of numbers, or of texts");
+    numbers.push_back(each.get<double>());
+  }
+  return {};
+}
+
+Result<Parameter> read_parameter(const Reader& in) {
+  Parameter out;
+  SL_ASSIGN(out.name, in.text("name", true));
+  SL_ASSIGN(out.type, in.text("type", false));
+  SL_TRY(read_value(in, out));
+  const auto is = [&]<class T>(const T*) { return std::holds_alternative<T>(out.value); };
+  const bool none = is(static_cast<std::monostate*>(nullptr));
+  const bool fits = none || out.type.empty() ||
+                    (out.type == "float64" && is(static_cast<double*>(nullptr))) ||
+                    (out.type == "float64_array" && is(static_cast<std::vector<double>*>(nullptr))) ||
+                    (out.type == "byte_array" && is(static_cast<std::string*>(nullptr)));
+  if (!fits)
+    return in.error("'value' is no " + shown(out.type) +
+                    " (types are float64, float64_array, byte_array, or none)");
+  return out;
+}
+
+using Decoded = Result<ClientMessage>;
+
+Decoded read_subscribe(const Reader& in) {
+  Subscribe out;
+  std::vector<std::uint32_t> ids;
+  SL_TRY(in.objects("subscriptions", [&](const Reader& each) -> Status {
+    Subscribe::Each one;
+    SL_ASSIGN(one.id, each.number("id"));
+    SL_ASSIGN(one.channel, each.number("channelId"));
+    ids.push_back(one.id);
+    out.subscriptions.push_back(one);
+    return {};
+  }));
+  SL_TRY(in.no_two(std::move(ids), "subscriptions"));
+  return ClientMessage(std::move(out));
+}
+
+Decoded read_advertise(const Reader& in) {
+  Advertise out;
+  std::vector<std::uint32_t> ids;
+  SL_TRY(in.objects("channels", [&](const Reader& each) -> Status {
+    Advertise::Each one;
+    SL_ASSIGN(one.id, each.number("id"));
+    SL_ASSIGN(one.topic, each.text("topic", true));
+    SL_ASSIGN(one.encoding, each.text("encoding", true));
+    SL_ASSIGN(one.schema_name, each.text("schemaName", false));
+    ids.push_back(one.id);
+    out.channels.push_back(std::move(one));
+    return {};
+  }));
+  SL_TRY(in.no_two(std::move(ids), "channels"));
+  return ClientMessage(std::move(out));
+}
+
+Decoded read_set_parameters(const Reader& in) {
+  SetParameters out;
+  SL_ASSIGN(out.id, in.text("id", false));
+  std::set<std::string> names;
+  SL_TRY(in.objects("parameters", [&](const Reader& each) -> Status {
+    SL_ASSIGN(Parameter one, read_parameter(each));
+    if (!names.insert(one.name).second) return each.error(shown(one.name) + " is set twice");
+    out.parameters.push_back(std::move(one));
+    return {};
+  }));
+  return ClientMessage(std::move(out));
+}
+
+template <class T>
+Decoded made(Result<T> message) {
+  if (!message) return std::move(message.error());
+  return ClientMessage(std::move(*message));
+}
+
+Decoded read_unsubscribe(const Reader& in) {
+  SL_ASSIGN(auto ids, in.numbers("subscriptionIds"));
+  return ClientMessage(Unsubscribe{std::move(ids)});
+}
+Decoded read_unadvertise(const Reader& in) {
+  SL_ASSIGN(auto ids, in.numbers("channelIds"));
+  return ClientMessage(Unadvertise{std::move(ids)});
+}
+Decoded read_get_parameters(const Reader& in) {
+  GetParameters out;
+  SL_ASSIGN(out.names, in.texts("parameterNames"));
+  SL_ASSIGN(out.id, in.text("id", false));
+  return ClientMessage(std::move(out));
+}
+Decoded read_subscribe_parameters(const Reader& in, bool subscribe) {
+  SL_ASSIGN(auto names, in.texts("parameterNames"));
+  return ClientMessage(SubscribeParameters{std::move(names), subscribe});
+}
+Decoded read_fetch_asset(const Reader& in) {
+  FetchAsset out;
+  SL_ASSIGN(out.uri, in.text("uri", true));
+  SL_ASSIGN(out.request, in.number("requestId"));
+  return ClientMessage(std::move(out));
+}
+
+struct Operation {
+  const char* name;
+  Decoded (*read)(const Reader&);
+};
+const Operation operations[] = {
+    {"subscribe", read_subscribe},
+    {"unsubscribe", read_unsubscribe},
+    {"advertise", read_advertise},
+    {"unadvertise", read_unadvertise},
+    {"getParameters", read_get_parameters},
+    {"setParameters", read_set_parameters},
+    {"subscribeParameterUpdates", [](const Reader& in) { return read_subscribe_parameters(in, true); }},
+    {"unsubscribeParameterUpdates", [](const Reader& in) { return read_subscribe_parameters(in, false); }},
+    {"subscribeConnectionGraph",
+     [](const Reader&) -> Decoded { return ClientMessage(SubscribeGraph{true}); }},
+    {"unsubscribeConnectionGraph",
+     [](const Reader&) -> Decoded { return ClientMessage(SubscribeGraph{false}); }},
+    {"fetchAsset", read_fetch_asset},
+};
+
+/// The text whose length the next 4 bytes tell.
+bool read_counted(ByteReader& r, std::string& out) {
+  std::uint32_t size = 0;
+  read(r, size);
+  if (size > most_name_bytes) return r.fail(), false;
+  const auto bytes = r.take(size);
+  out.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return r.ok();
+}
+
+Result<PlaybackControl> read_playback(ByteReader& r) {
+  PlaybackControl out;
+  std::uint8_t command = 0, has_seek = 0;
+  float speed = 0;
+  std::uint64_t seek = 0;
+  read(r, command), read(r, speed), read(r, has_seek), read(r, seek);
+  if (!read_counted(r, out.id) || r.remaining() != 0)
+    return Error{"a playback control (binary op 3) of another length than it says"};
+  if (command > 1) return Error{"a playback control with the command " + std::to_string(command), "0 or 1"};
+  if (!std::isfinite(speed)) return Error{"a playback control whose speed is no number"};
+  out.play = command == 0;
+  out.speed = speed;
+  if (has_seek) out.seek_ns = seek;
+  return out;
+}
+
+// --- what the server says ---
+
+std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json side(const Service::Side& side) {
+  return {{"encoding", side.encoding},
+          {"schemaName", side.schema_name},
+          {"schemaEncoding", side.schema_encoding},
+          {"schema", side.schema}};
+}
+
+Json named(const std::vector<Graph::Named>& all, const char* ids) {
+  Json out = Json::array();
+  for (const Graph::Named& each : all) out.push_back({{"name", each.name}, {ids, each.ids}});
+  return out;
+}
+
+template <class... Parts>
+std::vector<std::byte> bytes_of(const Parts&... parts) {
+  ByteWriter w;
+  (write(w, parts), ...);
+  return std::move(w.buffer());
+}
+
+void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+std::uint64_t ns(Time time) { return static_cast<std::uint64_t>(std::max<std::int64_t>(time.ns, 0)); }
+
+}  // namespace
+
+Result<ClientMessage> read_text(std::string_view text) {
+  SL_ASSIGN(const Json document, parse(text));
+  const auto op = document.find("op");
+  if (op == document.end() || !op->is_string()) return Error{"a message without an 'op'"};
+  const auto& name = op->get_ref<const std::string&>();
+  for (const Operation& each : operations)
+    if (name == each.name) return each.read(Reader(document, name));
+  std::vector<std::string> known;
+  for (const Operation& each : operations) known.emplace_back(each.name);
+  return Error{"there is no op " + shown(name), suggestion(name, known)};
+}
+
+Result<ClientMessage> read_binary(std::span<const std::byte> bytes) {
+  if (bytes.size() > most_binary_bytes)
+    return Error{"a message of " + std::to_string(bytes.size()) + " bytes",
+                 "at most " + std::to_string(most_binary_bytes)};
+  ByteReader r(bytes);
+  std::uint8_t op = 0;
+  read(r, op);
+  if (!r.ok()) return Error{"a message without a byte"};
+  if (op == 1) {
+    ClientData out;
+    read(r, out.channel);
+    if (!r.ok()) return Error{"client data (binary op 1) that ends before its payload"};
+    out.bytes = r.take(r.remaining());
+    return ClientMessage(out);
+  }
+  if (op == 2) {
+    CallService out;
+    read(r, out.service), read(r, out.call);
+    if (!read_counted(r, out.encoding))
+      return Error{"a service request (binary op 2) that ends before its payload"};
+    out.bytes = r.take(r.remaining());
+    return ClientMessage(std::move(out));
+  }
+  if (op == 3) return made(read_playback(r));
+  return Error{"there is no binary op " + std::to_string(op), "known are 1 to 3"};
+}
+
+std::string server_info(const ServerInfo& info) {
+  Json metadata = Json::object();
+  for (const auto& [key, value] : info.metadata) metadata[key] = value;
+  return dump({{"op", "serverInfo"},
+               {"name", info.name},
+               {"capabilities", info.capabilities},
+               {"supportedEncodings", info.encodings},
+               {"metadata", metadata},
+               {"sessionId", info.session_id}});
+}
+
+std::string status(Level level, std::string_view message, std::string_view id) {
+  Json out{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}};
+  if (!id.empty()) out["id"] = id;
+  return dump(out);
+}
+
+std::string advertise(std::span<const Channel> channels) {
+  Json list = Json::array();
+  for (const Channel& each : channels)
+    list.push_back({{"id", each.id},
+                    {"topic", each.topic},
+                    {"encoding", each.encoding},
+                    {"schemaName", each.schema_name},
+                    {"schema", each.schema},
+                    {"schemaEncoding", each.schema_encoding}});
+  return dump({{"op", "advertise"}, {"channels", std::move(list)}});
+}
+
+std::string unadvertise(std::span<const std::uint32_t> ids) {
+  return dump({{"op", "unadvertise"}, {"channelIds", std::vector(ids.begin(), ids.end())}});
+}
+
+std::string advertise_services(std::span<const Service> services) {
+  Json list = Json::array();
+  for (const Service& each : services)
+    list.push_back({{"id", each.id},
+                    {"name", each.name},
+                    {"type", each.type},
+                    {"request", side(each.request)},
+                    {"response", side(each.response)}});
+  return dump({{"op", "advertiseServices"}, {"services", std::move(list)}});
+}
+
+std::string unadvertise_services(std::span<const std::uint32_t> ids) {
+  return dump({{"op", "unadvertiseServices"}, {"serviceIds", std::vector(ids.begin(), ids.end())}});
+}
+
+std::string parameter_values(std::span<const Parameter> parameters, std::string_view id) {
+  Json list = Json::array();
+  for (const Parameter& each : parameters) {
+    Json one{{"name", each.name}};
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) one["value"] = value;
+        },
+        each.value);
+    if (!each.type.empty()) one["type"] = each.type;
+    list.push_back(std::move(one));
+  }
+  Json out{{"op", "parameterValues"}, {"parameters", std::move(list)}};
+  if (!id.empty()) out["id"] = id;
+  return dump(out);
+}
+
+std::string graph_update(const Graph& graph, const Graph& removed) {
+  std::set<std::string> topics, services;
+  for (const auto& each : removed.published) topics.insert(each.name);
+  for (const auto& each : removed.subscribed) topics.insert(each.name);
+  for (const auto& each : removed.services) services.insert(each.name);
+  return dump({{"op", "connectionGraphUpdate"},
+               {"publishedTopics", named(graph.published, "publisherIds")},
+               {"subscribedTopics", named(graph.subscribed, "subscriberIds")},
+               {"advertisedServices", named(graph.services, "providerIds")},
+               {"removedTopics", topics},
+               {"removedServices", services}});
+}
+
+std::string service_failure(std::uint32_t service, std::uint32_t call, std::string_view message) {
+  return dump({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
+}
+
+std::array<std::byte, 13> message_header(std::uint32_t subscription, Time stamp) {
+  std::array<std::byte, 13> out{std::byte{1}};
+  const std::uint64_t at = ns(stamp);
+  std::memcpy(out.data() + 1, &subscription, 4);
+  std::memcpy(out.data() + 5, &at, 8);
+  return out;
+}
+
+std::vector<std::byte> time(Time now) { return bytes_of(std::uint8_t{2}, ns(now)); }
+
+std::vector<std::byte> service_response(std::uint32_t service, std::uint32_t call, std::string_view encoding,
+                                        std::span<const std::byte> payload) {
+  auto out = bytes_of(std::uint8_t{3}, service, call, std::string(encoding));
+  append(out, payload);
+  return out;
+}
+
+std::vector<std::byte> asset(std::uint32_t request, std::span<const std::byte> data) {
+  auto out = bytes_of(std::uint8_t{4}, request, std::uint8_t{0}, std::uint32_t{0});
+  append(out, data);
+  return out;
+}
+
+std::vector<std::byte> asset_error(std::uint32_t request, std::string_view message) {
+  return bytes_of(std::uint8_t{4}, request, std::uint8_t{1}, std::string(message));
+}
+
+}  // namespace sandlot::foxglove
