@@ -60,7 +60,7 @@ export class App {
     this.actions = new Actions(() => this.store.whyNotSteer(), (text) => this.toasts.show(text, 'warning'));
     this.actions.add(...actionTable(this.doers()));
 
-    const sceneElement = h('div', {class: 'scene-canvas', testid: 'scene'});
+    const sceneElement = h('div', {class: 'scene-canvas'});
     // The scene looks at its host's size: it must be in the page, with the frame's style, before it is made.
     const stage = h('div', {class: 'frame'}, h('main', {class: 'scene-host'}, sceneElement));
     root.append(stage);
