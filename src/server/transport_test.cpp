@@ -160,13 +160,13 @@ TEST(Transport, AnotherSiteThatIsListedMayRead) {
 }
 
 TEST(Transport, SlowRequestsAreEnded) {
-  const auto t = start({.handshake_s = 0.2});
+  const auto t = start({.handshake_s = 0.5});
   Socket slow(t->port());
   slow.say("GET / HTTP/1.1\r\nHost: local");
   Socket drops(t->port());
   // A drop at a time does not buy more: the whole head has to come in time.
   std::string_view drop = "GET / HTTP/1.1\r\n";
-  for (int i = 0; i < 100 && !drops.more(0.02); ++i)
+  for (int i = 0; i < 500 && !drops.more(0.02); ++i)
     drops.say(i < 16 ? drop.substr(static_cast<std::size_t>(i), 1) : "x");
   EXPECT_EQ(status(drops.seen), 408);
   EXPECT_EQ(status(slow.rest()), 408);
