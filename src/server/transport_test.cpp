@@ -82,6 +82,10 @@ TEST(Transport, AnswersOneAfterTheOtherOnOneConnection) {
   EXPECT_TRUE(says(last, "Connection: close"));
   EXPECT_EQ(s.rest(), "");
   EXPECT_TRUE(s.ended);
+  Socket old(t->port());
+  old.say("GET / HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(body(old.rest()), page);
+  EXPECT_TRUE(old.ended);
   EXPECT_EQ(t->counters().refused, 0u);
 }
 
@@ -109,6 +113,8 @@ TEST(Transport, RefusesEachWrongRequestWithItsStatusAndEndsTheConnection) {
       {400, "garbage\r\n\r\n"},
       {400, "GET / HTTP/1.1\r\n\r\n"},  // no Host
       {400, "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"},
+      {400, "GET / HTTP/1.0\r\nHost: a b\r\n\r\n"},
+      {400, "GET / HTTP/1.1\r\nHost: \r\n\r\n"},
       {400, "GET / HTTP/1.1\r\nHost: localhost\r\nno colon\r\n\r\n"},
       {400, "GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n"},
       {400, get("/../etc/passwd")},

@@ -207,6 +207,12 @@ TEST(WebSocket, AFloodIsEndedAndABurstIsNot) {
   for (int i = 0; i < 6000; ++i) many_pings += frame(9, "");
   pings.say(many_pings);
   EXPECT_EQ(pings.closing().code(), 1008);
+  // And the crumbs of a message that never ends.
+  auto crumbs = echo.connect();
+  std::string many_crumbs = frame(2, "x", false);
+  for (int i = 0; i < 6000; ++i) many_crumbs += frame(0, "x", false);
+  crumbs.say(many_crumbs);
+  EXPECT_EQ(crumbs.closing().code(), 1008);
   burst.say(frame(1, "me too"));
   EXPECT_EQ(burst.frame().payload, "echo me too");
 }
