@@ -110,11 +110,11 @@ class Hub {
     Clock::time_point complained;
   };
   struct Waiting {  ///< a call that ends when the run has got somewhere
-    std::uint64_t epoch = 0;
-    std::optional<std::uint64_t> tick;  ///< nothing: when there is another world
-    std::uint64_t seen = 0;             ///< tick at `since`
+    /// Whether it has, or why it never will; empty: not yet.
+    std::function<std::optional<Status>(const Session::Report&)> there;
+    std::function<void(const Status&)> end;
+    std::uint64_t tick = 0;  ///< of the run at `since`
     Clock::time_point since;
-    std::function<void(const char* why_not)> end;
   };
   struct Service {
     const char* name;
@@ -165,6 +165,8 @@ class Hub {
   void on_get_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
   void on_set_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
   void on_delete_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
+  void wait(std::function<std::optional<Status>(const Session::Report&)> there,
+            std::function<void(const Status&)> end);
   void end_waiting();
 
   // hub_steer.cpp
