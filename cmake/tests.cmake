@@ -79,6 +79,8 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
     set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
+  # A browser that draws with the processor takes its time.
+  set_tests_properties(js_page_test PROPERTIES LABELS slow TIMEOUT 600)
 else()
   message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
 endif()

@@ -2,10 +2,12 @@
 /// What viewers draw: the world as JSON, sent once and when it changes; poses as compact bytes, 30 times a second; meshes and
 /// height grids as bytes. Layouts: docs/viewer_protocol.md.
 ///
-/// Threads  WorldTeller::tell() belongs to the simulation's thread (between ticks); PoseWriter and the functions on shapes to any one
+/// Threads  WorldTeller::tell() belongs to the simulation's thread (between ticks); PoseWriter and the functions on frames to any one
 ///          thread, they read frames alone.
-/// Cost     poses: one encoding per frame for all clients, no allocation once `out` has its size; 27 bytes for a robot with two wheels.
+/// Cost     poses: one encoding per frame for all clients, no allocation once `out` has its size; 27 bytes for a robot with two
+///          wheels; things at rest cost a comparison. World: models and kinds are written once and kept.
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,10 +20,15 @@
 
 namespace sandlot::wire {
 
-/// Numbers of the things that a world's JSON names instead of holding: "a5" is a mesh, "g1" a grid, "t2" a texture, "m3" a model.
-/// Given out once and kept as long as this is alive, so that clients need nothing twice. Any thread.
+class AssetTable;  // wire/asset_table.h
+struct LinkTree;   // wire/link_tree.h
+
+/// Numbers of the things that a world's JSON names instead of holding: "a5" is a mesh, "g1" a grid, "t2" a texture.
+/// Given out once and kept as long as this is alive, so that clients need nothing twice; what has the same content has the
+/// same number, also in the worlds that follow. Any thread; copies are the same table.
 class Assets {
  public:
+  Assets();
   /// HTTP body of "mesh/a5", "grid/g1", "texture/t2", with its type; errors: there is no such thing, or its file cannot be read any more.
   struct Body {
     std::string type;
@@ -31,12 +38,11 @@ class Assets {
 
  private:
   friend class WorldTeller;
-  struct Shared;
-  std::shared_ptr<Shared> shared_;
-
- public:
-  Assets();
+  std::shared_ptr<AssetTable> table_;
 };
+
+/// Largest file of a texture.
+inline constexpr std::size_t most_texture_bytes = std::size_t{64} << 20;
 
 /// Writes the JSON of /sandlot/world.
 class WorldTeller {
@@ -45,24 +51,64 @@ class WorldTeller {
   std::string tell(const Simulation& simulation, std::uint64_t epoch);
 
  private:
+  struct ToldModel {
+    std::uint64_t number = 0;
+    bool used = false;  ///< in the world that is being told
+  };
+  using ByContent = std::map<std::string, ToldModel>;  ///< JSON of a model, without its id
+  ByContent::iterator told(const std::shared_ptr<const model::Model>& model);
+  const std::string& kind_json(const void* kind, const char* help, std::span<const LevelInfo> levels,
+                               std::vector<FieldInfo> (*describe)());
+
   Assets assets_;
+  ByContent models_;
+  struct Known {
+    std::weak_ptr<const model::Model> model;
+    ByContent::iterator told;
+  };
+  std::unordered_map<const model::Model*, Known> known_models_;
+  std::unordered_map<const void*, std::string> kinds_;
+  std::uint64_t next_model_ = 0;
 };
 
 /// Writes the bytes of /sandlot/poses.
 class PoseWriter {
  public:
+  PoseWriter();
+  ~PoseWriter();
+  PoseWriter(PoseWriter&&) noexcept;
+  PoseWriter& operator=(PoseWriter&&) noexcept;
+  /// Replaces `out` by a message. A frame of another epoch than the last is a key frame whatever is asked.
   /// @param key  everything, not only what has changed since the last call
-  /// @return false: nothing has changed, `out` is empty of records
+  /// @return false: nothing has changed, `out` has no records
+  /// @pre the frame was asked for with links
   bool write(const Frame& frame, std::uint64_t epoch, bool key, std::vector<std::byte>& out);
 
  private:
-  std::unordered_map<std::uint64_t, std::vector<std::byte>> last_;  ///< records, by serial
+  struct Entry {
+    std::shared_ptr<const LinkTree> tree;
+    std::vector<Pose> X_WL;         ///< when it was told last
+    std::vector<std::byte> record;  ///< that was told last
+    std::uint64_t round = 0;        ///< of the last frame that had it
+  };
+  void encode(const FrameInstance& instance, const LinkTree& tree, std::vector<std::byte>& out);
+  bool encode_joints(const FrameInstance& instance, const LinkTree& tree, std::vector<std::byte>& out);
+  std::shared_ptr<const LinkTree> tree_of(const std::shared_ptr<const model::Model>& model);
+  void forget_those_gone();
+
+  std::unordered_map<std::uint64_t, Entry> entries_;  ///< by serial
+  std::unordered_map<const model::Model*, std::shared_ptr<const LinkTree>> trees_;
+  std::uint64_t epoch_ = 0, revision_ = 0, round_ = 0;
+  std::vector<Pose> decoded_;      ///< scratch: what a viewer makes of the record
+  std::vector<std::byte> record_;  ///< scratch
 };
 
-/// The bytes of /sandlot/contacts.
+/// Replaces `out` by the bytes of /sandlot/contacts.
 void write_contacts(const Frame& frame, std::vector<std::byte>& out);
 
 /// The JSON of /sandlot/commands; "" when nothing came from outside in this frame.
 std::string commands_json(const Frame& frame);
+/// What a request asks for, in words: "noise/white = 0.02", "pose 1 2 0".
+std::string words_of(const LogEntry& entry);
 
 }  // namespace sandlot::wire

@@ -67,5 +67,5 @@ const labels: Record<string, string> = {
 };
 
 export function keyLabel(key: string): string {
-  return key.split('+').map((part) => labels[part] ?? (part === 'ctrl' ? 'Ctrl' : part === 'alt' ? 'Alt' : part.length === 1 ? part.toUpperCase() : part)).join(' ');
+  return key.split(/\+(?=.)/).map((part) => labels[part] ?? (part === 'ctrl' ? 'Ctrl' : part === 'alt' ? 'Alt' : part.length === 1 ? part.toUpperCase() : part)).join(' ');
 }

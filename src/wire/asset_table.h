@@ -1,0 +1,53 @@
+#pragma once
+/// The table behind Assets: what a world's JSON names by number. Safe for any thread.
+#include <map>
+#include <mutex>
+#include <unordered_map>
+
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+#include "wire/scene.h"
+
+namespace sandlot::wire {
+
+class AssetTable {
+ public:
+  /// The number of a thing; one of the same content has the same.
+  std::uint32_t number_of(const std::shared_ptr<const TriangleMesh>& mesh);
+  std::uint32_t number_of(const std::shared_ptr<const HeightGrid>& grid);
+  std::uint32_t number_of_texture(const std::string& file);
+
+  Result<Assets::Body> get(std::string_view path);
+
+ private:
+  template <class Thing>
+  struct Kept {
+    std::shared_ptr<const Thing> thing;
+    std::vector<std::uint32_t> textures;                  ///< of a mesh's parts: the number + 1, 0 for none
+    std::shared_ptr<const std::vector<std::byte>> bytes;  ///< once somebody has asked
+  };
+  template <class Thing>
+  struct Table {
+    std::vector<Kept<Thing>> all;
+    std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash;
+    struct Known {
+      std::weak_ptr<const Thing> thing;
+      std::uint32_t number = 0;
+    };
+    std::unordered_map<const Thing*, Known> by_pointer;
+  };
+  template <class Thing>
+  std::uint32_t find_or_add(Table<Thing>& table, const std::shared_ptr<const Thing>& thing);
+  template <class Thing>
+  Result<Assets::Body> body(Table<Thing>& table, std::string_view path, std::uint32_t number);
+  Result<Assets::Body> texture(std::string_view path, std::uint32_t number);
+  std::uint32_t texture_number(const std::string& file);  ///< the mutex is held
+
+  std::mutex mutex_;
+  Table<TriangleMesh> meshes_;
+  Table<HeightGrid> grids_;
+  std::vector<std::string> textures_;
+  std::map<std::string, std::uint32_t, std::less<>> texture_numbers_;
+};
+
+}  // namespace sandlot::wire

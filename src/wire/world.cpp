@@ -1,0 +1,356 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/field_json.h"
+#include "messages/json.h"
+#include "wire/asset_table.h"
+#include "wire/link_tree.h"
+
+namespace sandlot::wire {
+namespace {
+
+/// Appends JSON to a text: one pass and no tree of values, since a world may have thousands of things.
+class Writer {
+ public:
+  explicit Writer(std::string& out) : out_(out) {}
+  Writer& key(std::string_view name) {
+    separate();
+    append_json(name, out_);
+    out_ += ':';
+    fresh_ = true;
+    return *this;
+  }
+  void text(std::string_view value) { separate(), append_json(value, out_); }
+  void number(double value) { separate(), append_json(value, out_); }
+  void number(float value) {
+    separate();
+    // The shortest form of a float is not that of the double that equals it.
+    if (std::isfinite(value)) fmt::format_to(std::back_inserter(out_), "{}", value);
+    else out_ += "null";
+  }
+  void count(std::uint64_t value) { separate(), out_ += std::to_string(value); }
+  /// -1 for nothing.
+  void index(std::uint32_t value) {
+    separate(), out_ += value == LinkTree::none ? std::string("-1") : std::to_string(value);
+  }
+  void flag(bool value) { separate(), out_ += value ? "true" : "false"; }
+  void raw(std::string_view json) { separate(), out_ += json; }
+  template <class F>
+  void object(F&& inside) {
+    around('{', '}', inside);
+  }
+  template <class F>
+  void list(F&& inside) {
+    around('[', ']', inside);
+  }
+  void numbers(std::initializer_list<double> values) {
+    list([&] {
+      for (const double value : values) number(value);
+    });
+  }
+  void vector(Vec3 v) { numbers({v.x, v.y, v.z}); }
+  void pose(const Pose& X) { numbers({X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z}); }
+  void color(Color c) {
+    list([&] {
+      for (const float value : {c.r, c.g, c.b, c.a}) number(value);
+    });
+  }
+
+ private:
+  void separate() {
+    if (!fresh_) out_ += ',';
+    fresh_ = false;
+  }
+  template <class F>
+  void around(char open, char close, F& inside) {
+    separate();
+    out_ += open;
+    fresh_ = true;
+    inside();
+    out_ += close;
+    fresh_ = false;
+  }
+  std::string& out_;
+  bool fresh_ = true;  ///< nothing stands before what comes
+};
+
+const char* name_of(model::JointType type) {
+  switch (type) {
+    case model::JointType::revolute: return "revolute";
+    case model::JointType::continuous: return "continuous";
+    case model::JointType::prismatic: return "prismatic";
+    case model::JointType::ball: return "ball";
+    case model::JointType::universal: return "universal";
+    case model::JointType::screw: return "screw";
+    case model::JointType::fixed: break;
+  }
+  return "fixed";
+}
+const char* name_of(model::Light::Type type) {
+  switch (type) {
+    case model::Light::Type::point: return "point";
+    case model::Light::Type::spot: return "spot";
+    case model::Light::Type::directional: break;
+  }
+  return "directional";
+}
+
+struct ShapeWriter {
+  Writer& w;
+  AssetTable& assets;
+  void type(const char* name) const { w.key("type").text(name); }
+  void round(const char* name, double radius_m, double length_m) const {
+    type(name);
+    w.key("radius").number(radius_m);
+    w.key("length").number(length_m);
+  }
+  void operator()(const Box& s) const { type("box"), w.key("size").vector(s.size_m); }
+  void operator()(const Sphere& s) const { type("sphere"), w.key("radius").number(s.radius_m); }
+  void operator()(const Cylinder& s) const { round("cylinder", s.radius_m, s.length_m); }
+  void operator()(const Capsule& s) const { round("capsule", s.radius_m, s.length_m); }
+  void operator()(const Cone& s) const { round("cone", s.radius_m, s.length_m); }
+  void operator()(const Plane& s) const { type("plane"), w.key("normal").vector(s.normal); }
+  void operator()(const Ellipsoid& s) const { type("ellipsoid"), w.key("radii").vector(s.radii_m); }
+  void operator()(const Mesh& s) const {
+    type("mesh"), w.key("mesh").text("a" + std::to_string(assets.number_of(s.mesh)));
+  }
+  void operator()(const Heightfield& s) const {
+    type("heightmap"), w.key("grid").text("g" + std::to_string(assets.number_of(s.grid)));
+  }
+};
+
+void write_shape(Writer& w, AssetTable& assets, const Shape& shape) {
+  w.key("shape").object([&] { std::visit(ShapeWriter{w, assets}, shape); });
+}
+
+void write_visual(Writer& w, AssetTable& assets, const model::Visual& visual) {
+  w.object([&] {
+    w.key("name").text(visual.name);
+    w.key("pose").pose(visual.X_LC);
+    write_shape(w, assets, visual.shape);
+    const model::Material& material = visual.material;
+    w.key("material").object([&] {
+      w.key("diffuse").color(material.diffuse);
+      w.key("specular").color(material.specular);
+      w.key("emissive").color(material.emissive);
+      w.key("shininess").number(material.shininess);
+      w.key("texture").text(
+          material.texture.empty() ? "" : "t" + std::to_string(assets.number_of_texture(material.texture)));
+      w.key("from_mesh").flag(material.from_mesh);
+    });
+    w.key("cast_shadows").flag(visual.cast_shadows);
+  });
+}
+
+void write_light(Writer& w, const model::Light& light) {
+  w.object([&] {
+    w.key("type").text(name_of(light.type));
+    w.key("name").text(light.name);
+    w.key("pose").pose(light.X_PLight);
+    w.key("color").color(light.color);
+    w.key("cast_shadows").flag(light.cast_shadows);
+    w.key("range_m").number(light.range_m);
+    w.key("constant").number(light.constant);
+    w.key("linear").number(light.linear);
+    w.key("quadratic").number(light.quadratic);
+    w.key("inner_rad").number(light.inner_rad);
+    w.key("outer_rad").number(light.outer_rad);
+  });
+}
+
+void write_link(Writer& w, AssetTable& assets, const LinkTree& tree, std::uint32_t index) {
+  const model::Link& link = tree.model->links[index];
+  w.object([&] {
+    w.key("name").text(link.name);
+    w.key("pose").pose(link.X_ML);
+    w.key("parent").index(tree.links[index].parent);
+    w.key("joint").index(tree.links[index].joint);
+    w.key("visuals").list([&] {
+      for (const model::Visual& visual : link.visuals) write_visual(w, assets, visual);
+    });
+    w.key("collisions").list([&] {
+      for (const model::Collision& collision : link.collisions)
+        w.object([&] {
+          w.key("name").text(collision.name);
+          w.key("pose").pose(collision.X_LC);
+          write_shape(w, assets, collision.shape);
+        });
+    });
+    w.key("lights").list([&] {
+      for (const model::LinkLight& each : tree.model->lights)
+        if (each.link == index) write_light(w, each.light);
+    });
+  });
+}
+
+void write_joint(Writer& w, const model::Joint& joint) {
+  w.object([&] {
+    w.key("name").text(joint.name);
+    w.key("type").text(name_of(joint.type));
+    w.key("parent").index(joint.parent);
+    w.key("child").index(joint.child);
+    w.key("pose").pose(joint.X_CJ);
+    w.key("axis").vector(joint.axis_J);
+    w.key("lower").number(joint.lower);
+    w.key("upper").number(joint.upper);
+    w.key("thread_pitch_m").number(joint.thread_pitch_m);
+  });
+}
+static_assert(model::world_link == LinkTree::none, "both are told as -1");
+
+/// All but the id, as members of an object.
+std::string model_content(AssetTable& assets, const std::shared_ptr<const model::Model>& model) {
+  const LinkTree tree = link_tree(model);
+  std::string out;
+  Writer w(out);
+  w.key("name").text(model->name);
+  w.key("static").flag(model->is_static);
+  w.key("links").list([&] {
+    for (std::uint32_t i = 0; i < model->links.size(); ++i) write_link(w, assets, tree, i);
+  });
+  w.key("joints").list([&] {
+    for (const model::Joint& joint : model->joints) write_joint(w, joint);
+  });
+  return out;
+}
+
+void write_topics(Writer& w, const Kind& kind, const std::vector<Simulation::Slot>& slots) {
+  w.list([&] {
+    for (const Simulation::Slot& slot : slots)
+      w.object([&] {
+        w.key("name").text(slot.topic->name());
+        w.key("type").text(slot.topic->type());
+        w.key("level").text(slot.level < kind.levels.size() ? kind.levels[slot.level].name : "");
+      });
+  });
+}
+
+void write_instance(Writer& w, const Simulation& simulation, const Simulation::Entity& entity,
+                    const std::string& model_id) {
+  const model::Instance& instance = entity.instance;
+  w.object([&] {
+    w.key("id").count(static_cast<std::uint32_t>(entity.serial));
+    w.key("name").text(instance.name);
+    w.key("original").text(instance.original_name);
+    w.key("model").text(model_id);
+    w.key("robot").flag(instance.is_robot);
+    w.key("team").text(instance.team);
+    w.key("pose").pose(simulation.engine().pose(entity.id));
+    w.key("devices").list([&] {
+      for (const auto& device : entity.devices) {
+        const Kind& kind = simulation.kind(*device);
+        w.object([&] {
+          w.key("name").text(device->decl.name);
+          w.key("path").text(device->path);
+          w.key("kind").text(kind.name);
+          w.key("link").index(device->decl.link);
+          w.key("pose").pose(device->decl.X_LS);
+          w.key("active").list([&] {
+            for (std::size_t i = 0; i < kind.levels.size(); ++i)
+              if (device->levels >> i & 1) w.text(kind.levels[i].name);
+          });
+          w.key("topics");
+          write_topics(w, kind, device->topics);
+          w.key("commands");
+          write_topics(w, kind, device->commands);
+        });
+      }
+    });
+    w.key("controllers").list([&] {
+      for (const auto& program : entity.programs)
+        w.object([&] {
+          w.key("name").text(program->decl.name);
+          w.key("path").text(program->path);
+          w.key("kind").text(program->decl.kind);
+        });
+    });
+  });
+}
+
+}  // namespace
+
+WorldTeller::ByContent::iterator WorldTeller::told(const std::shared_ptr<const model::Model>& model) {
+  if (const auto known = known_models_.find(model.get());
+      known != known_models_.end() && !known->second.model.expired())
+    return known->second.told;
+  const auto [place, fresh] = models_.try_emplace(model_content(*assets_.table_, model));
+  if (fresh) place->second.number = next_model_++;
+  known_models_[model.get()] = {model, place};
+  return place;
+}
+
+const std::string& WorldTeller::kind_json(const void* kind, const char* help,
+                                          std::span<const LevelInfo> levels,
+                                          std::vector<FieldInfo> (*describe)()) {
+  std::string& out = kinds_[kind];
+  if (!out.empty()) return out;
+  nlohmann::ordered_json level_list = nlohmann::ordered_json::array(),
+                         fields = nlohmann::ordered_json::array();
+  for (const LevelInfo& level : levels)
+    level_list.push_back(
+        {{"name", level.name}, {"message", level.message}, {"command", level.command}, {"help", level.help}});
+  for (const FieldInfo& field : describe()) {
+    nlohmann::ordered_json one{{"path", field.path}};
+    one.update(field_json(field));
+    fields.push_back(std::move(one));
+  }
+  const nlohmann::ordered_json json{{"help", help}, {"levels", level_list}, {"fields", fields}};
+  return out = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string WorldTeller::tell(const Simulation& simulation, std::uint64_t epoch) {
+  std::string out;
+  Writer w(out);
+  const model::Setup& setup = simulation.setup();
+  w.object([&] {
+    w.key("revision").count(simulation.revision());
+    w.key("epoch").count(epoch);
+    w.key("name").text(setup.name);
+    w.key("engine").text(setup.engine);
+    w.key("step_s").number(setup.step.s());
+    w.key("seed").count(setup.seed);
+    w.key("gravity").vector(setup.gravity);
+    w.key("ambient").color(setup.ambient);
+    w.key("background").color(setup.background);
+    w.key("lights").list([&] {
+      for (const model::Light& light : setup.lights) write_light(w, light);
+    });
+    for (auto& [content, model] : models_) model.used = false;
+    std::vector<ByContent::iterator> models;
+    w.key("models").list([&] {
+      for (const auto& entity : simulation.entities()) {
+        const auto model = models.emplace_back(told(entity->instance.model));
+        if (std::exchange(model->second.used, true)) continue;
+        w.raw("{\"id\":\"m" + std::to_string(model->second.number) + "\"," + model->first + "}");
+      }
+    });
+    w.key("instances").list([&] {
+      std::size_t place = 0;
+      for (const auto& entity : simulation.entities())
+        write_instance(w, simulation, *entity, "m" + std::to_string(models[place++]->second.number));
+    });
+    // Devices go before controllers of the same name: fields of both are found by the kind that a path has.
+    std::map<std::string_view, const std::string*> kinds;
+    for (const auto& entity : simulation.entities())
+      for (const auto& device : entity->devices) {
+        const Kind& kind = simulation.kind(*device);
+        kinds.try_emplace(kind.name, &kind_json(&kind, kind.help, kind.levels, kind.describe));
+      }
+    for (const auto& entity : simulation.entities())
+      for (const auto& program : entity->programs)
+        for (const ControllerKind* kind : simulation.controller_kinds())
+          if (program->decl.kind == kind->name)
+            kinds.try_emplace(kind->name, &kind_json(kind, kind->help, {}, kind->describe));
+    w.key("kinds").object([&] {
+      for (const auto& [name, json] : kinds) w.key(name).raw(*json);
+    });
+  });
+  std::erase_if(known_models_, [](const auto& each) {
+    return each.second.model.expired() || !each.second.told->second.used;
+  });
+  std::erase_if(models_, [](const auto& each) { return !each.second.used; });
+  return out;
+}
+
+}  // namespace sandlot::wire
