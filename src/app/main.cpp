@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "app/commands.h"
+#include "app/console.h"
 #include "app/plot.h"
 #include "app/topic_export.h"
 #include "base/units.h"
@@ -233,6 +234,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     demo_flags.options.file = *file;
     result = run(demo_flags.options);
   });
+
+  add_console_verb(app, result);
 
   FileOptions file_options;
   std::vector<std::string> file_sets;

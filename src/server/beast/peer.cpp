@@ -1,5 +1,8 @@
 /// A connection: HTTP on the socket below its WebSocket stream until it asks for an upgrade, then WebSocket. The one file that compiles Beast's
 /// server side.
+///
+/// Beast's own timeouts stay off. Its idle timeout takes a slow link for a dead one, since a pong waits behind the data, and in 1.74 a timeout
+/// that finds a read suspended behind a close breaks an assertion of Beast's. on_beat() looks after all deadlines instead.
 #define BOOST_BEAST_USE_STD_STRING_VIEW
 #include <fmt/format.h>
 
@@ -244,9 +247,6 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     ++impl.clients;
     queue = std::make_shared<Queue>();
     enter(Stage::upgrade, options.handshake_s);
-    stream.set_option(ws::stream_base::timeout{.handshake_timeout = seconds(options.handshake_s),
-                                               .idle_timeout = ws::stream_base::none(),
-                                               .keep_alive_pings = false});
     stream.set_option(ws::stream_base::decorator([name = subprotocol](ws::response_type& response) {
       response.set(http::field::server, "sandlot");
       if (!name.empty()) response.set(http::field::sec_websocket_protocol, name);
@@ -420,6 +420,13 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       error_code ignored;
       socket().cancel(ignored);
       return;
+    }
+    if (!stream.is_open()) {
+      // Beast has begun to say good-bye: the client did, or broke the protocol.
+      stage = Stage::closing;
+      close_sent = true;
+      deadline = now + goodbye;
+      return drop_queue();
     }
     if (flood) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
     const double silent_s = std::chrono::duration<double>(now - heard).count();
