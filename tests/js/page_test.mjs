@@ -251,6 +251,7 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.equal(viewer.status.end_s, 2);
   assert.equal((await settled(viewer)).time_s, 0, "it waits at its beginning");
   const shown = await open(player.url);
+  await until("a timeline to click on", () => shown.locator(by("timeline")).evaluate((e) => !e.classList.contains("off")));
   const line = await shown.locator(by("timeline")).boundingBox();
   await shown.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
   await until("the middle", () => viewer.status.state === "paused" && viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2);
