@@ -66,7 +66,8 @@ set_tests_properties(check_layers PROPERTIES LABELS unit)
 if(SANDLOT_PAGE)
   add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
-  add_test(NAME page_units COMMAND ${SANDLOT_NODE} test/run.mjs WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
+  file(GLOB sources CONFIGURE_DEPENDS web/test/*.test.mjs)
+  add_test(NAME page_units COMMAND ${SANDLOT_NODE} --test ${sources} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
   set_tests_properties(page_types page_units PROPERTIES LABELS unit TIMEOUT 120)
 endif()
 

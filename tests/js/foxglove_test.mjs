@@ -20,7 +20,7 @@ before(async () => {
 });
 after(async () => {
   viewer?.client.close();
-  await served?.stop();
+  Served.killAll();
   scratch.remove();
 });
 

@@ -20,6 +20,7 @@ let plotted;
 
 const by = (id) => `[data-testid="${id}"]`;
 const row = (address) => `${by("tree")} [data-address="${address}"]`;
+const scene = "canvas" + by("scene");
 const picture = (of, name) => of.screenshot({ path: `${pictures}/${name}.png` });
 
 async function open(url, options = {}) {
@@ -61,6 +62,7 @@ after(async () => {
   probe?.close();
   await browser?.close();
   await served?.stop();
+  Served.killAll();
   scratch.remove();
 });
 
@@ -69,7 +71,7 @@ test("the page loads, and the robot moves", { skip }, async () => {
   const x = page.locator(`${by("inspector")} [data-address="rover.pose.x"]`);
   const first = await x.textContent();
   await until("another place", async () => (await x.textContent()) !== first);
-  await page.locator(`${by("scene")} canvas`).first().waitFor();
+  await page.locator(scene).first().waitFor();
   await picture(page, "page");
 });
 
@@ -115,10 +117,10 @@ test("dragging changes the pose", { skip }, async () => {
   const before = [await probe.number("idle.pose.x"), await probe.number("idle.pose.y")];
   assert.deepEqual(before, [0, 1.5]);
   await page.locator(row("idle")).click();
-  await page.locator(by("scene")).hover();
+  await page.locator(scene).hover();
   await page.keyboard.press("f");
   await page.locator(by("tool-move")).click();
-  const box = await page.locator(by("scene")).boundingBox();
+  const box = await page.locator(scene).boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height / 2];
   // The camera flies to where `f` asked for: try until it has the robot in its middle.
   await until("another place", async () => {
@@ -168,7 +170,7 @@ test("a robot is driven by keyboard", { skip }, async () => {
   await page.locator(row("idle")).click();
   const from = [await probe.number("idle.pose.x"), await probe.number("idle.pose.y")];
   await page.locator(by("drive")).click();
-  await page.locator(by("scene")).hover();
+  await page.locator(scene).hover();
   await page.keyboard.down("w");
   await until("10 cm", async () =>
     Math.hypot(await probe.number("idle.pose.x") - from[0], await probe.number("idle.pose.y") - from[1]) > 0.1);
@@ -249,6 +251,7 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.equal(viewer.status.end_s, 2);
   assert.equal((await settled(viewer)).time_s, 0, "it waits at its beginning");
   const shown = await open(player.url);
+  await until("a timeline to click on", () => shown.locator(by("timeline")).evaluate((e) => !e.classList.contains("off")));
   const line = await shown.locator(by("timeline")).boundingBox();
   await shown.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
   await until("the middle", () => viewer.status.state === "paused" && viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2);

@@ -32,7 +32,9 @@ export async function until(what, get, timeout_s = 20) {
 export class Served {
   out = "";
   error = "";
+  static all = new Set();
   constructor(args, scratch, env = {}) {
+    Served.all.add(this);
     this.summaryFile = scratch.file("summary.json");
     this.process = spawn(sandlot, [...args, "--port", "0", "--summary", this.summaryFile], { env: { ...process.env, ...env } });
     this.process.stdout.on("data", (data) => { this.out += data; });
@@ -51,6 +53,8 @@ export class Served {
   }
   get ws() { return this.url.replace("http:", "ws:"); }
   get summary() { return JSON.parse(readFileSync(this.summaryFile, "utf8")); }
+  /** Whatever a failed test left. */
+  static killAll() { for (const served of Served.all) served.process.kill("SIGKILL"); }
   /** Ctrl-c. @return the exit code */
   async stop() {
     this.process.kill("SIGINT");
@@ -84,7 +88,7 @@ export function makeYard(scratch, { controller = "{kind: wander, radius: 0.18}",
     ["west", "-3 0 0.25", "0.2 5.8 0.5"]];
   scratch.write("yard.sdf", `<?xml version="1.0"?><sdf version="1.9"><world name="yard">
     <light name="sun" type="directional"><direction>-0.4 0.3 -0.9</direction><cast_shadows>true</cast_shadows></light>
-    ${solid("ground", "0 0 0", "<plane><normal>0 0 1</normal><size>8 8</size></plane>", "0.6 0.62 0.6")}
+    ${solid("ground", "0 0 0 0 0 0", "<plane><normal>0 0 1</normal><size>8 8</size></plane>", "0.6 0.62 0.6")}
     ${walls.map(([name, pose, size]) => solid(name, `${pose} 0 0 0`, `<box><size>${size}</size></box>`, "0.7 0.5 0.3")).join("\n")}
     <model name="rock"><static>true</static><pose>2 2 0 0 0 0</pose><link name="link"><visual name="v"><geometry><mesh>
       <uri>rock.stl</uri><scale>0.5 0.5 0.5</scale></mesh></geometry></visual></link></model>

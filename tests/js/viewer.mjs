@@ -2,9 +2,11 @@
 import assert from "node:assert/strict";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader, MessageWriter } from "@foxglove/rosmsg2-serialization";
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+import protocol from "@foxglove/ws-protocol";
 import { WebSocket } from "ws";
 import { until } from "./served.mjs";
+
+const { FoxgloveClient } = protocol;  // CommonJS
 
 /** A client with what it was told. */
 export class Viewer {

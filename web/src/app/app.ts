@@ -57,7 +57,7 @@ export class App {
     if (cleanHref !== location.href) history.replaceState(null, '', cleanHref);
     this.client = new Client({address: () => socketAddress(target)});
     this.steer = new Steer(this.client, this.store);
-    this.actions = new Actions(() => this.store.whyNotSteer(), (text) => this.toasts.show(text, 'warning'));
+    this.actions = new Actions((action) => action.group === 'Time' && action.id !== 'time.record' ? this.store.whyNotPlay() : this.store.whyNotSteer(), (text) => this.toasts.show(text, 'warning'));
     this.actions.add(...actionTable(this.doers()));
 
     const sceneElement = h('div', {class: 'scene-canvas'});

@@ -30,7 +30,7 @@ export class Steer {
 
   /** Says a line that changes something; an error becomes a toast. */
   async say(line: string, quiet = false): Promise<Answer> {
-    const reason = this.store.whyNotSteer();
+    const reason = /^(pause|run|step|speed|reset|jump)\b/.test(line) ? this.store.whyNotPlay() : this.store.whyNotSteer();
     const answer = reason === null ? await this.ask(line) : {ok: false, text: reason};
     if (!answer.ok) this.onError.emit(answer.text || `“${line}” failed`);
     else if (!quiet && answer.text.includes('next tick')) this.onNote.emit(answer.text);

@@ -67,7 +67,7 @@ export class Bar {
   private readonly update = (): void => {
     const {store, client, actions} = this.context;
     const status = store.status;
-    const reason = store.whyNotSteer();
+    const reason = store.whyNotPlay();
     const playing = status?.state === 'playing' || status?.state === 'seeking';
     if (playing !== this.playing) {
       this.playing = playing;
