@@ -203,6 +203,8 @@ TEST(Transport, TooManyConnectionsAreTurnedAwayAndTheOthersGoOn) {
   // These two have asked and have their answers: one of them makes room.
   Socket next(t->port());
   EXPECT_EQ(status(next.ask(get("/"))), 200);
+  EXPECT_FALSE(sockets[0].more());
+  EXPECT_TRUE(sockets[0].ended);
   sockets.clear();
   Socket after(t->port());
   EXPECT_EQ(status(after.ask(get("/"))), 200);
