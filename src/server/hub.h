@@ -54,9 +54,12 @@ class Hub {
   void answer_watch(ClientId client, std::uint32_t channel, std::size_t values, const Status& status,
                     const std::shared_ptr<Call>& call);
   void complain(ClientId client, const std::string& why);
+  /// A line for /rosout; levels of rcl_interfaces/msg/Log.
+  void send_log(std::uint8_t level, const std::string& text);
 
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
+    std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
 
@@ -147,7 +150,6 @@ class Hub {
   void send_status();
   void send_batch(Batch& batch);
   void send_poses(const Batch& batch);
-  void send_log(std::uint8_t level, const std::string& text);
   void adopt(const Inventory& inventory);
 
   // hub_calls.cpp

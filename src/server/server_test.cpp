@@ -1,3 +1,5 @@
+#include "base/log.h"
+#include "messages/rcl_interfaces.h"
 #include "messages/sandlot_msgs.h"
 #include "messages/sensor_msgs.h"
 #include "messages/tf2_msgs.h"
@@ -347,6 +349,21 @@ TEST(Server, another_world_is_told_anew_and_channels_stay) {
   EXPECT_EQ(viewer.call("/delete_entity", {{"entity", "rover1"}})["result"]["result"], 1);
   EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 1}})["result"]["result"], 1);
   EXPECT_TRUE(viewer.until([&] { return viewer.channels.count("/rover1/laser/ranges") == 0; }));
+}
+
+TEST(Server, warnings_of_the_program_are_log_lines) {
+  Running run(one_rover(), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  const std::uint32_t lines = viewer.subscribe("/rosout");
+  viewer.console("list entities");
+  viewer.listen(0.1);
+  log::warning("the floor is wet");
+  const auto line = viewer.next(lines);
+  ASSERT_TRUE(line);
+  const auto log = viewer.read<msg::Log>(*line);
+  EXPECT_EQ(log.level, 30);
+  EXPECT_EQ(log.msg, "the floor is wet");
 }
 
 TEST(Server, the_graph_names_who_talks_to_whom) {
