@@ -58,6 +58,7 @@ void Feed::follow() {
   for (Watch& watch : watches_) {
     watch.begin = simulation.now();
     watch.sample = 0;
+    watch.told.reset();
     for (std::size_t i = 0; i < watch.texts.size(); ++i) {
       auto value = ValueExpression::compile(simulation, watch.texts[i], {}, watch.addresses[i]);
       watch.values[i] = value ? std::optional(std::move(*value)) : std::nullopt;
@@ -138,11 +139,19 @@ void Feed::look(const Demand& demand) {
     }
     if (asked) latest.push_back(std::move(made));
   }
+  const Session::State state = session_.report().state;
+  const bool stands = state != Session::State::playing && state != Session::State::seeking;
+  for (Watch& watch : watches_) {
+    // A run that stands still tells where it stands, whatever the rate.
+    const bool asked = std::binary_search(demand.latest.begin(), demand.latest.end(), watch.channel);
+    if (!asked && (!stands || watch.told == batch.now)) continue;
+    (asked ? latest : batch.messages).push_back(sample(watch));
+  }
   if (interest_->frames || interest_->contacts) {
     batch.frame = session_.simulation().look({.links = interest_->frames, .contacts = interest_->contacts});
     batch.contacts = interest_->contacts;
-    stale_ = false;
   }
+  stale_ = false;
   mailbox_->put(std::move(batch));
   mailbox_->put([latest = std::move(latest), channels = demand.latest](Hub& hub) {
     hub.tell_latest(latest, channels);
@@ -190,6 +199,8 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   } else {
     stale_ = interest_->frames || interest_->contacts || !told_inventory_;
   }
+  for (const Watch& watch : watches_)
+    if (watch.told != batch.now) stale_ = true;
   if (batch.frame || batch.commands || !batch.messages.empty()) mailbox_->put(std::move(batch));
 }
 
@@ -216,6 +227,7 @@ void Feed::unwatch(std::uint32_t channel) {
 ChannelMessage Feed::sample(Watch& watch) {
   msg::Samples samples;
   samples.stamp = session_.simulation().now();
+  watch.told = samples.stamp;
   for (auto& value : watch.values) {
     const auto number = value ? value->evaluate() : std::nullopt;
     samples.values.push_back(number ? number->value : std::numeric_limits<double>::quiet_NaN());

@@ -29,7 +29,7 @@ struct Interest {
 /// What a new subscriber is told at once, whether it has changed or not.
 struct Demand {
   bool frame = false, world = false, transforms_static = false;
-  std::vector<std::uint32_t> latest;  ///< channels of device topics
+  std::vector<std::uint32_t> latest;  ///< channels of device topics and watches
 };
 
 /// The world as it is now; what nobody asked for or has not changed is null.
@@ -69,6 +69,7 @@ class Feed final : public Observer {
     double rate_hz = 0;
     Time begin;
     std::int64_t sample = 0;
+    std::optional<Time> told;  ///< of its last sample in this world
     std::vector<std::string> texts;
     std::vector<std::vector<std::string>> addresses;
     std::vector<std::optional<ValueExpression>> values;

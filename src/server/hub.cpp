@@ -233,7 +233,8 @@ void Hub::subscribe(ClientId id, Client& client, const foxglove::Subscribe& requ
     client.subscriptions[subscription] = channel_id;
     Subscriber made{id, subscription, false};
     switch (to.what) {
-      case What::device: demand_.latest.push_back(channel_id); break;
+      case What::device:
+      case What::watch: demand_.latest.push_back(channel_id); break;
       case What::world: demand_.world = true; break;
       case What::transforms_static: demand_.transforms_static = true; break;
       case What::poses: demand_.frame = true; break;
