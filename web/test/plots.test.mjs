@@ -31,12 +31,18 @@ test('a value that joins later has gaps before', () => {
   assert.deepEqual(d.columns(0, 10, 100), [[1, 2, 3], [null, null, 300]]);
 });
 
-test('time that runs back begins anew; the same time again changes nothing', () => {
+test('time that runs back begins anew; the same time again is the newer value', () => {
   const d = new PlotData();
   d.addSeries();
   d.push(5, [1]);
   d.push(5, [2]);
-  assert.equal(d.times.length, 1);
+  d.push(5, [NaN]);
+  assert.deepEqual(d.columns(0, 10, 10), [[5], [2]]);
+  // A value that joins while the run stands still.
+  d.addSeries();
+  d.push(5, [2, 7]);
+  assert.deepEqual(d.columns(0, 10, 10), [[5], [2], [7]]);
+  d.removeSeries(1);
   d.push(1, [3]);
   assert.deepEqual(d.columns(0, 10, 10), [[1], [3]]);
 });

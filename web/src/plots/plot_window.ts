@@ -117,7 +117,10 @@ export class PlotWindow {
       this.context.toast(error, 'warning');
       return false;
     }
-    this.take(value);
+    // Of what was typed the unit is not known: values of one unit share an axis.
+    const unit = value.unit !== '' ? value.unit : unitOf((await this.context.steer.ask(`show ${value.address}`)).text, value.address);
+    if (this.values.some((v) => v.address === value.address)) return true;
+    this.take({address: value.address, unit});
     this.rewatch();
     this.build();
     this.changed();
@@ -334,6 +337,13 @@ export class PlotWindow {
     for (const stop of this.stops) stop();
     this.element.remove();
   }
+}
+
+/** The unit in "rover.pose.x = 1.5 m"; an expression has none. */
+export function unitOf(text: string, address: string): string {
+  const prefix = `${address} = `;
+  if (!text.startsWith(prefix)) return '';
+  return /^\S+ (\S+)$/.exec(text.slice(prefix.length).trim())?.[1] ?? '';
 }
 
 /** Some room above and below; a constant gets a range of its size. */

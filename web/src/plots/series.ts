@@ -29,6 +29,11 @@ export class Series {
     }
   }
 
+  /** Another value for the newest time; NaN leaves it. */
+  replaceLast(value: number): void {
+    if (this.length > 0 && !Number.isNaN(value)) this.values[(this.first + this.length - 1) % this.times.length] = value;
+  }
+
   private grow(): void {
     const size = Math.min(this.capacity, this.times.length * 2);
     const times = new Float64Array(size);
@@ -100,7 +105,11 @@ export class PlotData {
   push(time_s: number, values: ArrayLike<number>): void {
     const last = this.times.lastTime();
     if (time_s < last) this.clear();
-    else if (time_s === last) return;
+    else if (time_s === last) {
+      // Told again, of a run that stands still: a value that has just been added has its first number now.
+      this.series.forEach((s, i) => s.replaceLast(values[i] ?? Number.NaN));
+      return;
+    }
     this.times.push(time_s, time_s);
     this.series.forEach((s, i) => s.push(time_s, values[i] ?? Number.NaN));
   }

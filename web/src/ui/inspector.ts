@@ -158,17 +158,20 @@ export class Inspector implements Panel {
 
   private levels(device: Device, levels: {name: string; message: string; command: string; help: string}[]): void {
     const {store, steer} = this.context;
+    // Levels that take commands exclude each other; those that only measure may be on together.
+    const exclusive = levels.every((l) => l.command !== '');
     const buttons = levels.map((level) => {
       const active = device.active?.includes(level.name) ?? false;
       const title = [level.help, level.message && `publishes ${level.message}`, level.command && `takes ${level.command}`].filter((t) => t).join('\n');
       const button = h('button', {class: 'small', 'aria-pressed': String(active), testid: `level-${level.name}`, on: {click: () => {
-        const wanted = levels.map((l) => l.name).filter((name) => (name === level.name ? !active : device.active?.includes(name)));
-        void steer.say(`level ${word(device.path)} ${wanted.map(word).join(' ')}`.trimEnd());
+        const wanted = exclusive ? [level.name] : levels.map((l) => l.name).filter((name) => (name === level.name ? !active : device.active?.includes(name)));
+        if (wanted.length === 0) this.context.toast('A device runs at one level at least');
+        else if (!exclusive || !active) void steer.say(`level ${word(device.path)} ${wanted.map(word).join(' ')}`.trimEnd());
       }}}, level.name);
       return {button, title};
     });
     const part: Part = {
-      element: h('section', {class: 'block'}, heading('Levels'), h('div', {class: 'levels'}, ...buttons.map((b) => b.button))),
+      element: h('section', {class: 'block'}, heading(exclusive ? 'Level' : 'Levels'), h('div', {class: 'levels'}, ...buttons.map((b) => b.button))),
       steering: () => buttons.forEach(({button, title}) => setReason(button, store.whyNotSteer(), title)),
     };
     part.steering?.();

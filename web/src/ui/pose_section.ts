@@ -40,7 +40,7 @@ export class PoseSection {
         table.append(cell);
       }
     }
-    const input = (label: string): HTMLInputElement => h('input', {class: 'number', 'aria-label': label, placeholder: label, title: label === 'yaw' ? 'Yaw, rad; “90 deg” works too' : `${label}, m`, testid: `pose-${label}`, autocomplete: 'off', spellcheck: 'false'});
+    const input = (label: string): HTMLInputElement => h('input', {class: 'number', 'aria-label': label, placeholder: label, title: `${label === 'yaw' ? 'Yaw, rad; “90 deg” works too' : `${label}, m`}. Empty: as it is`, testid: `pose-${label}`, autocomplete: 'off', spellcheck: 'false'});
     this.inputs = {x: input('x'), y: input('y'), z: input('z'), yaw: input('yaw')};
     const form = h('form', {class: 'pose-form', on: {submit: (event) => {
       event.preventDefault();
@@ -48,9 +48,6 @@ export class PoseSection {
     }}}, ...Object.values(this.inputs), this.take, this.apply);
     this.take.addEventListener('click', () => this.fill());
     this.element.append(h('h3', {}, 'Pose'), table, movable ? form : '');
-    for (const one of Object.values(this.inputs)) one.addEventListener('focus', () => {
-      if (Object.values(this.inputs).every((i) => i.value === '')) this.fill();
-    });
     this.watch = new Watch(context.client, addresses, rate_hz, (_time, values) => {
       this.values = values;
       ticker.request(this.draw);
@@ -68,8 +65,11 @@ export class PoseSection {
   }
 
   private async send(): Promise<void> {
-    const numbers = Object.values(this.inputs).map((input) => {
-      const value = parseNumber(input.value);
+    // What is left empty stays as it is.
+    const now = [0, 1, 2, 5].map((i) => this.values[i] ?? Number.NaN);
+    const numbers = Object.values(this.inputs).map((input, i) => {
+      const kept = now[i] as number;
+      const value = input.value.trim() === '' && Number.isFinite(kept) ? kept : parseNumber(input.value);
       input.classList.toggle('wrong', value === null);
       return value;
     });

@@ -5,6 +5,7 @@ import type {World} from '../protocol';
 import {h, setReason} from './dom';
 import {icon} from './icons';
 import {keyLabel} from '../app/actions';
+import {driveOf} from './teleop';
 
 export class WorldSection {
   readonly element: HTMLElement;
@@ -13,7 +14,8 @@ export class WorldSection {
   constructor(private readonly context: Context, world: World) {
     const {actions, store} = context;
     const robots = world.instances.filter((i) => i.robot);
-    const first = robots[0]?.name;
+    // To drive: one that no controller steers as well.
+    const first = (robots.find((r) => driveOf(r) !== null && r.controllers.length === 0) ?? robots.find((r) => driveOf(r) !== null) ?? robots[0])?.name;
     const facts: [string, string][] = [
       ['Robots', String(robots.length)], ['Objects', String(world.instances.length - robots.length)], ['Physics', world.engine], ['Step', `${formatNumber(1000 * world.step_s)} ms`],
       ['Gravity', `${formatNumber(Math.hypot(...world.gravity), 4)} m/s²`], ['Seed', String(world.seed)],
