@@ -66,7 +66,8 @@ set_tests_properties(check_layers PROPERTIES LABELS unit)
 if(SANDLOT_PAGE)
   add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
-  add_test(NAME page_units COMMAND ${SANDLOT_NODE} test/run.mjs WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
+  file(GLOB sources CONFIGURE_DEPENDS web/test/*.test.mjs)
+  add_test(NAME page_units COMMAND ${SANDLOT_NODE} --test ${sources} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
   set_tests_properties(page_types page_units PROPERTIES LABELS unit TIMEOUT 120)
 endif()
 
@@ -79,6 +80,8 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
     set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
+  # A browser that draws with the processor takes its time.
+  set_tests_properties(js_page_test PROPERTIES LABELS slow TIMEOUT 600)
 else()
   message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
 endif()

@@ -20,6 +20,15 @@ inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
 /// @param hooks  of an experiment in C++, for `run`; null: none
 int command(int argc, char** argv, const Hooks* hooks = nullptr);
 
+/// Where viewers find a run.
+struct ServeOptions {
+  int port = 0;            ///< 0: any that is free
+  bool next_free = false;  ///< when it is taken, try those after it
+  std::string address = "127.0.0.1";
+  std::string token;  ///< "": one is made where it is needed
+  std::vector<std::string> origins;
+};
+
 struct RunOptions {
   std::string file;
   std::optional<double> duration_s;
@@ -40,11 +49,13 @@ struct RunOptions {
   SnapshotOptions snapshots;
   bool json = false;               ///< print the summary as JSON instead of text
   const Hooks* hooks = nullptr;    ///< of an experiment in C++
-  std::vector<std::string> lines;  ///< for its console: "at 2s kick ball"
+  std::vector<std::string> lines;  ///< for the console: "at 2s pose rover 1 2"
+  std::string script_file;         ///< of such lines
   std::string record_file;         ///< "": as the scenario says
   std::vector<std::string> record_topics;
   std::string record_compression;
-  std::optional<int> port;  ///< a viewer may connect there
+  std::optional<ServeOptions> serve;
+  bool paused = false;  ///< begins so
 };
 int run(const RunOptions& options);
 
@@ -58,8 +69,12 @@ struct ReplayOptions {
   std::string summary_file;
   std::vector<std::string> paths;  ///< folders to search first for plugins
   bool json = false;
+  std::optional<ServeOptions> serve;  ///< shows it there instead of running through it
+  std::optional<double> rate = 1;     ///< then: real time x factor; unset: as fast as possible
 };
 int replay(const ReplayOptions& options);
+/// Shows a recording to viewers, with `serve`.
+int play(const ReplayOptions& options);
 
 struct DiffOptions {
   std::string a, b;  ///< recordings or snapshot files
@@ -123,6 +138,9 @@ int topic_hz(const RecordingOptions& options);
 
 /// The scenario that `sandlot demo NAME` runs; found beside the program or above it.
 Result<std::string> demo_file(const std::string& name);
+
+/// Prints the names that demo_file() knows.
+int list_demos();
 
 /// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,

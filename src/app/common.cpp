@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -96,9 +97,11 @@ void catch_interrupts() {
   std::signal(SIGTERM, handler);
 }
 
-Result<std::string> demo_file(const std::string& name) {
+namespace {
+
+/// Where scenarios may lie: beside the program or above it, and here.
+std::vector<std::filesystem::path> scenario_folders() {
   namespace fs = std::filesystem;
-  std::error_code error;
   std::vector<fs::path> folders;
   for (const std::string& program : program_files())
     for (fs::path folder = fs::path(program).parent_path(); !folder.empty(); folder = folder.parent_path()) {
@@ -107,18 +110,39 @@ Result<std::string> demo_file(const std::string& name) {
       if (folder == folder.root_path()) break;
     }
   folders.emplace_back("scenarios");
-  for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / (name + ".yaml"), error))
-      return (folder / (name + ".yaml")).lexically_normal().string();
-  for (const fs::path& folder : folders) {
-    if (!fs::is_directory(folder, error)) continue;
-    std::string known;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".yaml")
-        known += (known.empty() ? "" : ", ") + entry.path().stem().string();
-    return Error{"there is no demo '" + name + "'", "there are: " + known};
+  return folders;
+}
+
+/// Names of the scenarios in the first such folder that is there, sorted.
+std::vector<std::string> demo_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& folder : scenario_folders()) {
+    if (!std::filesystem::is_directory(folder, error)) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    break;
   }
-  return Error{"there is no demo '" + name + "'", "no folder 'scenarios' was found near the program"};
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+int list_demos() {
+  for (const std::string& name : demo_names()) std::printf("%s\n", name.c_str());
+  return exit_ok;
+}
+
+Result<std::string> demo_file(const std::string& name) {
+  std::error_code error;
+  for (const auto& folder : scenario_folders())
+    if (std::filesystem::is_regular_file(folder / (name + ".yaml"), error))
+      return (folder / (name + ".yaml")).lexically_normal().string();
+  std::string known;
+  for (const std::string& each : demo_names()) known += (known.empty() ? "" : ", ") + each;
+  return Error{"there is no demo '" + name + "'",
+               known.empty() ? "no folder 'scenarios' was found near the program" : "there are: " + known};
 }
 
 }  // namespace sandlot::app

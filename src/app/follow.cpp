@@ -72,10 +72,14 @@ Status Followers::start(const Prepared& prepared, Diagnostics& diagnostics) {
   const Simulation& simulation = session_.simulation();
   session_.add_observer(&travel_);
   if (!options_.svg_file.empty()) session_.add_observer(&svg_.emplace(simulation));
+  record_options_.version = SANDLOT_VERSION;
   if (prepared.recording) {
+    record_options_ = *prepared.recording;
     for (const std::string& pattern : prepared.recording->recording.topics)
       if (auto warning = unmatched(pattern, simulation)) warn(std::move(*warning), diagnostics);
-    SL_ASSIGN(recorder_, Recorder::start(*prepared.recording, simulation));
+    SL_ASSIGN(auto recorder, Recorder::start(*prepared.recording, simulation));
+    const std::lock_guard lock(recorder_mutex_);
+    recorder_ = std::move(recorder);
     recorded_to_ = prepared.recording->recording.file;
     session_.add_observer(recorder_.get());
   }
@@ -118,6 +122,36 @@ void Followers::leave_world(Simulation& next, const std::string& why) {
   note(configure(next, options_));
 }
 
+Result<std::string> Followers::record(const std::string& file) {
+  const bool recording = recorder_ && !recorded_;
+  if (file.empty()) {
+    if (!recording) return Error{"nothing is being recorded", "record FILE begins"};
+    session_.remove_observer(recorder_.get());
+    end_recording(said_);
+    return fmt::format("'{}' is whole: {} messages, {} bytes", recorded_to_, recorded_->messages,
+                       recorded_->bytes);
+  }
+  if (recording) return Error{"the run is being recorded to '" + recorded_to_ + "'", "record off ends that"};
+  RecordOptions options = record_options_;
+  options.recording.file = file;
+  SL_ASSIGN(auto recorder, Recorder::start(options, session_.simulation()));
+  {
+    const std::lock_guard lock(recorder_mutex_);
+    recorder_ = std::move(recorder);
+    recorded_.reset();
+    recorded_to_ = file;
+  }
+  session_.add_observer(recorder_.get());
+  return "recording to '" + file + "'";
+}
+
+std::optional<server::ServerOptions::Recording> Followers::recording() {
+  const std::lock_guard lock(recorder_mutex_);
+  if (!recorder_ || recorded_) return std::nullopt;
+  const Recorder::Report report = recorder_->so_far();
+  return server::ServerOptions::Recording{recorded_to_, report.messages, report.bytes};
+}
+
 void Followers::end_log() {
   if (!log_) return;
   note(log_->finish());
@@ -127,7 +161,10 @@ void Followers::end_log() {
 void Followers::end_recording(Diagnostics& diagnostics) {
   if (!recorder_ || recorded_) return;
   note(recorder_->finish());
-  recorded_ = recorder_->report();
+  {
+    const std::lock_guard lock(recorder_mutex_);
+    recorded_ = recorder_->report();
+  }
   if (recorded_->dropped_messages == 0 && recorded_->complete()) return;
   Error warning{fmt::format("the recording lacks {} messages that the disk was too slow for",
                             recorded_->dropped_messages),

@@ -3,12 +3,14 @@
 /// line on the terminal.
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "app/prepare.h"
 #include "app/report.h"
 #include "app/svg.h"
+#include "server/server.h"
 #include "sim/csv_log.h"
 #include "sim/session.h"
 
@@ -43,6 +45,10 @@ class Followers {
   bool after_tick();
   /// Another world has come: log and recording, which tell of one run without a leap, end here.
   void leave_world(Simulation& next, const std::string& why);
+  /// Begins a recording of the run as it is now, or ends it (""). @return what to tell
+  Result<std::string> record(const std::string& file);
+  /// What is being written, for viewers; from any thread.
+  std::optional<server::ServerOptions::Recording> recording();
   /// Ends what is still being written.
   void finish(Diagnostics& diagnostics);
   /// What the run leaves in the summary and as files besides.
@@ -63,9 +69,11 @@ class Followers {
   TravelRecorder travel_;
   std::optional<SvgRecorder> svg_;
   std::unique_ptr<CsvLog> log_;
+  std::mutex recorder_mutex_;  ///< another thread asks what is being recorded
   std::unique_ptr<Recorder> recorder_;
   std::optional<Recorder::Report> recorded_;  ///< once it has ended
   std::string log_file_, recorded_to_;
+  RecordOptions record_options_;  ///< but for the file
   std::optional<SnapshotFiles> snapshots_;
   std::vector<Error> errors_;
   Diagnostics said_;  ///< of results that ended before the run

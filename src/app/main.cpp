@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "app/commands.h"
+#include "app/console.h"
 #include "app/plot.h"
 #include "app/topic_export.h"
 #include "base/units.h"
@@ -44,21 +45,72 @@ Status read_range(const char* flag, const std::string& text, std::optional<std::
   return {};
 }
 
+/// --port and what goes with it.
+struct ServeFlags {
+  std::optional<int> port;
+  ServeOptions options;
+
+  void add_to(CLI::App& verb) {
+    verb.add_option("--port", port, "Serve the page, and Foxglove clients, on this port; 0: any that is free")
+        ->check(CLI::Range(0, 65535));
+    verb.add_option("--address", options.address,
+                    "Address to listen at; elsewhere than on this machine a token is needed to steer")
+        ->capture_default_str();
+    verb.add_option("--token", options.token, "Who brings it may steer; one is made where none is given");
+    verb.add_option(
+            "--allow-origin", options.origins,
+            "Another site whose pages may connect: https://app.example.org; may be given several times")
+        ->allow_extra_args(false);
+  }
+
+  Status finish(std::optional<ServeOptions>& out) {
+    if (port) {
+      options.port = *port;
+      out = options;
+      return {};
+    }
+    if (!options.token.empty() || !options.origins.empty() || options.address != ServeOptions().address)
+      return Error{"--address, --token and --allow-origin say who may look at the page, but there is none",
+                   "add --port 8765"};
+    return {};
+  }
+};
+
+/// "max", "" or a factor of real time.
+Status read_rate(const std::string& text, std::optional<double>& out) {
+  out.reset();
+  if (text.empty() || text == "max") return {};
+  double factor = 0;
+  if (!parse_number(text, factor) || !(factor > 0 && factor <= 1e6))
+    return Error{"--rate: '" + text + "' is neither 'max' nor a positive number"};
+  out = factor;
+  return {};
+}
+
 struct RunFlags {
   RunOptions options;
   DurationOption duration, snapshot_at, snapshot_every;
-  std::string rate = "max";
+  std::string rate;
+  ServeFlags serve;
   std::vector<std::string> sets;
   std::string log_values, log_rate;
   bool headless = false;
 
   void add_to(CLI::App& verb) {
-    verb.add_flag("--headless", headless, "Run without the page (this version always does)");
+    CLI::Option* const without = verb.add_flag("--headless", headless, "Run without a page");
+    serve.add_to(verb);
+    verb.get_option("--port")->excludes(without);
+    verb.add_flag("--paused", options.paused, "Begin paused; with --port");
+    verb.add_option("--command", options.lines,
+                    "A console line for the run, such as 'at 2s pose rover 1 2'; may be given several times")
+        ->allow_extra_args(false);
+    verb.add_option("--script", options.script_file, "A file of such lines");
     verb.add_option("--duration", duration.text,
                     "Simulated time after which the run ends, such as 30s or '2 min'");
-    verb.add_option("--rate", rate,
-                    "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time")
-        ->capture_default_str();
+    verb.add_option(
+        "--rate", rate,
+        "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time. If left "
+        "out: max, with --port 1");
     verb.add_option("--seed", options.seed, "Seed of all random numbers, instead of the scenario's");
     verb.add_option("--errors", options.errors,
                     "Factor on the errors of all devices, beside those in the scenario; 0: exact")
@@ -107,12 +159,10 @@ struct RunFlags {
     SL_TRY(snapshot_at.read("--snapshot-at", options.snapshots.at_s));
     SL_TRY(snapshot_every.read("--snapshot-every", options.snapshots.every_s));
     SL_TRY(check(options.snapshots));
-    if (rate != "max") {
-      double factor = 0;
-      if (!parse_number(rate, factor) || !(factor > 0 && factor <= 1e6))
-        return Error{"--rate: '" + rate + "' is neither 'max' nor a positive number"};
-      options.rate = factor;
-    }
+    SL_TRY(serve.finish(options.serve));
+    if (options.paused && !options.serve)
+      return Error{"--paused: nobody could let the run go on", "add --port 8765"};
+    SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.rate));
     options.log_values = split_list(log_values);
     if (!log_rate.empty()) {
       auto hz = parse_quantity(log_rate, "Hz");
@@ -143,7 +193,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                "sandlot"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "sandlot " SANDLOT_VERSION);
-  app.footer("Try: sandlot demo --duration 20s    Every verb explains itself: sandlot run --help");
+  app.footer("Try: sandlot demo    Every verb explains itself: sandlot run --help");
   int result = exit_ok;
 
   RunFlags run_flags;
@@ -153,12 +203,6 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
   run_flags.options.hooks = hooks;
-  if (hooks)
-    run_verb
-        ->add_option("--command", run_flags.options.lines,
-                     "A line for this experiment's console, such as help or 'at 2s kick ball'; may be given "
-                     "several times")
-        ->allow_extra_args(false);
   run_verb->footer(
       "Example: sandlot run scenarios/indoor.yaml --duration 60s --set physics=planar --svg run.svg");
   run_verb->callback([&] {
@@ -169,12 +213,20 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   });
 
   RunFlags demo_flags;
-  std::string demo_name = "indoor";
-  CLI::App* const demo_verb = app.add_subcommand("demo", "Run a scenario that comes with Sandlot");
-  demo_verb->add_option("name", demo_name, "Name of a file in scenarios/")->capture_default_str();
+  std::string demo_name = "demo";
+  CLI::App* const demo_verb = app.add_subcommand("demo",
+                                                 "Show a scenario that comes with Sandlot, on a page");
+  demo_verb->add_option("name", demo_name, "Name of a file in scenarios/; list: say which there are")
+      ->capture_default_str();
   demo_flags.add_to(*demo_verb);
-  demo_verb->footer("Example: sandlot demo --headless --duration 20s");
+  demo_verb->footer(
+      "Example: sandlot demo                                     and open the page it names\n"
+      "         sandlot demo indoor --headless --duration 20s    only the summary");
   demo_verb->callback([&] {
+    if (demo_name == "list") return void(result = list_demos());
+    ServeFlags& serve = demo_flags.serve;
+    // The usual port, or one near it: a demo should begin.
+    if (!serve.port && !demo_flags.headless) serve.port = 8765, serve.options.next_free = true;
     Status status = demo_flags.finish();
     if (!status) return void(result = complain(status.error()));
     auto file = demo_file(demo_name);
@@ -182,6 +234,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     demo_flags.options.file = *file;
     result = run(demo_flags.options);
   });
+
+  add_console_verb(app, result);
 
   FileOptions file_options;
   std::vector<std::string> file_sets;
@@ -267,12 +321,20 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   replay_verb
       ->add_option("--path", replay_options.paths, "Folder to search for plugins; may be given several times")
       ->allow_extra_args(false);
+  ServeFlags replay_serve;
+  std::string replay_rate;
+  replay_serve.add_to(*replay_verb);
+  replay_verb->add_option("--rate", replay_rate, "With --port: 1 is real time; max: as fast as possible");
   replay_verb->add_flag("--json", replay_options.json, "Print as JSON");
-  replay_verb->footer("Example: sandlot replay r.mcap --verify");
+  replay_verb->footer("Example: sandlot replay r.mcap --verify\n         sandlot replay r.mcap --port 8765");
   replay_verb->callback([&] {
     Status status = until.read("--until", replay_options.until_s);
     if (status) status = replay_snapshot_at.read("--snapshot-at", replay_options.snapshots.at_s);
     if (status) status = check(replay_options.snapshots);
+    if (status) status = replay_serve.finish(replay_options.serve);
+    if (status) status = read_rate(replay_rate.empty() ? "1" : replay_rate, replay_options.rate);
+    if (status && !replay_rate.empty() && !replay_options.serve)
+      status = Error{"--rate is for looking at the recording", "add --port 8765"};
     result = status ? replay(replay_options) : complain(status.error());
   });
 

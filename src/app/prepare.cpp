@@ -58,7 +58,7 @@ Result<std::unique_ptr<Simulation>> make_world(const RunOptions& options,
   const bool may_stop = !options.stop_when.empty() ||
                         std::any_of(setup.events.begin(), setup.events.end(),
                                     [](const model::EventDecl& event) { return event.stop; });
-  if (!setup.stop && !may_stop && !options.snapshots.at_s && !options.port && !isatty(STDOUT_FILENO))
+  if (!setup.stop && !may_stop && !options.snapshots.at_s && !options.serve && !isatty(STDOUT_FILENO))
     diagnostics.warn({"the run has no end", "give --duration, or time.stop in the scenario"});
   return Simulation::create(std::move(setup), simulation_options, diagnostics);
 }

@@ -88,6 +88,7 @@ nlohmann::ordered_json as_json(const Outcome& out, const record::Recording& reco
 }  // namespace
 
 int replay(const ReplayOptions& options) {
+  if (options.serve) return play(options);
   if (options.logged && !options.snapshots.file.empty())
     return complain(
         {"--logged does not run the controllers, so a snapshot would hold them as they were at the beginning",

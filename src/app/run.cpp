@@ -6,7 +6,9 @@
 #include "app/json_text.h"
 #include "app/prepare.h"
 #include "app/report.h"
+#include "app/serve.h"
 #include "base/log.h"
+#include "console/console.h"
 #include "sim/session.h"
 
 namespace sandlot::app {
@@ -37,33 +39,50 @@ int run(const RunOptions& options) {
   std::optional<Experiment> experiment;
   if (options.hooks) experiment.emplace(*prepared->simulation, *options.hooks);
   Followers* following = nullptr;
+  Console* saying = nullptr;
   Session session(
       std::move(prepared->simulation),
       {.pace = {options.rate},
-       .history_mb = 0,
+       .paused = options.paused,
+       .history_mb = options.serve ? Session::Options().history_mb : 0,
        .simulation = prepared->options,
        .may_not_rewind = experiment ? "its experiment in C++ keeps a state of its own" : "",
        .on_world = [&](Simulation& next, const std::string& why) { following->leave_world(next, why); },
-       .tick =
-           [&](Simulation& simulation, std::optional<Time> measured) {
-             return experiment ? experiment->tick(measured) : simulation.tick(measured);
-           }});
+       .tick = [&](Simulation& simulation, std::optional<Time> measured) -> Status {
+         // What runs again has all its input already.
+         if (!session.rerunning()) SL_TRY(saying->before_tick());
+         return experiment ? experiment->tick(measured) : simulation.tick(measured);
+       }});
   Followers followers(options, session);
   following = &followers;
+  Console console(session, {.paths = options.paths,
+                            .experiment = experiment ? &*experiment : nullptr,
+                            .record = [&](const std::string& file) { return followers.record(file); }});
+  saying = &console;
   if (Status opened = followers.open(*prepared); !opened) return complain(opened.error());
   for (const std::string& line : options.lines)
-    if (Status status = experiment->schedule(line); !status) return complain(status.error());
+    if (Status status = console.schedule(line); !status) return complain(status.error());
+  if (!options.script_file.empty())
+    if (Status status = console.schedule_script(options.script_file); !status)
+      return complain(status.error());
+  std::optional<Served> served;
+  if (options.serve) {
+    auto started = Served::start(*options.serve, session, console, [&] { return followers.recording(); });
+    if (!started) return complain(started.error());
+    served = std::move(*started);
+  }
   if (Status started = followers.start(*prepared, diagnostics); !started) return complain(started.error());
 
   catch_interrupts();
   RunReport report;
   const auto keep_going = [&](const Simulation&) {
-    if (experiment)
-      for (const std::string& answer : experiment->take_answers()) log::info(answer);
+    for (const std::string& answer : console.take_answers()) log::info(answer);
+    if (served) served->look();
     return followers.after_tick() && !interrupted();
   };
   Status status = experiment ? experiment->start() : Status();
   if (status) status = session.run(report, keep_going);
+  if (status) status = console.finish();
   if (!status) followers.errors().push_back(status.error());
   if (experiment)
     if (Status ended = experiment->finish(); !ended) followers.errors().push_back(ended.error());
@@ -73,6 +92,7 @@ int run(const RunOptions& options) {
 
   auto summary = summarise(session.simulation(), report, followers.travel(), diagnostics, followers.errors());
   followers.add_to(summary);
+  if (served) summary["server"] = served->stop();
   return conclude(options, summary, followers);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// One command of the console: its row in the table, and the call that it is given. Help, completion and docs/console.md
 /// follow the table.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,6 +26,9 @@ struct Call {
   bool before_tick = false;    ///< a tick follows whether the run is paused or not: scripts
   bool rehearsal = false;      ///< finds faults and does nothing: a script before the run begins
   bool unknown_thing = false;  ///< set by a rehearsal that failed for what may be there when the time comes
+
+  /// Has a line said later ("at 2s ..."). @return when
+  std::function<Result<Time>(std::string_view line)> schedule = {};
 
   const Simulation& simulation() const { return std::as_const(session).simulation(); }
   /// The line behind so many words, as it was written.
@@ -63,6 +67,7 @@ struct Verb {
   Said (*act)(Call&);
   bool submits = false;  ///< all it does goes through submit(): it can be rehearsed
   bool plain = false;    ///< quotes are letters like others
+  bool travels = false;  ///< it leaves the present time
 };
 
 /// In the order of the help.
@@ -138,6 +143,7 @@ Said say_record(Call& call);
 Said say_time(Call& call);
 Said say_hash(Call& call);
 Said say_echo(Call& call);
+Said say_at(Call& call);
 Said say_quit(Call& call);
 
 }  // namespace sandlot::console

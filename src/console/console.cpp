@@ -89,7 +89,10 @@ std::string_view console::Call::rest(std::size_t count) const {
 }
 
 Console::Console(Session& session, Options options)
-    : session_(session), options_(std::move(options)), said_(std::make_shared<Said>()) {}
+    : session_(session),
+      options_(std::move(options)),
+      epoch_(session.epoch()),
+      said_(std::make_shared<Said>()) {}
 
 void Console::execute(std::string_view line, const Speaker& speaker, const Reply& reply) {
   execute(line, speaker, reply, false);
@@ -119,6 +122,16 @@ void Console::execute(std::string_view line, const Speaker& speaker, const Reply
     return answer(false, "'" + name + "' changes the run; you may watch, not steer");
   Call call{session_, options_, speaker, reply, {}, line};
   call.before_tick = before_tick;
+  call.schedule = [&](std::string_view later) -> Result<Time> {
+    constexpr std::size_t most_waiting = 10'000;
+    if (scheduled_.size() - next_ >= most_waiting)
+      return Error{std::to_string(most_waiting) + " lines are waiting already"};
+    SL_ASSIGN(Scheduled scheduled, read_scheduled(later, {}));
+    scheduled.of_run = false;
+    const Time at = scheduled.at;
+    insert(std::move(scheduled));
+    return at;
+  };
   auto said = act(call, *command, std::move(*words));
   if (!said) return answer(false, said.error().text());
   if (*said) answer(true, std::move(**said));
@@ -150,11 +163,7 @@ Status Console::rehearse(std::string_view line) {
   return {};
 }
 
-Status Console::schedule(std::string_view line, const Place& place) {
-  const auto at_place = [&](Error error) {
-    if (!error.place.file && error.place.line == 0) error.place = place;
-    return error;
-  };
+Result<Console::Scheduled> Console::read_scheduled(std::string_view line, const Place& place) {
   Scheduled scheduled{session_.simulation().now(), std::string(trim(line)), place};
   const std::vector<Word> words = console::plain_words_of(line);
   if (!words.empty() && words.front().text == "at") {
@@ -165,15 +174,31 @@ Status Console::schedule(std::string_view line, const Place& place) {
       if (auto longer = parse_quantity(words[1].text + " " + words[2].text, "s"))
         at_s = std::move(longer), taken = 3;
     if (!at_s || !(*at_s >= 0 && *at_s <= 9e9) || words.size() <= taken)
-      return at_place({"'" + std::string(line.substr(0, 200)) + "' is not of the form at TIME COMMAND",
-                       "for example: at 2s set rover/laser.noise.white 2 cm"});
+      return Error{"'" + std::string(line.substr(0, 200)) + "' is not of the form at TIME COMMAND",
+                   "for example: at 2s set rover/laser.noise.white 2 cm"};
     scheduled.at = Time::from_s(*at_s);
     scheduled.text = std::string(trim(line.substr(words[taken - 1].end)));
   }
-  if (Status fine = rehearse(scheduled.text); !fine) return at_place(std::move(fine.error()));
-  const auto later = std::upper_bound(scheduled_.begin(), scheduled_.end(), scheduled.at,
+  SL_TRY(rehearse(scheduled.text));
+  return scheduled;
+}
+
+void Console::insert(Scheduled scheduled) {
+  // Behind those of the same time, and behind what has been said.
+  const auto later = std::upper_bound(scheduled_.begin() + static_cast<std::ptrdiff_t>(next_),
+                                      scheduled_.end(), scheduled.at,
                                       [](Time at, const Scheduled& other) { return at < other.at; });
   scheduled_.insert(later, std::move(scheduled));
+}
+
+Status Console::schedule(std::string_view line, const Place& place) {
+  auto scheduled = read_scheduled(line, place);
+  if (!scheduled) {
+    Error& error = scheduled.error();
+    if (!error.place.file && error.place.line == 0) error.place = place;
+    return std::move(error);
+  }
+  insert(std::move(*scheduled));
   return {};
 }
 
@@ -193,15 +218,35 @@ Status Console::schedule_script(const std::string& file) {
   return {};
 }
 
+/// After a change of time: what would not have been said yet had the run come to here by itself.
+void Console::find_next() {
+  const Simulation& simulation = session_.simulation();
+  const Time before = simulation.now() - simulation.setup().step;
+  next_ = 0;
+  while (next_ < scheduled_.size() && scheduled_[next_].at <= before) ++next_;
+}
+
 Status Console::before_tick() {
   SL_TRY(finish());
-  while (!scheduled_.empty() && scheduled_.front().at <= session_.simulation().now()) {
-    const Scheduled line = std::move(scheduled_.front());
-    scheduled_.erase(scheduled_.begin());
+  if (scheduled_.empty()) return {};
+  if (epoch_ != session_.epoch()) {
+    // On its way to where it was before, the run takes what was said then from its own log.
+    if (!session_.report().takes_no_input.empty()) return {};
+    epoch_ = session_.epoch();
+    find_next();
+  }
+  while (next_ < scheduled_.size() && scheduled_[next_].at <= session_.simulation().now()) {
+    Scheduled& due = scheduled_[next_++];
+    if (due.over) continue;
+    const std::vector<Word> words = console::plain_words_of(due.text);
+    const Verb* const verb = words.empty() ? nullptr : console::find_command(words.front().text);
+    due.over = !due.of_run || (verb && verb->travels);
+    const Scheduled line = due;
     const std::string when = "at " + number_text(session_.simulation().now().s()) + " s: ";
-    const auto take = [said = said_, when, place = line.place](const Answer& answer) {
-      if (answer.ok) said->answers.push_back(when + answer.text);
-      else if (!said->failure) said->failure = Error{when + answer.text, "", place};
+    const auto take = [said = said_, when, line](const Answer& answer) {
+      if (answer.ok || !line.of_run)
+        said->answers.push_back(when + (answer.ok ? "" : "error: ") + answer.text);
+      else if (!said->failure) said->failure = Error{when + answer.text, "", line.place};
     };
     execute(line.text, {}, take, true);
     SL_TRY(finish());

@@ -49,7 +49,8 @@ class Console {
   std::vector<std::string> complete(std::string_view line) const;
 
   /// "at 2s set rover/laser.noise.white 0.1", or a line without a time: before the first tick. Scripts are such lines,
-  /// `#` begins a comment. Errors name file and line; what is wrong in a word is found now where that can be.
+  /// `#` begins a comment. Errors name file and line; what is wrong in a word is found now where that can be. After a
+  /// reset or a jump back the lines behind that time are said again, but for those that go through time themselves.
   Status schedule(std::string_view line, const Place& place = {});
   Status schedule_script(const std::string& file);
   /// Says what is due; called before each tick. An error of a line ends the run, also one that turned up in the tick before.
@@ -64,7 +65,12 @@ class Console {
     Time at;
     std::string text;
     Place place;
+    bool of_run = true;  ///< an error of it ends the run; else it was said while the run went on
+    bool over = false;   ///< it will not be said again, whatever becomes of the time
   };
+  Result<Scheduled> read_scheduled(std::string_view line, const Place& place);
+  void insert(Scheduled scheduled);
+  void find_next();
   Session& session_;
   Options options_;
   struct Said;  ///< what scheduled lines answered; outlives the console, as answers may come late
@@ -72,6 +78,8 @@ class Console {
   Status rehearse(std::string_view line);
 
   std::vector<Scheduled> scheduled_;  ///< in order of time
+  std::size_t next_ = 0;              ///< the first that has not been said
+  std::uint64_t epoch_ = 0;           ///< of the session when `next_` was found
   std::shared_ptr<Said> said_;
 };
 

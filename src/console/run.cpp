@@ -172,6 +172,12 @@ Said say_record(Call& call) {
   return std::optional(std::move(text));
 }
 
+Said say_at(Call& call) {
+  SL_CHECK(call.schedule != nullptr);
+  SL_ASSIGN(const Time at, call.schedule(trim(call.line)));
+  return std::optional("will be said at " + number_text(at.s()) + " s");
+}
+
 Said say_time(Call& call) {
   const Session::Report report = call.session.report();
   std::string text = fmt::format("{} s, tick {}, {}", number_text(call.simulation().now().s()),

@@ -1,5 +1,6 @@
 /// Commands about what stands in the world: where it is, what comes and goes.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/text.h"
@@ -13,12 +14,15 @@
 namespace sandlot::console {
 namespace {
 
+/// For people: to a tenth of a millimetre or milliradian.
+std::string rounded(double x) { return number_text(std::round(x * 1e4) / 1e4 + 0.0); }
+
 std::string pose_text(const Pose& X) {
   const Vec3 rpy = rpy_from_quat(X.q);
-  std::string text = number_text(X.p.x) + " " + number_text(X.p.y) + " " + number_text(X.p.z) + " m";
-  if (rpy.x != 0 || rpy.y != 0)
-    text += ", roll " + number_text(rpy.x) + " pitch " + number_text(rpy.y) + " rad";
-  return text + ", yaw " + number_text(rpy.z) + " rad";
+  std::string text = rounded(X.p.x) + " " + rounded(X.p.y) + " " + rounded(X.p.z) + " m";
+  if (rounded(rpy.x) != "0" || rounded(rpy.y) != "0")
+    text += ", roll " + rounded(rpy.x) + " pitch " + rounded(rpy.y) + " rad";
+  return text + ", yaw " + rounded(rpy.z) + " rad";
 }
 
 /// All numbers behind the name; the first three are lengths, then come angles.

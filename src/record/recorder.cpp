@@ -115,6 +115,8 @@ void Recorder::run() {
         lock.lock();
         status_ = status;
         failed_ = !status_;
+        report_.messages = writer_.messages();
+        report_.bytes = writer_.bytes();
       }
       // After an error the rest of the batch is lost.
       if (failed_) {
@@ -127,6 +129,11 @@ void Recorder::run() {
     }
     batch.clear();
   }
+}
+
+Recorder::Report Recorder::so_far() {
+  const std::lock_guard lock(mutex_);
+  return report_;
 }
 
 Status Recorder::finish() {

@@ -43,6 +43,8 @@ class Recorder final : public Observer {
     std::uint64_t lost_frames = 0;          ///< whose log and hash are missing too
     bool complete() const { return lost_frames == 0; }
   };
+  /// What is in the file by now; from any thread.
+  Report so_far();
   /// @pre finish() was called
   const Report& report() const { return report_; }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 
 #include "base/bytes.h"
@@ -146,10 +147,13 @@ Result<Assets::Body> AssetTable::texture(std::string_view path, std::uint32_t nu
     if (number >= textures_.size()) return no_such(path);
     file = textures_[number];
   }
-  SL_ASSIGN(const std::string text, formats::read_text_file(file, most_texture_bytes));
+  // Whoever asks may be a stranger: where the file lies is none of their business.
+  const std::string name = "the texture '" + std::filesystem::path(file).filename().string() + "'";
+  const Result<std::string> read = formats::read_text_file(file, most_texture_bytes);
+  if (!read) return Error{name + ": " + read.error().what};
+  const std::string& text = *read;
   const bool png = starts_with(text, "\x89PNG\r\n\x1a\n"), jpeg = starts_with(text, "\xff\xd8\xff");
-  if (!png && !jpeg)
-    return Error{"the texture '" + file + "' is neither a PNG nor a JPEG", "convert it to one of them"};
+  if (!png && !jpeg) return Error{name + " is neither a PNG nor a JPEG", "convert it to one of them"};
   const auto bytes = std::as_bytes(std::span(text));
   return Assets::Body{png ? "image/png" : "image/jpeg",
                       std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end())};

@@ -1,4 +1,7 @@
 /// The WebSocketClient of server/transport.h: a Beast stream that a thread of its own reads, so that pings are answered while nobody waits.
+#ifdef __SANITIZE_THREAD__
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
+#endif
 #define BOOST_BEAST_USE_STD_STRING_VIEW
 #include <fcntl.h>
 #include <fmt/format.h>

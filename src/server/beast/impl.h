@@ -2,6 +2,9 @@
 /// What transport.cpp (the port, the interface) and peer.cpp (a connection, all that needs Beast) share. Not for others to include.
 ///
 /// Everything here belongs to the one thread that runs `io`, but for the atomic counters and what Impl::mutex guards.
+#ifdef __SANITIZE_THREAD__
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
+#endif
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>

@@ -16,7 +16,7 @@ export class Actions {
   private readonly byKey = new Map<string, Action>();
   private readonly byId = new Map<string, Action>();
 
-  constructor(private readonly whyNotSteer: () => string | null, private readonly complain: (text: string) => void) {}
+  constructor(readonly whyNot: (action: Action) => string | null, private readonly complain: (text: string) => void) {}
 
   add(...actions: Action[]): void {
     for (const action of actions) {
@@ -33,7 +33,7 @@ export class Actions {
   run(id: string): void {
     const action = this.byId.get(id);
     if (!action) throw new Error(`no action ${id}`);
-    const reason = action.steers ? this.whyNotSteer() : null;
+    const reason = action.steers ? this.whyNot(action) : null;
     if (reason !== null) this.complain(reason);
     else action.run();
   }
@@ -67,5 +67,5 @@ const labels: Record<string, string> = {
 };
 
 export function keyLabel(key: string): string {
-  return key.split('+').map((part) => labels[part] ?? (part === 'ctrl' ? 'Ctrl' : part === 'alt' ? 'Alt' : part.length === 1 ? part.toUpperCase() : part)).join(' ');
+  return key.split(/\+(?=.)/).map((part) => labels[part] ?? (part === 'ctrl' ? 'Ctrl' : part === 'alt' ? 'Alt' : part.length === 1 ? part.toUpperCase() : part)).join(' ');
 }

@@ -6,8 +6,8 @@ export function formatNumber(value: number, digits = 5): string {
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
   if (value === 0) return '0';
   const size = Math.abs(value);
+  if (Number.isInteger(value) && size < 1e15) return String(value);
   if (size < 1e-4 || size >= 1e7) return value.toExponential(Math.max(0, digits - 2)).replace(/\.?0+e/, 'e').replace('e+', 'e');
-  if (Number.isInteger(value)) return String(value);
   return String(Number(value.toPrecision(Math.max(digits, Math.ceil(Math.log10(size)) + 1))));
 }
 
@@ -55,7 +55,8 @@ export function parseNumber(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
-/** A word of a console line: quoted where the command language would split it. */
+/** A word of a console line: quoted where the command language would split it. It knows both quotes and no escapes. */
 export function word(text: string): string {
-  return /^[^\s"'\\#;]+$/.test(text) ? text : `"${text.replace(/["\\]/g, '\\$&')}"`;
+  if (/^[^\s"'#;]+$/.test(text)) return text;
+  return text.includes('"') ? `'${text}'` : `"${text}"`;
 }

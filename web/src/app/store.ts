@@ -91,10 +91,16 @@ export class Store {
     return this.selection === null ? null : this.find(this.selection);
   }
 
-  /** Null when this page may steer, else why not, in words for a tooltip. */
-  whyNotSteer(): string | null {
+  /** Null when this page may play, pause and jump, else why not, in words for a tooltip. A recording can be played, but not steered. */
+  whyNotPlay(): string | null {
     if (this.role === '') return 'Not connected';
-    if (this.role !== 'admin') return 'You are watching: only an administrator can steer';
+    return this.role === 'admin' ? null : 'You are watching: only an administrator can steer';
+  }
+
+  /** As above, for what changes the run. */
+  whyNotSteer(): string | null {
+    const reason = this.whyNotPlay();
+    if (reason !== null) return reason;
     if (this.status && !this.status.may_steer) return this.status.why_not || 'This run cannot be steered';
     return null;
   }

@@ -61,7 +61,7 @@ const table: [string, Action['group'], string, string[], boolean][] = [
 export function actionTable(doers: Doers): Action[] {
   const action = ([id, group, title, keys, steers]: (typeof table)[number]): Action => ({id, group, title, keys, steers, run: doers[id] ?? (() => undefined)});
   const camera = ([mode, label]: [CameraMode, string], i: number): Action =>
-    ({id: `camera.${mode}`, group: 'View', title: `Camera: ${label.toLowerCase()}`, keys: [String(i + 1)], run: doers[`camera.${mode}`] ?? (() => undefined)});
+    ({id: `camera.${mode}`, group: 'View', title: `Camera: ${label === 'TV' ? label : label.toLowerCase()}`, keys: [String(i + 1)], run: doers[`camera.${mode}`] ?? (() => undefined)});
   return [...table.slice(0, 7).map(action), ...cameras.map(camera), ...table.slice(7).map(action)];
 }
 

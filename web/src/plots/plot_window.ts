@@ -260,7 +260,9 @@ export class PlotWindow {
     if (!this.plot || !this.visible) return;
     const newest = this.data.times.lastTime();
     const end = this.zoom ? this.zoom[1] : this.paused ? this.pausedAt_s : Number.isNaN(newest) ? this.context.store.time_s : newest;
-    const begin = this.zoom ? this.zoom[0] : end - this.window_s;
+    // A run that is younger than the window begins at the left edge.
+    const born_s = Math.min(this.context.store.status?.begin_s ?? 0, end - 1);
+    const begin = this.zoom ? this.zoom[0] : Math.max(end - this.window_s, born_s);
     this.fitButton.hidden = this.zoom === null;
     const columns = this.data.columns(begin, end, Math.max(100, this.area.clientWidth));
     this.plot.batch(() => {

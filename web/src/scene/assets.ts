@@ -224,6 +224,12 @@ export class Assets {
 
   dispose(): void {
     this.disposed = true;
+    this.forget();
+  }
+
+  /** For another server, whose ids mean other things. */
+  forget(): void {
+    this.pending.clear();
     for (const texture of this.textures.values()) texture.dispose();
     this.textures.clear();
   }

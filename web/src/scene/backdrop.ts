@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import type { World } from '../protocol';
 import type { Assets } from './assets';
 import type { Bodies } from './bodies';
+import { Grounds } from './ground';
 import { multiply } from './poses';
 
 export type Theme = 'light' | 'dark';
@@ -26,8 +27,6 @@ const TONES: Record<Theme, Tones> = {
   dark: { zenith: '#0c1118', horizon: '#28303c', ground: '#222831', hemi_sky: '#c6d2e4', hemi_ground: '#5a5d66', hemi: 1.35, sun: 1.7, grid: '#b8cbe6', grid_strength: 0.13, ground_tint: 0.82 },
 };
 
-/** Half the width of what stands for an endless plane; the fog has swallowed all of it before. */
-const GROUND_HALF_M = 2000;
 /** A forward renderer pays for every lamp in every pixel. */
 const MOST_LAMPS = 8;
 
@@ -35,11 +34,12 @@ export class Backdrop {
   readonly scene: THREE.Scene;
   private readonly sky: THREE.Mesh<THREE.SphereGeometry, THREE.ShaderMaterial>;
   private readonly hemi = new THREE.HemisphereLight();
+  /** From the eye, weak: sides that the sun does not reach keep their shape. */
+  private readonly fill = new THREE.DirectionalLight('#ffffff', 0.4);
   private readonly suns: { light: THREE.DirectionalLight; strength: number }[] = [];
   private readonly lamps: { light: THREE.PointLight | THREE.SpotLight; lamp: { body: { world: Float64Array }; link: number; pose: number[] } | null }[] = [];
-  private readonly grounds: { mesh: THREE.Mesh; material: THREE.MeshStandardMaterial; color: THREE.Color; fallback: boolean }[] = [];
+  private readonly grounds: Grounds;
   private readonly fog = new THREE.Fog(0, 1, 2);
-  private readonly grid_uniforms = { grid_color: { value: new THREE.Color() }, grid_strength: { value: 0.2 } };
   private readonly direction = new THREE.Vector3(-0.4, 0.3, -0.85);
   private tones = TONES.light;
   private shows_grid = true;
@@ -48,6 +48,7 @@ export class Backdrop {
 
   constructor(scene: THREE.Scene) {
     this.scene = scene;
+    this.grounds = new Grounds(scene);
     this.sky = new THREE.Mesh(
       new THREE.SphereGeometry(1, 32, 16).rotateX(Math.PI / 2),
       new THREE.ShaderMaterial({
@@ -72,7 +73,7 @@ export class Backdrop {
     this.sky.renderOrder = -10;
     this.hemi.position.set(0, 0, 1);
     scene.fog = this.fog;
-    scene.add(this.sky, this.hemi);
+    scene.add(this.sky, this.hemi, this.fill, this.fill.target);
   }
 
   setTheme(theme: Theme): void {
@@ -83,36 +84,18 @@ export class Backdrop {
     this.hemi.color.set(tones.hemi_sky);
     this.hemi.groundColor.set(tones.hemi_ground);
     this.hemi.intensity = tones.hemi * this.ambient;
-    this.grid_uniforms.grid_color.value.set(tones.grid);
-    this.grid_uniforms.grid_strength.value = this.shows_grid ? tones.grid_strength : 0;
     for (const sun of this.suns) sun.light.intensity = tones.sun * sun.strength;
-    for (const ground of this.grounds) this.tint(ground);
+    this.grounds.setTones(tones.ground, tones.ground_tint, tones.grid, this.shows_grid ? tones.grid_strength : 0);
   }
 
   setGrid(show: boolean): void {
     this.shows_grid = show;
-    this.grid_uniforms.grid_strength.value = show ? this.tones.grid_strength : 0;
+    this.setTheme(this.tones === TONES.dark ? 'dark' : 'light');
   }
 
   setWorld(world: World, bodies: Bodies, assets: Assets): void {
     this.setLights(world, bodies);
-    for (const ground of this.grounds) {
-      this.scene.remove(ground.mesh);
-      ground.mesh.geometry.dispose();
-      ground.material.dispose();
-    }
-    this.grounds.length = 0;
-    for (const plane of bodies.planes) {
-      const at = new Float64Array(7);
-      multiply(plane.body.world, 7 * plane.link, plane.pose, 0, at, 0);
-      const ground = this.addGround(new THREE.Color().setRGB(plane.color[0], plane.color[1], plane.color[2], THREE.SRGBColorSpace), plane.texture === '' ? null : assets.texture(plane.texture));
-      ground.mesh.position.set(at[0], at[1], at[2]);
-      const normal = new THREE.Vector3(...plane.normal).normalize().applyQuaternion(new THREE.Quaternion(at[4], at[5], at[6], at[3]));
-      ground.mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
-      ground.mesh.userData.plane = plane.body;
-      ground.mesh.updateMatrix();
-    }
-    if (this.grounds.length === 0) this.addGround(new THREE.Color(this.tones.ground), null, true);
+    this.grounds.setWorld(bodies, assets);
     this.setTheme(this.tones === TONES.dark ? 'dark' : 'light');
   }
 
@@ -121,12 +104,16 @@ export class Backdrop {
    * True when the shadows must be drawn anew.
    */
   follow(camera: THREE.Camera, focus: THREE.Vector3, reach_m: number, map_texels: number): boolean {
+    this.grounds.follow(focus);
+    this.fill.position.setFromMatrixPosition(camera.matrixWorld);
+    this.fill.target.position.copy(focus);
+    this.fill.target.updateMatrixWorld();
     const orthographic = camera instanceof THREE.OrthographicCamera;
     this.sky.visible = !orthographic;
     this.fog.near = orthographic ? 1e6 : Math.max(25, 4 * reach_m);
     this.fog.far = orthographic ? 2e6 : Math.max(140, 22 * reach_m);
     // In steps, since each other size of the map moves all edges.
-    const radius_m = Math.min(120, Math.max(2.5, Math.sqrt(2) ** Math.ceil(2 * Math.log2(Math.max(0.1, reach_m)))));
+    const radius_m = Math.min(120, Math.max(3, Math.sqrt(2) ** Math.ceil(2 * Math.log2(Math.max(0.1, 2.2 * reach_m)))));
     return this.fitShadows(focus, radius_m, map_texels);
   }
 
@@ -148,10 +135,7 @@ export class Backdrop {
   dispose(): void {
     this.sky.geometry.dispose();
     this.sky.material.dispose();
-    for (const ground of this.grounds) {
-      ground.mesh.geometry.dispose();
-      ground.material.dispose();
-    }
+    this.grounds.dispose();
     for (const sun of this.suns) sun.light.dispose();
   }
 
@@ -226,64 +210,17 @@ export class Backdrop {
     // Files tell attenuation by three numbers, three.js by one power: take the strength at 1 m, and the steepest power.
     const at_1_m = 1 / Math.max(0.2, light.constant + light.linear + light.quadratic);
     const decay = light.quadratic > 0 ? 2 : light.linear > 0 ? 1 : 0;
+    // Unlimited is told as null; three.js takes 0 for that.
+    const range_m = Number.isFinite(light.range_m) ? light.range_m : 0;
     const made = light.type === 'spot'
-      ? new THREE.SpotLight(color, 3 * at_1_m, light.range_m, Math.min(1.5, Math.max(0.05, light.outer_rad / 2 || 0.5)), 0.4, decay)
-      : new THREE.PointLight(color, 3 * at_1_m, light.range_m, decay);
+      ? new THREE.SpotLight(color, 3 * at_1_m, range_m, Math.min(1.5, Math.max(0.05, light.outer_rad / 2 || 0.5)), 0.4, decay)
+      : new THREE.PointLight(color, 3 * at_1_m, range_m, decay);
     this.scene.add(made);
     if (made instanceof THREE.SpotLight) this.scene.add(made.target);
     this.lamps.push({ light: made, lamp });
     placeLight(made, Float64Array.from(light.pose));
   }
 
-  private addGround(color: THREE.Color, map: THREE.Texture | null, fallback = false): (typeof this.grounds)[number] {
-    const material = new THREE.MeshStandardMaterial({ color, map, roughness: 0.95, metalness: 0 });
-    // Everything that lies on the plane wins over it.
-    material.polygonOffset = true;
-    material.polygonOffsetFactor = 1;
-    material.polygonOffsetUnits = 4;
-    material.onBeforeCompile = (shader) => {
-      Object.assign(shader.uniforms, this.grid_uniforms);
-      shader.vertexShader = shader.vertexShader
-        .replace('#include <common>', '#include <common>\nvarying vec2 on_plane;')
-        .replace('#include <begin_vertex>', '#include <begin_vertex>\non_plane = position.xy;');
-      shader.fragmentShader = shader.fragmentShader
-        .replace('#include <common>', `#include <common>
-          varying vec2 on_plane;
-          uniform vec3 grid_color;
-          uniform float grid_strength;
-          float lines(vec2 at, float every, float width) {
-            vec2 p = at / every;
-            vec2 step_size = fwidth(p);
-            vec2 near = abs(fract(p - 0.5) - 0.5) / max(step_size, vec2(1e-6));
-            float line = 1.0 - min(min(near.x, near.y) / width, 1.0);
-            // Where lines come closer than pixels they would flicker: they go before.
-            return line * (1.0 - smoothstep(0.08, 0.35, max(step_size.x, step_size.y)));
-          }`)
-        .replace('#include <map_fragment>', `#include <map_fragment>
-          float grid = max(0.5 * lines(on_plane, 1.0, 1.1), max(lines(on_plane, 10.0, 1.4), 0.6 * lines(on_plane, 100.0, 1.6)));
-          diffuseColor.rgb = mix(diffuseColor.rgb, grid_color, grid * grid_strength);`);
-    };
-    const mesh = new THREE.Mesh(new THREE.PlaneGeometry(2 * GROUND_HALF_M, 2 * GROUND_HALF_M), material);
-    if (map) {
-      // A picture every metre, as the plane has no size of its own.
-      const uv = mesh.geometry.getAttribute('uv');
-      for (let i = 0; i < uv.count; ++i) uv.setXY(i, uv.getX(i) * 2 * GROUND_HALF_M, uv.getY(i) * 2 * GROUND_HALF_M);
-    }
-    mesh.receiveShadow = true;
-    mesh.matrixAutoUpdate = false;
-    mesh.frustumCulled = false;
-    mesh.renderOrder = -1;
-    const ground = { mesh, material, color: color.clone(), fallback };
-    this.grounds.push(ground);
-    this.scene.add(mesh);
-    return ground;
-  }
-
-  private tint(ground: (typeof this.grounds)[number]): void {
-    const theme = new THREE.Color(this.tones.ground);
-    if (ground.fallback) ground.material.color.copy(theme);
-    else ground.material.color.copy(ground.color).lerp(theme, ground.material.map ? this.tones.ground_tint / 2 : this.tones.ground_tint);
-  }
 }
 
 const DOWN = new THREE.Vector3();

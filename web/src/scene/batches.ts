@@ -163,11 +163,14 @@ export class Batches {
     }
   }
 
+  /** Everything goes, the materials and their textures too. */
   dispose(): void {
     for (const batch of this.batches.values()) batch.dispose();
     this.batches.clear();
     for (const material of this.materials.values()) material.dispose();
+    this.materials.clear();
     this.checker_texture?.dispose();
+    this.checker_texture = undefined;
   }
 
   private material(s: Surface): THREE.MeshStandardMaterial {

@@ -10,11 +10,15 @@ import { collisionParts, partsOfLink, type Part } from './shapes';
 /** What a model's instances share. */
 interface Kin {
   model: Model;
+  /** Its model as text: the same id may mean another model after the program was started anew. */
+  content: string;
   chain: Chain;
   parts: Part[];
   collisions: Part[] | undefined;
   /** Extent in the frame of the first link, joints at 0. */
   bounds: THREE.Box3;
+  /** Extents of geometries by their keys: making one only to measure it is dear, and parts come one by one. */
+  boxes: Map<string, THREE.Box3>;
 }
 
 export class Body implements PoseSlot {
@@ -25,7 +29,10 @@ export class Body implements PoseSlot {
   readonly world: Float64Array;
   readonly slots: Slot[] = [];
   readonly collision_slots: Slot[] = [];
-  is_moved = true;
+  /** Waits for its matrices to be written. */
+  is_queued = false;
+  /** When a message told of it last, by the browser's clock. */
+  told_ms = -Infinity;
   /** Simulated time of the pose before, and its position and heading: what velocities are taken from. */
   time_s = NaN;
   readonly velocity = new Float64Array(3);
@@ -65,7 +72,6 @@ export class Body implements PoseSlot {
     }
     this.time_s = time_s;
     for (let c = 0; c < 7; ++c) this.before[c] = this.world[c];
-    this.is_moved = true;
     return true;
   }
 
@@ -82,7 +88,6 @@ export class Body implements PoseSlot {
       multiply(target, 0, relative, 0, scratch, i);
     }
     this.world.set(scratch.subarray(0, this.world.length));
-    this.is_moved = true;
   }
 
   /** Pose of a device in the world, into out[0..6]. */
@@ -161,12 +166,14 @@ export class Bodies {
     const fresh = world.epoch !== this.epoch;
     this.epoch = world.epoch;
     const kept = new Set<number>();
+    const changed = this.dropChanged(models);
     for (const instance of world.instances) {
       const model = models.get(instance.model);
       if (model === undefined || model.links.length === 0) continue;
       kept.add(instance.id);
       let body = this.by_id.get(instance.id);
-      if (body !== undefined && (fresh || body.instance.model !== instance.model)) {
+      const changed_model = body !== undefined && (body.instance.model !== instance.model || changed.has(instance.model));
+      if (body !== undefined && (fresh || changed_model)) {
         this.remove(body);
         body = undefined;
       }
@@ -174,14 +181,27 @@ export class Bodies {
       else body.instance = instance;
     }
     for (const body of [...this.by_id.values()]) if (!kept.has(body.instance.id)) this.remove(body);
-    for (const id of this.kins.keys()) if (!models.has(id)) this.kins.delete(id);
     this.batches.sweep();
     this.index(world);
   }
 
+  /** Forgets models that are gone or other than they were; tells the latter's ids. */
+  private dropChanged(models: Map<string, Model>): Set<string> {
+    const changed = new Set<string>();
+    for (const [id, kin] of this.kins) {
+      const model = models.get(id);
+      if (model !== undefined && JSON.stringify(model) === kin.content) continue;
+      this.kins.delete(id);
+      if (model !== undefined) changed.add(id);
+    }
+    return changed;
+  }
+
   /** Notes that a body is not where its slots are. */
   noteMoved(body: Body): void {
-    body.is_moved = true;
+    // Once, however many messages come while nothing is drawn (a hidden tab).
+    if (body.is_queued) return;
+    body.is_queued = true;
     this.moved.push(body);
   }
 
@@ -190,8 +210,7 @@ export class Bodies {
     if (this.moved.length === 0) return false;
     for (let n = 0; n < this.moved.length; ++n) {
       const body = this.moved[n];
-      if (!body.is_moved) continue;
-      body.is_moved = false;
+      body.is_queued = false;
       place(body.slots, body.world);
       if (this.shows_collisions) place(body.collision_slots, body.world);
     }
@@ -210,11 +229,18 @@ export class Bodies {
     }
   }
 
-  dispose(): void {
+  /** Forgets the world; another may come. */
+  clear(): void {
     this.batches.dispose();
+    this.kins.clear();
     this.by_id.clear();
     this.by_name.clear();
+    this.devices.clear();
     this.list = [];
+    this.planes = [];
+    this.lights = [];
+    this.moved = [];
+    this.epoch = -1;
   }
 
   private insert(instance: Instance, model: Model): void {
@@ -236,7 +262,7 @@ export class Bodies {
   private kinOf(model: Model): Kin {
     const known = this.kins.get(model.id);
     if (known) return known;
-    const kin: Kin = { model, chain: new Chain(model), parts: [], collisions: undefined, bounds: new THREE.Box3() };
+    const kin: Kin = { model, content: JSON.stringify(model), chain: new Chain(model), parts: [], collisions: undefined, bounds: new THREE.Box3(), boxes: new Map() };
     this.kins.set(model.id, kin);
     if (this.scratch.length < 7 * model.links.length) this.scratch = new Float64Array(14 * model.links.length);
     model.links.forEach((link, i) => {
@@ -322,9 +348,7 @@ function boundsOf(kin: Kin): void {
   const m = new Float32Array(16);
   kin.bounds.makeEmpty();
   for (const part of kin.parts) {
-    const geometry = part.geometry();
-    geometry.computeBoundingBox();
-    const box = geometry.boundingBox ?? new THREE.Box3();
+    const box = boxOf(part, kin.boxes);
     multiply(base, 0, rest, 7 * part.link, in_base, 0);
     composeMatrix(in_base, 0, part.local, m, 0);
     matrix.fromArray(m);
@@ -332,7 +356,17 @@ function boundsOf(kin: Kin): void {
       corner.set(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).applyMatrix4(matrix);
       kin.bounds.expandByPoint(corner);
     }
-    geometry.dispose();
   }
   if (kin.bounds.isEmpty()) kin.bounds.set(new THREE.Vector3(-0.1, -0.1, 0), new THREE.Vector3(0.1, 0.1, 0.2));
+}
+
+function boxOf(part: Part, known: Map<string, THREE.Box3>): THREE.Box3 {
+  let box = known.get(part.geometry_key);
+  if (box === undefined) {
+    const geometry = part.geometry();
+    geometry.computeBoundingBox();
+    known.set(part.geometry_key, (box = geometry.boundingBox ?? new THREE.Box3()));
+    geometry.dispose();
+  }
+  return box;
 }

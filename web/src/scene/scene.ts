@@ -10,6 +10,7 @@ import { Assets } from './assets';
 import { Backdrop, type Theme } from './backdrop';
 import { Bodies, type Body } from './bodies';
 import { CameraRig, type CameraMode, type Subject } from './camera';
+import { Foresight } from './foresight';
 import { Hands, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
@@ -20,6 +21,7 @@ import { Scans, type Scan } from './overlays/scans';
 import { Trails } from './overlays/trails';
 import { invert, transform, yawOf } from './poses';
 import { pickSlots } from './picking';
+import { makeRenderer } from './renderer';
 
 export type { CameraMode, Drag, RangeReading, Scan, SceneStats, Theme, Tool };
 
@@ -55,6 +57,7 @@ export class SceneView {
   private readonly trails: Trails;
   private readonly pull_line: PullLine;
   private readonly hands: Hands | null;
+  private readonly foresight: Foresight;
   private readonly meter = new Meter();
   private readonly overlays: Record<Overlay, boolean> = {
     trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, grid: true, shadows: true, collisions: false, teams: true,
@@ -83,6 +86,7 @@ export class SceneView {
   private disposed = false;
   private width_px = 1;
   private height_px = 1;
+  private applied_ms = 0;
   private draw_calls = 0;
   private triangles = 0;
 
@@ -94,8 +98,9 @@ export class SceneView {
     this.message.setAttribute('role', 'status');
     this.renderer = makeRenderer();
     this.assets = new Assets(options.assetBase, () => this.invalidate());
-    this.bodies = new Bodies(this.root, this.assets, () => this.onAssetsJoined());
+    this.bodies = new Bodies(this.root, this.assets, () => this.touchShadows());
     this.backdrop = new Backdrop(this.scene);
+    this.foresight = new Foresight(this.bodies, (name, position, yaw_rad) => this.override(name, position, yaw_rad), () => this.touchShadows());
     this.scene.add(this.root);
     this.labels = new Labels(this.scene);
     this.marks = new Marks(this.scene);
@@ -177,11 +182,26 @@ export class SceneView {
     this.touchShadows();
   }
 
+  /** Forgets the world and all assets: for a server that was started anew, whose ids mean other things. */
+  reset(): void {
+    this.bodies.clear();
+    this.assets.forget();
+    this.scans.clear();
+    this.marks.clear();
+    this.trails.setBodies([], () => TRAIL, true);
+    this.world = null;
+    this.epoch = -1;
+    this.hovered = this.selected = null;
+    this.selected_address = null;
+    this.touchShadows();
+  }
+
   applyPoses(bytes: ArrayBuffer | Uint8Array): void {
     const begin_ms = performance.now();
     const view = bytes instanceof ArrayBuffer ? new DataView(bytes) : new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     if (this.world === null || !readPosesHeader(view, this.header)) return;
     if (this.header.epoch !== (this.world.epoch & 0xffff)) return;
+    this.applied_ms = begin_ms;
     // A record of a body that is not told yet ends the message; what came before it counts.
     decodePoses(bytes, this.header, this.slot_of, this.on_moved);
     this.trails.advance(this.header.time_s);
@@ -224,7 +244,9 @@ export class SceneView {
     const size = box.getSize(new THREE.Vector3());
     const center = box.getCenter(at);
     center.z = Math.max(box.min.z, 0) + Math.min(size.z, 1) * 0.2;
-    this.rig.frame(center.clone(), Math.max(0.5, 0.4 * flatSize(box)));
+    // What is flat and seen from aslant is half as high as it is wide.
+    const aspect = this.width_px / this.height_px;
+    this.rig.frame(center.clone(), Math.max(0.5, (aspect < 1 ? 0.46 : Math.max(0.3, 0.48 / aspect)) * flatSize(box)));
     this.invalidate();
   }
 
@@ -343,7 +365,8 @@ export class SceneView {
     cancelAnimationFrame(this.scheduled);
     this.observer.disconnect();
     this.hands?.dispose();
-    for (const part of [this.bodies, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
+    this.bodies.clear();
+    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
     this.renderer?.dispose();
     this.renderer?.domElement.remove();
     this.message.remove();
@@ -353,16 +376,14 @@ export class SceneView {
 
   private readonly on_moved = (_id: number, slot: unknown): void => {
     const body = slot as Body;
-    if (body.take(this.header.time_s, this.bodies.scratch)) this.bodies.noteMoved(body);
+    if (!body.take(this.header.time_s, this.bodies.scratch)) return;
+    body.told_ms = this.applied_ms;
+    this.bodies.noteMoved(body);
   };
 
   private bodyOf(address: string | null): Body | null {
     if (address === null) return null;
     return this.bodies.by_name.get(address) ?? this.bodies.devices.get(address)?.body ?? this.bodies.by_name.get(address.split('/')[0]) ?? null;
-  }
-
-  private onAssetsJoined(): void {
-    this.touchShadows();
   }
 
   private say(text: string): void {
@@ -537,6 +558,7 @@ export class SceneView {
         this.invalidate();
       },
       drag: (drag) => {
+        this.foresight.drag(drag);
         this.onDrag(drag);
         this.invalidate();
       },
@@ -571,19 +593,4 @@ export class SceneView {
 const flatSize = (box: THREE.Box3): number => (box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y));
 const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
 const TURN = new THREE.Quaternion();
-
-function makeRenderer(): THREE.WebGLRenderer | null {
-  try {
-    const renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
-    renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    renderer.shadowMap.autoUpdate = false;
-    renderer.toneMapping = THREE.NeutralToneMapping;
-    renderer.outputColorSpace = THREE.SRGBColorSpace;
-    renderer.autoClear = true;
-    renderer.info.autoReset = false;
-    return renderer;
-  } catch {
-    return null;
-  }
-}
+const TRAIL = new THREE.Color();

@@ -43,7 +43,7 @@ export class Bar {
           h('b', {}, 'Sandlot'), this.name),
         this.play, this.step, this.reset, this.speed,
         h('div', {class: 'clock'}, this.time, this.rtf),
-        new Timeline(context).element, this.recording, this.role, this.state, this.viewers,
+        h('i', {class: 'break'}), new Timeline(context).element, this.recording, this.role, this.state, this.viewers,
         h('span', {class: 'sep'}),
         h('span', {class: 'layout-buttons'}, button('panels.left', 'panelLeft', 'Tree'), button('panels.dock', 'panelBottom', 'Panels below'), button('panels.right', 'panelRight', 'Inspector')),
         h('span', {class: 'palette-button'}, button('page.palette', 'search', 'All commands')), this.themeButton, button('page.help', 'help', 'Help'));
@@ -67,7 +67,7 @@ export class Bar {
   private readonly update = (): void => {
     const {store, client, actions} = this.context;
     const status = store.status;
-    const reason = store.whyNotSteer();
+    const reason = store.whyNotPlay();
     const playing = status?.state === 'playing' || status?.state === 'seeking';
     if (playing !== this.playing) {
       this.playing = playing;

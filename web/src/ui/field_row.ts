@@ -37,7 +37,7 @@ export class FieldRow {
       cell.append(slider);
     }
     cell.append(this.input, h('span', {class: 'unit'}, view.unit));
-    this.element = h('div', {class: `field ${view.control}${view.tunable ? '' : ' fixed'}${view.slider ? ' sliding' : ''}`},
+    this.element = h('div', {class: `field${view.tunable ? '' : ' fixed'}`},
         h('label', {class: 'ellipsis', title: [view.help, range(view)].filter((t) => t).join('\n')}, view.label), cell, this.back, this.error);
     this.input.addEventListener('change', () => this.commit(this.text()));
     this.input.addEventListener('input', () => this.element.classList.add('typing'));

@@ -43,7 +43,7 @@ export function openPalette(context: Context): void {
 
   const all = (): Entry[] => {
     const entries: Entry[] = actions.list.filter((a) => a.id !== 'page.palette').map((a) => ({
-      title: a.title, what: a.group, symbol: 'chevron', key: a.keys[0] ? keyLabel(a.keys[0]) : '', reason: a.steers ? store.whyNotSteer() : null, run: () => actions.run(a.id),
+      title: a.title, what: a.group, symbol: 'chevron', key: a.keys[0] ? keyLabel(a.keys[0]) : '', reason: a.steers ? actions.whyNot(a) : null, run: () => actions.run(a.id),
     }));
     for (const instance of store.world?.instances ?? []) {
       entries.push({title: instance.name, what: instance.robot ? 'Robot' : 'Object', symbol: instance.robot ? 'robot' : 'box', key: '', reason: null, run: () => {

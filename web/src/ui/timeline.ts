@@ -50,7 +50,7 @@ export class Timeline {
 
   private reason(): string | null {
     const status = this.context.store.status;
-    return this.context.store.whyNotSteer() ?? (status && !status.may_rewind ? status.why_not || 'This run keeps no snapshots to go back to' : null);
+    return this.context.store.whyNotPlay() ?? (status && !status.may_rewind ? status.why_not || 'This run keeps no snapshots to go back to' : null);
   }
 
   private release(jump: boolean): void {

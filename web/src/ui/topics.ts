@@ -3,7 +3,7 @@ import type {Context, Panel} from '../app/context';
 import {formatBytes, formatRate} from '../app/format';
 import type {Channel, Message} from '../net/client';
 import {ticker} from '../app/ticker';
-import {h} from './dom';
+import {h, setText} from './dom';
 import {Echo} from './echo';
 import {icon} from './icons';
 import {VirtualList} from './virtual_list';
@@ -68,10 +68,11 @@ export class TopicsPanel implements Panel {
 
   constructor(private readonly context: Context) {
     this.list = new VirtualList<Channel>(row_px, (c) => this.row(c));
+    this.list.refreshRow = (row, c) => this.refreshRow(row, c);
     this.list.onRange = () => this.subscribe();
     this.element = h('div', {class: 'pane split', testid: 'topics'},
         h('div', {class: 'split-main'}, h('div', {class: 'pane-head'}, h('div', {class: 'search grow'}, icon('search', 14), this.search), this.count),
-          h('div', {class: 'topic-row topic-head faint'}, h('span', {}, 'Topic'), h('span', {}, 'Type'), h('span', {class: 'right'}, 'Rate'), h('span', {class: 'right'}, 'Bandwidth')), this.list.element),
+          h('div', {class: 'topic-row topic-head faint'}, h('span', {}, 'Topic'), h('span', {}, 'Type'), h('span', {class: 'to-right'}, 'Rate'), h('span', {class: 'to-right'}, 'Bandwidth')), this.list.element),
         h('div', {class: 'split-side'}, this.echoTitle, this.echo.element));
     this.echo.say('Choose a topic to see its latest message');
     this.search.addEventListener('input', this.refresh);
@@ -81,9 +82,17 @@ export class TopicsPanel implements Panel {
   }
 
   private row(c: Channel): HTMLElement {
+    const row = h('div', {class: 'topic-row', title: `${c.topic}\n${c.schemaName}, ${c.encoding}`, 'data-topic': c.topic, on: {click: () => this.select(c.topic)}},
+        h('span', {class: 'mono ellipsis'}, c.topic), h('span', {class: 'dim ellipsis'}, c.schemaName), h('span', {class: 'number to-right'}), h('span', {class: 'number to-right dim'}));
+    this.refreshRow(row, c);
+    return row;
+  }
+
+  private refreshRow(row: HTMLElement, c: Channel): void {
     const {hz, bytes} = this.meters.get(c.topic)?.rates(performance.now() / 1000) ?? {hz: 0, bytes: 0};
-    return h('div', {class: `topic-row${c.topic === this.selected ? ' selected' : ''}`, title: `${c.topic}\n${c.schemaName}, ${c.encoding}`, on: {click: () => this.select(c.topic)}},
-        h('span', {class: 'mono ellipsis'}, c.topic), h('span', {class: 'dim ellipsis'}, c.schemaName), h('span', {class: 'number right'}, formatRate(hz)), h('span', {class: 'number right dim'}, bytes > 0 ? `${formatBytes(bytes)}/s` : '–'));
+    row.classList.toggle('selected', c.topic === this.selected);
+    setText(row.children[2] as Element, formatRate(hz));
+    setText(row.children[3] as Element, bytes > 0 ? `${formatBytes(bytes)}/s` : '–');
   }
 
   private readonly refresh = (): void => {

@@ -1,7 +1,7 @@
 // The tree of what is in the world. Only rows in view have elements.
 import type {Context, Panel} from '../app/context';
 import {ticker} from '../app/ticker';
-import {clear, h} from './dom';
+import {h} from './dom';
 import {icon} from './icons';
 import {openMenu} from './overlays';
 import {Row, rowsOf} from './tree_rows';
@@ -84,17 +84,30 @@ export class Tree implements Panel {
     if (!this.visible) return;
     const first = Math.max(0, Math.floor(this.scroller.scrollTop / row_px) - 4);
     const last = Math.min(this.rows.length, Math.ceil((this.scroller.scrollTop + this.scroller.clientHeight) / row_px) + 4);
-    clear(this.space);
-    for (let i = first; i < last; i++) this.space.append(this.rowElement(this.rows[i] as Row, i));
+    const drawn = new Map<string, {signature: string; element: HTMLElement}>();
+    for (let i = first; i < last; i++) {
+      const row = this.rows[i] as Row;
+      // A row that says the same keeps its element: one that is pressed must still be there when it is let go.
+      const signature = JSON.stringify([row.kind, row.label, row.detail, row.depth, row.folded, row.team, row.key === this.context.store.selection, row.instance?.id]);
+      const known = this.drawn.get(row.key);
+      const element = known?.signature === signature ? known.element : this.rowElement(row);
+      element.style.top = `${i * row_px}px`;
+      drawn.set(row.key, {signature, element});
+      if (element.parentElement === null) this.space.append(element);
+    }
+    for (const [key, {element}] of this.drawn) if (drawn.get(key)?.element !== element) element.remove();
+    this.drawn = drawn;
   };
 
-  private rowElement(row: Row, index: number): HTMLElement {
+  private drawn = new Map<string, {signature: string; element: HTMLElement}>();
+
+  private rowElement(row: Row): HTMLElement {
     const {store} = this.context;
     const selected = store.selection === row.key;
     const element = h('div', {
       class: `row ${row.kind}${selected ? ' selected' : ''}`, role: 'treeitem', 'aria-level': row.depth + 1, 'aria-selected': String(selected),
       'aria-expanded': row.folded === null ? undefined : String(!row.folded), 'data-address': row.key, title: row.kind === 'group' ? undefined : row.key,
-      style: {top: `${index * row_px}px`, 'padding-left': `${6 + Math.max(0, row.depth - 1) * 16}px`},
+      style: {'padding-left': `${6 + Math.max(0, row.depth - 1) * 16}px`},
       on: {
         click: (event) => {
           if (row.kind === 'group') this.toggle(row);

@@ -1,0 +1,267 @@
+// The page in a browser (Debian's Chromium, headless), as a person uses it. What it should have done is asked of the run itself, over a
+// connection of its own or in the files that it writes. Pictures stay in BUILD/page_tests.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { chromium } from "playwright-core";
+import { Scratch, Served, makeYard, readCsv, sandlot, until } from "./served.mjs";
+import { Viewer } from "./viewer.mjs";
+
+const pictures = `${process.env.SANDLOT_BUILD ?? "build/release"}/page_tests`;
+mkdirSync(pictures, { recursive: true });
+const executablePath = process.env.SANDLOT_CHROMIUM ?? "/usr/bin/chromium";
+const skip = existsSync(executablePath) ? false : "there is no chromium";
+const scratch = new Scratch();
+const logFile = scratch.file("log.csv");
+let browser, served, page, probe, status;
+const complaints = [];
+let plotted;
+
+const by = (id) => `[data-testid="${id}"]`;
+const row = (address) => `${by("tree")} [data-address="${address}"]`;
+const scene = "canvas" + by("scene");
+const picture = (of, name) => of.screenshot({ path: `${pictures}/${name}.png` });
+
+async function open(url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
+  const opened = await context.newPage();
+  opened.setDefaultTimeout(20000);
+  opened.on("pageerror", (error) => complaints.push(String(error)));
+  opened.on("console", (message) => { if (message.type() === "error") complaints.push(message.text()); });
+  await opened.goto(url);
+  return opened;
+}
+/** A probe that always knows the latest status. */
+async function watch(url) {
+  const viewer = new Viewer(url, "foxglove.websocket.v1");
+  await viewer.subscribe("/sandlot/status", (s) => { viewer.status = { ...s, count: (viewer.status?.count ?? 0) + 1 }; });
+  await until("a status", () => viewer.status);
+  return viewer;
+}
+/** The status after so many more of them: none of those is on its way any more. */
+async function settled(viewer, more = 3) {
+  const count = viewer.status.count;
+  await until("further status messages", () => viewer.status.count >= count + more);
+  return viewer.status;
+}
+const state = (viewer, wanted) => until(`state ${wanted}`, () => viewer.status.state === wanted);
+
+before(async () => {
+  if (skip) return;
+  browser = await chromium.launch({
+    executablePath,
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+  served = await Served.start(["run", makeYard(scratch), "--log", logFile, "--log-values", "rover.pose.x,rover.pose.y"], scratch);
+  probe = await watch(served.ws);
+  page = await open(served.url);
+});
+after(async () => {
+  probe?.close();
+  await browser?.close();
+  await served?.stop();
+  Served.killAll();
+  scratch.remove();
+});
+
+test("the page loads, and the robot moves", { skip }, async () => {
+  await page.locator(row("rover")).click();
+  const x = page.locator(`${by("inspector")} [data-address="rover.pose.x"]`);
+  const first = await x.textContent();
+  await until("another place", async () => (await x.textContent()) !== first);
+  await page.locator(scene).first().waitFor();
+  await picture(page, "page");
+});
+
+test("pause stops it, and a step is one tick", { skip }, async () => {
+  await page.locator(by("play")).click();
+  await state(probe, "paused");
+  const { tick } = await settled(probe);
+  assert.equal((await settled(probe)).tick, tick, "it stands still");
+  await page.locator(by("step")).click();
+  await until("a tick", () => probe.status.tick > tick);
+  assert.equal((await settled(probe)).tick, tick + 1);
+  assert.equal(probe.status.state, "paused");
+});
+
+test("two viewers see the same, and a spectator cannot steer", { skip }, async () => {
+  const url = new URL(served.url);
+  url.searchParams.set("role", "spectator");
+  const other = await open(url.href);
+  await other.locator(row("rover")).waitFor();
+  const time = await page.locator(by("sim-time")).textContent();
+  await until("the same time", async () => (await other.locator(by("sim-time")).textContent()) === time);
+  await other.locator(by("role")).waitFor({ state: "visible" });
+  const tick = probe.status.tick;
+  await other.locator(by("play")).click({ force: true, timeout: 2000 }).catch(() => {});
+  await other.keyboard.press("Space");
+  assert.equal((await settled(probe)).tick, tick, "the page of a spectator does nothing");
+  assert.equal(probe.status.state, "paused");
+  await picture(other, "spectator");
+  await other.context().close();
+  // Nor does one who speaks the protocol.
+  const spectator = new Viewer(`${served.ws}?role=spectator`, "foxglove.websocket.v1");
+  await until("serverInfo", () => spectator.info);
+  assert.equal(spectator.info.metadata.sandlot_role, "spectator");
+  const answer = await spectator.say("run").catch((error) => ({ ok: false, text: String(error) }));
+  assert.equal(answer.ok, false, answer.text);
+  assert.equal((await settled(probe)).tick, tick);
+  spectator.close();
+});
+
+test("dragging changes the pose", { skip }, async () => {
+  await page.locator(by("play")).click();
+  await state(probe, "playing");
+  const before = [await probe.number("idle.pose.x"), await probe.number("idle.pose.y")];
+  assert.deepEqual(before, [0, 1.5]);
+  await page.locator(row("idle")).click();
+  await page.locator(scene).hover();
+  await page.keyboard.press("f");
+  await page.locator(by("tool-move")).click();
+  const box = await page.locator(scene).boundingBox();
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  // The camera flies to where `f` asked for: try until it has the robot in its middle.
+  await until("another place", async () => {
+    await page.mouse.move(...middle);
+    await page.mouse.down();
+    await page.mouse.move(middle[0] + 60, middle[1] + 20, { steps: 4 });
+    await page.mouse.move(middle[0] + 120, middle[1] + 40, { steps: 4 });
+    await page.mouse.up();
+    const now = [await probe.number("idle.pose.x"), await probe.number("idle.pose.y")];
+    return Math.hypot(now[0] - before[0], now[1] - before[1]) > 0.1;
+  });
+  await picture(page, "dragged");
+  await page.keyboard.press("v");
+});
+
+test("a parameter changed in a form changes the run, and is in the command log", { skip }, async () => {
+  await page.locator(by("tree-filter")).fill("rover laser");
+  await page.locator(row("rover/laser")).click();
+  const field = page.locator(by("param-rover/laser.noise.white"));
+  await field.fill("0.125");
+  await field.press("Enter");
+  probe.client.getParameters(["rover/laser.noise.white"], "form");
+  await until("the new value", async () => {
+    if (probe.parameters.get("rover/laser.noise.white") === 0.125) return true;
+    probe.client.getParameters(["rover/laser.noise.white"], "form");
+    return false;
+  });
+  await page.locator(by("tab-commands")).click();
+  await page.locator(by("commands")).getByText(/noise.white = 0\.125/).first().waitFor();
+  await picture(page, "commands");
+  await page.locator(by("tree-filter")).fill("");
+});
+
+test("a plot draws the true values", { skip }, async () => {
+  await page.locator(by("tab-plots")).click();
+  await page.locator(by("plot-input")).first().fill("rover.pose.x");
+  await page.locator(by("plot-input")).first().press("Enter");
+  const begin = probe.status.tick;
+  await until("a second", () => probe.status.tick > begin + 150);
+  await picture(page, "plot");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(by("plot-csv")).first().click()]);
+  plotted = readFileSync(await download.path(), "utf8").trim().split("\n").map((line) => line.split(","));
+  assert.ok(plotted.length > 20, `${plotted.length} lines`);
+});
+
+test("a robot is driven by keyboard", { skip }, async () => {
+  await page.locator(row("idle")).click();
+  const from = [await probe.number("idle.pose.x"), await probe.number("idle.pose.y")];
+  await page.locator(by("drive")).click();
+  await page.locator(scene).hover();
+  await page.keyboard.down("w");
+  await until("10 cm", async () =>
+    Math.hypot(await probe.number("idle.pose.x") - from[0], await probe.number("idle.pose.y") - from[1]) > 0.1);
+  await page.keyboard.up("w");
+  await page.keyboard.press("Escape");
+});
+
+test("the console answers", { skip }, async () => {
+  await page.locator(by("tab-console")).click();
+  await page.locator(by("console-input")).fill("help");
+  await page.locator(by("console-input")).press("Enter");
+  await page.locator(by("console-output")).getByText(/pause/).first().waitFor();
+  await picture(page, "console");
+});
+
+test("it fits a phone, and comes dark and light", { skip }, async () => {
+  const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const first = await theme();
+  await page.locator(by("theme")).click();
+  await until("the other theme", async () => (await theme()) !== first);
+  await picture(page, await theme());
+  await page.setViewportSize({ width: 390, height: 800 });
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= 390, `${wide} px wide`);
+  await page.locator(by("play")).waitFor({ state: "visible" });
+  await picture(page, "phone");
+  await page.setViewportSize({ width: 1280, height: 800 });
+});
+
+test("the run ends cleanly; its own log has the numbers of the plot; nothing went wrong in the page", { skip }, async () => {
+  await page.context().close();
+  probe.close();
+  assert.equal(await served.stop(), 0, served.error);
+  const log = readCsv(logFile);
+  let compared = 0;
+  for (const [time, x] of plotted.slice(1)) {
+    const logged = log.rows.get(Number(time).toFixed(3));
+    if (!logged || x === "") continue;
+    assert.equal(Number(x), logged[1], `at ${time} s`);
+    ++compared;
+  }
+  assert.ok(compared > 20, `${compared} compared`);
+  assert.deepEqual(complaints, []);
+});
+
+test("a jump back leads to the same end", { skip }, async () => {
+  const yard = [makeYard(scratch), "--duration", "3s"];
+  const alone = JSON.parse(execFileSync(sandlot, ["run", ...yard, "--json"], { stdio: "pipe" })).state_hash;
+  const run = await Served.start(["run", ...yard, "--paused"], scratch);
+  const viewer = await watch(run.ws);
+  const steered = await open(run.url);
+  await steered.locator(by("play")).click();
+  await until("two seconds", () => viewer.status.time_s > 2);
+  await steered.locator(by("play")).click();
+  await state(viewer, "paused");
+  const { epoch } = viewer.status;
+  const line = await steered.locator(by("timeline")).boundingBox();
+  // The line goes from the beginning to the end at 3 s: a third of it is about 1 s.
+  await steered.mouse.click(line.x + line.width / 3, line.y + line.height / 2);
+  await until("another world", () => viewer.status.epoch > epoch && viewer.status.state === "paused");
+  assert.ok(viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2, `${viewer.status.time_s} s`);
+  await picture(steered, "rewound");
+  await steered.locator(by("reset")).click();
+  await until("the beginning", () => viewer.status.time_s === 0);
+  await steered.locator(by("play")).click();
+  viewer.socket.on("close", () => {});
+  assert.equal(await run.ended, 0, run.error);
+  assert.equal(run.summary.state_hash, alone);
+  await steered.context().close();
+});
+
+test("a recording plays with its timeline", { skip }, async () => {
+  const file = scratch.file("r.mcap");
+  execFileSync(sandlot, ["run", makeYard(scratch), "--duration", "2s", "--record", file], { stdio: "pipe" });
+  const player = await Served.start(["replay", file], scratch);
+  const viewer = await watch(player.ws);
+  assert.equal(viewer.status.replay, true);
+  assert.equal(viewer.status.end_s, 2);
+  assert.equal((await settled(viewer)).time_s, 0, "it waits at its beginning");
+  const shown = await open(player.url);
+  await until("a timeline to click on", () => shown.locator(by("timeline")).evaluate((e) => !e.classList.contains("off")));
+  const line = await shown.locator(by("timeline")).boundingBox();
+  await shown.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
+  await until("the middle", () => viewer.status.state === "paused" && viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2);
+  await picture(shown, "player");
+  await shown.locator(by("play")).click();
+  await until("its end", () => viewer.status.state === "ended");
+  assert.equal(viewer.status.time_s, 2);
+  viewer.close();
+  await shown.context().close();
+  assert.equal(await player.stop(), 0, player.error);
+  assert.equal(player.summary.different_ticks, 0);
+  assert.ok(player.summary.compared_ticks >= 200);
+});

@@ -1,0 +1,86 @@
+import test from 'node:test';
+import assert from 'node:assert/strict';
+import { load } from './bundle.mjs';
+
+const { CameraRig, THREE } = await load('../test/bodies_entry.ts');
+const never = () => false;
+
+function settled(rig, subject = null, seconds = 5) {
+  for (let i = 0; i < 60 * seconds; ++i) rig.update(1 / 60, subject, never);
+  rig.camera.updateMatrixWorld();
+  rig.camera.matrixWorldInverse.copy(rig.camera.matrixWorld).invert();
+  return rig.camera;
+}
+
+const subject = (x, y, yaw_rad) => ({
+  position: new THREE.Vector3(x, y, 0.1), yaw_rad, radius_m: 0.3, eye: new THREE.Vector3(x, y, 0.2), forward: new THREE.Vector3(Math.cos(yaw_rad), Math.sin(yaw_rad), 0), up: new THREE.Vector3(0, 0, 1),
+});
+
+test('a framed ball fills the view, also when that is upright', () => {
+  for (const aspect of [1.6, 0.5]) {
+    const rig = new CameraRig();
+    rig.setAspect(aspect);
+    const center = new THREE.Vector3(3, -2, 1);
+    rig.frame(center, 2);
+    const camera = settled(rig);
+    // Seen under the angle asin(r / d) to each side; the narrower side of the view holds 1 / 1.15 of it in its half, as
+    // the distance was chosen so: sin(seen) = sin(half) / 1.15.
+    const half = Math.atan(Math.tan(Math.PI / 8) * Math.min(1, aspect));
+    const seen = Math.asin(2 / camera.position.distanceTo(center));
+    assert.ok(Math.abs(Math.sin(seen) - Math.sin(half) / 1.15) < 1e-3, `${seen} ${half}`);
+    const p = center.clone().project(camera);
+    assert.ok(Math.hypot(p.x, p.y) < 1e-3);
+  }
+});
+
+test('zooming keeps what is under the cursor under the cursor', () => {
+  const rig = new CameraRig();
+  rig.setAspect(1.5);
+  const point = new THREE.Vector3(1, 1, 0);
+  const before = point.clone().project(settled(rig));
+  rig.zoom(0.5, point);
+  const after = point.clone().project(settled(rig));
+  assert.ok(Math.hypot(after.x - before.x, after.y - before.y) < 1e-3, `${before.x} ${before.y} ${after.x} ${after.y}`);
+});
+
+test('the race camera is behind the robot and above it', () => {
+  const rig = new CameraRig();
+  const robot = subject(4, 0, Math.PI / 2);
+  rig.setMode('race', robot);
+  const eye = settled(rig, robot).position;
+  assert.ok(Math.abs(eye.x - 4) < 0.02 && eye.y < -1 && eye.z > 0.4, `${eye.toArray()}`);
+});
+
+test('follow keeps its angle and distance while the robot drives', () => {
+  const rig = new CameraRig();
+  rig.setMode('follow', subject(0, 0, 0));
+  const first = settled(rig, subject(0, 0, 0)).position.clone();
+  const moved = settled(rig, subject(10, 5, 2)).position;
+  assert.ok(moved.distanceTo(first.add(new THREE.Vector3(10, 5, 0))) < 1e-2);
+});
+
+test('top looks down with north up, the robot camera along the robot, static stays', () => {
+  const rig = new CameraRig();
+  rig.setMode('top', null);
+  const top = settled(rig);
+  assert.ok(top.isOrthographicCamera);
+  const north = new THREE.Vector3(rig.focus.x, rig.focus.y + 1, 0).project(top);
+  assert.ok(Math.abs(north.x) < 1e-6 && north.y > 0);
+  const robot = subject(1, 2, 0);
+  rig.setMode('robot', robot);
+  const eye = settled(rig, robot);
+  assert.ok(eye.getWorldDirection(new THREE.Vector3()).distanceTo(new THREE.Vector3(1, 0, 0)) < 1e-6);
+  rig.setMode('static', robot);
+  const kept = settled(rig, subject(9, 9, 1)).position.clone();
+  assert.deepEqual(kept.toArray(), [1, 2, 0.2]);
+});
+
+test('television cuts to a stand from which the robot is seen', () => {
+  const rig = new CameraRig();
+  const robot = subject(0, 0, 0);
+  // A wall along the x axis: what is at y > 0 is hidden.
+  const wall = (from) => from.y > 0;
+  rig.setMode('tv', robot);
+  for (let i = 0; i < 200; ++i) rig.update(1 / 60, robot, wall);
+  assert.ok(rig.camera.position.y <= 0);
+});

@@ -1,0 +1,197 @@
+import test from 'node:test';
+import assert from 'node:assert/strict';
+import { load } from './bundle.mjs';
+
+const forms = await load('ui/forms.ts');
+const { rowsOf } = await load('ui/tree_rows.ts');
+const { layoutGraph } = await load('ui/graph_layout.ts');
+const { Actions, keyOf, keyLabel } = await load('app/actions.ts');
+const format = await load('app/format.ts');
+const { handsOfKeys, twistMessage, driveOf } = await load('ui/teleop.ts');
+const { spanOf } = await load('ui/timeline.ts');
+const { commonStart, completeLine } = await load('ui/console.ts');
+const { Meter } = await load('ui/topics.ts');
+const { echoRows } = await load('ui/echo.ts');
+const { dragLine } = await load('app/drags.ts');
+const { score } = await load('ui/palette.ts');
+const { Store } = await load('app/store.ts');
+
+const field = (more) => ({ path: 'noise/white', type: 'number', unit: 'm', help: '', min: 0, max: 1, tunable: true, default: '0', choices: [], length: 0, ...more });
+const view = (more) => forms.fieldViews('rover/laser', [field(more)])[0];
+
+test('a field becomes a control with its parameter', () => {
+  assert.equal(view().address, 'rover/laser.noise.white');
+  assert.equal(view().group, 'noise');
+  assert.equal(view({ type: 'bool' }).control, 'switch');
+  assert.equal(view({ type: 'choice', choices: ['a', 'b'] }).control, 'choice');
+  assert.equal(view({ type: 'list of number' }).control, 'vector');
+  assert.deepEqual(view().slider, { min: 0, max: 1, step: 0.01 });
+  assert.equal(view({ max: 1e6 }).slider, null);
+  assert.equal(view({ min: null }).slider, null);
+  assert.deepEqual(view({ type: 'integer', max: 10 }).slider, { min: 0, max: 10, step: 1 });
+});
+
+test('what is typed is read with units and held to its range', () => {
+  assert.deepEqual(forms.readField(view(), '5 cm'), { value: 0.05 });
+  assert.deepEqual(forms.readField(view(), '2'), { error: 'at most 1' });
+  assert.deepEqual(forms.readField(view(), '-1'), { error: 'at least 0' });
+  assert.deepEqual(forms.readField(view(), 'x'), { error: 'not a number' });
+  assert.deepEqual(forms.readField(view({ type: 'integer', max: 9 }), '1.5'), { error: 'not a whole number' });
+  assert.deepEqual(forms.readField(view({ type: 'list of number', min: null, max: null, length: 3 }), '[1, -2 3]'), { value: [1, -2, 3] });
+  assert.deepEqual(forms.readField(view({ type: 'list of number', length: 3 }), '1, 0'), { error: '3 numbers' });
+  assert.ok(forms.isDefault(view(), 0) && !forms.isDefault(view(), 0.1));
+  assert.equal(forms.writeField(0.1 + 0.2), '0.3');
+});
+
+const world = {
+  revision: 1, epoch: 1, name: 'w', kinds: {},
+  models: [{ id: 'm1', name: 'rover', static: false }, { id: 'm2', name: 'wall', static: true }],
+  instances: [
+    { id: 1, name: 'ann', original: 'ann', model: 'm1', robot: true, team: 'red', devices: [{ name: 'laser', path: 'ann/laser', kind: 'laser_scanner', active: [], topics: [], commands: [] }], controllers: [{ name: 'c', path: 'ann/c', kind: 'wander' }] },
+    { id: 2, name: 'bob', original: 'bob', model: 'm1', robot: true, team: 'blue', devices: [], controllers: [] },
+    { id: 3, name: 'wall', original: 'wall', model: 'm2', robot: false, team: '', devices: [], controllers: [] },
+  ],
+};
+const keys = (rows) => rows.map((r) => r.key);
+
+test('the tree folds, opens and finds', () => {
+  assert.deepEqual(keys(rowsOf(world, new Set(), '')), ['group:robots', 'ann', 'bob', 'group:static', 'wall']);
+  assert.deepEqual(keys(rowsOf(world, new Set(['ann', '-group:static']), '')), ['group:robots', 'ann', 'ann/laser', 'ann/c', 'bob', 'group:static']);
+  assert.deepEqual(keys(rowsOf(world, new Set(), 'laser')), ['group:robots', 'ann', 'ann/laser']);
+  assert.deepEqual(keys(rowsOf(world, new Set(), 'blue')), ['group:robots', 'bob']);
+  assert.deepEqual(rowsOf(world, new Set(), 'zzz'), []);
+  assert.equal(rowsOf(world, new Set(), 'ann')[0].detail, '1 of 2');
+});
+
+test('a thousand robots make their rows within a frame many times over', () => {
+  const instances = Array.from({ length: 1000 }, (_, i) => ({ ...world.instances[0], id: i, name: `r${i}` }));
+  assert.equal(rowsOf({ ...world, instances }, new Set(), '').length, 1001);
+  assert.equal(rowsOf({ ...world, instances }, new Set(), 'r99').length, 12);  // r99, r990 to r999, and the heading
+});
+
+test('the store finds things by address and drops a selection that is gone', () => {
+  const store = new Store();
+  store.setWorld(structuredClone(world));
+  store.select('ann/laser');
+  assert.equal(store.selected().device.kind, 'laser_scanner');
+  store.select('nobody');
+  assert.equal(store.selection, null);
+  store.select('bob');
+  store.setWorld({ ...structuredClone(world), instances: [world.instances[0]] });
+  assert.equal(store.selection, null);
+  let epochs = 0;
+  store.onEpoch.on(() => epochs++);
+  store.setWorld({ ...structuredClone(world), epoch: 2 });
+  assert.equal(epochs, 1);
+  assert.match(store.whyNotSteer(), /Not connected/);
+  store.setRole('spectator');
+  assert.match(store.whyNotSteer(), /watching/);
+  store.setRole('admin');
+  assert.equal(store.whyNotSteer(), null);
+});
+
+test('the graph flows in layers, also with a cycle, and nothing overlaps', () => {
+  const nodes = ['a', 't', 'b', 'c'].map((id) => ({ id, width: 50 }));
+  const { places } = layoutGraph(nodes, [['a', 't'], ['t', 'b'], ['b', 'c'], ['c', 'a'], ['a', 'a'], ['x', 'a']]);
+  assert.deepEqual(['a', 't', 'b', 'c'].map((id) => places.get(id).layer), [0, 1, 2, 3]);
+  const crossed = layoutGraph(['a', 'b', 'x', 'y'].map((id) => ({ id, width: 10 })), [['a', 'y'], ['b', 'x']]).places;
+  assert.equal(crossed.get('a').y < crossed.get('b').y, crossed.get('y').y < crossed.get('x').y);
+  const many = layoutGraph(Array.from({ length: 300 }, (_, i) => ({ id: `${i}`, width: 20 })), Array.from({ length: 299 }, (_, i) => [`${i}`, `${(i * 7 + 1) % 300}`]));
+  const taken = new Set([...many.places.values()].map((p) => `${p.x} ${p.y}`));
+  assert.equal(taken.size, 300);
+});
+
+test('keys: one action each, those that steer are refused with the reason', () => {
+  let reason = 'You are watching';
+  const said = [];
+  let ran = 0;
+  const actions = new Actions(() => reason, (text) => said.push(text));
+  actions.add({ id: 'a', title: 'Step', group: 'Time', keys: ['.'], steers: true, run: () => ran++ }, { id: 'b', title: 'Grid', group: 'View', keys: ['g'], run: () => ran++ });
+  assert.throws(() => actions.add({ id: 'c', title: '', group: 'View', keys: ['g'], run: () => undefined }), /two actions/);
+  assert.ok(actions.press('.') && actions.press('g') && !actions.press('q'));
+  assert.deepEqual([ran, said], [1, ['You are watching']]);
+  reason = null;
+  actions.press('.');
+  assert.equal(ran, 2);
+  assert.equal(actions.titleOf('a'), 'Step (.)');
+  assert.equal(keyOf({ key: 'K', ctrlKey: true, metaKey: false, altKey: false }), 'ctrl+k');
+  assert.equal(keyOf({ key: ' ', ctrlKey: false, metaKey: false, altKey: false }), 'space');
+  assert.equal(keyOf({ key: 'Shift', ctrlKey: false, metaKey: false, altKey: false }), null);
+  assert.deepEqual([keyLabel('ctrl+k'), keyLabel('+'), keyLabel('space')], ['Ctrl K', '+', 'Space']);
+});
+
+test('the table of keys holds those that the manual promises, each once', async () => {
+  const { actionTable } = await load('app/tables.ts');
+  const actions = new Actions(() => null, () => undefined);
+  actions.add(...actionTable({}));  // throws if two share a key
+  for (const key of ['space', '.', 'r', '1', '2', '3', '4', '5', '6', '7', 'f', 'h', 'g', 't', 'n', 'm', 'p', 'x', '/', '`', 'ctrl+k', 'escape']) assert.ok(actions.press(key), key);
+  for (const key of ['w', 'a', 's', 'd', 'q', 'e']) assert.ok(!actions.press(key), `${key} is for driving`);
+});
+
+test('numbers and times as people read and write them', () => {
+  assert.deepEqual([0, 0.1 + 0.2, 1234567, 1e9, 1e-9, NaN, Infinity].map((v) => format.formatNumber(v)), ['0', '0.3', '1234567', '1000000000', '1e-9', '–', '∞']);
+  assert.equal(format.formatNumber(123456.789), '123456.8');
+  assert.deepEqual([0, 59.994, 59.996, 3725.5].map(format.formatTime), ['0.00 s', '59.99 s', '1:00.00', '1:02:05.50']);
+  assert.equal(format.formatFixed(-0.0001, 3), '0.000');
+  assert.deepEqual(['90 deg', '5 cm', '.5', '1e-3', '', '1,5', '0x10', 'Infinity'].map(format.parseNumber), [Math.PI / 2, 0.05, 0.5, 0.001, null, null, null, null]);
+  assert.deepEqual(['rover', 'a b', 'a"b'].map(format.word), ['rover', '"a b"', `'a"b'`]);
+});
+
+test('driving: keys add up, the command goes to the active level', () => {
+  assert.deepEqual(handsOfKeys(['w', 'arrowup', 'a']), { forward: 1, left: 0, turn: 1 });
+  assert.deepEqual(handsOfKeys(['w', 's']), { forward: 0, left: 0, turn: 0 });
+  assert.deepEqual(twistMessage('geometry_msgs/msg/Twist', { forward: -1, left: 0, turn: 0.5 }, 0.4, 2, 0), { linear: { x: -0.4, y: 0, z: 0 }, angular: { x: 0, y: 0, z: 1 } });
+  const stamped = twistMessage('geometry_msgs/msg/TwistStamped', { forward: 1, left: 0, turn: 0 }, 1, 1, 2.25);
+  assert.deepEqual(stamped.header.stamp, { sec: 2, nanosec: 250000000 });
+  const commands = [{ name: '/r/d/wheels', type: 'geometry_msgs/msg/Twist', level: 'wheels' }, { name: '/r/d/ideal', type: 'geometry_msgs/msg/Twist', level: 'ideal' }];
+  assert.equal(driveOf({ devices: [{ active: ['ideal'], commands }] }).topic, '/r/d/ideal');
+  assert.equal(driveOf({ devices: [{ active: [], commands: [{ name: '/x', type: 'std_msgs/msg/Float64', level: '' }] }] }), null);
+});
+
+test('the time line spans a live run, a run with an end, and a rewound one', () => {
+  const s = { begin_s: 0, end_s: null, time_s: 4, history_s: [0, 2], replay: false };
+  assert.deepEqual(spanOf(s), [0, 4]);
+  assert.deepEqual(spanOf({ ...s, end_s: 60 }), [0, 60]);
+  assert.deepEqual(spanOf({ ...s, time_s: 1, history_s: [0, 2, 8] }), [0, 8]);
+});
+
+test('completion takes what is common and replaces the last word only', () => {
+  assert.equal(commonStart(['rover/laser', 'rover/drive']), 'rover/');
+  assert.equal(commonStart([]), '');
+  assert.equal(completeLine('set rov', 'rover/laser.noise'), 'set rover/laser.noise');
+  assert.equal(completeLine('set ', 'rover'), 'set rover');
+});
+
+test('rates: thirty messages a second are thirty hertz; silence fades', () => {
+  const meter = new Meter();
+  for (let i = 0; i <= 150; i++) meter.add(100 + i / 30, 1000);
+  const { hz, bytes } = meter.rates(105);
+  assert.ok(Math.abs(hz - 30) < 1.5 && Math.abs(bytes - 30000) < 1500, `${hz}`);
+  assert.equal(meter.rates(120).hz, 0);
+});
+
+test('a message shows as rows; long lists are folded and cut', () => {
+  const message = { header: { stamp: { sec: 1 } }, ranges: new Float32Array(1000) };
+  assert.deepEqual(echoRows(message, new Set()).map((r) => r.name), ['header', 'stamp', 'sec', 'ranges']);
+  const opened = echoRows(message, new Set(['ranges']));
+  assert.equal(opened.length, 4 + 24 + 1);
+  assert.equal(opened.at(-1).text, '976 more');
+  const loop = {};
+  loop.self = loop;
+  assert.ok(echoRows(loop, new Set()).length < 20);
+});
+
+test('hands in the scene become console lines', () => {
+  const drag = { name: 'rover', link: 'base', mode: 'move', phase: 'move', target: [1.00004, 2, 0] };
+  assert.equal(dragLine(drag), 'drag rover 1 2 0');
+  assert.equal(dragLine({ ...drag, mode: 'turn', yaw: 0.5 }), 'pose rover 1 2 0 0.5');
+  assert.equal(dragLine({ ...drag, mode: 'pull', point: [0.1, 0, 0] }), 'pull rover base 0.1 0 0 1 2 0');
+  assert.equal(dragLine({ ...drag, mode: 'pull', phase: 'end' }), 'pull rover off');
+  assert.equal(dragLine({ ...drag, target: [NaN, 0, 0] }), null);
+});
+
+test('the palette finds by letters in order, beginnings first', () => {
+  assert.equal(score('Reset', 'xyz'), 0);
+  assert.ok(score('Reset', 're') > score('Fire', 're'));
+  assert.ok(score('rover_2/laser', 'r2l') > 0);
+});
