@@ -75,6 +75,8 @@ After say(RemoteConsole& console, const std::string& line, bool json) {
   if (trim(line).empty()) return After::go_on;
   if (first_word(line) == "exit") return After::leave;
   auto answer = console.say(asked_for(line, json), take_interrupt);
+  // The run may be gone before its answer is on its way.
+  if (!answer && first_word(line) == "quit") return After::leave;
   if (!answer) {
     // What was given up may still be done: only the connection's end ends this.
     std::fprintf(stderr, "error: %s\n", answer.error().text().c_str());
@@ -102,8 +104,9 @@ char** candidates_for(const char*, int, int end) {
   const bool open = words.size() == 1 &&
                     (common.back() == '/' || common.back() == '.' || common.back() == '[');
   rl_completion_append_character = open ? 0 : ' ';
-  const std::size_t more = words.size() == 1 ? 0 : words.size();
-  char** const out = static_cast<char**>(std::calloc(more + 2, sizeof(char*)));
+  // The library looks at the third entry also when there is one word only.
+  const std::size_t more = words.size();
+  char** const out = static_cast<char**>(std::calloc(more + 3, sizeof(char*)));
   if (!out) return nullptr;
   out[0] = ::strdup(common.c_str());
   for (std::size_t i = 0; i < more; ++i) out[i + 1] = ::strdup(words[i].c_str());
@@ -136,6 +139,7 @@ int by_hand(RemoteConsole& console, const std::string& url) {
   static char blanks[] = " \t";
   rl_readline_name = const_cast<char*>("sandlot");
   rl_completer_word_break_characters = blanks;
+  rl_basic_word_break_characters = blanks;
   rl_attempted_completion_function = candidates_for;
   completing = &console;
   using_history();

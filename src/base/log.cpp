@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <mutex>
+
 namespace sandlot::log {
 namespace {
 
@@ -15,7 +17,20 @@ spdlog::logger& logger() {
   return *instance;
 }
 
+std::mutex listener_mutex;
+std::function<void(Level, std::string_view)> listener;
+
+void tell(Level level, std::string_view text) {
+  const std::lock_guard lock(listener_mutex);
+  if (listener) listener(level, text);
+}
+
 }  // namespace
+
+void set_listener(std::function<void(Level, std::string_view)> heard_by) {
+  const std::lock_guard lock(listener_mutex);
+  listener = std::move(heard_by);
+}
 
 void set_level(Level level) {
   switch (level) {
@@ -26,8 +41,17 @@ void set_level(Level level) {
   }
 }
 
-void info(std::string_view text) { logger().info("{}", text); }
-void warning(std::string_view text) { logger().warn("{}", text); }
-void debug(std::string_view text) { logger().debug("{}", text); }
+void info(std::string_view text) {
+  logger().info("{}", text);
+  tell(Level::info, text);
+}
+void warning(std::string_view text) {
+  logger().warn("{}", text);
+  tell(Level::warning, text);
+}
+void debug(std::string_view text) {
+  logger().debug("{}", text);
+  tell(Level::debug, text);
+}
 
 }  // namespace sandlot::log

@@ -1,5 +1,6 @@
 #include "messages/json.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -298,6 +299,11 @@ Status set_message(const MessageInfo& info, const Json& value, void* object) {
 
 void append_json(std::string_view text, std::string& out) {
   out += '"';
+  // Most texts are names: what needs no second look goes at once.
+  const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+  const auto odd = std::find_if_not(text.begin(), text.end(), plain);
+  out.append(text.begin(), odd);
+  text.remove_prefix(static_cast<std::size_t>(odd - text.begin()));
   each_utf8(text, [&](std::string_view piece) {
     for (const char c : piece) {
       if (c == '"' || c == '\\') (out += '\\') += c;

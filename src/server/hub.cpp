@@ -337,6 +337,7 @@ void Hub::flush() {
   interest->contacts = subscribed(What::contacts);
   interest->commands = subscribed(What::commands);
   interest->world = subscribed(What::world);
+  counts_.log_read = subscribed(What::log);
   interest->transforms_static = subscribed(What::transforms_static);
   for (const auto& [id, client] : clients_)
     if (client.all_parameters || !client.parameters.empty()) interest->parameters = true;

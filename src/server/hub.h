@@ -54,9 +54,12 @@ class Hub {
   void answer_watch(ClientId client, std::uint32_t channel, std::size_t values, const Status& status,
                     const std::shared_ptr<Call>& call);
   void complain(ClientId client, const std::string& why);
+  /// A line for /rosout; levels of rcl_interfaces/msg/Log.
+  void send_log(std::uint8_t level, const std::string& text);
 
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
+    std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
 
@@ -110,11 +113,11 @@ class Hub {
     Clock::time_point complained;
   };
   struct Waiting {  ///< a call that ends when the run has got somewhere
-    std::uint64_t epoch = 0;
-    std::optional<std::uint64_t> tick;  ///< nothing: when there is another world
-    std::uint64_t seen = 0;             ///< tick at `since`
+    /// Whether it has, or why it never will; empty: not yet.
+    std::function<std::optional<Status>(const Session::Report&)> there;
+    std::function<void(const Status&)> end;
+    std::uint64_t tick = 0;  ///< of the run at `since`
     Clock::time_point since;
-    std::function<void(const char* why_not)> end;
   };
   struct Service {
     const char* name;
@@ -147,7 +150,6 @@ class Hub {
   void send_status();
   void send_batch(Batch& batch);
   void send_poses(const Batch& batch);
-  void send_log(std::uint8_t level, const std::string& text);
   void adopt(const Inventory& inventory);
 
   // hub_calls.cpp
@@ -165,6 +167,8 @@ class Hub {
   void on_get_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
   void on_set_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
   void on_delete_entity(ClientId id, const std::shared_ptr<Call>& call, const AnyMessage& request);
+  void wait(std::function<std::optional<Status>(const Session::Report&)> there,
+            std::function<void(const Status&)> end);
   void end_waiting();
 
   // hub_steer.cpp

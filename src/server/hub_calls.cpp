@@ -49,6 +49,16 @@ void answer_result(Call& call, SimResult value) {
   call.answer(response);
 }
 
+template <class Response>
+void answer_status(Call& call, const Status& status) {
+  answer_result<Response>(
+      call, status ? result(SimResult::ok) : result(SimResult::operation_failed, status.error().text()));
+}
+
+bool is_over(Session::State state) {
+  return state == Session::State::ended || state == Session::State::failed;
+}
+
 }  // namespace
 
 void Hub::add_services() {
@@ -194,26 +204,40 @@ void Hub::on_set_state(ClientId, const std::shared_ptr<Call>& call, const AnyMes
   using msg::simulation::SimulationState;
   using Response = msg::simulation::SetSimulationState::Response;
   const Session::State now = session_.report().state;
-  const bool over = now == Session::State::ended || now == Session::State::failed;
-  const auto answer = [&](std::uint8_t code, std::string why = "") {
+  const bool over = is_over(now);
+  const auto answer = [call](std::uint8_t code, std::string why = "") {
     answer_result<Response>(*call, result(code, std::move(why)));
+  };
+  const auto done = [answer](const Status& status) {
+    if (status) answer(SimResult::ok);
+    else answer(Response::state_transition_error, status.error().text());
+  };
+  const auto pauses = [](bool yes) {
+    return [yes](const Session::Report& report) {
+      const bool there = is_over(report.state) || (report.state == Session::State::paused) == yes;
+      return there ? std::optional(Status()) : std::nullopt;
+    };
   };
   switch (as<msg::simulation::SetSimulationState::Request>(request).state.state) {
     case SimulationState::playing:
       if (over) return answer(Response::incorrect_transition, "the run has ended; reset it first");
       if (now != Session::State::paused) return answer(Response::already_in_target_state, "it is playing");
       session_.play();
-      return answer(SimResult::ok);
+      return wait(pauses(false), done);
     case SimulationState::paused:
       if (over) return answer(Response::incorrect_transition, "the run has ended; reset it first");
       if (now == Session::State::paused) return answer(Response::already_in_target_state, "it is paused");
       session_.pause();
-      return answer(SimResult::ok);
+      return wait(pauses(true), done);
     case SimulationState::stopped: {
       session_.pause();
-      const Status status = session_.reset();
-      if (!status) return answer(Response::state_transition_error, status.error().text());
-      return answer(SimResult::ok);
+      const std::uint64_t epoch = session_.report().epoch;
+      if (const Status status = session_.reset(); !status) return done(status);
+      return wait(
+          [epoch](const Session::Report& report) {
+            return report.epoch != epoch ? std::optional(Status()) : std::nullopt;
+          },
+          done);
     }
     case SimulationState::quitting:
       answer(SimResult::ok);
@@ -226,19 +250,23 @@ void Hub::on_set_state(ClientId, const std::shared_ptr<Call>& call, const AnyMes
 void Hub::on_step(ClientId, const std::shared_ptr<Call>& call, const AnyMessage& request) {
   using Response = msg::simulation::StepSimulation::Response;
   const std::uint64_t steps = as<msg::simulation::StepSimulation::Request>(request).steps;
-  const Session::Report report = session_.report();
-  if (report.state != Session::State::paused)
-    return answer_result<Response>(*call,
-                                   result(SimResult::operation_failed, "the simulation is not paused"));
+  const Session::Report before = session_.report();
   constexpr std::uint64_t most_steps = 1'000'000'000;
-  if (steps == 0 || steps > most_steps)
-    return answer_result<Response>(*call, result(SimResult::operation_failed, "1 to 1000000000 steps"));
-  waiting_.push_back(
-      {report.epoch, report.tick + steps, report.tick, Clock::now(), [call](const char* why_not) {
-         const std::uint8_t code = why_not ? SimResult::operation_failed : SimResult::ok;
-         answer_result<Response>(*call, result(code, why_not ? why_not : ""));
-       }});
+  if (before.state != Session::State::paused || steps == 0 || steps > most_steps) {
+    const bool paused = before.state == Session::State::paused;
+    return answer_result<Response>(
+        *call, result(SimResult::operation_failed,
+                      paused ? "1 to 1000000000 steps can be taken" : "the simulation is not paused"));
+  }
   session_.step(steps);
+  const auto there = [epoch = before.epoch,
+                      target = before.tick + steps](const Session::Report& report) -> std::optional<Status> {
+    if (report.epoch != epoch) return Error{"the run was reset or rewound meanwhile"};
+    if (report.tick >= target) return Status();
+    if (is_over(report.state)) return Error{"the run has ended"};
+    return std::nullopt;
+  };
+  wait(there, [call](const Status& status) { answer_status<Response>(*call, status); });
 }
 
 void Hub::on_reset(ClientId, const std::shared_ptr<Call>& call, const AnyMessage& request) {
@@ -250,34 +278,30 @@ void Hub::on_reset(ClientId, const std::shared_ptr<Call>& call, const AnyMessage
     return answer_result<Response>(
         *call, result(SimResult::feature_unsupported, "time, state and what was spawned are reset together"));
   const std::uint64_t epoch = session_.report().epoch;
-  if (const Status status = session_.reset(); !status)
-    return answer_result<Response>(*call, result(SimResult::operation_failed, status.error().text()));
-  waiting_.push_back({epoch, std::nullopt, 0, Clock::now(), [call](const char* why_not) {
-                        const std::uint8_t code = why_not ? SimResult::operation_failed : SimResult::ok;
-                        answer_result<Response>(*call, result(code, why_not ? why_not : ""));
-                      }});
+  if (const Status status = session_.reset(); !status) return answer_status<Response>(*call, status);
+  wait(
+      [epoch](const Session::Report& report) {
+        return report.epoch != epoch ? std::optional(Status()) : std::nullopt;
+      },
+      [call](const Status& status) { answer_status<Response>(*call, status); });
 }
 
-/// Calls that wait for the run to get somewhere.
+void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> there,
+               std::function<void(const Status&)> end) {
+  waiting_.push_back({std::move(there), std::move(end), report_.tick, Clock::now()});
+}
+
+/// Calls that wait for the run to get somewhere. One that stands still does not get there any more.
 void Hub::end_waiting() {
   constexpr std::chrono::seconds patience{5};
   const auto now = Clock::now();
   for (Waiting& each : waiting_) {
-    const bool other_world = report_.epoch != each.epoch;
-    const bool over = report_.state == Session::State::ended || report_.state == Session::State::failed;
-    if (report_.tick != each.seen) {
-      each.seen = report_.tick;
-      each.since = now;
-    }
-    std::optional<const char*> answer;
-    if (!each.tick && other_world) answer = nullptr;
-    else if (each.tick && !other_world && report_.tick >= *each.tick) answer = nullptr;
-    else if (each.tick && other_world) answer = "the run was reset or rewound meanwhile";
-    else if (each.tick && over) answer = "the run has ended";
-    else if (now > each.since + patience && report_.state != Session::State::playing)
-      answer = "something else was asked of the run meanwhile";
-    if (!answer) continue;
-    each.end(*answer);
+    std::optional<Status> there = each.there(report_);
+    if (!there && std::exchange(each.tick, report_.tick) != report_.tick) each.since = now;
+    if (!there && now > each.since + patience && report_.state != Session::State::playing)
+      there = Error{"something else was asked of the run meanwhile"};
+    if (!there) continue;
+    each.end(*there);
     each.end = nullptr;
   }
   std::erase_if(waiting_, [](const Waiting& each) { return !each.end; });

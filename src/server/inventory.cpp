@@ -16,18 +16,17 @@ std::string kind_name(const Simulation& simulation, const Simulation::Device& de
   return level < levels.size() ? levels[level].name : "";
 }
 
-/// The topic or slot that an entry of a program's description means.
+/// What a device has for an entry of a program's description: at its active level where the entry names none.
 template <class Slots>
-void add_names(const Simulation::Entity& entity, const Description::Entry& entry, Slots slots,
-               std::vector<std::string>& out) {
+void add_name(const Simulation& simulation, const Simulation::Entity& entity, const Description::Entry& entry,
+              Slots slots, std::vector<std::string>& out) {
+  if (!entry.level.empty()) return;  // the description lists each level too
   for (const auto& device : entity.devices) {
     if (device->decl.name != entry.device) continue;
     for (const Simulation::Slot& slot : slots(*device)) {
-      if (entry.type != slot.topic->type()) continue;
-      const std::string ending = "/" + entry.level;
-      if (!entry.level.empty() && slot.topic->name().find(ending) == std::string::npos) continue;
-      out.push_back(slot.topic->name());
-      return;
+      const bool always = slot.level >= simulation.kind(*device).levels.size();
+      if (entry.type == slot.topic->type() && (always || (device->levels >> slot.level & 1)))
+        return out.push_back(slot.topic->name());
     }
   }
 }
@@ -56,11 +55,12 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;
       for (const Description::Entry& entry : program->description.readings)
-        add_names(
-            *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.topics; }, made.reads);
+        add_name(
+            simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.topics; },
+            made.reads);
       for (const Description::Entry& entry : program->description.actuators)
-        add_names(
-            *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
+        add_name(
+            simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
             made.orders);
     }
   }

@@ -26,8 +26,9 @@ struct Inventory {
     std::shared_ptr<const TopicBase> blank;  ///< an empty one of its type
   };
   struct Program {
-    std::string path;                        ///< "rover/controller"
-    std::vector<std::string> reads, orders;  ///< names of topics and slots
+    std::string path;  ///< "rover/controller"
+    /// Topics and slots of its robot at their active levels: what it may read and order; which of them it does is its own affair.
+    std::vector<std::string> reads, orders;
   };
   std::uint64_t epoch = 1, revision = 0;
   std::vector<Topic> topics;

@@ -2,6 +2,7 @@
 
 #include <future>
 
+#include "base/log.h"
 #include "server/hub.h"
 
 namespace sandlot::server {
@@ -105,6 +106,11 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
     if (self->others_on_change) self->others_on_change();
     self->wake(&Hub::state_changed);
   };
+  log::set_listener([self](log::Level level, std::string_view text) {
+    if (!self->hub.counts().log_read) return;
+    const std::uint8_t ros_level = level == log::Level::warning ? 30 : level == log::Level::info ? 20 : 10;
+    self->mailbox->put([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
+  });
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 
@@ -122,6 +128,7 @@ Counters Server::counters() const {
 
 void Server::stop() {
   if (std::exchange(impl_->stopped, true)) return;
+  log::set_listener({});
   impl_->session.on_change = impl_->others_on_change;
   {
     const std::lock_guard lock(impl_->mutex);

@@ -82,6 +82,10 @@ TEST(Transport, AnswersOneAfterTheOtherOnOneConnection) {
   EXPECT_TRUE(says(last, "Connection: close"));
   EXPECT_EQ(s.rest(), "");
   EXPECT_TRUE(s.ended);
+  Socket old(t->port());
+  old.say("GET / HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(body(old.rest()), page);
+  EXPECT_TRUE(old.ended);
   EXPECT_EQ(t->counters().refused, 0u);
 }
 
@@ -109,6 +113,8 @@ TEST(Transport, RefusesEachWrongRequestWithItsStatusAndEndsTheConnection) {
       {400, "garbage\r\n\r\n"},
       {400, "GET / HTTP/1.1\r\n\r\n"},  // no Host
       {400, "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"},
+      {400, "GET / HTTP/1.0\r\nHost: a b\r\n\r\n"},
+      {400, "GET / HTTP/1.1\r\nHost: \r\n\r\n"},
       {400, "GET / HTTP/1.1\r\nHost: localhost\r\nno colon\r\n\r\n"},
       {400, "GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n"},
       {400, get("/../etc/passwd")},
@@ -160,13 +166,13 @@ TEST(Transport, AnotherSiteThatIsListedMayRead) {
 }
 
 TEST(Transport, SlowRequestsAreEnded) {
-  const auto t = start({.handshake_s = 0.2});
+  const auto t = start({.handshake_s = 0.5});
   Socket slow(t->port());
   slow.say("GET / HTTP/1.1\r\nHost: local");
   Socket drops(t->port());
   // A drop at a time does not buy more: the whole head has to come in time.
   std::string_view drop = "GET / HTTP/1.1\r\n";
-  for (int i = 0; i < 100 && !drops.more(0.02); ++i)
+  for (int i = 0; i < 500 && !drops.more(0.02); ++i)
     drops.say(i < 16 ? drop.substr(static_cast<std::size_t>(i), 1) : "x");
   EXPECT_EQ(status(drops.seen), 408);
   EXPECT_EQ(status(slow.rest()), 408);
@@ -197,6 +203,8 @@ TEST(Transport, TooManyConnectionsAreTurnedAwayAndTheOthersGoOn) {
   // These two have asked and have their answers: one of them makes room.
   Socket next(t->port());
   EXPECT_EQ(status(next.ask(get("/"))), 200);
+  EXPECT_FALSE(sockets[0].more());
+  EXPECT_TRUE(sockets[0].ended);
   sockets.clear();
   Socket after(t->port());
   EXPECT_EQ(status(after.ask(get("/"))), 200);

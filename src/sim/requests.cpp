@@ -76,6 +76,7 @@ Status Simulation::carry_out(Request& request) {
     if (!entity) return Error{"there is nothing named '" + pose->name + "'"};
     if (!is_finite(pose->X_WM) || norm(pose->X_WM.q) < 1e-6) return Error{"the pose is not finite"};
     engine_->set_pose(entity->id, {pose->X_WM.p, normalised(pose->X_WM.q)});
+    if (entity->instance.model->is_static) ++revision_;  // viewers and /tf_static are told of it once
     return {};
   }
   if (const auto* pull = std::get_if<PullRequest>(&request)) return start_pull(*pull);

@@ -47,8 +47,9 @@ msg::TFMessage static_transforms(const Simulation& simulation) {
     const auto& links = instance.model->links;
     const auto frame_of = [&](std::size_t link) { return instance.name + "/" + links[link].name; };
     if (instance.model->is_static) {
+      const Pose X_WM = simulation.engine().pose(entity->id);  // somebody may have put it elsewhere
       for (std::size_t i = 0; i < links.size(); ++i)
-        set(message.transforms.emplace_back(), now, "world", frame_of(i), instance.X_WM * links[i].X_ML);
+        set(message.transforms.emplace_back(), now, "world", frame_of(i), X_WM * links[i].X_ML);
     }
     for (const auto& device : entity->devices) {
       // A device named as a link would have two parents; the link's place is the better one.

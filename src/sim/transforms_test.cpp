@@ -60,6 +60,12 @@ TEST(Transforms, that_stay_are_those_of_devices_and_of_what_never_moves) {
   expect_at(out, "world", "wall1/link", {4, 0, 0.5}, math::pi / 2);
   expect_at(out, "rover1/base_link", "rover1/laser", {0, 0, 0.12}, 0);
   EXPECT_EQ(find(out, "rover1/base_link"), nullptr);
+  // Put elsewhere by hand: the next telling says so, and the revision says that there is something to tell.
+  const std::uint64_t revision = simulation->revision();
+  simulation->submit(PoseRequest{"pillar1", {{0.5, 0.25, 0.5}, {}}});
+  ASSERT_TRUE(simulation->tick());
+  EXPECT_GT(simulation->revision(), revision);
+  expect_at(static_transforms(*simulation), "world", "pillar1/link", {0.5, 0.25, 0.5}, 0);
 }
 
 }  // namespace

@@ -143,12 +143,16 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     if (parser->chunked() || parser->content_length().value_or(0) > 0)
       return refuse(413, "a request has no body here");
     const std::string host = header(http::field::host), origin = header(http::field::origin);
-    if (request.version() >= 11 && !read_host(host)) return refuse(400, "the request has no proper Host");
+    if ((request.version() >= 11 || !host.empty()) && !read_host(host))
+      return refuse(400, "the request has no proper Host");
     if (impl.on_loopback() && !host.empty() && !host_allowed(host, options.origins))
-      return refuse(403, fmt::format("this server is for its own machine: it answers to localhost, not to {}",
-                                     read_host(host)->host));
+      return refuse(403, fmt::format("this server is for its own machine: it answers to localhost, not to {} "
+                                     "(--allow-origin http://{} would change that)",
+                                     read_host(host)->host, host));
     const auto whose = judge_origin(origin, host, options.origins);
-    if (whose == Origin::foreign) return refuse(403, "pages of other sites may not use this server");
+    if (whose == Origin::foreign)
+      return refuse(403,
+                    "pages of other sites may not use this server, except those named by --allow-origin");
     const auto target = read_target(view(request.target()));
     if (!target) return refuse(400, target.error().what);
     if (ws::is_upgrade(request)) return upgrade(*target);
@@ -294,9 +298,10 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
           if (stage != Stage::open) return;
           if (stream.got_text() && buffer.size() > foxglove::most_text_bytes)
             return refuse_client(ws::close_code::too_big, "a text message may have 1 MiB");
+          // Messages, and crumbs of them, which are as much work.
+          if ((stream.is_message_done() || n < 256) && !allowed())
+            return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
           if (stream.is_message_done()) {
-            if (!allowed())
-              return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
             const auto data = buffer.cdata();
             if (impl.handler.message)
               impl.handler.message(id, {static_cast<const std::byte*>(data.data()), data.size()},

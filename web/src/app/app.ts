@@ -60,7 +60,7 @@ export class App {
     this.actions = new Actions((action) => action.group === 'Time' && action.id !== 'time.record' ? this.store.whyNotPlay() : this.store.whyNotSteer(), (text) => this.toasts.show(text, 'warning'));
     this.actions.add(...actionTable(this.doers()));
 
-    const sceneElement = h('div', {class: 'scene-canvas', testid: 'scene'});
+    const sceneElement = h('div', {class: 'scene-canvas'});
     // The scene looks at its host's size: it must be in the page, with the frame's style, before it is made.
     const stage = h('div', {class: 'frame'}, h('main', {class: 'scene-host'}, sceneElement));
     root.append(stage);
@@ -154,6 +154,7 @@ export class App {
       state = status.state;
     });
     this.steer.onError.on((text) => this.toasts.show(text, 'error'));
+    this.steer.onNote.on((text) => this.toasts.show(text));
     scene.onSelect = (address) => store.select(address);
     scene.onDrag = (drag) => {
       const reason = store.whyNotSteer();
@@ -162,7 +163,10 @@ export class App {
         return;
       }
       const line = dragLine(drag);
-      if (line !== null) this.steer.drag(line);
+      if (line === null) return;
+      // A run that stands still moves it with its next tick: until then it is shown where the hand put it.
+      if (store.status?.state !== 'playing' && drag.mode !== 'pull') scene.override(drag.name, drag.target, drag.yaw);
+      this.steer.drag(line);
     };
   }
 

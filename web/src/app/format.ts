@@ -55,7 +55,8 @@ export function parseNumber(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
-/** A word of a console line: quoted where the command language would split it. */
+/** A word of a console line: quoted where the command language would split it. It knows both quotes and no escapes. */
 export function word(text: string): string {
-  return /^[^\s"'\\#;]+$/.test(text) ? text : `"${text.replace(/["\\]/g, '\\$&')}"`;
+  if (/^[^\s"'#;]+$/.test(text)) return text;
+  return text.includes('"') ? `'${text}'` : `"${text}"`;
 }

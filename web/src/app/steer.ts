@@ -12,6 +12,8 @@ export interface Answer {
 export class Steer {
   /** Errors of lines that nobody else shows. */
   readonly onError = new Signal<string>();
+  /** What a line that was accepted says, where it is not yet carried out: a run that stands still does so with the next tick. */
+  readonly onNote = new Signal<string>();
   private dragging = false;
   private nextDrag: string | null = null;
 
@@ -27,10 +29,11 @@ export class Steer {
   }
 
   /** Says a line that changes something; an error becomes a toast. */
-  async say(line: string): Promise<Answer> {
+  async say(line: string, quiet = false): Promise<Answer> {
     const reason = /^(pause|run|step|speed|reset|jump)\b/.test(line) ? this.store.whyNotPlay() : this.store.whyNotSteer();
     const answer = reason === null ? await this.ask(line) : {ok: false, text: reason};
     if (!answer.ok) this.onError.emit(answer.text || `“${line}” failed`);
+    else if (!quiet && answer.text.includes('next tick')) this.onNote.emit(answer.text);
     return answer;
   }
 
@@ -70,7 +73,7 @@ export class Steer {
       return;
     }
     this.dragging = true;
-    void this.say(line).then((answer) => {
+    void this.say(line, true).then((answer) => {
       this.dragging = false;
       const next = this.nextDrag;
       this.nextDrag = null;

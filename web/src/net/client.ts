@@ -1,49 +1,11 @@
 // A client of the Foxglove WebSocket protocol. It reconnects by itself and keeps what was asked for: subscriptions, published topics and
 // watched parameters outlive a connection. Works with any server of the protocol; what is Sandlot's own is in app/.
-import {ChannelFormat, decoderFor, Decoder} from './decoders';
+import {decoderFor, Decoder} from './decoders';
 import {decodeServerFrame, encodeClientMessage, encodeServiceRequest} from './frames';
 import {Signal} from './signal';
+import type {Channel, ClientOptions, ConnectionGraph, ConnectionState, Parameter, ServerInfo, ServerStatus, Service, SocketLike} from './types';
 
-export type ConnectionState = 'connecting' | 'open' | 'waiting' | 'closed';
-
-export interface Channel extends ChannelFormat {
-  id: number;
-  topic: string;
-}
-
-export interface Service {
-  id: number;
-  name: string;
-  type: string;
-}
-
-export type ParameterValue = number | boolean | string | number[] | boolean[] | string[] | null | undefined;
-
-export interface Parameter {
-  name: string;
-  value?: ParameterValue;
-  type?: string;
-}
-
-export interface ServerInfo {
-  name: string;
-  capabilities: string[];
-  supportedEncodings?: string[];
-  metadata?: Record<string, string>;
-  sessionId?: string;
-}
-
-export interface ServerStatus {
-  level: number;
-  message: string;
-  id?: string;
-}
-
-export interface ConnectionGraph {
-  publishedTopics: Map<string, string[]>;
-  subscribedTopics: Map<string, string[]>;
-  advertisedServices: Map<string, string[]>;
-}
+export type {Channel, ConnectionGraph, ConnectionState, Parameter, ParameterValue, ServerInfo, ServerStatus, Service} from './types';
 
 /** One message; decoded once, when the first listener asks. */
 export class Message {
@@ -83,26 +45,6 @@ interface Pending {
   resolve: (value: unknown) => void;
   reject: (error: Error) => void;
   timer: ReturnType<typeof setTimeout>;
-}
-
-export interface SocketLike {
-  binaryType: string;
-  readonly readyState: number;
-  readonly bufferedAmount?: number;
-  onopen: ((event: unknown) => void) | null;
-  onclose: ((event: {code: number; reason: string}) => void) | null;
-  onerror: ((event: unknown) => void) | null;
-  onmessage: ((event: {data: unknown}) => void) | null;
-  send(data: string | ArrayBuffer): void;
-  close(): void;
-}
-
-export interface ClientOptions {
-  address: () => string;
-  makeSocket?: (address: string, protocols: string[]) => SocketLike;
-  handshake_ms?: number;
-  silence_ms?: number;  // a Sandlot server says how it goes 5 times a second: silence is a dead connection
-  backoff_ms?: number[];
 }
 
 const call_timeout_ms = 10_000;

@@ -210,9 +210,11 @@ export class Backdrop {
     // Files tell attenuation by three numbers, three.js by one power: take the strength at 1 m, and the steepest power.
     const at_1_m = 1 / Math.max(0.2, light.constant + light.linear + light.quadratic);
     const decay = light.quadratic > 0 ? 2 : light.linear > 0 ? 1 : 0;
+    // Unlimited is told as null; three.js takes 0 for that.
+    const range_m = Number.isFinite(light.range_m) ? light.range_m : 0;
     const made = light.type === 'spot'
-      ? new THREE.SpotLight(color, 3 * at_1_m, light.range_m, Math.min(1.5, Math.max(0.05, light.outer_rad / 2 || 0.5)), 0.4, decay)
-      : new THREE.PointLight(color, 3 * at_1_m, light.range_m, decay);
+      ? new THREE.SpotLight(color, 3 * at_1_m, range_m, Math.min(1.5, Math.max(0.05, light.outer_rad / 2 || 0.5)), 0.4, decay)
+      : new THREE.PointLight(color, 3 * at_1_m, range_m, decay);
     this.scene.add(made);
     if (made instanceof THREE.SpotLight) this.scene.add(made.target);
     this.lamps.push({ light: made, lamp });

@@ -17,6 +17,8 @@ interface Kin {
   collisions: Part[] | undefined;
   /** Extent in the frame of the first link, joints at 0. */
   bounds: THREE.Box3;
+  /** Extents of geometries by their keys: making one only to measure it is dear, and parts come one by one. */
+  boxes: Map<string, THREE.Box3>;
 }
 
 export class Body implements PoseSlot {
@@ -260,7 +262,7 @@ export class Bodies {
   private kinOf(model: Model): Kin {
     const known = this.kins.get(model.id);
     if (known) return known;
-    const kin: Kin = { model, content: JSON.stringify(model), chain: new Chain(model), parts: [], collisions: undefined, bounds: new THREE.Box3() };
+    const kin: Kin = { model, content: JSON.stringify(model), chain: new Chain(model), parts: [], collisions: undefined, bounds: new THREE.Box3(), boxes: new Map() };
     this.kins.set(model.id, kin);
     if (this.scratch.length < 7 * model.links.length) this.scratch = new Float64Array(14 * model.links.length);
     model.links.forEach((link, i) => {
@@ -346,9 +348,7 @@ function boundsOf(kin: Kin): void {
   const m = new Float32Array(16);
   kin.bounds.makeEmpty();
   for (const part of kin.parts) {
-    const geometry = part.geometry();
-    geometry.computeBoundingBox();
-    const box = geometry.boundingBox ?? new THREE.Box3();
+    const box = boxOf(part, kin.boxes);
     multiply(base, 0, rest, 7 * part.link, in_base, 0);
     composeMatrix(in_base, 0, part.local, m, 0);
     matrix.fromArray(m);
@@ -356,7 +356,17 @@ function boundsOf(kin: Kin): void {
       corner.set(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).applyMatrix4(matrix);
       kin.bounds.expandByPoint(corner);
     }
-    geometry.dispose();
   }
   if (kin.bounds.isEmpty()) kin.bounds.set(new THREE.Vector3(-0.1, -0.1, 0), new THREE.Vector3(0.1, 0.1, 0.2));
+}
+
+function boxOf(part: Part, known: Map<string, THREE.Box3>): THREE.Box3 {
+  let box = known.get(part.geometry_key);
+  if (box === undefined) {
+    const geometry = part.geometry();
+    geometry.computeBoundingBox();
+    known.set(part.geometry_key, (box = geometry.boundingBox ?? new THREE.Box3()));
+    geometry.dispose();
+  }
+  return box;
 }

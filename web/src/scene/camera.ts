@@ -212,7 +212,8 @@ export class CameraRig {
       camera.quaternion.copy(this.eye_quaternion);
     }
     changes = this.blendIn(dt_s) || changes;
-    const near = clamp(this.now.distance * 0.02, 0.01, 1);
+    // As far away as may be: thin things that lie on each other need all of the depth there is.
+    const near = clamp(this.now.distance * 0.05, 0.01, 4);
     if (camera.fov !== this.fov_deg || camera.aspect !== this.aspect || Math.abs(camera.near - near) > near * 0.2) {
       camera.fov = this.fov_deg;
       camera.aspect = this.aspect;

@@ -11,8 +11,8 @@ interface ListedModel {
   help: string;
 }
 
-const primitives: [string, string, string][] = [['box', 'Box', '0.4 0.4 0.4'], ['sphere', 'Sphere', '0.2'], ['cylinder', 'Cylinder', '0.2 0.4']];
-const sizeHints: Record<string, string> = {box: 'Size x y z', sphere: 'Radius', cylinder: 'Radius, length'};
+const primitives: [string, string, string][] = [['box', 'Box', '0.4 0.4 0.4'], ['sphere', 'Sphere', '0.4'], ['cylinder', 'Cylinder', '0.4 0.4']];
+const sizeHints: Record<string, string> = {box: 'Size x y z', sphere: 'Diameter', cylinder: 'Diameter, height'};
 
 /** `known`: the number of instances tells a name that is free. */
 export function freeName(stem: string, taken: (name: string) => boolean): string {
@@ -59,7 +59,7 @@ export function openAdd(context: Context, place: (what: string, put: (x: number,
   };
   search.addEventListener('input', show);
   void steer.list<ListedModel[]>('models').then((listed) => {
-    models = (Array.isArray(listed) ? listed : []).filter((m) => typeof m?.name === 'string');
+    models = (Array.isArray(listed) ? listed : []).filter((m) => typeof m?.name === 'string' && !primitives.some((p) => p[0] === m.name));
     show();
   });
 

@@ -26,12 +26,21 @@ export class Inspector implements Panel {
   private parts: Part[] = [];
   private shown = '';
   private visible = true;
+  private stale = true;  // made before the services of this connection were there
 
   constructor(private readonly context: Context, private readonly teleop: Teleop) {
     context.store.onSelection.on(() => this.show());
     context.store.onWorld.on(() => this.show());
     context.store.onRole.on(() => this.steering());
-    context.client.onState.on(() => this.show(true));
+    // While the connection is away the last that was known stays to be read.
+    context.client.onChannels.on(() => {
+      if (!this.stale || !context.client.services.has('/sandlot/console')) return;
+      this.stale = false;
+      this.show(true);
+    });
+    context.client.onState.on((state) => {
+      if (state !== 'open') this.stale = true;
+    });
     let may: boolean | null = null;
     context.store.onStatus.on((status) => {
       if (status.may_steer === may) return;

@@ -56,6 +56,7 @@ export class PoseSection {
       ticker.request(this.draw);
     });
     this.steering();
+    setTimeout(() => this.fromScene(), 300);
   }
 
   private fill(): void {
@@ -74,6 +75,16 @@ export class PoseSection {
     });
     if (numbers.includes(null)) return;
     await this.context.steer.say(`pose ${word(this.name)} ${numbers.map((v) => plain(v as number)).join(' ')}`);
+  }
+
+  /** A run that stands still may tell no samples: then what the scene knows. */
+  private fromScene(): void {
+    const pose = this.context.scene.pose(this.name);
+    if (this.values.length > 0 || !pose) return;
+    const [w, x, y, z] = pose.quaternion;
+    const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x))));
+    this.values = [...pose.position, Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), pitch, Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))];
+    this.draw();
   }
 
   private readonly draw = (): void => {
