@@ -84,3 +84,22 @@ test('television cuts to a stand from which the robot is seen', () => {
   for (let i = 0; i < 200; ++i) rig.update(1 / 60, robot, wall);
   assert.ok(rig.camera.position.y <= 0);
 });
+
+test('a yard fills the view, upright or wide, and a narrow view turns to have its long side along it', () => {
+  const corners = [];
+  for (const x of [-8, 8]) for (const y of [-6, 6]) for (const z of [0, 0.4]) corners.push(new THREE.Vector3(x, y, z));
+  const distances = new Map();
+  for (const aspect of [1.5, 0.45]) {
+    const rig = new CameraRig();
+    rig.setAspect(aspect);
+    rig.frameAll(corners);
+    const camera = settled(rig);
+    const seen = corners.map((c) => c.clone().project(camera));
+    const most = (of) => Math.max(...seen.map(of));
+    // All of it is in the view, off the buttons above, and one of the sides is used up.
+    assert.ok(most((p) => Math.abs(p.x)) < 0.97 && most((p) => p.y) < 0.88 && most((p) => -p.y) < 0.96);
+    assert.ok(most((p) => Math.abs(p.x)) > 0.9 || most((p) => p.y) - most((p) => -p.y) > 1.7, 'it is as near as may be');
+    distances.set(aspect, camera.position.length());
+    if (aspect < 1) assert.ok(Math.abs(camera.position.x) > Math.abs(camera.position.y), 'along the long side');
+  }
+});

@@ -125,7 +125,16 @@ export class App {
 
   private wire(): void {
     const {client, store, scene} = this;
+    let session: string | undefined;
+    let framed = false;
     client.onInfo.on((info) => {
+      if (session !== undefined && info.sessionId !== session) {
+        // The program was started anew: its ids and its epochs mean other things.
+        scene.reset();
+        store.forget();
+        framed = false;
+      }
+      session = info.sessionId;
       // A server that is not ours has no roles: who is connected may do what it offers.
       store.setRole(info.metadata?.sandlot_role ?? 'admin');
     });
@@ -140,7 +149,6 @@ export class App {
     client.onStatus.on((status) => {
       if (status.level > 0) this.toasts.show(status.message, status.level > 1 ? 'error' : 'warning');
     });
-    let framed = false;
     store.onWorld.on((world) => {
       scene.setWorld(world);
       if (framed) return;

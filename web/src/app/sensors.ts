@@ -49,8 +49,9 @@ export class SensorOverlays {
       if (this.stops.has(topic)) continue;
       const stop = this.client.subscribe(topic, (message) => {
         const value = message.value() as Record<string, unknown> | undefined;
-        if (!value || Number.isNaN(secondsOf((value.header as {stamp?: unknown} | undefined)?.stamp ?? {}))) return;
-        if (scan) this.scene.setScan(path, value as never);
+        const time_s = secondsOf((value?.header as {stamp?: unknown} | undefined)?.stamp ?? {});
+        if (!value || Number.isNaN(time_s)) return;
+        if (scan) this.scene.setScan(path, value as never, time_s);
         else this.scene.setRange(path, value as never);
       });
       this.stops.set(topic, () => {

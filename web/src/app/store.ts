@@ -28,6 +28,17 @@ export class Store {
   private readonly devices = new Map<string, {instance: Instance; device: Device}>();
   private readonly controllers = new Map<string, Instance>();
 
+  /** Another run of the server: nothing that was known of the last one holds. */
+  forget(): void {
+    this.select(null);
+    this.world = this.status = null;
+    this.byName.clear();
+    this.devices.clear();
+    this.controllers.clear();
+    this.epoch = -1;
+    this.onEpoch.emit(-1);
+  }
+
   setWorld(world: World): void {
     if (!Array.isArray(world.instances) || !Array.isArray(world.models)) throw new Error('a world without instances or models');
     world.kinds ??= {};

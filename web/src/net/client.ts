@@ -157,6 +157,7 @@ export class Client {
     this.channels.clear();
     this.byId.clear();
     this.services.clear();
+    for (const part of [this.graph.publishedTopics, this.graph.subscribedTopics, this.graph.advertisedServices]) part.clear();
     this.info = null;
     for (const s of this.subscriptions.values()) s.channel = null;
     for (const list of [this.calls, this.assets, this.parameterCalls]) {

@@ -96,6 +96,25 @@ export class Body implements PoseSlot {
     multiply(this.world, 7 * link, device.pose, 0, out, 0);
   }
 
+  /** As devicePose(), at a time near that of the latest message: as the body moved on between the last two. */
+  devicePoseAt(device: Device, time_s: number, out: Float64Array): void {
+    this.devicePose(device, out);
+    const dt_s = time_s - this.time_s;
+    if (!(Math.abs(dt_s) < 0.5)) return;
+    const half = (this.yaw_rate * dt_s) / 2;
+    const c = Math.cos(2 * half), s = Math.sin(2 * half);
+    const x = out[0] - this.world[0], y = out[1] - this.world[1];
+    out[0] = this.world[0] + c * x - s * y + this.velocity[0] * dt_s;
+    out[1] = this.world[1] + s * x + c * y + this.velocity[1] * dt_s;
+    out[2] += this.velocity[2] * dt_s;
+    const qc = Math.cos(half), qs = Math.sin(half);
+    const [w, qx, qy, qz] = out.subarray(3, 7);
+    out[3] = qc * w - qs * qz;
+    out[4] = qc * qx - qs * qy;
+    out[5] = qc * qy + qs * qx;
+    out[6] = qc * qz + qs * w;
+  }
+
   /** Middle of the bounds in the world, into out[0..2]. */
   middle(out: Float64Array): void {
     const b = this.bounds;

@@ -2,6 +2,7 @@
 //
 // Frame: azimuth is the heading from the target to the eye about z, elevation its angle above the ground, radians.
 import * as THREE from 'three';
+import { fitPoints } from './fit';
 
 export type CameraMode = 'orbit' | 'static' | 'follow' | 'tv' | 'race' | 'top' | 'robot';
 
@@ -107,7 +108,25 @@ export class CameraRig {
     this.goal.distance = clamp((1.15 * radius_m) / Math.sin(Math.atan(Math.tan(half) * fit)), 4 * NEAREST_M, FARTHEST_M);
     this.goal.elevation = clamp(this.goal.elevation, 0.25, 1.1);
     this.flight_s = FLIGHT_S * 5;
+    this.leaveRobot();
+  }
+
+  private leaveRobot(): void {
     if (this.mode === 'static' || this.mode === 'robot' || this.mode === 'tv' || this.mode === 'race') this.setMode('orbit', null);
+  }
+
+  /** Goes to where these points fill the view, round the world where that brings them much nearer. */
+  frameAll(points: readonly THREE.Vector3[]): void {
+    const azimuths = [-2.2, -Math.PI, -Math.PI / 2, -2.7, -1.1];
+    // A view that stands upright has room for what is seen from further above.
+    const elevation = this.aspect < 1 ? 0.85 : 0.56;
+    const fit = fitPoints(points, azimuths, elevation, Math.tan(((FOV_DEG / 2) * Math.PI) / 180), this.aspect);
+    this.goal.target.copy(fit.target);
+    this.goal.azimuth = fit.azimuth;
+    this.goal.elevation = elevation;
+    this.goal.distance = clamp(fit.distance, 4 * NEAREST_M, FARTHEST_M);
+    this.flight_s = FLIGHT_S * 5;
+    this.leaveRobot();
   }
 
   /** There at once: for the first sight of a world. */

@@ -224,29 +224,22 @@ export class SceneView {
   }
 
   frameAll(): void {
-    const all = new THREE.Box3();
-    const moving = new THREE.Box3();
-    const at = new THREE.Vector3();
+    const all: THREE.Vector3[] = [];
+    const moving: THREE.Vector3[] = [];
     for (const body of this.bodies.list) {
       // Terrain and halls count, a landscape of kilometres does not; nor does a plane, which has no parts.
       if (body.slots.length === 0 || body.radius_m > 60) continue;
-      body.middle(this.middle);
-      const r = 0.7 * body.radius_m;
-      for (const side of [-r, r]) {
-        all.expandByPoint(at.fromArray(this.middle).addScalar(side));
-        if (!body.is_static) moving.expandByPoint(at);
-      }
+      const corners = cornersOf(body);
+      all.push(...corners);
+      if (!body.is_static) moving.push(...corners);
     }
     // A room around what moves belongs into the picture, a town does not.
-    const room_m = flatSize(all);
-    const box = !moving.isEmpty() && room_m > 2 * Math.max(3, flatSize(moving)) ? moving : all;
-    if (box.isEmpty()) box.set(new THREE.Vector3(-2, -2, 0), new THREE.Vector3(2, 2, 0.5));
-    const size = box.getSize(new THREE.Vector3());
-    const center = box.getCenter(at);
-    center.z = Math.max(box.min.z, 0) + Math.min(size.z, 1) * 0.2;
-    // What is flat and seen from aslant is half as high as it is wide.
-    const aspect = this.width_px / this.height_px;
-    this.rig.frame(center.clone(), Math.max(0.5, (aspect < 1 ? 0.46 : Math.max(0.3, 0.48 / aspect)) * flatSize(box)));
+    const points = moving.length > 0 && flatSize(all) > 2 * Math.max(3, flatSize(moving)) ? moving : all;
+    // One thing alone has some ground around it.
+    const box = new THREE.Box3().setFromPoints(points);
+    const middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
+    for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(x, y, 0)));
+    this.rig.frameAll(points);
     this.invalidate();
   }
 
@@ -275,11 +268,12 @@ export class SceneView {
     this.touchShadows();
   }
 
-  setScan(path: string, scan: Scan | null): void {
+  /** @param time_s  when it was measured; poses are told at other times, and a beam of 10 m shows a tenth of a radian as a metre */
+  setScan(path: string, scan: Scan | null, time_s = NaN): void {
     const found = this.bodies.devices.get(path);
     if (found === undefined) return;
     const begin_ms = performance.now();
-    found.body.devicePose(found.device, this.device_pose);
+    found.body.devicePoseAt(found.device, time_s, this.device_pose);
     this.scans.set(path, scan, this.device_pose);
     this.meter.addScript(performance.now() - begin_ms);
     this.invalidate();
@@ -590,7 +584,19 @@ export class SceneView {
   }
 }
 
-const flatSize = (box: THREE.Box3): number => (box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y));
+const flatSize = (points: readonly THREE.Vector3[]): number => {
+  const box = new THREE.Box3().setFromPoints(points as THREE.Vector3[]);
+  return box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y);
+};
+
+function cornersOf(body: Body): THREE.Vector3[] {
+  const { min, max } = body.bounds;
+  const at = [0, 0, 0];
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
+    transform(body.world, 0, i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z, at);
+    return new THREE.Vector3().fromArray(at);
+  });
+}
 const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
 const TURN = new THREE.Quaternion();
 const TRAIL = new THREE.Color();

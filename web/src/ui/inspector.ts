@@ -12,6 +12,7 @@ import {heading, PoseSection} from './pose_section';
 import {Readings} from './readings';
 import {teamColor} from './teams';
 import type {Teleop} from './teleop';
+import {WorldSection} from './world_section';
 
 interface Part {
   element: HTMLElement;
@@ -64,13 +65,21 @@ export class Inspector implements Panel {
     const {store} = this.context;
     const selected = this.visible ? store.selected() : null;
     // A world that changed elsewhere leaves the form, with what somebody is typing in it, as it is.
-    const key = selected ? JSON.stringify([selected.address, store.epoch, selected.device ?? [selected.instance.id, selected.instance.team, selected.instance.controllers, selected.instance.devices]]) : '';
+    const key = selected ? JSON.stringify([selected.address, store.epoch, selected.device ?? [selected.instance.id, selected.instance.team, selected.instance.controllers, selected.instance.devices]]) :
+      store.world && this.visible ? JSON.stringify([store.world.name, store.world.instances.length, store.world.seed, store.epoch]) : '';
     if (key === this.shown && !again) return;
     this.shown = key;
     for (const part of this.parts) part.close?.();
     this.parts = [];
     clear(this.head);
     clear(this.body);
+    if (!selected && store.world && this.visible) {
+      this.head.append(h('div', {class: 'title'}, h('h2', {class: 'ellipsis', title: store.world.name}, store.world.name)), h('div', {class: 'chips'}, h('span', {class: 'chip'}, 'World')));
+      const section = new WorldSection(this.context, store.world);
+      this.body.append(section.element);
+      this.parts.push(section);
+      return;
+    }
     if (!selected) {
       this.body.append(h('div', {class: 'empty tall'}, icon('cursor', 20), h('p', {}, 'Select a robot or an object, here or in the scene.')));
       return;

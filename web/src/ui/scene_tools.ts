@@ -17,7 +17,7 @@ export const cameras: [CameraMode, string][] = [
 ];
 
 export const overlays: [string, string, boolean][] = [
-  ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['names', 'Names', false], ['trails', 'Trails', false], ['scans', 'Laser scans', true], ['ranges', 'Range cones', true],
+  ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['names', 'Names', true], ['trails', 'Trails', true], ['scans', 'Laser scans', true], ['ranges', 'Range cones', true],
   ['frusta', 'Camera views', false], ['velocity', 'Velocities', false], ['frames', 'Frames', false], ['contacts', 'Contacts', false], ['collisions', 'Collision shapes', false], ['teams', 'Team colours', true],
 ];
 
