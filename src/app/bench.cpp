@@ -19,7 +19,8 @@ int bench(const BenchOptions& options) {
   static constexpr Suite suites[] = {{"physics", sandlot::bench::physics},
                                      {"ranges", sandlot::bench::ranges},
                                      {"loading", sandlot::bench::loading},
-                                     {"recording", sandlot::bench::recording}};
+                                     {"recording", sandlot::bench::recording},
+                                     {"viewer", sandlot::bench::viewer}};
   std::vector<std::string> names;
   for (const Suite& suite : suites) names.emplace_back(suite.name);
   if (!options.name.empty() && std::find(names.begin(), names.end(), options.name) == names.end())

@@ -29,6 +29,7 @@ std::vector<Row> ranges();     ///< P2, P5: rays of both kinds of world
 std::vector<Row> physics();    ///< P3: steps of the engines
 std::vector<Row> loading();    ///< P8: files to a simulation
 std::vector<Row> recording();  ///< P11: runs and images into a file
+std::vector<Row> viewer();     ///< P9: what looking at a run costs it
 
 /// Processor time of the calling thread: other work on the machine does not count.
 inline double thread_seconds() {

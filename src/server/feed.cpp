@@ -162,7 +162,8 @@ Observer::Wants Feed::wants() const {
   due_ = (interest_->frames || interest_->contacts) && Clock::now() >= next_frame_;
   return {.input = interest_->commands || interest_->parameters,
           .links = due_ && interest_->frames,
-          .contacts = due_ && interest_->contacts};
+          .contacts = due_ && interest_->contacts,
+          .instances = due_};
 }
 
 void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {

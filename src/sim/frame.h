@@ -72,6 +72,7 @@ class Observer {
     bool hash = false;
     bool links = false;
     bool contacts = false;
+    bool instances = true;  ///< false: the frame may come without them
   };
   /// Asked at the beginning of each tick.
   virtual Wants wants() const { return {}; }

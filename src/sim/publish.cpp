@@ -99,7 +99,8 @@ void Simulation::publish() {
   frame->now = now_;
   frame->step = step_;
   frame->revision = revision_;
-  fill_instances(*frame, wants_.links);
+  if (wants_.instances) fill_instances(*frame, wants_.links);
+  else frame->instances.clear();
   fill_topics(*frame);
   resize_keeping(frame->log, log_.size(), publishing_->spare_log);
   std::copy(log_.begin(), log_.end(), frame->log.begin());

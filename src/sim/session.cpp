@@ -29,7 +29,7 @@ bool from_outside(const LogEntry& entry) {
 struct Session::Input final : Observer {
   explicit Input(Tape& to) : tape(to) {}
   Tape& tape;
-  Wants wants() const override { return {.input = true}; }
+  Wants wants() const override { return {.input = true, .instances = false}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override {
     std::vector<LogEntry> entries;
     for (const LogEntry& entry : frame->log)

@@ -36,7 +36,7 @@ Context Simulation::context() {
 
 /// A clock that measures takes longer sub-steps no further than the setup allows: it takes more of them.
 void Simulation::set_step(std::optional<Time> measured) {
-  wants_ = {};
+  wants_ = {.instances = false};
   for (const Observer* observer : observers_) {
     const Observer::Wants wants = observer->wants();
     wants_.messages = wants_.messages || wants.messages;
@@ -45,6 +45,7 @@ void Simulation::set_step(std::optional<Time> measured) {
     wants_.hash = wants_.hash || wants.hash;
     wants_.links = wants_.links || wants.links;
     wants_.contacts = wants_.contacts || wants.contacts;
+    wants_.instances = wants_.instances || wants.instances || wants.links;
   }
   for (LogEntry& entry : log_) spare_log_.push_back(std::move(entry));
   log_.clear();
