@@ -84,6 +84,12 @@ export class App {
     root.append(this.frame.element, this.toasts.element);
 
     this.teleop = new Teleop(this.context);
+    let armed: string | null = null;
+    this.teleop.onChange.on(() => {
+      // On a phone the stick needs the room of the sheet.
+      if (this.teleop.armed !== armed && this.teleop.armed !== null) this.frame.openPhone('none');
+      armed = this.teleop.armed;
+    });
     this.video = new Video(this.context);
     this.tree = new Tree(this.context);
     const inspector = new Inspector(this.context, this.teleop);
@@ -209,6 +215,10 @@ export class App {
       if (key === null || event.defaultPrevented) return;
       const target = event.target as HTMLElement;
       const typing = target.matches('input:not([type=checkbox]):not([type=range]), select, textarea, [contenteditable]');
+      if (typing && key === 'escape') {
+        target.blur();
+        return;
+      }
       const modal = document.querySelector('dialog[open]') !== null;
       if (modal || (typing && !key.startsWith('ctrl+')) || (typing && ['ctrl+d', 'ctrl+i', 'ctrl+b'].includes(key))) return;
       if (this.teleop.key(key, true)) {

@@ -79,6 +79,8 @@ export class SceneView {
   private selected_address: string | null = null;
   private hovered: Body | null = null;
   private follow_name: string | null = null;
+  /** It shows all, and nobody has looked elsewhere: it does so too when the view has another size. */
+  private is_overview = false;
   private scheduled = 0;
   private last_frame_ms = 0;
   private dirty = true;
@@ -220,6 +222,7 @@ export class SceneView {
     if (target !== undefined) this.follow_name = target.split('/')[0];
     else if (this.selected && !this.selected.is_static) this.follow_name = this.selected.instance.name;
     this.rig.setMode(mode, this.subjectNow());
+    this.is_overview = false;
     this.invalidate();
   }
 
@@ -240,6 +243,7 @@ export class SceneView {
     const middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
     for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(x, y, 0)));
     this.rig.frameAll(points);
+    this.is_overview = true;
     this.invalidate();
   }
 
@@ -247,6 +251,7 @@ export class SceneView {
     const body = this.bodyOf(address);
     if (body === null) return;
     body.middle(this.middle);
+    this.is_overview = false;
     this.rig.frame(new THREE.Vector3().fromArray(this.middle), Math.max(0.15, 1.6 * Math.min(body.radius_m, 60)));
     this.invalidate();
   }
@@ -540,14 +545,17 @@ export class SceneView {
         this.invalidate();
       },
       orbit: (dx, dy) => {
+        this.is_overview = false;
         this.rig.orbit(dx, dy);
         this.invalidate();
       },
       pan: (dx, dy) => {
+        this.is_overview = false;
         this.rig.pan(dx, dy, this.height_px);
         this.invalidate();
       },
       zoom: (factor, x, y) => {
+        this.is_overview = false;
         this.rig.zoom(factor, this.rig.mode === 'follow' ? null : this.zoomPoint(x, y));
         this.invalidate();
       },
@@ -578,6 +586,7 @@ export class SceneView {
     this.renderer?.setSize(width, height, false);
     this.scans.setPointSize(4.5 * ratio);
     this.rig.setAspect(width / height);
+    if (this.is_overview) this.frameAll();
     // Drawn at once: a canvas that has been resized is empty until then, which flickers.
     if (this.renderer && !this.lost && this.world) this.draw(performance.now());
     this.invalidate();

@@ -96,7 +96,7 @@ export class Inspector implements Panel {
     const {store, actions} = this.context;
     const own = address === instance.name;
     const chips = h('div', {class: 'chips'});
-    const chip = (text: string, color = ''): void => void chips.append(h('span', {class: 'chip', style: color ? {color} : {}}, text));
+    const chip = (text: string, color = ''): void => void chips.append(h('span', {class: 'chip'}, color ? h('i', {class: 'dot', style: {background: color}}) : null, text));
     if (own) {
       chip(instance.robot ? 'Robot' : store.world?.models.find((m) => m.id === instance.model)?.static ? 'Static' : 'Object');
       if (instance.team) chip(instance.team, teamColor(instance.team, store.world));

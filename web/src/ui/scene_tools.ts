@@ -150,10 +150,14 @@ export class SceneTools {
     this.veilTimer = setTimeout(() => {
       if (client.state === 'open') return;
       const known = this.context.store.world !== null;
+      const ended = this.context.store.status?.state === 'ended';
       this.veil.hidden = false;
-      this.veil.replaceChildren(h('div', {class: 'card'},
-          h('h2', {}, known ? 'The connection is gone' : 'Connecting'),
-          h('p', {}, known ? 'The run may have ended, or the network is away. What you see is the last that came; the page comes back by itself.' :
+      // What came last stays to be looked at.
+      this.veil.classList.toggle('clear', known);
+      this.veil.replaceChildren(h('div', {class: 'card', role: 'status'},
+          h('h2', {}, ended ? 'The run has ended' : known ? 'The connection is gone' : 'Connecting'),
+          h('p', {}, ended ? `${this.context.store.status?.reason || 'This is how it stood'}. The page goes on by itself when a run begins at this address.` :
+              known ? 'The run was stopped, or the network is away. What you see is the last that came; the page comes back by itself.' :
               'Waiting for the simulator. Is it running, with a port? For example: sandlot run FILE --port 8080'),
           client.closeReason ? h('p', {class: 'mono'}, client.closeReason) : null, h('button', {class: 'main', on: {click: () => client.connect()}}, 'Try now')));
     }, this.context.store.world ? 1200 : 800);

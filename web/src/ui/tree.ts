@@ -193,6 +193,7 @@ export class Tree implements Panel {
     else if (event.key === 'Home') go(0, 1);
     else if (event.key === 'End') go(this.rows.length - 1, -1);
     else if (event.key === 'ArrowRight' && row?.folded === true) this.toggle(row);
+    else if (event.key === 'ArrowRight' && row?.folded === false) go(at + 1, 1);
     else if (event.key === 'ArrowLeft' && row?.folded === false) this.toggle(row);
     else if (event.key === 'ArrowLeft' && row && row.depth === 2) store.select(row.instance?.name ?? null);
     else if (event.key === 'ContextMenu' && row) this.menu(row, {x: this.scroller.getBoundingClientRect().left + 40, y: this.scroller.getBoundingClientRect().top + at * row_px - this.scroller.scrollTop + row_px});
