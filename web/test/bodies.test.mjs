@@ -93,3 +93,28 @@ test('an override moves all links with the first', () => {
   body.override([5, 5, 0, Math.SQRT1_2, 0, 0, Math.SQRT1_2], stand.scratch);
   for (const [i, v] of [5, 6, 0].entries()) assert.ok(Math.abs(body.world[7 + i] - v) < 1e-12, `${body.world}`);
 });
+
+test('a device is where it was when it measured', () => {
+  const stand = bodies();
+  const models = [model('a', [box([1, 1, 1], [1, 0, 0, 1])])];
+  const device = { name: 'laser', path: 'one/laser', kind: 'laser_scanner', link: 0, pose: [2, 0, 0.5, 1, 0, 0, 0], active: [], topics: [], commands: [] };
+  stand.setWorld(world(models, [{ ...instance(1, 'one', 'a', 0), devices: [device] }]));
+  const one = stand.by_name.get('one');
+  // From heading 0 at the origin to a quarter turn at (1, 0), in 0.2 s: 5 m/s, 2.5 pi rad/s.
+  one.form = 1;
+  for (const [t, x, yaw] of [[0.8, 0, 0], [1, 1, Math.PI / 2]]) {
+    one.world.set([x, 0, 0, Math.cos(yaw / 2), 0, 0, Math.sin(yaw / 2)]);
+    one.values.set(one.world);
+    one.take(t, stand.scratch);
+  }
+  const at = new Float64Array(7);
+  const near = (expected) => expected.forEach((v, i) => assert.ok(Math.abs(at[i] - v) < 1e-9, `${i}: ${at[i]} ${v}`));
+  one.devicePoseAt(device, 1, at);
+  near([1, 2, 0.5, Math.SQRT1_2, 0, 0, Math.SQRT1_2]);
+  one.devicePoseAt(device, 0.9, at);
+  // An eighth of a turn and half a metre earlier.
+  near([0.5 + Math.SQRT2, Math.SQRT2, 0.5, Math.cos(Math.PI / 8), 0, 0, Math.sin(Math.PI / 8)]);
+  // Of another time there is no telling.
+  one.devicePoseAt(device, 5, at);
+  near([1, 2, 0.5]);
+});

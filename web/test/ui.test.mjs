@@ -11,6 +11,7 @@ const { handsOfKeys, twistMessage, driveOf } = await load('ui/teleop.ts');
 const { spanOf } = await load('ui/timeline.ts');
 const { commonStart, completeLine } = await load('ui/console.ts');
 const { Meter } = await load('ui/topics.ts');
+const { graphOf } = await load('ui/graph.ts');
 const { echoRows } = await load('ui/echo.ts');
 const { dragLine } = await load('app/drags.ts');
 const { score } = await load('ui/palette.ts');
@@ -194,4 +195,33 @@ test('the palette finds by letters in order, beginnings first', () => {
   assert.equal(score('Reset', 'xyz'), 0);
   assert.ok(score('Reset', 're') > score('Fire', 're'));
   assert.ok(score('rover_2/laser', 'r2l') > 0);
+});
+
+test('another run of the server is another past, even of the same epoch', () => {
+  const store = new Store();
+  store.setWorld(structuredClone(world));
+  store.select('bob');
+  const epochs = [];
+  store.onEpoch.on((epoch) => epochs.push(epoch));
+  store.forget();
+  assert.deepEqual([store.world, store.selection, store.instance('bob')], [null, null, undefined]);
+  store.setWorld(structuredClone(world));
+  assert.deepEqual(epochs, [-1], 'what was kept by time was dropped once');
+});
+
+test('the graph of one robot has its neighbours, and nobody whose name begins alike', () => {
+  const graph = {
+    publishedTopics: new Map([['/ann/scan', ['ann/laser']], ['/anna/scan', ['anna/laser']], ['/map', ['mapper']]]),
+    subscribedTopics: new Map([['/ann/scan', ['mapper']], ['/map', ['ann/driver']]]), advertisedServices: new Map(),
+  };
+  const of = (robot) => [...graphOf(graph, '', false, robot).nodes.keys()].sort();
+  assert.deepEqual(of('ann'), ['n:ann/driver', 'n:ann/laser', 'n:mapper', 't:/ann/scan', 't:/map']);
+  assert.deepEqual(of('anna'), ['n:anna/laser', 't:/anna/scan']);
+  assert.equal(of('').length, 7);
+});
+
+test('the unit of an address that was shown', () => {
+  assert.equal(format.unitOf('rover.pose.x = -1.5e-3 m', 'rover.pose.x'), 'm');
+  assert.equal(format.unitOf('rover.count = 3', 'rover.count'), '');
+  assert.equal(format.unitOf("there is no 'x m'", 'x'), '');
 });

@@ -60,3 +60,10 @@ export function word(text: string): string {
   if (/^[^\s"'#;]+$/.test(text)) return text;
   return text.includes('"') ? `'${text}'` : `"${text}"`;
 }
+
+/** The unit in "rover.pose.x = 1.5 m"; an expression has none. */
+export function unitOf(text: string, address: string): string {
+  const prefix = `${address} = `;
+  if (!text.startsWith(prefix)) return '';
+  return /^\S+ (\S+)$/.exec(text.slice(prefix.length).trim())?.[1] ?? '';
+}

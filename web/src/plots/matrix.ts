@@ -85,6 +85,14 @@ export class MatrixPanel implements Panel {
     this.topic.value = this.chosen;
   };
 
+  /** For the first look: a scan of the selected robot, else of any. */
+  private chooseFirst(): void {
+    const robot = this.context.store.selected()?.instance.name;
+    const scans = [...this.context.client.channels.values()].filter((c) => c.schemaName.endsWith('/LaserScan')).map((c) => c.topic).sort();
+    const first = scans.find((t) => robot !== undefined && t.startsWith(`/${robot}/`)) ?? scans[0];
+    if (first) this.choose(first);
+  }
+
   private listen(): void {
     this.stop?.();
     this.stop = null;
@@ -184,6 +192,7 @@ export class MatrixPanel implements Panel {
     if (visible === this.visible) return;
     this.visible = visible;
     if (visible) this.list();
+    if (visible && this.chosen === '') this.chooseFirst();
     this.listen();
     if (visible) ticker.request(this.draw);
   }

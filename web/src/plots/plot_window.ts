@@ -1,7 +1,7 @@
 // One plot: several values over simulated time.
 import uPlot from 'uplot';
 import type {Context} from '../app/context';
-import {formatNumber} from '../app/format';
+import {formatNumber, unitOf} from '../app/format';
 import {ticker} from '../app/ticker';
 import {Watch} from '../app/watcher';
 import {clear, h, setText} from '../ui/dom';
@@ -337,13 +337,6 @@ export class PlotWindow {
     for (const stop of this.stops) stop();
     this.element.remove();
   }
-}
-
-/** The unit in "rover.pose.x = 1.5 m"; an expression has none. */
-export function unitOf(text: string, address: string): string {
-  const prefix = `${address} = `;
-  if (!text.startsWith(prefix)) return '';
-  return /^\S+ (\S+)$/.exec(text.slice(prefix.length).trim())?.[1] ?? '';
 }
 
 /** Some room above and below; a constant gets a range of its size. */

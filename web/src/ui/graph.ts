@@ -13,8 +13,8 @@ interface Drawn {
   edges: [string, string][];
 }
 
-/** Nodes "n:" and topics "t:" whose names, or whose neighbours' names, hold the filter. */
-export function graphOf(graph: ConnectionGraph, filter: string, own: boolean): Drawn {
+/** Nodes "n:" and topics "t:" whose names, or whose neighbours' names, hold the filter; of one robot when it is given. */
+export function graphOf(graph: ConnectionGraph, filter: string, own: boolean, robot = ''): Drawn {
   const text = filter.trim().toLowerCase();
   const nodes = new Map<string, {label: string; topic: boolean}>();
   const edges: [string, string][] = [];
@@ -24,6 +24,7 @@ export function graphOf(graph: ConnectionGraph, filter: string, own: boolean): D
     const from = graph.publishedTopics.get(topic) ?? [];
     const to = graph.subscribedTopics.get(topic) ?? [];
     if (text !== '' && ![topic, ...from, ...to].some((name) => name.toLowerCase().includes(text))) continue;
+    if (robot !== '' && ![topic.slice(1), ...from, ...to].some((name) => name === robot || name.startsWith(`${robot}/`))) continue;
     nodes.set(`t:${topic}`, {label: topic, topic: true});
     for (const id of from) {
       nodes.set(`n:${id}`, {label: id, topic: false});
@@ -40,21 +41,26 @@ export function graphOf(graph: ConnectionGraph, filter: string, own: boolean): D
 export class GraphPanel implements Panel {
   private readonly search = h('input', {type: 'search', placeholder: 'Filter', 'aria-label': 'Filter the graph'});
   private readonly quiet = h('input', {type: 'checkbox', class: 'switch'});
+  private readonly selected = h('input', {type: 'checkbox', class: 'switch'});
   private readonly own = h('input', {type: 'checkbox', class: 'switch'});
   private readonly area = h('div', {class: 'graph-area', tabindex: '0'});
   readonly element = h('div', {class: 'pane graph'}, h('div', {class: 'pane-head'}, h('div', {class: 'search grow'}, icon('search', 14), this.search),
-      h('label', {class: 'inline', title: 'Topics that nobody listens to'}, this.quiet, 'Unheard topics'), h('label', {class: 'inline', title: 'What the page itself listens to'}, this.own, 'Sandlot’s own')), this.area);
+      h('label', {class: 'inline', title: 'Only what the selected robot says and hears'}, this.selected, 'Selected robot'), h('label', {class: 'inline', title: 'Topics that nobody listens to'}, this.quiet, 'Unheard topics'), h('label', {class: 'inline', title: 'What the page itself listens to'}, this.own, 'Sandlot’s own')), this.area);
   private stop: (() => void) | null = null;
   private graph: ConnectionGraph | null = null;
 
   constructor(private readonly context: Context) {
     this.quiet.checked = true;
-    for (const input of [this.search, this.quiet, this.own]) input.addEventListener('input', this.draw);
+    this.selected.checked = true;
+    context.store.onSelection.on(() => {
+      if (this.stop && this.selected.checked) ticker.request(this.draw);
+    });
+    for (const input of [this.search, this.quiet, this.selected, this.own]) input.addEventListener('input', this.draw);
   }
 
   private readonly draw = (): void => {
     if (!this.graph) return;
-    let {nodes, edges} = graphOf(this.graph, this.search.value, this.own.checked);
+    let {nodes, edges} = graphOf(this.graph, this.search.value, this.own.checked, this.selected.checked ? this.context.store.selected()?.instance.name ?? '' : '');
     if (!this.quiet.checked) {
       const heard = new Set(edges.filter(([a]) => a.startsWith('t:')).map(([a]) => a));
       edges = edges.filter(([a, b]) => heard.has(a) || heard.has(b));

@@ -138,16 +138,16 @@ export class Suggestions {
   private popover: HTMLElement | null = null;
   private candidates: string[] = [];
   private at = -1;
+  private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly input: HTMLInputElement, private readonly ask: (text: string) => Promise<string[]>,
               private readonly take: (candidate: string) => void, automatic = true) {
-    let timer: ReturnType<typeof setTimeout>;
     input.autocomplete = 'off';
     input.spellcheck = false;
     if (automatic) {
       input.addEventListener('input', () => {
-        clearTimeout(timer);
-        timer = setTimeout(() => void this.refresh(), 120);
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => void this.refresh(), 120);
       });
     }
     input.addEventListener('keydown', (event) => this.key(event), true);
@@ -184,6 +184,8 @@ export class Suggestions {
   }
 
   close(): void {
+    // What was typed a moment ago is not asked for any more.
+    clearTimeout(this.timer);
     this.popover?.remove();
     this.popover = null;
     this.at = -1;
