@@ -115,11 +115,14 @@ export class CameraRig {
     if (this.mode === 'static' || this.mode === 'robot' || this.mode === 'tv' || this.mode === 'race') this.setMode('orbit', null);
   }
 
-  /** Goes to where these points fill the view, round the world where that brings them much nearer. */
-  frameAll(points: readonly THREE.Vector3[]): void {
+  /**
+   * Goes to where these points fill the view, round the world where that brings them much nearer. `steepness`: height of
+   * the walls by the width of the place; who looks into a house looks from above.
+   */
+  frameAll(points: readonly THREE.Vector3[], steepness = 0): void {
     const azimuths = [-2.2, -Math.PI, -Math.PI / 2, -2.7, -1.1];
     // A view that stands upright has room for what is seen from further above.
-    const elevation = this.aspect < 1 ? 0.85 : 0.56;
+    const elevation = Math.min(1.1, (this.aspect < 1 ? 0.8 : 0.5) + 3 * steepness);
     const fit = fitPoints(points, azimuths, elevation, Math.tan(((FOV_DEG / 2) * Math.PI) / 180), this.aspect);
     this.goal.target.copy(fit.target);
     this.goal.azimuth = fit.azimuth;

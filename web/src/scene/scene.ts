@@ -100,7 +100,11 @@ export class SceneView {
     this.message.setAttribute('role', 'status');
     this.renderer = makeRenderer();
     this.assets = new Assets(options.assetBase, () => this.invalidate());
-    this.bodies = new Bodies(this.root, this.assets, () => this.touchShadows());
+    this.bodies = new Bodies(this.root, this.assets, () => {
+      // Meshes have come, and with them their sizes.
+      if (this.is_overview) this.frameAll();
+      this.touchShadows();
+    });
     this.backdrop = new Backdrop(this.scene);
     this.foresight = new Foresight(this.bodies, (name, position, yaw_rad) => this.override(name, position, yaw_rad), () => this.touchShadows());
     this.scene.add(this.root);
@@ -229,20 +233,24 @@ export class SceneView {
   frameAll(): void {
     const all: THREE.Vector3[] = [];
     const moving: THREE.Vector3[] = [];
+    let walls_m = 0;
     for (const body of this.bodies.list) {
       // Terrain and halls count, a landscape of kilometres does not; nor does a plane, which has no parts.
       if (body.slots.length === 0 || body.radius_m > 60) continue;
       const corners = cornersOf(body);
       all.push(...corners);
       if (!body.is_static) moving.push(...corners);
+      else walls_m = Math.max(walls_m, ...corners.map((c) => c.z));
     }
     // A room around what moves belongs into the picture, a town does not.
-    const points = moving.length > 0 && flatSize(all) > 2 * Math.max(3, flatSize(moving)) ? moving : all;
-    // One thing alone has some ground around it.
+    const is_town = moving.length > 0 && flatSize(all) > 2 * Math.max(3, flatSize(moving));
+    const points = is_town ? moving : all;
+    // One thing alone has some ground around it, what drives in a town more.
+    const room_m = is_town ? 3 : 1;
     const box = new THREE.Box3().setFromPoints(points);
     const middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
-    for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(x, y, 0)));
-    this.rig.frameAll(points);
+    for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(room_m * x, room_m * y, 0)));
+    this.rig.frameAll(points, is_town ? 0 : walls_m / Math.max(1, flatSize(all)));
     this.is_overview = true;
     this.invalidate();
   }

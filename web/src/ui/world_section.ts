@@ -15,7 +15,8 @@ export class WorldSection {
     const {actions, store} = context;
     const robots = world.instances.filter((i) => i.robot);
     // To drive: one that no controller steers as well.
-    const first = (robots.find((r) => driveOf(r) !== null && r.controllers.length === 0) ?? robots.find((r) => driveOf(r) !== null) ?? robots[0])?.name;
+    const driven = robots.find((r) => driveOf(r) !== null && r.controllers.length === 0) ?? robots.find((r) => driveOf(r) !== null);
+    const first = (driven ?? robots[0])?.name;
     const facts: [string, string][] = [
       ['Robots', String(robots.length)], ['Objects', String(world.instances.length - robots.length)], ['Physics', world.engine], ['Step', `${formatNumber(1000 * world.step_s)} ms`],
       ['Gravity', `${formatNumber(Math.hypot(...world.gravity), 4)} m/s²`], ['Seed', String(world.seed)],
@@ -32,7 +33,7 @@ export class WorldSection {
     this.element = h('div', {},
         h('section', {class: 'block'}, h('dl', {class: 'facts'}, ...facts.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {class: 'mono'}, value)]))),
         h('section', {class: 'block'}, h('h3', {}, 'Start here'),
-          ...(first === undefined ? [] : [row(`Drive ${first}`, 'gamepad', '', true, withFirst('robots.drive')), row(`Follow ${first}`, 'follow', '', false, withFirst('robots.follow'))]),
+          ...(driven === undefined ? [] : [row(`Drive ${first}`, 'gamepad', '', true, withFirst('robots.drive'))]), ...(first === undefined ? [] : [row(`Follow ${first}`, 'follow', '', false, withFirst('robots.follow'))]),
           row('Pull things about', 'pull', 'ctrl+drag', true, () => actions.run('tool.pull')),
           row('Add an object', 'plus', '', true, () => actions.run('scene.add')),
           row('All commands', 'search', 'ctrl+k', false, () => actions.run('page.palette')),
