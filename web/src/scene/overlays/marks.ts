@@ -53,7 +53,7 @@ export class Marks {
     this.velocities = new Stamps(root, arrowGeometry(0.05, 0.13, 0.28), flat('#18a058', 0.95, { depthTest: false }));
     this.contacts = new Stamps(root, arrowGeometry(0.06, 0.16, 0.36), flat('#f5a524', 0.95, { depthTest: false }));
     this.pyramids = new Stamps(root, pyramidGeometry(), flat('#6aa5ff', 0.5, { side: THREE.DoubleSide }));
-    this.cones = new Stamps(root, coneGeometry(), flat('#37c2d6', 0.22, { side: THREE.DoubleSide }));
+    this.cones = new Stamps(root, coneGeometry(), flat('#37c2d6', 0.15, { side: THREE.DoubleSide }));
     this.all = { frames: this.frames, teams: this.rings, velocity: this.velocities, contacts: this.contacts, frusta: this.pyramids, ranges: this.cones };
     for (const [name, stamps] of Object.entries(this.all)) {
       stamps.visible = this.shown[name] ?? false;
