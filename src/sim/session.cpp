@@ -440,11 +440,9 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
 }
 
 Status Session::run(RunReport& report, const std::function<bool(const Simulation&)>& keep_going) {
-  const model::Clock& clock = simulation_->setup().clock;
-  const bool continuous = clock.mode == model::Clock::Mode::continuous;
   const auto wall_begin = Clock::now();
   Pacer pacer;
-  std::optional<double> paced_by = pace_.factor;
+  std::optional<double> paced_by;
   if (history_.empty()) keep_snapshot();
   const auto go_on = [&] { return !keep_going || keep_going(*simulation_); };
   while (true) {
@@ -518,6 +516,9 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
           if (!go_on()) break;
           continue;
         }
+    // Of the world that is there now. A tape has the lengths of its ticks: it is played like one with a fixed clock.
+    const model::Clock& clock = simulation_->setup().clock;
+    const bool continuous = clock.mode == model::Clock::Mode::continuous && !options_.tape;
       } else if (!continuous) {
         // When the program falls far behind it does not race to catch up: the clock is set anew.
         constexpr double resync_s = 1.0;

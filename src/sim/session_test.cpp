@@ -213,6 +213,18 @@ TEST(Session, refuses_what_cannot_be) {
   EXPECT_FALSE(session.set_speed(1e9));
 }
 
+/// What is loaded may have another kind of clock. By hand: measured ticks have 5 ms at most, those of 10 ms are not measured.
+TEST(Session, keeps_time_by_the_clock_of_the_world_that_is_there) {
+  model::Setup setup = rolling();
+  setup.clock = {model::Clock::Mode::continuous, Time::from_s(0.001), Time::from_s(0.005)};
+  Session session(build(rolling()), {.paused = true});
+  session.load(build(std::move(setup))->snapshot(), {});
+  session.play();
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation&) { return report.ticks < 20; }));
+  EXPECT_LE(report.longest, Time::from_s(0.005));
+}
+
 TEST(Session, orders_and_requests_may_come_from_many_threads) {
   Session session(build(rolling()), {});
   std::atomic<int> answered = 0, posted = 0;
