@@ -365,7 +365,9 @@ Status Session::go_back(Time to) {
   for (std::size_t i = 0; i < history_.size(); ++i)
     if (history_[i].now <= to) best = i;
   const Time now = simulation_->now();
-  if (to >= now && history_[best].now <= now) return {};  // only run on
+  const bool ahead = to >= now && failure_;
+  if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // only run on
+  SL_TRY(may_rewind());  // the run may have passed the time since it was asked for
   const std::uint64_t frontier = simulation_->tick_index();
   const std::vector<std::byte> bytes = history_[best].bytes;
   SL_TRY(replace(bytes, "rewound to " + time_text(to)));

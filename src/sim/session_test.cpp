@@ -213,6 +213,40 @@ TEST(Session, refuses_what_cannot_be) {
   EXPECT_FALSE(session.set_speed(1e9));
 }
 
+/// `history_mb` 0: nothing to go back to, but ahead it may run.
+TEST(Session, jumps_ahead_without_snapshots) {
+  Session session(build(rolling()), {.paused = true, .history_mb = 0});
+  EXPECT_EQ(session.reset().error().text(), "this run cannot be rewound: no snapshots are kept");
+  ASSERT_TRUE(session.jump(Time::from_s(0.5)));
+  bool jumped = false;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    jumped = jumped || simulation.tick_index() == 50;
+    return !(jumped && session.report().state == Session::State::paused);
+  }));
+  EXPECT_EQ(session.simulation().tick_index(), 50u);
+  EXPECT_EQ(session.epoch(), 1u);
+}
+
+/// A jump may become one back while it waits: the run went past its aim. The world of a run that may not be rewound stays.
+TEST(Session, never_replaces_a_world_that_may_not_be_rewound) {
+  Session session(build(rolling(1)), {.may_not_rewind = "an experiment is in it"});
+  const Simulation* const world = &session.simulation();
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    if (simulation.tick_index() == 50 && session.epoch() == 1) {
+      session.post([&](Session& s) {
+        EXPECT_TRUE(s.jump(Time::from_s(0.505)));
+        EXPECT_TRUE(s.simulation().tick());
+        EXPECT_TRUE(s.simulation().tick());
+      });
+    }
+    return true;
+  }));
+  EXPECT_EQ(&session.simulation(), world);
+  EXPECT_EQ(session.epoch(), 1u);
+}
+
 /// What is loaded may have another kind of clock. By hand: measured ticks have 5 ms at most, those of 10 ms are not measured.
 TEST(Session, keeps_time_by_the_clock_of_the_world_that_is_there) {
   model::Setup setup = rolling();
