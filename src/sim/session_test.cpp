@@ -259,6 +259,54 @@ TEST(Session, keeps_time_by_the_clock_of_the_world_that_is_there) {
   EXPECT_LE(report.longest, Time::from_s(0.005));
 }
 
+/// Each load is answered, also one that another takes the place of, or that comes when all is over.
+TEST(Session, answers_every_load) {
+  const std::vector<std::byte> snapshot = build(rolling())->snapshot();
+  Session session(build(rolling()), {.paused = true});
+  std::vector<std::string> answers;
+  const auto note = [&](const Status& status) { answers.push_back(status ? "done" : status.error().text()); };
+  session.load(snapshot, note);
+  session.load(snapshot, note);
+  bool asked = false;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation&) {
+    if (answers.size() == 2 && !std::exchange(asked, true)) {
+      session.quit();
+      session.load(snapshot, note);
+    }
+    return true;
+  }));
+  session.load(snapshot, note);
+  EXPECT_EQ(answers, (std::vector<std::string>{"another one was asked for meanwhile", "done",
+                                               "the run has ended", "the run has ended"}));
+}
+
+/// On the way to where it was, the input is that of then: what comes while the world is changed is refused, too.
+TEST(Session, takes_no_input_from_the_moment_it_goes_back) {
+  const auto reference = build(rolling());
+  for (int tick = 0; tick < 150; ++tick) ASSERT_TRUE(reference->tick());
+  Session* running = nullptr;
+  Status submitted;
+  Session session(build(rolling()), {.on_world = [&](Simulation&, const std::string&) {
+                    auto sequence = running->submit(PoseRequest{"ball", {{2, 0, 3}, {}}});
+                    if (!sequence) submitted = sequence.error();
+                  }});
+  running = &session;
+  bool jumped = false;
+  std::uint64_t hash = 0;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    if (!jumped && simulation.tick_index() == 200) {
+      jumped = true;
+      EXPECT_TRUE(session.jump(Time::from_s(1.5)));
+    }
+    if (session.epoch() == 2 && simulation.tick_index() == 150) hash = simulation.state_hash();
+    return hash == 0;
+  }));
+  EXPECT_FALSE(submitted);
+  EXPECT_EQ(hash, reference->state_hash());
+}
+
 TEST(Session, orders_and_requests_may_come_from_many_threads) {
   Session session(build(rolling()), {});
   std::atomic<int> answered = 0, posted = 0;
