@@ -23,7 +23,7 @@ constexpr Golden goldens[] = {
     {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
     {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},
     {"scenarios/mario.yaml --duration 10s", "9e2b3e1b2e9c7fa8"},
-    {"scenarios/demo.yaml --duration 5s", "dba239f4e7a53589"},
+    {"scenarios/demo.yaml --duration 5s", "22bfd28396518353"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
 };

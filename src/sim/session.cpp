@@ -167,7 +167,12 @@ Status Session::jump(Time to) {
 }
 
 void Session::load(std::vector<std::byte> snapshot, std::function<void(const Status&)> done) {
-  order([&] { load_ = Load{std::move(snapshot), std::move(done)}; });
+  bool over = false;
+  order([&] {
+    over = !running_;
+    if (!over) loads_.push_back({std::move(snapshot), std::move(done)});
+  });
+  if (over && done) done(Error{"the run has ended"});
 }
 
 void Session::quit() {
@@ -219,6 +224,11 @@ void Session::set_state(State state) {
   if (on_change) on_change();
 }
 
+std::string Session::why_no_input() const {
+  if (options_.tape) return "this is a recording: it takes no input";
+  return rerunning() ? "the run is on its way to " + time_text(target_.value_or(Time{})) : "";
+}
+
 void Session::refresh_report() {
   const std::lock_guard lock(mutex_);
   report_.now = simulation_->now();
@@ -230,9 +240,7 @@ void Session::refresh_report() {
   report_.end = simulation_->setup().stop;
   if (options_.tape) report_.end = past_.end;
   report_.target = target_;
-  report_.takes_no_input = options_.tape ? "this is a recording: it takes no input"
-                           : rerunning() ? "the run is on its way to " + time_text(target_.value_or(Time{}))
-                                         : "";
+  report_.takes_no_input = why_no_input();
   if (report_.history.size() != history_.size() ||
       (!history_.empty() && report_.history.back() != history_.back().now)) {
     report_.history.clear();
@@ -353,6 +361,8 @@ Status Session::replace(std::span<const std::byte> bytes, const std::string& why
     std::swap(simulation_, world);
     std::swap(waiting, waiting_);
     ++epoch_;
+    // Before anybody can submit to it: what runs again has its input.
+    report_.takes_no_input = why_no_input();
   }
   for (const auto& [sequence, done] : waiting) done(Error{"the run was " + why + " before"});
   if (options_.on_world) options_.on_world(*simulation_, why);
@@ -365,20 +375,32 @@ Status Session::go_back(Time to) {
   for (std::size_t i = 0; i < history_.size(); ++i)
     if (history_[i].now <= to) best = i;
   const Time now = simulation_->now();
-  if (to >= now && history_[best].now <= now) return {};  // only run on
+  const bool ahead = to >= now && failure_;
+  if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // only run on
+  SL_TRY(may_rewind());  // the run may have passed the time since it was asked for
   const std::uint64_t frontier = simulation_->tick_index();
   const std::vector<std::byte> bytes = history_[best].bytes;
-  SL_TRY(replace(bytes, "rewound to " + time_text(to)));
+  const std::uint64_t before = rerun_until_;
   if (!options_.tape) rerun_until_ = std::max(frontier, rerun_until_);
-  return {};
+  Status status = replace(bytes, "rewound to " + time_text(to));
+  if (!status) rerun_until_ = before;
+  return status;
+}
+
+void Session::refuse_loads(std::vector<Load> loads, const char* why) {
+  for (const Load& load : loads)
+    if (load.done) load.done(Error{why});
 }
 
 bool Session::obey(std::unique_lock<std::mutex>& lock) {
   Status status;
-  if (load_) {
-    const Load load = std::move(*load_);
-    load_.reset();
+  if (!loads_.empty()) {
+    const Load load = std::move(loads_.back());
+    loads_.pop_back();
+    std::vector<Load> others;
+    std::swap(others, loads_);
     lock.unlock();
+    refuse_loads(std::move(others), "another one was asked for meanwhile");
     status = may_rewind();
     if (status && options_.tape) status = Error{"this is a recording: nothing can be loaded into it"};
     if (status) status = replace(load.bytes, "loaded");
@@ -440,11 +462,9 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
 }
 
 Status Session::run(RunReport& report, const std::function<bool(const Simulation&)>& keep_going) {
-  const model::Clock& clock = simulation_->setup().clock;
-  const bool continuous = clock.mode == model::Clock::Mode::continuous;
   const auto wall_begin = Clock::now();
   Pacer pacer;
-  std::optional<double> paced_by = pace_.factor;
+  std::optional<double> paced_by;
   if (history_.empty()) keep_snapshot();
   const auto go_on = [&] { return !keep_going || keep_going(*simulation_); };
   while (true) {
@@ -496,6 +516,9 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
       changed_.wait_for(lock, nap, [&] { return woken_; });
       continue;
     }
+    // Of the world that is there now. A tape has the lengths of its ticks: it is played like one with a fixed clock.
+    const model::Clock& clock = simulation_->setup().clock;
+    const bool continuous = clock.mode == model::Clock::Mode::continuous && !options_.tape;
     const bool unpaced = seeking_ || steps_left_ > 0 || (!pace_.factor && !continuous);
     const double factor = pace_.factor.value_or(1);
     if (std::exchange(paced_by, pace_.factor) != pace_.factor) pacer.forget();
@@ -556,11 +579,14 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
   }
   run_tasks();
   std::map<std::uint64_t, Done> waiting;
+  std::vector<Load> loads;
   {
     const std::lock_guard lock(mutex_);
     std::swap(waiting, waiting_);
+    std::swap(loads, loads_);
   }
   for (const auto& [sequence, done] : waiting) done(Error{"the run has ended"});
+  refuse_loads(std::move(loads), "the run has ended");
   return std::move(failure_);
 }
 

@@ -79,7 +79,8 @@ class Session {
   /// To the first tick not before a simulated time: back, from a snapshot; forward, by running as fast as possible. Then
   /// playing or paused as before. Errors: before the beginning, or behind the end of a tape; back, where that is not allowed.
   Status jump(Time to);
-  /// Replaces the world by that of a snapshot, which a later reset goes back to. `done` is called on the simulation's thread.
+  /// Replaces the world by that of a snapshot, which a later reset goes back to. Of several that wait the last one counts.
+  /// `done` is called once: on the simulation's thread, or here when the run has ended.
   void load(std::vector<std::byte> snapshot, std::function<void(const Status&)> done);
   /// Ends run().
   void quit();
@@ -149,6 +150,8 @@ class Session {
   bool obey(std::unique_lock<std::mutex>& lock);
   Status go_back(Time to);
   Status replace(std::span<const std::byte> bytes, const std::string& why);
+  static void refuse_loads(std::vector<Load> loads, const char* why);
+  std::string why_no_input() const;
   void forget_future();
   void keep_snapshot();
   void run_tasks();
@@ -176,7 +179,7 @@ class Session {
   std::uint64_t steps_left_ = 0;
   Pace pace_;
   std::optional<Time> jump_, target_;
-  std::optional<Load> load_;
+  std::vector<Load> loads_;
   std::vector<std::function<void(Session&)>> tasks_;
   Report report_;
 };

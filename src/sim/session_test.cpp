@@ -213,6 +213,100 @@ TEST(Session, refuses_what_cannot_be) {
   EXPECT_FALSE(session.set_speed(1e9));
 }
 
+/// `history_mb` 0: nothing to go back to, but ahead it may run.
+TEST(Session, jumps_ahead_without_snapshots) {
+  Session session(build(rolling()), {.paused = true, .history_mb = 0});
+  EXPECT_EQ(session.reset().error().text(), "this run cannot be rewound: no snapshots are kept");
+  ASSERT_TRUE(session.jump(Time::from_s(0.5)));
+  bool jumped = false;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    jumped = jumped || simulation.tick_index() == 50;
+    return !(jumped && session.report().state == Session::State::paused);
+  }));
+  EXPECT_EQ(session.simulation().tick_index(), 50u);
+  EXPECT_EQ(session.epoch(), 1u);
+}
+
+/// A jump may become one back while it waits: the run went past its aim. The world of a run that may not be rewound stays.
+TEST(Session, never_replaces_a_world_that_may_not_be_rewound) {
+  Session session(build(rolling(1)), {.may_not_rewind = "an experiment is in it"});
+  const Simulation* const world = &session.simulation();
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    if (simulation.tick_index() == 50 && session.epoch() == 1) {
+      session.post([&](Session& s) {
+        EXPECT_TRUE(s.jump(Time::from_s(0.505)));
+        EXPECT_TRUE(s.simulation().tick());
+        EXPECT_TRUE(s.simulation().tick());
+      });
+    }
+    return true;
+  }));
+  EXPECT_EQ(&session.simulation(), world);
+  EXPECT_EQ(session.epoch(), 1u);
+}
+
+/// What is loaded may have another kind of clock. By hand: measured ticks have 5 ms at most, those of 10 ms are not measured.
+TEST(Session, keeps_time_by_the_clock_of_the_world_that_is_there) {
+  model::Setup setup = rolling();
+  setup.clock = {model::Clock::Mode::continuous, Time::from_s(0.001), Time::from_s(0.005)};
+  Session session(build(rolling()), {.paused = true});
+  session.load(build(std::move(setup))->snapshot(), {});
+  session.play();
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation&) { return report.ticks < 20; }));
+  EXPECT_LE(report.longest, Time::from_s(0.005));
+}
+
+/// Each load is answered, also one that another takes the place of, or that comes when all is over.
+TEST(Session, answers_every_load) {
+  const std::vector<std::byte> snapshot = build(rolling())->snapshot();
+  Session session(build(rolling()), {.paused = true});
+  std::vector<std::string> answers;
+  const auto note = [&](const Status& status) { answers.push_back(status ? "done" : status.error().text()); };
+  session.load(snapshot, note);
+  session.load(snapshot, note);
+  bool asked = false;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation&) {
+    if (answers.size() == 2 && !std::exchange(asked, true)) {
+      session.quit();
+      session.load(snapshot, note);
+    }
+    return true;
+  }));
+  session.load(snapshot, note);
+  EXPECT_EQ(answers, (std::vector<std::string>{"another one was asked for meanwhile", "done",
+                                               "the run has ended", "the run has ended"}));
+}
+
+/// On the way to where it was, the input is that of then: what comes while the world is changed is refused, too.
+TEST(Session, takes_no_input_from_the_moment_it_goes_back) {
+  const auto reference = build(rolling());
+  for (int tick = 0; tick < 150; ++tick) ASSERT_TRUE(reference->tick());
+  Session* running = nullptr;
+  Status submitted;
+  Session session(build(rolling()), {.on_world = [&](Simulation&, const std::string&) {
+                    auto sequence = running->submit(PoseRequest{"ball", {{2, 0, 3}, {}}});
+                    if (!sequence) submitted = sequence.error();
+                  }});
+  running = &session;
+  bool jumped = false;
+  std::uint64_t hash = 0;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    if (!jumped && simulation.tick_index() == 200) {
+      jumped = true;
+      EXPECT_TRUE(session.jump(Time::from_s(1.5)));
+    }
+    if (session.epoch() == 2 && simulation.tick_index() == 150) hash = simulation.state_hash();
+    return hash == 0;
+  }));
+  EXPECT_FALSE(submitted);
+  EXPECT_EQ(hash, reference->state_hash());
+}
+
 TEST(Session, orders_and_requests_may_come_from_many_threads) {
   Session session(build(rolling()), {});
   std::atomic<int> answered = 0, posted = 0;
