@@ -307,6 +307,20 @@ TEST(Session, takes_no_input_from_the_moment_it_goes_back) {
   EXPECT_EQ(hash, reference->state_hash());
 }
 
+/// By what takes longer than a tick may wait: between two of them there is a tick, and none is lost.
+TEST(Session, goes_on_while_others_ask_much) {
+  Session session(build(rolling()), {});
+  std::vector<std::uint64_t> seen;
+  for (int i = 0; i < 3; ++i)
+    session.post([&](Session& s) {
+      seen.push_back(s.simulation().tick_index());
+      std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    });
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [](const Simulation& simulation) { return simulation.tick_index() < 2; }));
+  EXPECT_EQ(seen, (std::vector<std::uint64_t>{0, 1, 2}));
+}
+
 TEST(Session, orders_and_requests_may_come_from_many_threads) {
   Session session(build(rolling()), {});
   std::atomic<int> answered = 0, posted = 0;
