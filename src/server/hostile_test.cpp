@@ -173,6 +173,23 @@ TEST(ServerRun, so_many_parameters_may_be_asked_for_by_name) {
   EXPECT_EQ(viewer.parameters.size(), 1u);
 }
 
+TEST(ServerRun, a_watch_that_never_came_to_be_takes_no_room) {
+  Running run(arena("rigid", 1), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  run.session.quit();
+  const auto fails = [&](const char* service, const json& request) {
+    const std::uint32_t id = viewer.start_call(service, request.dump());
+    EXPECT_TRUE(viewer.until([&] { return viewer.answers[id] > 0; }));
+    return viewer.failures.count(id) > 0 && !viewer.failures[id].empty();
+  };
+  int tries = 0;
+  while (!fails("/sandlot/console", {{"line", "time"}}) && ++tries < 100) viewer.listen(0.02);
+  const json watch = {{"values", std::vector<std::string>(200, "sim.time")}, {"rate_hz", 1}};
+  EXPECT_TRUE(fails("/sandlot/watch", watch));
+  EXPECT_TRUE(fails("/sandlot/watch", watch)) << "the first one took all room";
+}
+
 TEST(ServerRun, viewers_that_come_and_go_leave_nothing_behind) {
   Running run(arena("planar", 1), {});
   run.go();
