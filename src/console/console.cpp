@@ -222,7 +222,13 @@ Status Console::schedule_script(const std::string& file) {
 void Console::find_next() {
   const Simulation& simulation = session_.simulation();
   const Time before = simulation.now() - simulation.setup().step;
+  std::erase_if(scheduled_, [](const Scheduled& line) { return line.over; });
+  // Lines for a time that was over when they came lie where they were due, not in order.
+  std::stable_sort(scheduled_.begin(), scheduled_.end(),
+                   [](const Scheduled& a, const Scheduled& b) { return a.at < b.at; });
   next_ = 0;
+  // All that is due by then is said where the run begins, which may be later than 0.
+  if (simulation.now() <= session_.report().begin) return;
   while (next_ < scheduled_.size() && scheduled_[next_].at <= before) ++next_;
 }
 

@@ -219,6 +219,20 @@ TEST(Console, ShowsExpressionsAndStructs) {
   EXPECT_EQ(rows[1]["unit"], "s");
 }
 
+/// Two thousand words of one letter would have answers of gigabytes, for whoever may look.
+TEST(Console, ShowsSoManyValuesInOneLine) {
+  Talk talk(test::arena("rigid", 2));
+  const std::string one = talk.ok("show ** --json");
+  const auto values = nlohmann::json::parse(one).size();
+  ASSERT_GT(values, 20u);
+  std::string line = "show --json";
+  for (std::size_t met = 0; met <= 10'000; met += values) line += " **";
+  ASSERT_LE(line.size(), 4096u);
+  const Answer answer = talk.say(line, false);
+  EXPECT_FALSE(answer.ok);
+  EXPECT_TRUE(has(answer.text.substr(0, 100), "the line meets more than 10000 values"));
+}
+
 TEST(Console, ListsADeviceForThePage) {
   Talk talk(test::arena("rigid", 1));
   talk.step();

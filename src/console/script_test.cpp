@@ -11,8 +11,8 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 
 /// A run of 2 s that says scheduled lines, on this thread.
 struct Scripted {
-  explicit Scripted(const std::vector<std::string>& lines = {},
-                    model::Setup setup = test::arena("rigid", 2)) {
+  explicit Scripted(const std::vector<std::string>& lines = {}, model::Setup setup = test::arena("rigid", 2),
+                    int ticks_before = 0) {
     setup.stop = Time::from_s(2);
     Session::Options options;
     options.tick = [this](Simulation& world, std::optional<Time> measured) -> Status {
@@ -20,7 +20,9 @@ struct Scripted {
       for (std::string& answer : console->take_answers()) answers.push_back(std::move(answer));
       return world.tick(measured);
     };
-    session.emplace(test::build(std::move(setup)), std::move(options));
+    auto world = test::build(std::move(setup));
+    for (int tick = 0; tick < ticks_before; ++tick) EXPECT_TRUE(world->tick());
+    session.emplace(std::move(world), std::move(options));
     console.emplace(*session, Console::Options{});
     for (const std::string& line : lines) {
       const Status scheduled = console->schedule(line);
@@ -152,6 +154,24 @@ TEST(Script, AJumpBackSaysLinesAgainWhenTheirTimeComes) {
   EXPECT_EQ(std::count_if(run.answers.begin(), run.answers.end(), box), 2);
   EXPECT_EQ(std::count(run.answers.begin(), run.answers.end(), "at 0.5 s: moved"), 1);
   EXPECT_EQ(run.session->simulation().state_hash(), straight.session->simulation().state_hash());
+}
+
+/// A run that goes on from a snapshot says at once what should have been said before; so it does after a reset.
+TEST(Script, AResetSaysAgainWhatIsSaidAtTheBeginning) {
+  Scripted run({"echo first", "at 0.2s echo missed", "at 1s reset"}, test::arena("rigid", 1), 50);
+  ASSERT_TRUE(run.run());
+  EXPECT_EQ(run.session->epoch(), 2u);
+  EXPECT_EQ(std::count(run.answers.begin(), run.answers.end(), "at 0.5 s: first"), 2);
+  EXPECT_EQ(std::count(run.answers.begin(), run.answers.end(), "at 0.5 s: missed"), 2);
+}
+
+/// A line for a time that was over does not hold up others after a jump back.
+TEST(Script, LinesStayInOrderAfterAJumpBack) {
+  Scripted run({"at 0.2s at 0.25s echo mid", "at 0.3s at 0.1s echo late", "at 1s jump 0.15 s"});
+  ASSERT_TRUE(run.run());
+  EXPECT_EQ(run.session->epoch(), 2u);
+  EXPECT_EQ(std::count(run.answers.begin(), run.answers.end(), "at 0.25 s: mid"), 2);
+  EXPECT_EQ(std::count(run.answers.begin(), run.answers.end(), "at 0.3 s: late"), 2);
 }
 
 TEST(Script, AtSchedulesWhileTheRunGoesOn) {

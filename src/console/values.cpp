@@ -156,6 +156,7 @@ Said say_show(Call& call) {
   std::vector<std::string> lines;
   Json rows = Json::array();
   const Simulation& simulation = call.simulation();
+  std::size_t met = 0;
   for (const std::string& word : call.words) {
     const std::string_view address = without_slash(word);
     if (auto value = NamedValue::find(simulation, address)) {
@@ -190,6 +191,10 @@ Said say_show(Call& call) {
       rows.push_back(row(entry));
       continue;
     }
+    // Of all words together: a line has room for two thousand '*'.
+    met += entries.size();
+    if (met > most_matches)
+      return Error{"the line meets more than " + std::to_string(most_matches) + " values", "narrow it down"};
     for (const ValueEntry& entry : entries) {
       if (!call.json) lines.push_back(line_of(simulation, entry));
       else rows.push_back(row(entry));

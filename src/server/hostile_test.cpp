@@ -157,6 +157,39 @@ TEST(ServerRun, too_many_requests_are_refused) {
   EXPECT_GE(run.server->counters().refused, 200u);
 }
 
+/// Each name is looked up between two ticks: twenty thousand of them would be felt.
+TEST(ServerRun, so_many_parameters_may_be_asked_for_by_name) {
+  Running run(arena("rigid", 1), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  std::vector<std::string> names(1000, "rover1/laser.noise.white");
+  viewer.say({{"op", "getParameters"}, {"parameterNames", names}, {"id", "many"}});
+  ASSERT_TRUE(viewer.until([&] { return !viewer.parameters.empty(); }));
+  EXPECT_EQ(viewer.parameters[0]["parameters"].size(), 1000u);
+  names.emplace_back("rover1/laser.rate");
+  viewer.say({{"op", "getParameters"}, {"parameterNames", names}, {"id", "more"}});
+  ASSERT_TRUE(viewer.until([&] { return !viewer.statuses.empty(); }));
+  EXPECT_EQ(viewer.statuses[0]["id"], "more");
+  EXPECT_EQ(viewer.parameters.size(), 1u);
+}
+
+TEST(ServerRun, a_watch_that_never_came_to_be_takes_no_room) {
+  Running run(arena("rigid", 1), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  run.session.quit();
+  const auto fails = [&](const char* service, const json& request) {
+    const std::uint32_t id = viewer.start_call(service, request.dump());
+    EXPECT_TRUE(viewer.until([&] { return viewer.answers[id] > 0; }));
+    return viewer.failures.count(id) > 0 && !viewer.failures[id].empty();
+  };
+  int tries = 0;
+  while (!fails("/sandlot/console", {{"line", "time"}}) && ++tries < 100) viewer.listen(0.02);
+  const json watch = {{"values", std::vector<std::string>(200, "sim.time")}, {"rate_hz", 1}};
+  EXPECT_TRUE(fails("/sandlot/watch", watch));
+  EXPECT_TRUE(fails("/sandlot/watch", watch)) << "the first one took all room";
+}
+
 TEST(ServerRun, viewers_that_come_and_go_leave_nothing_behind) {
   Running run(arena("planar", 1), {});
   run.go();

@@ -144,15 +144,16 @@ void Hub::on_watch(ClientId id, const std::shared_ptr<Call>& call, const AnyMess
               std::to_string(most_watched_by_all) + " by all viewers together");
   }
   const std::uint32_t made = next_channel_++;
-  client.watched += count;
-  watched_ += count;
-  post([feed = feed_, mailbox = mailbox_, call, id, made, values = asked.values,
-        rate_hz = asked.rate_hz](Session&) {
+  const bool posted = post([feed = feed_, mailbox = mailbox_, call, id, made, values = asked.values,
+                            rate_hz = asked.rate_hz](Session&) {
     const Status status = feed->watch(made, values, rate_hz);
     mailbox->put([call, id, made, count = values.size(), status](Hub& hub) {
       hub.answer_watch(id, made, count, status, call);
     });
   });
+  if (!posted) return;  // nobody will give them back
+  client.watched += count;
+  watched_ += count;
 }
 
 void Hub::answer_watch(ClientId id, std::uint32_t channel_id, std::size_t values, const Status& status,

@@ -70,6 +70,11 @@ void Hub::answer_parameters(ClientId id, const std::string& about, std::span<con
 void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParameters& request) {
   if (client.calls >= most_calls)
     return void(refuse(id, "too many requests wait for their answers", request.id));
+  // Each is looked up on the simulation's thread.
+  if (request.names.size() > most_named_parameters)
+    return void(
+        refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are asked for by name",
+               request.id));
   ++client.calls;
   const auto setting = std::make_shared<Setting>();
   setting->mailbox = mailbox_;
@@ -83,11 +88,9 @@ void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParamet
     if (names.empty() && !list_parameters(simulation, setting->values))
       setting->complaints.push_back("there are more than " + std::to_string(most_parameters) +
                                     " parameters; ask for the others by name");
-    for (const std::string& name : names) {
-      if (is_own(name)) continue;
-      Parameter found = read_parameter(simulation, name);
-      if (found.value.index() != 0) setting->values.push_back(std::move(found));
-    }
+    // The session's own have no such address.
+    for (Parameter& found : read_parameters(simulation, names))
+      if (found.value.index() != 0 && !is_own(found.name)) setting->values.push_back(std::move(found));
   });
 }
 

@@ -144,24 +144,32 @@ bool list_parameters(const Simulation& simulation, std::vector<Parameter>& out) 
 }
 
 Parameter read_parameter(const Simulation& simulation, const std::string& name) {
-  Parameter out;
-  out.name = name;
-  const std::size_t dot = name.find('.');
-  if (dot == std::string::npos) return out;
-  const std::string_view target = std::string_view(name).substr(0, dot);
-  const std::string rest = name.substr(dot + 1);
-  const Simulation::Entity* const entity = simulation.find_entity(target.substr(0, target.find('/')));
-  if (!entity) return out;
+  return read_parameters(simulation, std::span(&name, 1)).front();
+}
+
+std::vector<Parameter> read_parameters(const Simulation& simulation, std::span<const std::string> names) {
+  std::vector<Parameter> all;
+  all.reserve(names.size());
   Fields known_fields(simulation);
-  for_each_part(simulation, *entity, known_fields,
-                [&](const std::string& path, const Look& look, const std::vector<FieldInfo>& fields) {
-                  if (path != target) return;
-                  const FieldInfo* known = nullptr;
-                  for (const FieldInfo& field : fields)
-                    if (field.path == field_path(rest)) known = &field;
-                  if (!read(look, known, rest, out)) out.value = std::monostate();
-                });
-  return out;
+  for (const std::string& name : names) {
+    Parameter& out = all.emplace_back();
+    out.name = name;
+    const std::size_t dot = name.find('.');
+    if (dot == std::string::npos) continue;
+    const std::string_view target = std::string_view(name).substr(0, dot);
+    const std::string rest = name.substr(dot + 1);
+    const Simulation::Entity* const entity = simulation.find_entity(target.substr(0, target.find('/')));
+    if (!entity) continue;
+    for_each_part(simulation, *entity, known_fields,
+                  [&](const std::string& path, const Look& look, const std::vector<FieldInfo>& fields) {
+                    if (path != target) return;
+                    const FieldInfo* known = nullptr;
+                    for (const FieldInfo& field : fields)
+                      if (field.path == field_path(rest)) known = &field;
+                    if (!read(look, known, rest, out)) out.value = std::monostate();
+                  });
+  }
+  return all;
 }
 
 Result<ParameterRequest> parameter_request(const Parameter& parameter) {

@@ -99,7 +99,6 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   SL_ASSIGN(impl->owned, Transport::start(transport, std::move(handler)));
   impl->hub.use(*impl->owned);
   impl->transport = impl->owned.get();
-  ready->set_value();
   impl->mailbox->open([self] { self->wake(&Hub::drain); });
   impl->others_on_change = session.on_change;
   session.on_change = [self] {
@@ -111,6 +110,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
     const std::uint8_t ros_level = level == log::Level::warning ? 30 : level == log::Level::info ? 20 : 10;
     self->mailbox->put([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
   });
+  // Last: from here on viewers may give orders, which call on_change.
+  ready->set_value();
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 
@@ -129,13 +130,14 @@ Counters Server::counters() const {
 void Server::stop() {
   if (std::exchange(impl_->stopped, true)) return;
   log::set_listener({});
-  impl_->session.on_change = impl_->others_on_change;
   {
     const std::lock_guard lock(impl_->mutex);
     impl_->transport = nullptr;
   }
   impl_->mailbox->open(nullptr);
   impl_->owned->stop();
+  // Not before: as long as the transport's thread lives, an order of a viewer may be calling it.
+  impl_->session.on_change = impl_->others_on_change;
   impl_->mailbox->close();
   impl_->feed->leave();
 }

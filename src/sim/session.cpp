@@ -12,8 +12,8 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr std::size_t most_tasks = 10'000, most_kept = 512;
-/// How long anything may sleep without asking whether to go on.
-constexpr auto nap = std::chrono::milliseconds(100);
+constexpr auto nap = std::chrono::milliseconds(100);  ///< sleeps no longer without asking whether to go on
+constexpr auto tasks_pause = std::chrono::milliseconds(10);  ///< so long they may hold up the next tick
 
 double wall_s() { return Seconds(Clock::now().time_since_epoch()).count(); }
 
@@ -300,14 +300,23 @@ void Session::answer_outcomes() {
   for (const auto& [done, status] : answers) done(*status);
 }
 
-void Session::run_tasks() {
-  std::vector<std::function<void(Session&)>> tasks;
-  {
-    const std::lock_guard lock(mutex_);
-    std::swap(tasks, tasks_);
-    woken_ = false;  // here and not behind the tasks: what comes while they run must wake the loop again
+/// Beyond its patience the rest waits until the loop comes by again: viewers who ask for much hold up the run no longer than
+/// one of their questions takes.
+void Session::run_tasks(std::chrono::milliseconds patience) {
+  const auto end = Clock::now() + patience;
+  for (bool first = true; first || Clock::now() < end; first = false) {
+    std::function<void(Session&)> task;
+    {
+      const std::lock_guard lock(mutex_);
+      woken_ = false;  // here and not behind the task: what comes while it runs must wake the loop again
+      if (tasks_.empty()) return;
+      task = std::move(tasks_.front());
+      tasks_.pop_front();
+    }
+    task(*this);
   }
-  for (const auto& task : tasks) task(*this);
+  const std::lock_guard lock(mutex_);
+  woken_ = true;
 }
 
 /// Snapshots are taken where they cost little, and thinned out so that their number and size stay bounded: the older, the
@@ -379,10 +388,9 @@ Status Session::go_back(Time to) {
   if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // only run on
   SL_TRY(may_rewind());  // the run may have passed the time since it was asked for
   const std::uint64_t frontier = simulation_->tick_index();
-  const std::vector<std::byte> bytes = history_[best].bytes;
   const std::uint64_t before = rerun_until_;
   if (!options_.tape) rerun_until_ = std::max(frontier, rerun_until_);
-  Status status = replace(bytes, "rewound to " + time_text(to));
+  Status status = replace(history_[best].bytes, "rewound to " + time_text(to));
   if (!status) rerun_until_ = before;
   return status;
 }
@@ -422,8 +430,7 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
   } else if (reset_) {
     reset_ = false;
     lock.unlock();
-    const std::vector<std::byte> bytes = history_.front().bytes;
-    status = replace(bytes, "reset");
+    status = replace(history_.front().bytes, "reset");
     if (status) {
       forget_future();
       const std::lock_guard again(mutex_);
@@ -468,7 +475,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
   if (history_.empty()) keep_snapshot();
   const auto go_on = [&] { return !keep_going || keep_going(*simulation_); };
   while (true) {
-    run_tasks();
+    run_tasks(tasks_pause);
     std::unique_lock lock(mutex_);
     if (quit_) break;
     if (obey(lock)) {
@@ -577,7 +584,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
     const std::lock_guard lock(mutex_);
     running_ = false;
   }
-  run_tasks();
+  run_tasks(std::chrono::hours(1));
   std::map<std::uint64_t, Done> waiting;
   std::vector<Load> loads;
   {

@@ -18,6 +18,7 @@
 ///             takes no other input.
 /// Threads     run() belongs to one thread, the simulation's. Orders may come from any.
 /// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and `history_mb` of memory.
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -154,7 +155,7 @@ class Session {
   std::string why_no_input() const;
   void forget_future();
   void keep_snapshot();
-  void run_tasks();
+  void run_tasks(std::chrono::milliseconds patience);
   void answer_outcomes();
   void set_state(State state);
   void refresh_report();
@@ -180,7 +181,7 @@ class Session {
   Pace pace_;
   std::optional<Time> jump_, target_;
   std::vector<Load> loads_;
-  std::vector<std::function<void(Session&)>> tasks_;
+  std::deque<std::function<void(Session&)>> tasks_;
   Report report_;
 };
 

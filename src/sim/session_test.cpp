@@ -307,6 +307,36 @@ TEST(Session, takes_no_input_from_the_moment_it_goes_back) {
   EXPECT_EQ(hash, reference->state_hash());
 }
 
+TEST(Session, forgets_snapshots_in_between_but_never_the_first) {
+  // Memory for none: each third one makes them fewer.
+  Session session(build(rolling()), {.history_mb = 1e-6, .history_every_s = 0.01});
+  std::size_t most = 0;
+  bool reset = false;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    most = std::max(most, session.report().history.size());
+    if (simulation.tick_index() == 5000 && !std::exchange(reset, true)) { EXPECT_TRUE(session.reset()); }
+    return session.epoch() == 1 || simulation.tick_index() < 10;
+  }));
+  EXPECT_EQ(most, 2u);
+  EXPECT_EQ(session.simulation().tick_index(), 10u);
+  EXPECT_EQ(session.simulation().state_hash(), hash_after(rolling(), 10));
+}
+
+/// By what takes longer than a tick may wait: between two of them there is a tick, and none is lost.
+TEST(Session, goes_on_while_others_ask_much) {
+  Session session(build(rolling()), {});
+  std::vector<std::uint64_t> seen;
+  for (int i = 0; i < 3; ++i)
+    session.post([&](Session& s) {
+      seen.push_back(s.simulation().tick_index());
+      std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    });
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [](const Simulation& simulation) { return simulation.tick_index() < 2; }));
+  EXPECT_EQ(seen, (std::vector<std::uint64_t>{0, 1, 2}));
+}
+
 TEST(Session, orders_and_requests_may_come_from_many_threads) {
   Session session(build(rolling()), {});
   std::atomic<int> answered = 0, posted = 0;
