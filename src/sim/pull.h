@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/fields.h"
 #include "base/time.h"
 #include "physics/engine.h"
 
@@ -32,6 +33,18 @@ struct Pull {
 
 /// Longest a pull may last: a request of somebody who is gone does not pull for ever.
 inline constexpr double longest_pull_s = 10;
+
+/// A device that somebody drives from outside: the robot's own controllers are not heard by it until then.
+struct Hold {
+  std::uint64_t device = 0;  ///< its key
+  Time until;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"device", "1", "Its key."}, s.device);
+    visit(Field{"until", "s", "When programs are heard again."}, s.until);
+  }
+};
+/// From each command on [s].
+inline constexpr double held_s = 0.5;
 
 double mass_kg(const model::Model& model);
 

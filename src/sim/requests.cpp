@@ -41,8 +41,8 @@ void Simulation::log_request(const Request& request, const Outcome& outcome) {
   }
 }
 
-Status Simulation::carry_out(Request& request) {
-  if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command);
+Status Simulation::carry_out(Request& request, const Source& source) {
+  if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command, source);
   if (const auto* parameter = std::get_if<ParameterRequest>(&request)) {
     if (Device* device = find_device(parameter->target)) {
       SL_TRY(pools_[device->kind].pool->set_parameter(device->index, parameter->field, parameter->value));
@@ -134,7 +134,18 @@ Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes) {
   return {};
 }
 
-Status Simulation::apply_command(const CommandRequest& command) {
+/// Whoever drives a device from outside is not disturbed by the robot's controllers for a while.
+bool Simulation::is_held(const Device& device) const {
+  return std::any_of(holds_.begin(), holds_.end(),
+                     [&](const Hold& hold) { return hold.device == device.key; });
+}
+
+void Simulation::hold(const Device& device) {
+  std::erase_if(holds_, [&](const Hold& hold) { return hold.device == device.key; });
+  holds_.push_back({device.key, now_ + Time::from_s(held_s)});
+}
+
+Status Simulation::apply_command(const CommandRequest& command, const Source& source) {
   const std::string_view target = command.target;
   Device* device = find_device(target);
   std::string_view level;
@@ -150,8 +161,11 @@ Status Simulation::apply_command(const CommandRequest& command) {
     ++refused_commands_;
     return Error{"'" + command.target + "' takes no " + command.type + " at its active level"};
   }
-  Status status = give_command(*slot, command.bytes);
+  const bool by_program = source.kind == Source::Kind::program;
+  Status status = by_program && is_held(*device) ? Error{"'" + command.target + "' is driven from outside"}
+                                                 : give_command(*slot, command.bytes);
   if (!status) ++refused_commands_;
+  else if (!by_program) hold(*device);
   return status;
 }
 
@@ -164,9 +178,11 @@ void Simulation::apply_program_orders() {
         const Description::Entry& entry = program->description.actuators[order.slot];
         Slot* slot = nullptr;
         for (const auto& device : entity->devices)
-          if (device->decl.name == entry.device) slot = active_command_slot(*device, entry.type, entry.level);
+          if (device->decl.name == entry.device && !is_held(*device))
+            slot = active_command_slot(*device, entry.type, entry.level);
         const std::span<const std::byte> bytes = program->command.bytes(order);
-        // A level that was switched off under a controller's feet: its commands are refused and counted.
+        // A level that was switched off under a controller's feet, a device that somebody drives by hand: its commands
+        // are refused and counted.
         const bool refused = !slot || !give_command(*slot, bytes);
         if (refused) ++refused_commands_;
         if (!wants_.log) continue;

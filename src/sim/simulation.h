@@ -219,8 +219,10 @@ class Simulation {
   void fill_hashes(Frame& frame);
 
   // requests.cpp
-  Status carry_out(Request& request);
-  Status apply_command(const CommandRequest& command);
+  Status carry_out(Request& request, const Source& source);
+  Status apply_command(const CommandRequest& command, const Source& source);
+  bool is_held(const Device& device) const;
+  void hold(const Device& device);
   Status start_pull(const PullRequest& request);
   Status give_command(Slot& slot, std::span<const std::byte> bytes);
   LogEntry& log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence);
@@ -281,6 +283,7 @@ class Simulation {
   std::vector<Pending> carrying_out_;
   std::vector<Outcome> outcomes_;
 
+  std::vector<Hold> holds_;  ///< State
   std::vector<Pull> pulls_;  ///< State; those that are over stay until the next tick
 
   Actuation actuation_;

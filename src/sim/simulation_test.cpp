@@ -5,6 +5,7 @@
 
 #include "messages/messages.h"
 #include "sim/test_world.h"
+#include "sim/values.h"
 
 namespace sandlot::test {
 namespace {
@@ -211,6 +212,37 @@ TEST(Requests, commands_of_an_inactive_level_are_refused_until_it_is_switched_on
   ASSERT_FALSE(simulation->outcomes().back().status);
   EXPECT_NE(simulation->outcomes().back().status.error().text().find("did you mean 'other'"),
             std::string::npos);
+}
+
+TEST(Requests, who_drives_from_outside_is_not_disturbed_by_the_robots_controller_for_half_a_second) {
+  const auto simulation = build(arena("planar", 1));
+  advance(*simulation, 100);
+  const auto speed = [&](const Simulation& of) {
+    auto value = NamedValue::find(of, "rover1/drive/ideal/command.linear.x");
+    return value ? value->read().value_or(-1) : -2;
+  };
+  msg::Twist twist;
+  twist.linear.x = 0.0625;
+  ByteWriter w;
+  write(w, twist);
+  simulation->submit(CommandRequest{"rover1/drive", "geometry_msgs/msg/Twist", w.buffer()});
+  const std::uint64_t refused = simulation->refused_commands();
+  std::vector<std::byte> between;
+  for (int tick = 0; tick < 50; ++tick) {
+    if (tick == 20) between = simulation->snapshot();
+    advance(*simulation, 1);
+    ASSERT_EQ(speed(*simulation), 0.0625) << tick;
+  }
+  EXPECT_GT(simulation->refused_commands(), refused);
+  const int steps = simulation->setup().control_interval;
+  advance(*simulation, steps);
+  EXPECT_NE(speed(*simulation), 0.0625) << "the controller is heard again";
+  const std::uint64_t hash = simulation->state_hash();
+  Diagnostics diagnostics;
+  const auto restored = Simulation::restore(between, {}, diagnostics);
+  ASSERT_TRUE(restored);
+  advance(**restored, 30 + steps);
+  EXPECT_EQ((*restored)->state_hash(), hash);
 }
 
 TEST(Requests, wrong_targets_types_and_bytes_are_answered_and_change_nothing) {

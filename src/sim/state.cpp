@@ -163,7 +163,9 @@ void Simulation::save_run(ByteWriter& w) const {
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
   monitor_->save(w);
-  if (!pulls_.empty()) write_block(w, [&](ByteWriter& block) { save_pulls(block); });
+  // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
+  if (!pulls_.empty() || !holds_.empty()) write_block(w, [&](ByteWriter& block) { save_pulls(block); });
+  if (!holds_.empty()) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
 }
 
 void Simulation::save_pulls(ByteWriter& w) const {
@@ -203,7 +205,11 @@ bool Simulation::load_run(ByteReader& r) {
   monitor_->load(r);
   if (!r.ok() || r.remaining() == 0) return r.ok();
   ByteReader pulls = read_block(r);
-  return r.ok() && load_pulls(pulls);
+  if (!r.ok() || !load_pulls(pulls)) return false;
+  if (r.remaining() == 0) return true;
+  ByteReader holds = read_block(r);
+  read(holds, holds_);
+  return r.ok() && holds.ok() && holds.remaining() == 0;
 }
 
 /// Calls visit(path, key, fill) for each entity's part of the State, in creation order.

@@ -65,6 +65,7 @@ void Simulation::set_step(std::optional<Time> measured) {
 void Simulation::take_commands() {
   const PhaseTimer timer(phase_times_, Phase::commands);
   outcomes_.clear();
+  std::erase_if(holds_, [&](const Hold& hold) { return hold.until <= now_; });
   {
     const std::lock_guard lock(inbox_mutex_);
     std::swap(carrying_out_, inbox_);
@@ -74,7 +75,7 @@ void Simulation::take_commands() {
            std::tuple(b.source.kind, b.source.id, b.sequence);
   });
   for (Pending& pending : carrying_out_) {
-    outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request)});
+    outcomes_.push_back({pending.source, pending.sequence, carry_out(pending.request, pending.source)});
     if (wants_.input) log_request(pending.request, outcomes_.back());
   }
   carrying_out_.clear();
