@@ -304,19 +304,19 @@ void Session::answer_outcomes() {
 /// one of their questions takes.
 void Session::run_tasks(std::chrono::milliseconds patience) {
   const auto end = Clock::now() + patience;
-  for (bool first = true; first || Clock::now() < end; first = false) {
-    std::function<void(Session&)> task;
-    {
-      const std::lock_guard lock(mutex_);
-      woken_ = false;  // here and not behind the task: what comes while it runs must wake the loop again
-      if (tasks_.empty()) return;
-      task = std::move(tasks_.front());
-      tasks_.pop_front();
-    }
+  std::unique_lock lock(mutex_);
+  // Not those that come meanwhile: what a task has ordered acts before them.
+  std::size_t left = tasks_.size();
+  woken_ = false;  // here and not behind the tasks: what comes while they run must wake the loop again
+  for (bool first = true; left > 0 && (first || Clock::now() < end); --left, first = false) {
+    auto task = std::move(tasks_.front());
+    tasks_.pop_front();
+    lock.unlock();
     task(*this);
+    task = nullptr;  // what it holds may answer when it goes: not under the lock
+    lock.lock();
   }
-  const std::lock_guard lock(mutex_);
-  woken_ = true;
+  woken_ = woken_ || !tasks_.empty();
 }
 
 /// Snapshots are taken where they cost little, and thinned out so that their number and size stay bounded: the older, the
