@@ -31,6 +31,7 @@ TEST(Serve, elsewhere_than_on_this_machine_a_token_is_made) {
               ContainsRegex("page: http://[^ ]+\\?token=[0-9a-f]{32}\n"));
   EXPECT_THAT(sandlot(indoor + "--port 0 --address 0.0.0.0 --token sesame").out,
               HasSubstr("/?token=sesame\n"));
+  EXPECT_THAT(sandlot(indoor + "--port 0 --token 'a b&c'").out, HasSubstr("/?token=a%20b%26c\n"));
   EXPECT_THAT(sandlot(indoor + "--port 0 --token sesame").out, HasSubstr("/?token=sesame\n"));
 }
 
@@ -61,6 +62,7 @@ TEST(Serve, options_that_do_not_go_together_are_refused) {
   refused(indoor + "--headless --port 0", "--headless");
   refused(indoor + "--port 70000", "--port");
   refused(indoor + "--port 0 --address nowhere.invalid", "nowhere.invalid");
+  refused(indoor + "--port 0 --allow-origin example.org", "'example.org' is no origin");
   refused(indoor + "--command 'at 2s lsit'", "lsit");
   refused(indoor + "--script /nowhere.txt", "/nowhere.txt");
   refused("replay /nowhere.mcap --port 0", "/nowhere.mcap");
