@@ -87,6 +87,17 @@ TEST(Serve, console_lines_steer_a_run_without_a_page_and_are_in_its_recording) {
   EXPECT_THAT(again.out, HasSubstr("--stop-when"));
 }
 
+/// By hand: it would wait for ever.
+TEST(Serve, a_run_without_a_page_that_is_paused_ends_with_a_reason) {
+  for (const char* line : {"at 0.5s pause", "at 0.45s step 5"}) {
+    const Printed paused = sandlot(indoor + "--command '" + line + "'");
+    EXPECT_EQ(paused.exit_code, 1) << paused.out;
+    EXPECT_THAT(paused.out, HasSubstr("nobody can let it go on; add --port 8765"));
+  }
+  EXPECT_EQ(sandlot(indoor + "--command 'at 0.5s pause' --command 'at 0.5s run'").exit_code, 0);
+  EXPECT_EQ(sandlot(indoor + "--command 'at 0.5s jump 0.8 s'").exit_code, 0);
+}
+
 TEST(Serve, demos_are_listed_and_an_unknown_one_names_those_there_are) {
   EXPECT_THAT(sandlot("demo list").out, AllOf(HasSubstr("demo\n"), HasSubstr("indoor\n")));
   const Printed unknown = sandlot("demo nothing --headless");
