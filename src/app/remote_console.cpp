@@ -1,5 +1,6 @@
 #include "app/remote_console.h"
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -58,7 +59,9 @@ Result<std::string> console_url(std::string_view written, std::string_view token
     url.resize(path);
   }
   if (url.size() == host) return Error{"the address names no host", "write the port, or ws://HOST:PORT"};
-  if (url.find(':', host) == std::string::npos) url += ":8765";
+  const std::size_t address_end = url[host] == '[' ? std::min(url.find(']', host), url.size())
+                                                   : host;  // [::1]
+  if (url.find(':', address_end) == std::string::npos) url += ":8765";
   if (!token.empty()) query = (query.empty() ? "" : query + "&") + "token=" + url_encoded(token);
   return url + "/" + (query.empty() ? "" : "?" + query);
 }
