@@ -356,7 +356,8 @@ std::vector<Request> all_requests() {
           PoseRequest{"rover1", {{1, 2, 3}, quat_from_rpy(0.1, 0.2, 0.3)}},
           SampleRequest{"rover1/laser"},
           LoadDeviceRequest{"rover1", setup.instances.back().devices[0]},
-          UnloadDeviceRequest{"rover1/laser"}};
+          UnloadDeviceRequest{"rover1/laser"},
+          PullRequest{"crate1", "link", {0.1, 0.2, 0.3}, {1, 2, 3}, Time::from_s(0.5)}};
 }
 
 TEST(Requests, each_kind_survives_being_bytes) {
