@@ -31,6 +31,7 @@ TEST(Serve, elsewhere_than_on_this_machine_a_token_is_made) {
               ContainsRegex("page: http://[^ ]+\\?token=[0-9a-f]{32}\n"));
   EXPECT_THAT(sandlot(indoor + "--port 0 --address 0.0.0.0 --token sesame").out,
               HasSubstr("/?token=sesame\n"));
+  EXPECT_THAT(sandlot(indoor + "--port 0 --token 'a b&c'").out, HasSubstr("/?token=a%20b%26c\n"));
   EXPECT_THAT(sandlot(indoor + "--port 0 --token sesame").out, HasSubstr("/?token=sesame\n"));
 }
 
@@ -61,6 +62,7 @@ TEST(Serve, options_that_do_not_go_together_are_refused) {
   refused(indoor + "--headless --port 0", "--headless");
   refused(indoor + "--port 70000", "--port");
   refused(indoor + "--port 0 --address nowhere.invalid", "nowhere.invalid");
+  refused(indoor + "--port 0 --allow-origin example.org", "'example.org' is no origin");
   refused(indoor + "--command 'at 2s lsit'", "lsit");
   refused(indoor + "--script /nowhere.txt", "/nowhere.txt");
   refused("replay /nowhere.mcap --port 0", "/nowhere.mcap");
@@ -83,6 +85,17 @@ TEST(Serve, console_lines_steer_a_run_without_a_page_and_are_in_its_recording) {
       "run scenarios/indoor.yaml --set physics=planar --duration 0.52s --command 'at 0.5s pose rover 3 "
       "4.65' --stop-when 'abs(rover.pose.x - 3) < 0.02' --json");
   EXPECT_THAT(again.out, HasSubstr("--stop-when"));
+}
+
+/// By hand: it would wait for ever.
+TEST(Serve, a_run_without_a_page_that_is_paused_ends_with_a_reason) {
+  for (const char* line : {"at 0.5s pause", "at 0.45s step 5"}) {
+    const Printed paused = sandlot(indoor + "--command '" + line + "'");
+    EXPECT_EQ(paused.exit_code, 1) << paused.out;
+    EXPECT_THAT(paused.out, HasSubstr("nobody can let it go on; add --port 8765"));
+  }
+  EXPECT_EQ(sandlot(indoor + "--command 'at 0.5s pause' --command 'at 0.5s run'").exit_code, 0);
+  EXPECT_EQ(sandlot(indoor + "--command 'at 0.5s jump 0.8 s'").exit_code, 0);
 }
 
 TEST(Serve, demos_are_listed_and_an_unknown_one_names_those_there_are) {

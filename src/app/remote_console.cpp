@@ -1,5 +1,6 @@
 #include "app/remote_console.h"
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,16 @@ bool is_unreserved(char c) {
          c == '.' || c == '~';
 }
 
-std::string encoded(std::string_view text) {
+Error gone() { return {"the connection is gone: the run has ended, or the network has failed"}; }
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+std::string url_encoded(std::string_view text) {
   constexpr const char* digits = "0123456789ABCDEF";
   std::string out;
   for (const char c : text) {
@@ -28,15 +38,6 @@ std::string encoded(std::string_view text) {
   }
   return out;
 }
-
-Error gone() { return {"the connection is gone: the run has ended, or the network has failed"}; }
-
-std::string text_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-}  // namespace
 
 Result<std::string> console_url(std::string_view written, std::string_view token) {
   std::string url(trim(written));
@@ -58,8 +59,10 @@ Result<std::string> console_url(std::string_view written, std::string_view token
     url.resize(path);
   }
   if (url.size() == host) return Error{"the address names no host", "write the port, or ws://HOST:PORT"};
-  if (url.find(':', host) == std::string::npos) url += ":8765";
-  if (!token.empty()) query = (query.empty() ? "" : query + "&") + "token=" + encoded(token);
+  const std::size_t address_end = url[host] == '[' ? std::min(url.find(']', host), url.size())
+                                                   : host;  // [::1]
+  if (url.find(':', address_end) == std::string::npos) url += ":8765";
+  if (!token.empty()) query = (query.empty() ? "" : query + "&") + "token=" + url_encoded(token);
   return url + "/" + (query.empty() ? "" : "?" + query);
 }
 

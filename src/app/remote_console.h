@@ -14,6 +14,9 @@ struct RemoteAnswer {
   std::string text;
 };
 
+/// A text as it stands in the query of an address.
+std::string url_encoded(std::string_view text);
+
 /// "ws://127.0.0.1:8765/?token=..." from what people write: a port, HOST:PORT, an http or ws address, nothing.
 Result<std::string> console_url(std::string_view written, std::string_view token);
 

@@ -15,6 +15,8 @@ TEST(RemoteConsole, AddressesAsPeopleWriteThem) {
   EXPECT_EQ(*console_url("", ""), "ws://127.0.0.1:8765/");
   EXPECT_EQ(*console_url("9000", ""), "ws://127.0.0.1:9000/");
   EXPECT_EQ(*console_url("robolab", ""), "ws://robolab:8765/");
+  EXPECT_EQ(*console_url("[::1]", ""), "ws://[::1]:8765/");
+  EXPECT_EQ(*console_url("[::1]:9000", ""), "ws://[::1]:9000/");
   EXPECT_EQ(*console_url("http://robolab:80/", ""), "ws://robolab:80/");
   EXPECT_EQ(*console_url("http://robolab:80/?token=a%20b#x", ""), "ws://robolab:80/?token=a%20b");
   EXPECT_EQ(*console_url("ws://robolab:80/?role=spectator", "a b&c"),

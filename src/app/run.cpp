@@ -8,6 +8,7 @@
 #include "app/report.h"
 #include "app/serve.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "console/console.h"
 #include "sim/session.h"
 
@@ -75,9 +76,18 @@ int run(const RunOptions& options) {
 
   catch_interrupts();
   RunReport report;
-  const auto keep_going = [&](const Simulation&) {
+  std::optional<std::uint64_t> seen;  // tick
+  const auto keep_going = [&](const Simulation& simulation) {
+    const bool stands = std::exchange(seen, simulation.tick_index()) == simulation.tick_index();
     for (const std::string& answer : console.take_answers()) log::info(answer);
-    if (served) served->look();
+    if (served) {
+      served->look();
+    } else if (stands && session.report().state == Session::State::paused) {
+      followers.errors().push_back(
+          {"the run was paused at " + number_text(simulation.now().s()) + " s, and nobody can let it go on",
+           "add --port 8765, or leave what pauses it out of the script"});
+      return false;
+    }
     return followers.after_tick() && !interrupted();
   };
   Status status = experiment ? experiment->start() : Status();

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <span>
 
+#include "app/remote_console.h"
 #include "server/http.h"
 
 namespace sandlot::app {
@@ -36,13 +38,16 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   if (transport.token.empty() && !server::is_loopback_name(options.address)) {
     SL_ASSIGN(transport.token, make_token());
   }
+  for (const std::string& origin : options.origins)
+    if (server::judge_origin(origin, "", std::span(&origin, 1)) == server::Origin::foreign)
+      return Error{"--allow-origin: '" + origin + "' is no origin", "write https://app.example.org"};
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
   server_options.recording = std::move(recording);
   Served out;
   SL_ASSIGN(out.server_, server::Server::start(server_options, session, console));
   std::fprintf(stderr, "page: %s%s\n", out.server_->url().c_str(),
-               transport.token.empty() ? "" : ("?token=" + transport.token).c_str());
+               transport.token.empty() ? "" : ("?token=" + url_encoded(transport.token)).c_str());
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace sandlot::app {
 class Served {
  public:
   /// Starts the server and prints where the page is, one line on standard error.
-  /// Errors   the address cannot be bound.
+  /// Errors   the address cannot be bound; an origin that is none.
   /// @param recording  see ServerOptions; unset: nothing is recorded
   static Result<Served> start(
       const ServeOptions& options, Session& session, Console& console,

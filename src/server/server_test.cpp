@@ -362,6 +362,31 @@ TEST(Server, another_world_is_told_anew_and_channels_stay) {
   EXPECT_TRUE(viewer.until([&] { return viewer.channels.count("/rover1/laser/ranges") == 0; }));
 }
 
+/// A jump back runs tick 1 again with the order it had then; the next one that viewers hear of is that of tick 4.
+TEST(Server, what_is_run_again_is_not_told_again) {
+  Running run(one_rover(), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  const std::uint32_t commands = viewer.subscribe("/sandlot/commands");
+  EXPECT_TRUE(viewer.console("pose rover1 1 1")["ok"]);
+  viewer.listen(0.1);  // until the run knows who looks
+  EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 5}})["result"]["result"], 1);
+  const auto first = viewer.next(commands);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->parsed()["commands"][0]["tick"], 1);
+  EXPECT_TRUE(viewer.console("jump 0.03 s")["ok"]);
+  EXPECT_TRUE(viewer.until([&] {
+    viewer.listen(0.02);
+    const Session::Report report = run.session.report();
+    return report.epoch == 2 && report.tick == 3 && report.state == Session::State::paused;
+  }));
+  EXPECT_TRUE(viewer.console("pose rover1 2 2")["ok"]);
+  EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 1}})["result"]["result"], 1);
+  const auto second = viewer.next(commands);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->parsed()["commands"][0]["tick"], 4);
+}
+
 TEST(Server, warnings_of_the_program_are_log_lines) {
   Running run(one_rover(), {.paused = true});
   run.go();

@@ -162,7 +162,10 @@ Status Session::jump(Time to) {
     const std::optional<Time> end = report_.end;
     if (end && to > *end) return Error{"the run ends at " + time_text(*end)};
   }
-  order([&] { jump_ = to; });
+  order([&] {
+    jump_ = to;
+    steps_left_ = 0;
+  });
   return {};
 }
 
@@ -304,19 +307,19 @@ void Session::answer_outcomes() {
 /// one of their questions takes.
 void Session::run_tasks(std::chrono::milliseconds patience) {
   const auto end = Clock::now() + patience;
-  for (bool first = true; first || Clock::now() < end; first = false) {
-    std::function<void(Session&)> task;
-    {
-      const std::lock_guard lock(mutex_);
-      woken_ = false;  // here and not behind the task: what comes while it runs must wake the loop again
-      if (tasks_.empty()) return;
-      task = std::move(tasks_.front());
-      tasks_.pop_front();
-    }
+  std::unique_lock lock(mutex_);
+  // Not those that come meanwhile: what a task has ordered acts before them.
+  std::size_t left = tasks_.size();
+  woken_ = false;  // here and not behind the tasks: what comes while they run must wake the loop again
+  for (bool first = true; left > 0 && (first || Clock::now() < end); --left, first = false) {
+    auto task = std::move(tasks_.front());
+    tasks_.pop_front();
+    lock.unlock();
     task(*this);
+    task = nullptr;  // what it holds may answer when it goes: not under the lock
+    lock.lock();
   }
-  const std::lock_guard lock(mutex_);
-  woken_ = true;
+  woken_ = woken_ || !tasks_.empty();
 }
 
 /// Snapshots are taken where they cost little, and thinned out so that their number and size stay bounded: the older, the
@@ -444,7 +447,6 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
     jump_.reset();
     target_ = to;
     seeking_ = true;
-    steps_left_ = 0;
     lock.unlock();
     status = go_back(to);
     const std::lock_guard again(mutex_);
@@ -565,7 +567,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
       if (seeking_ || steps_left_ > 0) pacer.forget();
       pacer.begin(simulation_->now());
     }
-    if (steps_left_ > 0) --steps_left_;
+    if (!seeking_ && steps_left_ > 0) --steps_left_;
     lock.unlock();
     failure_ = advance(measured, report);
     const double rtf = pacer.set ? pacer.real_time_factor(simulation_->now()) : 0;
@@ -573,7 +575,8 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
       const std::lock_guard again(mutex_);
       report_.late_ticks = report.late_ticks;
       report_.real_time_factor = rtf;
-      if (!failure_) report_.reason = failure_.error().text();
+      // Of an order that failed it is enough to say so until the run goes on.
+      report_.reason = failure_ ? "" : failure_.error().text();
     }
     if (failure_) keep_snapshot();
     refresh_report();

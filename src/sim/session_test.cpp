@@ -67,6 +67,18 @@ TEST(Session, a_step_is_exactly_one_tick_and_leaves_it_paused) {
   EXPECT_EQ(session.simulation().state_hash(), hash_after(rolling(), 6));
 }
 
+TEST(Session, steps_that_follow_a_jump_are_taken_from_there) {
+  Session session(build(rolling()), {.paused = true});
+  ASSERT_TRUE(session.jump(Time::from_s(0.5)));
+  session.step(2);
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation&) {
+    if (session.report().state == Session::State::paused) session.quit();
+    return true;
+  }));
+  EXPECT_EQ(session.simulation().tick_index(), 52u);
+}
+
 TEST(Session, what_was_asked_for_while_paused_happens_with_the_next_tick_and_is_answered) {
   Session session(build(rolling()), {.paused = true});
   std::optional<std::string> answer, refusal;
