@@ -5,7 +5,8 @@ import type {Instance} from '../protocol';
 import {Signal} from '../net/signal';
 
 const usual_period_ms = 50;
-/** Where a controller commands the drive too, some 20 times a second, and the last one counts: then a hand is on it most of the time. */
+/** Where a controller commands the drive too: a hand is heard alone for half a second of simulated time behind each command, and a run may be
+ * many times as fast as real time. */
 const contested_period_ms = 15;
 
 export interface Drive {
