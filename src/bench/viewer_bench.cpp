@@ -19,7 +19,9 @@ namespace sandlot::bench {
 namespace {
 
 constexpr int robots = 1000;
-constexpr double run_s = 3;
+constexpr double run_s = 5;
+/// What a viewer is told once, when it comes (world, channels), is not what frames cost.
+constexpr std::uint64_t first_tick = 150;
 
 /// A link with two wheels that turn, and a drive that goes round in circles of its own.
 std::string world_text() {
@@ -93,7 +95,7 @@ void look(const std::string& url, Seen& seen) {
   }
 }
 
-/// Time of the simulation's thread for the run in real time.
+/// Time of the simulation's thread for the run in real time, from `first_tick` on.
 double one_run(Seen* seen) {
   Session session(make_run(), {.pace = {1.0}, .history_mb = 0});
   Console console(session, {});
@@ -102,9 +104,12 @@ double one_run(Seen* seen) {
   SL_CHECK_MSG(server, server ? "" : server.error().text().c_str());
   std::thread viewer;
   if (seen) viewer = std::thread([&] { look((*server)->url(), *seen); });
-  const double begin = thread_seconds();
+  double begin = 0;
   RunReport report;
-  const Status status = session.run(report);
+  const Status status = session.run(report, [&](const Simulation& simulation) {
+    if (begin == 0 && simulation.tick_index() >= first_tick) begin = thread_seconds();
+    return true;
+  });
   const double used_s = thread_seconds() - begin;
   SL_CHECK_MSG(status, status ? "" : status.error().text().c_str());
   (*server)->stop();
@@ -127,7 +132,7 @@ std::vector<Row> viewer() {
   };
   const double frames = static_cast<double>(seen.frames.load());
   const double bytes = frames > 0 ? static_cast<double>(seen.bytes.load()) / frames / robots : 0;
-  const double ticks = run_s * 100;
+  const double ticks = run_s * 100 - first_tick;
   return {row("P9 bytes per robot and frame", "B", bytes, 40, 1),
           row("P9 tick of 1000 robots with a viewer", "us", median(with) / ticks * 1e6,
               median(without) / ticks * 1e6, 1.05)};
