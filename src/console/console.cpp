@@ -283,8 +283,8 @@ Said submit(Call& call, std::vector<Asked> asked) {
   const Session::Report report = call.session.report();
   const bool stands = !call.before_tick && report.state != Session::State::playing &&
                       report.state != Session::State::seeking;
-  auto waiting = std::make_shared<Waiting>(call.session, stands ? Console::Reply() : call.reply,
-                                           asked.size());
+  auto waiting = std::make_shared<Waiting>(
+      Waiting{call.session, stands ? Console::Reply() : call.reply, asked.size()});
   std::string with_next;
   std::size_t submitted = 0;
   constexpr std::size_t most_told = 20;

@@ -167,9 +167,9 @@ TEST(Session, what_happened_behind_a_jump_is_forgotten) {
 
 TEST(Session, a_run_that_has_ended_waits_for_orders_if_it_shall_stay) {
   Session session(build(rolling(0.5)), {.stay = true});
-  int ended = 0;
+  std::uint64_t ended = 0;
   const auto keep_going = [&](const Simulation&) {
-    if (session.report().state == Session::State::ended && session.report().epoch == 1u + ended) {
+    if (session.report().state == Session::State::ended && session.report().epoch == 1 + ended) {
       EXPECT_EQ(session.report().reason, "simulated time reached 0.5 s");
       if (ended++ == 0) {
         EXPECT_TRUE(session.reset());
