@@ -14,6 +14,7 @@ import { Foresight } from './foresight';
 import { Hands, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
+import { overviewOf } from './overview';
 import { Labels } from './overlays/labels';
 import { Marks, teamColors, type RangeReading } from './overlays/marks';
 import { PullLine } from './overlays/pull';
@@ -231,26 +232,8 @@ export class SceneView {
   }
 
   frameAll(): void {
-    const all: THREE.Vector3[] = [];
-    const moving: THREE.Vector3[] = [];
-    let walls_m = 0;
-    for (const body of this.bodies.list) {
-      // Terrain and halls count, a landscape of kilometres does not; nor does a plane, which has no parts.
-      if (body.slots.length === 0 || body.radius_m > 60) continue;
-      const corners = cornersOf(body);
-      all.push(...corners);
-      if (!body.is_static) moving.push(...corners);
-      else walls_m = Math.max(walls_m, ...corners.map((c) => c.z));
-    }
-    // A room around what moves belongs into the picture, a town does not.
-    const is_town = moving.length > 0 && flatSize(all) > 2 * Math.max(3, flatSize(moving));
-    const points = is_town ? moving : all;
-    // One thing alone has some ground around it, what drives in a town more.
-    const room_m = is_town ? 3 : 1;
-    const box = new THREE.Box3().setFromPoints(points);
-    const middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
-    for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(room_m * x, room_m * y, 0)));
-    this.rig.frameAll(points, is_town ? 0 : walls_m / Math.max(1, flatSize(all)));
+    const { points, steepness } = overviewOf(this.bodies.list);
+    this.rig.frameAll(points, steepness);
     this.is_overview = true;
     this.invalidate();
   }
@@ -601,19 +584,6 @@ export class SceneView {
   }
 }
 
-const flatSize = (points: readonly THREE.Vector3[]): number => {
-  const box = new THREE.Box3().setFromPoints(points as THREE.Vector3[]);
-  return box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y);
-};
-
-function cornersOf(body: Body): THREE.Vector3[] {
-  const { min, max } = body.bounds;
-  const at = [0, 0, 0];
-  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
-    transform(body.world, 0, i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z, at);
-    return new THREE.Vector3().fromArray(at);
-  });
-}
 const GROUND = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
 const TURN = new THREE.Quaternion();
 const TRAIL = new THREE.Color();
