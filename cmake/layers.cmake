@@ -24,23 +24,33 @@ function(sandlot_layer)
   endif()
 endfunction()
 
-# The headers that nearly every file includes, compiled once for all targets. Never ours: a change of one of our
-# headers must not rebuild everything.
+# The headers that nearly every file includes, compiled once for all targets; those of tests have GoogleTest as well.
+# Never ours: a change of one of our headers must not rebuild everything.
 function(sandlot_precompile target)
   if(NOT SANDLOT_PCH)
     return()
   endif()
-  if(NOT TARGET sandlot_precompiled)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TEST" "" "")
+  set(pch sandlot_precompiled)
+  if(arg_TEST)
+    set(pch sandlot_tests_precompiled)
+  endif()
+  if(NOT TARGET ${pch})
     file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp.in "// The precompiled headers need a library to belong to.\n")
-    configure_file(${CMAKE_BINARY_DIR}/precompiled.cpp.in ${CMAKE_BINARY_DIR}/precompiled.cpp COPYONLY)
-    add_library(sandlot_precompiled STATIC ${CMAKE_BINARY_DIR}/precompiled.cpp)
-    target_link_libraries(sandlot_precompiled PRIVATE fmt::fmt)
-    target_precompile_headers(sandlot_precompiled PRIVATE
+    configure_file(${CMAKE_BINARY_DIR}/precompiled.cpp.in ${CMAKE_BINARY_DIR}/${pch}.cpp COPYONLY)
+    add_library(${pch} STATIC ${CMAKE_BINARY_DIR}/${pch}.cpp)
+    target_link_libraries(${pch} PRIVATE fmt::fmt)
+    target_precompile_headers(${pch} PRIVATE
       <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <span> <string> <string_view>
       <utility> <variant> <vector> <fmt/format.h>)
+    if(arg_TEST)
+      target_link_libraries(${pch} PRIVATE GTest::gmock GTest::gtest_main)
+      target_precompile_headers(${pch} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+      sandlot_test_options(${pch})
+    endif()
   endif()
   target_link_libraries(${target} PRIVATE fmt::fmt)
-  target_precompile_headers(${target} REUSE_FROM sandlot_precompiled)
+  target_precompile_headers(${target} REUSE_FROM ${pch})
 endfunction()
 
 # Reads src/layers.txt (its format is explained there) and makes the libraries. Leaves their names, bottom to top,

@@ -3,6 +3,11 @@
 # belongs into tests/, where everything is at hand.
 include(GoogleTest)
 
+# Tests are compiled once and run once: at -O1 that takes a quarter less time than at -O2.
+function(sandlot_test_options target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # The prefix of a suite's name decides its label: Slow* is `slow`, Long* is `long`, everything else is `unit`.
 function(sandlot_test_executable name sources libraries)
   if(NOT sources)
@@ -11,7 +16,8 @@ function(sandlot_test_executable name sources libraries)
   add_executable(${name} ${sources})
   target_include_directories(${name} PRIVATE src)
   target_link_libraries(${name} PRIVATE ${libraries} GTest::gmock GTest::gtest_main)
-  sandlot_precompile(${name})
+  sandlot_test_options(${name})
+  sandlot_precompile(${name} TEST)
   # Tests run in the source root; from there this is the command that those in tests/ try.
   file(RELATIVE_PATH command ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/sandlot)
   target_compile_definitions(${name} PRIVATE SANDLOT_BIN="${command}")
