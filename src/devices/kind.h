@@ -35,7 +35,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 4;
+inline constexpr int device_api_version = 5;
 
 /// One level of abstraction of a kind. The first level of a kind is its default.
 struct LevelInfo {
@@ -108,12 +108,16 @@ struct Actuation {
   std::vector<Wrench> wrenches;
   std::vector<JointTarget> joints;
   std::vector<DriveTarget> drives;
+  std::vector<WheelTarget> wheels;
+  std::vector<GripTarget> grips;
   Watch watch;  ///< forces of this sub-step that somebody wants to see after it
   void clear() {
     watch.clear();
     wrenches.clear();
     joints.clear();
     drives.clear();
+    wheels.clear();
+    grips.clear();
   }
 };
 

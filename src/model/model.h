@@ -17,7 +17,15 @@
 
 namespace sandlot::model {
 
-/// Contact behaviour of a collision shape (SDF <surface>).
+/// What a surface is made of, after LpzRobots: Table 2.1 of its description; the law is physics/substance.h.
+struct Substance {
+  double roughness = 0.8;
+  double slip = 0.01;
+  double hardness = 40;
+  double elasticity = 0.5;
+};
+
+/// Contact behaviour of a collision shape (SDF <surface>, <sandlot:substance> ...).
 struct Surface {
   double mu = 1.0;   ///< Coulomb coefficient; pairs combine by min(), as Gazebo does
   double mu2 = 1.0;  ///< across the first friction direction
@@ -26,6 +34,11 @@ struct Surface {
   double restitution = 0;       ///< 0..1
   double restitution_threshold_mps = 0.05;
   std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
+  /// Where both of a pair have one, it decides instead of mu, slip, restitution, erp and cfm.
+  std::optional<Substance> substance;
+  double rolling_resistance_m = 0;  ///< torque against rolling per normal force; those of a pair add
+  Vec3 belt_velocity_mps;           ///< of the surface itself, in the collision frame: a conveyor belt
+  bool touches = true;              ///< false: nothing ever collides with it
 };
 
 struct Inertial {
@@ -87,6 +100,25 @@ struct SecondAxis {
   double damping = 0, friction = 0;    ///< [Nm s/rad], [Nm]
 };
 
+/// The child of the joint is a wheel with rollers around its rim: an omni or Mecanum wheel.
+///
+/// model/rollers.h makes links and joints of them. What is told here is the whole wheel, so that an engine can also
+/// let it roll as one body whose contact grips along the axis of the roller on the ground alone.
+struct RollerWheel {
+  double radius_m = 0.05;  ///< of the wheel, over the rollers
+  int count = 10;          ///< rollers per row
+  int rows = 1;            ///< side by side; each row is turned by a part of the pitch
+  double row_spacing_m = 0.02;
+  /// Of a roller's axis from the wheel's axis, about the outward radius: 90 deg an omni wheel (the axes lie along the rim),
+  /// +45 and -45 deg the two kinds of Mecanum wheels.
+  double angle_rad = 1.5707963267948966;
+  double roller_radius_m = 0.01;  ///< at its thick middle
+  double roller_length_m = 0.03;
+  double roller_mass_kg = 0.01;
+  double bearing_friction_Nm = 0;  ///< of each roller on its axle
+  Surface surface;                 ///< of the rollers
+};
+
 /// Joins child to parent. The joint frame J is fixed in the child; positions are 0 in the declared pose.
 struct Joint {
   std::string name;
@@ -103,7 +135,10 @@ struct Joint {
   double thread_pitch_m = 0;         ///< of a screw: slide per turn, right-handed when positive
   std::optional<SecondAxis> second;  ///< of universal joints only
   std::optional<Mimic> mimic;
+  std::optional<RollerWheel> rollers;  ///< about axis_J
+  std::uint32_t roller_of = no_joint;  ///< of a roller: the joint of its wheel
   Place place;
+  static constexpr std::uint32_t no_joint = ~0u;
 };
 inline constexpr std::uint32_t world_link = ~0u;
 
@@ -203,6 +238,17 @@ struct Instance {
   Place place;
 };
 
+/// A part of the ground with a surface of its own: wet, icy, a carpet, a belt. It holds for contacts with what stands
+/// still (static models) whose points lie in the outline, seen from above. Of several the last counts.
+struct SurfaceZone {
+  std::string name;
+  std::vector<Vec3> outline_W;  ///< a simple polygon's corners, z unused; empty: a circle
+  Vec3 centre_W;                ///< of the circle
+  double radius_m = 0;
+  Surface surface;  ///< in place of the ground's; belt_velocity_mps in W
+  Place place;
+};
+
 /// Where the world's origin lies on the Earth (SDF <spherical_coordinates>), for satellite receivers and compasses.
 struct Geography {
   double latitude_rad = 0, longitude_rad = 0, elevation_m = 0;
@@ -268,6 +314,7 @@ struct Setup {
   std::vector<std::string>
       addresses;  ///< that values and events use: known although what they name may be gone
   std::optional<LogDecl> log;
+  std::vector<SurfaceZone> zones;
   std::vector<Light> lights;
   Color ambient{0.4f, 0.4f, 0.4f, 1}, background{0.7f, 0.7f, 0.7f, 1};
   std::optional<Geography> geography;

@@ -21,6 +21,7 @@
 #include "geometry/pose.h"
 #include "geometry/rays.h"
 #include "model/model.h"
+#include "physics/contact_rule.h"
 
 namespace sandlot {
 
@@ -87,6 +88,21 @@ struct DriveTarget {
   double max_accel_mps2 = 1e9, max_angular_accel_radps2 = 1e9;
 };
 
+/// Whether a wheel with rollers (model::RollerWheel) runs on its rollers, each a body of its own, or as one body whose
+/// contact grips along the axis of the roller on the ground alone. The second is how it begins. Holds until the next
+/// target for this wheel. A change keeps velocities.
+struct WheelTarget {
+  JointId wheel;
+  bool rollers = false;
+};
+
+/// Holds two bodies together as they stand to each other now, or lets go again: a gripper. Both may belong to any instance;
+/// removing one lets go. Holds until the next target for this pair.
+struct GripTarget {
+  BodyId a, b;
+  bool hold = true;
+};
+
 struct Contact {
   BodyId a, b;    ///< a created before b; a world-fixed body where the other side is static
   Vec3 point_W;   ///< [m]
@@ -136,6 +152,8 @@ struct Capabilities {
   bool rays = false;            ///< rays() answers
   bool contact_forces = false;  ///< Contact::force_W is told
   bool joint_loads = false;     ///< joint_loads() answers
+  bool rollers = false;         ///< wheels can run on their rollers
+  bool grips = false;           ///< set_grips() works
 };
 
 /// Counted since the engine was made; reported in the summary.
@@ -185,6 +203,11 @@ class Engine {
   virtual void apply(std::span<const Wrench> wrenches) = 0;
   virtual void set_targets(std::span<const JointTarget> targets) = 0;
   virtual void set_drive_targets(std::span<const DriveTarget> targets) = 0;
+  virtual void set_wheels(std::span<const WheelTarget>) {}
+  virtual void set_grips(std::span<const GripTarget>) {}
+  /// The ground's zones, and the user's exceptions (null: none). Before the first step.
+  virtual void set_zones(std::span<const model::SurfaceZone>) {}
+  virtual void set_contact_rule(ContactRule) {}
   /// Asks for forces of the next step. Comes before the wrenches of that step. An engine may round differently when it
   /// is watched, so watching is an input like the others.
   virtual void watch(const Watch&) {}

@@ -95,6 +95,8 @@ Status Simulation::build(Diagnostics& diagnostics) {
   step_ = setup_.step;
   SL_ASSIGN(const EngineKind* const kind, find_engine(setup_.engine));
   SL_ASSIGN(engine_, kind->create(setup_.physics, setup_.gravity));
+  engine_->set_zones(setup_.zones);
+  engine_->set_contact_rule(options_.contact_rule);
   if (const RayCaster* rays = engine_->rays()) {
     rays_ = rays;
   } else {

@@ -40,6 +40,7 @@ struct SimulationOptions {
   std::span<const Kind* const> extra_kinds = {};  ///< beside the built-in ones
   std::span<const ControllerKind* const> extra_controllers =
       {};                                   ///< beside the built-in ones and the plugins'
+  ContactRule contact_rule = {};            ///< exceptions from the contact law (physics/contact_rule.h)
   std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
 };
 

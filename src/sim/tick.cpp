@@ -121,6 +121,8 @@ void Simulation::physics() {
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
+    engine_->set_wheels(actuation_.wheels);
+    engine_->set_grips(actuation_.grips);
     for (const Entity* entity : guided_) {
       const double from_s = now_.s() + substep * h_s;
       const model::Moved to = model::moved(*entity->instance.motion, from_s, from_s + h_s);
@@ -133,6 +135,8 @@ void Simulation::physics() {
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.wheels.clear();
+    actuation_.grips.clear();
     actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {

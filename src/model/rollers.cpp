@@ -1,0 +1,7 @@
+#include "model/rollers.h"
+
+namespace sandlot::model {
+
+Status add_rollers(Model&) { return {}; }
+
+}  // namespace sandlot::model

@@ -1,0 +1,17 @@
+#pragma once
+/// Wheels with rollers: from the declaration of a wheel to links and joints of its rollers.
+#include "base/result.h"
+#include "model/model.h"
+
+namespace sandlot::model {
+
+/// Adds a link and a continuous joint for each roller of every joint that has `rollers`, named after the wheel's link
+/// ("wheel_roller_3", row by row); a model whose rollers were added already stays as it is.
+///
+/// The mass and inertia of the wheel link are those of the wheel without rollers, and its collision shapes those of the
+/// hub: none may reach beyond the rollers.
+/// Errors: a wheel that cannot be built (count < 2, rollers that overlap or do not fit the radius, an angle at which
+/// it could not roll), with the joint's place.
+Status add_rollers(Model& model);
+
+}  // namespace sandlot::model
