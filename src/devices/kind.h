@@ -112,12 +112,10 @@ struct Actuation {
   std::vector<GripTarget> grips;
   Watch watch;  ///< forces of this sub-step that somebody wants to see after it
   void clear() {
-    watch.clear();
+    watch.clear(), wheels.clear(), grips.clear();
     wrenches.clear();
     joints.clear();
     drives.clear();
-    wheels.clear();
-    grips.clear();
   }
 };
 

@@ -14,32 +14,10 @@
 #include "geometry/pose.h"
 #include "geometry/shape.h"
 #include "model/recording.h"
+#include "model/surface.h"
+#include "model/wheel.h"
 
 namespace sandlot::model {
-
-/// What a surface is made of, after LpzRobots: Table 2.1 of its description; the law is physics/substance.h.
-struct Substance {
-  double roughness = 0.8;
-  double slip = 0.01;
-  double hardness = 40;
-  double elasticity = 0.5;
-};
-
-/// Contact behaviour of a collision shape (SDF <surface>, <sandlot:substance> ...).
-struct Surface {
-  double mu = 1.0;   ///< Coulomb coefficient; pairs combine by min(), as Gazebo does
-  double mu2 = 1.0;  ///< across the first friction direction
-  Vec3 fdir1;        ///< first friction direction in the collision frame; zero: isotropic, aligned with slip
-  double slip1 = 0, slip2 = 0;  ///< [m/(s N)] force-dependent slip
-  double restitution = 0;       ///< 0..1
-  double restitution_threshold_mps = 0.05;
-  std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
-  /// Where both of a pair have one, it decides instead of mu, slip, restitution, erp and cfm.
-  std::optional<Substance> substance;
-  double rolling_resistance_m = 0;  ///< torque against rolling per normal force; those of a pair add
-  Vec3 belt_velocity_mps;           ///< of the surface itself, in the collision frame: a conveyor belt
-  bool touches = true;              ///< false: nothing ever collides with it
-};
 
 struct Inertial {
   double mass_kg = 1;
@@ -98,25 +76,6 @@ struct SecondAxis {
   Vec3 axis_J{0, 1, 0};                ///< unit, in J, across the first
   double lower = -1e16, upper = 1e16;  ///< [rad]
   double damping = 0, friction = 0;    ///< [Nm s/rad], [Nm]
-};
-
-/// The child of the joint is a wheel with rollers around its rim: an omni or Mecanum wheel.
-///
-/// model/rollers.h makes links and joints of them. What is told here is the whole wheel, so that an engine can also
-/// let it roll as one body whose contact grips along the axis of the roller on the ground alone.
-struct RollerWheel {
-  double radius_m = 0.05;  ///< of the wheel, over the rollers
-  int count = 10;          ///< rollers per row
-  int rows = 1;            ///< side by side; each row is turned by a part of the pitch
-  double row_spacing_m = 0.02;
-  /// Of a roller's axis from the wheel's axis, about the outward radius: 90 deg an omni wheel (the axes lie along the rim),
-  /// +45 and -45 deg the two kinds of Mecanum wheels.
-  double angle_rad = 1.5707963267948966;
-  double roller_radius_m = 0.01;  ///< at its thick middle
-  double roller_length_m = 0.03;
-  double roller_mass_kg = 0.01;
-  double bearing_friction_Nm = 0;  ///< of each roller on its axle
-  Surface surface;                 ///< of the rollers
 };
 
 /// Joins child to parent. The joint frame J is fixed in the child; positions are 0 in the declared pose.
@@ -235,17 +194,6 @@ struct Instance {
   std::vector<DeviceDecl> devices;  ///< the model's own with the scenario's changes
   std::vector<ControllerDecl> controllers;
   std::optional<Motion> motion;
-  Place place;
-};
-
-/// A part of the ground with a surface of its own: wet, icy, a carpet, a belt. It holds for contacts with what stands
-/// still (static models) whose points lie in the outline, seen from above. Of several the last counts.
-struct SurfaceZone {
-  std::string name;
-  std::vector<Vec3> outline_W;  ///< a simple polygon's corners, z unused; empty: a circle
-  Vec3 centre_W;                ///< of the circle
-  double radius_m = 0;
-  Surface surface;  ///< in place of the ground's; belt_velocity_mps in W
   Place place;
 };
 
