@@ -273,8 +273,9 @@ void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
       geom.size_m = bounding_radius_m(c.shape);
       geom.ode = std::visit(MakeGeom{geom.triangles.get()}, c.shape);
       dGeomSetData(geom.ode, &geom);
-      dGeomSetCategoryBits(geom.ode, geom.body ? moving_bit : standing_bit);
-      dGeomSetCollideBits(geom.ode, geom.body ? moving_bit | standing_bit : moving_bit);
+      const bool touches = c.surface.touches;
+      dGeomSetCategoryBits(geom.ode, !touches ? 0 : geom.body ? moving_bit : standing_bit);
+      dGeomSetCollideBits(geom.ode, !touches ? 0 : geom.body ? moving_bit | standing_bit : moving_bit);
       geom.X_BC = instance.links[l].X_BL * c.X_LC;
       geom.X_BC.q = normalised(geom.X_BC.q);
       if (geom.body) {
