@@ -301,8 +301,9 @@ Geom& RigidEngine::make_geom(Instance& instance, std::uint32_t link, const model
   if (geom.body && geom.body->carrier) return geom;
   geom.ode = wheel ? MakeGeom{nullptr}(wheel->probe) : std::visit(MakeGeom{geom.triangles.get()}, c.shape);
   dGeomSetData(geom.ode, &geom);
-  dGeomSetCategoryBits(geom.ode, geom.body ? moving_bit : standing_bit);
-  dGeomSetCollideBits(geom.ode, geom.body ? moving_bit | standing_bit : moving_bit);
+  const bool touches = c.surface.touches;
+  dGeomSetCategoryBits(geom.ode, !touches ? 0 : geom.body ? moving_bit : standing_bit);
+  dGeomSetCollideBits(geom.ode, !touches ? 0 : geom.body ? moving_bit | standing_bit : moving_bit);
   if (geom.body) {
     const Pose& X = geom.X_BC;
     dGeomSetBody(geom.ode, geom.body->ode);

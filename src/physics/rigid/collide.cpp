@@ -28,6 +28,8 @@ void give_way(dSurfaceParameters& surface, const model::RollerWheel& wheel) {
   surface.mu2 = surface.mu > 0 ? wheel.bearing_friction_Nm / wheel.roller_radius_m : 0;
 }
 
+Vec3 spin(const Geom& g) { return g.body ? g.body->w : g.instance->V_WM.angular; }
+
 Vec3 velocity_at(const Geom& g, Vec3 point) {
   return g.body ? g.body->v + cross(g.body->w, point - g.body->p) : g.instance->velocity_at(point);
 }
@@ -221,6 +223,100 @@ void RigidEngine::collide() {
   });
 }
 
+/// What the surfaces at a contact point make together: those of the shapes, a zone in place of what stands still, and at
+/// last what the user's rule says.
+PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
+  const Vec3 point = vec(hit.contact.geom.pos), normal = -vec(hit.contact.geom.normal);
+  const auto side = [&](const Geom& g) -> SurfaceSide {
+    if (!g.body && !g.instance->guided)
+      if (const model::SurfaceZone* const zone = zones_.find(point)) return {zone->surface, {}};
+    return {g.decl->surface, g.pose().q};
+  };
+  PairSurface pair = combine(side(*hit.a), side(*hit.b), normal);
+  if (!rule_) return pair;
+  const auto told = [&](const Geom& g) -> ContactSide {
+    const model::Link& link = g.instance->model->links[link_slots_[g.link.index].link];
+    return {g.instance->name, link, *g.decl, g.pose()};
+  };
+  rule_(told(*hit.a), told(*hit.b), point, normal, pair);
+  return pair;
+}
+
+/// Where zones or a rule may give each point another surface: finds them all, and drops the points that do not touch.
+void RigidEngine::ask_surfaces() {
+  surfaces_.clear();
+  std::size_t kept = 0;
+  for (Hit& hit : hits()) {
+    const PairSurface pair = surfaces_at(hit);
+    if (!pair.touches) continue;
+    surfaces_.push_back(pair);
+    if (&hit != &hit_buffer_[kept]) hit_buffer_[kept] = hit;
+    ++kept;
+  }
+  hit_count_ = kept;
+}
+
+/// What ODE needs beside the parameters of the surfaces: the direction of friction, and that a surface moves.
+void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
+  const Geom &a = *hit.a, &b = *hit.b;
+  dContact& contact = hit.contact;
+  const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
+  const double mu = contact.surface.mu;
+  const Vec3 belt = pair.belt_velocity_W_mps;
+  const Wheel* const wheel = a.wheel ? a.wheel : b.wheel;
+  const bool directed = wheel || pair.fdir1_W != Vec3{};
+  Vec3 slip, wanted;
+  if (wheel) {
+    wanted = roller_axis_W(*wheel, point);
+    give_way(contact.surface, *wheel->decl);
+  } else if (directed) {
+    wanted = pair.fdir1_W;
+  } else if (mu > 0) {
+    slip = velocity_at(a, point) - velocity_at(b, point) - belt;
+    wanted = slip;
+    if (a.body) wanted += a.body->pull_mps;
+    if (b.body) wanted -= b.body->pull_mps;
+  }
+  if (!directed && pair.rolling_resistance_m > 0) {
+    // The box around the torque against rolling is right along its two directions too: what rolls more than it slips
+    // has the first one along its way.
+    const Vec3 turning = cross(spin(a) - spin(b), normal);
+    const double rolling_mps = 0.1 * norm(turning) * std::min(a.size_m, b.size_m);
+    if (rolling_mps > 0 && norm(slip - dot(slip, normal) * normal) < rolling_mps) wanted = turning, slip = {};
+  }
+  const Vec3 direction = friction_direction(normal, wanted);
+  contact.fdir1[0] = direction.x, contact.fdir1[1] = direction.y, contact.fdir1[2] = direction.z;
+  if (!directed && mu > 0) {
+    const double limit = mu * std::min(load_on(a), load_on(b));
+    const double creep = (100 * spec_.cfm + pair.slip1) * limit;
+    if (const double speed = std::abs(dot(slip, direction)); speed > creep) {
+      if (!(contact.surface.mode & dContactSlip2)) contact.surface.slip2 = spec_.cfm;
+      contact.surface.mode |= dContactSlip2;
+      contact.surface.slip2 += (speed - creep) / limit;
+    }
+  }
+  const Geom& mover = a.body ? b : a;
+  const bool moves = !mover.body && mover.instance->is_moving(), runs = belt != Vec3{};
+  if (!moves && !runs) return;
+  // To ODE surfaces stand still; that one moves, it takes as velocities at which the contact comes to rest. They are
+  // those of the first body, or the only one, along ODE's three directions with its normal into that body.
+  const Vec3 into = a.body ? normal : -normal;
+  Vec3 v = a.body ? belt : -belt;
+  if (moves) {
+    const Vec3 of_mover = velocity_at(mover, point);
+    v += of_mover;
+    contact.surface.mode |= dContactMotionN;
+    contact.surface.motionN = dot(into, of_mover);
+  }
+  contact.surface.mode |= dContactMotion1 | dContactMotion2;
+  contact.surface.motion1 = dot(direction, v);
+  contact.surface.motion2 = dot(cross(into, direction), v);
+  if (!runs) return;
+  // Who is held back on a belt does not fall asleep: it has to notice when it is let go.
+  for (const Geom* g : {&a, &b})
+    if (g->body) g->body->quiet_s = 0;
+}
+
 /// Contact joints for all hits.
 ///
 /// ODE bounds friction by a box along two directions. The first is that of the slip the bodies would have after this
@@ -231,10 +327,12 @@ void RigidEngine::collide() {
 /// would stop s' instead, and so resist the turning of whatever slides in a curve (a skid-steered robot would turn 3 %
 /// too slowly). Therefore the second direction gets the compliance |s| / (mu N); N as if each contact point of the
 /// lighter side carried an equal share of its weight. The force across is small, so N need not be exact. A body that
-/// merely creeps gets none: there equal compliance both ways is what turns the first direction into that of the force
+/// merely creeps, by CFM or by the slip of its surface, gets none: there equal compliance both ways is what turns the first direction into that of the force
 /// (a softer second one makes it overshoot, from side to side, sub-step by sub-step).
 void RigidEngine::attach_contacts(double h) {
   contacts_.clear();
+  const bool each_asked = rule_ || !zones_.empty();
+  if (each_asked) ask_surfaces();
   for (const Hit& hit : hits()) {
     ++hit.a->instance->contact_points;
     ++hit.b->instance->contact_points;
@@ -247,16 +345,20 @@ void RigidEngine::attach_contacts(double h) {
     for (Body& b : instance->bodies)
       b.pull_mps = h * (b.gravity_mass_kg / b.mass_kg * gravity_ + b.force_N / b.mass_kg);
   }
-  SurfacePair pair;
+  PairSurface pair;
+  dSurfaceParameters parameters{};
+  std::size_t number_of_hit = 0;
   for (Hit& hit : hits()) {
     const Geom &a = *hit.a, &b = *hit.b;
-    if (hit.index == 0) {
-      const bool slippery = a.instance->drive.active || b.instance->drive.active;
-      pair = combine(a.decl->surface, b.decl->surface, spec_.cfm, slippery);
-    }
     dContact& contact = hit.contact;
-    contact.surface = pair.parameters;
-    const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
+    if (each_asked || hit.index == 0 || a.decl->surface.skin || b.decl->surface.skin) {
+      pair = each_asked ? surfaces_[number_of_hit++]
+                        : combine({a.decl->surface, a.pose().q}, {b.decl->surface, b.pose().q},
+                                  -vec(contact.geom.normal));
+      const bool slippery = a.instance->drive.active || b.instance->drive.active;
+      parameters = parameters_of(pair, h, spec_.cfm, slippery);
+    }
+    contact.surface = parameters;
     // Equal limits of symmetric contacts are reached at the same moment, and the direct solver, which follows them one
     // by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to tell them apart.
     std::uint32_t number = 0;
@@ -264,43 +366,23 @@ void RigidEngine::attach_contacts(double h) {
       if (g->body) number += g->instance->contacts_seen++;
     contact.surface.mu *= 1 - 1e-7 * (1 + number % 32);
     contact.surface.mu2 *= 1 - 1.37e-7 * (1 + number % 32);
-    const double mu = contact.surface.mu;
-    Vec3 slip, wanted;
-    if (const Wheel* const wheel = a.wheel ? a.wheel : b.wheel) {
-      wanted = roller_axis_W(*wheel, point);
-      give_way(contact.surface, *wheel->decl);
-    } else if (pair.directed) {
-      const Geom& owner = pair.directed == &a.decl->surface ? a : b;
-      const Quat q = owner.body ? owner.body->q * owner.X_BC.q : owner.X_BC.q;
-      wanted = rotate(q, pair.directed->fdir1);
-    } else if (mu > 0) {
-      slip = velocity_at(a, point) - velocity_at(b, point);
-      wanted = slip;
-      if (a.body) wanted += a.body->pull_mps;
-      if (b.body) wanted -= b.body->pull_mps;
-    }
-    const Vec3 direction = friction_direction(normal, wanted);
-    contact.fdir1[0] = direction.x, contact.fdir1[1] = direction.y, contact.fdir1[2] = direction.z;
-    if (!pair.directed && !a.wheel && !b.wheel && mu > 0) {
-      const double limit = mu * std::min(load_on(a), load_on(b)), creep = 100 * spec_.cfm * limit;
-      if (const double speed = std::abs(dot(slip, direction)); speed > creep) {
-        if (!(contact.surface.mode & dContactSlip2)) contact.surface.slip2 = spec_.cfm;
-        contact.surface.mode |= dContactSlip2;
-        contact.surface.slip2 += (speed - creep) / limit;
-      }
-    }
-    if (const Geom& mover = a.body ? b : a; !mover.body && mover.instance->is_moving()) {
-      // To ODE it stands still; that its surface moves, it takes as velocities at which the contact comes to rest. They
-      // are those of the one body, along ODE's three directions with its normal into that body.
-      const Vec3 v = velocity_at(mover, point), into = a.body ? normal : -normal;
-      contact.surface.mode |= dContactMotion1 | dContactMotion2 | dContactMotionN;
-      contact.surface.motionN = dot(into, v);
-      contact.surface.motion1 = dot(direction, v);
-      contact.surface.motion2 = dot(cross(into, direction), v);
-    }
+    contact.surface.rho *= 1 - 1.73e-7 * (1 + number % 32);
+    contact.surface.rho2 *= 1 - 2.11e-7 * (1 + number % 32);
+    direct_contact(hit, pair);
     // ODE's normal points into the first shape, ours from a towards b.
-    contacts_.push_back(
-        {a.link, b.link, point, -normal, contact.geom.depth, {}, a.number_in_link, b.number_in_link});
+    contacts_.push_back({a.link,
+                         b.link,
+                         vec(contact.geom.pos),
+                         -vec(contact.geom.normal),
+                         contact.geom.depth,
+                         {},
+                         a.number_in_link,
+                         b.number_in_link});
+    // ODE has one fastest correction for all contacts of a world; ours come into the depth that it is told.
+    const double erp = contact.surface.mode & dContactSoftERP ? contact.surface.soft_erp : spec_.erp;
+    const double fastest = pair.max_correction_mps.value_or(spec_.contact_correction_mps);
+    if (const double share = 1 / h * erp; share * contact.geom.depth > fastest)
+      contact.geom.depth = fastest / share;
   }
   const bool watching = begin_contacts(hit_count_);
   // In a loop of its own: ODE copies the contact, and would wait for what was only just written there.

@@ -91,6 +91,7 @@ Pose RigidEngine::pose(InstanceId id) const {
 void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   library::prepare_thread();
   Instance& instance = alive(id);
+  if (!is_finite(X_WM)) return fail({"the new pose of '" + instance.name + "' is not finite", remedy});
   wake_neighbours(instance);
   const Pose move = Pose{X_WM.p, normalised(X_WM.q)} * inverse(pose(id));
   std::vector<Pose> moved;
@@ -111,15 +112,15 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   show(instance);
   wake_instance(instance);
   wake_neighbours(instance);
-  finite_ = finite_ && is_finite(X_WM);
 }
 
 void RigidEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   Instance& instance = alive(id);
   SL_CHECK_MSG(instance.guided, "guide() needs an instance with a motion");
+  if (!is_finite(X_WM) || !is_finite(V_WM.linear) || !is_finite(V_WM.angular))
+    return fail({"the motion of '" + instance.name + "' is no longer finite", remedy});
   instance.destination = Pose{X_WM.p, normalised(X_WM.q)};
   instance.V_WM = V_WM;
-  finite_ = finite_ && is_finite(X_WM) && is_finite(V_WM.linear) && is_finite(V_WM.angular);
 }
 
 void RigidEngine::become_robot(InstanceId id) {

@@ -17,15 +17,21 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "physics/engine.h"
+#include "physics/pair_surface.h"
 #include "physics/rigid/parts.h"
 #include "physics/rigid/spec.h"
 
 namespace sandlot::rigid {
 
 extern const EngineKind engine;
+
+/// What to do about a run that has blown up.
+inline constexpr const char* remedy = "a smaller time step, or less extreme masses, forces and speeds";
 
 class RigidEngine final : public Engine {
  public:
@@ -52,6 +58,8 @@ class RigidEngine final : public Engine {
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_wheels(std::span<const WheelTarget> targets) override;
+  void set_zones(std::span<const model::SurfaceZone> zones) override { zones_ = ZoneMap(zones); }
+  void set_contact_rule(ContactRule rule) override { rule_ = std::move(rule); }
   void watch(const Watch& watch) override;
   std::span<const JointLoad> joint_loads() const override { return loads_; }
   void step(double h_s, std::uint64_t stream_key) override;
@@ -118,6 +126,9 @@ class RigidEngine final : public Engine {
   int collide_barrels(const Pair& pair, Hit* found);
   void sense_wheels(const Pair& pair);
   void collide_rollers(const Pair& pair);
+  PairSurface surfaces_at(const Hit& hit) const;
+  void ask_surfaces();
+  void direct_contact(Hit& hit, const PairSurface& pair);
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
 
@@ -141,6 +152,9 @@ class RigidEngine final : public Engine {
   template <class Choose>
   void enable(Choose&& choose);
   void solve_again(double h_s);
+  bool nobody_exploded();
+  std::string fastest_body() const;
+  void fail(Error error);
   void advance(double h_s);
   void send_to_sleep(double h_s);
 
@@ -162,13 +176,16 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> free_instances_, free_links_, free_joints_;
   std::uint64_t next_serial_ = 1;
 
+  ZoneMap zones_;
+  ContactRule rule_;
   TriangleStore triangles_;
   std::vector<BodyState> states_;
   std::vector<JointState> joint_states_;
   std::vector<Contact> contacts_;
   std::vector<JointLoad> loads_;
   EngineCounters counters_;
-  bool finite_ = true;
+  std::optional<Error>
+      failure_;        ///< who broke off the run; the State is that before the sub-step in which it did
   std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
 
   // Scratch of one sub-step; kept for its capacity.
@@ -177,6 +194,7 @@ class RigidEngine final : public Engine {
   dGeomID ray_ = nullptr;             ///< in no space; for pairs of meshes
   std::vector<Hit> hit_buffer_;       ///< never shrinks: clearing 300 bytes per possible point would show
   std::size_t hit_count_ = 0;
+  std::vector<PairSurface> surfaces_;  ///< of each hit, where zones or a rule make them differ
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;
   bool woke_ = false;

@@ -8,9 +8,11 @@
 ///   5 advance     State read back; orientation integrated by us (exactly, and with base/math.h)
 ///   6 sleep
 #include <algorithm>
+#include <limits>
 
 #include "base/check.h"
 #include "base/math.h"
+#include "base/text.h"
 #include "physics/rigid/drive.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
@@ -60,7 +62,7 @@ inline Quat turned(Quat q, Vec3 w, Vec3 spin_axis_B, double h) {
 void RigidEngine::step(double h, std::uint64_t stream_key) {
   SL_CHECK(h > 0);
   library::prepare_thread();
-  if (!finite_) return;  // ODE must not see NaN; check_finite() reports it
+  if (failure_) return;  // ODE must not see NaN; check_finite() reports it
   const library::Counts before = library::counts();
   try {
     push_forces(h);
@@ -72,10 +74,14 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
     if (!watched_joints_.empty()) measure_loads(h);
     forget_watch();
   } catch (const library::Fault& fault) {
-    finite_ = false;
     fault_ = fault.message;
+    // ODE stopped before there were numbers to look at: the fastest body is the likeliest cause.
+    fail({"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" +
+              fastest_body() + "'",
+          remedy});
     return;
   }
+  if (!nobody_exploded()) return;
   advance(h);
   if (spec_.sleeping) send_to_sleep(h);
   dJointGroupEmpty(contact_joints_);
@@ -227,6 +233,55 @@ void RigidEngine::solve_again(double h) {
   }
 }
 
+std::string RigidEngine::fastest_body() const {
+  std::string fastest;
+  double speed = -1;
+  for (const Instance* instance : order_)
+    for (std::size_t l = 0; l < instance->links.size(); ++l) {
+      const BodyState& s = states_[instance->link_ids[l].index];
+      const double mine = norm(s.V_WB.linear) + norm(s.V_WB.angular);
+      if (mine <= speed) continue;
+      speed = mine;
+      fastest = instance->name + "/" + instance->model->links[l].name;
+    }
+  return fastest;
+}
+
+/// Looks at what ODE has computed before anything takes it over: a body that has no finite state any more, or is faster
+/// than any should be, ends the run with the State of before. The worst is named.
+bool RigidEngine::nobody_exploded() {
+  const Body* worst = nullptr;
+  double worst_excess = 1, speed = 0, spin = 0;
+  for (const Instance* instance : order_)
+    for (const Body& b : instance->bodies) {
+      if (!b.active()) continue;
+      const Vec3 p = vec(dBodyGetPosition(b.ode)), v = vec(dBodyGetLinearVel(b.ode)),
+                 w = vec(dBodyGetAngularVel(b.ode));
+      double excess2 = std::max(dot(v, v) / (spec_.max_speed_mps * spec_.max_speed_mps),
+                                dot(w, w) / (spec_.max_spin_radps * spec_.max_spin_radps));
+      const bool there = dot(p, p) < 1e24 && dot(v, v) < 1e300 && dot(w, w) < 1e300;  // false for NaN
+      if (!there) excess2 = std::numeric_limits<double>::infinity();
+      if (!(excess2 > worst_excess)) continue;
+      worst = &b, worst_excess = excess2, speed = norm(v), spin = norm(w);
+    }
+  if (!worst) return true;
+  const Instance& instance = *worst->instance;
+  std::size_t link = 0;
+  while (instance.links[link].body != worst) ++link;
+  const std::string name = "'" + instance.name + "/" + instance.model->links[link].name + "'";
+  if (worst_excess == std::numeric_limits<double>::infinity())
+    return fail({"the state of " + name + " is no longer finite", remedy}), false;
+  const bool runs = speed > spec_.max_speed_mps;
+  fail({name + " has exploded: it " +
+            (runs ? "moves at " + number_text(std::round(speed)) + " m/s, above max_speed, " +
+                        number_text(spec_.max_speed_mps) + " m/s"
+                  : "turns at " + number_text(std::round(spin)) + " rad/s, above max_spin, " +
+                        number_text(spec_.max_spin_radps) + " rad/s"),
+        std::string(remedy) + "; if it is meant to be that fast, raise physics." +
+            (runs ? "max_speed" : "max_spin")});
+  return false;
+}
+
 void RigidEngine::advance(double h) {
   for (Instance* instance : order_) {
     if (instance->destination) {
@@ -248,8 +303,6 @@ void RigidEngine::advance(double h) {
       b.w = vec(dBodyGetAngularVel(b.ode));
       b.q = turned(b.q, b.w, b.spin_axis_B, h);
       b.force_N = b.torque_Nm = {};
-      // A velocity above 1e9 m/s, or a place beyond 1e12 m, is a run that has blown up; NaN fails every comparison.
-      finite_ = finite_ && dot(b.v, b.v) + dot(b.w, b.w) < 1e18 && dot(b.p, b.p) < 1e24;
     }
     for (Joint& joint : instance->joints)
       if (!joint.child || !joint.child->frozen) measure_position(joint, h, instance->X_WM);
