@@ -36,18 +36,20 @@ Pose pose_of(const RollerWheel& w, int row, int i) {
           quat_from_axis_angle({0, 0, 1}, turn) * quat_from_axis_angle({1, 0, 0}, w.angle_rad)};
 }
 
-/// How deep the running surface of one roller reaches into the other, from points all over it. Further in rollers may reach
+/// How deep what lies just below the running surface of one roller reaches into the other. Further in rollers may reach
 /// into each other: real ones have hollow ends, so that the rim has no gaps.
+/// Rows are apart as a whole.
 /// @param one, other  in a frame whose z is the wheel's axis
-double overlap_m(const RollerWheel& w, const Barrel& b, const Pose& one, const Pose& other) {
+double overlap_m(const RollerWheel& w, const Barrel& b, const Pose& one, const Pose& other, bool same_row) {
   const Vec3 apart = one.p - other.p;
-  const double reach = 2 * bounding_radius_m(b), rim = w.radius_m - 0.15 * w.roller_radius_m;
+  const double reach = 2 * bounding_radius_m(b), skin = same_row ? 0.15 * w.roller_radius_m : 0,
+               rim = same_row ? w.radius_m - 1.2 * skin : 0;
   if (dot(apart, apart) > reach * reach) return 0;
   const Pose X_OtherH = inverse(other);
   double deepest = 0;
   constexpr int around = 96, along = 32;
   for (int k = 0; k <= along; ++k) {
-    const double z = b.length_m * (static_cast<double>(k) / along - 0.5), r = radius_at_m(b, z);
+    const double z = b.length_m * (static_cast<double>(k) / along - 0.5), r = radius_at_m(b, z) - skin;
     for (int i = 0; i < around; ++i) {
       const math::SinCos a = math::sincos(math::tau * i / around);
       const Vec3 p = one * Vec3{r * a.cos, r * a.sin, z};
@@ -94,7 +96,7 @@ Status check(const Model& model, const Joint& joint) {
   const Pose first = pose_of(w, 0, 0);
   for (int row = 0; row < std::min(w.rows, 2); ++row)
     for (int i = row == 0 ? 1 : 0; i < w.count; ++i)
-      if (overlap_m(w, barrel, first, pose_of(w, row, i)) > 0.03 * w.roller_radius_m)
+      if (overlap_m(w, barrel, first, pose_of(w, row, i), row == 0) > 0.05 * w.roller_radius_m)
         return wrong(row == 0 ? "neighbouring rollers overlap" : "rollers of neighbouring rows overlap",
                      row == 0 ? "fewer, shorter or thinner rollers" : "a larger spacing of the rows");
   // The hub stays below what the rollers reach over.
@@ -156,7 +158,7 @@ Status add_rollers(Model& model) {
       for (int i = 0; i < w.count; ++i) {
         const int number = row * w.count + i;
         const std::string name = model.links[wheel.child].name + "_roller_" + std::to_string(number);
-        if (model.find_link(name) || model.find_joint(name))
+        if (model.find_link(name) || model.find_joint(name + "_axle"))
           return Error{"the rollers of joint '" + wheel.name + "': there is a '" + name + "' already",
                        "rename that", wheel.place};
         Link link = link_of(w, barrel, name, number);
@@ -166,7 +168,7 @@ Status add_rollers(Model& model) {
         link.place = wheel.place;
         link.collisions.front().place = link.visuals.front().place = wheel.place;
         Joint joint;
-        joint.name = name;
+        joint.name = name + "_axle";
         joint.type = JointType::continuous;
         joint.parent = wheel.child;
         joint.child = static_cast<std::uint32_t>(model.links.size());

@@ -227,11 +227,7 @@ void shape(Load& io, Shape& s) {
   }
 }
 
-void collision(auto& io, auto& c) {
-  io.value(c.name);
-  io.value(c.X_LC);
-  shape(io, c.shape);
-  auto& s = c.surface;
+void surface(auto& io, auto& s) {
   io.value(s.mu);
   io.value(s.mu2);
   io.value(s.fdir1);
@@ -241,6 +237,13 @@ void collision(auto& io, auto& c) {
   io.value(s.restitution_threshold_mps);
   io.value(s.soft_erp);
   io.value(s.soft_cfm);
+}
+
+void collision(auto& io, auto& c) {
+  io.value(c.name);
+  io.value(c.X_LC);
+  shape(io, c.shape);
+  surface(io, c.surface);
 }
 
 void visual(auto& io, auto& v) {
@@ -297,6 +300,19 @@ void joint(auto& io, auto& j) {
     i.value(m.offset);
     i.value(m.reference);
   });
+  optional(io, j.rollers, [](auto& i, auto& w) {
+    i.value(w.radius_m);
+    i.value(w.count);
+    i.value(w.rows);
+    i.value(w.row_spacing_m);
+    i.value(w.angle_rad);
+    i.value(w.roller_radius_m);
+    i.value(w.roller_length_m);
+    i.value(w.roller_mass_kg);
+    i.value(w.bearing_friction_Nm);
+    surface(i, w.surface);
+  });
+  io.value(j.roller_of);
 }
 
 void light(auto& io, auto& l) {
@@ -434,7 +450,8 @@ bool consistent(const model::Model& m) {
     if (!is_pose(l.X_ML)) return false;
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
-        j.type > model::JointType::screw || (j.mimic && j.mimic->joint >= m.joints.size()))
+        j.type > model::JointType::screw || (j.mimic && j.mimic->joint >= m.joints.size()) ||
+        (j.roller_of != model::Joint::no_joint && j.roller_of >= m.joints.size()))
       return false;
   for (const model::LinkLight& l : m.lights)
     if (l.link >= links) return false;

@@ -37,6 +37,7 @@ Status attach_module(model::Instance& robot, const model::Instance& module, cons
     each.parent += first_link;
     each.child += first_link;
     if (each.mimic) each.mimic->joint += first_joint;
+    if (each.roller_of != model::Joint::no_joint) each.roller_of += first_joint;
     composed->joints.push_back(std::move(each));
   }
   composed->joints.push_back(std::move(mount));

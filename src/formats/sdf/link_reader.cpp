@@ -34,6 +34,8 @@ void read_bitmask(const Xml& contact, Notes& notes) {
   }
 }
 
+}  // namespace
+
 Result<model::Surface> read_surface(const Xml& collision, Notes& notes) {
   model::Surface out;
   const Xml* const surface = collision.child("surface");
@@ -65,6 +67,8 @@ Result<model::Surface> read_surface(const Xml& collision, Notes& notes) {
   }
   return out;
 }
+
+namespace {
 
 /// The shapes of a collision or visual, named after it: the pieces of a mesh beyond the first get a number.
 template <class Part>

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "model/rollers.h"
 
 namespace sandlot::formats {
 namespace {
@@ -37,6 +38,7 @@ class ModelReader {
     for (const Xml* const joint : world_joints)
       SL_TRY(read_joint(*joint, "", *element.attribute("name") + "::"));
     SL_TRY(connect_mimics());
+    SL_TRY(model::add_rollers(out_));
     SL_TRY(name_devices(out_));
     return std::make_shared<const model::Model>(std::move(out_));
   }
@@ -179,6 +181,7 @@ class ModelReader {
       return {};
     }
     SL_TRY(read_joint_motion(element, joint, in_));
+    SL_TRY(read_rollers(element, joint, in_));
     const auto end = [&](const char* key, const std::unordered_map<const Xml*, std::string>& resolved) {
       const auto found = resolved.find(&element);
       return found == resolved.end() ? element.child(key)->text : found->second;

@@ -31,10 +31,15 @@ Result<model::Inertial> read_inertial(const Xml& element, const model::Link& lin
                                       const std::vector<double>& densities_kgpm3, bool is_static,
                                       const Reading& in);
 
+/// The <surface> of a collision, or the default.
+Result<model::Surface> read_surface(const Xml& owner, Notes& notes);
+
 Result<model::Material> read_material(const Xml& visual, const Reading& in);
 
 /// Type, axes, limits and dynamics of a joint.
 Status read_joint_motion(const Xml& element, model::Joint& out, const Reading& in);
+/// <sandlot:rollers> of a joint, if there: its child is a wheel with rollers.
+Status read_rollers(const Xml& joint, model::Joint& out, const Reading& in);
 /// A gearbox couples the turns of two links, which no joint of ours does.
 bool is_gearbox(const Xml& element);
 

@@ -113,7 +113,7 @@ class ModelWriter {
     std::map<std::string, std::size_t> rank;
     for (std::uint32_t l = 0; l < model_.links.size(); ++l) {
       const auto local = within(scope, model_.links[l].name);
-      if (!local) continue;
+      if (!local || is_roller(l)) continue;
       const std::size_t colons = local->find("::");
       if (colons == std::string::npos) add(out, link_of(l, *local));
       else if (rank.emplace(local->substr(0, colons), nested.size()).second)
@@ -123,7 +123,7 @@ class ModelWriter {
     const std::vector<std::size_t> frame_slots = slots(scope, model_.frames, rank);
     for (std::size_t slot = 0; slot <= nested.size(); ++slot) {
       for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-        if (joint_slots[j] != slot) continue;
+        if (joint_slots[j] != slot || model_.joints[j].roller_of != model::Joint::no_joint) continue;
         SL_ASSIGN(Xml joint, joint_of_model(model_.joints[j], scope));
         add(out, std::move(joint));
       }
@@ -144,6 +144,13 @@ class ModelWriter {
       add(out, std::move(inner));
     }
     return {};
+  }
+
+  /// Rollers come of the <sandlot:rollers> of their wheel's joint.
+  bool is_roller(std::uint32_t link) const {
+    return std::any_of(model_.joints.begin(), model_.joints.end(), [&](const model::Joint& j) {
+      return j.child == link && j.roller_of != model::Joint::no_joint;
+    });
   }
 
   static Error outside(const std::string& sort, const std::string& name, const Place& place) {
@@ -214,6 +221,7 @@ class ModelWriter {
       add_number(dynamics, "damping", joint.second->damping);
       add_number(dynamics, "friction", joint.second->friction);
     }
+    if (joint.rollers) add(out, rollers_of(*joint.rollers));
     for (const model::DeviceDecl& device : devices_)
       if (!is_native(device) && is_sensor(device) && writing::joint_of(device) == joint.name)
         add(out, device_of(device, inverse(joint.X_CJ) * device.X_LS));

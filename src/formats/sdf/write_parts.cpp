@@ -149,6 +149,23 @@ std::optional<Xml> surface_of(const model::Surface& s) {
   return out;
 }
 
+Xml rollers_of(const model::RollerWheel& w) {
+  Xml out = element("sandlot:rollers");
+  add_number(out, "radius", w.radius_m);
+  add_number(out, "count", w.count);
+  if (w.rows > 1) {
+    add_number(out, "rows", w.rows);
+    add_number(out, "row_spacing", w.row_spacing_m);
+  }
+  add_number(out, "angle", w.angle_rad);
+  add_number(out, "roller_radius", w.roller_radius_m);
+  add_number(out, "roller_length", w.roller_length_m);
+  add_number(out, "roller_mass", w.roller_mass_kg);
+  if (w.bearing_friction_Nm != 0) add_number(out, "bearing_friction", w.bearing_friction_Nm);
+  if (auto surface = surface_of(w.surface)) add(out, std::move(*surface));
+  return out;
+}
+
 Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place, Diagnostics& diagnostics) {
   Xml out = element("geometry");
   Xml& form = add(out, shape_name(shape));

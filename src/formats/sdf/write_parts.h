@@ -28,6 +28,7 @@ std::optional<Xml> surface_of(const model::Surface& surface);
 Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place, Diagnostics& diagnostics);
 std::optional<Xml> material_of(const model::Material& material);
 Xml light_of(const model::Light& light);
+Xml rollers_of(const model::RollerWheel& wheel);
 Xml inertial_of(const model::Inertial& inertial);
 
 /// A declared device: <sandlot:device>, or the <sensor> or <plugin> it was read from.

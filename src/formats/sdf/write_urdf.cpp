@@ -40,8 +40,17 @@ class UrdfWriter {
     out_ = element("robot");
     out_.set_attribute("name", instance_.original_name);
     if (on_world_) add(out_, "link").set_attribute("name", "world");
-    for (std::uint32_t l = 0; l < m_.links.size(); ++l) write_link(l);
-    for (std::uint32_t j = 0; j < m_.joints.size(); ++j) write_joint(m_.joints[j]);
+    const auto is_roller = [&](std::uint32_t joint) {
+      return joint != none && m_.joints[joint].roller_of != model::Joint::no_joint;
+    };
+    for (const model::Joint& joint : m_.joints)
+      if (joint.rollers)
+        warn("joint '" + joint.name + "': URDF has no wheels with rollers",
+             "its wheel is written without them", joint.place);
+    for (std::uint32_t l = 0; l < m_.links.size(); ++l)
+      if (!is_roller(parent_joint_[l])) write_link(l);
+    for (std::uint32_t j = 0; j < m_.joints.size(); ++j)
+      if (!is_roller(j)) write_joint(m_.joints[j]);
     for (const model::Frame& frame : m_.frames) write_frame(frame);
     write_rest();
     return std::move(out_);

@@ -176,6 +176,10 @@ struct Skin {
       const double most = k == 2 ? h : r;
       if (std::min({a[k], b[k], c[k]}) > most || std::max({a[k], b[k], c[k]}) < -most) return;
     }
+    const Vec3 middle = 1.0 / 3 * (a + b + c);
+    const double extent = std::sqrt(
+        std::max({dot(a - middle, a - middle), dot(b - middle, b - middle), dot(c - middle, c - middle)}));
+    if (nearest(barrel, middle).distance_m > extent) return;
     const Vec3 n = normalised(cross(b - a, c - a), {});
     const double offset = dot(n, a);
     if (offset > 0 || n == Vec3{} || offset < -reach_m(barrel, n.z)) return;

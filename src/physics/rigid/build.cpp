@@ -131,6 +131,13 @@ Status RigidEngine::check(const model::Instance& instance) const {
     if (!(std::abs(joint.thread_pitch_m) < 1e6))
       return Error{"the thread pitch of joint '" + joint.name + "' is no length",
                    "give it in metres per turn", joint.place};
+    if (joint.rollers && !is_wheel(*joint.rollers))
+      return Error{"the wheel with rollers of joint '" + joint.name + "' has no sound sizes",
+                   "lengths are positive numbers [m]", joint.place};
+    if (joint.roller_of != model::Joint::no_joint &&
+        (joint.roller_of >= model.joints.size() || !model.joints[joint.roller_of].rollers ||
+         joint.type != model::JointType::continuous))
+      return Error{"joint '" + joint.name + "' is that of a roller, but of no wheel", "", joint.place};
     if (joint.mimic) {
       const std::uint32_t leader = joint.mimic->joint;
       const auto has_position = [](const model::Joint& j) {

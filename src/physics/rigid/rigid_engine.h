@@ -81,6 +81,7 @@ class RigidEngine final : public Engine {
   struct Island {
     std::uint32_t contacts = 0;
     bool was_quick = false, quick = false;
+    bool rolling = false;  ///< a roller is awake in it
     bool may_sleep = true;
   };
   struct LinkSlot {

@@ -163,12 +163,14 @@ void RigidEngine::find_islands() {
       if (!b.active()) continue;
       Island& island = islands_[root(b.island)];
       island.was_quick = island.was_quick || b.quick;
+      island.rolling = island.rolling || b.carrier;
       island.may_sleep = island.may_sleep && idle;
     }
   }
   for (Island& island : islands_) {
     // An island that was solved quickly stays so until it has shrunk by a quarter: no flicker at the limit.
-    const auto limit = static_cast<std::uint32_t>(spec_.direct_limit);
+    // Light rollers between heavy robots and the ground are what the quick solver is worst at.
+    const std::uint32_t limit = static_cast<std::uint32_t>(spec_.direct_limit) * (island.rolling ? 4 : 1);
     const std::uint32_t bound = island.was_quick ? limit - limit / 4 : limit;
     island.quick = spec_.solver == Solver::quick ||
                    (spec_.solver == Solver::automatic && island.contacts > bound);

@@ -39,12 +39,20 @@ void make_shapes(Wheel& wheel) {
 
 }  // namespace
 
+bool is_wheel(const model::RollerWheel& w) {
+  const auto length = [](double x) { return x > 1e-9 && x < 1e6; };
+  return length(w.radius_m) && length(w.roller_radius_m) && length(w.roller_length_m) &&
+         w.roller_radius_m < w.radius_m && w.rows >= 1 && w.rows <= 100 && w.row_spacing_m >= 0 &&
+         w.row_spacing_m < 1e3 && std::abs(w.angle_rad) < 10 && w.bearing_friction_Nm >= 0 &&
+         w.bearing_friction_Nm < 1e9;
+}
+
 void lock_rollers(const model::Model& model, Lumps& lumps) {
   for (const model::Joint& joint : model.joints) {
     if (joint.roller_of == model::Joint::no_joint) continue;
     Lump& roller = lumps.lumps[lumps.of_link[joint.child]];
     Lump& wheel = lumps.lumps[lumps.of_link[model.joints[joint.roller_of].child]];
-    if (roller.fixed || wheel.fixed) continue;
+    if (roller.fixed || wheel.fixed || &roller == &wheel || roller.links.size() > 1) continue;
     const model::Link& link = model.links[joint.child];
     const double mass = wheel.mass_kg + roller.mass_kg;
     const Vec3 apart_M = roller.X_MB.p - wheel.X_MB.p, shift_M = roller.mass_kg / mass * apart_M;
@@ -91,7 +99,9 @@ void make_wheels(Instance& instance) {
     wheel.locked_B = wheel.body->inertia_B;
     const Pose X_BM = inverse(wheel.body->X_MB);
     for (std::size_t r = 0; r < declared.size(); ++r) {
-      if (declared[r].roller_of != j || !instance.joints[r].child) continue;
+      const Body* const body = instance.joints[r].child;
+      if (declared[r].roller_of != j || !body || body == wheel.body || body->X_MB.p == wheel.body->X_MB.p)
+        continue;
       Roller roller{instance.joints[r].child, &instance.joints[r], nullptr, declared[r].child, {}, {}, {}};
       roller.X_BR = X_BM * roller.body->X_MB;
       roller.X_BR.q = normalised(roller.X_BR.q);

@@ -14,7 +14,9 @@
 ///          since nothing moves when a roller wakes or freezes, linear and angular momentum stay what they are.
 /// Spin     of a frozen roller is kept: it turns on freely but for bearing friction, without acting on the wheel, and
 ///          has that spin when it wakes. A wheel that becomes solid loses those spins (its rollers stand).
-/// Limits   no gyroscopic torque of frozen rollers; wheel-to-ground contact of the solid wheel stays in its middle plane.
+/// Solvers  islands with awake rollers are solved directly up to four times direct_limit. Solved quickly a robot of 11 kg on
+///          30 rollers of 10 g sinks in by 1 mm at 1 ms and is 1 % too slow; directly it is within 0.01 %.
+/// Limits   loads of fixed joints within a wheel leave out its rollers; no gyroscopic torque of frozen rollers; wheel-to-ground contact of the solid wheel stays in its middle plane.
 /// Cost     of a frozen roller 40 ns per sub-step.
 #include "geometry/barrel.h"
 #include "physics/rigid/parts.h"
@@ -22,7 +24,10 @@
 namespace sandlot::rigid {
 
 /// Of its mass, that an awake roller has beside the wheel that carries it: enough for the solvers, little for the world.
-inline constexpr double awake_share = 0.05;
+inline constexpr double awake_share = 0.2;
+
+/// Whether a wheel can be made of it at all; model/rollers.h says more.
+bool is_wheel(const model::RollerWheel& wheel);
 
 /// Takes the rollers' masses and inertias into their wheels' lumps.
 void lock_rollers(const model::Model& model, Lumps& lumps);
