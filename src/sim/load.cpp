@@ -345,6 +345,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.values = scenario.values;
     setup.events = scenario.events;
     setup.log = scenario.log;
+    setup.zones = scenario.zones;
     if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
     if (options.seed) setup.seed = *options.seed;
     for (const auto& [written, place] : scenario.plugins) {

@@ -15,9 +15,10 @@ Status Simulation::tick(std::optional<Time> measured) {
   if (!failure_) return failure_;
   arena_->execute([&] {
     set_step(measured);
-    take_commands();  // 1  requests from outside, then what programs ordered in the previous tick
-    actuate();        // 2  actuators turn commands into targets and wrenches
-    physics();        // 3  sub-steps: servo loops, then the engine
+    take_commands();        // 1  requests from outside, then what programs ordered in the previous tick
+    actuate();              // 2  actuators turn commands into targets and wrenches
+    physics();              // 3  sub-steps: servo loops, then the engine
+    if (!failure_) return;  // nothing has moved: the world is that of the last tick that was sound
     now_ = now_ + step_;
     ++tick_;
     update_scene();   // 4  new poses into the ray scene
@@ -141,6 +142,8 @@ void Simulation::physics() {
   }
   if (Status finite = engine_->check_finite(); !finite) {
     failure_ = std::move(finite);
+    failure_.error().what += ", between " + number_text(now_.s()) + " s and " +
+                             number_text((now_ + step_).s()) + " s";
     stop_reason_ = failure_.error().what;
   }
 }

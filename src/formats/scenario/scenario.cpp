@@ -279,7 +279,7 @@ Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
   return {};
 }
 
-Result<Scenario> read_root(const Node& node, const std::string& file) {
+Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
   SL_TRY(refuse_later_keys(node));
   // A file of a later version may differ in every key: its version is the one thing to complain about.
   if (const Node* version = node.find("version")) {
@@ -332,6 +332,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   }
   SL_TRY(check_names(out.robots));
   SL_TRY(read_watch(node, root, out));
+  SL_TRY(read_zones(node, root.zones, out, diagnostics));
   return out;
 }
 
@@ -359,13 +360,13 @@ Result<Pose> read_pose(const Node& node, const std::string& path) {
 }
 
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
-                                std::span<const Override> overrides, Diagnostics&) {
+                                std::span<const Override> overrides, Diagnostics& diagnostics) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
-  SL_ASSIGN(Scenario scenario, read_root(root, file));
+  SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
   scenario.unused_vars = std::move(unused_vars);
   return scenario;
 }

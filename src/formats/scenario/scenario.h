@@ -77,6 +77,7 @@ struct Scenario {
   std::vector<model::ValueDecl> values;
   std::vector<model::EventDecl> events;
   std::optional<model::LogDecl> log;
+  std::vector<model::SurfaceZone> zones;
   std::optional<model::Recording> record;  ///< its file is made absolute or relative to the working folder
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
