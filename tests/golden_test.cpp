@@ -24,6 +24,7 @@ constexpr Golden goldens[] = {
     {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},
     {"scenarios/mario.yaml --duration 10s", "9e2b3e1b2e9c7fa8"},
     {"scenarios/demo.yaml --duration 5s", "22bfd28396518353"},
+    {"scenarios/materials.yaml --duration 10s", "9c38c2a0c26c86f3"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
 };
