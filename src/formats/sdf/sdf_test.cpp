@@ -101,8 +101,8 @@ TEST(Sdf, ReadsShapesSurfacesAndInertia) {
 
 TEST(Sdf, ReadsWhatASurfaceIsMadeOf) {
   const auto collision = [](const std::string& surface) {
-    return model(R"(<link name="l"><inertial><mass>1</mass></inertial><collision name="c"><geometry><box>
-<size>1 1 1</size></box></geometry><surface>)" +
+    return model(R"(<link name="l"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy>
+<izz>1</izz></inertia></inertial><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><surface>)" +
                  surface + "</surface></collision></link>");
   };
   Read r = parse(collision(R"(<contact><ode><kp>3000</kp><kd>4</kd><max_vel>0.5</max_vel></ode></contact>
