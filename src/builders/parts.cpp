@@ -35,18 +35,27 @@ void add_inertia(model::Inertial& to, double mass_kg, Vec3 centre_L, const Tenso
   to = {total, {centre, {}}, sum.moments, sum.products};
 }
 
+/// The pose that a file's reader makes of this one: it normalises rotations and knows no -0.
+Pose settled(Pose X) {
+  for (int i = 0; i < 4; ++i) X.q = normalised(X.q);
+  for (std::size_t i = 0; i < Quat::extent; ++i) X.q[i] += 0.0;
+  return X;
+}
+
 }  // namespace
 
 std::uint32_t add_link(model::Model& model, std::string name, const Pose& X_ML) {
   model::Link link;
   link.name = std::move(name);
-  link.X_ML = X_ML;
+  link.X_ML = settled(X_ML);
   link.inertial = {0, {}, {}, {}};
   model.links.push_back(std::move(link));
   return static_cast<std::uint32_t>(model.links.size() - 1);
 }
 
-void add_part(model::Model& model, std::uint32_t to, const Part& part) {
+void add_part(model::Model& model, std::uint32_t to, const Part& raw) {
+  Part part = raw;
+  part.X_LP = settled(raw.X_LP);
   model::Link& link = model.links[to];
   add_inertia(link.inertial, part.mass_kg, part.X_LP.p,
               turned(part.X_LP.q, inertia_kg_m2(part.shape, part.mass_kg)));
@@ -76,7 +85,7 @@ std::uint32_t add_joint(model::Model& model, std::string name, std::uint32_t par
   joint.parent = parent;
   joint.child = child;
   joint.X_CJ = {inverse(model.links[child].X_ML) * at_M, {}};
-  joint.axis_J = rotate(q_CM, words.axis_M);
+  joint.axis_J = normalised(normalised(rotate(q_CM, words.axis_M)));
   joint.lower = words.lower;
   joint.upper = words.upper;
   joint.max_effort = words.max_effort;
