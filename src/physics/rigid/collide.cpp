@@ -2,9 +2,11 @@
 #include <limits>
 #include <tuple>
 
+#include "physics/rigid/barrel_contacts.h"
 #include "physics/rigid/rigid_engine.h"
 #include "physics/rigid/round.h"
 #include "physics/rigid/surface.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
@@ -16,9 +18,17 @@ double load_on(const Geom& g) {
 /// What moves along a path wakes whom it meets.
 bool is_awake(const Geom& g) { return g.body ? g.body->awake : g.instance->is_moving(); }
 
+constexpr std::size_t most_points = 512;  ///< of one pair, before they are thinned out
+
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 Vec3 spin(const Geom& g) { return g.body ? g.body->w : g.instance->V_WM.angular; }
+
+/// Across the axis of a roller that is no body of its own friction is that of its bearing, a force [N].
+void give_way(dSurfaceParameters& surface, const model::RollerWheel& wheel) {
+  surface.mode = (surface.mode & ~(dContactApprox1_2 | dContactSlip2)) | dContactMu2;
+  surface.mu2 = surface.mu > 0 ? wheel.bearing_friction_Nm / wheel.roller_radius_m : 0;
+}
 
 Vec3 velocity_at(const Geom& g, Vec3 point) {
   return g.body ? g.body->v + cross(g.body->w, point - g.body->p) : g.instance->velocity_at(point);
@@ -67,7 +77,7 @@ int RigidEngine::collide_meshes(const Pair& pair) {
 
 /// Contacts of shapes that are triangles to ODE.
 int RigidEngine::collide_triangles(const Pair& pair, Hit* found) {
-  constexpr std::size_t most = 512;
+  constexpr std::size_t most = most_points;
   points_.resize(most);
   const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
   const bool plane_a = std::holds_alternative<Plane>(a), plane_b = std::holds_alternative<Plane>(b);
@@ -91,16 +101,72 @@ int RigidEngine::collide_triangles(const Pair& pair, Hit* found) {
   return n;
 }
 
+/// Contacts of a barrel with anything but cylinders and barrels.
+int RigidEngine::collide_barrels(const Pair& pair, Hit* found) {
+  points_.resize(most_points);
+  const bool first = std::holds_alternative<Barrel>(pair.a->decl->shape);
+  const Geom &barrel = first ? *pair.a : *pair.b, &other = first ? *pair.b : *pair.a;
+  int n = collide_barrel(std::get<Barrel>(barrel.decl->shape), barrel.pose(), other.decl->shape, other.pose(),
+                         other.triangles.get(), points_);
+  n = reduce_contacts(std::span(points_).first(static_cast<std::size_t>(n)), spec_.max_contacts,
+                      std::min(pair.a->size_m, pair.b->size_m));
+  for (int i = 0; i < n; ++i) {
+    dContactGeom& point = points_[static_cast<std::size_t>(i)];
+    if (!first)
+      for (dReal& x : point.normal) x = -x;
+    found[i].contact.geom = point;
+  }
+  return n;
+}
+
+/// Where the wheels of a pair, a little thicker than they are, touch: rollers there must be awake.
+void RigidEngine::sense_wheels(const Pair& pair) {
+  points_.resize(most_points);
+  for (const auto& [own, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
+    if (!own->wheel || !own->wheel->on_rollers) continue;
+    const Barrel& probe = own->wheel->probe;
+    const int n = is_round_pair(probe, other->decl->shape)
+                      ? collide_round(probe, own->pose(), other->decl->shape, other->pose(), 4,
+                                      points_.data(), static_cast<int>(sizeof(dContactGeom)))
+                      : collide_barrel(probe, own->pose(), other->decl->shape, other->pose(),
+                                       other->triangles.get(), points_);
+    for (int i = 0; i < n; ++i) touch(*own->wheel, vec(points_[static_cast<std::size_t>(i)].pos));
+  }
+}
+
+/// A wheel on its rollers touches with those that are awake.
+void RigidEngine::collide_rollers(const Pair& pair) {
+  unordered_ = true;
+  const auto each = [](Geom* g, auto&& visit) {
+    if (!g->wheel || !g->wheel->on_rollers) return visit(g);
+    for (const Roller& roller : g->wheel->rollers)
+      if (!roller.body->frozen && roller.geom) visit(roller.geom);
+  };
+  each(pair.a, [&](Geom* a) {
+    each(pair.b, [&](Geom* b) {
+      const double reach = a->size_m + b->size_m;
+      const Vec3 apart = a->pose().p - b->pose().p;
+      if (std::isfinite(reach) && dot(apart, apart) > reach * reach) return;
+      if (a->serial < b->serial) collide_pair({a->serial, b->serial, a, b});
+      else collide_pair({b->serial, a->serial, b, a});
+    });
+  });
+}
+
 /// Finds contact points and wakes whom an awake body touches.
 void RigidEngine::collide_pair(const Pair& pair) {
+  for (const Geom* g : {pair.a, pair.b})
+    if (g->wheel && g->wheel->on_rollers) return collide_rollers(pair);
   const std::size_t most = hit_count_ + static_cast<std::size_t>(spec_.max_contacts);
   if (hit_buffer_.size() < most) hit_buffer_.resize(2 * most);
   Hit* const found = &hit_buffer_[hit_count_];
   const Shape &a = pair.a->decl->shape, &b = pair.b->decl->shape;
-  const int n = pair.a->triangles || pair.b->triangles ? collide_triangles(pair, found)
-                : is_round_pair(a, b)
-                    ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
-                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
+  const bool barrel = std::holds_alternative<Barrel>(a) || std::holds_alternative<Barrel>(b);
+  const int n = is_round_pair(a, b) ? collide_round(a, pair.a->pose(), b, pair.b->pose(), spec_.max_contacts,
+                                                    &found->contact.geom, static_cast<int>(sizeof(Hit)))
+                : barrel            ? collide_barrels(pair, found)
+                : pair.a->triangles || pair.b->triangles
+                    ? collide_triangles(pair, found)
                     : dCollide(pair.a->ode, pair.b->ode, spec_.max_contacts, &found->contact.geom,
                                sizeof(Hit));
   for (int i = 0; i < n; ++i) {
@@ -129,9 +195,19 @@ void RigidEngine::collide() {
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& x, const Pair& y) {
     return x.first != y.first ? x.first < y.first : x.second < y.second;
   });
-  woke_ = false;
+  bool rolling = false;
+  for (Instance* instance : order_)
+    for (Wheel& wheel : instance->wheels)
+      if (wheel.on_rollers && wheel.body->awake) wheel.touched_B.clear(), rolling = true;
+  if (rolling) {
+    for (const Pair& pair : pairs_) sense_wheels(pair);
+    for (Instance* instance : order_)
+      for (Wheel& wheel : instance->wheels)
+        if (wheel.on_rollers && wheel.body->awake) choose_awake(wheel);
+  }
+  woke_ = unordered_ = false;
   for (const Pair& pair : pairs_) collide_pair(pair);
-  if (!woke_) return;
+  if (!woke_ && !unordered_) return;
   // Who was woken meets its neighbours in this very sub-step, else it would fall through what it lies on; they may
   // wake in turn. The set that is awake in the end does not depend on the order of the search.
   while (woke_) {
@@ -187,9 +263,13 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
   const double mu = contact.surface.mu;
   const Vec3 belt = pair.belt_velocity_W_mps;
-  const bool directed = pair.fdir1_W != Vec3{};
+  const Wheel* const wheel = a.wheel ? a.wheel : b.wheel;
+  const bool directed = wheel || pair.fdir1_W != Vec3{};
   Vec3 slip, wanted;
-  if (directed) {
+  if (wheel) {
+    wanted = roller_axis_W(*wheel, point);
+    give_way(contact.surface, *wheel->decl);
+  } else if (directed) {
     wanted = pair.fdir1_W;
   } else if (mu > 0) {
     slip = velocity_at(a, point) - velocity_at(b, point) - belt;

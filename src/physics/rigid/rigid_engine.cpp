@@ -8,6 +8,7 @@
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/overlap.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 
@@ -51,7 +52,8 @@ Capabilities RigidEngine::capabilities() const {
           .ideal_drives = true,
           .rays = false,
           .contact_forces = true,
-          .joint_loads = true};
+          .joint_loads = true,
+          .rollers = true};
 }
 
 BodyName RigidEngine::name(BodyId id) const {
@@ -95,6 +97,26 @@ void RigidEngine::set_targets(std::span<const JointTarget> targets) {
     joint.target = target;
     set_motor(joint);
     if (target.mode != JointTarget::Mode::free) wake_instance(*slot.instance);
+  }
+}
+
+void RigidEngine::set_wheels(std::span<const WheelTarget> targets) {
+  for (const WheelTarget& target : targets) {
+    SL_CHECK(target.wheel.index < joint_slots_.size());
+    const JointSlot& slot = joint_slots_[target.wheel.index];
+    SL_CHECK_MSG(slot.instance && slot.generation == target.wheel.generation, "no such joint");
+    for (Wheel& wheel : slot.instance->wheels) {
+      if (wheel.joint != &slot.instance->joints[slot.joint] || wheel.on_rollers == target.rollers) continue;
+      wheel.on_rollers = target.rollers;
+      if (!target.rollers) {
+        wheel.touched_B.clear();
+        choose_awake(wheel);
+        stop_frozen(wheel);
+        follow(wheel);
+        show(*slot.instance);
+      }
+      wake_instance(*slot.instance);
+    }
   }
 }
 

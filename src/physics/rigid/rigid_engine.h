@@ -5,10 +5,11 @@
 /// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
 ///          exact rotation of the new angular velocity, spin about the own joint axis first.
 /// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h; meshes,
-///          terrain, cones and ellipsoids: see triangles.h.
+///          terrain, cones and ellipsoids: see triangles.h; barrels: see barrel_contacts.h.
+/// Wheels   with rollers: see wheels.h.
 /// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
 ///          sub-step builds what ODE needs from that State, so that a restored run continues with the same bits.
-/// Limits   no rollers; planes and terrain are static; no continuous collision: a body faster than its
+/// Limits   planes and terrain are static; no continuous collision: a body faster than its
 ///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
 /// Cost     direct solver cubic, quick solver linear in the contacts of an island.
 /// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() tells.
@@ -58,6 +59,7 @@ class RigidEngine final : public Engine {
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_zones(std::span<const model::SurfaceZone> zones) override { zones_ = ZoneMap(zones); }
   void set_contact_rule(ContactRule rule) override { rule_ = std::move(rule); }
+  void set_wheels(std::span<const WheelTarget> targets) override;
   void watch(const Watch& watch) override;
   std::span<const JointLoad> joint_loads() const override { return loads_; }
   void step(double h_s, std::uint64_t stream_key) override;
@@ -97,7 +99,9 @@ class RigidEngine final : public Engine {
   Instance& alive(InstanceId id) const;
   Status check(const model::Instance& instance) const;
   void make_bodies(Instance& instance, const Lumps& lumps);
-  void make_geoms(Instance& instance, const Lumps& lumps);
+  void make_geoms(Instance& instance);
+  Geom& make_geom(Instance& instance, std::uint32_t link, const model::Collision& collision,
+                  Wheel* wheel = nullptr);
   void give_ids(Instance& instance);
   void destroy(Instance& instance);
 
@@ -119,10 +123,12 @@ class RigidEngine final : public Engine {
   void collide_pair(const Pair& pair);
   int collide_triangles(const Pair& pair, Hit* found);
   int collide_meshes(const Pair& pair);
-  void collide_self(Instance& instance);
   PairSurface surfaces_at(const Hit& hit) const;
   void ask_surfaces();
   void direct_contact(Hit& hit, const PairSurface& pair);
+  int collide_barrels(const Pair& pair, Hit* found);
+  void sense_wheels(const Pair& pair);
+  void collide_rollers(const Pair& pair);
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
 
@@ -192,6 +198,7 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;
   bool woke_ = false;
+  bool unordered_ = false;  ///< hits are not in the order of their shapes yet
   // What is watched in the next sub-step: see loads.cpp.
   struct Push {
     const Instance* instance;

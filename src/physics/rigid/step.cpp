@@ -17,6 +17,7 @@
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
@@ -93,18 +94,18 @@ void RigidEngine::push_forces(double h) {
     if (instance->guided && !instance->destination) instance->V_WM = {};
     if (instance->bodies.empty()) continue;
     for (Joint& joint : instance->joints) {
-      prepare_joint(joint, spec_.erp, h);
       const Body* const mover = joint.child ? joint.child : joint.parent;
+      if (!mover || !mover->frozen) prepare_joint(joint, spec_.erp, h);
       if (joint.main && joint.is(model::JointType::screw) && mover->awake)
         couple_thread(world_, contact_joints_, joint, spec_.erp, h);
       if (joint.main && joint.target.friction > 0 && !joint.leader && !joint.is(model::JointType::ball) &&
-          joint.target.mode == JointTarget::Mode::effort && mover->awake)
+          joint.target.mode == JointTarget::Mode::effort && mover->active())
         rub(world_, contact_joints_, joint);
       if (joint.told && joint.main) tell(joint);
     }
     if (instance->drive.active) drive(*instance, h);
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       put_orientation(b);
       if (b.weighs_partly) {
         const Vec3 weight = b.gravity_mass_kg * gravity_;
@@ -143,14 +144,14 @@ void RigidEngine::find_islands() {
   island_parent_.clear();
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.island = static_cast<std::uint32_t>(island_parent_.size());
       island_parent_.push_back(b.island);
     }
   counters_.awake_bodies = island_parent_.size();
   for (Instance* instance : order_)
     for (const Joint& joint : instance->joints)
-      if (joint.main && joint.child && joint.child->awake) unite(joint.child, joint.parent);
+      if (joint.main && joint.child && joint.child->active()) unite(joint.child, joint.parent);
   for (const Hit& hit : hits()) unite(hit.a->body, hit.b->body);
 
   islands_.assign(island_parent_.size(), {});
@@ -159,7 +160,7 @@ void RigidEngine::find_islands() {
     bool idle = !instance->is_robot && !instance->drive.active;
     for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
     for (const Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       Island& island = islands_[root(b.island)];
       island.was_quick = island.was_quick || b.quick;
       island.may_sleep = island.may_sleep && idle;
@@ -180,7 +181,7 @@ void RigidEngine::solve(double h, std::uint64_t stream_key) {
   bool any_direct = false, any_quick = false;
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.quick = islands_[root(b.island)].quick;
       (b.quick ? any_quick : any_direct) = true;
     }
@@ -200,7 +201,7 @@ template <class Choose>
 void RigidEngine::enable(Choose&& choose) {
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      const bool wanted = b.awake && choose(b);
+      const bool wanted = b.active() && choose(b);
       if (wanted == b.enabled) continue;
       b.enabled = wanted;
       if (wanted) dBodyEnable(b.ode);
@@ -214,7 +215,7 @@ void RigidEngine::solve_again(double h) {
   const auto reset = [&](std::uint32_t island) {
     for (Instance* instance : order_)
       for (Body& b : instance->bodies) {
-        if (!b.awake || root(b.island) != island) continue;
+        if (!b.active() || root(b.island) != island) continue;
         put(b);
         dBodySetForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
         dBodySetTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
@@ -291,18 +292,21 @@ void RigidEngine::advance(double h) {
     if (instance->guided) show(*instance);
     if (instance->bodies.empty()) continue;
     bool any_awake = false;
-    for (const Body& b : instance->bodies) any_awake = any_awake || b.awake;
+    for (const Body& b : instance->bodies) any_awake = any_awake || b.active();
     if (!any_awake) continue;
-    for (Joint& joint : instance->joints) measure_effort(joint);
+    for (Joint& joint : instance->joints)
+      if (!joint.child || !joint.child->frozen) measure_effort(joint);
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.p = vec(dBodyGetPosition(b.ode));
       b.v = vec(dBodyGetLinearVel(b.ode));
       b.w = vec(dBodyGetAngularVel(b.ode));
       b.q = turned(b.q, b.w, b.spin_axis_B, h);
       b.force_N = b.torque_Nm = {};
     }
-    for (Joint& joint : instance->joints) measure_position(joint, h, instance->X_WM);
+    for (Joint& joint : instance->joints)
+      if (!joint.child || !joint.child->frozen) measure_position(joint, h, instance->X_WM);
+    for (Wheel& wheel : instance->wheels) roll_on(wheel, h);
     show(*instance);
   }
 }
@@ -312,7 +316,7 @@ void RigidEngine::send_to_sleep(double h) {
   const double spin2 = spec_.sleep_spin_radps * spec_.sleep_spin_radps;
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.quiet_s = dot(b.v, b.v) < speed2 && dot(b.w, b.w) < spin2 ? b.quiet_s + h : 0;
       Island& island = islands_[root(b.island)];
       island.may_sleep = island.may_sleep && b.quiet_s > spec_.sleep_time_s;
@@ -320,14 +324,17 @@ void RigidEngine::send_to_sleep(double h) {
   for (Instance* instance : order_) {
     bool changed = false;
     for (Body& b : instance->bodies) {
-      if (!b.awake || !islands_[root(b.island)].may_sleep) continue;
+      if (!b.active() || !islands_[root(b.island)].may_sleep) continue;
       b.awake = b.quick = false;
       b.v = b.w = {};
       b.quiet_s = 0;
       put(b);
       changed = true;
     }
-    if (changed) show(*instance);
+    if (!changed) continue;
+    for (Wheel& wheel : instance->wheels)
+      if (!wheel.body->awake) stop_frozen(wheel), follow(wheel);
+    show(*instance);
   }
 }
 
