@@ -1,4 +1,5 @@
 /// All drives of devices/wheeled_base.h, in an engine whose joints do what they are told.
+/// long file: the same few models and configurations serve all of them.
 #include "devices/wheeled_base.h"
 
 #include <gtest/gtest.h>
