@@ -4,6 +4,7 @@
 #define SANDLOT_CONTROLLERS(controller) \
   controller(playback)                  \
   controller(sequence)                  \
+  controller(sine)                      \
   controller(wander)                    \
   controller(waypoints)
 // clang-format on
