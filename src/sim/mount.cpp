@@ -49,6 +49,7 @@ Status Simulation::unmount_device(const UnloadDeviceRequest& request) {
   pools_[taken->kind].pool->release(taken->index, context());
   engine_->set_targets(actuation_.joints);
   engine_->set_drive_targets(actuation_.drives);
+  engine_->set_wheels(actuation_.wheels);
   actuation_.clear();
   remove_from_pool(*taken);
   entity.instance.devices.erase(entity.instance.devices.begin() + index);
