@@ -121,6 +121,7 @@ void Simulation::physics() {
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
+    engine_->set_rolls(actuation_.rolls);
     engine_->set_wheels(actuation_.wheels);
     engine_->set_grips(actuation_.grips);
     for (const Entity* entity : guided_) {
@@ -135,6 +136,7 @@ void Simulation::physics() {
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.rolls.clear();
     actuation_.wheels.clear();
     actuation_.grips.clear();
     actuation_.watch.clear();
