@@ -18,6 +18,7 @@
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
   device(magnetometer)          \
+  device(proximity)             \
   device(range_finder)          \
   device(wheel_encoder)         \
   device(wheel_odometry)

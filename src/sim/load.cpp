@@ -381,6 +381,10 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       }
       SL_TRY(merge_devices(pattern, group.devices));
       scale_errors(pattern, errors * group.errors);
+      if (auto walls = walls_of(group)) {
+        placer.add(*walls);
+        setup.instances.push_back(std::move(*walls));
+      }
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       for (int i = 0; i < group.count; ++i) {
         model::Instance instance = pattern;
