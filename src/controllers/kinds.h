@@ -5,6 +5,7 @@
   controller(diffusion)                 \
   controller(playback)                  \
   controller(sequence)                  \
+  controller(sine)                      \
   controller(wander)                    \
   controller(waypoints)
 // clang-format on

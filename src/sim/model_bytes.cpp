@@ -189,6 +189,7 @@ void shape(Save& io, const Shape& s) {
   if (const auto* p = std::get_if<Plane>(&s)) n = {p->normal.x, p->normal.y, p->normal.z};
   if (const auto* c = std::get_if<Cone>(&s)) n = {c->radius_m, c->length_m, 0};
   if (const auto* e = std::get_if<Ellipsoid>(&s)) n = {e->radii_m.x, e->radii_m.y, e->radii_m.z};
+  if (const auto* b = std::get_if<Barrel>(&s)) n = {b->radius_m, b->profile_m, b->length_m};
   io.value(static_cast<std::uint8_t>(s.index()));
   io.value(n);
   if (const auto* m = std::get_if<Mesh>(&s))
@@ -221,6 +222,7 @@ void shape(Load& io, Shape& s) {
       if (h.grid) s = std::move(h);
       break;
     }
+    case 9: s = Barrel{n[0], n[1], n[2]}; break;
     default: io.r.fail();
   }
 }

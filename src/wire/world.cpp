@@ -110,6 +110,10 @@ struct ShapeWriter {
   void operator()(const Cylinder& s) const { round("cylinder", s.radius_m, s.length_m); }
   void operator()(const Capsule& s) const { round("capsule", s.radius_m, s.length_m); }
   void operator()(const Cone& s) const { round("cone", s.radius_m, s.length_m); }
+  void operator()(const Barrel& s) const {
+    round("barrel", s.radius_m, s.length_m);
+    w.key("profile").number(s.profile_m);
+  }
   void operator()(const Plane& s) const { type("plane"), w.key("normal").vector(s.normal); }
   void operator()(const Ellipsoid& s) const { type("ellipsoid"), w.key("radii").vector(s.radii_m); }
   void operator()(const Mesh& s) const {

@@ -13,6 +13,7 @@ export type Shape =
   | { type: 'box'; size: Vector }
   | { type: 'sphere'; radius: number }
   | { type: 'cylinder' | 'capsule' | 'cone'; radius: number; length: number }
+  | { type: 'barrel'; radius: number; length: number; profile: number }
   | { type: 'plane'; normal: Vector }
   | { type: 'ellipsoid'; radii: Vector }
   | { type: 'mesh'; mesh: string; scale?: Vector }

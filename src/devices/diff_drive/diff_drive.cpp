@@ -211,6 +211,8 @@ double wheel_radius_m(const model::Link& link) {
       radius_m = std::max(radius_m, sphere->radius_m);
     if (const auto* cylinder = std::get_if<Cylinder>(&collision.shape))
       radius_m = std::max(radius_m, cylinder->radius_m);
+    if (const auto* barrel = std::get_if<Barrel>(&collision.shape))
+      radius_m = std::max(radius_m, barrel->radius_m);
     if (const auto* capsule = std::get_if<Capsule>(&collision.shape))
       radius_m = std::max(radius_m, capsule->radius_m);
   }

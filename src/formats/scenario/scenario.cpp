@@ -149,34 +149,47 @@ Result<Module> read_module(const Node& node, spec::Module& keys, const std::stri
   return module;
 }
 
-Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
+/// What robots and things have in common: name, model, number and place.
+template <class Keys>
+Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* what, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
   group.place = name ? name->place() : node.place();
-  if (robot.name.empty()) return node.error("the robot's name is empty", "", path + "/name");
-  if (robot.model.empty())
-    return node.error("the robot's model is empty", "name a model file", path + "/model");
-  group.name = robot.name;
-  group.model = robot.model;
-  if (const Node* const model = node.find("model")) group.model_place = model->place();
-  group.count = robot.count;
-  group.team = robot.team;
-  group.errors = robot.errors;
-  if (!robot.pose.is_null() && robot.distribution)
-    return robot.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
-  if (robot.distribution) {
-    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *robot.distribution, robot.count,
-                                                 path + "/distribution"));
-  } else if (!robot.pose.is_null()) {
-    if (robot.count > 1)
-      return robot.pose.error(std::to_string(robot.count) + " robots cannot start at one pose",
-                              "give a 'distribution' instead", path + "/pose");
-    SL_ASSIGN(group.placement.X_WM, read_pose(robot.pose, path + "/pose"));
-    group.placement.place = robot.pose.place();
+  if (keys.name.empty())
+    return node.error("the " + std::string(what) + "'s name is empty", "", path + "/name");
+  group.name = keys.name;
+  group.model_place = keys.model.place();
+  if (keys.model.is_map()) {
+    group.builder = keys.model;
+  } else if (keys.model.is_scalar() && !keys.model.text().empty() && keys.model.text().size() <= 4096) {
+    group.model = keys.model.text();
   } else {
-    group.placement.kind = robot.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
+    return keys.model.error("the " + std::string(what) + "'s model is " + describe(keys.model),
+                            "name a model file, or write {builder: ...}", path + "/model");
+  }
+  group.count = keys.count;
+  if (!keys.pose.is_null() && keys.distribution)
+    return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
+  if (keys.distribution) {
+    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *keys.distribution, keys.count,
+                                                 path + "/distribution"));
+  } else if (!keys.pose.is_null()) {
+    if (keys.count > 1)
+      return keys.pose.error(std::to_string(keys.count) + " " + what + "s cannot start at one pose",
+                             "give a 'distribution' instead", path + "/pose");
+    SL_ASSIGN(group.placement.X_WM, read_pose(keys.pose, path + "/pose"));
+    group.placement.place = keys.pose.place();
+  } else {
+    group.placement.kind = keys.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
     group.placement.place = node.place();
   }
+  return group;
+}
+
+Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
+  SL_ASSIGN(RobotGroup group, read_group(node, robot, "robot", path));
+  group.team = robot.team;
+  group.errors = robot.errors;
   for (std::size_t i = 0; i < robot.modules.size(); ++i) {
     SL_ASSIGN(Module module, read_module(node.find("modules")->items()[i], robot.modules[i],
                                          path + "/modules/" + std::to_string(i)));
@@ -329,6 +342,14 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
     out.plugins.emplace_back(root.plugins[i], each.place());
   }
   std::int64_t total = 0;
+  for (std::size_t i = 0; i < root.things.size(); ++i) {
+    const Node& each = node.find("things")->items()[i];
+    SL_ASSIGN(RobotGroup group, read_group(each, root.things[i], "thing", "/things/" + std::to_string(i)));
+    total += group.count;
+    if (total > spec::max_robots)
+      return each.error("more than " + std::to_string(spec::max_robots) + " things in all", "", "/things");
+    out.things.push_back(std::move(group));
+  }
   for (std::size_t i = 0; i < root.robots.size(); ++i) {
     const Node& each = node.find("robots")->items()[i];
     SL_ASSIGN(RobotGroup group, read_robot(each, root.robots[i], "/robots/" + std::to_string(i)));

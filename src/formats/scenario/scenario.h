@@ -42,9 +42,11 @@ struct Module {
   Place place, model_place, link_place;
 };
 
+/// Robots of one kind, or things: those have a name, a model, a number and a place only.
 struct RobotGroup {
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
   std::string model;  ///< file as written (see base_folder), or a name in the search path
+  Node builder;       ///< in place of `model`: a map with `builder` and its parameters, else null
   int count = 1;
   Placement placement;
   std::string team;
@@ -75,6 +77,7 @@ struct Scenario {
   double errors = 1;                                   ///< factor on the errors of all devices
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
+  std::vector<RobotGroup> things;
   std::vector<model::ValueDecl> values;
   std::vector<model::EventDecl> events;
   std::optional<model::LogDecl> log;
@@ -110,9 +113,11 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
-/// @param stages  what lists of stages of errors may hold (FieldInfo::elements "noise")
+/// @param stages    what lists of stages of errors may hold (FieldInfo::elements "noise")
+/// @param builders  of models with parameters
 std::string scenario_schema(std::span<const KindFields> devices = {},
                             std::span<const KindFields> controllers = {},
-                            std::span<const KindFields> stages = {});
+                            std::span<const KindFields> stages = {},
+                            std::span<const KindFields> builders = {});
 
 }  // namespace sandlot::formats

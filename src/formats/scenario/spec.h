@@ -120,9 +120,28 @@ struct Module {
   }
 };
 
+/// What stands about in the world beside the robots.
+struct Thing {
+  std::string name;
+  Node model;
+  int count = 1;
+  Node pose;
+  std::optional<Distribution> distribution;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the thing; with count > 1 the stem of name1, name2, ...", 0, 0,
+                Field::required, 100},
+          s.name);
+    visit(Field{"model", "", "As the model of a robot.", 0, 0, Field::required}, s.model);
+    visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
+    visit(Field{"pose", "m", "Where it stands: as the pose of a robot."}, s.pose);
+    visit(Field{"distribution", "", "Where several stand."}, s.distribution);
+  }
+};
+
 struct Robot {
   std::string name;
-  std::string model;
+  Node model;
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
@@ -138,8 +157,10 @@ struct Robot {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
                 Field::required, 100},
           s.name);
-    visit(Field{"model", "", "Model file (SDF or URDF), relative to this file, or a folder of models.", 0, 0,
-                Field::required, 4096},
+    visit(Field{"model", "",
+                "Model file (SDF or URDF), relative to this file, or a folder of models; or a map with "
+                "builder and its parameters.",
+                0, 0, Field::required},
           s.model);
     visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
     visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
@@ -208,6 +229,7 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
+  std::vector<Thing> things;
   double errors = 1;
   Node values;
   std::vector<Event> events;
@@ -232,6 +254,8 @@ struct Root {
                 0, 0, Field::none, 100},
           s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"things", "", "What stands about: walls, ramps, things to push.", 0, 0, Field::none, 100'000},
+          s.things);
     visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
           s.errors);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);

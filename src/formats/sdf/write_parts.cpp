@@ -161,7 +161,12 @@ Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place
   else if (const auto* const can = std::get_if<Cylinder>(&shape)) round(can->radius_m, can->length_m);
   else if (const auto* const pill = std::get_if<Capsule>(&shape)) round(pill->radius_m, pill->length_m);
   else if (const auto* const cone = std::get_if<Cone>(&shape)) round(cone->radius_m, cone->length_m);
-  else if (const auto* const egg = std::get_if<Ellipsoid>(&shape)) add(form, "radii", text_of(egg->radii_m));
+  else if (const auto* const barrel = std::get_if<Barrel>(&shape)) {
+    add_number(form, "radius", barrel->radius_m);
+    add_number(form, "profile", barrel->profile_m);
+    add_number(form, "length", barrel->length_m);
+  } else if (const auto* const egg = std::get_if<Ellipsoid>(&shape))
+    add(form, "radii", text_of(egg->radii_m));
   else if (const auto* const plane = std::get_if<Plane>(&shape))
     add(form, "normal", direction_text(plane->normal));
   else if (const auto* const mesh = std::get_if<Mesh>(&shape)) {
