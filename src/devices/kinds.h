@@ -21,6 +21,7 @@
   device(magnetometer)          \
   device(mecanum_drive)         \
   device(omni_drive)            \
+  device(proximity)             \
   device(range_finder)          \
   device(skid_drive)            \
   device(swerve_drive)          \
