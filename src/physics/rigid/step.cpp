@@ -254,7 +254,7 @@ bool RigidEngine::nobody_exploded() {
   double worst_excess = 1, speed = 0, spin = 0;
   for (const Instance* instance : order_)
     for (const Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       const Vec3 p = vec(dBodyGetPosition(b.ode)), v = vec(dBodyGetLinearVel(b.ode)),
                  w = vec(dBodyGetAngularVel(b.ode));
       double excess2 = std::max(dot(v, v) / (spec_.max_speed_mps * spec_.max_speed_mps),
