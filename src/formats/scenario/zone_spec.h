@@ -1,11 +1,12 @@
 #pragma once
-/// The keys of a zone of the ground (spec.h).
+/// The keys of a zone of the ground in a scenario file.
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/fields.h"
+#include "base/node.h"
 
 namespace sandlot::formats::scenario_spec {
 
