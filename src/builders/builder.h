@@ -14,7 +14,7 @@
 
 #include "base/describe.h"
 #include "base/read.h"
-#include "model/model.h"
+#include "model/rollers.h"
 
 namespace sandlot {
 
@@ -38,7 +38,9 @@ constexpr Builder make_builder(Builder builder) {
   builder.describe = [] { return describe_fields<Spec>(); };
   builder.build = [](const Node& config, const std::string& path) -> Result<Built> {
     SL_ASSIGN(const Spec spec, read_spec<Spec>(config, path));
-    return make(spec);
+    SL_ASSIGN(Built built, make(spec));
+    SL_TRY(model::add_rollers(built.model));
+    return built;
   };
   return builder;
 }

@@ -10,6 +10,7 @@
   builder(slider_wheelie)         \
   builder(armband)                \
   builder(hexapod)                \
+  builder(diff_robot)             \
   builder(square_playground)      \
   builder(octagon_playground)     \
   builder(terrain)                \

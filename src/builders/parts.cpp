@@ -103,7 +103,7 @@ void add_device(model::Model& model, std::string name, const char* kind, Keys ke
   device.link = link;
   device.X_LS = X_LS;
   device.config = Node::map();
-  for (const auto& [key, value] : keys) device.config.set(key, Node::scalar(value));
+  for (const auto& [key, value] : keys) device.config.set(key, value);
   model.devices.push_back(std::move(device));
 }
 

@@ -45,7 +45,15 @@ struct JointWords {
 std::uint32_t add_joint(model::Model& model, std::string name, std::uint32_t parent, std::uint32_t child,
                         Vec3 at_M, const JointWords& words);
 
-using Keys = std::initializer_list<std::pair<const char*, std::string>>;
+/// A key's value: a text, or a list of texts.
+struct KeyValue : Node {
+  KeyValue(const char* text) : Node(scalar(text)) {}                    // NOLINT(google-explicit-constructor)
+  KeyValue(std::string text) : Node(scalar(std::move(text))) {}         // NOLINT(google-explicit-constructor)
+  KeyValue(const std::vector<std::string>& texts) : Node(sequence()) {  // NOLINT(google-explicit-constructor)
+    for (const std::string& text : texts) push(scalar(text));
+  }
+};
+using Keys = std::initializer_list<std::pair<const char*, KeyValue>>;
 void add_device(model::Model& model, std::string name, const char* kind, Keys keys, std::uint32_t link = 0,
                 const Pose& X_LS = {});
 /// A joint_motor that holds its joint exactly, with what effort it takes up to the joint's: it follows angles (lengths), or

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -33,7 +34,7 @@ bool is_identifier(std::string_view name) {
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
 }
 
-Result<Placement> read_distribution(const Node& node, const spec::Distribution& read,
+Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, int count,
                                     const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
     return node.error("expected one of 'grid' and 'uniform'", "", path);
@@ -46,9 +47,15 @@ Result<Placement> read_distribution(const Node& node, const spec::Distribution& 
   } else {
     placement.kind = Placement::Kind::uniform;
     placement.centre_m = read.uniform->centre_m;
-    placement.width_m = read.uniform->width_m;
-    placement.height_m = read.uniform->height_m;
-    placement.clearance_m = read.uniform->clearance_m;
+    const spec::Uniform& uniform = *read.uniform;
+    if (uniform.density_per_m2 ? uniform.width_m || uniform.height_m : !uniform.width_m || !uniform.height_m)
+      return node.find("uniform")->error("the size of the area is not clear",
+                                         "give width and height, or density alone", path + "/uniform");
+    const double side_m = std::sqrt(count / uniform.density_per_m2.value_or(1));
+    placement.width_m = uniform.width_m.value_or(side_m);
+    placement.height_m = uniform.height_m.value_or(side_m);
+    placement.clearance_m = uniform.clearance_m;
+    placement.wall_height_m = uniform.wall_height_m;
   }
   return placement;
 }
@@ -164,8 +171,8 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
   if (!keys.pose.is_null() && keys.distribution)
     return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (keys.distribution) {
-    SL_ASSIGN(group.placement,
-              read_distribution(*node.find("distribution"), *keys.distribution, path + "/distribution"));
+    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *keys.distribution, keys.count,
+                                                 path + "/distribution"));
   } else if (!keys.pose.is_null()) {
     if (keys.count > 1)
       return keys.pose.error(std::to_string(keys.count) + " " + what + "s cannot start at one pose",

@@ -28,6 +28,7 @@ struct Placement {
   double height_m = 0;       ///< uniform: extent along y
   double spacing_m = 1;      ///< grid: distance of neighbours
   double clearance_m = 0.5;  ///< uniform: no other instance's origin is nearer than this
+  double wall_height_m = 0;  ///< uniform: of walls about the area; 0: none
   Place place;
 };
 

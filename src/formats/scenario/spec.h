@@ -72,14 +72,20 @@ struct Grid {
 
 struct Uniform {
   Vec3 centre_m;
-  double width_m = 0, height_m = 0;
+  std::optional<double> width_m, height_m, density_per_m2;
   double clearance_m = 0.5;
+  double wall_height_m = 0;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"centre", "m", "Middle of the area, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
-    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m, Field::required}, s.width_m);
-    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m, Field::required}, s.height_m);
+    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m}, s.width_m);
+    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m}, s.height_m);
+    visit(Field{"density", "1/m^2",
+                "In place of width and height: robots per square metre, in a square that holds them all.",
+                1e-6, 1e6},
+          s.density_per_m2);
     visit(Field{"clearance", "m", "No two origins are nearer than this.", 0, 1e4}, s.clearance_m);
+    visit(Field{"wall_height", "m", "Height of walls about the area; 0: none.", 0, 1e3}, s.wall_height_m);
   }
 };
 
