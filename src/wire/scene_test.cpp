@@ -228,6 +228,25 @@ TEST(World, tells_what_stands_in_it) {
             Json::parse(R"({"type":"plane","normal":[0,0,1]})"));
 }
 
+TEST(World, zones_of_the_ground_are_told_where_there_are_some) {
+  auto setup = arena("rigid", 2);
+  WorldTeller teller{Assets()};
+  EXPECT_FALSE(Json::parse(teller.tell(*build(setup), 1)).contains("zones"));
+  setup.zones.push_back({"ice", {{1, 2, 0}, {3, 2, 0}, {1, 4, 0}}, {}, 0, {}, {}});
+  setup.zones[0].surface.mu = 0.05;
+  setup.zones.push_back({"belt", {}, {5, 6, 0}, 2, {}, {}});
+  setup.zones[1].surface.belt_velocity_mps = {0.7, 0, 0};
+  setup.zones[1].surface.touches = false;
+  const Json zones = Json::parse(teller.tell(*build(setup), 2))["zones"];
+  EXPECT_EQ(zones[0],
+            Json::parse(R"({"name":"ice","centre":[0,0,0],"radius_m":0,"corners":[[1,2,0],[3,2,0],[1,4,0]],
+    "friction":0.05,"rolling_resistance_m":0,"belt_velocity":[0,0,0],"hole":false})"));
+  EXPECT_EQ(zones[1]["corners"], Json::array());
+  EXPECT_EQ(zones[1]["radius_m"], 2);
+  EXPECT_EQ(zones[1]["belt_velocity"], Json::parse("[0.7,0,0]"));
+  EXPECT_EQ(zones[1]["hole"], true);
+}
+
 TEST(World, numbers_stay_when_the_world_is_built_anew) {
   const auto simulation = build(arena("rigid", 2));
   WorldTeller teller{Assets()};

@@ -1,6 +1,5 @@
 #pragma once
 /// The keys of a scenario file, once: the reader and the schema both come from these lists.
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>

@@ -66,6 +66,7 @@ std::vector<Finding> lint(const Simulation& simulation) {
   check_units(simulation, findings);
   check_inertia(simulation, findings);
   check_start(simulation, findings);
+  check_surfaces(simulation, findings);
   check_speed(simulation, findings);
   check_gains(simulation, findings);
   check_actuators(simulation, findings);
