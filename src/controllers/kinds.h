@@ -2,6 +2,7 @@
 /// The controllers that come with Sandlot: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_CONTROLLERS(controller) \
+  controller(diffusion)                 \
   controller(playback)                  \
   controller(sequence)                  \
   controller(sine)                      \

@@ -383,6 +383,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.values = scenario.values;
     setup.events = scenario.events;
     setup.log = scenario.log;
+    setup.zones = scenario.zones;
     if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
     if (options.seed) setup.seed = *options.seed;
     for (const auto& [written, place] : scenario.plugins) {
@@ -414,6 +415,12 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
         setup.instances.push_back(std::move(instance));
       }
     };
+    const auto fence = [&](Placer& placer, const formats::RobotGroup& group) {
+      auto walls = walls_of(group);
+      if (!walls) return;
+      placer.add(*walls);
+      setup.instances.push_back(std::move(*walls));
+    };
     // Things first: robots find their places between them.
     Placer thing_placer(setup.instances, setup.seed);
     for (std::size_t i = 0; i < scenario.things.size(); ++i) {
@@ -421,6 +428,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       SL_ASSIGN(model::Instance pattern, pattern_of(group, "/things/" + std::to_string(i)));
       pattern.place = group.place;
       scale_errors(pattern, errors);
+      fence(thing_placer, group);
       SL_ASSIGN(const std::vector<Pose> poses, thing_placer.place(group));
       add_group(group, pattern, poses);
     }
@@ -442,6 +450,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       }
       SL_TRY(merge_devices(pattern, group.devices));
       scale_errors(pattern, errors * group.errors);
+      fence(placer, group);
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       add_group(group, pattern, poses);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -33,7 +34,7 @@ bool is_identifier(std::string_view name) {
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
 }
 
-Result<Placement> read_distribution(const Node& node, const spec::Distribution& read,
+Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, int count,
                                     const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
     return node.error("expected one of 'grid' and 'uniform'", "", path);
@@ -46,9 +47,15 @@ Result<Placement> read_distribution(const Node& node, const spec::Distribution& 
   } else {
     placement.kind = Placement::Kind::uniform;
     placement.centre_m = read.uniform->centre_m;
-    placement.width_m = read.uniform->width_m;
-    placement.height_m = read.uniform->height_m;
-    placement.clearance_m = read.uniform->clearance_m;
+    const spec::Uniform& uniform = *read.uniform;
+    if (uniform.density_per_m2 ? uniform.width_m || uniform.height_m : !uniform.width_m || !uniform.height_m)
+      return node.find("uniform")->error("the size of the area is not clear",
+                                         "give width and height, or density alone", path + "/uniform");
+    const double side_m = std::sqrt(count / uniform.density_per_m2.value_or(1));
+    placement.width_m = uniform.width_m.value_or(side_m);
+    placement.height_m = uniform.height_m.value_or(side_m);
+    placement.clearance_m = uniform.clearance_m;
+    placement.wall_height_m = uniform.wall_height_m;
   }
   return placement;
 }
@@ -164,8 +171,8 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
   if (!keys.pose.is_null() && keys.distribution)
     return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (keys.distribution) {
-    SL_ASSIGN(group.placement,
-              read_distribution(*node.find("distribution"), *keys.distribution, path + "/distribution"));
+    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *keys.distribution, keys.count,
+                                                 path + "/distribution"));
   } else if (!keys.pose.is_null()) {
     if (keys.count > 1)
       return keys.pose.error(std::to_string(keys.count) + " " + what + "s cannot start at one pose",
@@ -292,7 +299,7 @@ Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
   return {};
 }
 
-Result<Scenario> read_root(const Node& node, const std::string& file) {
+Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
   SL_TRY(refuse_later_keys(node));
   // A file of a later version may differ in every key: its version is the one thing to complain about.
   if (const Node* version = node.find("version")) {
@@ -353,6 +360,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   }
   SL_TRY(check_names(out.robots));
   SL_TRY(read_watch(node, root, out));
+  SL_TRY(read_zones(node, root.zones, out, diagnostics));
   return out;
 }
 
@@ -380,13 +388,13 @@ Result<Pose> read_pose(const Node& node, const std::string& path) {
 }
 
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
-                                std::span<const Override> overrides, Diagnostics&) {
+                                std::span<const Override> overrides, Diagnostics& diagnostics) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
-  SL_ASSIGN(Scenario scenario, read_root(root, file));
+  SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
   scenario.unused_vars = std::move(unused_vars);
   return scenario;
 }

@@ -28,6 +28,7 @@ struct Placement {
   double height_m = 0;       ///< uniform: extent along y
   double spacing_m = 1;      ///< grid: distance of neighbours
   double clearance_m = 0.5;  ///< uniform: no other instance's origin is nearer than this
+  double wall_height_m = 0;  ///< uniform: of walls about the area; 0: none
   Place place;
 };
 
@@ -80,6 +81,7 @@ struct Scenario {
   std::vector<model::ValueDecl> values;
   std::vector<model::EventDecl> events;
   std::optional<model::LogDecl> log;
+  std::vector<model::SurfaceZone> zones;
   std::optional<model::Recording> record;  ///< its file is made absolute or relative to the working folder
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
