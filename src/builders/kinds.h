@@ -11,6 +11,12 @@
   builder(armband)                \
   builder(hexapod)                \
   builder(diff_robot)             \
+  builder(skid_robot)             \
+  builder(ackermann_robot)        \
+  builder(omni_robot)             \
+  builder(mecanum_robot)          \
+  builder(swerve_robot)           \
+  builder(tracked_robot)          \
   builder(square_playground)      \
   builder(octagon_playground)     \
   builder(terrain)                \

@@ -31,7 +31,7 @@ void take_command(Motor& motor, Level level, const JointState& joint) {
     state.reference = present(level, joint);
     state.previous_velocity = joint.velocity;
   }
-  state.command = slot.message.data;
+  state.command = motor.in_units(level, slot.message.data);
 }
 
 double towards(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
@@ -103,6 +103,31 @@ double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
 
 }  // namespace
 
+double Motor::in_units(Level level, double given) const {
+  if (spec.commands == Commands::si) return given;
+  const double share = std::clamp(given, -1.0, 1.0);
+  if (level == velocity) return share * velocity_limit();
+  if (level == effort) return share * effort_limit();
+  if (spec.commands == Commands::centred) return 0.5 * (upper + lower) + share * 0.5 * (upper - lower);
+  return share > 0 ? share * upper : -share * lower;
+}
+
+Status Motor::check_scale(std::uint32_t levels) const {
+  constexpr double unlimited = 1e9;
+  if (spec.commands == Commands::si) return {};
+  const Level level = active(levels);
+  const bool limited = level == position ? lower > -unlimited && upper < unlimited
+                       : level == effort ? effort_limit() < unlimited
+                                         : velocity_limit() < unlimited;
+  if (limited) return {};
+  return Error{"commands of joint '" + spec.joint + "' are shares of a limit that it does not have",
+               level == position ? "limit the joint in its model"
+               : level == effort ? "give max_effort"
+                                 : "give max_velocity",
+               {},
+               "/commands"};
+}
+
 Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   SL_TRY(check_levels(build.levels));
   if (!build.engine.joints)
@@ -125,11 +150,12 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   motor.upper = bounded ? joint.upper : 1e16;
   motor.joint_effort = joint.max_effort;
   motor.joint_velocity = joint.max_velocity;
+  SL_TRY(motor.check_scale(build.levels));
   if (!motor.spec.active) {
     motor.state.powered = stopped;
   } else if (motor.spec.initial_command) {
     motor.state.powered = following;
-    motor.state.command = *motor.spec.initial_command;
+    motor.state.command = motor.in_units(active(build.levels), *motor.spec.initial_command);
   }
   motor.command[velocity] = build.accept<msg::Float64>(velocity, "velocity");
   motor.command[position] = build.accept<msg::Float64>(position, "position");
@@ -172,6 +198,7 @@ void Motor::release(const Context& context) {
 Status Motor::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   SL_TRY(check_levels(after));
   if (before == after) return {};
+  SL_TRY(check_scale(after));
   hand_over(*this, active(after), context.engine.joint_states()[joint.index]);
   return {};
 }

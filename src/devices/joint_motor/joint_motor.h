@@ -8,6 +8,9 @@
 ///          closes a fifth of the error in each sub-step. The reference moves towards the command at no more than
 ///          max_velocity; position commands are cut to the joint's limits, efforts to the smaller of max_effort and
 ///          the joint's own.
+/// Scale    `commands: si` (the default) takes rad, m, rad/s, Nm ... `share` takes -1 to 1 of the limit on that side (0 stays 0;
+///          LpzRobots' OneAxisServo), `centred` of the way from the middle between the joint's limits to them; of speeds and
+///          efforts both are shares of max_velocity and max_effort. What lies beyond is cut.
 /// Output   none; a wheel_encoder shows the joint's state.
 /// Time     a command acts from the tick it arrives in. Before the first one the joint is free, unless there is an
 ///          `initial_command`.
@@ -18,7 +21,8 @@
 /// Noise    none: the loop sees the true angle and speed.
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.
-/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints.
+/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints; shares of a
+///          limit that there is not.
 /// Source   devices/pid.h.
 #include <array>
 
@@ -34,10 +38,18 @@ inline std::span<const EnumName<Servo>> enum_names(Servo) {
   return names;
 }
 
+enum class Commands : std::uint8_t { si, share, centred };
+inline std::span<const EnumName<Commands>> enum_names(Commands) {
+  static constexpr EnumName<Commands> names[] = {
+      {"si", Commands::si}, {"share", Commands::share}, {"centred", Commands::centred}};
+  return names;
+}
+
 struct Spec {
   std::string joint;
   bool active = true;
   Servo servo = Servo::pid;
+  Commands commands = Commands::si;
   std::optional<double> initial_command;
   Gains velocity{.p = 1.0};
   Gains position{.p = 10.0, .d = 1.0};
@@ -52,6 +64,9 @@ struct Spec {
     visit(Field{"servo", "",
                 "How speed and position are followed: by gains, or exactly up to the largest effort."},
           s.servo);
+    visit(Field{"commands", "",
+                "What commands are: in SI units, or -1 to 1 of the limits, with 0 at 0 or in the middle."},
+          s.commands);
     visit(Field{"initial_command", "", "Command before the first one comes.", -1e9, 1e9}, s.initial_command);
     visit(Field{"velocity", "", "Gains of level velocity: Nm per rad/s (prismatic: N per m/s)."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: Nm per rad (prismatic: N per m)."}, s.position);
@@ -102,6 +117,10 @@ struct Motor {
   void release(const Context& context);
   Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 
+  /// A command as it came, in the level's unit.
+  double in_units(Level level, double command) const;
+  /// Of commands that are shares: the limit they are shares of.
+  Status check_scale(std::uint32_t levels) const;
   double effort_limit() const { return std::min(spec.max_effort, joint_effort); }
   double velocity_limit() const { return std::min(spec.max_velocity, joint_velocity); }
 };

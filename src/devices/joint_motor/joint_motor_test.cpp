@@ -302,5 +302,43 @@ TEST(JointMotor, RefusesWhatItCannotDrive) {
             "robot.yaml:12:5: the engine 'hand' does not simulate joints; use the engine 'rigid'");
 }
 
+TEST(JointMotor, CommandsCanBeSharesOfTheLimits) {
+  // Limits of -0.3 and 0.5 m. Servo `exact` closes a fifth of the error in each step: after 200 there is none.
+  model::Model model = test::two_wheels();
+  model.joints[2].lower = -0.3;
+  const auto reached_m = [&](const char* commands, const char* given) {
+    Rig rig(kind, model);
+    EXPECT_TRUE(rig.add(
+        "motor",
+        config({{"joint", "lift"}, {"commands", commands}, {"servo", "exact"}, {"initial_command", given}}),
+        position_bit));
+    for (int i = 0; i < 200; ++i) rig.act();
+    const double at_first = rig.engine->joint[2].position;
+    double number = 0;
+    EXPECT_TRUE(parse_number(given, number));
+    rig.command("motor/position", msg::Float64{number});
+    for (int i = 0; i < 200; ++i) rig.act();
+    EXPECT_NEAR(rig.engine->joint[2].position, at_first, 1e-12)
+        << "an initial command is one like the others";
+    return at_first;
+  };
+  EXPECT_NEAR(reached_m("si", "0.2"), 0.2, 1e-12);
+  EXPECT_NEAR(reached_m("share", "0.5"), 0.25, 1e-12);
+  EXPECT_NEAR(reached_m("share", "-1"), -0.3, 1e-12);
+  EXPECT_NEAR(reached_m("share", "7"), 0.5, 1e-12);
+  EXPECT_NEAR(reached_m("centred", "0"), 0.1, 1e-12);
+  EXPECT_NEAR(reached_m("centred", "-0.5"), -0.1, 1e-12);
+}
+
+TEST(JointMotor, SharesNeedALimit) {
+  Rig rig(kind, test::two_wheels());
+  const Status endless = rig.add("a", config({{"joint", "left"}, {"commands", "share"}}), position_bit);
+  ASSERT_FALSE(endless);
+  EXPECT_NE(endless.error().what.find("a limit that it does not have"), std::string::npos);
+  EXPECT_FALSE(rig.add("b", config({{"joint", "left"}, {"commands", "share"}}), velocity_bit));
+  EXPECT_TRUE(
+      rig.add("c", config({{"joint", "left"}, {"commands", "share"}, {"max_velocity", "3"}}), velocity_bit));
+}
+
 }  // namespace
 }  // namespace sandlot::joint_motor
