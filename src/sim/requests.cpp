@@ -95,8 +95,6 @@ Status Simulation::start_pull(const PullRequest& request) {
   const model::Model& model = *entity->instance.model;
   std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity->serial; });
   if (request.hold <= Time{}) return {};
-  if (engine_->capabilities().planar)
-    return Error{"the planar engine takes no forces", "drag '" + request.name + "', or use physics: rigid"};
   if (model.is_static || entity->instance.motion)
     return Error{"'" + request.name + "' cannot be moved by forces"};
   const auto link = request.link.empty() ? std::optional<std::uint32_t>(0) : model.find_link(request.link);

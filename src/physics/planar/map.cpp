@@ -116,7 +116,17 @@ void Map::overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const 
     for (std::int64_t i = discs.x0; i <= discs.x1; ++i)
       for (const std::uint32_t k : disc_cells_.in_slot(disc_cells_.slot(i, j))) {
         const double radius = radius_at(discs_[k].heights);
-        if (radius >= 0 && touches(centre, radius, discs_[k])) bodies.push_back(discs_[k].body);
+        if (!(radius >= 0 && touches(centre, radius, discs_[k]))) continue;
+        if (discs_[k].figure == ~0u) {
+          bodies.push_back(discs_[k].body);
+          continue;
+        }
+        const Silhouette& figure = figures_[discs_[k].figure];
+        for (std::size_t part = 0; part < figure.parts.size(); ++part) {
+          const double across = radius_at(figure.parts[part].heights);
+          if (across >= 0 && nearest(figure.parts[part], figure.edges, centre).distance_m <= across)
+            bodies.push_back(figure.bodies[part]);
+        }
       }
   const auto meet_wall = [&](std::uint32_t k) {
     const double radius = radius_at(walls_[k].outline.heights);
@@ -183,6 +193,16 @@ void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& 
   }
 }
 
+void Map::meet_figure(const Ray& ray, std::uint32_t index, Hit& hit) const {
+  const Silhouette& figure = figures_[index];
+  for (std::size_t i = 0; i < figure.parts.size(); ++i) {
+    const Outline& part = figure.parts[i];
+    if (ray.dz == 0 && (ray.z < part.heights.min_m || ray.z > part.heights.max_m)) continue;
+    const Chord c = chord(part, figure.edges, ray.origin, ray.direction);
+    if (c.first <= c.last) hit.meet(ray, c, part.heights, figure.bodies[i]);
+  }
+}
+
 /// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly share it.
 struct Map::Start {
   std::int64_t i, j;
@@ -246,7 +266,17 @@ template <bool with_walls>
   for (;;) {
     const std::uint32_t slot = discs.slot();
     for (std::uint32_t k = discs.start[slot]; k < discs.start[slot + 1]; ++k)
-      if (discs.things[k] != ray.ignored) hit.meet(ray, disc[discs.things[k]]);
+      if (const Disc& met_disc = disc[discs.things[k]]; met_disc.instance != ray.ignored) {
+        if (met_disc.figure == ~0u) {
+          hit.meet(ray, met_disc);
+        } else [[unlikely]] {
+          // Copies, so that the others may stay in registers.
+          const Ray same = ray;
+          Hit met = hit;
+          meet_figure(same, met_disc.figure, met);
+          hit = met;
+        }
+      }
     if constexpr (with_walls) meet_walls(ray, wall_cells_.in_slot(walls.slot()), hit);
     end = std::min(end, hit.t);
     if (!(std::min(t_x, t_y) < end)) break;
@@ -282,7 +312,7 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
       if (!walls_.empty() && !wall_cells_.in_slot(wall_cells_.slot(i, j)).empty()) return false;
       for (const std::uint32_t k : disc_cells_.in_slot(disc_cells_.slot(i, j))) {
         const Disc* const disc = &discs_[k];
-        if (k == ignored || !touches(o, job.max_m + 1e-6, *disc)) continue;
+        if (disc->instance == ignored || !touches(o, job.max_m + 1e-6, *disc)) continue;
         if (std::find(reach.discs, reach.discs + reach.count, disc) != reach.discs + reach.count) continue;
         if (reach.count == Reach::most) return false;
         reach.discs[reach.count++] = disc;
@@ -313,7 +343,10 @@ void Map::cast(const RayJob& job, std::uint32_t ignored) const {
     if (length2 > 1e-20) {
       if (!everywhere_.empty()) meet_walls(ray, everywhere_, hit);
       if (near)
-        for (std::uint32_t k = 0; k < reach.count; ++k) hit.meet(ray, *reach.discs[k]);
+        for (std::uint32_t k = 0; k < reach.count; ++k) {
+          if (reach.discs[k]->figure == ~0u) hit.meet(ray, *reach.discs[k]);
+          else meet_figure(ray, reach.discs[k]->figure, hit);
+        }
       else if (anything) walls_.empty() ? walk<false>(ray, shared, hit) : walk<true>(ray, shared, hit);
     }
     job.distance_m[i] = hit.found ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
-/// Everything that stands in the plane, filed in cells: the discs of moving instances and the outlines of unmoving
-/// ones. Broad phase, rays and overlaps all ask here.
+/// Everything that stands in the plane, filed in cells: the discs and figures of moving bodies and the outlines of
+/// unmoving ones. Rays and overlaps ask here.
 ///
 /// A thing here is an upright prism: its outline over its heights, with a lid and a bottom. Answers do not depend on
 /// the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
@@ -18,12 +18,21 @@
 
 namespace sandlot::planar {
 
-/// The footprint of one moving instance; `body` is what rays and contacts call it.
+/// The footprint of one moving lump, or a circle around its figure; `body` is what rays and contacts call it.
 struct alignas(64) Disc {
   Vec2 centre;
   double radius_m = 0;  ///< 0: nothing to meet
   Heights heights;
   std::uint32_t body = no_body;
+  std::uint32_t instance = ~0u;  ///< slot
+  std::uint32_t figure = ~0u;    ///< ~0u: the disc is all
+};
+
+/// A moving lump that is more than a disc, where it is now.
+struct Silhouette {
+  std::vector<Outline> parts;
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> bodies;  ///< by part
 };
 
 /// The outline of one shape that never moves.
@@ -31,6 +40,8 @@ struct Wall {
   Outline outline;
   std::uint32_t body = no_body;
   std::uint32_t instance = ~0u;  ///< slot
+  std::uint32_t ordinal = 0;     ///< among those of its instance
+  const model::Surface* surface = nullptr;
 };
 
 class Map {
@@ -39,8 +50,9 @@ class Map {
 
   /// Replaces the walls. Their order decides which of two counts first, so it has to be that of creation.
   void set_walls(std::span<const Wall> walls, std::span<const Edge> edges);
-  /// By slot of the instance. Whoever changes them calls file_discs() before the next question.
+  /// By lump. Whoever changes them calls file_discs() before the next question.
   std::vector<Disc>& discs() { return discs_; }
+  std::vector<Silhouette>& figures() { return figures_; }
   /// Files the discs under the cells where they are now.
   void file_discs();
 
@@ -49,15 +61,6 @@ class Map {
 
   /// Indices of walls that may touch an area, ascending, each once.
   void walls_near(Area area, std::vector<std::uint32_t>& out) const;
-  /// Calls visit(a, b), a < b, for discs that share a cell; a pair may come more than once.
-  template <class Visit>
-  void for_pairs(Visit&& visit) const {
-    for (std::uint32_t s = 0; s < disc_cells_.columns() * disc_cells_.rows(); ++s) {
-      const auto discs = disc_cells_.in_slot(s);
-      for (std::size_t i = 0; i + 1 < discs.size(); ++i)
-        for (std::size_t j = i + 1; j < discs.size(); ++j) visit(discs[i], discs[j]);
-    }
-  }
   /// Bodies that meet a ball, ascending, each once, appended.
   void overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const;
 
@@ -75,11 +78,13 @@ class Map {
   void walk(const Ray& ray, const Start* shared, Hit& hit) const;
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
+  void meet_figure(const Ray& ray, std::uint32_t figure, Hit& hit) const;
 
   double cell_m_;
   std::vector<Wall> walls_;
   std::vector<Edge> edges_;
   std::vector<Disc> discs_;
+  std::vector<Silhouette> figures_;
   Cells wall_cells_, disc_cells_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
   Area wall_area_, area_;                  ///< of the walls, and of all there is

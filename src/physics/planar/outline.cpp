@@ -63,27 +63,6 @@ void add_circle(Vec2 centre, double radius, Heights h, std::vector<Outline>& out
   outlines.push_back({centre, radius, h, 0, 0});
 }
 
-void add_polygon(std::vector<Vec2> points, Heights h, std::vector<Outline>& outlines,
-                 std::vector<Edge>& edges) {
-  const std::vector<Vec2> corners = hull_of(std::move(points));
-  if (corners.size() < 3) return;  // no area: nothing to bump into
-  Vec2 low = corners[0], high = corners[0];
-  for (const Vec2 p : corners) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  Outline outline{0.5 * (low + high), 0, h, static_cast<std::uint32_t>(edges.size()),
-                  static_cast<std::uint32_t>(corners.size())};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2 from = corners[i], step = corners[(i + 1) % corners.size()] - from;
-    const double length = std::sqrt(dot(step, step));
-    edges.push_back({from, (1 / length) * step, length});
-    const Vec2 out = from - outline.centre;
-    outline.radius_m = std::max(outline.radius_m, std::sqrt(dot(out, out)));
-  }
-  outlines.push_back(outline);
-}
-
 void add_triangles(const TriangleMesh& mesh, const Pose& X_WC, std::vector<Outline>& outlines,
                    std::vector<Edge>& edges) {
   // Both halves of an upright rectangle are the same wall.
@@ -138,6 +117,27 @@ std::array<Vec3, 8> corners_of(const Box& box, const Pose& X_WC) {
 }
 
 }  // namespace
+
+void add_polygon(std::vector<Vec2> points, Heights h, std::vector<Outline>& outlines,
+                 std::vector<Edge>& edges) {
+  const std::vector<Vec2> corners = hull_of(std::move(points));
+  if (corners.size() < 3) return;  // no area: nothing to bump into
+  Vec2 low = corners[0], high = corners[0];
+  for (const Vec2 p : corners) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  Outline outline{0.5 * (low + high), 0, h, static_cast<std::uint32_t>(edges.size()),
+                  static_cast<std::uint32_t>(corners.size())};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2 from = corners[i], step = corners[(i + 1) % corners.size()] - from;
+    const double length = std::sqrt(dot(step, step));
+    edges.push_back({from, (1 / length) * step, length});
+    const Vec2 out = from - outline.centre;
+    outline.radius_m = std::max(outline.radius_m, std::sqrt(dot(out, out)));
+  }
+  outlines.push_back(outline);
+}
 
 Heights heights_of(const Shape& shape, const Pose& X_WC) {
   const Vec3 axis = rotate(X_WC.q, {0, 0, 1});

@@ -53,6 +53,10 @@ struct Outline {
 void add_outlines(const Shape& shape, const Pose& X_WC, std::vector<Outline>& outlines,
                   std::vector<Edge>& edges);
 
+/// The convex hull of points over some heights; nothing when it has no area.
+void add_polygon(std::vector<Vec2> points, Heights h, std::vector<Outline>& outlines,
+                 std::vector<Edge>& edges);
+
 /// Heights of a shape at X_WC; empty for a plane.
 Heights heights_of(const Shape& shape, const Pose& X_WC);
 

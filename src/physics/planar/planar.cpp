@@ -43,25 +43,32 @@ Status check(const model::Instance& instance) {
   return {};
 }
 
-/// Heading of a rotation about z.
-Turn heading_of(Quat q, Quat& tilt) {
-  const double n = std::sqrt(q.w * q.w + q.z * q.z);
-  if (n < 1e-9) {  // upside down: any heading will do
-    tilt = q;
-    return {};
-  }
-  const double w = q.w / n, z = q.z / n;
-  tilt = normalised(Quat{n, w * q.x + z * q.y, w * q.y - z * q.x, 0});
-  return tidied({w * w - z * z, 2 * w * z});
+}  // namespace
+
+Capabilities PlanarEngine::capabilities() const {
+  return {.name = "planar",
+          .planar = true,
+          .joints = true,
+          .contact_drives = true,
+          .ideal_drives = true,
+          .rays = true,
+          .contact_forces = true,
+          .grips = true};
 }
 
-Quat about_z(Turn t) {
-  if (t.c >= 0) {
-    const double w = std::sqrt(0.5 * (1 + t.c));
-    return {w, 0, 0, 0.5 * t.s / w};
-  }
-  const double z = std::copysign(std::sqrt(0.5 * (1 - t.c)), t.s);
-  return {0.5 * t.s / z, 0, 0, z};
+BodyName PlanarEngine::name(BodyId id) const {
+  if (id.index >= body_slot_.size() || body_generation_[id.index] != id.generation) return {};
+  const Instance& instance = instances_[body_slot_[id.index]];
+  for (std::size_t l = 0; l < instance.bodies.size(); ++l)
+    if (instance.alive && instance.bodies[l] == id) return {instance.name, &instance.model->links[l]};
+  return {};
+}
+
+const Instance& PlanarEngine::get(InstanceId id) const {
+  SL_CHECK(id.index < instances_.size());
+  const Instance& instance = instances_[id.index];
+  SL_CHECK(instance.alive && instance.generation == id.generation);
+  return instance;
 }
 
 template <class T>
@@ -75,43 +82,17 @@ std::uint32_t take_index(std::vector<std::uint32_t>& free, std::vector<T>& all) 
   return index;
 }
 
-}  // namespace
-
-Capabilities PlanarEngine::capabilities() const {
-  return {.name = "planar",
-          .planar = true,
-          .joints = false,
-          .contact_drives = false,
-          .ideal_drives = true,
-          .rays = true};
-}
-
-BodyName PlanarEngine::name(BodyId id) const {
-  if (id.index >= body_slot_.size() || body_generation_[id.index] != id.generation) return {};
-  const Instance& instance = instances_[body_slot_[id.index]];
-  for (std::size_t l = 0; l < instance.bodies.size(); ++l)
-    if (instance.alive && instance.bodies[l] == id) return {instance.name, &instance.model->links[l]};
-  return {};
-}
-
-const PlanarEngine::Instance& PlanarEngine::get(InstanceId id) const {
-  SL_CHECK(id.index < instances_.size());
-  const Instance& instance = instances_[id.index];
-  SL_CHECK(instance.alive && instance.generation == id.generation);
-  return instance;
-}
-
 Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   SL_TRY(check(declared));
   const model::Model& model = *declared.model;
   if (last_model_ != declared.model) {
     last_model_ = declared.model;
     last_tree_ = std::make_shared<const Tree>(model);
+    last_plan_ = nullptr;
   }
   const std::uint32_t slot = take_index(free_instances_, instances_);
-  bases_.resize(instances_.size());
   drives_.resize(instances_.size());
-  map_.discs().resize(instances_.size());
+  planned_.resize(instances_.size());
   Instance& instance = instances_[slot];
   instance.alive = true;
   instance.guided = declared.motion.has_value();
@@ -120,22 +101,28 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   instance.name = declared.name;
   instance.model = declared.model;
   instance.tree = last_tree_;
-  double mass_kg = 0;
-  for (const model::Link& link : model.links) {
-    mass_kg += link.inertial.mass_kg;
+  for (std::size_t l = 0; l < model.links.size(); ++l) {
     const std::uint32_t body = take_index(free_bodies_, body_slot_);
     body_generation_.resize(body_slot_.size());
     states_.resize(body_slot_.size());
     body_slot_[body] = slot;
     instance.bodies.push_back(body_id(body));
   }
-  instance.inverse_mass_per_kg = instance.guided ? 0 : 1 / std::max(mass_kg, 1e-9);
   for (const model::Joint& joint : model.joints) {
     const std::uint32_t index = take_index(free_joints_, motors_);
     joint_states_.resize(motors_.size());
     joint_states_[index] = {};
     Motor& motor = motors_[index];
-    motor = {.generation = motor.generation, .max_velocity = joint.max_velocity};
+    const bool listed = motor.listed;
+    motor = {.generation = motor.generation};
+    motor.listed = listed;
+    motor.slot = slot;
+    motor.max_velocity = joint.max_velocity;
+    motor.max_effort = joint.max_effort;
+    motor.damping = joint.damping;
+    motor.friction = joint.friction;
+    motor.stiffness = joint.spring_stiffness;
+    motor.reference = joint.spring_reference;
     const bool bounded = joint.type == model::JointType::revolute ||
                          joint.type == model::JointType::prismatic;
     motor.lower = bounded ? joint.lower : -std::numeric_limits<double>::infinity();
@@ -149,114 +136,45 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   return InstanceId{slot, instance.generation};
 }
 
-/// Puts an instance to a place, at rest.
-void PlanarEngine::settle(std::uint32_t slot, const Pose& X_WM) {
-  Instance& instance = instances_[slot];
-  const Pose X_WB = X_WM * instance.model->links[0].X_ML;
-  bases_[slot] = {{X_WB.p.x, X_WB.p.y}, heading_of(X_WB.q, instance.tilt), {}, 0};
-  instance.z_m = X_WB.p.z;
-  drives_[slot].now = {};
-  shape(slot);
-}
-
-/// What follows from attitude and height: the disc and the frame of the drive.
-void PlanarEngine::shape(std::uint32_t slot) {
-  Instance& instance = instances_[slot];
-  const model::Model& model = *instance.model;
-  const Base& base = bases_[slot];
-  aim(slot, drives_[slot].link);
-  Disc& disc = map_.discs()[slot];
-  disc = {.centre = base.p, .body = instance.bodies[0].index};
-  instance.offset = {};
-  walls_fresh_ = walls_fresh_ && instance.moves;
-  stale();
-  if (!instance.moves) return;
-  const Pose X_HM = Pose{{0, 0, instance.z_m}, instance.tilt} * inverse(model.links[0].X_ML);
-  std::vector<Round>& hull = hull_;
-  hull.clear();
-  for (const model::Link& link : model.links)
-    for (const model::Collision& collision : link.collisions) {
-      const Pose X_HC = X_HM * link.X_ML * collision.X_LC;
-      add_shadow(collision.shape, X_HC, hull);
-      disc.heights.add(heights_of(collision.shape, X_HC));
-    }
-  if (hull.empty()) return;
-  Vec2 low = hull[0].centre, high = low;
-  for (const Round& r : hull) {
-    low = {std::min(low.x, r.centre.x - r.radius_m), std::min(low.y, r.centre.y - r.radius_m)};
-    high = {std::max(high.x, r.centre.x + r.radius_m), std::max(high.y, r.centre.y + r.radius_m)};
-  }
-  instance.offset = 0.5 * (low + high);
-  for (const Round& r : hull) {
-    const Vec2 out = r.centre - instance.offset;
-    disc.radius_m = std::max(disc.radius_m, std::sqrt(dot(out, out)) + r.radius_m);
-  }
-  disc.centre = base.p + rotate(base.heading, instance.offset);
-}
-
 void PlanarEngine::remove(InstanceId id) {
   get(id);
   Instance& instance = instances_[id.index];
   for (const BodyId body : instance.bodies) {
     ++body_generation_[body.index];
-    body_slot_[body.index] = ~0u;
+    body_slot_[body.index] = none;
   }
   for (const JointId joint : instance.joints) {
-    motors_[joint.index] = {.generation = motors_[joint.index].generation + 1};
+    Motor& motor = motors_[joint.index];
+    const bool listed = motor.listed;
+    motor = {.generation = motor.generation + 1};
+    motor.listed = listed;
     joint_states_[joint.index] = {};
   }
   // Backwards, so that the next model of the same kind gets its indices in order.
   for (std::size_t i = instance.bodies.size(); i-- > 0;) free_bodies_.push_back(instance.bodies[i].index);
   for (std::size_t i = instance.joints.size(); i-- > 0;) free_joints_.push_back(instance.joints[i].index);
+  free_lumps(instance);
   walls_fresh_ = walls_fresh_ && instance.moves;
+  std::erase_if(touches_, [&](const Touch& t) {
+    return t.key.pair >> 32 == instance.created || (t.key.pair & 0xffffffffu) == instance.created;
+  });
   instance = {.generation = instance.generation + 1};
-  map_.discs()[id.index] = {};
   order_.erase(std::find(order_.begin(), order_.end(), id.index));
   free_instances_.push_back(id.index);
+  std::erase_if(grips_, [&](const Linkage& l) { return !alive(l.body_a) || !alive(l.body_b); });
+  filed_ = ground_fresh_ = false;
   stale();
 }
 
-void PlanarEngine::set_pose(InstanceId id, const Pose& X_WM) {
-  get(id);
-  settle(id.index, X_WM);
+std::uint32_t PlanarEngine::slot_of(BodyId id) const {
+  SL_CHECK(id.index < body_slot_.size());
+  SL_CHECK_MSG(alive(id), "no such body");
+  return body_slot_[id.index];
 }
 
-void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
-  SL_CHECK_MSG(get(id).guided, "guide() needs an instance with a motion");
-  instances_[id.index].destination = {X_WM, V_WM};
-}
-
-/// Takes a guided instance where it is to be.
-void PlanarEngine::lead(std::uint32_t slot) {
-  Instance& instance = instances_[slot];
-  Base& base = bases_[slot];
-  base.v = {};
-  base.w_radps = 0;
-  if (!instance.destination) return;
-  const auto [X_WM, V] = *instance.destination;
-  instance.destination.reset();
-  const Pose X_WB = X_WM * instance.model->links[0].X_ML;
-  const Vec3 v = V.linear + cross(V.angular, X_WB.p - X_WM.p);
-  Quat tilt;
-  base = {{X_WB.p.x, X_WB.p.y}, heading_of(X_WB.q, tilt), {v.x, v.y}, V.angular.z};
-  const Quat change = conjugate(instance.tilt) * tilt;
-  // Rounding alone does not make a new outline.
-  if (std::abs(X_WB.p.z - instance.z_m) > 1e-9 || norm(Vec3{change.x, change.y, change.z}) > 1e-9) {
-    instance.tilt = tilt;
-    instance.z_m = X_WB.p.z;
-    shape(slot);
-  }
-  map_.discs()[slot].centre = base.p + rotate(base.heading, instance.offset);
-}
-
-Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
-  const Base& base = bases_[slot];
-  const Instance& instance = instances_[slot];
-  return {{base.p.x, base.p.y, instance.z_m}, about_z(base.heading) * instance.tilt};
-}
-
-Pose PlanarEngine::pose(InstanceId id) const {
-  return canonical_pose(id.index) * inverse(get(id).model->links[0].X_ML);
+bool PlanarEngine::alive(BodyId id) const {
+  return id.index < body_slot_.size() && body_slot_[id.index] != none &&
+         id.generation == body_generation_[id.index];
 }
 
 std::span<const BodyState> PlanarEngine::states() const {
@@ -272,24 +190,32 @@ void PlanarEngine::aim(std::uint32_t slot, std::uint32_t link) {
   const Vec3 arm = rotate(instance.tilt, X_BL.p), x = rotate(instance.tilt, rotate(X_BL.q, {1, 0, 0}));
   Drive& drive = drives_[slot];
   drive.link = link;
-  drive.arm = {arm.x, arm.y};
+  const Vec2 com = instance.plan->lumps[0].com_H;
+  drive.arm = Vec2{arm.x, arm.y} - com;
   const double n = std::sqrt(x.x * x.x + x.y * x.y);
   drive.frame = n > 1e-6 ? Turn{x.x / n, x.y / n} : Turn{};
 }
 
 void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
   for (const DriveTarget& t : targets) {
-    SL_CHECK(t.base.index < body_slot_.size());
-    const std::uint32_t slot = body_slot_[t.base.index];
-    SL_CHECK_MSG(slot != ~0u && t.base.generation == body_generation_[t.base.index], "no such body");
-    if (!instances_[slot].moves || instances_[slot].guided) continue;
+    const std::uint32_t slot = slot_of(t.base);
     const Instance& instance = instances_[slot];
+    if (!instance.moves || instance.guided) continue;
     Drive& drive = drives_[slot];
     if (instance.bodies[drive.link] != t.base)
       for (std::uint32_t link = 0; link < instance.bodies.size(); ++link)
         if (instance.bodies[link] == t.base) aim(slot, link);
+    if (t.active && !drive.active) {
+      // It goes on at the velocity that it has.
+      const Lump& lump = lumps_[instance.lumps[0]];
+      drive.now = {rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
+                   lump.w_radps};
+      for (const Wheel& wheel : instance.wheels)
+        for (const std::uint32_t joint : {wheel.joint, wheel.steering})
+          if (joint != none && !motors_[joint].listed)
+            motors_[joint].listed = true, turning_.push_back(joint);
+    }
     drive.active = t.active;
-    if (!t.active) drive.now = {};
     drive.target = {{t.vx_mps, t.vy_mps}, t.wz_radps};
     drive.accel = t.max_accel_mps2;
     drive.angular_accel = t.max_angular_accel_radps2;
@@ -299,10 +225,52 @@ void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
 void PlanarEngine::set_targets(std::span<const JointTarget> targets) {
   for (const JointTarget& t : targets) {
     SL_CHECK(t.joint.index < motors_.size());
-    SL_CHECK_MSG(t.joint.generation == motors_[t.joint.index].generation, "no such joint");
     Motor& motor = motors_[t.joint.index];
-    motor.active = t.mode == JointTarget::Mode::velocity && t.max_effort > 0;
-    motor.velocity = t.velocity;
+    SL_CHECK_MSG(t.joint.generation == motor.generation, "no such joint");
+    motor.target = t;
+    if (motor.listed || t.mode != JointTarget::Mode::velocity || motor.role == Motor::Role::linkage) continue;
+    motor.listed = true;
+    turning_.push_back(t.joint.index);
+  }
+}
+
+void PlanarEngine::set_grips(std::span<const GripTarget> targets) {
+  for (const GripTarget& t : targets) {
+    if (instances_[slot_of(t.b)].created < instances_[slot_of(t.a)].created ||
+        (body_slot_[t.a.index] == body_slot_[t.b.index] && t.b.index < t.a.index)) {
+      const GripTarget swapped{t.b, t.a, t.hold};
+      set_grips({&swapped, 1});
+      continue;
+    }
+    const auto same = std::find_if(grips_.begin(), grips_.end(),
+                                   [&](const Linkage& l) { return l.body_a == t.a && l.body_b == t.b; });
+    if (t.hold && same == grips_.end()) grips_.push_back(make_grip(t.a, t.b));
+    if (!t.hold && same != grips_.end()) grips_.erase(same);
+  }
+  std::sort(grips_.begin(), grips_.end(), [&](const Linkage& x, const Linkage& y) {
+    const auto key = [&](const Linkage& l) {
+      return std::array<std::uint64_t, 4>{instances_[body_slot_[l.body_b.index]].created,
+                                          instances_[body_slot_[l.body_a.index]].created, l.body_b.index,
+                                          l.body_a.index};
+    };
+    return key(x) < key(y);
+  });
+}
+
+void PlanarEngine::apply(std::span<const Wrench> wrenches) {
+  for (const Wrench& w : wrenches) {
+    const Instance& instance = instances_[slot_of(w.body)];
+    if (!instance.moves || instance.guided) continue;
+    for (std::uint32_t link = 0; link < instance.bodies.size(); ++link) {
+      if (instance.bodies[link] != w.body) continue;
+      // The force acts at the link's centre of mass, which need not be the lump's.
+      Lump& lump = lumps_[instance.lumps[instance.plan->lump_of_link[link]]];
+      const Vec3 at = instance.plan->X_HL[link] * instance.model->links[link].inertial.X_LCo.p;
+      const Vec2 arm = rotate(lump.heading, Vec2{at.x, at.y} - instance.plan->lumps[lump.index].com_H);
+      const Vec2 force{w.force_N.x, w.force_N.y};
+      lump.force_N = lump.force_N + force;
+      lump.torque_Nm += w.torque_Nm.z + cross(arm, force);
+    }
   }
 }
 
@@ -320,7 +288,7 @@ void PlanarEngine::cast(std::span<const RayJob> jobs) const {
   for (const RayJob& job : jobs) {
     SL_CHECK(job.distance_m.size() == job.directions.size());
     SL_CHECK(job.body.empty() || job.body.size() == job.directions.size());
-    map_.cast(job, job.ignore_body < body_slot_.size() ? body_slot_[job.ignore_body] : ~0u);
+    map_.cast(job, job.ignore_body < body_slot_.size() ? body_slot_[job.ignore_body] : none);
   }
 }
 
@@ -329,20 +297,35 @@ void PlanarEngine::refresh_walls() const {
   std::vector<Wall> walls;
   std::vector<Edge> edges;
   std::vector<Outline> outlines;
+  floors_.clear();
   for (const std::uint32_t slot : order_) {
     const Instance& instance = instances_[slot];
     if (instance.moves) continue;
-    const Pose X_WM = canonical_pose(slot) * inverse(instance.model->links[0].X_ML);
+    const Pose X_WM = Pose{{instance.still_at.x, instance.still_at.y, instance.z_m}, instance.still_q} *
+                      inverse(instance.model->links[0].X_ML);
+    std::uint32_t ordinal = 0;
     for (std::size_t i = 0; i < instance.bodies.size(); ++i) {
       const model::Link& link = instance.model->links[i];
-      outlines.clear();
-      for (const model::Collision& collision : link.collisions)
-        add_outlines(collision.shape, X_WM * link.X_ML * collision.X_LC, outlines, edges);
-      for (const Outline& outline : outlines) walls.push_back({outline, instance.bodies[i].index, slot});
+      for (const model::Collision& collision : link.collisions) {
+        if (!collision.surface.touches) continue;
+        outlines.clear();
+        const Pose X_WC = X_WM * link.X_ML * collision.X_LC;
+        add_outlines(collision.shape, X_WC, outlines, edges);
+        const bool upright = std::abs(rotate(X_WC.q, {0, 0, 1}).z) > 0.999;
+        if (std::holds_alternative<Plane>(collision.shape)) floors_.push_back({X_WC.p.z, &collision.surface});
+        else if (upright && outlines.size() == 1 &&
+                 (std::holds_alternative<Box>(collision.shape) ||
+                  std::holds_alternative<Cylinder>(collision.shape)))
+          floors_.push_back(
+              {outlines[0].heights.max_m, &collision.surface, static_cast<std::uint32_t>(walls.size())});
+        for (const Outline& outline : outlines)
+          walls.push_back({outline, instance.bodies[i].index, slot, ordinal++, &collision.surface});
+      }
     }
   }
   map_.set_walls(walls, edges);
   walls_fresh_ = true;
+  filed_ = ground_fresh_ = false;
 }
 
 void PlanarEngine::refresh_map() const {
@@ -360,9 +343,13 @@ void PlanarEngine::refresh_links() const {
   if (links_fresh_.load(std::memory_order_relaxed)) return;
   for (const std::uint32_t slot : order_) {
     const Instance& instance = instances_[slot];
-    const Base& base = bases_[slot];
-    states_[instance.bodies[0].index] = {canonical_pose(slot),
-                                         {{base.v.x, base.v.y, 0}, {0, 0, base.w_radps}}};
+    BodyState& base = states_[instance.bodies[0].index];
+    base = {canonical_pose(slot), {}};
+    if (instance.moves) {
+      const Lump& lump = lumps_[instance.lumps[0]];
+      const Vec2 v = lump.velocity_at(rotate(lump.heading, -1.0 * instance.plan->lumps[0].com_H));
+      base.V_WB = {{v.x, v.y, 0}, {0, 0, lump.w_radps}};
+    }
     if (instance.bodies.size() > 1)
       instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }
@@ -371,8 +358,11 @@ void PlanarEngine::refresh_links() const {
 
 Status PlanarEngine::check_finite() const {
   for (const std::uint32_t slot : order_) {
-    const Base& b = bases_[slot];
-    double sum = b.p.x + b.p.y + b.heading.c + b.heading.s + b.v.x + b.v.y + b.w_radps + instances_[slot].z_m;
+    double sum = instances_[slot].z_m;
+    for (const std::uint32_t k : instances_[slot].lumps) {
+      const Lump& b = lumps_[k];
+      sum += b.p.x + b.p.y + b.heading.c + b.heading.s + b.v.x + b.v.y + b.w_radps;
+    }
     for (const JointId joint : instances_[slot].joints)
       sum += joint_states_[joint.index].position + joint_states_[joint.index].velocity;
     if (!std::isfinite(sum))
@@ -390,13 +380,13 @@ EngineCounters PlanarEngine::counters() const {
   return counters;
 }
 
-Result<std::unique_ptr<Engine>> create(const Node& config, Vec3) {
+Result<std::unique_ptr<Engine>> create(const Node& config, Vec3 gravity) {
   SL_ASSIGN(const Spec spec, read_spec<Spec>(config, "/physics"));
-  return std::unique_ptr<Engine>(std::make_unique<PlanarEngine>(spec));
+  return std::unique_ptr<Engine>(std::make_unique<PlanarEngine>(spec, gravity));
 }
 
 extern const EngineKind engine;
-const EngineKind engine{"planar", "discs, walls and ideal drives in two dimensions",
+const EngineKind engine{"planar", "bodies, wheels and joints in two dimensions: flat and fast",
                         [] { return describe_fields<Spec>(); }, create};
 
 }  // namespace sandlot::planar

@@ -1,42 +1,39 @@
 #pragma once
-/// The planar engine, first form: bodies are discs and walls that move kinematically.
+/// The planar engine: bodies with three degrees of freedom on a ground, among walls.
 ///
-/// Frame    a moving instance has three degrees of freedom: x, y and heading of its canonical link. Height, roll and
-///          pitch stay as they were placed.
-/// Bodies   a moving instance meets others as one disc: around the middle of the rectangle that encloses all its
-///          collision shapes, just large enough to contain them, over the heights between their lowest and highest
-///          point. A static instance, or one with a joint to the world, is its shapes' outlines (outline.h).
-///          Horizontal planes are the ground, on which everything stands.
-/// Paths    an instance with a motion is a disc as well, which pushes and is not pushed, not even by walls.
-/// Motion   ideal drives (drive.h). What has no drive stays where it is unless pushed, and stops at once: friction
-///          with the ground is infinite between pushes and nothing during them.
-/// Contact  discs stop at walls and slide along them; two discs push each other apart in proportion to their inverse
-///          masses. A drive loses the velocity that a contact took. No restitution, no friction between bodies.
-/// Joints   kinematic: a velocity target is reached at once and ends at the joint's limits; `free` and `effort`
-///          leave the joint where it is. A universal joint turns about its first axis only, a screw does not slide,
-///          and a joint that is to follow another stays.
-/// Limits   wrenches and gravity have no effect. Discs that move farther than their radius in one step may pass each
-///          other (never a wall). Stacked discs that press on each other may overlap by about one step's motion.
-/// Cost     per moving body and step 110 ns (1000 bodies) to 140 ns (10,000), plus contacts; the states of links
-///          about 15 ns each and only when asked for.
+/// Frame    a moving instance has three degrees of freedom: x, y and heading. Height, roll and pitch stay as placed.
+/// Bodies   lumps of links, circles or convex polygons over heights (plan.h). A static instance, or one with a joint to
+///          the world, is its shapes' outlines (outline.h). Horizontal planes and flat tops are the ground.
+/// Paths    an instance with a motion pushes and is not pushed, not even by walls.
+/// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's cradle
+///          works), then sequential impulses with warm start hold bodies apart with Coulomb friction; overlap beyond
+///          0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp). Surfaces combine as in the 3D engine.
+/// Fast     a body that could pass something in a step moves in pieces from impact to impact; the rest of the step is
+///          lost after 24 of them.
+/// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an ellipsoidal limit
+///          surface; one sphere rolls, held by rolling resistance alone (ground.cpp). Without a floor: a surface with mu 1.
+/// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along and across
+///          within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis alone (wheels.cpp).
+/// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of at most
+///          what brings the robot to its velocity within the step at the acceleration it may have.
+/// Joints   pivots and sliders between lumps of an instance, with motor, limits, friction and spring; steering. All
+///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
+/// Limits   turning is not swept: long bodies that spin fast may cut into others, and are pushed out. A ball that is hit
+///          rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does accelerating shift weight.
+///          Steering does not feel the ground. Kinematic joints do not change outlines.
+/// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads there are.
+#include <array>
 #include <atomic>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "physics/engine.h"
-#include "physics/planar/drive.h"
-#include "physics/planar/map.h"
-#include "physics/planar/tree.h"
+#include "physics/planar/lump.h"
 
 namespace sandlot::planar {
 
 struct Spec {
   double cell_m = 0.5;
   double clearance_m = 0.005;
+  int iterations = 12;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"cell_size", "m",
@@ -44,12 +41,15 @@ struct Spec {
           s.cell_m);
     visit(Field{"clearance", "m", "Bodies pass over and under what overlaps their height by less.", 0, 1000},
           s.clearance_m);
+    visit(Field{"iterations", "", "Passes over the contacts of an island in each sub-step.", 1, 1000},
+          s.iterations);
   }
 };
 
 class PlanarEngine final : public Engine, private RayCaster {
  public:
-  explicit PlanarEngine(const Spec& spec) : spec_(spec), map_(spec.cell_m) {}
+  explicit PlanarEngine(const Spec& spec, Vec3 gravity = {0, 0, -9.81})
+      : spec_(spec), gravity_mps2_(std::max(-gravity.z, 0.0)), map_(spec.cell_m) {}
 
   Capabilities capabilities() const override;
   Result<InstanceId> add(const model::Instance& instance) override;
@@ -66,9 +66,10 @@ class PlanarEngine final : public Engine, private RayCaster {
   void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
                 std::vector<std::uint32_t>& ends) const override;
   const RayCaster* rays() const override { return this; }
-  void apply(std::span<const Wrench>) override {}
+  void apply(std::span<const Wrench> wrenches) override;
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
+  void set_grips(std::span<const GripTarget> targets) override;
   void step(double h_s, std::uint64_t stream_key) override;
   Status check_finite() const override;
   void save(InstanceId id, ByteWriter& w) const override;
@@ -76,109 +77,138 @@ class PlanarEngine final : public Engine, private RayCaster {
   EngineCounters counters() const override;
 
  private:
-  /// What changes rarely, or is looked at rarely.
-  struct Instance {
-    bool alive = false, moves = false;
-    bool guided = false;                                   ///< moves along a path
-    std::optional<std::pair<Pose, Velocity>> destination;  ///< of a guided one, after the next step
-    std::uint32_t generation = 0;
-    std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
-    std::string name;
-    std::shared_ptr<const model::Model> model;
-    std::shared_ptr<const Tree> tree;
-    std::vector<BodyId> bodies;
-    std::vector<JointId> joints;
-    Quat tilt;       ///< attitude of the canonical link at heading 0
-    double z_m = 0;  ///< its height
-    Vec2 offset;     ///< of the disc's centre, in the heading's frame
-    double inverse_mass_per_kg = 1;
+  struct Island {
+    std::uint32_t first_lump = 0, lumps = 0, first_candidate = 0, candidates = 0, first_linkage = 0,
+                  linkages = 0;
+    std::vector<Touch> touches;  ///< kept from step to step so that they need no heap
   };
-  /// Hot, one per slot.
-  struct Base {
-    Vec2 p;
-    Turn heading;
-    Vec2 v;  ///< of p, in W
-    double w_radps = 0;
-  };
-  struct Drive {
-    std::uint32_t active = 0;
-    std::uint32_t link = 0;  ///< of the instance's model: whose frame the velocities are in
-    Twist now, target;
-    double accel = 0, angular_accel = 0;
-    Vec2 arm;    ///< of that link's origin in the heading's frame
-    Turn frame;  ///< of its x axis there
-  };
-  struct Motor {
-    std::uint32_t generation = 0;
-    std::uint32_t active = 0;  ///< mode `velocity`
-    double velocity = 0;
-    double lower = 0, upper = 0, max_velocity = 0;
-  };
-  /// A contact with the key that orders it.
-  struct Touch {
-    std::uint64_t first, second;  ///< creation of the instances, ascending
-    std::uint32_t wall;           ///< index, or ~0u
-    Contact contact;
-  };
-  struct Pair {
-    std::uint64_t key;
-    std::uint32_t a, b;  ///< slots, a created before b
+  /// A flat place to stand on.
+  struct Floor {
+    double z_m = 0;
+    const model::Surface* surface = nullptr;
+    std::uint32_t wall = none;  ///< whose top it is; none: it has no end
   };
 
   void cast(std::span<const RayJob> jobs) const override;
 
   const Instance& get(InstanceId id) const;
   BodyId body_id(std::uint32_t index) const { return {index, body_generation_[index]}; }
+  std::uint32_t slot_of(BodyId id) const;
+  bool alive(BodyId id) const;
+
+  // planar.cpp, placing.cpp
+  void add_joints(Instance& instance);
   void settle(std::uint32_t slot, const Pose& X_WM);
   void shape(std::uint32_t slot);
+  void place_lumps(std::uint32_t slot, const Pose& X_WB);
+  void place_disc(std::uint32_t lump);
+  void free_lumps(Instance& instance);
   void aim(std::uint32_t slot, std::uint32_t link);
+  void lead(std::uint32_t slot, double h_s);
+  void arrive(std::uint32_t slot);
   Pose canonical_pose(std::uint32_t slot) const;
-
   void refresh_walls() const;
   void refresh_map() const;
   void refresh_links() const;
   void stale() { map_fresh_ = links_fresh_ = false; }
+  Linkage make_grip(BodyId a, BodyId b) const;
 
-  void drive(std::uint32_t slot, double h_s);
-  void lead(std::uint32_t slot);
-  Vec2 clear_of_walls(std::uint32_t slot, Vec2 from, Vec2 to);
-  bool push_out(std::uint32_t slot, Vec2& centre);
-  void find_pairs();
-  void separate_pairs();
-  bool separate(const Pair& pair);
-  void feel_contacts(std::uint32_t slot, double h_s);
+  // step.cpp
+  void begin(std::uint32_t slot, double h_s);
+  void plan_drive(std::uint32_t slot, double h_s);
+  bool is_filed(double h_s) const;
+  double reach(const Lump& lump, double h_s) const;
+  void file(double h_s);
+  void find_touches(double h_s);
+  void find_islands(double h_s);
+  std::uint32_t root(std::uint32_t lump);
+  void unite(std::uint32_t a, std::uint32_t b);
+  void finish_drive(std::uint32_t slot, double h_s);
   void turn_joints(double h_s);
-  void list_contacts();
-  void touch(std::uint32_t slot, std::uint32_t other, std::uint32_t wall, std::uint32_t other_body,
-             Vec2 point, double z_m, Vec2 from_other, double depth_m);
+  void list_contacts(double h_s);
+
+  // collide.cpp
+  bool near(const Candidate& c, double h_s) const;
+  void collide(const Candidate& c, double h_s, std::vector<Touch>& out) const;
+  void remember(std::span<Touch> touches) const;
+  double impact(const Candidate& c, double h_s) const;
+  void move_figure(std::uint32_t lump);
+
+  // solve.cpp
+  void solve(Island& island, double h_s);
+  void bounce(std::span<Touch> touches);
+  void prepare(Touch& t, double h_s, bool warm);
+  void hold_apart(std::span<Touch> touches);
+  double advance_island(const Island& island, double h_s);
+  void take_back(const Island& island, std::span<Touch> touches);
+  void move(std::uint32_t lump, double h_s);
+  void move_alone(std::uint32_t lump, double h_s);
+
+  // ground.cpp, wheels.cpp, linkages.cpp
+  void find_ground(std::uint32_t lump);
+  const model::Surface& floor_under(std::uint32_t lump, Vec2 at_W) const;
+  void rub(std::uint32_t lump, double h_s);
+  void prepare_wheels(std::uint32_t slot, double h_s);
+  double turn_wheels(std::uint32_t slot, double h_s);
+  void finish_wheels(std::uint32_t slot, double h_s);
+  void steer(std::uint32_t slot, double h_s);
+  void prepare_linkage(Linkage& l, double h_s);
+  void hold_linkage(Linkage& l, double h_s);
+  void take_back(Linkage& l);
+  void finish_linkage(Linkage& l, double h_s);
+
+  // state.cpp
+  void save_touches(std::uint32_t slot, ByteWriter& w) const;
+  bool load_touches(std::uint32_t slot, ByteReader& r);
 
   Spec spec_;
+  double gravity_mps2_;
   std::vector<Instance> instances_;
-  std::vector<Base> bases_;
-  std::vector<Drive> drives_;
-  std::vector<std::uint32_t> free_instances_, free_bodies_, free_joints_;
+  std::vector<Drive> drives_;     ///< by slot
+  std::vector<Planned> planned_;  ///< by slot
+  std::vector<Lump> lumps_;
+  std::vector<Rubbing> rubbing_;  ///< by lump
+  std::vector<std::uint32_t> free_instances_, free_bodies_, free_joints_, free_lumps_, free_figures_;
   std::vector<std::uint32_t> order_;  ///< slots by creation
   std::uint64_t created_ = 0;
-  std::shared_ptr<const model::Model> last_model_;  ///< of `last_tree_`: robots come in series
+  std::shared_ptr<const Plan> last_plan_;  ///< robots come in series
+  std::shared_ptr<const model::Model> last_model_;
   std::shared_ptr<const Tree> last_tree_;
+  Quat last_tilt_;
+  double last_z_m_ = 0;
 
   std::vector<std::uint32_t> body_slot_, body_generation_;
   std::vector<JointState> joint_states_;
   std::vector<Motor> motors_;
+  std::vector<std::uint32_t> turning_;  ///< kinematic joints with a velocity target, and those that had one
+  std::vector<Linkage> grips_;
 
   // Made when asked for, in const functions that several threads may call at once.
   mutable std::mutex refreshing_;
   mutable std::atomic<bool> map_fresh_ = false, links_fresh_ = false;
   mutable bool walls_fresh_ = false;
+  mutable bool filed_ = false;  ///< the broad phase holds
   mutable Map map_;
   mutable std::vector<BodyState> states_;
+  mutable std::vector<Floor> floors_;
+  mutable bool ground_fresh_ = false;
+  bool low_floors_ = false;  ///< some floor has an end, so what stands under a body changes as it moves
 
-  // Scratch of step().
-  std::vector<Round> hull_;
-  std::vector<Vec2> start_, unhindered_;  ///< by slot: p before the step, disc centre without contacts
+  // Broad phase: superset of what can touch until somebody has come far.
+  Cells cells_;
+  std::vector<Vec2> filed_at_;
+  std::vector<double> slack_m_;
+  std::vector<Candidate> candidates_;
   std::vector<std::uint32_t> near_walls_;
-  std::vector<Pair> pairs_;
-  std::vector<Touch> touches_;
+
+  std::vector<Touch> touches_;  ///< of the last step, by key: their impulses are State
+  std::vector<Touch> found_;
+  std::vector<std::uint32_t> parent_, island_of_, island_lumps_, island_slots_;
+  std::vector<Candidate> island_candidates_;
+  std::vector<Linkage*> island_linkages_, sorted_linkages_;
+  std::vector<double> fastest_;
+  std::vector<Island> islands_;
+  std::size_t island_count_ = 0;
   std::vector<Contact> contacts_;
 };
 

@@ -40,8 +40,15 @@ TEST(PlanarJoint, AWheelCountsTurnsAndItsLinkFollows) {
   EXPECT_EQ(w.engine.joint_states()[axle.index].velocity, 0);
 }
 
+/// A base that no joint's reaction moves.
+std::shared_ptr<model::Model> anvil() {
+  auto model = robot_model(1e12);
+  model->links[0].inertial.moments = {1e12, 1e12, 1e12};
+  return model;
+}
+
 TEST(PlanarJoint, LimitsHoldItAndASlideMoves) {
-  auto model = robot_model();
+  auto model = anvil();
   model::Link lift;
   lift.name = "lift";
   lift.X_ML = at(0.1, 0, math::pi / 2, 0.3);
@@ -57,21 +64,21 @@ TEST(PlanarJoint, LimitsHoldItAndASlideMoves) {
   World w;
   const InstanceId robot = w.add(model, at(1, 1, math::pi / 2));
   const JointId slide = w.engine.joints(robot)[0];
-  const JointTarget out{slide, JointTarget::Mode::velocity, 3, 1, 0};
+  const JointTarget out{slide, JointTarget::Mode::velocity, 3, 1e9, 0};
   w.engine.set_targets({&out, 1});
   w.run(20);
-  EXPECT_NEAR(w.engine.joint_states()[slide.index].position, 0.1, 1e-12);  // at max_velocity
+  EXPECT_NEAR(w.engine.joint_states()[slide.index].position, 0.1, 1e-4);  // at max_velocity
   // x of the lift is -x of W: (1, 1.1) - (0.1, 0).
-  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].X_WB.p.x, 0.9, 1e-12);
-  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].X_WB.p.y, 1.1, 1e-12);
-  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].V_WB.linear.x, -0.5, 1e-12);
+  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].X_WB.p.x, 0.9, 1e-4);
+  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].X_WB.p.y, 1.1, 1e-4);
+  EXPECT_NEAR(w.engine.states()[w.engine.bodies(robot)[1].index].V_WB.linear.x, -0.5, 1e-4);
   w.run(100);
-  EXPECT_EQ(w.engine.joint_states()[slide.index].position, 0.25);
-  EXPECT_EQ(w.engine.joint_states()[slide.index].velocity, 0);
+  EXPECT_NEAR(w.engine.joint_states()[slide.index].position, 0.25, 1e-4);
+  EXPECT_NEAR(w.engine.joint_states()[slide.index].velocity, 0, 1e-4);
 }
 
 TEST(PlanarJoint, AHingeTurnsAboutItsOwnAxis) {
-  auto model = robot_model();
+  auto model = anvil();
   model::Link door;
   door.name = "door";
   door.X_ML = at(1, 0);
@@ -83,20 +90,20 @@ TEST(PlanarJoint, AHingeTurnsAboutItsOwnAxis) {
                            .X_CJ = {{-0.5, 0, 0}, {}}});
   World w;
   const InstanceId robot = w.add(model, at(0, 0));
-  const JointTarget swing{w.engine.joints(robot)[0], JointTarget::Mode::velocity, math::pi / 2, 1, 0};
+  const JointTarget swing{w.engine.joints(robot)[0], JointTarget::Mode::velocity, math::pi / 2, 1e9, 0};
   w.engine.set_targets({&swing, 1});
   w.run(100);
   // A quarter turn about (0.5, 0).
   const BodyState state = w.engine.states()[w.engine.bodies(robot)[1].index];
-  EXPECT_NEAR(state.X_WB.p.x, 0.5, 1e-12);
-  EXPECT_NEAR(state.X_WB.p.y, 0.5, 1e-12);
-  EXPECT_NEAR(state.V_WB.linear.x, -0.5 * math::pi / 2, 1e-12);
-  EXPECT_NEAR(state.V_WB.linear.y, 0, 1e-12);
+  EXPECT_NEAR(state.X_WB.p.x, 0.5, 1e-4);
+  EXPECT_NEAR(state.X_WB.p.y, 0.5, 1e-4);
+  EXPECT_NEAR(state.V_WB.linear.x, -0.5 * math::pi / 2, 1e-4);
+  EXPECT_NEAR(state.V_WB.linear.y, 0, 1e-4);
 }
 
 TEST(PlanarJoint, ATreeMayHangFromAChild) {
   // The canonical link is the joint's child: the other link swings the opposite way.
-  auto model = robot_model();
+  auto model = anvil();
   model::Link arm;
   arm.name = "arm";
   arm.X_ML = at(1, 0);
@@ -104,15 +111,15 @@ TEST(PlanarJoint, ATreeMayHangFromAChild) {
   model->joints.push_back({.name = "hinge", .type = model::JointType::revolute, .parent = 1, .child = 0});
   World w;
   const InstanceId robot = w.add(model, at(0, 0));
-  const JointTarget swing{w.engine.joints(robot)[0], JointTarget::Mode::velocity, 1, 1, 0};
+  const JointTarget swing{w.engine.joints(robot)[0], JointTarget::Mode::velocity, 1, 1e9, 0};
   w.engine.set_targets({&swing, 1});
   w.run(100);
   const BodyState state = w.engine.states()[w.engine.bodies(robot)[1].index];
-  EXPECT_NEAR(state.X_WB.p.x, math::cos(1), 1e-12);
-  EXPECT_NEAR(state.X_WB.p.y, -math::sin(1), 1e-12);
-  EXPECT_NEAR(state.V_WB.linear.x, -math::sin(1), 1e-12);
-  EXPECT_NEAR(state.V_WB.linear.y, -math::cos(1), 1e-12);
-  EXPECT_NEAR(state.V_WB.angular.z, -1, 1e-12);
+  EXPECT_NEAR(state.X_WB.p.x, math::cos(1), 1e-4);
+  EXPECT_NEAR(state.X_WB.p.y, -math::sin(1), 1e-4);
+  EXPECT_NEAR(state.V_WB.linear.x, -math::sin(1), 1e-4);
+  EXPECT_NEAR(state.V_WB.linear.y, -math::cos(1), 1e-4);
+  EXPECT_NEAR(state.V_WB.angular.z, -1, 1e-4);
 }
 
 TEST(PlanarEngine, ASnapshotContinuesToTheBit) {

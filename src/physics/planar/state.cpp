@@ -1,66 +1,203 @@
 // What the planar engine saves of an instance: everything that step() changes and targets that hold.
+#include <algorithm>
+
 #include "physics/planar/planar.h"
 
 namespace sandlot::planar {
 namespace {
 
-void write_all(ByteWriter& w, std::initializer_list<double> numbers) {
-  for (const double x : numbers) write(w, x);
+/// The fields of a saved part, visited alike by writing and reading.
+template <class Visit>
+void visit_lump(auto& l, Visit&& visit) {
+  visit(l.p.x), visit(l.p.y), visit(l.heading.c), visit(l.heading.s), visit(l.v.x), visit(l.v.y),
+      visit(l.w_radps);
+  visit(l.force_N.x), visit(l.force_N.y), visit(l.torque_Nm);
 }
-bool read_all(ByteReader& r, std::initializer_list<double*> numbers) {
-  for (double* x : numbers) read(r, *x);
-  return r.ok();
+template <class Visit>
+void visit_drive(auto& d, Visit&& visit) {
+  visit(d.active), visit(d.link);
+  visit(d.now.v_mps.x), visit(d.now.v_mps.y), visit(d.now.w_radps);
+  visit(d.target.v_mps.x), visit(d.target.v_mps.y), visit(d.target.w_radps);
+  visit(d.accel), visit(d.angular_accel);
 }
+template <class Visit>
+void visit_target(auto& t, Visit&& visit) {
+  visit(t.velocity), visit(t.max_effort), visit(t.effort), visit(t.damping), visit(t.inertia),
+      visit(t.friction);
+}
+template <class Visit>
+void visit_linkage(auto& l, Visit&& visit) {
+  visit(l.hold.x), visit(l.hold.y), visit(l.turn);
+}
+template <class Visit>
+void visit_grip(auto& l, Visit&& visit) {
+  visit(l.at_a.x), visit(l.at_a.y), visit(l.at_b.x), visit(l.at_b.y), visit(l.apart.c), visit(l.apart.s);
+  visit_linkage(l, visit);
+}
+
+constexpr std::uint32_t most_touches = 1u << 24;
 
 }  // namespace
 
 void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
   const Instance& instance = get(id);
-  const Base& base = bases_[id.index];
-  const Drive& drive = drives_[id.index];
+  const auto put = [&](const auto& x) { write(w, x); };
+  write(w, canonical_pose(id.index).q);  // of one that stands still; others have it in their lumps
   write(w, instance.tilt);
-  write_all(w, {instance.z_m, base.p.x, base.p.y, base.heading.c, base.heading.s, base.v.x, base.v.y,
-                base.w_radps});
-  write(w, drive.active);
-  write(w, drive.link);
-  write_all(w, {drive.now.v_mps.x, drive.now.v_mps.y, drive.now.w_radps, drive.target.v_mps.x,
-                drive.target.v_mps.y, drive.target.w_radps, drive.accel, drive.angular_accel});
+  put(instance.z_m);
+  put(instance.still_at.x), put(instance.still_at.y);
+  visit_drive(drives_[id.index], put);
+  for (const std::uint32_t k : instance.lumps) visit_lump(lumps_[k], put);
   for (const JointId joint : instance.joints) {
     const JointState& state = joint_states_[joint.index];
-    const Motor& motor = motors_[joint.index];
-    write(w, motor.active);
-    write_all(w, {state.position, state.velocity, state.effort, motor.velocity});
+    put(state.position), put(state.velocity), put(state.effort);
+    const JointTarget& target = motors_[joint.index].target;
+    put(static_cast<std::uint32_t>(target.mode));
+    visit_target(target, put);
   }
+  for (const Wheel& wheel : instance.wheels) put(wheel.impulse.x), put(wheel.impulse.y);
+  for (const Linkage& l : instance.linkages) visit_linkage(l, put);
+  save_touches(id.index, w);
 }
 
 bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   get(id);
   Instance& instance = instances_[id.index];
-  Quat tilt;
+  const auto take = [&](auto& x) { read(r, x); };
+  Quat q, tilt;
+  Vec2 still_at;
   double z_m = 0;
-  Base base;
   Drive drive;
+  read(r, q);
   read(r, tilt);
-  read_all(
-      r, {&z_m, &base.p.x, &base.p.y, &base.heading.c, &base.heading.s, &base.v.x, &base.v.y, &base.w_radps});
-  read(r, drive.active);
-  read(r, drive.link);
-  read_all(r, {&drive.now.v_mps.x, &drive.now.v_mps.y, &drive.now.w_radps, &drive.target.v_mps.x,
-               &drive.target.v_mps.y, &drive.target.w_radps, &drive.accel, &drive.angular_accel});
+  take(z_m), take(still_at.x), take(still_at.y);
+  visit_drive(drive, take);
   if (!r.ok() || drive.link >= instance.bodies.size()) return false;
-  for (const JointId joint : instance.joints) {
-    JointState& state = joint_states_[joint.index];
-    Motor& motor = motors_[joint.index];
-    read(r, motor.active);
-    read_all(r, {&state.position, &state.velocity, &state.effort, &motor.velocity});
+  std::vector<Lump> lumps(instance.lumps.size());
+  for (Lump& l : lumps) visit_lump(l, take);
+  std::vector<std::pair<JointState, JointTarget>> joints(instance.joints.size());
+  for (auto& [state, target] : joints) {
+    std::uint32_t mode = 0;
+    take(state.position), take(state.velocity), take(state.effort), take(mode);
+    visit_target(target, take);
+    if (!r.ok() || mode > 2) return false;
+    target.mode = static_cast<JointTarget::Mode>(mode);
   }
+  std::vector<Vec2> wheels(instance.wheels.size());
+  for (Vec2& v : wheels) take(v.x), take(v.y);
+  std::vector<Linkage> linkages(instance.linkages.size());
+  for (Linkage& l : linkages) visit_linkage(l, take);
   if (!r.ok()) return false;
+
   instance.tilt = tilt;
   instance.z_m = z_m;
-  bases_[id.index] = base;
-  drives_[id.index] = drive;
-  shape(id.index);
-  return true;
+  instance.still_at = still_at;
+  instance.still_q = q;
+  if (instance.moves) {
+    drives_[id.index] = drive;
+    shape(id.index);
+  } else {
+    walls_fresh_ = false;
+  }
+  for (std::size_t i = 0; i < lumps.size(); ++i) {
+    Lump& to = lumps_[instance.lumps[i]];
+    const Lump& from = lumps[i];
+    to.p = from.p, to.heading = from.heading, to.v = from.v, to.w_radps = from.w_radps;
+    to.force_N = from.force_N, to.torque_Nm = from.torque_Nm;
+  }
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointId joint = instance.joints[i];
+    Motor& motor = motors_[joint.index];
+    joint_states_[joint.index] = joints[i].first;
+    motor.target = joints[i].second;
+    motor.target.joint = joint;
+    if (motor.listed || motor.target.mode != JointTarget::Mode::velocity) continue;
+    motor.listed = true;
+    turning_.push_back(joint.index);
+  }
+  for (std::size_t i = 0; i < wheels.size(); ++i) instance.wheels[i].impulse = wheels[i];
+  for (std::size_t i = 0; i < linkages.size(); ++i)
+    instance.linkages[i].hold = linkages[i].hold, instance.linkages[i].turn = linkages[i].turn;
+  for (const std::uint32_t k : instance.lumps) {
+    place_disc(k);
+    if (lumps_[k].figure != none) move_figure(k);
+  }
+  filed_ = ground_fresh_ = false;
+  stale();
+  return load_touches(id.index, r);
+}
+
+/// Contacts and grips with instances that are older: each is saved once. Others are named by their place in the order of
+/// creation, which a new engine with the same instances has too.
+void PlanarEngine::save_touches(std::uint32_t slot, ByteWriter& w) const {
+  const Instance& instance = instances_[slot];
+  const auto rank = [&](std::uint64_t created) {
+    const auto at = std::partition_point(order_.begin(), order_.end(),
+                                         [&](std::uint32_t s) { return instances_[s].created < created; });
+    return static_cast<std::uint32_t>(at - order_.begin());
+  };
+  const auto mine = [&](const Touch& t) {
+    return (t.key.pair & 0xffffffffu) == instance.created && (t.normal_Ns != 0 || t.tangent_Ns != 0);
+  };
+  write(w, static_cast<std::uint32_t>(std::count_if(touches_.begin(), touches_.end(), mine)));
+  for (const Touch& t : touches_) {
+    if (!mine(t)) continue;
+    write(w, rank(t.key.pair >> 32));
+    for (const std::uint32_t x : {t.key.lumps, t.key.part_a, t.key.part_b, t.key.feature}) write(w, x);
+    write(w, t.normal_Ns);
+    write(w, t.tangent_Ns);
+  }
+  const auto held = [&](const Linkage& l) { return body_slot_[l.body_b.index] == slot; };
+  write(w, static_cast<std::uint32_t>(std::count_if(grips_.begin(), grips_.end(), held)));
+  for (const Linkage& l : grips_) {
+    if (!held(l)) continue;
+    const Instance& other = instances_[body_slot_[l.body_a.index]];
+    const auto link = [](const Instance& i, BodyId body) {
+      return static_cast<std::uint32_t>(std::find(i.bodies.begin(), i.bodies.end(), body) - i.bodies.begin());
+    };
+    write(w, rank(other.created));
+    write(w, link(other, l.body_a));
+    write(w, link(instance, l.body_b));
+    visit_grip(l, [&](const double& x) { write(w, x); });
+  }
+}
+
+bool PlanarEngine::load_touches(std::uint32_t slot, ByteReader& r) {
+  const Instance& instance = instances_[slot];
+  std::erase_if(touches_, [&](const Touch& t) { return (t.key.pair & 0xffffffffu) == instance.created; });
+  std::erase_if(grips_, [&](const Linkage& l) { return body_slot_[l.body_b.index] == slot; });
+  std::uint32_t count = 0;
+  read(r, count);
+  if (!r.ok() || count > most_touches) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Touch t;
+    std::uint32_t rank = 0;
+    read(r, rank);
+    for (std::uint32_t* x : {&t.key.lumps, &t.key.part_a, &t.key.part_b, &t.key.feature}) read(r, *x);
+    read(r, t.normal_Ns);
+    read(r, t.tangent_Ns);
+    if (!r.ok() || rank >= order_.size()) return false;
+    t.key.pair = instances_[order_[rank]].created << 32 | (instance.created & 0xffffffffu);
+    touches_.push_back(t);
+  }
+  std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) { return x.key < y.key; });
+  read(r, count);
+  if (!r.ok() || count > most_touches) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t rank = 0, link_a = 0, link_b = 0;
+    read(r, rank);
+    read(r, link_a);
+    read(r, link_b);
+    if (!r.ok() || rank >= order_.size()) return false;
+    const Instance& other = instances_[order_[rank]];
+    if (link_a >= other.bodies.size() || link_b >= instance.bodies.size()) return false;
+    const GripTarget grip{other.bodies[link_a], instance.bodies[link_b]};
+    set_grips({&grip, 1});
+    for (Linkage& l : grips_)
+      if (l.body_a == grip.a && l.body_b == grip.b) visit_grip(l, [&](double& x) { read(r, x); });
+    if (!r.ok()) return false;
+  }
+  return r.ok();
 }
 
 }  // namespace sandlot::planar

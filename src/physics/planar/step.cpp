@@ -1,4 +1,7 @@
-// How the planar engine moves: drives first, then walls, then discs among each other.
+// A step of the planar engine: what each body means to do, who touches whom, islands, and what comes of it.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,20 +10,16 @@
 namespace sandlot::planar {
 namespace {
 
-constexpr int wall_passes = 4, pair_passes = 8;
-constexpr std::uint32_t no_wall = ~0u;
-
-Area around(Vec2 a, Vec2 b, double r) {
-  return {{std::min(a.x, b.x) - r, std::min(a.y, b.y) - r}, {std::max(a.x, b.x) + r, std::max(a.y, b.y) + r}};
-}
-
-double middle_of_common(Heights a, Heights b) {
-  return 0.5 * (std::max(a.min_m, b.min_m) + std::min(a.max_m, b.max_m));
-}
-
-/// What is left of a commanded velocity of which a contact allowed only `actual`: never more, never backwards.
-double hindered(double commanded, double actual) {
-  return commanded > 0 ? std::clamp(actual, 0.0, commanded) : std::clamp(actual, commanded, 0.0);
+/// Calls work(i) for all i, in parallel where it pays: what is done for one i depends on no other.
+template <class Work>
+void for_each(std::size_t count, std::size_t grain, Work&& work) {
+  if (count <= grain) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+  });
 }
 
 }  // namespace
@@ -28,215 +27,365 @@ double hindered(double commanded, double actual) {
 void PlanarEngine::step(double h_s, std::uint64_t) {
   if (!(h_s > 0)) return;
   refresh_walls();
-  touches_.clear();
-  start_.resize(bases_.size());
-  unhindered_.resize(bases_.size());
-  for (const std::uint32_t slot : order_) {
-    if (!instances_[slot].moves) continue;
-    Disc& disc = map_.discs()[slot];
-    const Vec2 before = disc.centre;
-    start_[slot] = bases_[slot].p;
-    if (instances_[slot].guided) {
-      lead(slot);
-      continue;
+  for_each(order_.size(), 512, [&](std::size_t i) { begin(order_[i], h_s); });
+  if (!ground_fresh_ || low_floors_) {
+    if (!ground_fresh_) {
+      double highest = 0;
+      for (const std::uint32_t slot : order_)
+        if (instances_[slot].moves) highest = std::max(highest, instances_[slot].plan->bottom_m);
+      low_floors_ = std::any_of(floors_.begin(), floors_.end(), [&](const Floor& f) {
+        return f.wall != none && f.z_m <= highest + spec_.clearance_m;
+      });
     }
-    drive(slot, h_s);
-    unhindered_[slot] = bases_[slot].p + rotate(bases_[slot].heading, instances_[slot].offset);
-    disc.centre = clear_of_walls(slot, before, unhindered_[slot]);
+    for_each(lumps_.size(), 512, [&](std::size_t k) {
+      if (lumps_[k].slot != none) find_ground(static_cast<std::uint32_t>(k));
+    });
+    ground_fresh_ = true;
   }
-  map_.file_discs();
-  find_pairs();
-  separate_pairs();
+  if (!is_filed(h_s)) file(h_s);
+  find_touches(h_s);
+  find_islands(h_s);
+  for_each(island_count_, 1, [&](std::size_t i) { solve(islands_[i], h_s); });
+  for_each(lumps_.size(), 512, [&](std::size_t k) {
+    if (lumps_[k].slot != none && island_of_[k] == none) move_alone(static_cast<std::uint32_t>(k), h_s);
+  });
   for (const std::uint32_t slot : order_)
-    if (instances_[slot].moves && !instances_[slot].guided) feel_contacts(slot, h_s);
+    if (instances_[slot].guided) arrive(slot);
+  touches_.clear();
+  for (std::size_t i = 0; i < island_count_; ++i)
+    touches_.insert(touches_.end(), islands_[i].touches.begin(), islands_[i].touches.end());
+  std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) { return x.key < y.key; });
   turn_joints(h_s);
-  list_contacts();
+  list_contacts(h_s);
   stale();
 }
 
-void PlanarEngine::drive(std::uint32_t slot, double h_s) {
-  Base& base = bases_[slot];
-  Drive& drive = drives_[slot];
-  if (!drive.active) {
-    base.v = {};
-    base.w_radps = 0;
-    return;
+/// Velocities before contacts: wrenches, drives, paths.
+void PlanarEngine::begin(std::uint32_t slot, double h_s) {
+  Instance& instance = instances_[slot];
+  if (!instance.moves) return;
+  if (instance.guided) {
+    lead(slot, h_s);
+  } else {
+    bool pushed = false;
+    for (const std::uint32_t k : instance.lumps) {
+      Lump& lump = lumps_[k];
+      if (lump.force_N == Vec2{} && lump.torque_Nm == 0) continue;
+      lump.v = lump.v + (h_s * lump.inverse_kg) * lump.force_N;
+      lump.w_radps += h_s * lump.inverse_kgm2 * lump.torque_Nm;
+      lump.force_N = {};
+      lump.torque_Nm = 0;
+      pushed = true;
+    }
+    Drive& drive = drives_[slot];
+    if (drive.active) {
+      if (pushed) {
+        const Lump& lump = lumps_[instance.lumps[0]];
+        drive.now = {
+            rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
+            lump.w_radps};
+      }
+      plan_drive(slot, h_s);
+    }
   }
+  for (const std::uint32_t k : instance.lumps) {
+    lumps_[k].reach_m = reach(lumps_[k], h_s);
+    rubbing_[k].impulse = {};
+    rubbing_[k].twist = 0;
+  }
+}
+
+void PlanarEngine::plan_drive(std::uint32_t slot, double h_s) {
+  Drive& drive = drives_[slot];
+  Lump& lump = lumps_[instances_[slot].lumps[0]];
   Vec2 turning{drive.now.w_radps, 0};
   Twist mean;
   mean.v_mps = ramp(drive.now.v_mps, drive.target.v_mps, drive.accel, h_s);
   mean.w_radps = ramp(turning, {drive.target.w_radps, 0}, drive.angular_accel, h_s).x;
   drive.now.w_radps = turning.x;
-  // From the drive's frame to that of the canonical link: v_B = v_L - w x r_BL.
-  const auto at_base = [&](Twist t) {
-    return rotate(drive.frame, t.v_mps) + t.w_radps * Vec2{drive.arm.y, -drive.arm.x};
-  };
-  advance(base.p, base.heading, {at_base(mean), mean.w_radps}, h_s);
-  base.v = rotate(base.heading, at_base(drive.now));
-  base.w_radps = drive.now.w_radps;
-}
-
-/// Where a disc ends that moves from one place to another: pushed out of every wall it would enter.
-Vec2 PlanarEngine::clear_of_walls(std::uint32_t slot, Vec2 from, Vec2 to) {
-  const Disc& disc = map_.discs()[slot];
-  if (!(disc.radius_m > 0)) return to;
-  map_.walls_near(around(from, to, disc.radius_m), near_walls_);
-  if (near_walls_.empty()) return to;
-  // Strides of half a radius: the centre never gets to the far side of a wall, however thin.
-  const Vec2 path = to - from;
-  const double length = std::sqrt(dot(path, path)), longest = 0.5 * disc.radius_m;
-  const int strides = length > longest ? static_cast<int>(std::min(std::ceil(length / longest), 1e4)) : 1;
-  Vec2 centre = from;
-  bool free = true;
-  for (int i = 1; i <= strides; ++i) {
-    // A disc that nothing hinders ends exactly where it was to go.
-    centre = free && i == strides ? to : centre + (1.0 / strides) * path;
-    for (int pass = 0; pass < wall_passes; ++pass)
-      if (!push_out(slot, centre)) break;
-      else free = false;
+  // From the drive's frame to the centre of mass: v_C = v_L - w x r_CL.
+  Planned& planned = planned_[slot];
+  planned.mean = {rotate(drive.frame, mean.v_mps) - mean.w_radps * left_of(drive.arm), mean.w_radps};
+  // The chord of the arc, so that a step along it ends on the arc.
+  const double half = 0.5 * mean.w_radps * h_s;
+  Turn middle = lump.heading;
+  double sinc = 1;
+  if (half != 0) {
+    const Turn turn = turn_of(half);
+    sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn.s / half;
+    middle = lump.heading * turn;
   }
-  return centre;
+  lump.v = planned.v = sinc * rotate(middle, planned.mean.v_mps);
+  lump.w_radps = planned.w_radps = mean.w_radps;
 }
 
-/// One pass over the walls in `near_walls_`; true if any of them moved the disc.
-bool PlanarEngine::push_out(std::uint32_t slot, Vec2& centre) {
-  const Disc& disc = map_.discs()[slot];
-  bool pushed = false;
-  for (const std::uint32_t k : near_walls_) {
-    const Wall& wall = map_.walls()[k];
-    if (!meet(disc.heights, wall.outline.heights, spec_.clearance_m)) continue;
-    const Vec2 out = centre - wall.outline.centre;
-    const double reach = wall.outline.radius_m + disc.radius_m;
-    if (!(dot(out, out) < reach * reach)) continue;
-    const Nearest near = nearest(wall.outline, map_.edges(), centre);
-    const double depth = disc.radius_m - near.distance_m;
-    if (!(depth > 0)) continue;
-    touch(slot, wall.instance, k, wall.body, centre - disc.radius_m * near.normal,
-          middle_of_common(disc.heights, wall.outline.heights), near.normal, depth);
-    centre = centre + depth * near.normal;
-    pushed = true;
+/// What a drive has reached, after its lump has moved.
+void PlanarEngine::finish_drive(std::uint32_t slot, double) {
+  Drive& drive = drives_[slot];
+  Lump& lump = lumps_[instances_[slot].lumps[0]];
+  const Planned& planned = planned_[slot];
+  if (lump.v == planned.v && lump.w_radps == planned.w_radps) {
+    const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
+    lump.v = rotate(lump.heading, v);
+    lump.w_radps = drive.now.w_radps;
+    return;
   }
-  return pushed;
+  drive.now = {rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
+               lump.w_radps};
 }
 
-void PlanarEngine::find_pairs() {
-  pairs_.clear();
-  map_.for_pairs([&](std::uint32_t a, std::uint32_t b) {
-    const Disc &x = map_.discs()[a], &y = map_.discs()[b];
-    // Near ones too: a push within the step may make them touch.
-    const double reach = x.radius_m + y.radius_m + 0.1 * std::min(x.radius_m, y.radius_m);
-    const Vec2 d = y.centre - x.centre;
-    if (!(dot(d, d) < reach * reach) || !meet(x.heights, y.heights, spec_.clearance_m)) return;
-    if (instances_[a].created > instances_[b].created) std::swap(a, b);
-    pairs_.push_back({instances_[a].created << 32 | (instances_[b].created & 0xffffffffu), a, b});
-  });
-  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& x, const Pair& y) { return x.key < y.key; });
-  pairs_.erase(
-      std::unique(pairs_.begin(), pairs_.end(), [](const Pair& x, const Pair& y) { return x.key == y.key; }),
-      pairs_.end());
+/// How far a lump can come in a step at most: what comes of a collision has to wait for the next.
+double PlanarEngine::reach(const Lump& lump, double h_s) const {
+  return lump.reach_share_m + 2 * h_s * std::sqrt(dot(lump.v, lump.v));
 }
 
-/// Passes over all pairs in order of creation. A pass that moves nothing means that no later one would, so stopping
-/// there changes nothing, for nobody.
-void PlanarEngine::separate_pairs() {
-  for (int pass = 0; pass < pair_passes; ++pass) {
-    bool moved = false;
-    for (const Pair& pair : pairs_) moved = separate(pair) || moved;
-    if (!moved) return;
-  }
-}
+// --- broad phase ----------------------------------------------------------------------------------------------------
 
-bool PlanarEngine::separate(const Pair& pair) {
-  Disc &a = map_.discs()[pair.a], &b = map_.discs()[pair.b];
-  const auto overlap = [&](Vec2& normal) {
-    const Vec2 d = b.centre - a.centre;
-    const double distance = std::sqrt(dot(d, d));
-    normal = distance > 0 ? (1 / distance) * d : Vec2{1, 0};
-    return a.radius_m + b.radius_m - distance;
-  };
-  Vec2 n;
-  const double depth = overlap(n);
-  // Below rounding of the positions a push would only shuffle last bits from step to step.
-  const double least = 1e-12 * (a.radius_m + b.radius_m);
-  if (!(depth > least)) return false;
-  touch(pair.b, pair.a, no_wall, a.body, a.centre + a.radius_m * n, middle_of_common(a.heights, b.heights), n,
-        depth);
-  const double wa = instances_[pair.a].inverse_mass_per_kg, wb = instances_[pair.b].inverse_mass_per_kg;
-  if (wa + wb == 0) return false;  // two on their paths
-  const double share = wa / (wa + wb);
-  const Vec2 a_free = a.centre - (share * depth) * n, b_free = b.centre + ((1 - share) * depth) * n;
-  if (wa > 0) a.centre = clear_of_walls(pair.a, a.centre, a_free);
-  if (wb > 0) b.centre = clear_of_walls(pair.b, b.centre, b_free);
-  // Where a wall holds one of them, the other gives way alone.
-  const double rest = overlap(n);
-  if (rest > least && wa > 0 && wb > 0) {
-    if (!(b.centre == b_free)) a.centre = clear_of_walls(pair.a, a.centre, a.centre - rest * n);
-    else if (!(a.centre == a_free)) b.centre = clear_of_walls(pair.b, b.centre, b.centre + rest * n);
+/// True while the candidates hold all that may touch in this step.
+bool PlanarEngine::is_filed(double) const {
+  if (!filed_) return false;
+  for (std::size_t k = 0; k < lumps_.size(); ++k) {
+    if (lumps_[k].slot == none) continue;
+    const Vec2 d = map_.discs()[k].centre - filed_at_[k];
+    const double left = slack_m_[k] - lumps_[k].reach_m;
+    if (!(left >= 0 && dot(d, d) <= left * left)) return false;
   }
   return true;
 }
 
-/// Takes the disc's displacement over to its base, and the velocity that was lost from its drive.
-void PlanarEngine::feel_contacts(std::uint32_t slot, double h_s) {
-  const Vec2 push = map_.discs()[slot].centre - unhindered_[slot];
-  if (push == Vec2{}) return;
-  Base& base = bases_[slot];
-  base.p = base.p + push;
-  base.v = (1 / h_s) * (base.p - start_[slot]);
-  Drive& drive = drives_[slot];
-  if (!drive.active) return;
-  const Vec2 arm_W = rotate(base.heading, drive.arm);
-  const Vec2 v_L = base.v + base.w_radps * Vec2{-arm_W.y, arm_W.x};
-  const Vec2 actual = rotate_back(base.heading * drive.frame, v_L);
-  drive.now.v_mps = {hindered(drive.now.v_mps.x, actual.x), hindered(drive.now.v_mps.y, actual.y)};
-}
-
-void PlanarEngine::turn_joints(double h_s) {
-  for (std::size_t k = 0; k < motors_.size(); ++k) {
-    const Motor& motor = motors_[k];
-    JointState& joint = joint_states_[k];
-    joint.velocity = 0;
-    if (!motor.active) continue;
-    const double before = joint.position;
-    const double velocity = std::clamp(motor.velocity, -motor.max_velocity, motor.max_velocity);
-    const double goal = before + velocity * h_s;
-    joint.position = std::clamp(goal, std::min(motor.lower, before), std::max(motor.upper, before));
-    joint.velocity = joint.position == goal ? velocity : (joint.position - before) / h_s;
-  }
-}
-
-void PlanarEngine::touch(std::uint32_t slot, std::uint32_t other, std::uint32_t wall,
-                         std::uint32_t other_body, Vec2 point, double z_m, Vec2 from_other, double depth_m) {
-  const std::uint64_t mine = instances_[slot].created, theirs = instances_[other].created;
-  const BodyId me = body_id(map_.discs()[slot].body), them = body_id(other_body);
-  const bool they_first = theirs < mine;
-  const double sign = they_first ? 1 : -1;
-  touches_.push_back({they_first ? theirs : mine,
-                      they_first ? mine : theirs,
-                      wall,
-                      {they_first ? them : me,
-                       they_first ? me : them,
-                       {point.x, point.y, z_m},
-                       {sign * from_other.x, sign * from_other.y, 0},
-                       depth_m}});
-}
-
-/// One contact per pair of shapes, the deepest of those met on the way.
-void PlanarEngine::list_contacts() {
-  const auto same = [](const Touch& x, const Touch& y) {
-    return x.first == y.first && x.second == y.second && x.wall == y.wall;
+void PlanarEngine::file(double) {
+  const auto count = static_cast<std::uint32_t>(lumps_.size());
+  filed_at_.resize(count);
+  slack_m_.resize(count);
+  candidates_.clear();
+  std::uint32_t columns = 16;
+  while (std::uint64_t{columns} * columns < std::uint64_t{count} * 4) columns *= 2;
+  if (cells_.columns() != columns || !filed_) cells_.resize(spec_.cell_m, columns, columns);
+  const auto area = [&](std::uint32_t k) {
+    const double r = map_.discs()[k].radius_m + slack_m_[k];
+    const Vec2 c = filed_at_[k];
+    return Area{{c.x - r, c.y - r}, {c.x + r, c.y + r}};
   };
-  std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) {
-    if (x.first != y.first) return x.first < y.first;
-    if (x.second != y.second) return x.second < y.second;
-    if (x.wall != y.wall) return x.wall < y.wall;
-    if (x.contact.depth_m != y.contact.depth_m) return x.contact.depth_m > y.contact.depth_m;
-    if (x.contact.point_W.x != y.contact.point_W.x) return x.contact.point_W.x < y.contact.point_W.x;
-    return x.contact.point_W.y < y.contact.point_W.y;
+  cells_.build(count, [&](std::uint32_t k) {
+    const Disc& disc = map_.discs()[k];
+    filed_at_[k] = disc.centre;
+    slack_m_[k] = lumps_[k].reach_m + std::min(0.5 * disc.radius_m, 0.05);
+    if (lumps_[k].slot == none || !(disc.radius_m > 0)) return Cells::Range{};
+    return cells_.cover(area(k));
   });
+  const auto meets = [&](std::uint32_t a, std::uint32_t b) {
+    const Disc &x = map_.discs()[a], &y = map_.discs()[b];
+    const double far = x.radius_m + y.radius_m + slack_m_[a] + slack_m_[b];
+    const Vec2 d = y.centre - x.centre;
+    if (!(dot(d, d) < far * far) || !meet(x.heights, y.heights, spec_.clearance_m)) return;
+    const Lump *first = &lumps_[a], *second = &lumps_[b];
+    if (first->inverse_kg == 0 && second->inverse_kg == 0) return;
+    if (first->slot == second->slot) {
+      if (first->index > second->index) std::swap(a, b), std::swap(first, second);
+      const Instance& instance = instances_[first->slot];
+      if (!instance.model->self_collide) return;
+      for (const Linkage& l : instance.linkages)
+        if ((l.a == a && l.b == b) || (l.a == b && l.b == a)) return;
+    } else if (instances_[first->slot].created > instances_[second->slot].created) {
+      std::swap(a, b), std::swap(first, second);
+    }
+    candidates_.push_back(
+        {{instances_[first->slot].created << 32 | (instances_[second->slot].created & 0xffffffffu),
+          first->index << 16 | second->index},
+         a,
+         b});
+  };
+  for (std::uint32_t s = 0; s < cells_.columns() * cells_.rows(); ++s) {
+    const auto in = cells_.in_slot(s);
+    for (std::size_t i = 0; i + 1 < in.size(); ++i)
+      for (std::size_t j = i + 1; j < in.size(); ++j) meets(in[i], in[j]);
+  }
+  if (!map_.walls().empty())
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Disc& disc = map_.discs()[k];
+      const Lump& lump = lumps_[k];
+      if (lump.slot == none || !(disc.radius_m > 0) || lump.inverse_kg == 0) continue;
+      map_.walls_near(area(k), near_walls_);
+      for (const std::uint32_t w : near_walls_) {
+        const Wall& wall = map_.walls()[w];
+        if (!meet(disc.heights, wall.outline.heights, spec_.clearance_m)) continue;
+        const Vec2 d = wall.outline.centre - disc.centre;
+        const double far = disc.radius_m + slack_m_[k] + wall.outline.radius_m;
+        if (!(dot(d, d) < far * far)) continue;
+        if (!(nearest(wall.outline, map_.edges(), disc.centre).distance_m < disc.radius_m + slack_m_[k]))
+          continue;
+        const std::uint64_t mine = instances_[lump.slot].created, its = instances_[wall.instance].created;
+        Candidate c{.key = {}, .wall = w};
+        if (mine < its) {
+          c.key = {mine << 32 | (its & 0xffffffffu), lump.index << 16, 0, wall.ordinal};
+          c.a = k;
+        } else {
+          c.key = {its << 32 | (mine & 0xffffffffu), lump.index, wall.ordinal};
+          c.b = k;
+        }
+        candidates_.push_back(c);
+      }
+    }
+  const auto before = [](const Candidate& x, const Candidate& y) { return x.key < y.key; };
+  std::sort(candidates_.begin(), candidates_.end(), before);
+  candidates_.erase(std::unique(candidates_.begin(), candidates_.end(),
+                                [](const Candidate& x, const Candidate& y) { return x.key == y.key; }),
+                    candidates_.end());
+  filed_ = true;
+}
+
+// --- islands --------------------------------------------------------------------------------------------------------
+
+void PlanarEngine::find_touches(double h_s) {
+  found_.clear();
+  for (const Candidate& c : candidates_) collide(c, h_s, found_);
+  const auto before = [](const Touch& x, const Touch& y) { return x.key < y.key; };
+  if (!std::is_sorted(found_.begin(), found_.end(), before)) std::sort(found_.begin(), found_.end(), before);
+  remember(found_);
+}
+
+std::uint32_t PlanarEngine::root(std::uint32_t k) {
+  while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+  return k;
+}
+
+void PlanarEngine::unite(std::uint32_t a, std::uint32_t b) {
+  const auto join = [&](std::uint32_t k) { return k == none || lumps_[k].inverse_kg == 0 ? none : k; };
+  a = join(a), b = join(b);
+  if (a != none) island_of_[a] = 0;
+  if (b != none) island_of_[b] = 0;
+  if (a == none || b == none) return;
+  a = root(a), b = root(b);
+  // Towards the smaller index: nothing depends on it but the shape of the forest.
+  if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+}
+
+void PlanarEngine::find_islands(double h_s) {
+  const std::size_t count = lumps_.size();
+  parent_.resize(count);
+  island_of_.assign(count, none);
+  for (std::uint32_t k = 0; k < count; ++k) parent_[k] = k;
+  for (const Touch& t : found_) unite(t.a, t.b);
+  island_linkages_.clear();
+  for (const std::uint32_t slot : order_)
+    for (Linkage& l : instances_[slot].linkages) island_linkages_.push_back(&l);
+  for (Linkage& l : grips_)
+    if (l.a != none || l.b != none) island_linkages_.push_back(&l);
+  for (const Linkage* l : island_linkages_) unite(l->a, l->b);
+  // Whoever is fast goes from impact to impact together with all that it may hit on the way.
+  const double fast = 0.25;
+  const auto core = [&](std::uint32_t k) {
+    return k == none ? std::numeric_limits<double>::infinity()
+                     : instances_[lumps_[k].slot].plan->lumps[lumps_[k].index].core_m;
+  };
+  const auto way = [&](std::uint32_t k) {
+    return k == none ? 0 : lumps_[k].reach_m - lumps_[k].reach_share_m;
+  };
+  for (int pass = 0; pass < 2; ++pass) {
+    fastest_.assign(count, 0);
+    for (std::uint32_t k = 0; k < count; ++k)
+      if (island_of_[k] != none) fastest_[root(k)] = std::max(fastest_[root(k)], way(k));
+    for (const Candidate& c : candidates_) {
+      const double most = std::max(way(c.a), way(c.b)), least = std::min(core(c.a), core(c.b));
+      const bool hit_on = (c.a != none && island_of_[c.a] != none) ||
+                          (c.b != none && island_of_[c.b] != none);
+      const auto fast_root = [&](std::uint32_t k) { return k != none && fastest_[root(k)] > fast * least; };
+      if (most > fast * least || (hit_on && (fast_root(c.a) || fast_root(c.b))))
+        if (near(c, h_s)) unite(c.a, c.b);
+    }
+  }
+  island_count_ = 0;
+  // Islands in the order of their first lumps' creation.
+  island_slots_.assign(count, none);  // by root: its island
+  for (const std::uint32_t slot : order_)
+    for (const std::uint32_t k : instances_[slot].lumps) {
+      if (island_of_[k] == none) continue;
+      std::uint32_t& island = island_slots_[root(k)];
+      if (island == none) {
+        island = static_cast<std::uint32_t>(island_count_++);
+        if (islands_.size() < island_count_) islands_.emplace_back();
+        Island& fresh = islands_[island];
+        fresh.lumps = fresh.candidates = fresh.linkages = 0;
+        fresh.touches.clear();
+      }
+      island_of_[k] = island;
+      ++islands_[island].lumps;
+    }
+  const auto island_at = [&](std::uint32_t a, std::uint32_t b) {
+    if (a != none && island_of_[a] != none) return island_of_[a];
+    return b != none ? island_of_[b] : none;
+  };
+  for (const Candidate& c : candidates_)
+    if (const std::uint32_t i = island_at(c.a, c.b); i != none) ++islands_[i].candidates;
+  for (const Linkage* l : island_linkages_)
+    if (const std::uint32_t i = island_at(l->a, l->b); i != none) ++islands_[i].linkages;
+  std::uint32_t lump = 0, candidate = 0, linkage = 0;
+  for (std::size_t i = 0; i < island_count_; ++i) {
+    Island& island = islands_[i];
+    island.first_lump = lump, island.first_candidate = candidate, island.first_linkage = linkage;
+    lump += island.lumps, candidate += island.candidates, linkage += island.linkages;
+    island.lumps = island.candidates = island.linkages = 0;
+  }
+  island_lumps_.resize(lump);
+  island_candidates_.resize(candidate);
+  sorted_linkages_.resize(linkage);
+  for (const std::uint32_t slot : order_)
+    for (const std::uint32_t k : instances_[slot].lumps)
+      if (island_of_[k] != none) {
+        Island& island = islands_[island_of_[k]];
+        island_lumps_[island.first_lump + island.lumps++] = k;
+      }
+  for (const Candidate& c : candidates_)
+    if (const std::uint32_t i = island_at(c.a, c.b); i != none)
+      island_candidates_[islands_[i].first_candidate + islands_[i].candidates++] = c;
+  for (Linkage* l : island_linkages_)
+    if (const std::uint32_t i = island_at(l->a, l->b); i != none)
+      sorted_linkages_[islands_[i].first_linkage + islands_[i].linkages++] = l;
+  for (const Touch& t : found_)
+    if (const std::uint32_t i = island_at(t.a, t.b); i != none) islands_[i].touches.push_back(t);
+}
+
+// --- afterwards -----------------------------------------------------------------------------------------------------
+
+/// Joints that are moved as their targets say.
+void PlanarEngine::turn_joints(double h_s) {
+  std::erase_if(turning_, [&](std::uint32_t k) {
+    Motor& motor = motors_[k];
+    JointState& joint = joint_states_[k];
+    const bool moved = motor.role == Motor::Role::kinematic ||
+                       (motor.role == Motor::Role::wheel && drives_[motor.slot].active);
+    const bool asked = motor.slot != none && motor.target.mode == JointTarget::Mode::velocity;
+    if (moved) {
+      joint.velocity = joint.effort = 0;
+      if (asked && motor.target.max_effort > 0) {
+        const double before = joint.position;
+        const double velocity = std::clamp(motor.target.velocity, -motor.max_velocity, motor.max_velocity);
+        const double goal = before + velocity * h_s;
+        joint.position = std::clamp(goal, std::min(motor.lower, before), std::max(motor.upper, before));
+        joint.velocity = joint.position == goal ? velocity : (joint.position - before) / h_s;
+      }
+    }
+    motor.listed = asked;
+    return !asked;
+  });
+}
+
+void PlanarEngine::list_contacts(double h_s) {
   contacts_.clear();
-  for (std::size_t i = 0; i < touches_.size(); ++i)
-    if (i == 0 || !same(touches_[i - 1], touches_[i])) contacts_.push_back(touches_[i].contact);
+  for (const Touch& t : touches_) {
+    const double normal_Ns = t.normal_Ns + t.bounce_Ns;
+    if (!(normal_Ns > 0) && t.gap_m > 0) continue;
+    const Vec2 force = (1 / h_s) *
+                       (normal_Ns * t.normal + (t.tangent_Ns + t.bounce_tangent_Ns) * left_of(t.normal));
+    contacts_.push_back({body_id(t.body_a),
+                         body_id(t.body_b),
+                         {t.at.x, t.at.y, t.z_m},
+                         {t.normal.x, t.normal.y, 0},
+                         std::max(-t.gap_m, 0.0),
+                         {force.x, force.y, 0},
+                         t.shape_a,
+                         t.shape_b});
+  }
 }
 
 }  // namespace sandlot::planar

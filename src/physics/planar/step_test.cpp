@@ -88,16 +88,16 @@ TEST(PlanarDrive, TheFrameIsThatOfTheLinkItIsGivenFor) {
   EXPECT_NEAR(v.p(other).y, 0.01, 1e-9);
 }
 
-TEST(PlanarDrive, AReleasedRobotStops) {
+TEST(PlanarDrive, AReleasedRobotSlidesToAStop) {
   World w;
   const InstanceId robot = w.add(robot_model(), at(0, 0));
-  w.drive(robot, 1, 0, 1);
+  w.drive(robot, 1, 0, 0);
   w.run(10);
   const DriveTarget release{w.engine.bodies(robot)[0], false};
   w.engine.set_drive_targets({&release, 1});
-  const Vec3 before = w.p(robot);
+  w.run(5);
+  EXPECT_NEAR(w.state(robot).V_WB.linear.x, 1 - 9.81 * 0.05, 1e-9);  // mu 1
   w.run(10);
-  EXPECT_EQ(w.p(robot), before);
   EXPECT_EQ(w.state(robot).V_WB.linear, Vec3{});
 }
 
@@ -119,7 +119,9 @@ TEST(PlanarContact, AWallStopsADisc) {
   EXPECT_EQ(contact.a, w.engine.bodies(wall)[0]);
   EXPECT_EQ(contact.b, w.engine.bodies(robot)[0]);
   EXPECT_NEAR(contact.normal_W.x, -1, 1e-12);
-  EXPECT_NEAR(contact.depth_m, h_s * math::cos(0.005), 1e-6);
+  EXPECT_NEAR(contact.depth_m, 0, 1e-4);
+  EXPECT_NEAR(contact.force_W.x, -1 * 1 * math::cos(0.005) / h_s,
+              1);  // 1 kg is brought back to 1 m/s each step
   EXPECT_NEAR(contact.point_W.z, 0.2, 1e-12);
 }
 
@@ -180,26 +182,24 @@ TEST(PlanarContact, AnInsideCornerHoldsADisc) {
   EXPECT_NEAR(w.p(robot).y, 0.8, 1e-9);
 }
 
-TEST(PlanarContact, DiscsArePushedByInverseMass) {
+TEST(PlanarContact, OverlapAtTheStartIsTakenBackByInverseMassAndLeavesNoVelocity) {
   World w;
   const InstanceId light = w.add(robot_model(1), at(0.3, 0));
   const InstanceId heavy = w.add(robot_model(3), at(0, 0));
   w.run(1);
-  // Overlap 0.1: three quarters to the light one.
-  EXPECT_NEAR(w.p(light).x, 0.3 + 0.075, 1e-12);
-  EXPECT_NEAR(w.p(heavy).x, -0.025, 1e-12);
   ASSERT_EQ(w.engine.contacts().size(), 1u);
   const Contact c = w.engine.contacts()[0];
   EXPECT_EQ(c.a, w.engine.bodies(light)[0]);
   EXPECT_NEAR(c.normal_W.x, -1, 1e-12);
   EXPECT_NEAR(c.depth_m, 0.1, 1e-12);
-  EXPECT_NEAR(w.state(light).V_WB.linear.x, 0.075 / h_s, 1e-9);
-  w.run(1);
-  EXPECT_EQ(w.state(light).V_WB.linear.x, 0);  // the ground stops it at once
-  EXPECT_TRUE(w.engine.contacts().empty());
+  w.run(100);
+  // Overlap 0.1, but for the slop: three quarters to the light one.
+  EXPECT_NEAR(w.p(light).x, 0.3 + 0.075, 1e-4);
+  EXPECT_NEAR(w.p(heavy).x, -0.025, 1e-4);
+  EXPECT_EQ(w.state(light).V_WB.linear, Vec3{});
 }
 
-TEST(PlanarContact, ARobotPushesABoxUpToAWall) {
+TEST(PlanarContact, ARobotPushesABallUpToAWall) {
   World w;
   w.add(model_of(Box{{0.1, 10, 1}}, true), at(2.05, 0, 0, 0.5));
   const InstanceId robot = w.add(robot_model(10), at(0, 0));
@@ -207,10 +207,9 @@ TEST(PlanarContact, ARobotPushesABoxUpToAWall) {
   w.drive(robot, 1, 0, 0);
   w.run(100);
   EXPECT_GT(w.p(ball).x, 1.2);
-  EXPECT_NEAR(w.p(ball).x - w.p(robot).x, 0.3, 1e-9);
   w.run(300);
-  EXPECT_NEAR(w.p(ball).x, 1.9, 1e-9);
-  EXPECT_NEAR(w.p(robot).x, 1.6, 1e-9);
+  EXPECT_NEAR(w.p(ball).x, 1.9, 5e-4);
+  EXPECT_NEAR(w.p(robot).x, 1.6, 1e-3);
 }
 
 TEST(PlanarContact, ThingsOfAnySizeCostNoMoreThanTheTable) {
@@ -235,7 +234,7 @@ TEST(PlanarContact, OnlyWhatSharesHeightsMeets) {
   EXPECT_NEAR(w.p(robot).x, 3, 1e-7);
 }
 
-TEST(PlanarContact, TheDiscEnclosesAllShapes) {
+TEST(PlanarContact, AllShapesOfABodyTouch) {
   auto model = robot_model();
   model->links[0].collisions.push_back({"nose", at(0.3, 0, 0, 0.2), Box{{0.2, 0.2, 0.1}}, {}, {}});
   World w;
@@ -243,8 +242,7 @@ TEST(PlanarContact, TheDiscEnclosesAllShapes) {
   const InstanceId robot = w.add(model, at(0, 0));
   w.drive(robot, 1, 0, 0);
   w.run(300);
-  // The rectangle goes from -0.2 to 0.4: a circle about 0.1 that reaches the nose's corner (0.4, 0.1).
-  EXPECT_NEAR(w.p(robot).x, 2 - std::sqrt(0.3 * 0.3 + 0.1 * 0.1) - 0.1, 1e-9);
+  EXPECT_NEAR(w.p(robot).x, 2 - 0.4, 2e-4);  // the nose ends at 0.4
 }
 
 TEST(PlanarContact, OrderOfCreationDoesNotMatterToThoseWhoDoNotTouch) {

@@ -1,0 +1,171 @@
+// Which parts of two bodies touch, and how soon those do that do not.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/planar/planar.h"
+#include "physics/planar/touch.h"
+
+namespace sandlot::planar {
+namespace {
+
+constexpr double within_m = 1e-4;  ///< what is so near counts as touching whatever its speed
+constexpr double impact_gap_m = 5e-5;
+
+struct Side {
+  std::uint32_t lump = none;
+  const Lump* moving = nullptr;
+  const Disc* disc = nullptr;
+  std::span<const Outline> parts;
+  std::span<const Edge> edges;
+  Outline circle;  ///< of a disc
+};
+
+double middle_of_common(Heights a, Heights b) {
+  return 0.5 * (std::max(a.min_m, b.min_m) + std::min(a.max_m, b.max_m));
+}
+
+}  // namespace
+
+/// Whether they can come to touch in this step, from the state alone.
+bool PlanarEngine::near(const Candidate& c, double) const {
+  const std::uint32_t k = c.a != none ? c.a : c.b;
+  const Disc& disc = map_.discs()[k];
+  if (c.wall != none)
+    return nearest(map_.walls()[c.wall].outline, map_.edges(), disc.centre).distance_m <
+           disc.radius_m + lumps_[k].reach_m;
+  const Disc& other = map_.discs()[c.b];
+  const Vec2 d = other.centre - disc.centre;
+  const double far = disc.radius_m + other.radius_m + lumps_[c.a].reach_m + lumps_[c.b].reach_m;
+  return dot(d, d) < far * far;
+}
+
+namespace {
+
+template <class Visit>
+void for_parts(const Side& a, const Side& b, double margin_m, double clearance_m, Visit&& visit) {
+  for (std::uint32_t i = 0; i < a.parts.size(); ++i)
+    for (std::uint32_t j = 0; j < b.parts.size(); ++j) {
+      const Outline &x = a.parts[i], &y = b.parts[j];
+      const double far = x.radius_m + y.radius_m + margin_m;
+      const Vec2 d = y.centre - x.centre;
+      if (!(dot(d, d) < far * far) || !meet(x.heights, y.heights, clearance_m)) continue;
+      visit(i, j, Figure{x, a.edges}, Figure{y, b.edges});
+    }
+}
+
+void take_side(Side& side, std::uint32_t k, const Candidate& c, const std::vector<Lump>& lumps, Map& map) {
+  side.lump = k;
+  if (k == none) {
+    side.parts = {&map.walls()[c.wall].outline, 1};
+    side.edges = map.edges();
+    return;
+  }
+  side.moving = &lumps[k];
+  side.disc = &map.discs()[k];
+  if (side.moving->figure == none) {
+    side.circle = {side.disc->centre, side.disc->radius_m, side.disc->heights};
+    side.parts = {&side.circle, 1};
+    return;
+  }
+  const Silhouette& figure = map.figures()[side.moving->figure];
+  side.parts = figure.parts;
+  side.edges = figure.edges;
+}
+
+/// How far a lump's outline can move in h.
+double way(const Side& side, double h_s) {
+  if (!side.moving) return 0;
+  return h_s * (std::sqrt(dot(side.moving->v, side.moving->v)) +
+                std::abs(side.moving->w_radps) * side.disc->radius_m);
+}
+
+}  // namespace
+
+void PlanarEngine::collide(const Candidate& c, double h_s, std::vector<Touch>& out) const {
+  const auto core = [&](const Side& s) {
+    return s.moving ? instances_[s.moving->slot].plan->lumps[s.moving->index].core_m
+                    : std::numeric_limits<double>::infinity();
+  };
+  if (c.wall == none) {
+    // Most candidates are some way off.
+    const Disc &x = map_.discs()[c.a], &y = map_.discs()[c.b];
+    const double far = x.radius_m + y.radius_m + lumps_[c.a].reach_m + lumps_[c.b].reach_m;
+    const Vec2 d = y.centre - x.centre;
+    if (!(dot(d, d) < far * far)) return;
+  }
+  Side a, b;
+  take_side(a, c.a, c, lumps_, map_);
+  take_side(b, c.b, c, lumps_, map_);
+  const double margin = within_m + std::min(way(a, h_s) + way(b, h_s), 0.5 * std::min(core(a), core(b)));
+  for_parts(a, b, margin, spec_.clearance_m, [&](std::uint32_t i, std::uint32_t j, Figure x, Figure y) {
+    Touching met;
+    if (!touching(x, y, margin, met)) return;
+    struct Surfaced {
+      const model::Surface* surface;
+      std::uint32_t body, shape;
+      bool slippery;
+    };
+    const auto surfaced = [&](const Side& s, std::uint32_t part) -> Surfaced {
+      if (!s.moving)
+        return {map_.walls()[c.wall].surface, map_.walls()[c.wall].body, Contact::no_shape, false};
+      const Instance& instance = instances_[s.moving->slot];
+      const Part& p = instance.plan->lumps[s.moving->index].parts[part];
+      return {p.surface, instance.bodies[p.link].index, p.collision, drives_[s.moving->slot].active != 0};
+    };
+    const Surfaced sa = surfaced(a, i), sb = surfaced(b, j);
+    const model::Surface& bouncer = sb.surface->restitution > sa.surface->restitution ? *sb.surface
+                                                                                      : *sa.surface;
+    for (int k = 0; k < met.count; ++k) {
+      Touch t;
+      t.key = c.key;
+      t.key.part_a += a.moving ? i : 0;
+      t.key.part_b += b.moving ? j : 0;
+      t.key.feature = met.points[k].feature;
+      t.a = c.a, t.b = c.b;
+      t.normal = met.normal;
+      t.at = met.points[k].at;
+      t.gap_m = met.points[k].gap_m;
+      t.mu = sa.slippery || sb.slippery ? 0 : std::min(sa.surface->mu, sb.surface->mu);
+      t.restitution = bouncer.restitution;
+      t.threshold_mps = bouncer.restitution_threshold_mps;
+      t.body_a = sa.body, t.body_b = sb.body;
+      t.shape_a = sa.shape, t.shape_b = sb.shape;
+      t.z_m = middle_of_common(x.outline.heights, y.outline.heights);
+      out.push_back(t);
+    }
+  });
+}
+
+/// Takes the impulses of the last step over to contacts that were there already.
+void PlanarEngine::remember(std::span<Touch> touches) const {
+  auto old = touches_.begin();
+  for (Touch& t : touches) {
+    while (old != touches_.end() && old->key < t.key) ++old;
+    if (old == touches_.end()) return;
+    if (old->key != t.key) continue;
+    t.normal_Ns = old->normal_Ns;
+    t.tangent_Ns = old->tangent_Ns;
+  }
+}
+
+/// The part of h after which two that could pass each other meet; 1: they do not.
+double PlanarEngine::impact(const Candidate& c, double h_s) const {
+  Side a, b;
+  take_side(a, c.a, c, lumps_, map_);
+  take_side(b, c.b, c, lumps_, map_);
+  const auto core = [&](const Side& s) {
+    return s.moving ? instances_[s.moving->slot].plan->lumps[s.moving->index].core_m
+                    : std::numeric_limits<double>::infinity();
+  };
+  const Vec2 va = a.moving ? a.moving->v : Vec2{}, vb = b.moving ? b.moving->v : Vec2{};
+  const Vec2 path = h_s * (vb - va);
+  const double length = std::sqrt(dot(path, path));
+  if (!(length > 0.25 * std::min(core(a), core(b)))) return 1;
+  double first = 1;
+  for_parts(a, b, length, spec_.clearance_m, [&](std::uint32_t, std::uint32_t, Figure x, Figure y) {
+    first = std::min(first, time_of_impact(x, y, path, impact_gap_m));
+  });
+  return first;
+}
+
+}  // namespace sandlot::planar

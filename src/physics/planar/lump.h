@@ -1,0 +1,169 @@
+#pragma once
+/// The state of the planar engine's bodies and of what holds and drives them, as its files share it.
+#include <compare>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "physics/engine.h"
+#include "physics/planar/drive.h"
+#include "physics/planar/map.h"
+#include "physics/planar/plan.h"
+#include "physics/planar/tree.h"
+
+namespace sandlot::planar {
+
+constexpr std::uint32_t none = ~0u;
+
+constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+constexpr Vec2 left_of(Vec2 a) { return {-a.y, a.x}; }
+
+/// Links that move as one, about their centre of mass.
+struct Lump {
+  Vec2 p;  ///< centre of mass
+  Turn heading;
+  Vec2 v;  ///< of p
+  double w_radps = 0;
+  double inverse_kg = 0, inverse_kgm2 = 0;  ///< 0: on a path of its own
+  std::uint32_t slot = none;                ///< of its instance; none: there is no such lump
+  std::uint32_t index = 0;                  ///< in the instance's plan
+  std::uint32_t figure = none;              ///< none: a circle
+  double reach_share_m = 0;                 ///< how far it may come in a step beside twice its speed
+  double reach_m = 0;                       ///< and altogether
+  Vec2 force_N;                             ///< of wrenches, consumed by the next step
+  double torque_Nm = 0;
+
+  Vec2 velocity_at(Vec2 arm) const { return v + w_radps * left_of(arm); }
+  void push(Vec2 impulse, Vec2 arm) {
+    v = v + inverse_kg * impulse;
+    w_radps += inverse_kgm2 * cross(arm, impulse);
+  }
+};
+
+/// What the ground does to what slides or rolls on it; fixed until it stands elsewhere.
+struct Rubbing {
+  double force_N = 0;    ///< largest, of a patch that slides without turning
+  double torque_Nm = 0;  ///< largest, of one that turns about the centre of mass
+  Vec2 impulse;          ///< in this step
+  double twist = 0;
+};
+
+/// A wheel on the ground, or a caster: a wheel that is locked and has no axle.
+struct Wheel {
+  const WheelPlan* plan = nullptr;  ///< null: a caster
+  std::uint32_t lump = none, joint = none, steering = none;
+  Vec2 at;             ///< in the lump's frame
+  double limit_N = 0;  ///< largest friction
+  Vec2 impulse;        ///< ahead and along the axle; with rollers: x along the grip
+  // Of this step.
+  Vec2 ahead, across, arm;              ///< the directions it holds, and where; with rollers the first alone
+  double roll_m = 0;                    ///< velocity along `ahead` that a spin of 1 rad/s makes up for
+  double k_aa = 0, k_ac = 0, k_cc = 0;  ///< what the lump's velocity there gains per impulse
+  struct Axle {
+    double slope = 0;  ///< inertia and damping over the step: angular impulse = slope * spin - start
+    double start = 0;  ///< of inertia and effort
+    double wanted_radps = 0, motor = 0, friction = 0;  ///< angular impulses at most
+    double thrust = 0;                                 ///< what the velocity motor gave
+  } axle;
+};
+
+/// A pivot or slider between two lumps of an instance, or a grip between two instances.
+struct Linkage {
+  const LinkagePlan* plan = nullptr;  ///< null: a grip
+  std::uint32_t a = none, b = none, joint = none;
+  Vec2 at_a, at_b;  ///< the anchor in both frames
+  Vec2 axis_a;      ///< of a slider, in the frame of a
+  Turn apart;       ///< heading of b in a at joint position 0
+  Vec2 hold;        ///< impulse at the anchor; of a slider x is across
+  double turn = 0;  ///< angular impulse of a slider or grip
+  double motor = 0, friction = 0, spring = 0, limit = 0;
+  BodyId body_a, body_b;  ///< of a grip
+  // Of this step.
+  Vec2 arm_a, arm_b, axis;
+  double rate_before = 0;
+};
+
+/// Orders contacts, and finds them again in the next step.
+struct TouchKey {
+  std::uint64_t pair = 0;                ///< creation of both instances, the older first
+  std::uint32_t lumps = 0;               ///< of the older << 16 | of the younger
+  std::uint32_t part_a = 0, part_b = 0;  ///< of a wall: which of its instance's
+  std::uint32_t feature = 0;
+  friend constexpr auto operator<=>(const TouchKey&, const TouchKey&) = default;
+};
+
+/// What may come to touch: two lumps, or a lump and a wall.
+struct Candidate {
+  TouchKey key;
+  std::uint32_t a = none, b = none;  ///< lumps, of the older and the younger; none: the wall
+  std::uint32_t wall = none;
+};
+
+struct Touch {
+  TouchKey key;
+  std::uint32_t a = none, b = none;  ///< lumps; none: a wall
+  Vec2 normal;                       ///< from a to b
+  Vec2 at;
+  Vec2 arm_a, arm_b;
+  Turn heading_a, heading_b;  ///< when it was found
+  double gap_m = 0;
+  double normal_kg = 0, tangent_kg = 0;
+  double bias_mps = 0;  ///< the least velocity along the normal
+  double normal_Ns = 0, tangent_Ns = 0, bounce_Ns = 0, bounce_tangent_Ns = 0;
+  double mu = 0, restitution = 0, threshold_mps = 0, belt_mps = 0;
+  std::uint32_t body_a = none, body_b = none, shape_a = none, shape_b = none;
+  double z_m = 0;
+};
+
+/// What a lump that goes where it is driven to would do without contacts.
+struct Planned {
+  Vec2 v;  ///< mean over the step, of the centre of mass
+  double w_radps = 0;
+  Twist mean;  ///< in the body's frame
+};
+
+struct Drive {
+  std::uint32_t active = 0;
+  std::uint32_t link = 0;  ///< of the instance's model: whose frame the velocities are in
+  Twist now, target;
+  double accel = 0, angular_accel = 0;
+  Vec2 arm;    ///< of that link's origin from the centre of mass, in its frame
+  Turn frame;  ///< of its x axis there
+};
+
+struct Motor {
+  std::uint32_t generation = 0;
+  JointTarget target;
+  double lower = 0, upper = 0, max_velocity = 0, max_effort = 0;
+  double damping = 0, friction = 0, stiffness = 0, reference = 0;
+  /// Kinematic joints, and the wheels of a robot that runs on rails, are moved as their targets say.
+  enum class Role : std::uint8_t { kinematic, wheel, linkage } role = Role::kinematic;
+  bool listed = false;  ///< among those that are moved so
+  std::uint32_t slot = none;
+};
+
+/// What changes rarely, or is looked at rarely.
+struct Instance {
+  bool alive = false, moves = false;
+  bool guided = false;                                   ///< moves along a path
+  std::optional<std::pair<Pose, Velocity>> destination;  ///< of a guided one, after the next step
+  std::uint32_t generation = 0;
+  std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
+  std::string name;
+  std::shared_ptr<const model::Model> model;
+  std::shared_ptr<const Tree> tree;
+  std::shared_ptr<const Plan> plan;
+  std::vector<BodyId> bodies;
+  std::vector<JointId> joints;
+  std::vector<std::uint32_t> lumps;
+  std::vector<Wheel> wheels;
+  std::vector<Linkage> linkages;
+  Quat tilt;       ///< attitude of the canonical link at heading 0
+  double z_m = 0;  ///< its height
+  Vec2 still_at;   ///< of one that stands still: its canonical link
+  Quat still_q;
+};
+
+}  // namespace sandlot::planar

@@ -1,0 +1,338 @@
+// Where instances of the planar engine are put: from poses of models to lumps, and back.
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "physics/planar/planar.h"
+
+namespace sandlot::planar {
+namespace {
+
+/// Heading of a rotation about z.
+Turn heading_of(Quat q, Quat& tilt) {
+  const double n = std::sqrt(q.w * q.w + q.z * q.z);
+  if (n < 1e-9) {  // upside down: any heading will do
+    tilt = q;
+    return {};
+  }
+  const double w = q.w / n, z = q.z / n;
+  tilt = normalised(Quat{n, w * q.x + z * q.y, w * q.y - z * q.x, 0});
+  return tidied({w * w - z * z, 2 * w * z});
+}
+
+Quat about_z(Turn t) {
+  if (t.c >= 0) {
+    const double w = std::sqrt(0.5 * (1 + t.c));
+    return {w, 0, 0, 0.5 * t.s / w};
+  }
+  const double z = std::copysign(std::sqrt(0.5 * (1 - t.c)), t.s);
+  return {0.5 * t.s / z, 0, 0, z};
+}
+
+bool same(Quat a, Quat b) {
+  const Quat d = conjugate(a) * b;
+  return d.x * d.x + d.y * d.y + d.z * d.z < 1e-18;
+}
+
+}  // namespace
+
+/// Puts an instance to a place, at rest.
+void PlanarEngine::settle(std::uint32_t slot, const Pose& X_WM) {
+  Instance& instance = instances_[slot];
+  const Pose X_WB = X_WM * instance.model->links[0].X_ML;
+  const Quat tilt_before = instance.tilt;
+  const double z_before = instance.z_m;
+  if (!instance.moves) {
+    instance.still_at = {X_WB.p.x, X_WB.p.y};
+    instance.still_q = X_WB.q;
+    instance.z_m = X_WB.p.z;
+    walls_fresh_ = false;
+    stale();
+    return;
+  }
+  heading_of(X_WB.q, instance.tilt);
+  instance.z_m = X_WB.p.z;
+  if (!instance.plan || !same(tilt_before, instance.tilt) || z_before != instance.z_m) shape(slot);
+  place_lumps(slot, X_WB);
+  for (const std::uint32_t k : instance.lumps) {
+    lumps_[k].v = {};
+    lumps_[k].w_radps = 0;
+  }
+  for (Wheel& wheel : instance.wheels) {
+    wheel.impulse = {};
+    if (wheel.joint != none) joint_states_[wheel.joint].velocity = 0;
+  }
+  for (Linkage& l : instance.linkages) {
+    l.hold = {};
+    l.turn = 0;
+    joint_states_[l.joint].velocity = 0;
+  }
+  drives_[slot].now = {};
+  std::erase_if(touches_, [&](const Touch& t) {
+    return t.key.pair >> 32 == instance.created || (t.key.pair & 0xffffffffu) == instance.created;
+  });
+}
+
+void PlanarEngine::free_lumps(Instance& instance) {
+  for (std::size_t i = instance.lumps.size(); i-- > 0;) {
+    const std::uint32_t k = instance.lumps[i];
+    if (lumps_[k].figure != none) {
+      map_.figures()[lumps_[k].figure] = {};
+      free_figures_.push_back(lumps_[k].figure);
+    }
+    lumps_[k] = {};
+    map_.discs()[k] = {};
+    free_lumps_.push_back(k);
+  }
+  instance.lumps.clear();
+}
+
+/// What follows from attitude and height: lumps, outlines and wheels.
+void PlanarEngine::shape(std::uint32_t slot) {
+  Instance& instance = instances_[slot];
+  if (!last_plan_ || last_model_ != instance.model || !same(last_tilt_, instance.tilt) ||
+      last_z_m_ != instance.z_m) {
+    last_plan_ = std::make_shared<const Plan>(make_plan(*instance.model, instance.tilt, instance.z_m));
+    last_tilt_ = instance.tilt;
+    last_z_m_ = instance.z_m;
+    if (last_model_ != instance.model) {
+      last_model_ = instance.model;
+      last_tree_ = instance.tree;
+    }
+  }
+  instance.plan = last_plan_;
+  const Plan& plan = *instance.plan;
+  std::vector<Lump> before;
+  for (const std::uint32_t k : instance.lumps) before.push_back(lumps_[k]);
+  free_lumps(instance);
+  for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
+    const LumpPlan& p = plan.lumps[i];
+    std::uint32_t k;
+    if (free_lumps_.empty()) {
+      k = static_cast<std::uint32_t>(lumps_.size());
+      lumps_.emplace_back();
+      rubbing_.emplace_back();
+      map_.discs().emplace_back();
+    } else {
+      k = free_lumps_.back();
+      free_lumps_.pop_back();
+    }
+    Lump& lump = lumps_[k];
+    lump = i < before.size() ? before[i] : Lump{};
+    lump.slot = slot;
+    lump.index = i;
+    lump.figure = none;
+    lump.inverse_kg = instance.guided ? 0 : 1 / p.mass_kg;
+    lump.inverse_kgm2 = instance.guided ? 0 : 1 / p.inertia_kgm2;
+    // What has no shape can meet nothing.
+    lump.reach_share_m = p.radius_m > 0 ? std::min(0.1 * p.radius_m, 0.5 * p.core_m) + 1e-4 : 1e9;
+    instance.lumps.push_back(k);
+    Disc& disc = map_.discs()[k];
+    disc = {.centre = {},
+            .radius_m = p.radius_m,
+            .heights = p.heights,
+            .body = instance.bodies[p.root].index,
+            .instance = slot};
+    if (!p.parts.empty()) disc.body = instance.bodies[p.parts[0].link].index;
+    if (!p.disc && !p.parts.empty()) {
+      if (free_figures_.empty()) {
+        lump.figure = static_cast<std::uint32_t>(map_.figures().size());
+        map_.figures().emplace_back();
+      } else {
+        lump.figure = free_figures_.back();
+        free_figures_.pop_back();
+      }
+      Silhouette& figure = map_.figures()[lump.figure];
+      for (const Part& part : p.parts) {
+        figure.parts.push_back(part.outline);
+        figure.bodies.push_back(instance.bodies[part.link].index);
+      }
+      figure.edges = p.edges;
+      disc.figure = lump.figure;
+    }
+  }
+  add_joints(instance);
+  aim(slot, drives_[slot].link);
+  filed_ = ground_fresh_ = false;
+  stale();
+}
+
+/// Wheels, casters and linkages, as the plan has them.
+void PlanarEngine::add_joints(Instance& instance) {
+  const Plan& plan = *instance.plan;
+  const bool same_kind = instance.linkages.size() + instance.wheels.size() > 0;
+  std::vector<Linkage> linkages = std::move(instance.linkages);
+  std::vector<Wheel> wheels = std::move(instance.wheels);
+  instance.linkages.clear();
+  instance.wheels.clear();
+  const auto global = [&](std::uint32_t joint) {
+    return joint == model::Joint::no_joint ? none : instance.joints[joint].index;
+  };
+  for (const WheelPlan& w : plan.wheels) {
+    Wheel wheel{.plan = &w,
+                .lump = instance.lumps[w.lump],
+                .joint = global(w.joint),
+                .steering = global(w.steering),
+                .at = w.at};
+    motors_[wheel.joint].role = Motor::Role::wheel;
+    if (wheel.steering != none) motors_[wheel.steering].role = Motor::Role::wheel;
+    instance.wheels.push_back(wheel);
+  }
+  for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
+    const bool wheeled = std::any_of(plan.wheels.begin(), plan.wheels.end(),
+                                     [&](const WheelPlan& w) { return w.lump == i; });
+    if (!wheeled) continue;
+    for (const Support& s : plan.lumps[i].supports)
+      if (s.surface->mu > 0) instance.wheels.push_back({.lump = instance.lumps[i], .at = s.at});
+  }
+  for (const LinkagePlan& l : plan.linkages) {
+    if (l.kind == LinkagePlan::Kind::steering) continue;
+    Linkage linkage{
+        .plan = &l, .a = instance.lumps[l.parent], .b = instance.lumps[l.child], .joint = global(l.joint)};
+    linkage.at_a = l.at_H - plan.lumps[l.parent].com_H;
+    linkage.at_b = l.at_H - plan.lumps[l.child].com_H;
+    linkage.axis_a = l.axis;
+    motors_[linkage.joint].role = Motor::Role::linkage;
+    instance.linkages.push_back(linkage);
+  }
+  if (!same_kind) return;
+  for (std::size_t i = 0; i < std::min(wheels.size(), instance.wheels.size()); ++i)
+    instance.wheels[i].impulse = wheels[i].impulse;
+  for (std::size_t i = 0; i < std::min(linkages.size(), instance.linkages.size()); ++i) {
+    instance.linkages[i].hold = linkages[i].hold;
+    instance.linkages[i].turn = linkages[i].turn;
+  }
+}
+
+/// From the canonical link's pose and the positions of joints.
+void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
+  Instance& instance = instances_[slot];
+  const Plan& plan = *instance.plan;
+  if (plan.lumps.size() > 1) {
+    states_[instance.bodies[0].index] = {X_WB, {}};
+    instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
+  }
+  for (const std::uint32_t k : instance.lumps) {
+    Lump& lump = lumps_[k];
+    const LumpPlan& p = plan.lumps[lump.index];
+    Quat tilt;
+    if (lump.index == 0) {
+      lump.heading = heading_of(X_WB.q, tilt);
+      lump.p = Vec2{X_WB.p.x, X_WB.p.y} + rotate(lump.heading, p.com_H);
+    } else {
+      const Pose moved = states_[instance.bodies[p.root].index].X_WB * inverse(plan.X_HL[p.root]);
+      lump.heading = heading_of(moved.q, tilt);
+      lump.p = Vec2{moved.p.x, moved.p.y} + rotate(lump.heading, p.com_H);
+    }
+    place_disc(k);
+  }
+  stale();
+}
+
+void PlanarEngine::place_disc(std::uint32_t k) {
+  const Lump& lump = lumps_[k];
+  map_.discs()[k].centre = lump.p +
+                           rotate(lump.heading, instances_[lump.slot].plan->lumps[lump.index].centre);
+}
+
+/// Brings a lump's figure to where the lump is.
+void PlanarEngine::move_figure(std::uint32_t k) {
+  const Lump& lump = lumps_[k];
+  const LumpPlan& plan = instances_[lump.slot].plan->lumps[lump.index];
+  Silhouette& figure = map_.figures()[lump.figure];
+  for (std::size_t i = 0; i < plan.parts.size(); ++i)
+    figure.parts[i].centre = lump.p + rotate(lump.heading, plan.parts[i].outline.centre);
+  for (std::size_t i = 0; i < plan.edges.size(); ++i) {
+    figure.edges[i].from = lump.p + rotate(lump.heading, plan.edges[i].from);
+    figure.edges[i].along = rotate(lump.heading, plan.edges[i].along);
+  }
+}
+
+void PlanarEngine::set_pose(InstanceId id, const Pose& X_WM) {
+  get(id);
+  settle(id.index, X_WM);
+}
+
+void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
+  SL_CHECK_MSG(get(id).guided, "guide() needs an instance with a motion");
+  instances_[id.index].destination = {X_WM, V_WM};
+}
+
+/// The velocity of a guided instance in this step.
+void PlanarEngine::lead(std::uint32_t slot, double) {
+  Instance& instance = instances_[slot];
+  for (const std::uint32_t k : instance.lumps) {
+    Lump& lump = lumps_[k];
+    lump.v = {};
+    lump.w_radps = 0;
+    if (!instance.destination) continue;
+    const auto& [X_WM, V] = *instance.destination;
+    // At its destination, where the velocity is meant.
+    const Pose X_WB = X_WM * instance.model->links[0].X_ML;
+    Quat tilt;
+    const Vec2 com = rotate(heading_of(X_WB.q, tilt), instance.plan->lumps[0].com_H);
+    const Vec3 arm = X_WB.p + Vec3{com.x, com.y, 0} - X_WM.p, v = V.linear + sandlot::cross(V.angular, arm);
+    lump.v = {v.x, v.y};
+    lump.w_radps = V.angular.z;
+  }
+}
+
+/// Takes a guided instance where it is to be.
+void PlanarEngine::arrive(std::uint32_t slot) {
+  Instance& instance = instances_[slot];
+  if (!instance.destination) return;
+  const Pose X_WB = instance.destination->first * instance.model->links[0].X_ML;
+  instance.destination.reset();
+  Quat tilt;
+  heading_of(X_WB.q, tilt);
+  const Quat change = conjugate(instance.tilt) * tilt;
+  // Rounding alone does not make a new outline.
+  if (std::abs(X_WB.p.z - instance.z_m) > 1e-9 || norm(Vec3{change.x, change.y, change.z}) > 1e-9) {
+    instance.tilt = tilt;
+    instance.z_m = X_WB.p.z;
+    shape(slot);
+  }
+  place_lumps(slot, X_WB);
+}
+
+Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
+  const Instance& instance = instances_[slot];
+  if (!instance.moves) return {{instance.still_at.x, instance.still_at.y, instance.z_m}, instance.still_q};
+  const Lump& lump = lumps_[instance.lumps[0]];
+  const Vec2 p = lump.p - rotate(lump.heading, instance.plan->lumps[0].com_H);
+  return {{p.x, p.y, instance.z_m}, about_z(lump.heading) * instance.tilt};
+}
+
+Pose PlanarEngine::pose(InstanceId id) const {
+  return canonical_pose(id.index) * inverse(get(id).model->links[0].X_ML);
+}
+
+Linkage PlanarEngine::make_grip(BodyId a, BodyId b) const {
+  Linkage l;
+  l.body_a = a;
+  l.body_b = b;
+  const auto lump_of = [&](BodyId id) {
+    const Instance& instance = instances_[body_slot_[id.index]];
+    if (!instance.moves) return none;
+    for (std::size_t i = 0; i < instance.bodies.size(); ++i)
+      if (instance.bodies[i] == id) return instance.lumps[instance.plan->lump_of_link[i]];
+    return none;
+  };
+  l.a = lump_of(a);
+  l.b = lump_of(b);
+  // The anchor lies in the middle, where neither gets a longer arm than it needs.
+  const Vec2 in_a = l.a != none ? lumps_[l.a].p : lumps_[l.b == none ? 0 : l.b].p;
+  const Vec2 in_b = l.b != none ? lumps_[l.b].p : in_a;
+  if (l.a == none && l.b == none) return l;
+  const Vec2 at = 0.5 * (in_a + in_b);
+  const auto local = [&](std::uint32_t k) {
+    return k == none ? at : rotate_back(lumps_[k].heading, at - lumps_[k].p);
+  };
+  l.at_a = local(l.a);
+  l.at_b = local(l.b);
+  const Turn ha = l.a == none ? Turn{} : lumps_[l.a].heading, hb = l.b == none ? Turn{} : lumps_[l.b].heading;
+  l.apart = Turn{ha.c, -ha.s} * hb;
+  return l;
+}
+
+}  // namespace sandlot::planar

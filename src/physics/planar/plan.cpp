@@ -1,0 +1,544 @@
+#include "physics/planar/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/mesh.h"
+
+namespace sandlot::planar {
+namespace {
+
+using model::JointType;
+constexpr std::uint32_t none = ~0u;
+constexpr double ground_tolerance_m =
+    5e-4;  ///< what reaches so near to the lowest point stands on the ground
+
+Vec2 flat(Vec3 v) { return {v.x, v.y}; }
+double length(Vec2 v) { return std::sqrt(dot(v, v)); }
+double cross_of(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+
+/// Moment of inertia of a link about an axis (unit, in L) through its centre of mass.
+double inertia_about(const model::Inertial& inertial, Vec3 axis_L) {
+  const Vec3 a = rotate_inverse(inertial.X_LCo.q, axis_L), m = inertial.moments, p = inertial.products;
+  return m.x * a.x * a.x + m.y * a.y * a.y + m.z * a.z * a.z +
+         2 * (p.x * a.x * a.y + p.y * a.x * a.z + p.z * a.y * a.z);
+}
+
+/// How the links hang together, from the canonical link outwards.
+struct Branch {
+  std::uint32_t link, parent = none, joint = none;
+  bool outwards = true;  ///< the joint's child is the farther one
+};
+
+struct Builder {
+  const model::Model& model;
+  Plan plan;
+  std::vector<Branch> branches;
+  std::vector<std::uint32_t> branch_of;  ///< by link
+  std::vector<bool> below_wheel;         ///< by link: a wheel, or what hangs on one
+
+  Vec3 axis_H(const model::Joint& j) const {
+    return rotate(plan.X_HL[j.child].q, rotate(j.X_CJ.q, j.axis_J));
+  }
+  Vec3 origin_H(const model::Joint& j) const { return plan.X_HL[j.child] * j.X_CJ.p; }
+
+  void walk() {
+    const std::size_t count = model.links.size();
+    branch_of.assign(count, none);
+    const auto add = [&](Branch b) {
+      branch_of[b.link] = static_cast<std::uint32_t>(branches.size());
+      branches.push_back(b);
+    };
+    add({0});
+    for (std::size_t next = 0; next < branches.size(); ++next) {
+      const std::uint32_t from = branches[next].link;
+      for (std::uint32_t k = 0; k < model.joints.size(); ++k) {
+        const model::Joint& j = model.joints[k];
+        if (j.parent == model::world_link) continue;
+        const bool outwards = j.parent == from;
+        const std::uint32_t to = outwards ? j.child : j.parent;
+        if ((!outwards && j.child != from) || branch_of[to] != none) continue;
+        add({to, from, k, outwards});
+      }
+    }
+    for (std::uint32_t link = 0; link < count; ++link)
+      if (branch_of[link] == none) add({link, 0});
+  }
+
+  void find_bottom() {
+    double bottom = std::numeric_limits<double>::infinity();
+    for (std::size_t l = 0; l < model.links.size(); ++l)
+      for (const model::Collision& c : model.links[l].collisions)
+        if (const Heights h = heights_of(c.shape, plan.X_HL[l] * c.X_LC); !h.empty())
+          bottom = std::min(bottom, h.min_m);
+    for (const model::Joint& j : model.joints)
+      if (j.rollers) bottom = std::min(bottom, origin_H(j).z - j.rollers->radius_m);
+    plan.bottom_m = std::isfinite(bottom) ? bottom : 0;
+  }
+
+  /// Radius and surface of the round shape with which a link rolls about this joint's axis; 0: it does not.
+  double tyre(const model::Joint& j, const model::Surface*& surface) const {
+    const Vec3 axis = axis_H(j), origin = origin_H(j);
+    if (std::abs(axis.z) > 0.05) return 0;
+    const auto reaches = [&](double radius) {
+      return std::abs(origin.z - radius - plan.bottom_m) < ground_tolerance_m;
+    };
+    if (j.rollers) {
+      surface = &j.rollers->surface;
+      return reaches(j.rollers->radius_m) ? j.rollers->radius_m : 0;
+    }
+    for (const model::Collision& c : model.links[j.child].collisions) {
+      const Pose X = plan.X_HL[j.child] * c.X_LC;
+      const Vec3 off = X.p - origin, aside = off - dot(off, axis) * axis;
+      if (norm(aside) > 1e-3) continue;
+      const bool along = std::abs(dot(rotate(X.q, {0, 0, 1}), axis)) > 0.999;
+      double radius = 0;
+      if (const auto* ball = std::get_if<Sphere>(&c.shape)) radius = ball->radius_m;
+      else if (const auto* can = std::get_if<Cylinder>(&c.shape); can && along) radius = can->radius_m;
+      else if (const auto* pill = std::get_if<Capsule>(&c.shape); pill && along) radius = pill->radius_m;
+      if (!(radius > 0) || !reaches(radius)) continue;
+      surface = &c.surface;
+      return radius;
+    }
+    return 0;
+  }
+
+  /// True when one wheel hangs on branch `b`, with its rollers and a fork of links that nothing can touch.
+  bool carries_a_wheel(std::size_t b) const {
+    std::vector<bool> beyond(model.links.size(), false), wheel(model.links.size(), false);
+    beyond[branches[b].link] = true;
+    int wheels = 0;
+    for (std::size_t k = b; k < branches.size(); ++k) {
+      const Branch& each = branches[k];
+      if (k != b && (each.parent == none || !beyond[each.parent])) continue;
+      beyond[each.link] = true;
+      wheel[each.link] = k != b && wheel[each.parent];
+      if (wheel[each.link]) continue;
+      const model::Surface* surface = nullptr;
+      if (k != b && each.joint != none && turns(model.joints[each.joint]) && each.outwards &&
+          tyre(model.joints[each.joint], surface) > 0) {
+        wheel[each.link] = true;
+        ++wheels;
+      } else if (!model.links[each.link].collisions.empty()) {
+        return false;
+      }
+    }
+    return wheels == 1;
+  }
+  static bool turns(const model::Joint& j) {
+    return j.type == JointType::revolute || j.type == JointType::continuous;
+  }
+
+  void sort_joints() {
+    plan.lump_of_link.assign(model.links.size(), 0);
+    below_wheel.assign(model.links.size(), false);
+    plan.lumps.emplace_back();
+    std::vector<std::uint32_t> steering(model.links.size(), model::Joint::no_joint);
+    for (std::size_t b = 1; b < branches.size(); ++b) {
+      const Branch& branch = branches[b];
+      std::uint32_t& lump = plan.lump_of_link[branch.link];
+      lump = branch.parent == none ? 0 : plan.lump_of_link[branch.parent];
+      if (branch.parent != none) {
+        steering[branch.link] = steering[branch.parent];
+        below_wheel[branch.link] = below_wheel[branch.parent];
+      }
+      if (branch.joint == none) continue;
+      const model::Joint& j = model.joints[branch.joint];
+      if (below_wheel[branch.link] || j.mimic) continue;
+      const Vec3 axis = axis_H(j);
+      const model::Surface* surface = nullptr;
+      const double sign = branch.outwards ? 1 : -1;
+      if (turns(j) && branch.outwards) {
+        if (const double radius = tyre(j, surface); radius > 0) {
+          below_wheel[branch.link] = true;
+          add_wheel(branch.joint, lump, steering[branch.link], radius, surface);
+          continue;
+        }
+      }
+      if (turns(j) && std::abs(axis.z) > 0.999) {
+        const double up = axis.z > 0 ? 1 : -1;
+        if (branch.outwards && carries_a_wheel(b)) {
+          steering[branch.link] = branch.joint;
+          plan.linkages.push_back(
+              {LinkagePlan::Kind::steering, branch.joint, lump, lump, flat(origin_H(j)), {}, up, 0});
+          continue;
+        }
+        part(b, LinkagePlan::Kind::pivot, lump, {}, sign * up);
+      } else if (j.type == JointType::prismatic && std::abs(axis.z) < 0.05) {
+        const Vec2 a = flat(axis);
+        part(b, LinkagePlan::Kind::slider, lump, (sign / length(a)) * a, 1);
+      }
+    }
+  }
+
+  void part(std::size_t b, LinkagePlan::Kind kind, std::uint32_t& lump, Vec2 axis, double sign) {
+    if (plan.lumps.size() >= 255) return;
+    const auto child = static_cast<std::uint32_t>(plan.lumps.size());
+    plan.linkages.push_back({kind, branches[b].joint, lump, child,
+                             flat(origin_H(model.joints[branches[b].joint])), axis, sign, 0});
+    plan.lumps.emplace_back().root = branches[b].link;
+    lump = child;
+  }
+
+  void add_wheel(std::uint32_t joint, std::uint32_t lump, std::uint32_t steering, double radius,
+                 const model::Surface* surface) {
+    const model::Joint& j = model.joints[joint];
+    WheelPlan wheel{.joint = joint, .lump = lump, .steering = steering};
+    const Vec3 axis = axis_H(j);
+    wheel.axle = (1 / length(flat(axis))) * flat(axis);
+    wheel.at = flat(origin_H(j));
+    wheel.radius_m = radius;
+    wheel.surface = surface;
+    const model::Link& link = model.links[j.child];
+    const Vec3 arm = plan.X_HL[j.child] * link.inertial.X_LCo.p - origin_H(j),
+               aside = arm - dot(arm, axis) * axis;
+    wheel.inertia_kgm2 = inertia_about(link.inertial, rotate_inverse(plan.X_HL[j.child].q, axis)) +
+                         link.inertial.mass_kg * dot(aside, aside);
+    if (j.rollers) {
+      const model::RollerWheel& r = *j.rollers;
+      const double out = r.radius_m - r.roller_radius_m;
+      wheel.inertia_kgm2 += r.count * r.rows * r.roller_mass_kg * out * out;
+      wheel.rollers = true;
+      wheel.bearing_Nm = r.bearing_friction_Nm;
+      // About the outward radius, which at the ground points down.
+      const auto [s, c] = math::sincos(r.angle_rad);
+      wheel.grip = {c * wheel.axle.x + s * wheel.axle.y, c * wheel.axle.y - s * wheel.axle.x};
+    }
+    plan.wheels.push_back(wheel);
+  }
+
+  void weigh() {
+    for (std::size_t l = 0; l < model.links.size(); ++l) {
+      LumpPlan& lump = plan.lumps[plan.lump_of_link[l]];
+      const model::Inertial& i = model.links[l].inertial;
+      const double before = lump.mass_kg;
+      const Vec2 com = flat(plan.X_HL[l] * i.X_LCo.p);
+      const double own = inertia_about(i, rotate_inverse(plan.X_HL[l].q, {0, 0, 1}));
+      if (!(i.mass_kg > 0)) continue;
+      lump.mass_kg += i.mass_kg;
+      const Vec2 apart = com - lump.com_H;
+      lump.inertia_kgm2 += own + before * i.mass_kg / lump.mass_kg * dot(apart, apart);
+      lump.com_H = lump.com_H + (i.mass_kg / lump.mass_kg) * apart;
+    }
+    for (LumpPlan& lump : plan.lumps) {
+      if (!(lump.mass_kg > 0)) lump.mass_kg = 1e-9, lump.com_H = flat(plan.X_HL[lump.root].p);
+      if (!(lump.inertia_kgm2 > 1e-12 * lump.mass_kg)) lump.inertia_kgm2 = 1e-12 * lump.mass_kg;
+    }
+    for (LinkagePlan& linkage : plan.linkages) {
+      if (linkage.kind != LinkagePlan::Kind::steering) continue;
+      for (std::size_t b = 1; b < branches.size(); ++b) {
+        bool beyond = false;
+        for (std::size_t at = b; branches[at].parent != none && !beyond; at = branch_of[branches[at].parent])
+          beyond = branches[at].joint == linkage.joint;
+        if (!beyond) continue;
+        const model::Inertial& i = model.links[branches[b].link].inertial;
+        const Vec2 arm = flat(plan.X_HL[branches[b].link] * i.X_LCo.p) - linkage.at_H;
+        linkage.inertia_kgm2 += inertia_about(i, rotate_inverse(plan.X_HL[branches[b].link].q, {0, 0, 1})) +
+                                i.mass_kg * dot(arm, arm);
+      }
+      linkage.inertia_kgm2 = std::max(linkage.inertia_kgm2, 1e-9);
+    }
+  }
+
+  void outline(std::uint32_t index) {
+    LumpPlan& lump = plan.lumps[index];
+    std::vector<Outline> outlines;
+    std::vector<Vec3> corners;
+    for (std::uint32_t l = 0; l < model.links.size(); ++l) {
+      if (plan.lump_of_link[l] != index) continue;
+      const model::Link& link = model.links[l];
+      for (std::uint32_t c = 0; c < link.collisions.size(); ++c) {
+        const model::Collision& collision = link.collisions[c];
+        Pose X = plan.X_HL[l] * collision.X_LC;
+        X.p -= Vec3{lump.com_H.x, lump.com_H.y, 0};
+        outlines.clear();
+        Shape shape = collision.shape;
+        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+          add_hull(*mesh->mesh, X, outlines, lump.edges);
+        } else {
+          add_outlines(shape, X, outlines, lump.edges);
+        }
+        for (const Outline& o : outlines) lump.parts.push_back({o, l, c, &collision.surface});
+        stand(lump, collision, X, l);
+      }
+    }
+    for (const WheelPlan& wheel : plan.wheels) {
+      const model::Joint& j = model.joints[wheel.joint];
+      if (wheel.lump != index || !j.rollers) continue;
+      // The rollers as the cylinder around them.
+      const double width = (j.rollers->rows - 1) * j.rollers->row_spacing_m + 2 * j.rollers->roller_radius_m;
+      const Vec2 ahead{wheel.axle.y, -wheel.axle.x}, at = wheel.at - lump.com_H;
+      const double z = origin_H(j).z;
+      const Quat q = quat_from_rpy(0, 0, math::atan2(ahead.y, ahead.x));
+      outlines.clear();
+      add_outlines(Box{{2 * wheel.radius_m, width, 2 * wheel.radius_m}}, {{at.x, at.y, z}, q}, outlines,
+                   lump.edges);
+      for (const Outline& o : outlines) lump.parts.push_back({o, j.child, ~0u, wheel.surface});
+    }
+    merge(lump);
+    enclose(lump);
+  }
+
+  static void add_hull(const TriangleMesh& mesh, const Pose& X, std::vector<Outline>& outlines,
+                       std::vector<Edge>& edges) {
+    std::vector<Vec2> points;
+    Heights heights;
+    for (const Vec3& v : mesh.vertices) {
+      const Vec3 p = X * v;
+      points.push_back({p.x, p.y});
+      heights.add({p.z, p.z});
+    }
+    if (!points.empty()) add_polygon(std::move(points), heights, outlines, edges);
+  }
+
+  /// Notes what a shape stands on, unless it is part of a wheel.
+  void stand(LumpPlan& lump, const model::Collision& collision, const Pose& X, std::uint32_t link) {
+    if (below_wheel[link] || !collision.surface.touches) return;
+    const Heights h = heights_of(collision.shape, X);
+    if (h.empty() || h.min_m > plan.bottom_m + ground_tolerance_m) return;
+    Support s{.at = {X.p.x, X.p.y}, .surface = &collision.surface};
+    const Vec3 axis = rotate(X.q, {0, 0, 1});
+    if (const auto* ball = std::get_if<Sphere>(&collision.shape)) {
+      s.ball_radius_m = ball->radius_m;
+    } else if (const auto* can = std::get_if<Cylinder>(&collision.shape); can && std::abs(axis.z) > 0.999) {
+      s.mean_radius_m = 2.0 / 3 * can->radius_m;
+      s.mean_distance_m = mean_distance(s.at, can->radius_m);
+      lump.supports.push_back(s);
+      return;
+    } else {
+      // The corners that reach the ground, or the whole shadow where none does.
+      std::vector<Outline> outlines;
+      std::vector<Edge> edges;
+      if (const auto* mesh = std::get_if<Mesh>(&collision.shape)) add_hull(*mesh->mesh, X, outlines, edges);
+      else add_outlines(collision.shape, X, outlines, edges);
+      if (!outlines.empty() && outlines.back().edge_count > 0) {
+        const auto [centre, about_centre, about_com] = means(outlines.back(), edges);
+        s.at = centre;
+        s.mean_radius_m = about_centre;
+        s.mean_distance_m = about_com;
+        lump.supports.push_back(s);
+        return;
+      }
+    }
+    s.mean_distance_m = length(s.at);
+    lump.supports.push_back(s);
+  }
+
+  /// Mean distance of a disc's points from the origin: rings of equal area and width.
+  static double mean_distance(Vec2 at, double radius) {
+    if (dot(at, at) < 1e-12 * radius * radius) return 2.0 / 3 * radius;
+    double sum = 0;
+    constexpr int rings = 8, rays = 16;
+    for (int r = 0; r < rings; ++r)
+      for (int a = 0; a < rays; ++a) {
+        const auto [s, c] = math::sincos(math::tau * (a + 0.5) / rays);
+        const double out = radius * std::sqrt((r + 0.5) / rings);
+        sum += length(at + out * Vec2{c, s});
+      }
+    return sum / (rings * rays);
+  }
+
+  /// Centroid of a polygon, and the mean distances of its points from there and from the origin, by triangles cut into
+  /// small ones.
+  struct Means {
+    Vec2 centroid;
+    double about_centroid, about_origin;
+  };
+  static Means means(const Outline& o, std::span<const Edge> edges) {
+    double area = 0;
+    Vec2 centroid;
+    const auto each = [&](auto&& visit) {
+      const Vec2 a = edges[o.first_edge].from;
+      for (std::uint32_t i = 1; i + 1 < o.edge_count; ++i)
+        visit(a, edges[o.first_edge + i].from, edges[o.first_edge + i + 1].from);
+    };
+    each([&](Vec2 a, Vec2 b, Vec2 c) {
+      const double twice = cross_of(b - a, c - a);
+      area += twice;
+      centroid = centroid + (twice / 3) * (a + b + c);
+    });
+    centroid = (1 / area) * centroid;
+    double near = 0, far = 0;
+    each([&](Vec2 a, Vec2 b, Vec2 c) {
+      constexpr int n = 24;
+      const double part = cross_of(b - a, c - a) / (n * n);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n - i; ++j)
+          for (int k = 0; k < (j < n - i - 1 ? 2 : 1); ++k) {
+            const double u = (i + (k ? 2.0 : 1.0) / 3) / n, v = (j + (k ? 2.0 : 1.0) / 3) / n;
+            const Vec2 p = a + u * (b - a) + v * (c - a);
+            near += part * length(p - centroid);
+            far += part * length(p);
+          }
+    });
+    return {centroid, near / area, far / area};
+  }
+
+  /// Whether the circle hides all of `o` from above.
+  static bool hides(const Outline& circle, const Outline& o, std::span<const Edge> edges) {
+    const double most = circle.radius_m * (1 + 1e-9);
+    if (o.edge_count == 0) return length(o.centre - circle.centre) + o.radius_m <= most;
+    for (std::uint32_t i = 0; i < o.edge_count; ++i)
+      if (length(edges[o.first_edge + i].from - circle.centre) > most) return false;
+    return true;
+  }
+
+  static void merge(LumpPlan& lump) {
+    std::uint32_t widest = none;
+    for (std::uint32_t i = 0; i < lump.parts.size(); ++i) {
+      const Outline& o = lump.parts[i].outline;
+      if (o.edge_count == 0 && (widest == none || o.radius_m > lump.parts[widest].outline.radius_m))
+        widest = i;
+    }
+    if (widest == none) return;
+    Part main = lump.parts[widest];
+    const Heights own = main.outline.heights;
+    const double thick = own.max_m - own.min_m;
+    std::vector<Part> rest;
+    std::vector<Edge> edges;
+    for (std::uint32_t i = 0; i < lump.parts.size(); ++i) {
+      Part part = lump.parts[i];
+      if (i == widest) continue;
+      const Heights h = part.outline.heights;
+      if (part.surface->touches == main.surface->touches && h.min_m >= own.min_m - thick &&
+          h.max_m <= own.max_m + 2 * thick && hides(main.outline, part.outline, lump.edges)) {
+        main.outline.heights.add(h);
+        main.collision = ~0u;
+        continue;
+      }
+      const auto from = lump.edges.begin() + part.outline.first_edge;
+      part.outline.first_edge = static_cast<std::uint32_t>(edges.size());
+      edges.insert(edges.end(), from, from + part.outline.edge_count);
+      rest.push_back(part);
+    }
+    rest.insert(rest.begin(), main);
+    lump.parts = std::move(rest);
+    lump.edges = std::move(edges);
+  }
+
+  static void enclose(LumpPlan& lump) {
+    std::erase_if(lump.parts, [](const Part& p) { return !p.surface->touches; });
+    if (lump.parts.empty()) return;
+    Vec2 low = lump.parts[0].outline.centre, high = low;
+    lump.core_m = std::numeric_limits<double>::infinity();
+    const auto each = [&](auto&& visit) {
+      for (const Part& part : lump.parts) {
+        if (part.outline.edge_count == 0) visit(part.outline.centre, part.outline.radius_m);
+        for (std::uint32_t i = 0; i < part.outline.edge_count; ++i)
+          visit(lump.edges[part.outline.first_edge + i].from, 0.0);
+      }
+    };
+    each([&](Vec2 p, double r) {
+      low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r)};
+      high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r)};
+    });
+    lump.centre = 0.5 * (low + high);
+    if (lump.parts.size() == 1 && lump.parts[0].outline.edge_count == 0)
+      lump.centre = lump.parts[0].outline.centre;
+    each([&](Vec2 p, double r) { lump.radius_m = std::max(lump.radius_m, length(p - lump.centre) + r); });
+    for (const Part& part : lump.parts) {
+      lump.heights.add(part.outline.heights);
+      double inscribed = part.outline.radius_m;
+      if (part.outline.edge_count > 0)
+        inscribed = -nearest(part.outline, lump.edges, part.outline.centre).distance_m;
+      lump.core_m = std::min(lump.core_m, std::max(inscribed, 1e-4));
+    }
+    lump.disc = lump.parts.size() == 1 && lump.parts[0].outline.edge_count == 0;
+  }
+
+  /// Every lump carries itself; one without supports is carried by its parent.
+  void share() {
+    std::vector<double> mass(plan.lumps.size());
+    std::vector<Vec2> com(plan.lumps.size());
+    for (std::size_t i = 0; i < mass.size(); ++i)
+      mass[i] = plan.lumps[i].mass_kg, com[i] = plan.lumps[i].com_H;
+    const auto stands = [&](std::uint32_t i) {
+      return !plan.lumps[i].supports.empty() || std::any_of(plan.wheels.begin(), plan.wheels.end(),
+                                                            [&](const WheelPlan& w) { return w.lump == i; });
+    };
+    const auto carry = [&](std::uint32_t from, std::uint32_t to) {
+      const double sum = mass[from] + mass[to];
+      com[to] = (1 / sum) * (mass[from] * com[from] + mass[to] * com[to]);
+      mass[to] = sum;
+      mass[from] = 0;
+    };
+    for (std::size_t k = plan.linkages.size(); k-- > 0;) {
+      const LinkagePlan& l = plan.linkages[k];
+      if (l.kind != LinkagePlan::Kind::steering && !stands(l.child)) carry(l.child, l.parent);
+    }
+    for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
+      LumpPlan& lump = plan.lumps[i];
+      std::vector<Vec2> points;
+      for (const Support& s : lump.supports) points.push_back(s.at + lump.com_H - com[i]);
+      for (const WheelPlan& w : plan.wheels)
+        if (w.lump == i) points.push_back(w.at - com[i]);
+      std::vector<double> shares(points.size());
+      share_weight(mass[i], points, shares);
+      std::size_t next = 0;
+      for (Support& s : lump.supports) s.weight_kg = shares[next++];
+      for (WheelPlan& w : plan.wheels)
+        if (w.lump == i) {
+          w.weight_kg = shares[next++];
+          w.at = w.at - lump.com_H;
+        }
+      lump.rolls = lump.supports.size() == 1 && points.size() == 1 && lump.supports[0].ball_radius_m > 0;
+    }
+    for (WheelPlan& w : plan.wheels)
+      for (const LinkagePlan& l : plan.linkages)
+        if (w.steering == l.joint) {
+          w.steering_at = l.at_H - plan.lumps[w.lump].com_H;
+          w.steering_sign = l.sign;
+          w.steering_kgm2 = l.inertia_kgm2;
+        }
+  }
+};
+
+}  // namespace
+
+void share_weight(double weight_kg, std::span<const Vec2> points, std::span<double> shares) {
+  std::vector<bool> used(points.size(), true);
+  for (std::size_t round = 0; round < points.size(); ++round) {
+    // N_i = a + b x_i + c y_i, from sums over the points; a little regularised, because they may lie on a line.
+    double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!used[i]) continue;
+      const Vec2 p = points[i];
+      n += 1, sx += p.x, sy += p.y, xx += p.x * p.x, xy += p.x * p.y, yy += p.y * p.y;
+    }
+    const double small = 1e-9 * (xx + yy) + 1e-12;
+    xx += small, yy += small;
+    const double cx = xx - sx * sx / n, cxy = xy - sx * sy / n, cy = yy - sy * sy / n;
+    const double det = cx * cy - cxy * cxy;
+    // From n a + sx b + sy c = weight and both moments 0.
+    const double rx = -sx * weight_kg / n, ry = -sy * weight_kg / n;
+    const double b = (rx * cy - ry * cxy) / det, c = (ry * cx - rx * cxy) / det;
+    const double a = (weight_kg - sx * b - sy * c) / n;
+    double lowest = -1e-9 * weight_kg;
+    std::size_t pulls = points.size();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      shares[i] = used[i] ? a + b * points[i].x + c * points[i].y : 0;
+      if (shares[i] < lowest) lowest = shares[i], pulls = i;
+    }
+    if (pulls == points.size() || n <= 1) break;
+    used[pulls] = false;
+  }
+  double sum = 0;
+  for (double& s : shares) sum += s = std::max(s, 0.0);
+  for (double& s : shares) s = sum > 0 ? s * weight_kg / sum : weight_kg / static_cast<double>(shares.size());
+}
+
+Plan make_plan(const model::Model& model, Quat tilt, double z_m) {
+  Builder b{.model = model, .plan = {}, .branches = {}, .branch_of = {}, .below_wheel = {}};
+  const Pose X_HM = Pose{{0, 0, z_m}, tilt} * inverse(model.links[0].X_ML);
+  for (const model::Link& link : model.links) b.plan.X_HL.push_back(X_HM * link.X_ML);
+  b.walk();
+  b.find_bottom();
+  b.sort_joints();
+  b.weigh();
+  for (std::uint32_t i = 0; i < b.plan.lumps.size(); ++i) b.outline(i);
+  b.share();
+  return std::move(b.plan);
+}
+
+}  // namespace sandlot::planar

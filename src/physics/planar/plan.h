@@ -1,0 +1,100 @@
+#pragma once
+/// What the planar engine makes of a model at a height and tilt: bodies with outlines, and what they stand on.
+///
+/// Frame H   heading frame: origin on the canonical link's x and y, z of the world, turned by the instance's heading.
+///           All joints are at 0. The frame of a lump has its origin in the lump's centre of mass and the axes of H.
+/// Lumps     links that move as one in the plane. Joints that part them: vertical revolute and continuous ones
+///           (pivots) and horizontal prismatic ones (sliders). Whatever hangs on another joint belongs to its parent.
+/// Outlines  those of outline.h; of a mesh its convex hull. A shape above and below a circle that hides it from above
+///           is merged into the circle when it begins no lower below it than the circle's shape is thick, and ends no
+///           higher above it than twice that: a robot's wheels, casters and mast. So most robots are one circle.
+/// Wheels    links on a horizontal axle whose sphere, cylinder or capsule lies on it and reaches the ground. A vertical
+///           joint that carries nothing but a wheel and its fork steers it.
+/// Weight    shared among the supports (wheels, and shapes that reach the ground) by equilibrium of force and moments at
+///           rest, with the smallest sum of squares; none pulls.
+/// Limits    moving arms shift neither outline nor weight; accelerating does not shift weight.
+#include <memory>
+#include <vector>
+
+#include "model/model.h"
+#include "physics/planar/outline.h"
+
+namespace sandlot::planar {
+
+/// A part of a lump's outline, in the lump's frame.
+struct Part {
+  Outline outline;
+  std::uint32_t link = 0;
+  std::uint32_t collision = ~0u;  ///< of the link; ~0u: several were merged
+  const model::Surface* surface = nullptr;
+};
+
+/// A point or patch that carries weight.
+struct Support {
+  Vec2 at;                     ///< in the lump's frame
+  double weight_kg = 0;        ///< that it carries
+  double mean_radius_m = 0;    ///< of the patch, about its middle
+  double ball_radius_m = 0;    ///< > 0: a sphere
+  double mean_distance_m = 0;  ///< of the patch from the lump's centre of mass
+  const model::Surface* surface = nullptr;
+};
+
+struct LumpPlan {
+  std::vector<Part> parts;
+  std::vector<Edge> edges;
+  Vec2 centre;          ///< of the circle around all parts, in the lump's frame
+  double radius_m = 0;  ///< its radius; 0: nothing to meet
+  double core_m =
+      0;  ///< radius of the smallest part's inscribed circle: what must not be passed over in a step
+  Heights heights;
+  bool disc = false;  ///< that circle is all there is
+  Vec2 com_H;
+  double mass_kg = 0, inertia_kgm2 = 0;
+  std::uint32_t root = 0;         ///< its link nearest to the canonical one
+  std::vector<Support> supports;  ///< other than wheels
+  bool rolls = false;             ///< stands on one ball and nothing else
+};
+
+struct WheelPlan {
+  std::uint32_t joint = 0, lump = 0;
+  std::uint32_t steering = model::Joint::no_joint;
+  Vec2 at;           ///< of the contact with the ground, in the lump's frame; steered: at steering angle 0
+  Vec2 steering_at;  ///< where the steering axis stands
+  Vec2 axle;         ///< unit, the axis about which positive turns are counted
+  double steering_sign = 1;  ///< of the steering joint's axis along z
+  double steering_kgm2 = 0;  ///< what it turns
+  double radius_m = 0, inertia_kgm2 = 0, weight_kg = 0;
+  bool rollers = false;
+  Vec2 grip;  ///< of a wheel with rollers: the only direction it holds, along the roller on the ground
+  const model::Surface* surface = nullptr;
+  double bearing_Nm = 0;  ///< of the rollers
+};
+
+/// A joint between lumps, or one that steers.
+struct LinkagePlan {
+  enum class Kind : std::uint8_t { pivot, slider, steering } kind = Kind::pivot;
+  std::uint32_t joint = 0;
+  std::uint32_t parent = 0, child = 0;  ///< lumps
+  Vec2 at_H;                            ///< a point of the axis
+  Vec2 axis;                            ///< of a slider, unit
+  double sign = 1;          ///< of the joint's position in the plane: child counter-clockwise, or along axis
+  double inertia_kgm2 = 0;  ///< of what a steering joint turns
+};
+
+struct Plan {
+  std::vector<LumpPlan> lumps;  ///< [0] holds the canonical link
+  std::vector<std::uint32_t> lump_of_link;
+  std::vector<WheelPlan> wheels;
+  std::vector<LinkagePlan> linkages;
+  std::vector<Pose> X_HL;  ///< of the links at joint positions 0
+  double bottom_m = 0;     ///< lowest point of all shapes
+};
+
+/// @param tilt, z_m  of the canonical link at heading 0
+Plan make_plan(const model::Model& model, Quat tilt, double z_m);
+
+/// Shares `weight_kg` among points so that its moments about the origin vanish: the least sum of squares without pull.
+/// Where that cannot be (the origin lies outside), what comes nearest.
+void share_weight(double weight_kg, std::span<const Vec2> points, std::span<double> shares);
+
+}  // namespace sandlot::planar
