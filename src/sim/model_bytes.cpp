@@ -262,13 +262,6 @@ void collision(auto& io, auto& c) {
   surface(io, c.surface);
 }
 
-void collision(auto& io, auto& c) {
-  io.value(c.name);
-  io.value(c.X_LC);
-  shape(io, c.shape);
-  surface(io, c.surface);
-}
-
 void visual(auto& io, auto& v) {
   io.value(v.name);
   io.value(v.X_LC);
