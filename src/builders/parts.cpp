@@ -117,7 +117,9 @@ void add_motor(model::Model& model, std::string name, std::uint32_t joint) {
 }
 
 void add_senses(model::Model& model) {
-  add_device(model, "joints", "joint_state", {{"rate", "50"}});
+  std::vector<std::string> joints;
+  for (const model::Joint& joint : model.joints) joints.push_back(joint.name);
+  add_device(model, "joints", "joint_state", {{"joints", joints}, {"rate", "50"}});
   add_device(model, "imu", "imu", {{"rate", "50"}});
 }
 

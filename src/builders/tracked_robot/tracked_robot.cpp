@@ -12,7 +12,7 @@ namespace {
 
 struct Spec {
   int wheels = 4;
-  double wheel_radius_m = 0.08, track_m = 0.42, length_m = 0.6, mass_kg = 20;
+  double wheel_radius_m = 0.07, track_m = 0.42, length_m = 0.6, mass_kg = 20;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"wheels", "1", "How many on each side.", 2, 16}, s.wheels);
