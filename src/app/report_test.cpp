@@ -40,7 +40,9 @@ TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
       if (!entity->instance.is_robot) continue;
       const std::string& name = entity->instance.name;
       const Vec3 p = simulation.engine().pose(entity->id).p;
-      if (last.contains(name)) driven_m[name] += std::hypot(p.x - last[name].x, p.y - last[name].y);
+      if (last.contains(name))
+        driven_m[name] += std::sqrt((p.x - last[name].x) * (p.x - last[name].x) +
+                                    (p.y - last[name].y) * (p.y - last[name].y));
       last[name] = p;
       cells[name].emplace(static_cast<int>(std::floor(2 * p.x)), static_cast<int>(std::floor(2 * p.y)));
     }
