@@ -229,13 +229,14 @@ void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
   stale();
 }
 
+/// Brings what others see of a lump to where it is.
 void PlanarEngine::place_disc(std::uint32_t k) {
   const Lump& lump = lumps_[k];
   map_.discs()[k].centre = lump.p +
                            rotate(lump.heading, instances_[lump.slot].plan->lumps[lump.index].centre);
+  if (lump.figure != none) move_figure(k);
 }
 
-/// Brings a lump's figure to where the lump is.
 void PlanarEngine::move_figure(std::uint32_t k) {
   const Lump& lump = lumps_[k];
   const LumpPlan& plan = instances_[lump.slot].plan->lumps[lump.index];

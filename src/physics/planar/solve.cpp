@@ -205,7 +205,6 @@ void PlanarEngine::move(std::uint32_t k, double h_s) {
     lump.heading = tidied(lump.heading * half * half);
   }
   place_disc(k);
-  if (lump.figure != none) move_figure(k);
 }
 
 void PlanarEngine::take_back(const Island& island, std::span<Touch> touches) {
@@ -243,7 +242,6 @@ void PlanarEngine::take_back(const Island& island, std::span<Touch> touches) {
   for (std::uint32_t i = 0; i < island.lumps; ++i) {
     const std::uint32_t k = island_lumps_[island.first_lump + i];
     place_disc(k);
-    if (lumps_[k].figure != none) move_figure(k);
   }
 }
 

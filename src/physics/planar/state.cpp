@@ -120,7 +120,6 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
     instance.linkages[i].hold = linkages[i].hold, instance.linkages[i].turn = linkages[i].turn;
   for (const std::uint32_t k : instance.lumps) {
     place_disc(k);
-    if (lumps_[k].figure != none) move_figure(k);
   }
   filed_ = ground_fresh_ = false;
   stale();
