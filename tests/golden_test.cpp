@@ -19,7 +19,7 @@ constexpr Golden goldens[] = {
     {"scenarios/indoor.yaml --duration 20s --set physics=planar", "bf8d9715584d4874"},
     {"scenarios/fleet.yaml --duration 20s", "dcf5e57224ad794f"},
     {"scenarios/fleet.yaml --duration 20s --set physics=planar", "298e5f5f27673617"},
-    {"scenarios/swarm.yaml --duration 10s", "1a8f58e81468a0fb"},
+    {"scenarios/swarm.yaml --duration 10s", "5138a76fa1b8a64d"},
     {"scenarios/pile.yaml --duration 10s", "de905fdd039c8d8e"},
     {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
     {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},

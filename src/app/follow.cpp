@@ -71,7 +71,7 @@ Status Followers::open(const Prepared& prepared) {
 
 Status Followers::start(const Prepared& prepared, Diagnostics& diagnostics) {
   const Simulation& simulation = session_.simulation();
-  session_.add_observer(&travel_);
+  travel_.begin_at(simulation.tick_index());
   if (!options_.svg_file.empty()) session_.add_observer(&svg_.emplace(simulation));
   record_options_.version = SANDLOT_VERSION;
   if (prepared.recording) {
@@ -94,6 +94,7 @@ Status Followers::start(const Prepared& prepared, Diagnostics& diagnostics) {
 }
 
 bool Followers::after_tick() {
+  travel_.look(session_.simulation());
   progress_.update(session_.simulation());
   note(snapshots_->after(session_.simulation()));
   return !log_ || log_->status();
@@ -116,6 +117,7 @@ void Followers::leave_world(Simulation& next, const std::string& why) {
     end_recording(said_);
   }
   travel_ = {};
+  travel_.begin_at(next.tick_index());
   if (svg_) {
     session_.remove_observer(&*svg_);
     session_.add_observer(&svg_.emplace(next));

@@ -9,19 +9,24 @@
 
 namespace sandlot::app {
 
-void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
-  for (const FrameInstance& instance : frame->instances) {
-    if (!instance.is_robot) continue;
-    auto found = std::find_if(robots_.begin(), robots_.end(),
-                              [&](const Travel& t) { return t.name == instance.name; });
-    if (found == robots_.end()) {
-      robots_.push_back({instance.name, false, {}, {}, {}, 0, {}});
-      found = robots_.end() - 1;
+void TravelRecorder::look(const Simulation& simulation) {
+  if (std::exchange(tick_, simulation.tick_index()) == simulation.tick_index()) return;
+  std::size_t next = 0;  // as long as nobody leaves, robots come in the order of their first tick
+  for (const auto& entity : simulation.entities()) {
+    if (!entity->instance.is_robot) continue;
+    const std::string& name = entity->instance.name;
+    std::size_t index = next++;
+    if (index >= robots_.size() || robots_[index].name != name) {
+      const auto [known, fresh] = by_name_.emplace(name, robots_.size());
+      if (fresh) robots_.push_back({.name = name});
+      index = known->second;
     }
-    Travel& travel = *found;
-    const Vec3 p = instance.X_WM.p;
+    Travel& travel = robots_[index];
+    const Vec3 p = simulation.engine().pose(entity->id).p;
+    constexpr double cell_m = 0.5;
+    const std::pair cell{static_cast<int>(std::floor(p.x / cell_m)),
+                         static_cast<int>(std::floor(p.y / cell_m))};
     if (!travel.started) {
-      travel.started = true;
       travel.lowest = travel.highest = p;
     } else {
       const Vec3 step = p - travel.last;
@@ -32,9 +37,10 @@ void TravelRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
       travel.lowest[i] = std::min(travel.lowest[i], p[i]);
       travel.highest[i] = std::max(travel.highest[i], p[i]);
     }
-    constexpr double cell_m = 0.5;
-    travel.cells.emplace(static_cast<int>(std::floor(p.x / cell_m)),
-                         static_cast<int>(std::floor(p.y / cell_m)));
+    if (std::exchange(travel.started, true) && cell == travel.cell) continue;
+    travel.cell = cell;
+    const auto place = std::lower_bound(travel.cells.begin(), travel.cells.end(), cell);
+    if (place == travel.cells.end() || *place != cell) travel.cells.insert(place, cell);
   }
 }
 
@@ -52,13 +58,11 @@ nlohmann::ordered_json joints_json(const Simulation& simulation, const std::stri
   nlohmann::ordered_json out = nlohmann::ordered_json::object();
   const auto id = simulation.find_instance(robot);
   if (!id || !simulation.engine().capabilities().joints) return out;
-  for (const model::Instance* instance : simulation.instances()) {
-    if (instance->name != robot) continue;
-    const auto joints = simulation.engine().joints(*id);
-    for (std::size_t i = 0; i < joints.size(); ++i)
-      if (instance->model->joints[i].type != model::JointType::fixed)
-        out[instance->model->joints[i].name] = simulation.engine().joint_states()[joints[i].index].position;
-  }
+  const model::Model& model = *simulation.find_entity(robot)->instance.model;
+  const auto joints = simulation.engine().joints(*id);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (model.joints[i].type != model::JointType::fixed)
+      out[model.joints[i].name] = simulation.engine().joint_states()[joints[i].index].position;
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "devices/kind.h"
 #include "devices/wheeled_base.h"
+#include "model/rollers.h"
 
 namespace sandlot::wheeled {
 namespace {
@@ -57,6 +58,37 @@ model::Model robot(bool steered_front, bool steered_back) {
                                          Sphere{radius}, 1);
     add_joint(m, c.name, parent, wheel, {0, 1, 0});
   }
+  return m;
+}
+
+/// A disc of 10 kg on wheels with rollers of 0.05 m: four Mecanum wheels, or three omni wheels.
+model::Model on_roller_wheels(bool mecanum) {
+  model::Model m;
+  m.name = "robot";
+  add_link(m, "base", {0, 0, 0.07}, 10, Cylinder{0.15, 0.06}, 0);
+  const auto wheel = [&](const std::string& name, double x, double y, Vec3 axis, double angle_rad) {
+    add_link(m, "wheel_" + name, {x, y, 0.05}, 0.3, Cylinder{0.03, 0.02}, 0);
+    m.links.back().X_ML.q = quat_between({0, 0, 1}, axis);
+    add_joint(m, name, 0, static_cast<std::uint32_t>(m.links.size() - 1), {0, 0, 1});
+    model::RollerWheel rollers{.radius_m = 0.05, .angle_rad = angle_rad};
+    rollers.surface.mu = 0.8;
+    rollers.count = mecanum ? 9 : 8;
+    rollers.roller_length_m = mecanum ? 0.04 : 0.025;
+    m.joints.back().rollers = rollers;
+  };
+  if (mecanum) {
+    wheel("fl", 0.2, 0.15, {0, 1, 0}, -math::pi / 4);
+    wheel("fr", 0.2, -0.15, {0, 1, 0}, math::pi / 4);
+    wheel("bl", -0.2, 0.15, {0, 1, 0}, math::pi / 4);
+    wheel("br", -0.2, -0.15, {0, 1, 0}, -math::pi / 4);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      const auto [y, x] = math::sincos((60 + 120 * i) * math::pi / 180);
+      wheel("w" + std::to_string(i), 0.2 * x, 0.2 * y, {x, y, 0}, math::pi / 2);
+    }
+  }
+  const Status made = model::add_rollers(m);
+  if (!made) ADD_FAILURE() << made.error().text();
   return m;
 }
 
@@ -175,31 +207,41 @@ struct World : TopicMaker {
 
 struct Case {
   const char* kind;
-  bool front, back;  ///< steered
+  model::Model (*model)();
   std::initializer_list<std::pair<const char*, const char*>> keys;
   double dx;  ///< of D in B
 };
 const Case swerve{
     "swerve_drive",
-    true,
-    true,
+    [] { return robot(true, true); },
     {{"wheel_joint", "[fl fr bl br]"}, {"steering_joint", "[sfl sfr sbl sbr]"}, {"odometry", "kabsch"}},
     0};
 const Case car{"ackermann_drive",
-               true,
-               false,
+               [] { return robot(true, false); },
                {{"left_joint", "bl"},
                 {"right_joint", "br"},
                 {"passive_joint", "[fl fr]"},
                 {"left_steering_joint", "sfl"},
                 {"right_steering_joint", "sfr"}},
                -0.3};
-const Case skid{"skid_drive", false, false, {{"left_joint", "[fl bl]"}, {"right_joint", "[fr br]"}}, 0};
+const Case skid{"skid_drive",
+                [] { return robot(false, false); },
+                {{"left_joint", "[fl bl]"}, {"right_joint", "[fr br]"}},
+                0};
+
+const Case mecanum{"mecanum_drive",
+                   [] { return on_roller_wheels(true); },
+                   {{"front_left_joint", "fl"},
+                    {"front_right_joint", "fr"},
+                    {"back_left_joint", "bl"},
+                    {"back_right_joint", "br"}},
+                   0};
+const Case omni{"omni_drive", [] { return on_roller_wheels(false); }, {{"wheel_joint", "[w0 w1 w2]"}}, 0};
 
 /// How far D moves in its own frame in `seconds` at steady motion, after one second to get there.
 kinematics::PlanarMotion moved(const Case& c, std::uint32_t level, kinematics::PlanarMotion v, double seconds,
                                double* odometry_error = nullptr) {
-  World world("rigid", c.kind, robot(c.front, c.back), map(c.keys), level);
+  World world("rigid", c.kind, c.model(), map(c.keys), level);
   world.command(v.x, v.y, v.turn);
   world.run(100);
   const Pose start = world.base().X_WB, seen = world.odometry();
@@ -214,8 +256,11 @@ kinematics::PlanarMotion moved(const Case& c, std::uint32_t level, kinematics::P
 }
 
 void expect_arc(const Case& c, std::uint32_t level, kinematics::PlanarMotion v, double tolerance) {
-  SCOPED_TRACE(std::string(c.kind) + (level == ideal ? " ideal " : " contact ") + std::to_string(v.x) + " " +
-               std::to_string(v.y) + " " + std::to_string(v.turn));
+  SCOPED_TRACE(std::string(c.kind) +
+               (level == ideal     ? " ideal "
+                : level == contact ? " contact "
+                                   : " rollers ") +
+               std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.turn));
   double odometry_error = 0;
   const auto got = moved(c, level, v, 1, &odometry_error);
   const auto want = kinematics::integrate({}, v);
@@ -225,15 +270,6 @@ void expect_arc(const Case& c, std::uint32_t level, kinematics::PlanarMotion v, 
   EXPECT_LT(odometry_error, tolerance);
 }
 
-TEST(DrivesOnRigid, SwerveGoesStraightSidewaysAroundAndOnTheSpot) {
-  // Balls that roll: what is left is the slip that contact's softness (CFM) allows, some 1e-3 of the way.
-  for (const kinematics::PlanarMotion v :
-       {kinematics::PlanarMotion{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 1}, {0.4, 0.1, -0.6}}) {
-    expect_arc(swerve, contact, v, 5e-3);
-    expect_arc(swerve, ideal, v, 1e-3);
-  }
-}
-
 TEST(DrivesOnRigid, ACarDrivesItsCurve) {
   for (const kinematics::PlanarMotion v :
        {kinematics::PlanarMotion{0.5, 0, 0}, {0.5, 0, 0.4}, {-0.5, 0, 0.3}}) {
@@ -241,6 +277,21 @@ TEST(DrivesOnRigid, ACarDrivesItsCurve) {
     expect_arc(car, ideal, v, 1e-3);
   }
 }
+
+void expect_all_ways(const Case& c, std::uint32_t level, double tolerance) {
+  for (const kinematics::PlanarMotion v :
+       {kinematics::PlanarMotion{0.4, 0, 0}, {0, 0.4, 0}, {0, 0, 1}, {0.3, 0.1, 0.6}})
+    expect_arc(c, level, v, tolerance);
+}
+TEST(DrivesOnRigid, SwerveOnRails) { expect_all_ways(swerve, ideal, 1e-3); }
+// Balls that roll: what is left is the slip that contact's softness (CFM) allows, some 1e-3 of the way.
+TEST(DrivesOnRigid, SwerveOnWheels) { expect_all_ways(swerve, contact, 5e-3); }
+TEST(DrivesOnRigid, MecanumOnRails) { expect_all_ways(mecanum, ideal, 1e-3); }
+TEST(DrivesOnRigid, MecanumOnSolidWheels) { expect_all_ways(mecanum, contact, 5e-3); }
+TEST(DrivesOnRigid, MecanumOnRollers) { expect_all_ways(mecanum, rollers, 0.03); }
+TEST(DrivesOnRigid, OmniOnRails) { expect_all_ways(omni, ideal, 1e-3); }
+TEST(DrivesOnRigid, OmniOnSolidWheels) { expect_all_ways(omni, contact, 5e-3); }
+TEST(DrivesOnRigid, OmniOnRollers) { expect_all_ways(omni, rollers, 0.03); }
 
 TEST(DrivesOnRigid, ASkidDriveTurnsAsItsTrackRatioSays) {
   expect_arc(skid, contact, {0.5, 0, 0}, 5e-3);
@@ -252,12 +303,14 @@ TEST(DrivesOnRigid, ASkidDriveTurnsAsItsTrackRatioSays) {
 }
 
 TEST(DrivesOnRigid, ASwitchInMidRunKeepsPoseVelocityAndOdometry) {
-  for (const Case* c : {&swerve, &car, &skid}) {
+  for (const Case* c : {&swerve, &car, &skid, &mecanum, &omni}) {
+    const bool has_rollers = c == &mecanum || c == &omni;
     SCOPED_TRACE(c->kind);
-    World world("rigid", c->kind, robot(c->front, c->back), map(c->keys), ideal);
+    World world("rigid", c->kind, c->model(), map(c->keys), ideal);
     world.command(0.5, 0, 0);
     world.run(100);
-    for (const std::uint32_t level : {contact, ideal, contact}) {
+    for (const std::uint32_t level : {contact, ideal, has_rollers ? rollers : contact, ideal, contact,
+                                      has_rollers ? rollers : ideal, contact}) {
       const Vec3 at = world.base().X_WB.p, v = world.base().V_WB.linear;
       const Pose counted = world.odometry();
       world.switch_to(level);

@@ -525,7 +525,9 @@ void sense(Drive drive, std::uint32_t levels, const Context& context) {
     message.effort[i] = wheel.has_joint ? joints[wheel.joint.index].effort : 0;
     if (base.ticks[level]) {
       const double shown = edges(drive.spec.encoder_ticks, angle_of(drive, i, joints));
-      base.ticks[level]->message.data[i] = static_cast<std::int64_t>(std::clamp(shown, -9e18, 9e18));
+      base.ticks[level]->message.data[i] = std::isnan(shown)
+                                               ? 0
+                                               : static_cast<std::int64_t>(std::clamp(shown, -9e18, 9e18));
     }
   }
   for (std::size_t p = 0; p < base.pivots.size(); ++p) {

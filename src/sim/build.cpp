@@ -453,16 +453,17 @@ Simulation::ProgramEntry* Simulation::find_program(std::string_view path) {
 }
 
 std::optional<InstanceId> Simulation::find_instance(std::string_view name) const {
-  for (const auto& entity : entities_)
-    if (entity->instance.name == name) return entity->id;
-  return std::nullopt;
+  const Entity* const entity = find_entity(name);
+  return entity ? std::optional(entity->id) : std::nullopt;
 }
 
 const TopicBase* Simulation::find_topic(std::string_view name) const {
-  for (const auto& entity : entities_)
-    for (const auto& device : entity->devices)
-      for (const Slot& slot : device->topics)
-        if (slot.topic->name() == name || device->path == name) return slot.topic.get();
+  const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
+  const Entity* const entity = find_entity(name.substr(begin, name.find('/', begin) - begin));
+  if (!entity) return nullptr;
+  for (const auto& device : entity->devices)
+    for (const Slot& slot : device->topics)
+      if (slot.topic->name() == name || device->path == name) return slot.topic.get();
   return nullptr;
 }
 

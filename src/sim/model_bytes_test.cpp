@@ -62,6 +62,8 @@ model::Setup full_setup() {
   joint.thread_pitch_m = 0.01;
   joint.second = model::SecondAxis{{0, 0, 1}, -0.5, 0.6, 0.7, 0.8};
   joint.mimic = model::Mimic{0, 2, 0.1, 0.2};
+  joint.rollers = model::RollerWheel{.radius_m = 0.06, .count = 7, .rows = 2, .surface = {.mu = 0.3}};
+  joint.roller_of = 0;
   made->joints.push_back(joint);
   model::Light lamp{model::Light::Type::spot,
                     "lamp",
@@ -150,6 +152,9 @@ TEST(ModelBytes, what_is_read_writes_the_same_bytes_and_shares_models) {
   EXPECT_EQ(std::get<Heightfield>(m.links[0].visuals[8].shape).grid->at(1, 2), 5.0f);
   EXPECT_EQ(m.links[0].visuals[0].material.emissive.g, 0.5f);
   EXPECT_EQ(m.joints[0].mimic->offset, 0.1);
+  EXPECT_EQ(m.joints[0].rollers->count, 7);
+  EXPECT_EQ(m.joints[0].rollers->surface.mu, 0.3);
+  EXPECT_EQ(m.joints[0].roller_of, 0u);
   EXPECT_EQ(m.devices[0].scope, "arm::");
   EXPECT_EQ(read.instances[1].motion->keys.at(1).X_WM.p.y, 6);
   EXPECT_EQ(read.geography->elevation_m, 300);

@@ -212,9 +212,8 @@ Status Simulation::set_levels(const LevelRequest& request) {
   SL_TRY(pool.pool->switch_level(device->index, device->levels, bits, context()));
   set_active_levels(*device, bits);
   ++revision_;
-  for (const auto& entity : entities_)
-    if (entity->instance.name == request.device.substr(0, request.device.find('/')))
-      point_programs_at_active_levels(*entity);
+  point_programs_at_active_levels(
+      *find_entity(std::string_view(request.device).substr(0, request.device.find('/'))));
   return {};
 }
 
