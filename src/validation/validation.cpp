@@ -1,0 +1,20 @@
+#include "validation/validation.h"
+
+#include <cmath>
+
+namespace sandlot::validation {
+
+double Row::deviation() const {
+  const double difference = std::abs(measured - expected);
+  return relative ? difference / std::abs(expected) : difference;
+}
+
+const std::vector<Experiment>& experiments() {
+  static const std::vector<Experiment> all = {
+      {"impacts", "Collisions of two bodies, a bouncing ball, Newton's cradle.", impacts},
+      {"friction", "Inclines, sliding, rolling, pushing, piles at rest.", friction},
+  };
+  return all;
+}
+
+}  // namespace sandlot::validation
