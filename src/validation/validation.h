@@ -49,5 +49,6 @@ const std::vector<Experiment>& experiments();
 // The sections.
 Section impacts();   ///< two bodies, a bouncing ball, Newton's cradle
 Section friction();  ///< inclines, sliding, rolling, piles at rest
+Section drives();    ///< each drive at each level on each engine
 
 }  // namespace sandlot::validation
