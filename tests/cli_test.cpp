@@ -83,6 +83,33 @@ TEST(Cli, a_snapshot_in_mid_run_changes_nothing) {
   EXPECT_EQ(plain["state_hash"], rest["state_hash"]) << "--from alone goes on to the stop time of the run";
 }
 
+TEST(Cli, a_world_that_explodes_is_named_and_left_as_a_snapshot) {
+  const Scratch scratch;
+  const std::string world = scratch.write("drop.sdf",
+                                          R"(<sdf version="1.9"><world name="drop"><model name="stone">
+<pose>0 0 100 0 0 0</pose><link name="link"><inertial><mass>1</mass></inertial><collision name="c"><geometry><sphere>
+<radius>0.1</radius></sphere></geometry></collision></link></model></world></sdf>)");
+  const std::string scenario = scratch.write(
+      "drop.yaml", "version: 1\nname: deep drop\nworld: drop.sdf\nphysics: {max_speed: 3}\n");
+  const auto run = [&](const std::string& more) {
+    return shell("cd " + scratch.folder.string() + "; " + std::filesystem::absolute(SANDLOT_BIN).string() +
+                 " run " + scenario + " --headless --duration 2s " + more);
+  };
+  for (const std::string file : {"sandlot-failed-deep_drop.snapshot", "asked.snapshot"}) {
+    const Printed printed = run(file[0] == 'a' ? "--snapshot asked.snapshot" : "--summary s.json");
+    EXPECT_EQ(printed.exit_code, 1);
+    EXPECT_NE(printed.out.find("'stone/link' has exploded"), std::string::npos) << printed.out;
+    EXPECT_NE(printed.out.find("the world before it is in '" + file + "'"), std::string::npos) << printed.out;
+    const Printed info = sandlot("info " + scratch.file(file));
+    EXPECT_EQ(info.exit_code, 0) << info.out;
+    EXPECT_NE(info.out.find("0.3 s, tick 30"), std::string::npos) << info.out;
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("sandlot-failed-deep_drop.snapshot.tmp")));
+  const auto summary = read_json(scratch.file("s.json"));
+  EXPECT_EQ(summary.dump().find("nan"), std::string::npos);
+  EXPECT_TRUE(summary.contains("failed")) << summary.dump();
+}
+
 TEST(Cli, files_that_cannot_be_written_fail_the_run_with_1) {
   const Printed printed = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --summary /nonexistent/s.json");

@@ -70,6 +70,47 @@ TEST(Content, WorldsOfGazeboFindTheirFloorAndSun) {
   EXPECT_EQ(setup.lights[0].name, "sun");
 }
 
+TEST(Materials, DoWhatTheWorldsCommentsSay) {
+  const auto simulation = built(loaded("scenarios/materials.yaml"));
+  ASSERT_TRUE(simulation);
+  const auto body = [&](const std::string& name) {
+    for (const auto& entity : simulation->entities())
+      if (entity->instance.name == name)
+        return simulation->engine().states()[simulation->engine().bodies(entity->id)[0].index];
+    ADD_FAILURE() << "no " << name;
+    return BodyState{};
+  };
+  const auto x = [&](const std::string& name) { return body(name).X_WB.p.x; };
+  const auto run_to = [&](double s) {
+    while (simulation->now().s() < s) ASSERT_TRUE(simulation->tick());
+  };
+  std::map<std::string, double> begin;
+  for (const char* name : {"metal_block", "plastic_block", "rubber_block", "foam_block", "snow_block",
+                           "sled_along", "sled_across"})
+    begin[name] = x(name);
+  run_to(0.5);
+  // On 30 deg, v = g (sin - mu cos) t once it is faster than its slip takes up: mu is 0.5 times its own roughness.
+  const double s30 = math::sin(math::pi / 6), c30 = math::cos(math::pi / 6);
+  EXPECT_NEAR(norm(body("metal_block").V_WB.linear), 9.81 * (s30 - 0.25 * c30) * 0.5, 0.05);
+  EXPECT_NEAR(norm(body("plastic_block").V_WB.linear), 9.81 * (s30 - 0.4 * c30) * 0.5, 0.05);
+  run_to(1.5);
+  EXPECT_LT(x("rubber_block") - begin["rubber_block"], 0.05);
+  // Foam creeps: slip 0.11 m/(s N) times a quarter of the pull of 4.9 N.
+  EXPECT_NEAR(norm(body("foam_block").V_WB.linear), 0.11 * 9.81 * s30 / 4, 0.005);
+  EXPECT_GT(x("snow_block") - begin["snow_block"], 1);
+  EXPECT_GT(x("sled_along") - begin["sled_along"], 1);
+  EXPECT_LT(x("sled_across") - begin["sled_across"], 0.01);
+  EXPECT_NEAR(body("box2").V_WB.linear.x, 0.7, 1e-6) << "on the conveyor";
+  run_to(6);
+  // Beyond the foot of the chutes, at 2.26 m: the rougher, the shorter.
+  EXPECT_LT(x("puck_mud") + 0.1, x("puck_carpet"));
+  EXPECT_LT(x("puck_carpet") + 0.3, x("puck_bare"));
+  EXPECT_GT(x("puck_ice"), 8);
+  EXPECT_LT(x("ball_mud"), 4.5);
+  EXPECT_LT(x("ball_mud") + 2, x("ball_carpet"));
+  EXPECT_LT(norm(body("ball_mud").V_WB.linear), 1e-3);
+}
+
 TEST(Rover, InertiaIsThatOfTheSolidsItNames) {
   struct Part {
     double mass_kg;

@@ -19,11 +19,13 @@ constexpr Golden goldens[] = {
     {"scenarios/indoor.yaml --duration 20s --set physics=planar", "bf8d9715584d4874"},
     {"scenarios/fleet.yaml --duration 20s", "dcf5e57224ad794f"},
     {"scenarios/fleet.yaml --duration 20s --set physics=planar", "298e5f5f27673617"},
+    {"scenarios/swarm.yaml --duration 10s", "1a8f58e81468a0fb"},
     {"scenarios/pile.yaml --duration 10s", "de905fdd039c8d8e"},
     {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
     {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},
     {"scenarios/mario.yaml --duration 10s", "9e2b3e1b2e9c7fa8"},
     {"scenarios/demo.yaml --duration 5s", "22bfd28396518353"},
+    {"scenarios/materials.yaml --duration 10s", "9c38c2a0c26c86f3"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
 };

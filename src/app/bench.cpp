@@ -16,11 +16,11 @@ int bench(const BenchOptions& options) {
     const char* name;
     std::vector<sandlot::bench::Row> (*run)();
   };
-  static constexpr Suite suites[] = {{"physics", sandlot::bench::physics},
-                                     {"ranges", sandlot::bench::ranges},
-                                     {"loading", sandlot::bench::loading},
-                                     {"recording", sandlot::bench::recording},
-                                     {"viewer", sandlot::bench::viewer}};
+  static constexpr Suite suites[] = {
+      {"physics", sandlot::bench::physics},     {"wheels", sandlot::bench::wheels},
+      {"pile", sandlot::bench::pile},           {"swarm", sandlot::bench::swarm},
+      {"rays", sandlot::bench::rays},           {"loading", sandlot::bench::loading},
+      {"recording", sandlot::bench::recording}, {"viewer", sandlot::bench::viewer}};
   std::vector<std::string> names;
   for (const Suite& suite : suites) names.emplace_back(suite.name);
   if (!options.name.empty() && std::find(names.begin(), names.end(), options.name) == names.end())

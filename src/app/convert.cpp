@@ -21,9 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Format { sdf, urdf, scenario };
+enum class Format { sdf, urdf, scenario, builder };
 
 Result<Format> format_of(const std::string& path) {
+  if (starts_with(path, "builder:")) return Format::builder;
   const std::string extension = fs::path(path).extension().string();
   if (extension == ".sdf" || extension == ".world") return Format::sdf;
   if (extension == ".urdf" || extension == ".xacro") return Format::urdf;
@@ -100,6 +101,17 @@ struct Job {
     return formats::xml_text(root, comment());
   }
 
+  /// A model with parameters as the one model of a file.
+  Result<std::string> built_to_file() const {
+    SL_ASSIGN(const model::Instance instance,
+              load_instance(options.in, "model", {}, diagnostics, options.paths));
+    model::Instance named = instance;
+    named.original_name = named.name = instance.model->name;
+    SL_ASSIGN(formats::Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
+                                                    : formats::sdf_of(named, diagnostics));
+    return formats::xml_text(root, comment());
+  }
+
   Result<std::string> model_to_urdf() const {
     SL_ASSIGN(const formats::SdfContent content,
               formats::read_sdf(options.in, diagnostics, {.path = search, .assets = asset_reader(false)}));
@@ -159,6 +171,12 @@ struct Job {
 };
 
 Result<std::string> converted(const Job& job) {
+  if (job.to == Format::builder)
+    return Error{"'" + job.options.out + "' is no file", "name a file to write: .sdf or .urdf"};
+  if (job.from == Format::builder) {
+    if (job.to != Format::scenario) return job.built_to_file();
+    return Error{"scenarios name builders themselves: model: {builder: ...}", "convert it to .sdf"};
+  }
   if (job.to == Format::scenario) {
     if (job.from == Format::scenario)
       return Error{"'" + job.options.in + "' is a scenario already",

@@ -252,6 +252,16 @@ model::Model random_model(Random& random) {
         if (random() > 0) c.surface.restitution = (1 + random()) / 2;
         if (random() > 0) c.surface.soft_erp = (1 + random()) / 2;
         if (random() > 0) c.surface.slip1 = 1 + random();
+        if (random() > 0) {
+          c.surface.stiffness_N_per_m = 1e6 * (1.5 + random());
+          c.surface.damping_N_s_per_m = 1 + random();
+          c.surface.max_correction_mps = 1 + random();
+        }
+        if (random() > 0) c.surface.substance = model::Substance{1 + random(), 0.01, 40, (1 + random()) / 2};
+        if (random() > 0) c.surface.skin = model::Skin{normalised(random.vec()), 1 + random()};
+        if (random() > 0) c.surface.rolling_resistance_m = 1 + random();
+        if (random() > 0) c.surface.belt_velocity_mps = random.vec();
+        c.surface.touches = random() > -0.5;
         link.collisions.push_back(c);
         model::Visual v{"v" + std::to_string(link.visuals.size()), random.pose(), shape, {}, true, {}};
         v.material.diffuse = {static_cast<float>((1 + random()) / 2), 0.1f, 0.7f, 1};

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "app/json_text.h"
 #include "base/log.h"
@@ -173,6 +174,21 @@ void Followers::end_recording(Diagnostics& diagnostics) {
     warning.what += fmt::format(", and log and hashes of {} ticks: it cannot be replayed",
                                 recorded_->lost_frames);
   warn(std::move(warning), diagnostics);
+}
+
+void Followers::rescue(Error& error) {
+  const Simulation& simulation = session_.simulation();
+  if (simulation.engine().check_finite()) return;
+  std::string file = options_.snapshots.file;
+  if (file.empty() || options_.snapshots.at_s) {
+    const std::string name = "sandlot-failed-" + sanitised(simulation.setup().name) + ".snapshot";
+    file = (std::filesystem::path(options_.summary_file).parent_path() / name).string();
+    const auto bytes = simulation.snapshot();
+    if (Status written = write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        !written)
+      return note(std::move(written));
+  }
+  error.fix += (error.fix.empty() ? "" : "; ") + ("the world before it is in '" + file + "'");
 }
 
 void Followers::finish(Diagnostics& diagnostics) {

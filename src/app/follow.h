@@ -49,6 +49,9 @@ class Followers {
   Result<std::string> record(const std::string& file);
   /// What is being written, for viewers; from any thread.
   std::optional<server::ServerOptions::Recording> recording();
+  /// Of a world that has exploded: leaves the state before it as a snapshot where nobody has asked for one that holds it.
+  /// `error` tells where it is.
+  void rescue(Error& error);
   /// Ends what is still being written.
   void finish(Diagnostics& diagnostics);
   /// What the run leaves in the summary and as files besides.

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "model/substance.h"
 #include "sim/settings.h"
 
 namespace sandlot::app {
@@ -252,7 +253,12 @@ std::string hidden_text(const model::Instance& instance) {
     add(i.mass_kg, i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z);
     for (const model::Collision& c : link.collisions) {
       add_pose(c.X_LC);
-      add(c.surface.mu, c.surface.mu2, c.surface.slip1, c.surface.slip2, c.surface.restitution);
+      const model::Surface& s = c.surface;
+      add(s.mu, s.mu2, s.slip1, s.slip2, s.restitution, s.stiffness_N_per_m.value_or(0),
+          s.damping_N_s_per_m.value_or(0), s.rolling_resistance_m, s.belt_velocity_mps.x,
+          s.belt_velocity_mps.y, s.belt_velocity_mps.z, s.touches);
+      if (s.substance) out += model::text_of(*s.substance) + " ";
+      if (s.skin) add(s.skin->axis.x, s.skin->axis.y, s.skin->axis.z, s.skin->ratio);
       out += std::visit(ShapeText{}, c.shape);
     }
   }

@@ -9,6 +9,7 @@
 #include "app/json_text.h"
 #include "base/field_json.h"
 #include "base/text.h"
+#include "builders/builder.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
 #include "formats/ros2_control/ros2_control.h"
@@ -55,7 +56,15 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
                  {}};
   for (const StageSort& sort : stage_sorts())
     stages.items.push_back({sort.name, sort.help, sort.fields, {}, {}, {}});
-  return {devices, controllers, engines, stages};
+  Section builders{
+      "builders",
+      "Builders",
+      "Models with parameters: `model: {builder: snake, segments: 12}` of a robot or a thing in a scenario, "
+      "`builder:snake?segments=12` on the command line.",
+      {}};
+  for (const Builder* const builder : builder_table())
+    builders.items.push_back({builder->name, builder->help, builder->describe(), {}, {}, {}});
+  return {devices, controllers, engines, stages, builders};
 }
 
 std::string limits(const FieldInfo& field) {
@@ -306,7 +315,10 @@ int list(const ListOptions& options) {
     for (const ControllerKind* kind : *known) controllers.emplace_back(kind->name, kind->describe());
     std::vector<formats::KindFields> stages;
     for (StageSort& sort : stage_sorts()) stages.emplace_back(sort.name, std::move(sort.fields));
-    fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages));
+    std::vector<formats::KindFields> builders;
+    for (const Builder* const builder : builder_table())
+      builders.emplace_back(builder->name, builder->describe());
+    fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages, builders));
     return exit_ok;
   }
   if (options.what == "plugins" && !options.markdown) {

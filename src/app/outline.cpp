@@ -114,6 +114,7 @@ Outline outline_of_corners(const Shape& shape, const Pose& X_WC) {
 }
 Outline outline(const Cone& s, const Pose& X) { return outline_of_corners(s, X); }
 Outline outline(const Ellipsoid& s, const Pose& X) { return outline_of_corners(s, X); }
+Outline outline(const Barrel& s, const Pose& X) { return outline_of_corners(s, X); }
 Outline outline(const Mesh& s, const Pose& X) { return outline_of_corners(s, X); }
 Outline outline(const Heightfield& s, const Pose& X) { return outline_of_corners(s, X); }
 

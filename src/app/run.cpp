@@ -93,7 +93,10 @@ int run(const RunOptions& options) {
   Status status = experiment ? experiment->start() : Status();
   if (status) status = session.run(report, keep_going);
   if (status) status = console.finish();
-  if (!status) followers.errors().push_back(status.error());
+  if (!status) {
+    followers.rescue(status.error());
+    followers.errors().push_back(status.error());
+  }
   if (experiment)
     if (Status ended = experiment->finish(); !ended) followers.errors().push_back(ended.error());
   // A difference, where the sum over the ticks would carry their rounding.

@@ -2,6 +2,10 @@
 /// A configuration value that remembers where it was written: the common form of YAML, SDF and URDF.
 ///
 /// Readers build Nodes; specs are read from them (base/read.h), so every complaint can name file, line and key.
+///
+/// Copies share what they hold until one of them is written to, so that ten thousand robots of one model keep its keys
+/// once. A pointer or reference that a non-const member gave is for writing at once: one kept from before the Node was
+/// copied writes into the copy as well.
 #include <memory>
 #include <string>
 #include <string_view>
@@ -22,22 +26,22 @@ class Node {
   static Node sequence(Place place = {});
   static Node map(Place place = {});
 
-  Type type() const { return type_; }
-  bool is_null() const { return type_ == Type::null; }
-  bool is_scalar() const { return type_ == Type::scalar; }
-  bool is_sequence() const { return type_ == Type::sequence; }
-  bool is_map() const { return type_ == Type::map; }
-  const Place& place() const { return place_; }
-  void set_place(Place place) { place_ = std::move(place); }
+  Type type() const;
+  bool is_null() const { return type() == Type::null; }
+  bool is_scalar() const { return type() == Type::scalar; }
+  bool is_sequence() const { return type() == Type::sequence; }
+  bool is_map() const { return type() == Type::map; }
+  const Place& place() const;
+  void set_place(Place place);
 
   /// The text of a scalar; "" otherwise.
-  const std::string& text() const { return text_; }
+  const std::string& text() const;
   /// Elements of a sequence; empty otherwise.
-  const std::vector<Node>& items() const { return items_; }
-  std::vector<Node>& items() { return items_; }
+  const std::vector<Node>& items() const;
+  std::vector<Node>& items();
   /// Entries of a map in file order; empty otherwise.
-  const std::vector<Entry>& entries() const { return entries_; }
-  std::vector<Entry>& entries() { return entries_; }
+  const std::vector<Entry>& entries() const;
+  std::vector<Entry>& entries();
 
   /// The value of a key, or null (nullptr) when there is none. Maps only.
   const Node* find(std::string_view key) const;
@@ -51,11 +55,11 @@ class Node {
   Error error(std::string what, std::string fix = "", std::string path = "") const;
 
  private:
-  Type type_ = Type::null;
-  Place place_;
-  std::string text_;
-  std::vector<Node> items_;
-  std::vector<Entry> entries_;
+  struct Content;
+  const Content& content() const;
+  Content& own();  ///< to be written to: nobody else's
+
+  std::shared_ptr<Content> content_;  ///< null: nothing, written nowhere
 };
 
 struct Node::Entry {

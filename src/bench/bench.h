@@ -25,8 +25,11 @@ inline Row row(std::string name, std::string unit, double value, double referenc
 }
 
 // The suites; src/app runs them by name.
-std::vector<Row> ranges();     ///< P2, P5: rays of both kinds of world
+std::vector<Row> swarm();      ///< P1: the swarm's scenario, robot by robot
+std::vector<Row> rays();       ///< P2, P5: rays of both kinds of world
 std::vector<Row> physics();    ///< P3: steps of the engines
+std::vector<Row> wheels();     ///< P3: robots on wheels alone
+std::vector<Row> pile();       ///< P3: a pile in the solver for large islands
 std::vector<Row> loading();    ///< P8: files to a simulation
 std::vector<Row> recording();  ///< P11: runs and images into a file
 std::vector<Row> viewer();     ///< P9: what looking at a run costs it

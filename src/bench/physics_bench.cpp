@@ -15,12 +15,25 @@
 namespace sandlot::bench {
 namespace {
 
-constexpr int robots = 50, boxes = 100, steps = 200;
+constexpr int steps = 200;
 constexpr double h_s = 0.004, wheel_radius_m = 0.07, wheel_effort_Nm = 2;
 
 double speed_radps(int robot, int wheel) { return 2 + 0.05 * robot + 0.5 * wheel; }
 Vec3 robot_place(int i) { return {1.0 * (i % 10), 1.0 * (i / 10), 0}; }
-Vec3 box_place(int i) { return {0.8 * (i % 20) - 3, -1.5 - 0.8 * (i / 20), 0.1}; }
+Vec3 lone_box(int i) { return {0.8 * (i % 20) - 3, -1.5 - 0.8 * (i / 20), 0.1}; }
+/// Layers of 25, each a little beside the one below.
+Vec3 piled_box(int i) {
+  const int layer = i / 25;
+  return {0.32 * (i % 5) + 0.03 * (layer % 3), 0.22 * (i / 5 % 5) + 0.02 * (layer % 2), 0.1 + 0.201 * layer};
+}
+
+/// What both run.
+struct Scene {
+  int robots = 0, boxes = 0;
+  Vec3 (*box_place)(int) = lone_box;
+  bool quick = false;  ///< QuickStep in place of dWorldStep
+};
+constexpr int quick_iterations = 20;
 
 // --- ours ---
 
@@ -64,18 +77,19 @@ struct Ours {
   std::vector<JointTarget> targets;
   std::uint64_t tick = 0;
 
-  Ours() {
+  explicit Ours(const Scene& scene) {
     Node config = Node::map();
-    config.set("solver", Node::scalar("direct"));
+    config.set("solver", Node::scalar(scene.quick ? "quick" : "direct"));
+    config.set("quick_iterations", Node::scalar(std::to_string(quick_iterations)));
     config.set("sleeping", Node::scalar("false"));
     auto made = (*find_engine("rigid"))->create(config, {0, 0, -9.81});
     SL_CHECK(made);
     engine = std::move(*made);
     add("ground", one_link("ground", Plane{{0, 0, 1}}, 0), {}, false);
     const auto box = one_link("box", Box{{0.3, 0.2, 0.2}}, 1);
-    for (int i = 0; i < boxes; ++i) add("box" + std::to_string(i), box, box_place(i), false);
+    for (int i = 0; i < scene.boxes; ++i) add("box" + std::to_string(i), box, scene.box_place(i), false);
     const auto robot = robot_model();
-    for (int i = 0; i < robots; ++i) {
+    for (int i = 0; i < scene.robots; ++i) {
       const InstanceId id = add("robot" + std::to_string(i), robot, robot_place(i), true);
       for (int wheel = 0; wheel < 2; ++wheel)
         targets.push_back({engine->joints(id)[static_cast<std::size_t>(wheel)], JointTarget::Mode::velocity,
@@ -103,6 +117,7 @@ struct Ours {
 // --- bare ODE ---
 
 struct Bare {
+  bool quick;
   dWorldID world = dWorldCreate();
   dThreadingImplementationID threading = dThreadingAllocateSelfThreadedImplementation();
   dSpaceID space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
@@ -110,18 +125,19 @@ struct Bare {
   std::vector<dJointID> wheels;
   std::vector<std::unique_ptr<double>> friction;  ///< per geom, behind dGeomGetData
 
-  Bare() {
+  explicit Bare(const Scene& scene) : quick(scene.quick) {
+    dWorldSetQuickStepNumIterations(world, quick_iterations);
     dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading), threading);
     dWorldSetGravity(world, 0, 0, -9.81);
     dWorldSetERP(world, 0.2);
     dWorldSetCFM(world, 1e-6);
     dWorldSetContactMaxCorrectingVel(world, 1);
     finish(dCreatePlane(space, 0, 0, 1, 0), 1);
-    for (int i = 0; i < boxes; ++i) {
-      const dBodyID body = make_body(inertia_kg_m2(Box{{0.3, 0.2, 0.2}}, 1), 1, box_place(i));
+    for (int i = 0; i < scene.boxes; ++i) {
+      const dBodyID body = make_body(inertia_kg_m2(Box{{0.3, 0.2, 0.2}}, 1), 1, scene.box_place(i));
       attach(dCreateBox(own_space(), 0.3, 0.2, 0.2), body, {}, 1);
     }
-    for (int i = 0; i < robots; ++i) {
+    for (int i = 0; i < scene.robots; ++i) {
       const dSpaceID own = own_space();
       const Vec3 at = robot_place(i);
       const dBodyID base = make_body(inertia_kg_m2(Box{{0.4, 0.24, 0.1}}, 5), 5, at + Vec3{0, 0, 0.12});
@@ -203,22 +219,32 @@ struct Bare {
   void run() {
     for (int i = 0; i < steps; ++i) {
       dSpaceCollide(space, this, &near);
-      dWorldStep(world, h_s);
+      quick ? dWorldQuickStep(world, h_s) : dWorldStep(world, h_s);
       dJointGroupEmpty(contacts);
     }
   }
 };
 
-}  // namespace
-
-std::vector<Row> physics() {
-  Ours ours;  // also initialises ODE
-  Bare bare;
+Row stepped(const std::string& name, const Scene& scene) {
+  Ours ours(scene);  // also initialises ODE
+  Bare bare(scene);
   const Timing timing = compare(
       9, [&] { ours.run(); }, [&] { bare.run(); });
   constexpr double per_step_us = 1e6 / steps;
-  return {row("P3 step of 50 two-wheeled robots and 100 boxes", "us", timing.ours_s * per_step_us,
-              timing.reference_s * per_step_us, 1.15)};
+  return row(name, "us", timing.ours_s * per_step_us, timing.reference_s * per_step_us, 1.15);
+}
+
+}  // namespace
+
+std::vector<Row> physics() {
+  return {stepped("P3 step of 50 two-wheeled robots and 100 boxes", {.robots = 50, .boxes = 100})};
+}
+
+std::vector<Row> wheels() { return {stepped("P3 step of 100 robots on driven wheels", {.robots = 100})}; }
+
+std::vector<Row> pile() {
+  return {stepped("P3 step of a pile of 200 boxes, QuickStep",
+                  {.boxes = 200, .box_place = piled_box, .quick = true})};
 }
 
 }  // namespace sandlot::bench

@@ -191,7 +191,7 @@ std::vector<Row> swarm_ranges() {
 
 }  // namespace
 
-std::vector<Row> ranges() {
+std::vector<Row> rays() {
   std::vector<Row> rows = field_ranges();
   for (Row& r : swarm_ranges()) rows.push_back(std::move(r));
   return rows;

@@ -13,8 +13,13 @@
 ///                                                     // it was restored from a file, false refuses the snapshot
 ///   };
 ///   const ControllerKind kind = make_controller<Wander>({...});
+///
+/// All controllers of a kind step in few calls (ControllerKind::step_all), in which the compiler sees through step(); a
+/// class derived from Controller with a kind of its own, without step_all, is stepped one by one. Both give the same.
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +33,7 @@
 
 namespace sandlot {
 
-inline constexpr int controller_api_version = 2;
+inline constexpr int controller_api_version = 3;
 
 /// Handle of a device's message of type M, resolved once.
 template <class M>
@@ -162,6 +167,25 @@ class Controller {
   virtual void load(ByteReader& r) = 0;
 };
 
+/// Calls f, the code of a controller's author. @return what() of the exception that it threw, if it threw one
+template <class F>
+std::optional<std::string> caught(F&& f) {
+  try {
+    f();
+    return std::nullopt;
+  } catch (const std::exception& e) { return e.what(); } catch (...) {
+    return "something that is no std::exception";
+  }
+}
+
+/// One controller's turn within a step of many.
+struct ControllerTurn {
+  Controller* controller = nullptr;
+  const Observation* observation = nullptr;
+  Command* command = nullptr;
+  std::optional<std::string> failure = {};  ///< out: what it threw
+};
+
 struct ControllerKind {
   const char* name;
   const char* help;
@@ -169,6 +193,9 @@ struct ControllerKind {
   // Filled by make_controller:
   std::vector<FieldInfo> (*describe)() = nullptr;
   std::unique_ptr<Controller> (*create)() = nullptr;
+  /// Steps controllers of this kind, each with what it sees alone. Called from several threads with others' turns. Null:
+  /// they are stepped by Controller::step.
+  void (*step_all)(std::span<ControllerTurn> turns) = nullptr;
 };
 
 template <class C>
@@ -179,6 +206,12 @@ class ControllerAdapter final : public Controller {
     return controller_.init(robot);
   }
   void step(const Observation& obs, Command& cmd) override { controller_.step(obs, cmd); }
+  static void step_all(std::span<ControllerTurn> turns) {
+    for (ControllerTurn& turn : turns)
+      turn.failure = caught([&] {
+        static_cast<ControllerAdapter*>(turn.controller)->controller_.step(*turn.observation, *turn.command);
+      });
+  }
   Status set_parameter(std::string_view path, const Node& value) override {
     typename C::Spec changed = controller_.spec;
     SL_TRY(set_tunable(changed, path, value));
@@ -210,6 +243,7 @@ template <class C>
 constexpr ControllerKind make_controller(ControllerKind kind) {
   kind.describe = [] { return describe_fields<typename C::Spec>(); };
   kind.create = []() -> std::unique_ptr<Controller> { return std::make_unique<ControllerAdapter<C>>(); };
+  kind.step_all = ControllerAdapter<C>::step_all;
   return kind;
 }
 

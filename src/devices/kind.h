@@ -108,11 +108,12 @@ struct Actuation {
   std::vector<Wrench> wrenches;
   std::vector<JointTarget> joints;
   std::vector<DriveTarget> drives;
+  std::vector<RollTarget> rolls;
   std::vector<WheelTarget> wheels;
   std::vector<GripTarget> grips;
   Watch watch;  ///< forces of this sub-step that somebody wants to see after it
   void clear() {
-    watch.clear(), wheels.clear(), grips.clear();
+    watch.clear(), rolls.clear(), wheels.clear(), grips.clear();
     wrenches.clear();
     joints.clear();
     drives.clear();

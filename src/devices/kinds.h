@@ -2,6 +2,7 @@
 /// The kinds of devices there are: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_DEVICES(device) \
+  device(ackermann_drive)       \
   device(altimeter)             \
   device(barometer)             \
   device(body_velocity)         \
@@ -18,7 +19,13 @@
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
   device(magnetometer)          \
+  device(mecanum_drive)         \
+  device(omni_drive)            \
+  device(proximity)             \
   device(range_finder)          \
+  device(skid_drive)            \
+  device(swerve_drive)          \
+  device(track_drive)           \
   device(wheel_encoder)         \
   device(wheel_odometry)
 // clang-format on

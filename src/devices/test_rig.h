@@ -33,6 +33,7 @@ class HandEngine final : public Engine {
   DriveTarget drive{.active = false};
   bool blocked = false;
   std::size_t drive_targets_given = 0;
+  std::vector<WheelTarget> wheel_targets;  ///< all that were given
 
   explicit HandEngine(const model::Model& model)
       : body(model.links.size()),
@@ -72,6 +73,9 @@ class HandEngine final : public Engine {
   void set_drive_targets(std::span<const DriveTarget> targets) override {
     drive_targets_given += targets.size();
     for (const DriveTarget& t : targets) drive = t;
+  }
+  void set_wheels(std::span<const WheelTarget> targets) override {
+    wheel_targets.insert(wheel_targets.end(), targets.begin(), targets.end());
   }
   void step(double h_s, std::uint64_t) override {
     for (std::size_t i = 0; i < joint.size(); ++i) {
@@ -192,6 +196,7 @@ class Rig : public TopicMaker {
       engine->watch(actuation.watch);
       engine->set_targets(actuation.joints);
       engine->set_drive_targets(actuation.drives);
+      engine->set_wheels(actuation.wheels);
       engine->step(h_s, 0);
       pool->post_substep(context(now + tick), due(), h_s);
       actuation.clear();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
@@ -71,6 +72,8 @@ Bounds bounds_of(const Shape& shape, const Pose& X_AG) {
     out.include(X_AG.p - up + base);
   } else if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) {
     around(axes.of_ellipsoid(ellipsoid->radii_m));
+  } else if (const auto* barrel = std::get_if<Barrel>(&shape)) {
+    around({reach_m(*barrel, axes.z.x), reach_m(*barrel, axes.z.y), reach_m(*barrel, axes.z.z)});
   } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
     for (const Vec3& v : mesh->mesh->vertices) out.include(X_AG * v);
   } else if (const auto* field = std::get_if<Heightfield>(&shape)) {

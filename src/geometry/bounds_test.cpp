@@ -33,8 +33,9 @@ TEST(Bounds, OfALeaningBoxAndCylinderByHand) {
 
 TEST(Bounds, HoldTheTessellatedShapeAndNoMore) {
   const Pose X{{0.3, -1, 2}, quat_from_rpy(0.4, 0.9, -2)};
-  const Shape shapes[] = {Box{{1, 2, 3}},    Sphere{0.7},    Cylinder{0.4, 2},
-                          Capsule{0.3, 1.2}, Cone{0.8, 1.5}, Ellipsoid{{1, 2, 0.5}}};
+  const Shape shapes[] = {Box{{1, 2, 3}},        Sphere{0.7},          Cylinder{0.4, 2},
+                          Capsule{0.3, 1.2},     Cone{0.8, 1.5},       Ellipsoid{{1, 2, 0.5}},
+                          Barrel{0.3, 0.9, 1.2}, Barrel{0.6, 0.2, 0.3}};
   for (const Shape& shape : shapes) {
     SCOPED_TRACE(shape_name(shape));
     constexpr int segments = 512;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/math.h"
+#include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/triangulate.h"
 
@@ -78,6 +79,18 @@ struct Tessellate {
         const bool pole = (side < 0 && i == 0) || (side > 0 && i == rings);
         profile.push_back({pole ? 0 : c.radius_m * a.cos, side * 0.5 * c.length_m + c.radius_m * a.sin});
       }
+    return revolve(profile, segments);
+  }
+  TriangleMesh operator()(const Barrel& b) const {
+    const double h = 0.5 * b.length_m;
+    std::vector<std::array<double, 2>> profile{{0, -h}};
+    const int rings = std::max(4, segments / 4);
+    const double steepest = math::asin(std::min(1.0, h / b.profile_m));
+    for (int i = 0; i <= rings; ++i) {
+      const double z = b.profile_m * math::sin(steepest * (2.0 * i / rings - 1));
+      if (const double r = radius_at_m(b, z); r > 0) profile.push_back({r, z});
+    }
+    profile.push_back({0, h});
     return revolve(profile, segments);
   }
   TriangleMesh operator()(const Ellipsoid& e) const {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/math.h"
+#include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
@@ -21,8 +22,8 @@ Overload(F...) -> Overload<F...>;
 }  // namespace
 
 const char* shape_name(const Shape& shape) {
-  static constexpr const char* names[] = {"box",  "sphere",    "cylinder", "capsule",  "plane",
-                                          "cone", "ellipsoid", "mesh",     "heightmap"};
+  static constexpr const char* names[] = {"box",  "sphere",    "cylinder", "capsule",   "plane",
+                                          "cone", "ellipsoid", "mesh",     "heightmap", "sandlot:barrel"};
   static_assert(std::size(names) == std::variant_size_v<Shape>);
   return names[shape.index()];
 }
@@ -49,6 +50,10 @@ double bounding_radius_m(const Shape& shape) {
             double z = 0;
             for (const float x : h.grid->height_m) z = std::max(z, std::abs(static_cast<double>(x)));
             return norm(Vec3{0.5 * h.grid->size_x_m, 0.5 * h.grid->size_y_m, z});
+          },
+          [](const Barrel& b) {
+            const double end = end_radius_m(b);
+            return std::max(b.radius_m, std::sqrt(end * end + 0.25 * b.length_m * b.length_m));
           }},
       shape);
 }
@@ -67,7 +72,7 @@ double volume_m3(const Shape& shape) {
                [](const Cone& c) { return math::pi / 3 * c.radius_m * c.radius_m * c.length_m; },
                [&](const Ellipsoid& e) { return ball * e.radii_m.x * e.radii_m.y * e.radii_m.z; },
                [](const Mesh& m) { return std::abs(mass_properties(*m.mesh).volume_m3); },
-               [](const Heightfield&) { return 0.0; }},
+               [](const Heightfield&) { return 0.0; }, [](const Barrel& b) { return moments(b).volume; }},
       shape);
 }
 
@@ -112,7 +117,12 @@ Vec3 inertia_kg_m2(const Shape& shape, double mass_kg) {
             const Vec3 c = p.centre_m, s{c.x * c.x, c.y * c.y, c.z * c.z};
             return m * (p.moments + Vec3{s.y + s.z, s.x + s.z, s.x + s.y});
           },
-          [](const Heightfield&) { return Vec3{}; }},
+          [](const Heightfield&) { return Vec3{}; },
+          [&](const Barrel& b) {
+            const BarrelMoments i = moments(b);
+            const double side = m / i.volume * (0.5 * i.r2 + i.z2);
+            return Vec3{side, side, m / i.volume * i.r2};
+          }},
       shape);
 }
 

@@ -37,6 +37,14 @@ struct Ellipsoid {
   Vec3 radii_m;
 };
 
+/// Turned from an arc: r(z) = radius - profile + sqrt(profile^2 - z^2) for |z| <= length / 2, with flat ends. Axis along z
+/// of G, centred. The roller of an omni wheel; with a profile smaller than the radius, a tyre. geometry/barrel.h.
+struct Barrel {
+  double radius_m;   ///< at the thick middle
+  double profile_m;  ///< radius of the arc, >= length / 2
+  double length_m;
+};
+
 struct TriangleMesh;  // geometry/mesh.h
 struct HeightGrid;    // geometry/height_grid.h
 
@@ -49,7 +57,7 @@ struct Heightfield {
   std::shared_ptr<const HeightGrid> grid;  ///< never null
 };
 
-using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Plane, Cone, Ellipsoid, Mesh, Heightfield>;
+using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Plane, Cone, Ellipsoid, Mesh, Heightfield, Barrel>;
 
 /// "box", "cylinder" ...: as SDF spells it ("heightmap" for a Heightfield).
 const char* shape_name(const Shape& shape);

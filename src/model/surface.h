@@ -9,12 +9,20 @@
 
 namespace sandlot::model {
 
-/// What a surface is made of, after LpzRobots: Table 2.1 of its description; the law is physics/substance.h.
+/// What a surface is made of, after LpzRobots; presets are in model/substance.h, the law in
+/// physics/substance.h.
 struct Substance {
   double roughness = 0.8;
   double slip = 0.01;
-  double hardness = 40;
-  double elasticity = 0.5;
+  double hardness = 40;     ///< > 0
+  double elasticity = 0.5;  ///< 0..1
+  friend bool operator==(const Substance&, const Substance&) = default;
+};
+
+/// Friction along `axis` is `ratio` times that across: scales, runners, a fur.
+struct Skin {
+  Vec3 axis{1, 0, 0};  ///< unit, in the collision frame
+  double ratio = 1;    ///< >= 0
 };
 
 /// Contact behaviour of a collision shape (SDF <surface>, <sandlot:substance> ...).
@@ -26,8 +34,12 @@ struct Surface {
   double restitution = 0;       ///< 0..1
   double restitution_threshold_mps = 0.05;
   std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
-  /// Where both of a pair have one, it decides instead of mu, slip, restitution, erp and cfm.
+  /// SDF's kp and kd: a spring with a damper in place of soft_erp and soft_cfm. Springs in series, dampers add.
+  std::optional<double> stiffness_N_per_m, damping_N_s_per_m;
+  std::optional<double> max_correction_mps;  ///< fastest correction of a penetration; the smaller counts
+  /// Where both of a pair have one, it decides instead of all the above.
   std::optional<Substance> substance;
+  std::optional<Skin> skin;         ///< on top of either law; it goes before fdir1
   double rolling_resistance_m = 0;  ///< torque against rolling per normal force; those of a pair add
   Vec3 belt_velocity_mps;           ///< of the surface itself, in the collision frame: a conveyor belt
   bool touches = true;              ///< false: nothing ever collides with it

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "geometry/barrel.h"
 
 namespace sandlot::optics {
 namespace {
@@ -120,6 +121,10 @@ Interval inside(const Solid& solid, const Local& ray) {
     case Solid::Type::cylinder: return capped(ray, s[0], s[1]);
     case Solid::Type::cone: return meet(pointed(ray, s[0], s[1]), slab(ray.oz, ray.dz, s[1]));
     case Solid::Type::ellipsoid: return oval(ray, s);
+    case Solid::Type::barrel: {
+      const float radii[] = {s[0], s[0], s[2]};
+      return meet(oval(ray, radii), slab(ray.oz, ray.dz, s[1]));
+    }
     case Solid::Type::capsule:
     case Solid::Type::triangles: break;
   }
@@ -142,6 +147,11 @@ Dimensions dimensions(const Capsule& s) { return {Solid::Type::capsule, s.radius
 Dimensions dimensions(const Cone& s) { return {Solid::Type::cone, s.radius_m, s.length_m / 2, 0}; }
 Dimensions dimensions(const Ellipsoid& s) {
   return {Solid::Type::ellipsoid, s.radii_m.x, s.radii_m.y, s.radii_m.z};
+}
+Dimensions dimensions(const Barrel& s) {
+  // A cylinder nearly: a spheroid so long that its middle part is straight in single precision.
+  const double thin = end_radius_m(s) / s.radius_m, half = 0.5 * s.length_m;
+  return {Solid::Type::barrel, s.radius_m, half, half / std::sqrt(std::max(1e-4, 1 - thin * thin))};
 }
 template <class Other>
 Dimensions dimensions(const Other&) {
@@ -188,7 +198,8 @@ Bounds bounds(const Solid& solid) {
     const double a = solid.size[0], b = solid.size[1], c = solid.size[2];
     double half = a;
     if (solid.type == Solid::Type::box || solid.type == Solid::Type::triangles) half = x * a + y * b + z * c;
-    if (solid.type == Solid::Type::cylinder) half = std::sqrt(x * x + y * y) * a + z * b;
+    if (solid.type == Solid::Type::cylinder || solid.type == Solid::Type::barrel)
+      half = std::sqrt(x * x + y * y) * a + z * b;
     if (solid.type == Solid::Type::capsule) half = a + z * b;
     if (solid.type == Solid::Type::ellipsoid) half = std::sqrt(x * x * a * a + y * y * b * b + z * z * c * c);
     if (solid.type == Solid::Type::cone) {

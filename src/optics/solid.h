@@ -7,6 +7,8 @@
 ///             the error of a distance stays at a few float epsilon times distance and size, divided by the
 ///             cosine of incidence. Cones and ellipsoids, too, are met where they are, not where triangles would be; the
 ///             discriminant of a cone is built from the minors of origin and direction (Lagrange's identity).
+///             A barrel is the spheroid through its middle and its ends, cut off there: for rollers of wheels within
+///             1 % of their radius.
 ///             Triangles of meshes and terrain are held in single precision about the middle of their bounds, so
 ///             their error grows with the size of the mesh, not with its place in the world.
 /// Source      E. Haines et al., Precision improvements for ray/sphere intersection, Ray Tracing Gems (2019), ch. 7.
@@ -20,10 +22,12 @@ namespace sandlot::optics {
 
 /// A bounded shape placed in the world. Of triangles it is the box around them; what is inside, a tree knows.
 struct Solid {
-  enum class Type : std::uint32_t { box, sphere, cylinder, capsule, cone, ellipsoid, triangles };
+  enum class Type : std::uint32_t { box, sphere, cylinder, capsule, cone, ellipsoid, barrel, triangles };
   double position[3];  ///< of the shape frame C in W
   float axes[9];       ///< rows: the axes of C in W
-  float size[3];       ///< box, triangles: half edges; ellipsoid: radii; otherwise radius and half length
+  float size
+      [3];  ///< box, triangles: half edges; ellipsoid: radii; otherwise radius and half length; barrel: also
+            ///< the half axis of its spheroid
   std::uint32_t body;
   Type type;
 

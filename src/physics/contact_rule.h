@@ -1,7 +1,7 @@
 #pragma once
 /// Exceptions from the contact law, as a function of the user's: who touches whom, and what shall come of it.
 ///
-/// The simulator asks it for every pair of shapes that touch, in every sub-step. It has to be a pure function of what it
+/// The simulator asks it for every point where two shapes touch, in every sub-step. It has to be a pure function of what it
 /// is given and of constants: its own state would be no part of a snapshot.
 #include <functional>
 #include <optional>
@@ -30,11 +30,13 @@ struct PairSurface {
   std::optional<double> stiffness_N_per_m,
       damping_N_s_per_m;                     ///< both or neither; unset: soft_erp, soft_cfm hold
   std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
+  std::optional<double> max_correction_mps;  ///< fastest correction of a penetration; unset: the engine's own
   double rolling_resistance_m = 0;
   Vec3 belt_velocity_W_mps;  ///< of the surface of b seen from that of a, beside the motion of the bodies
 };
 
 /// @param a  created before b
+/// @param normal_W  from a towards b
 /// @param pair  what the surfaces and zones make of it; to be changed
 using ContactRule = std::function<void(const ContactSide& a, const ContactSide& b, Vec3 point_W,
                                        Vec3 normal_W, PairSurface& pair)>;

@@ -88,6 +88,15 @@ struct DriveTarget {
   double max_accel_mps2 = 1e9, max_angular_accel_radps2 = 1e9;
 };
 
+/// A wheel of an ideally driven base that turns as if it rolled: by the integral of what the base's true velocity, in its
+/// own frame, makes of it. Holds while the drive does, until the next target of either sort for this joint.
+struct RollTarget {
+  JointId wheel;
+  BodyId base;
+  double per_vx = 0, per_vy = 0,
+         per_wz = 0;  ///< [rad/m], [rad/m], [1]: wheel speed per velocity of the base's origin
+};
+
 /// Whether a wheel with rollers (model::RollerWheel) runs on its rollers, each a body of its own, or as one body whose
 /// contact grips along the axis of the roller on the ground alone. The second is how it begins. Holds until the next
 /// target for this wheel. A change keeps velocities.
@@ -154,6 +163,7 @@ struct Capabilities {
   bool joint_loads = false;     ///< joint_loads() answers
   bool rollers = false;         ///< wheels can run on their rollers
   bool grips = false;           ///< set_grips() works
+  bool rolls = false;  ///< set_rolls() works; else a drive turns the wheels of the level ideal itself
 };
 
 /// Counted since the engine was made; reported in the summary.
@@ -203,6 +213,7 @@ class Engine {
   virtual void apply(std::span<const Wrench> wrenches) = 0;
   virtual void set_targets(std::span<const JointTarget> targets) = 0;
   virtual void set_drive_targets(std::span<const DriveTarget> targets) = 0;
+  virtual void set_rolls(std::span<const RollTarget>) {}
   virtual void set_wheels(std::span<const WheelTarget>) {}
   virtual void set_grips(std::span<const GripTarget>) {}
   /// The ground's zones, and the user's exceptions (null: none). Before the first step.

@@ -54,11 +54,11 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
     for (const auto& program : entity->programs) {
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;
-      for (const Description::Entry& entry : program->description.readings)
+      for (const Description::Entry& entry : program->description->readings)
         add_name(
             simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.topics; },
             made.reads);
-      for (const Description::Entry& entry : program->description.actuators)
+      for (const Description::Entry& entry : program->description->actuators)
         add_name(
             simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
             made.orders);

@@ -105,15 +105,15 @@ Status Simulation::build(Diagnostics& diagnostics) {
   }
   const auto add_pool = [&](const Kind* device_kind) {
     SL_CHECK(device_kind->api_version == device_api_version);
-    pools_.push_back({device_kind, device_kind->create_pool(), {}, {}, {}, {}, {}, {}});
+    pools_.push_back({device_kind, device_kind->create_pool(), {}, {}, {}, {}, {}, {}, {}});
   };
   for (const Kind* const device_kind : device_kinds()) add_pool(device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) add_pool(device_kind);
   SL_TRY(gather_controllers(diagnostics));
   set_stop(setup_.stop);
-  for (const model::Instance& instance : setup_.instances) SL_TRY(add_entity(instance, diagnostics));
   // The instances live in the entities from here on; one copy is enough.
-  setup_.instances.clear();
+  for (model::Instance& instance : std::exchange(setup_.instances, {}))
+    SL_TRY(add_entity(std::move(instance), diagnostics));
   rebuild_scene();
   SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
@@ -154,26 +154,27 @@ void Simulation::set_stop(std::optional<Time> stop) {
   if (stop) rules_.insert(rules_.begin(), std::make_unique<StopAfter>(*stop));
 }
 
-Status Simulation::add_entity(const model::Instance& instance, Diagnostics& diagnostics) {
+Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics) {
   if (find_entity(instance.name))
     return Error{"there are two things named '" + instance.name + "'", "give one of them another name",
                  instance.place};
-  model::Instance at_present = instance;
-  if (instance.motion) at_present.X_WM = model::pose_at(*instance.motion, now_.s());
-  auto id = engine_->add(at_present);
+  const Pose X_WM = instance.X_WM;
+  if (instance.motion) instance.X_WM = model::pose_at(*instance.motion, now_.s());
+  auto id = engine_->add(instance);
+  instance.X_WM = X_WM;
   if (!id) {
     if (!id.error().place.file) id.error().place = instance.place;
     return std::move(id.error());
   }
   auto entity = std::make_unique<Entity>();
-  entity->instance = instance;
+  entity->instance = std::move(instance);
   entity->id = *id;
-  entity->key = entity_key(instance.name);
+  entity->key = entity_key(entity->instance.name);
   entity->serial = next_serial_++;
   entities_.push_back(std::move(entity));
   Entity& added = *entities_.back();
   if (added.instance.motion) guided_.push_back(&added);
-  by_name_[instance.name] = &added;
+  by_name_[added.instance.name] = &added;
   Status status;
   for (const model::DeviceDecl& decl : added.instance.devices)
     if (status) status = add_device(added, decl, diagnostics);
@@ -238,19 +239,29 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                         "/" + path + "/rate"});
   }
 
-  auto device = std::make_unique<Device>();
-  device->decl = std::move(decl);
+  const auto alike = [&](const model::DeviceDecl& other) {
+    return other.name == decl.name && other.scope == decl.scope && other.sdf_types == decl.sdf_types &&
+           other.link == decl.link && other.X_LS == decl.X_LS && other.place.file == decl.place.file &&
+           other.place.line == decl.place.line &&
+           &other.config.entries() == &std::as_const(decl.config).entries();  // copies of one
+  };
+  auto device = std::make_unique<Device>(!pool->devices.empty() && alike(pool->devices.back()->decl)
+                                             ? pool->devices.back()->shared_decl
+                                             : std::make_shared<const model::DeviceDecl>(std::move(decl)));
   device->path = path;
   device->key = build.key;
   device->kind = static_cast<std::uint32_t>(pool - pools_.begin());
   device->index = index;
-  device->levels = levels;
-  device->start = now_;
   device->topics = std::move(maker.topics);
   device->commands = std::move(maker.commands);
-  plan_next_sample(*device);
   pool->devices.push_back(device.get());
   pool->all.push_back(index);
+  pool->levels.push_back(levels);
+  pool->sample.push_back(0);
+  pool->since.push_back({});
+  pool->timing.push_back({.start = now_});
+  set_active_levels(*device, levels);
+  plan_next_sample(*device);
   entity.devices.push_back(std::move(device));
   return {};
 }
@@ -260,6 +271,7 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
   if (find_device(program->path) || find_program(program->path))
     return Error{"'" + program->path + "' names two things", "give the controller another name", decl.place};
   entity.programs.push_back(std::move(program));
+  programs_changed_ = true;
   point_programs_at_active_levels(entity);
   return {};
 }
@@ -282,7 +294,34 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
   program->path = entity.instance.name + "/" + sanitised(decl.name);
   program->key = entity_key(program->path);
 
-  Description& description = program->description;
+  std::unique_ptr<Controller> controller;
+  Status status;
+  const auto thrown = caught([&] {
+    controller = kind->create();
+    program->description = describe(entity);
+    if (program->description->robot == entity.instance.name) {
+      status = controller->init(*program->description, decl.config);
+    } else {
+      Description own = *program->description;
+      own.robot = entity.instance.name;
+      status = controller->init(own, decl.config);
+    }
+  });
+  if (thrown)
+    return at({"controller '" + program->path + "' (" + decl.kind + ") threw while it began: " + *thrown});
+  if (!status) return at(std::move(status.error()));
+  program->kind = kind;
+  program->controller = controller.get();
+  program->program = std::make_unique<ControllerProgram>(std::move(controller));
+  program->topics.resize(program->description->readings.size());
+  program->seen.resize(program->description->readings.size(), 0);
+  program->routes.resize(program->description->actuators.size());
+  return program;
+}
+
+/// What programs of a robot may know: the same object as for the robot before it, if they have the same devices.
+std::shared_ptr<const Description> Simulation::describe(const Entity& entity) {
+  Description description;
   description.robot = entity.instance.name;
   description.control_period_s = (setup_.step * setup_.control_interval).s();
   const model::Model& model = *entity.instance.model;
@@ -309,30 +348,34 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     describe(device->topics, description.readings);
     describe(device->commands, description.actuators);
   }
-  std::unique_ptr<Controller> controller;
-  Status status;
-  const auto thrown = caught([&] {
-    controller = kind->create();
-    status = controller->init(description, decl.config);
-  });
-  if (thrown)
-    return at({"controller '" + program->path + "' (" + decl.kind + ") threw while it began: " + *thrown});
-  if (!status) return at(std::move(status.error()));
-  program->program = std::make_unique<ControllerProgram>(std::move(controller));
-  program->topics.resize(description.readings.size());
-  program->seen.resize(description.readings.size(), 0);
-  return program;
+  const auto same = [](const Description::Entry& a, const Description::Entry& b) {
+    return a.device == b.device && a.level == b.level && a.type == b.type && a.X_BS == b.X_BS;
+  };
+  const auto all_same = [&](const std::vector<Description::Entry>& a,
+                            const std::vector<Description::Entry>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+  };
+  if (!described_ || !all_same(described_->readings, description.readings) ||
+      !all_same(described_->actuators, description.actuators))
+    described_ = std::make_shared<const Description>(std::move(description));
+  return described_;
 }
 
-void Simulation::plan_next_sample(Device& device) {
-  const double rate_hz = pools_[device.kind].pool->rate_hz(device.index);
-  device.due = rate_hz > 0 ? due_time(device.start, static_cast<std::int64_t>(device.sample), rate_hz)
-                           : Time{};
+void Simulation::plan_next_sample(const Device& device) {
+  Timing& when = pools_[device.kind].timing[device.index];
+  when.rate_hz = pools_[device.kind].pool->rate_hz(device.index);
+  when.due = when.rate_hz > 0 ? due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz)
+                              : Time{};
+}
+
+void Simulation::set_active_levels(Device& device, std::uint32_t levels) {
+  device.levels = levels;
+  pools_[device.kind].levels[device.index] = levels;
 }
 
 void Simulation::point_programs_at_active_levels(Entity& entity) {
   for (const auto& program : entity.programs) {
-    for (const Description::Entry& entry : program->description.readings) {
+    for (const Description::Entry& entry : program->description->readings) {
       const TopicBase* first = nullptr;
       const TopicBase* chosen = nullptr;
       for (const auto& device : entity.devices) {
@@ -348,6 +391,13 @@ void Simulation::point_programs_at_active_levels(Entity& entity) {
       }
       program->topics[entry.index] = chosen ? chosen : first;
     }
+    for (const Description::Entry& entry : program->description->actuators) {
+      Route& route = program->routes[entry.index];
+      route = {};
+      for (const auto& device : entity.devices)
+        if (device->decl.name == entry.device)
+          route = {device.get(), active_command_slot(*device, entry.type, entry.level)};
+    }
   }
 }
 
@@ -361,6 +411,7 @@ void Simulation::remove_entity(std::size_t index) {
   std::erase(guided_, &entity);
   std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity.serial; });
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
+  programs_changed_ = true;
 }
 
 void Simulation::remove_from_pool(const Device& device) {
@@ -368,6 +419,10 @@ void Simulation::remove_from_pool(const Device& device) {
   pool.pool->remove(device.index);
   pool.devices.erase(pool.devices.begin() + device.index);
   pool.all.pop_back();
+  pool.timing.erase(pool.timing.begin() + device.index);
+  pool.levels.erase(pool.levels.begin() + device.index);
+  pool.sample.pop_back();
+  pool.since.pop_back();
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
 

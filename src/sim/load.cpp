@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/text.h"
+#include "builders/builder.h"
 #include "devices/kind.h"
 #include "formats/resources.h"
 #include "formats/ros2_control/ros2_control.h"
@@ -218,6 +219,30 @@ model::Instance bare_ground() {
   return instance;
 }
 
+/// What a builder made, standing on the ground at the origin.
+Result<model::Instance> built_instance(const Node& map, const std::string& name, const std::string& path) {
+  SL_ASSIGN(Built built, build_model(map, path));
+  model::Instance instance;
+  instance.name = sanitised(name);
+  instance.original_name = name;
+  instance.X_WM = built.X_WM;
+  instance.devices = built.model.devices;
+  instance.is_robot = !instance.devices.empty();
+  instance.place = map.place();
+  instance.model = std::make_shared<const model::Model>(std::move(built.model));
+  return instance;
+}
+
+/// "builder:snake?segments=12" on a plane, at the step of scenarios.
+Result<model::Setup> load_built(const Node& map) {
+  model::Setup setup;
+  SL_ASSIGN(model::Instance instance, built_instance(map, map.find("builder")->text(), ""));
+  setup.name = instance.name;
+  setup.instances.push_back(bare_ground());
+  setup.instances.push_back(std::move(instance));
+  return setup;
+}
+
 Result<model::Setup> load_bare_world(const std::string& path, const formats::SdfOptions& options,
                                      Diagnostics& diagnostics) {
   SL_ASSIGN(formats::SdfContent content, formats::read_sdf(path, diagnostics, options));
@@ -282,6 +307,12 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
                                       std::span<const std::string> paths, bool skip_missing) {
+  if (const auto words = builder_words(model_file)) {
+    SL_ASSIGN(const Node map, *words);
+    SL_ASSIGN(model::Instance built, built_instance(map, name, ""));
+    built.X_WM = X_WM * built.X_WM;
+    return built;
+  }
   SL_ASSIGN(formats::SdfContent content,
             formats::read_sdf(model_file, diagnostics, sdf_options(paths, skip_missing)));
   if (content.instances.size() != 1 || !content.world_name.empty())
@@ -308,7 +339,14 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
   const formats::SdfOptions sdf = sdf_options(options.paths, options.skip_missing);
   const formats::SearchPath& search = sdf.path;
   model::Setup setup;
-  if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
+  if (const auto words = builder_words(path)) {
+    if (!options.overrides.empty())
+      return Error{"--set changes scenarios, and '" + path + "' is a model",
+                   "write its parameters behind a ?, such as builder:snake?segments=12"};
+    SL_ASSIGN(const Node map, *words);
+    SL_ASSIGN(setup, load_built(map));
+    for (model::Instance& instance : setup.instances) scale_errors(instance, options.errors);
+  } else if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
@@ -345,6 +383,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     setup.values = scenario.values;
     setup.events = scenario.events;
     setup.log = scenario.log;
+    setup.zones = scenario.zones;
     if (scenario.stop_s) setup.stop = Time::from_s(*scenario.stop_s);
     if (options.seed) setup.seed = *options.seed;
     for (const auto& [written, place] : scenario.plugins) {
@@ -353,20 +392,50 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       setup.plugins.push_back({std::move(file), "", 0, place});
     }
     std::map<std::string, model::Instance> loaded;
-    Placer placer(setup.instances, setup.seed);
-    for (const formats::RobotGroup& group : scenario.robots) {
+    const auto pattern_of = [&](const formats::RobotGroup& group,
+                                const std::string& where) -> Result<model::Instance> {
+      if (!group.builder.is_null()) return built_instance(group.builder, group.name, where + "/model");
       SL_ASSIGN(const std::string file, locate(group.model, formats::base_folder(scenario, group.model_place),
                                                search, group.model_place));
-      auto known = loaded.find(file);
-      if (known == loaded.end()) {
-        auto instance = load_instance(file, group.name, {}, diagnostics, options.paths, options.skip_missing);
-        if (!instance) {
-          if (!instance.error().place.file) instance.error().place = group.model_place;
-          return std::move(instance.error());
-        }
-        known = loaded.emplace(file, std::move(*instance)).first;
+      if (const auto known = loaded.find(file); known != loaded.end()) return known->second;
+      auto instance = load_instance(file, group.name, {}, diagnostics, options.paths, options.skip_missing);
+      if (!instance) {
+        if (!instance.error().place.file) instance.error().place = group.model_place;
+        return std::move(instance.error());
       }
-      model::Instance pattern = known->second;
+      return loaded.emplace(file, std::move(*instance)).first->second;
+    };
+    const auto add_group = [&](const formats::RobotGroup& group, const model::Instance& pattern,
+                               std::span<const Pose> poses) {
+      for (int i = 0; i < group.count; ++i) {
+        model::Instance instance = pattern;
+        instance.original_name = group.count == 1 ? group.name : group.name + std::to_string(i + 1);
+        instance.name = sanitised(instance.original_name);
+        instance.X_WM = poses[static_cast<std::size_t>(i)] * pattern.X_WM;
+        setup.instances.push_back(std::move(instance));
+      }
+    };
+    const auto fence = [&](Placer& placer, const formats::RobotGroup& group) {
+      auto walls = walls_of(group);
+      if (!walls) return;
+      placer.add(*walls);
+      setup.instances.push_back(std::move(*walls));
+    };
+    // Things first: robots find their places between them.
+    Placer thing_placer(setup.instances, setup.seed);
+    for (std::size_t i = 0; i < scenario.things.size(); ++i) {
+      const formats::RobotGroup& group = scenario.things[i];
+      SL_ASSIGN(model::Instance pattern, pattern_of(group, "/things/" + std::to_string(i)));
+      pattern.place = group.place;
+      scale_errors(pattern, errors);
+      fence(thing_placer, group);
+      SL_ASSIGN(const std::vector<Pose> poses, thing_placer.place(group));
+      add_group(group, pattern, poses);
+    }
+    Placer placer(setup.instances, setup.seed);
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      const formats::RobotGroup& group = scenario.robots[i];
+      SL_ASSIGN(model::Instance pattern, pattern_of(group, "/robots/" + std::to_string(i)));
       pattern.is_robot = true;
       pattern.team = group.team;
       pattern.controllers = group.controllers;
@@ -381,14 +450,9 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       }
       SL_TRY(merge_devices(pattern, group.devices));
       scale_errors(pattern, errors * group.errors);
+      fence(placer, group);
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
-      for (int i = 0; i < group.count; ++i) {
-        model::Instance instance = pattern;
-        instance.original_name = group.count == 1 ? group.name : group.name + std::to_string(i + 1);
-        instance.name = sanitised(instance.original_name);
-        instance.X_WM = poses[static_cast<std::size_t>(i)] * pattern.X_WM;
-        setup.instances.push_back(std::move(instance));
-      }
+      add_group(group, pattern, poses);
     }
   } else {
     std::error_code ignored;

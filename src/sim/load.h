@@ -21,12 +21,13 @@ struct LoadOptions {
   std::optional<std::string_view> text = {};
 };
 
-/// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world) or a robot (.urdf): what `sandlot run` accepts.
+/// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world), a robot (.urdf) or a model with parameters
+/// ("builder:snake?segments=12", builders/builder.h): what `sandlot run` accepts.
 /// What is no scenario runs at its own step, or Gazebo's 1 ms; a model by itself gets a plane to stand on.
 /// Errors carry file and line; warnings go to `diagnostics`, each once per file.
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 
-/// Loads one model file as an instance at `X_WM`, ready for a SpawnRequest.
+/// Loads one model file, or "builder:...", as an instance at `X_WM`, ready for a SpawnRequest.
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
                                       std::span<const std::string> paths = {}, bool skip_missing = false);

@@ -189,6 +189,7 @@ void shape(Save& io, const Shape& s) {
   if (const auto* p = std::get_if<Plane>(&s)) n = {p->normal.x, p->normal.y, p->normal.z};
   if (const auto* c = std::get_if<Cone>(&s)) n = {c->radius_m, c->length_m, 0};
   if (const auto* e = std::get_if<Ellipsoid>(&s)) n = {e->radii_m.x, e->radii_m.y, e->radii_m.z};
+  if (const auto* b = std::get_if<Barrel>(&s)) n = {b->radius_m, b->profile_m, b->length_m};
   io.value(static_cast<std::uint8_t>(s.index()));
   io.value(n);
   if (const auto* m = std::get_if<Mesh>(&s))
@@ -221,15 +222,12 @@ void shape(Load& io, Shape& s) {
       if (h.grid) s = std::move(h);
       break;
     }
+    case 9: s = Barrel{n[0], n[1], n[2]}; break;
     default: io.r.fail();
   }
 }
 
-void collision(auto& io, auto& c) {
-  io.value(c.name);
-  io.value(c.X_LC);
-  shape(io, c.shape);
-  auto& s = c.surface;
+void surface(auto& io, auto& s) {
   io.value(s.mu);
   io.value(s.mu2);
   io.value(s.fdir1);
@@ -239,6 +237,29 @@ void collision(auto& io, auto& c) {
   io.value(s.restitution_threshold_mps);
   io.value(s.soft_erp);
   io.value(s.soft_cfm);
+  io.value(s.stiffness_N_per_m);
+  io.value(s.damping_N_s_per_m);
+  io.value(s.max_correction_mps);
+  optional(io, s.substance, [](auto& i, auto& x) {
+    i.value(x.roughness);
+    i.value(x.slip);
+    i.value(x.hardness);
+    i.value(x.elasticity);
+  });
+  optional(io, s.skin, [](auto& i, auto& x) {
+    i.value(x.axis);
+    i.value(x.ratio);
+  });
+  io.value(s.rolling_resistance_m);
+  io.value(s.belt_velocity_mps);
+  io.value(s.touches);
+}
+
+void collision(auto& io, auto& c) {
+  io.value(c.name);
+  io.value(c.X_LC);
+  shape(io, c.shape);
+  surface(io, c.surface);
 }
 
 void visual(auto& io, auto& v) {
@@ -379,6 +400,13 @@ void setup_values(auto& io, auto& s) {
     i.value(p.file);
     i.value(p.name);
     i.value(p.hash);
+  });
+  list(io, s.zones, [](auto& i, auto& z) {
+    i.value(z.name);
+    i.value(z.outline_W);
+    i.value(z.centre_W);
+    i.value(z.radius_m);
+    surface(i, z.surface);
   });
   list(io, s.lights, [](auto& i, auto& l) { light(i, l); });
   color(io, s.ambient);

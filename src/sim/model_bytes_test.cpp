@@ -30,7 +30,12 @@ model::Setup full_setup() {
   base.X_ML = {{1, 2, 3}, quat_from_rpy(0.1, 0.2, 0.3)};
   base.inertial = {4, {{0.1, 0, 0}, {}}, {1, 2, 2.5}, {0.1, 0.2, 0.3}};
   base.gravity = false;
-  model::Surface surface{0.4, 0.5, {1, 0, 0}, 0.1, 0.2, 0.3, 0.06, 0.2, 1e-5};
+  model::Surface surface{0.4, 0.5, {1, 0, 0}, 0.1, 0.2, 0.3, 0.06, 0.2, 1e-5, 3000, 4, 0.5};
+  surface.substance = model::Substance{0.9, 0.02, 50, 0.6};
+  surface.skin = model::Skin{{0, 1, 0}, 0.1};
+  surface.rolling_resistance_m = 0.003;
+  surface.belt_velocity_mps = {0.7, 0.1, 0.2};
+  surface.touches = false;
   auto mesh = std::make_shared<TriangleMesh>(tessellate(Box{{1, 1, 1}}));
   mesh->texture_uv.assign(mesh->vertices.size(), {0.25f, 0.75f});
   mesh->parts = {{"lid", 2, 10, {0.1f, 0.2f, 0.3f, 1}, "wood.png"}};
@@ -87,6 +92,7 @@ model::Setup full_setup() {
   setup.control_interval = 4;
   setup.seed = 99;
   setup.stop = Time::from_s(12);
+  setup.zones.push_back({"ice", {{1, 2, 3}, {4, 5, 6}, {7, 8, 0}}, {9, 8, 7}, 6, surface, {}});
   setup.lights.push_back(lamp);
   setup.ambient = {0.1f, 0.1f, 0.1f, 1};
   setup.background = {0.2f, 0.2f, 0.2f, 1};
@@ -119,6 +125,21 @@ TEST(ModelBytes, what_is_read_writes_the_same_bytes_and_shares_models) {
   EXPECT_EQ(m.links[1].name, "arm");
   EXPECT_EQ(std::get<Capsule>(m.links[0].collisions[3].shape).length_m, 0.6);
   EXPECT_EQ(*m.links[0].collisions[0].surface.soft_cfm, 1e-5);
+  for (const model::Surface& s : {m.links[1].collisions[2].surface, read.zones.at(0).surface}) {
+    EXPECT_EQ(s.stiffness_N_per_m, 3000);
+    EXPECT_EQ(s.damping_N_s_per_m, 4);
+    EXPECT_EQ(s.max_correction_mps, 0.5);
+    EXPECT_EQ(s.substance, (model::Substance{0.9, 0.02, 50, 0.6}));
+    EXPECT_EQ(s.skin->axis, (Vec3{0, 1, 0}));
+    EXPECT_EQ(s.skin->ratio, 0.1);
+    EXPECT_EQ(s.rolling_resistance_m, 0.003);
+    EXPECT_EQ(s.belt_velocity_mps, (Vec3{0.7, 0.1, 0.2}));
+    EXPECT_FALSE(s.touches);
+  }
+  EXPECT_EQ(read.zones[0].name, "ice");
+  EXPECT_EQ(read.zones[0].outline_W, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 0}}));
+  EXPECT_EQ(read.zones[0].centre_W, (Vec3{9, 8, 7}));
+  EXPECT_EQ(read.zones[0].radius_m, 6);
   EXPECT_EQ(m.joints[0].spring_reference, 0.8);
   EXPECT_EQ(m.devices[0].config.find("list")->items()[0].text(), "1.5");
   EXPECT_EQ(read.stop->s(), 12);

@@ -49,6 +49,7 @@ Status Simulation::unmount_device(const UnloadDeviceRequest& request) {
   pools_[taken->kind].pool->release(taken->index, context());
   engine_->set_targets(actuation_.joints);
   engine_->set_drive_targets(actuation_.drives);
+  engine_->set_wheels(actuation_.wheels);
   actuation_.clear();
   remove_from_pool(*taken);
   entity.instance.devices.erase(entity.instance.devices.begin() + index);
@@ -71,14 +72,14 @@ Status Simulation::describe_anew(Entity& entity) {
     const auto same = [](const Description::Entry& a, const Description::Entry& b) {
       return a.device == b.device && a.level == b.level && a.type == b.type;
     };
-    for (const Description::Entry& entry : program->description.readings)
-      for (const Description::Entry& before : old->description.readings)
+    for (const Description::Entry& entry : program->description->readings)
+      for (const Description::Entry& before : old->description->readings)
         if (same(entry, before)) program->seen[entry.index] = old->seen[before.index];
     // Orders of the previous tick are still to be carried out.
     for (const Command::Order& order : old->command.orders()) {
-      const auto& actuators = program->description.actuators;
+      const auto& actuators = program->description->actuators;
       const auto now = std::find_if(actuators.begin(), actuators.end(), [&](const Description::Entry& entry) {
-        return same(entry, old->description.actuators[order.slot]);
+        return same(entry, old->description->actuators[order.slot]);
       });
       if (now == actuators.end()) ++refused;
       else program->command.set_bytes(now->index, old->command.bytes(order));
@@ -86,6 +87,7 @@ Status Simulation::describe_anew(Entity& entity) {
     fresh.push_back(std::move(program));
   }
   entity.programs = std::move(fresh);
+  programs_changed_ = true;
   refused_commands_ += refused;
   point_programs_at_active_levels(entity);
   return {};

@@ -1,7 +1,6 @@
 #pragma once
 /// A Program is anything that decides for a robot: a controller in process, later RoBIOS programs and remote
 /// clients. It is resumed once per control interval and says what it waits for.
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,21 +28,11 @@ class Program {
   virtual void load(ByteReader& r) = 0;
 };
 
-/// Calls f, the code of a controller's author. @return what() of the exception that it threw, if it threw one
-template <class F>
-std::optional<std::string> caught(F&& f) {
-  try {
-    f();
-    return std::nullopt;
-  } catch (const std::exception& e) { return e.what(); } catch (...) {
-    return "something that is no std::exception";
-  }
-}
-
 /// A controller as a program: one step per resume.
 class ControllerProgram final : public Program {
  public:
   explicit ControllerProgram(std::unique_ptr<Controller> controller) : controller_(std::move(controller)) {}
+  Controller& controller() { return *controller_; }
   Resumed resume(Time until, const Observation& obs, Command& cmd) override {
     return {Waiting::control_step, until, caught([&] { controller_->step(obs, cmd); })};
   }

@@ -198,7 +198,7 @@ void Simulation::fill_hashes(Frame& frame) {
     add(entity->key, always, [&](ByteWriter& w) { engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
       const bool only_senses = pools_[device->kind].kind->phases == phase_sense && device->commands.empty();
-      add(device->key, only_senses ? device->sample : always,
+      add(device->key, only_senses ? timing(*device).sample : always,
           [&](ByteWriter& w) { save_device(*device, w); });
     }
     for (const auto& program : entity->programs)

@@ -85,7 +85,7 @@ Status Simulation::carry_out(Request& request, const Source& source) {
   const auto& sample = std::get<SampleRequest>(request);
   Device* const device = find_device(sample.device);
   if (!device) return Error{"there is no device '" + sample.device + "'"};
-  device->requested = true;
+  pools_[device->kind].timing[device->index].requested = true;
   return {};
 }
 
@@ -172,30 +172,29 @@ Status Simulation::apply_command(const CommandRequest& command, const Source& so
 void Simulation::apply_program_orders() {
   if (!options_.run_programs)
     return;  // a snapshot may hold orders; the log that drives this run has them too
-  for (const auto& entity : entities_)
-    for (const auto& program : entity->programs) {
-      for (const Command::Order& order : program->command.orders()) {
-        const Description::Entry& entry = program->description.actuators[order.slot];
-        Slot* slot = nullptr;
-        for (const auto& device : entity->devices)
-          if (device->decl.name == entry.device && !is_held(*device))
-            slot = active_command_slot(*device, entry.type, entry.level);
-        const std::span<const std::byte> bytes = program->command.bytes(order);
-        // A level that was switched off under a controller's feet, a device that somebody drives by hand: its commands
-        // are refused and counted.
-        const bool refused = !slot || !give_command(*slot, bytes);
-        if (refused) ++refused_commands_;
-        if (!wants_.log) continue;
-        LogEntry& logged = log_entry(LogEntry::command, {Source::Kind::program, entity->serial},
-                                     program->steps);
-        logged.target.append(entity->instance.name).append("/").append(sanitised(entry.device));
-        if (!entry.level.empty()) logged.target.append("/").append(entry.level);
-        logged.type = entry.type;
-        logged.bytes.assign(bytes.begin(), bytes.end());
-        logged.refused = refused;
-      }
-      program->command.clear();
+  gather_programs();
+  for (std::size_t i = 0; i < programs_.size(); ++i) {
+    ProgramEntry& program = *programs_[i];
+    for (const Command::Order& order : program.command.orders()) {
+      const Route& route = program.routes[order.slot];
+      Slot* const slot = route.slot && (holds_.empty() || !is_held(*route.device)) ? route.slot : nullptr;
+      const std::span<const std::byte> bytes = program.command.bytes(order);
+      // A level that was switched off under a controller's feet, a device that somebody drives by hand: its commands
+      // are refused and counted.
+      const bool refused = !slot || !give_command(*slot, bytes);
+      if (refused) ++refused_commands_;
+      if (!wants_.log) continue;
+      const Entity& entity = *owners_[i];
+      const Description::Entry& entry = program.description->actuators[order.slot];
+      LogEntry& logged = log_entry(LogEntry::command, {Source::Kind::program, entity.serial}, program.steps);
+      logged.target.append(entity.instance.name).append("/").append(sanitised(entry.device));
+      if (!entry.level.empty()) logged.target.append("/").append(entry.level);
+      logged.type = entry.type;
+      logged.bytes.assign(bytes.begin(), bytes.end());
+      logged.refused = refused;
     }
+    program.command.clear();
+  }
 }
 
 Status Simulation::set_levels(const LevelRequest& request) {
@@ -213,7 +212,7 @@ Status Simulation::set_levels(const LevelRequest& request) {
   }
   if (bits == 0) return Error{"a device needs at least one active level", suggestion("", known)};
   SL_TRY(pool.pool->switch_level(device->index, device->levels, bits, context()));
-  device->levels = bits;
+  set_active_levels(*device, bits);
   ++revision_;
   for (const auto& entity : entities_)
     if (entity->instance.name == request.device.substr(0, request.device.find('/')))

@@ -19,8 +19,8 @@
 #include "devices/kind.h"
 #include "optics/ray_scene.h"
 #include "sim/frame.h"
+#include "sim/parts.h"
 #include "sim/phase_timer.h"
-#include "sim/program.h"
 #include "sim/pull.h"
 #include "sim/request.h"
 #include "sim/rule.h"
@@ -44,7 +44,7 @@ struct SimulationOptions {
   std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
 };
 
-class Simulation {
+class Simulation : public SimulationParts {
  public:
   static Result<std::unique_ptr<Simulation>> create(model::Setup setup, const SimulationOptions& options,
                                                     Diagnostics& diagnostics);
@@ -116,50 +116,12 @@ class Simulation {
   std::uint64_t refused_commands() const { return refused_commands_; }
 
   // --- the parts, for the files of sim/ ---
-  struct Slot {
-    std::unique_ptr<TopicBase> topic;
-    std::uint32_t level = 0;
-  };
-  struct Device {
-    model::DeviceDecl decl;
-    std::string path;
-    std::uint64_t key = 0;
-    std::uint32_t kind = 0;   ///< index into pools_
-    std::uint32_t index = 0;  ///< in its pool
-    std::uint32_t levels = 1;
-    Time start;                ///< due times count from here
-    std::uint64_t sample = 0;  ///< index of the next sample
-    Time last;                 ///< time of the previous sample
-    Time due;                  ///< of the next one; follows from start, sample and the rate
-    bool requested = false;
-    std::vector<Slot> topics, commands;
-  };
-  struct ProgramEntry {
-    model::ControllerDecl decl;
-    std::string path;
-    std::uint64_t key = 0;
-    std::unique_ptr<Program> program;
-    Description description;
-    std::vector<const TopicBase*> topics;  ///< what its readings point to at the active levels
-    std::vector<std::uint64_t> seen;       ///< message counts at its previous step
-    Command command;
-    std::uint64_t steps = 0;
-    bool ended = false;
-    std::optional<std::string> failure;  ///< in its last step; ends the run
-  };
-  struct Entity {
-    model::Instance instance;
-    InstanceId id;
-    std::uint64_t key = 0;
-    std::uint64_t serial = 0;  ///< creation order over the whole run
-    std::vector<std::unique_ptr<Device>> devices;
-    std::vector<std::unique_ptr<ProgramEntry>> programs;
-  };
   /// What the world holds, in creation order. Valid until the next tick.
   std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
   const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  const Timing& timing(const Device& device) const { return pools_[device.kind].timing[device.index]; }
   /// Those that programs of this world may be: the built-in ones and the plugins'.
   std::span<const ControllerKind* const> controller_kinds() const { return controller_kinds_; }
 
@@ -168,7 +130,8 @@ class Simulation {
     const Kind* kind = nullptr;
     std::unique_ptr<PoolBase> pool;
     std::vector<Device*> devices;
-    std::vector<std::uint32_t> all, due, levels;
+    std::vector<Timing> timing;                   ///< per device
+    std::vector<std::uint32_t> all, due, levels;  ///< `levels` per device: a copy of Device::levels
     std::vector<std::uint64_t> sample;
     std::vector<Time> since;
   };
@@ -183,7 +146,7 @@ class Simulation {
   // build.cpp
   Status build(Diagnostics& diagnostics);
   Status gather_controllers(Diagnostics& diagnostics);
-  Status add_entity(const model::Instance& instance, Diagnostics& diagnostics);
+  Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
   Status add_program(Entity& entity, const model::ControllerDecl& decl);
   Result<std::unique_ptr<ProgramEntry>> make_program(const Entity& entity, const model::ControllerDecl& decl);
@@ -194,7 +157,9 @@ class Simulation {
   Device* find_device(std::string_view path);
   ProgramEntry* find_program(std::string_view path);
   void rebuild_scene();
-  void plan_next_sample(Device& device);
+  void plan_next_sample(const Device& device);
+  void set_active_levels(Device& device, std::uint32_t levels);
+  std::shared_ptr<const Description> describe(const Entity& entity);
   std::uint64_t hash_parts(std::vector<std::uint64_t>& parts) const;
   std::shared_ptr<const std::vector<std::string>> name_parts() const;
 
@@ -209,6 +174,7 @@ class Simulation {
   void deliver_media();
   void judge();
   void control();
+  void gather_programs();
   Context context();
 
   // publish.cpp: the last phase
@@ -289,7 +255,11 @@ class Simulation {
 
   Actuation actuation_;
   EmissionBuffer emissions_;
-  std::vector<ProgramEntry*> running_;
+  std::shared_ptr<const Description> described_;  ///< the latest
+  /// All programs in entity order, and those that run, kind by kind. Made anew when one comes, goes or ends.
+  std::vector<ProgramEntry*> programs_, running_;
+  std::vector<Entity*> owners_;  ///< per entry of programs_
+  bool programs_changed_ = true;
   Observer::Wants wants_;  ///< of all observers together
   std::vector<LogEntry> log_, spare_log_;
   std::shared_ptr<Publishing> publishing_;  ///< known to publish.cpp alone

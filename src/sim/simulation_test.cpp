@@ -297,6 +297,48 @@ TEST(Failure, a_state_that_is_not_finite_ends_the_run_and_names_the_body) {
   EXPECT_FALSE(simulation->tick()) << "a failed run does not go on";
 }
 
+TEST(Failure, a_world_that_explodes_keeps_the_state_of_before_and_can_be_saved) {
+  auto setup = one_probe(Node::map());
+  setup.physics = map({{"max_speed", "3"}});
+  const auto simulation = build(setup, with_probe);
+  // v = g t passes 3 m/s after 0.306 s: in the 31st tick.
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(simulation->tick()) << i;
+  const std::uint64_t hash = simulation->state_hash();
+  const Status status = simulation->tick();
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().what.find("'ball/link' has exploded"), std::string::npos) << status.error().what;
+  EXPECT_NE(status.error().what.find("between 0.3 s and 0.31 s"), std::string::npos) << status.error().what;
+  EXPECT_EQ(simulation->tick_index(), 30u);
+  EXPECT_EQ(simulation->now(), Time::from_s(0.3));
+  EXPECT_EQ(simulation->state_hash(), hash);
+  Diagnostics diagnostics;
+  const auto again = Simulation::restore(simulation->snapshot(), with_probe, diagnostics);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_FALSE((*again)->tick()) << "it explodes again";
+}
+
+TEST(Surfaces, zones_and_the_rule_of_a_program_reach_the_engine) {
+  for (const bool hole : {false, true}) {
+    model::Setup setup;
+    setup.instances.push_back(placed("ground", one_shape("ground", Plane{{0, 0, 1}}, 0), {}));
+    setup.instances.push_back(placed("ball", one_shape("ball", Sphere{0.1}, 1), {{0, 0, 0.1}, {}}));
+    SimulationOptions options{.threads = 1};
+    if (hole) {
+      setup.zones.push_back({"hole", {}, {}, 1, {}, {}});
+      setup.zones[0].surface.touches = false;
+    } else {
+      options.contact_rule = [](const ContactSide& a, const ContactSide& b, Vec3, Vec3, PairSurface& pair) {
+        EXPECT_EQ(a.instance, "ground");
+        EXPECT_EQ(b.link.name, "link");
+        pair.touches = false;
+      };
+    }
+    const auto simulation = build(setup, options);
+    advance(*simulation, 50);
+    EXPECT_LT(simulation->engine().pose(simulation->entities()[1]->id).p.z, -0.9) << hole;
+  }
+}
+
 TEST(Failure, forces_beyond_all_bounds_end_the_run_too) {
   for (const double force_N : {1e30, 1e150, 1e300}) {
     auto setup = one_probe(Node::map());

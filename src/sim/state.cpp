@@ -90,29 +90,33 @@ Result<SnapshotInfo> examine_snapshot(std::span<const std::byte> bytes) {
 }
 
 void Simulation::save_device(const Device& device, ByteWriter& w) const {
+  const Timing& when = timing(device);
   write(w, device.levels);
-  write(w, device.start);
-  write(w, device.sample);
-  write(w, device.last);
-  write(w, device.requested);
+  write(w, when.start);
+  write(w, when.sample);
+  write(w, when.last);
+  write(w, when.requested);
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
   pools_[device.kind].pool->save(device.index, w);
 }
 
 void Simulation::load_device(Device& device, ByteReader& r) {
-  read(r, device.levels);
+  Timing& when = pools_[device.kind].timing[device.index];
+  std::uint32_t levels = 0;
+  read(r, levels);
   // Kinds look for their active levels without asking whether there are any.
   const std::size_t known = std::max<std::size_t>(pools_[device.kind].kind->levels.size(), 1);
-  if (device.levels == 0 || (known < 32 && device.levels >> known != 0)) return r.fail();
-  read(r, device.start);
-  read(r, device.sample);
-  read(r, device.last);
-  read(r, device.requested);
+  if (levels == 0 || (known < 32 && levels >> known != 0)) return r.fail();
+  set_active_levels(device, levels);
+  read(r, when.start);
+  read(r, when.sample);
+  read(r, when.last);
+  read(r, when.requested);
   // Due times are computed from these: what cannot be would overflow.
   constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
-  if (device.start < Time{} || device.start > now_ || device.last < Time{} || device.last > now_ ||
-      device.sample > most_samples)
+  if (when.start < Time{} || when.start > now_ || when.last < Time{} || when.last > now_ ||
+      when.sample > most_samples)
     return r.fail();
   for (Slot& slot : device.topics) slot.topic->load(r);
   for (Slot& slot : device.commands) slot.topic->load(r);
@@ -147,7 +151,7 @@ bool Simulation::load_program(ProgramEntry& program, ByteReader& r) {
     read(r, slot);
     read(r, size);
     const auto bytes = r.take(size);
-    if (slot >= program.description.actuators.size()) return false;
+    if (slot >= program.description->actuators.size()) return false;
     program.command.set_bytes(slot, bytes);
   }
   program.program->load(r);
@@ -333,6 +337,7 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
     }
     sim->point_programs_at_active_levels(entity);
   }
+  sim->programs_changed_ = true;
   if (!whole(r)) return damaged("there is more in it than belongs there");
   sim->arena_->execute([&] {
     sim->update_scene();

@@ -1,6 +1,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "base/text.h"
@@ -15,9 +16,10 @@ Status Simulation::tick(std::optional<Time> measured) {
   if (!failure_) return failure_;
   arena_->execute([&] {
     set_step(measured);
-    take_commands();  // 1  requests from outside, then what programs ordered in the previous tick
-    actuate();        // 2  actuators turn commands into targets and wrenches
-    physics();        // 3  sub-steps: servo loops, then the engine
+    take_commands();        // 1  requests from outside, then what programs ordered in the previous tick
+    actuate();              // 2  actuators turn commands into targets and wrenches
+    physics();              // 3  sub-steps: servo loops, then the engine
+    if (!failure_) return;  // nothing has moved: the world is that of the last tick that was sound
     now_ = now_ + step_;
     ++tick_;
     update_scene();   // 4  new poses into the ray scene
@@ -89,10 +91,6 @@ void Simulation::actuate() {
   Context ctx = context();
   ctx.now = now_ + step_;
   for (Pool& pool : pools_) {
-    pool.levels.clear();
-    for (const Device* device : pool.devices) pool.levels.push_back(device->levels);
-    pool.sample.resize(pool.devices.size());
-    pool.since.resize(pool.devices.size());
     if (!(pool.kind->phases & phase_actuate) || pool.devices.empty()) continue;
     pool.pool->actuate(ctx, {pool.all, pool.sample, pool.levels, pool.since});
   }
@@ -121,6 +119,7 @@ void Simulation::physics() {
     engine_->apply(actuation_.wrenches);
     engine_->set_targets(actuation_.joints);
     engine_->set_drive_targets(actuation_.drives);
+    engine_->set_rolls(actuation_.rolls);
     engine_->set_wheels(actuation_.wheels);
     engine_->set_grips(actuation_.grips);
     for (const Entity* entity : guided_) {
@@ -135,12 +134,15 @@ void Simulation::physics() {
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
+    actuation_.rolls.clear();
     actuation_.wheels.clear();
     actuation_.grips.clear();
     actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {
     failure_ = std::move(finite);
+    failure_.error().what += ", between " + number_text(now_.s()) + " s and " +
+                             number_text((now_ + step_).s()) + " s";
     stop_reason_ = failure_.error().what;
   }
 }
@@ -174,31 +176,24 @@ void Simulation::sense() {
   for (Pool& pool : pools_) {
     if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
     pool.due.clear();
-    pool.levels.resize(pool.devices.size());
-    pool.sample.resize(pool.devices.size());
-    pool.since.resize(pool.devices.size());
     for (std::uint32_t i = 0; i < pool.devices.size(); ++i) {
-      Device& device = *pool.devices[i];
-      pool.levels[i] = device.levels;
-      if (!device.requested && device.due > now_) continue;
-      device.requested = false;
+      Timing& when = pool.timing[i];
+      if (!when.requested && when.due > now_) continue;
+      when.requested = false;
       pool.due.push_back(i);
-      pool.sample[i] = device.sample;
+      pool.sample[i] = when.sample;
       // The first sample has no predecessor: it counts as one nominal interval after it.
-      if (device.sample == 0) {
-        const double rate_hz = pool.pool->rate_hz(i);
-        pool.since[i] = rate_hz > 0 ? due_time({}, 1, rate_hz) : step_;
-      } else {
-        pool.since[i] = now_ - device.last;
-      }
-      device.last = now_;
-      ++device.sample;
+      if (when.sample == 0) pool.since[i] = when.rate_hz > 0 ? due_time({}, 1, when.rate_hz) : step_;
+      else pool.since[i] = now_ - when.last;
+      when.last = now_;
+      ++when.sample;
+      if (when.rate_hz <= 0) continue;  // due in every tick
       // A tick of a continuous clock may be longer than the interval: the samples it passed over are lost.
-      if (setup_.clock.mode == model::Clock::Mode::continuous && device.due > Time{}) {
-        const double passed = (now_ - device.start).s() * pool.pool->rate_hz(i);
-        device.sample = std::max(device.sample, static_cast<std::uint64_t>(passed) + 1);
+      if (setup_.clock.mode == model::Clock::Mode::continuous && when.due > Time{}) {
+        const double passed = (now_ - when.start).s() * when.rate_hz;
+        when.sample = std::max(when.sample, static_cast<std::uint64_t>(passed) + 1);
       }
-      plan_next_sample(device);
+      when.due = due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz);
     }
     if (!pool.due.empty()) pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
   }
@@ -226,27 +221,64 @@ void Simulation::judge() {
   }
 }
 
+/// Lists the programs anew when some came, went or ended.
+void Simulation::gather_programs() {
+  if (!programs_changed_) return;
+  programs_changed_ = false;
+  programs_.clear();
+  owners_.clear();
+  running_.clear();
+  for (const auto& entity : entities_)
+    for (const auto& program : entity->programs) {
+      programs_.push_back(program.get());
+      owners_.push_back(entity.get());
+      if (!program->ended) running_.push_back(program.get());
+    }
+  // Kind by kind, in the order in which the kinds first appear.
+  std::map<const ControllerKind*, std::size_t> place;
+  for (const ProgramEntry* const entry : running_) place.emplace(entry->kind, place.size());
+  std::stable_sort(running_.begin(), running_.end(), [&](const ProgramEntry* a, const ProgramEntry* b) {
+    return place.at(a->kind) < place.at(b->kind);
+  });
+}
+
 void Simulation::control() {
   const PhaseTimer timer(phase_times_, Phase::control);
-  running_.clear();
   if (!options_.run_programs || tick_ % static_cast<std::uint64_t>(setup_.control_interval) != 0) return;
-  for (const auto& entity : entities_)
-    for (const auto& program : entity->programs)
-      if (!program->ended) running_.push_back(program.get());
-  parallel_for(running_.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      ProgramEntry& entry = *running_[i];
-      const Observation obs(now_, entry.topics, entry.seen,
+  gather_programs();
+  parallel_for(running_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    // Few enough to stay on the stack, enough for a kind to run warm.
+    constexpr std::size_t most = 16;
+    std::array<std::optional<Observation>, most> seen;
+    std::array<ControllerTurn, most> turns;
+    while (begin < end) {
+      const ControllerKind* const kind = running_[begin]->kind;
+      std::size_t count = 0;
+      for (; count < most && begin + count < end && running_[begin + count]->kind == kind; ++count) {
+        ProgramEntry& entry = *running_[begin + count];
+        entry.command.clear();
+        seen[count].emplace(now_, entry.topics, entry.seen,
                             Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
-      entry.command.clear();
-      Program::Resumed resumed = entry.program->resume(now_, obs, entry.command);
-      entry.failure = std::move(resumed.failure);
-      entry.ended = resumed.waiting_for == Program::Waiting::nothing;
-      ++entry.steps;
-      for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
+        turns[count] = {entry.controller, &*seen[count], &entry.command};
+      }
+      if (kind->step_all) kind->step_all({turns.data(), count});
+      for (std::size_t i = 0; i < count; ++i) {
+        ProgramEntry& entry = *running_[begin + i];
+        if (kind->step_all) {
+          entry.failure = std::move(turns[i].failure);
+        } else {
+          Program::Resumed resumed = entry.program->resume(now_, *seen[i], entry.command);
+          entry.failure = std::move(resumed.failure);
+          entry.ended = resumed.waiting_for == Program::Waiting::nothing;
+        }
+        ++entry.steps;
+        for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
+      }
+      begin += count;
     }
   });
   for (const ProgramEntry* entry : running_) {
+    programs_changed_ = programs_changed_ || entry->ended;
     if (!entry->failure || !failure_) continue;
     failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
                          number_text(now_.s()) + " s: " + *entry->failure,

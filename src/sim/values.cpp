@@ -188,7 +188,7 @@ ValueFound NamedValue::look() const {
     case What::parameter:
       return simulation_->pool(*device_).value(device_->index, ValuePart::parameter, rest);
     case What::state: return simulation_->pool(*device_).value(device_->index, ValuePart::state, rest);
-    case What::sample: return number(static_cast<double>(device_->sample), "");
+    case What::sample: return number(static_cast<double>(simulation_->timing(*device_).sample), "");
     case What::program_parameter: return program_->program->value(ValuePart::parameter, rest);
     case What::program_state: return program_->program->value(ValuePart::state, rest);
     case What::steps: return number(static_cast<double>(program_->steps), "");
@@ -290,7 +290,7 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
     pool.list_values(device->index, ValuePart::state, lister.under(device->path, "state"));
     if (lister.fresh(device->path + ".sample"))
       lister.one(device->path + ".sample", "1", "Index of the next sample.",
-                 static_cast<double>(device->sample));
+                 static_cast<double>(simulation.timing(*device).sample));
     for (const auto* slots : {&device->topics, &device->commands})
       for (const Simulation::Slot& slot : *slots) {
         const std::string topic = slot.topic->name().substr(1);

@@ -110,6 +110,10 @@ struct ShapeWriter {
   void operator()(const Cylinder& s) const { round("cylinder", s.radius_m, s.length_m); }
   void operator()(const Capsule& s) const { round("capsule", s.radius_m, s.length_m); }
   void operator()(const Cone& s) const { round("cone", s.radius_m, s.length_m); }
+  void operator()(const Barrel& s) const {
+    round("barrel", s.radius_m, s.length_m);
+    w.key("profile").number(s.profile_m);
+  }
   void operator()(const Plane& s) const { type("plane"), w.key("normal").vector(s.normal); }
   void operator()(const Ellipsoid& s) const { type("ellipsoid"), w.key("radii").vector(s.radii_m); }
   void operator()(const Mesh& s) const {
@@ -156,6 +160,22 @@ void write_light(Writer& w, const model::Light& light) {
     w.key("quadratic").number(light.quadratic);
     w.key("inner_rad").number(light.inner_rad);
     w.key("outer_rad").number(light.outer_rad);
+  });
+}
+
+/// A round zone has a radius, another one its corners; what it does only as far as a colour can tell.
+void write_zone(Writer& w, const model::SurfaceZone& zone) {
+  w.object([&] {
+    w.key("name").text(zone.name);
+    w.key("centre").vector(zone.centre_W);
+    w.key("radius_m").number(zone.radius_m);
+    w.key("corners").list([&] {
+      for (const Vec3& corner : zone.outline_W) w.vector(corner);
+    });
+    w.key("friction").number(zone.surface.substance ? zone.surface.substance->roughness : zone.surface.mu);
+    w.key("rolling_resistance_m").number(zone.surface.rolling_resistance_m);
+    w.key("belt_velocity").vector(zone.surface.belt_velocity_mps);
+    w.key("hole").flag(!zone.surface.touches);
   });
 }
 
@@ -316,6 +336,10 @@ std::string WorldTeller::tell(const Simulation& simulation, std::uint64_t epoch)
     w.key("lights").list([&] {
       for (const model::Light& light : setup.lights) write_light(w, light);
     });
+    if (!setup.zones.empty())
+      w.key("zones").list([&] {
+        for (const model::SurfaceZone& zone : setup.zones) write_zone(w, zone);
+      });
     for (auto& [content, model] : models_) model.used = false;
     std::vector<ByContent::iterator> models;
     w.key("models").list([&] {

@@ -13,6 +13,7 @@ export type Shape =
   | { type: 'box'; size: Vector }
   | { type: 'sphere'; radius: number }
   | { type: 'cylinder' | 'capsule' | 'cone'; radius: number; length: number }
+  | { type: 'barrel'; radius: number; length: number; profile: number }
   | { type: 'plane'; normal: Vector }
   | { type: 'ellipsoid'; radii: Vector }
   | { type: 'mesh'; mesh: string; scale?: Vector }
@@ -160,6 +161,19 @@ export interface Kind {
   fields: Field[];
 }
 
+/** A part of the ground with a surface of its own. */
+export interface Zone {
+  name: string;
+  centre: Vector;
+  radius_m: number;
+  /** Of one that is not round. */
+  corners: Vector[];
+  friction: number;
+  rolling_resistance_m: number;
+  belt_velocity: Vector;
+  hole: boolean;
+}
+
 export interface World {
   revision: number;
   epoch: number;
@@ -171,6 +185,7 @@ export interface World {
   ambient: Color;
   background: Color;
   lights: Light[];
+  zones?: Zone[];
   models: Model[];
   instances: Instance[];
   kinds: Record<string, Kind>;

@@ -53,43 +53,11 @@ void run_loop(Motor& motor, Level level, const JointState& joint, double h_s) {
   if (spec.loop_rate_hz == 0) state.loop_due_s = 0;
 }
 
-/// The winding on a voltage behind a resistance, for a sub-step.
-Winding on_voltage(const Spec& spec, double volts, double resistance, double current, double h_s) {
-  Winding w{.volts = volts, .resistance_Ohm = resistance};
-  double mean_keep = 0;  // of the current's distance to its final value, in the mean
-  if (spec.inductance_H > 0) {
-    const double x = resistance * h_s / spec.inductance_H;
-    w.keep = math::exp(-x);
-    mean_keep = x > 1e-6 ? (1 - w.keep) / x : 1 - 0.5 * x;
-  }
-  w.at_rest_A = volts / resistance * (1 - mean_keep) + current * mean_keep;
-  w.per_speed = spec.torque_constant / resistance * (1 - mean_keep);
-  return w;
-}
-
 Winding power(const Motor& motor, Level level, double motor_speed, double h_s) {
-  const Spec& spec = motor.spec;
   const State& state = motor.state;
   if (!state.powered) return {.fixed = true};
-  double volts = state.volts;
-  if (level == effort) {
-    const double wanted = std::clamp(
-        state.target / (spec.gear_ratio * spec.gear_efficiency * spec.torque_constant), -spec.max_current_A,
-        spec.max_current_A);
-    // Across winding and supply; the duty that gives it, if there is one below 1, lets the current loop hold it.
-    const double needed = wanted * (spec.resistance_Ohm + spec.supply_resistance_Ohm) +
-                          spec.torque_constant * motor_speed;
-    if (std::abs(needed) <= spec.supply_voltage_V) return {.at_rest_A = wanted, .fixed = true};
-    volts = std::copysign(spec.supply_voltage_V, needed);
-  }
-  const double duty = spec.supply_voltage_V > 0 ? std::clamp(volts / spec.supply_voltage_V, -1.0, 1.0) : 0;
-  Winding w = on_voltage(spec, duty * spec.supply_voltage_V,
-                         spec.resistance_Ohm + duty * duty * spec.supply_resistance_Ohm, state.current_A,
-                         h_s);
-  const double mean = w.at_rest_A - w.per_speed * motor_speed;
-  if (std::abs(mean) > spec.max_current_A)
-    return {.at_rest_A = std::copysign(spec.max_current_A, mean), .fixed = true};
-  return w;
+  if (level == effort) return winding_for_torque(motor.spec, state.target, state.current_A, motor_speed, h_s);
+  return winding_on_voltage(motor.spec, state.volts, state.current_A, motor_speed, h_s);
 }
 
 void take_command(Motor& motor, Level level, const JointState& joint) {
@@ -151,19 +119,8 @@ void Motor::pre_substep(PoolView<Motor> pool, const Context& context, double h_s
       if (level == voltage) state.volts = state.target;
       if (level == pwm) state.volts = state.target * spec.supply_voltage_V;
     }
-    const double n = spec.gear_ratio, motor_speed = n * joint.velocity;
-    motor.winding = power(motor, level, motor_speed, h_s);
-    const Winding& w = motor.winding;
-    const double mean_A = w.at_rest_A - w.per_speed * motor_speed;
-    const double efficiency = mean_A * joint.velocity < 0 ? 1 / spec.gear_efficiency : spec.gear_efficiency;
-    const double per_ampere = n * efficiency * spec.torque_constant;
-    context.actuation.joints.push_back(
-        {.joint = motor.joint,
-         .mode = JointTarget::Mode::effort,
-         .effort = per_ampere * w.at_rest_A,
-         .damping = per_ampere * w.per_speed * n + n * n * spec.viscous_friction,
-         .inertia = n * n * spec.rotor_inertia_kgm2,
-         .friction = n * spec.friction_Nm});
+    motor.winding = power(motor, level, spec.gear_ratio * joint.velocity, h_s);
+    context.actuation.joints.push_back(motor_target(spec, motor.winding, motor.joint, joint.velocity));
   }
 }
 
@@ -172,18 +129,11 @@ void Motor::post_substep(PoolView<Motor> pool, const Context& context, double h_
   for (const std::uint32_t index : pool.due) {
     Motor& motor = pool.all[index];
     State& state = motor.state;
-    const Winding& w = motor.winding;
-    const double back_emf = motor.spec.torque_constant * motor.spec.gear_ratio *
-                            joints[motor.joint.index].velocity;
-    state.mean_current_A = w.at_rest_A - w.per_speed * back_emf / motor.spec.torque_constant;
-    if (w.fixed) {
-      state.current_A = w.at_rest_A;
-      state.terminal_V = back_emf + motor.spec.resistance_Ohm * w.at_rest_A;
-    } else {
-      const double final_A = (w.volts - back_emf) / w.resistance_Ohm;
-      state.current_A = final_A + (state.current_A - final_A) * w.keep;
-      state.terminal_V = w.volts - (w.resistance_Ohm - motor.spec.resistance_Ohm) * state.mean_current_A;
-    }
+    const Flow flow = flow_after(motor.spec, motor.winding, state.current_A,
+                                 joints[motor.joint.index].velocity);
+    state.mean_current_A = flow.mean_A;
+    state.terminal_V = flow.terminal_V;
+    state.current_A = flow.current_A;
     if (!state.powered) continue;
     state.loop_since_s += h_s;
     state.loop_due_s -= h_s;

@@ -30,19 +30,14 @@
 #include <array>
 
 #include "devices/kind.h"
+#include "devices/motor.h"
 #include "devices/pid.h"
 #include "messages/messages.h"
 
 namespace sandlot::dc_motor {
 
-struct Spec {
+struct Spec : MotorSpec {
   std::string joint;
-  double supply_voltage_V = 12.0, supply_resistance_Ohm = 0.0;
-  double resistance_Ohm = 1.0, inductance_H = 0.0;
-  double torque_constant = 0.02;  ///< [Nm/A]
-  double max_current_A = 1e6;
-  double rotor_inertia_kgm2 = 0.0, friction_Nm = 0.0, viscous_friction = 0.0;
-  double gear_ratio = 1.0, gear_efficiency = 1.0;
   int encoder_counts = 0;
   double loop_rate_hz = 0.0;
   double max_acceleration = 1e9;  ///< [rad/s^2]
@@ -53,22 +48,7 @@ struct Spec {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000},
           s.joint);
-    visit(Field{"supply_voltage", "V", "Of the battery without load.", 0, 1e5, Field::tunable},
-          s.supply_voltage_V);
-    visit(Field{"supply_resistance", "Ohm", "Of battery and power stage.", 0, 1e6}, s.supply_resistance_Ohm);
-    visit(Field{"resistance", "Ohm", "Of the winding.", 1e-6, 1e6}, s.resistance_Ohm);
-    visit(Field{"inductance", "H", "Of the winding; 0: the current follows at once.", 0, 1e3},
-          s.inductance_H);
-    visit(Field{"torque_constant", "Nm/A", "Torque per current; the back-EMF [V s/rad] is the same number.",
-                1e-9, 1e4},
-          s.torque_constant);
-    visit(Field{"max_current", "A", "More is chopped by the power stage.", 0, 1e6, Field::tunable},
-          s.max_current_A);
-    visit(Field{"rotor_inertia", "kg m^2", "Of the rotor, before the gear.", 0, 1e3}, s.rotor_inertia_kgm2);
-    visit(Field{"friction", "Nm", "Coulomb friction, before the gear.", 0, 1e4}, s.friction_Nm);
-    visit(Field{"viscous_friction", "Nm s/rad", "Before the gear.", 0, 1e4}, s.viscous_friction);
-    visit(Field{"gear_ratio", "1", "Turns of the motor per turn of the joint.", 1e-3, 1e5}, s.gear_ratio);
-    visit(Field{"gear_efficiency", "1", "Of the gear.", 0.01, 1}, s.gear_efficiency);
+    MotorSpec::fields(s, visit);
     visit(Field{"encoder_counts", "1", "Per turn of the motor; 0: the loop sees the true angle and speed.", 0,
                 1e7},
           s.encoder_counts);
@@ -114,14 +94,6 @@ struct State {
     visit(Field{"seen_speed", "rad/s", "Speed that it saw last."}, s.seen_rad_s);
     visit(Field{"pid", "", "The controller."}, s.pid);
   }
-};
-
-/// The winding over one sub-step: its mean current is at_rest - per_speed * (motor speed at the end).
-struct Winding {
-  double at_rest_A = 0, per_speed = 0;
-  double volts = 0, resistance_Ohm = 1;  ///< behind which the motor sees the supply
-  double keep = 0;                       ///< of the current's distance to its final value, after the sub-step
-  bool fixed = false;                    ///< the power stage holds the current at at_rest_A
 };
 
 struct Motor {

@@ -80,6 +80,20 @@ void drive_wheels(const Drive& drive, WheelSpeeds speeds, bool kinematic, std::v
   side(drive.right, speeds.right_radps);
 }
 
+/// The wheels follow what the base really does, so that a robot held by a wall does not count turns.
+void roll_wheels(const Drive& drive, std::vector<RollTarget>& targets) {
+  const double per_m = 1 / drive.geometry.wheel_radius_m, half_m = 0.5 * drive.geometry.wheel_separation_m;
+  const auto side = [&](std::span<const Wheel> wheels, double y_m) {
+    for (const Wheel& wheel : wheels)
+      targets.push_back({.wheel = wheel.joint,
+                         .base = drive.base,
+                         .per_vx = wheel.sign * per_m,
+                         .per_wz = -wheel.sign * per_m * y_m});
+  };
+  side(drive.left, drive.dy_m + half_m);
+  side(drive.right, drive.dy_m - half_m);
+}
+
 bool is_ideal(std::uint32_t levels) { return levels >> ideal & 1; }
 
 /// Exactly one level, and one that the engine has.
@@ -100,7 +114,7 @@ Status check_levels(std::uint32_t levels, const Capabilities& engine) {
 void Drive::actuate(PoolView<Drive> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
-    count_wheels(drive, context.engine.joint_states());
+    if (drive.spec.odometry) count_wheels(drive, context.engine.joint_states());
     take_command(drive, is_ideal(pool.levels[index]) ? ideal : contact);
     const DriveVelocity wanted = goal(drive, context);
     if (is_ideal(pool.levels[index])) {
@@ -112,6 +126,7 @@ void Drive::actuate(PoolView<Drive> pool, const Context& context) {
            .wz_radps = wanted.omega_radps,
            .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
            .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
+      if (drive.engine.rolls) roll_wheels(drive, context.actuation.rolls);
     } else if (drive.state.release) {
       context.actuation.drives.push_back({.base = drive.base, .active = false});
       drive.state.release = 0;
@@ -120,11 +135,14 @@ void Drive::actuate(PoolView<Drive> pool, const Context& context) {
 }
 
 void Drive::pre_substep(PoolView<Drive> pool, const Context& context, double h_s) {
+  // Nothing to do in a swarm: found out without a look at each of them.
+  if (context.engine.capabilities().rolls && std::all_of(pool.levels.begin(), pool.levels.end(), is_ideal))
+    return;
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
     if (is_ideal(pool.levels[index])) {
-      // The wheels follow what the base really does, so that a robot held by a wall does not count turns. They lag by
-      // one sub-step; the angle they are behind by does not grow and is made up when the base stops.
+      if (drive.engine.rolls) continue;
+      // They lag by one sub-step; the angle they are behind by does not grow and is made up when the base stops.
       drive_wheels(drive, drive.geometry.inverse(velocity_of_axle(drive, context)), true,
                    context.actuation.joints);
       continue;
@@ -143,6 +161,7 @@ void Drive::sense(PoolView<Drive> pool, const Context& context) {
   const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
+    if (!drive.spec.odometry) continue;
     count_wheels(drive, joints);
     Topic<msg::Odometry>& topic = *drive.odometry[is_ideal(pool.levels[index]) ? ideal : contact];
     const Pose X_BD{{drive.dx_m, drive.dy_m, 0}, {}};
@@ -192,6 +211,8 @@ double wheel_radius_m(const model::Link& link) {
       radius_m = std::max(radius_m, sphere->radius_m);
     if (const auto* cylinder = std::get_if<Cylinder>(&collision.shape))
       radius_m = std::max(radius_m, cylinder->radius_m);
+    if (const auto* barrel = std::get_if<Barrel>(&collision.shape))
+      radius_m = std::max(radius_m, barrel->radius_m);
     if (const auto* capsule = std::get_if<Capsule>(&collision.shape))
       radius_m = std::max(radius_m, capsule->radius_m);
   }
@@ -272,6 +293,7 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
   for (const Level level : {ideal, contact}) {
     const char* const name = level == ideal ? "ideal" : "contact";
     drive.command[level] = build.accept<msg::Twist>(level, name);
+    if (!drive.spec.odometry) continue;
     drive.odometry[level] = build.publish<msg::Odometry>(level, name);
     drive.odometry[level]->message.header.frame_id = robot + "/odom";
     drive.odometry[level]->message.child_frame_id = robot + "/" + build.instance.model->links[0].name;

@@ -13,7 +13,8 @@
 /// Time     odometry is integrated in every tick on exact arcs (kinematics/differential.h) and published at `rate`.
 ///          A command acts from the tick it arrives in; after `command_timeout` without a new one the drive stops.
 /// Limits   no motor model, no systematic errors of radius and separation, no covariance (zeros).
-/// Cost     one arc per tick and drive, no allocation.
+/// Cost     one arc per tick and drive, none without odometry; no allocation. On an engine that rolls wheels itself
+///          (Capabilities::rolls) the level `ideal` costs nothing per sub-step.
 /// Errors   joints that are not there, do not turn or lie along the robot; a level the engine lacks.
 /// Source   kinematics/differential.h.
 #include <array>
@@ -35,6 +36,7 @@ struct Spec {
   double max_wheel_effort_Nm = 5.0;
   double command_timeout_s = 0.0;
   double rate_hz = 50.0;
+  bool odometry = true;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned required = Field::required, tunable = Field::tunable;
@@ -61,6 +63,8 @@ struct Spec {
     visit(Field{"command_timeout", "s", "Stop this long after the last command; 0: never.", 0, 1e6, tunable},
           s.command_timeout_s);
     visit(Field{"rate", "Hz", "Odometry messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
+    visit(Field{"odometry", "", "false: it counts no wheels and tells nothing, which large swarms save."},
+          s.odometry);
   }
 };
 

@@ -55,6 +55,34 @@ TEST(DiffDrive, OnContactTheWheelsGetTheSpeedsOfTheInverseKinematics) {
   EXPECT_FALSE(rig.engine->drive.active);
 }
 
+TEST(DiffDrive, AnEngineThatRollsWheelsIsToldHow) {
+  // The axle's centre lies 0.05 m to the left: with the hubs at y = 0.05 +- 0.25 m, wheel speed = (vx - wz y) / 0.1 m.
+  Rig rig(kind, test::two_wheels(0, 0.05));
+  rig.engine->what.rolls = true;
+  ASSERT_TRUE(rig.add("drive", drive(), ideal_bit));
+  rig.pool->actuate(rig.context(rig.tick), rig.due());
+  ASSERT_EQ(rig.actuation.rolls.size(), 2u);
+  for (const RollTarget& roll : rig.actuation.rolls) {
+    const double y = roll.wheel == rig.engine->joint_ids[0] ? 0.3 : -0.2;
+    EXPECT_EQ(roll.base, rig.engine->body_ids[0]);
+    EXPECT_NEAR(roll.per_vx, 10, 1e-12);
+    EXPECT_EQ(roll.per_vy, 0);
+    EXPECT_NEAR(roll.per_wz, -10 * y, 1e-12);
+  }
+  rig.pool->pre_substep(rig.context(rig.tick), rig.due(), 0.001);
+  EXPECT_TRUE(rig.actuation.joints.empty());
+}
+
+TEST(DiffDrive, WithoutOdometryItDrivesAndTellsNothing) {
+  Rig rig(kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("drive", drive({{"odometry", "false"}}), ideal_bit));
+  EXPECT_FALSE(rig.topics.contains("/robot1/drive/ideal"));
+  rig.command("drive/ideal", twist(0.5, 0));
+  for (int i = 0; i < 100; ++i) rig.act();
+  rig.sense();
+  EXPECT_NEAR(rig.engine->body[0].X_WB.p.x, 0.5, 1e-9);
+}
+
 TEST(DiffDrive, OdometryRunsOnExactArcs) {
   // Wheels that turn as asked: a straight of 2 m, a quarter circle of radius 1 m, a half turn on the spot.
   Rig rig(kind, test::two_wheels());

@@ -1,53 +1,10 @@
 /// The differential drive plugins of Gazebo (gz-sim), Ignition and Gazebo classic, as keys of our spec.
-#include <cmath>
-
-#include "base/text.h"
 #include "devices/diff_drive/diff_drive.h"
+#include "devices/sdf_drive.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::diff_drive {
-namespace {
-
 using namespace sdf_element;
-
-/// A number that the plugin leaves unlimited when it is absent.
-constexpr const char* unlimited = "1e9";
-
-/// Joint names of one side under any of the given element names, repeated ones included.
-void copy_joints(const Node& element, std::initializer_list<const char*> names, Node& config,
-                 const char* key) {
-  Node joints = Node::sequence(element.place());
-  for (const char* name : names) {
-    const Node* const node = element.find(name);
-    if (!node) continue;
-    joints.set_place(node->place());
-    if (node->is_sequence())
-      for (const Node& item : node->items()) joints.push(Node::scalar(text(&item), item.place()));
-    else joints.push(Node::scalar(text(node), node->place()));
-  }
-  if (!joints.items().empty()) config.set(key, std::move(joints));
-}
-
-/// Limits given as a minimum and a maximum are symmetrical here: the larger magnitude counts.
-Status copy_limit(const Node& element, const std::string& quantity, const char* common, Node& config,
-                  const char* key, Diagnostics& diagnostics) {
-  for (const std::string& name : {quantity, std::string(common)}) {
-    SL_ASSIGN(const auto max, number(element, "max_" + name));
-    SL_ASSIGN(const auto min, number(element, "min_" + name));
-    if (!max && !min) continue;
-    const Node& node = *find(element, max ? "max_" + name : "min_" + name);
-    if (max && min && *min != -*max)
-      diagnostics.warn(find(element, "min_" + name)
-                           ->error("<min_" + name + "> differs from <max_" + name +
-                                   ">: the larger magnitude limits both directions"));
-    config.set(key, scalar(std::max(std::abs(max.value_or(0)), std::abs(min.value_or(0))), node));
-    return {};
-  }
-  config.set(key, Node::scalar(unlimited, element.place()));
-  return {};
-}
-
-}  // namespace
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   Node config = Node::map(element.place());
@@ -62,12 +19,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   if (!config.find("wheel_radius"))
     SL_TRY(copy_number(element, {"wheel_diameter", "wheelDiameter"}, 0.5, config, "wheel_radius"));
   SL_TRY(copy_number(element, {"odom_publish_frequency", "update_rate", "updateRate"}, 1.0, config, "rate"));
-  SL_TRY(copy_limit(element, "linear_velocity", "velocity", config, "max_linear_speed", diagnostics));
-  SL_TRY(copy_limit(element, "angular_velocity", "velocity", config, "max_angular_speed", diagnostics));
-  SL_TRY(copy_limit(element, "linear_acceleration", "acceleration", config, "max_linear_acceleration",
-                    diagnostics));
-  SL_TRY(copy_limit(element, "angular_acceleration", "acceleration", config, "max_angular_acceleration",
-                    diagnostics));
+  SL_TRY(copy_limits(element, config, diagnostics));
   // The acceleration of a wheel's rim, in the plugins of gazebo_ros: 0 means none.
   SL_ASSIGN(const auto rim, number(element, "max_wheel_acceleration"));
   if (rim && *rim > 0)

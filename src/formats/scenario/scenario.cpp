@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -33,7 +34,7 @@ bool is_identifier(std::string_view name) {
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
 }
 
-Result<Placement> read_distribution(const Node& node, const spec::Distribution& read,
+Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, int count,
                                     const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
     return node.error("expected one of 'grid' and 'uniform'", "", path);
@@ -46,9 +47,15 @@ Result<Placement> read_distribution(const Node& node, const spec::Distribution& 
   } else {
     placement.kind = Placement::Kind::uniform;
     placement.centre_m = read.uniform->centre_m;
-    placement.width_m = read.uniform->width_m;
-    placement.height_m = read.uniform->height_m;
-    placement.clearance_m = read.uniform->clearance_m;
+    const spec::Uniform& uniform = *read.uniform;
+    if (uniform.density_per_m2 ? uniform.width_m || uniform.height_m : !uniform.width_m || !uniform.height_m)
+      return node.find("uniform")->error("the size of the area is not clear",
+                                         "give width and height, or density alone", path + "/uniform");
+    const double side_m = std::sqrt(count / uniform.density_per_m2.value_or(1));
+    placement.width_m = uniform.width_m.value_or(side_m);
+    placement.height_m = uniform.height_m.value_or(side_m);
+    placement.clearance_m = uniform.clearance_m;
+    placement.wall_height_m = uniform.wall_height_m;
   }
   return placement;
 }
@@ -142,34 +149,47 @@ Result<Module> read_module(const Node& node, spec::Module& keys, const std::stri
   return module;
 }
 
-Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
+/// What robots and things have in common: name, model, number and place.
+template <class Keys>
+Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* what, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
   group.place = name ? name->place() : node.place();
-  if (robot.name.empty()) return node.error("the robot's name is empty", "", path + "/name");
-  if (robot.model.empty())
-    return node.error("the robot's model is empty", "name a model file", path + "/model");
-  group.name = robot.name;
-  group.model = robot.model;
-  if (const Node* const model = node.find("model")) group.model_place = model->place();
-  group.count = robot.count;
-  group.team = robot.team;
-  group.errors = robot.errors;
-  if (!robot.pose.is_null() && robot.distribution)
-    return robot.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
-  if (robot.distribution) {
-    SL_ASSIGN(group.placement,
-              read_distribution(*node.find("distribution"), *robot.distribution, path + "/distribution"));
-  } else if (!robot.pose.is_null()) {
-    if (robot.count > 1)
-      return robot.pose.error(std::to_string(robot.count) + " robots cannot start at one pose",
-                              "give a 'distribution' instead", path + "/pose");
-    SL_ASSIGN(group.placement.X_WM, read_pose(robot.pose, path + "/pose"));
-    group.placement.place = robot.pose.place();
+  if (keys.name.empty())
+    return node.error("the " + std::string(what) + "'s name is empty", "", path + "/name");
+  group.name = keys.name;
+  group.model_place = keys.model.place();
+  if (keys.model.is_map()) {
+    group.builder = keys.model;
+  } else if (keys.model.is_scalar() && !keys.model.text().empty() && keys.model.text().size() <= 4096) {
+    group.model = keys.model.text();
   } else {
-    group.placement.kind = robot.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
+    return keys.model.error("the " + std::string(what) + "'s model is " + describe(keys.model),
+                            "name a model file, or write {builder: ...}", path + "/model");
+  }
+  group.count = keys.count;
+  if (!keys.pose.is_null() && keys.distribution)
+    return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
+  if (keys.distribution) {
+    SL_ASSIGN(group.placement, read_distribution(*node.find("distribution"), *keys.distribution, keys.count,
+                                                 path + "/distribution"));
+  } else if (!keys.pose.is_null()) {
+    if (keys.count > 1)
+      return keys.pose.error(std::to_string(keys.count) + " " + what + "s cannot start at one pose",
+                             "give a 'distribution' instead", path + "/pose");
+    SL_ASSIGN(group.placement.X_WM, read_pose(keys.pose, path + "/pose"));
+    group.placement.place = keys.pose.place();
+  } else {
+    group.placement.kind = keys.count > 1 ? Placement::Kind::grid : Placement::Kind::pose;
     group.placement.place = node.place();
   }
+  return group;
+}
+
+Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
+  SL_ASSIGN(RobotGroup group, read_group(node, robot, "robot", path));
+  group.team = robot.team;
+  group.errors = robot.errors;
   for (std::size_t i = 0; i < robot.modules.size(); ++i) {
     SL_ASSIGN(Module module, read_module(node.find("modules")->items()[i], robot.modules[i],
                                          path + "/modules/" + std::to_string(i)));
@@ -279,7 +299,7 @@ Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
   return {};
 }
 
-Result<Scenario> read_root(const Node& node, const std::string& file) {
+Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
   SL_TRY(refuse_later_keys(node));
   // A file of a later version may differ in every key: its version is the one thing to complain about.
   if (const Node* version = node.find("version")) {
@@ -322,6 +342,14 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
     out.plugins.emplace_back(root.plugins[i], each.place());
   }
   std::int64_t total = 0;
+  for (std::size_t i = 0; i < root.things.size(); ++i) {
+    const Node& each = node.find("things")->items()[i];
+    SL_ASSIGN(RobotGroup group, read_group(each, root.things[i], "thing", "/things/" + std::to_string(i)));
+    total += group.count;
+    if (total > spec::max_robots)
+      return each.error("more than " + std::to_string(spec::max_robots) + " things in all", "", "/things");
+    out.things.push_back(std::move(group));
+  }
   for (std::size_t i = 0; i < root.robots.size(); ++i) {
     const Node& each = node.find("robots")->items()[i];
     SL_ASSIGN(RobotGroup group, read_robot(each, root.robots[i], "/robots/" + std::to_string(i)));
@@ -332,6 +360,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file) {
   }
   SL_TRY(check_names(out.robots));
   SL_TRY(read_watch(node, root, out));
+  SL_TRY(read_zones(node, root.zones, out, diagnostics));
   return out;
 }
 
@@ -359,13 +388,13 @@ Result<Pose> read_pose(const Node& node, const std::string& path) {
 }
 
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
-                                std::span<const Override> overrides, Diagnostics&) {
+                                std::span<const Override> overrides, Diagnostics& diagnostics) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
   SL_TRY(apply_overrides(root, overrides));
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
-  SL_ASSIGN(Scenario scenario, read_root(root, file));
+  SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
   scenario.unused_vars = std::move(unused_vars);
   return scenario;
 }

@@ -28,6 +28,7 @@ struct Placement {
   double height_m = 0;       ///< uniform: extent along y
   double spacing_m = 1;      ///< grid: distance of neighbours
   double clearance_m = 0.5;  ///< uniform: no other instance's origin is nearer than this
+  double wall_height_m = 0;  ///< uniform: of walls about the area; 0: none
   Place place;
 };
 
@@ -41,9 +42,11 @@ struct Module {
   Place place, model_place, link_place;
 };
 
+/// Robots of one kind, or things: those have a name, a model, a number and a place only.
 struct RobotGroup {
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
   std::string model;  ///< file as written (see base_folder), or a name in the search path
+  Node builder;       ///< in place of `model`: a map with `builder` and its parameters, else null
   int count = 1;
   Placement placement;
   std::string team;
@@ -74,9 +77,11 @@ struct Scenario {
   double errors = 1;                                   ///< factor on the errors of all devices
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
+  std::vector<RobotGroup> things;
   std::vector<model::ValueDecl> values;
   std::vector<model::EventDecl> events;
   std::optional<model::LogDecl> log;
+  std::vector<model::SurfaceZone> zones;
   std::optional<model::Recording> record;  ///< its file is made absolute or relative to the working folder
   std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
 };
@@ -109,9 +114,11 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
-/// @param stages  what lists of stages of errors may hold (FieldInfo::elements "noise")
+/// @param stages    what lists of stages of errors may hold (FieldInfo::elements "noise")
+/// @param builders  of models with parameters
 std::string scenario_schema(std::span<const KindFields> devices = {},
                             std::span<const KindFields> controllers = {},
-                            std::span<const KindFields> stages = {});
+                            std::span<const KindFields> stages = {},
+                            std::span<const KindFields> builders = {});
 
 }  // namespace sandlot::formats

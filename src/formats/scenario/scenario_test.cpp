@@ -213,6 +213,44 @@ TEST(Scenario, IncludesLieBelowTheIncludingFile) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Scenario, ZonesOfTheGround) {
+  const auto s = parse(R"(version: 1
+ground_zones:
+  - {name: ice, polygon: [[0, 0], [200 cm, 0], [0, 3]], friction: 0.05}
+  - {name: belt, centre: [1, 2], radius: 0.5, substance: rubber(20), belt_velocity: [0.7, 0], rolling_resistance: 2 mm}
+  - {name: hole, centre: [1, 2], no_contact: true}
+)");
+  ASSERT_TRUE(s) << s.error().text();
+  ASSERT_EQ(s->zones.size(), 3u);
+  EXPECT_EQ(s->zones[0].name, "ice");
+  EXPECT_EQ(s->zones[0].outline_W, (std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}));
+  EXPECT_EQ(s->zones[0].surface.mu, 0.05);
+  EXPECT_EQ(s->zones[0].surface.mu2, 0.05);
+  EXPECT_EQ(s->zones[0].place.line, 3);
+  EXPECT_EQ(s->zones[1].centre_W, (Vec3{1, 2, 0}));
+  EXPECT_EQ(s->zones[1].radius_m, 0.5);
+  EXPECT_TRUE(s->zones[1].outline_W.empty());
+  EXPECT_EQ(s->zones[1].surface.substance->hardness, 20);
+  EXPECT_EQ(s->zones[1].surface.belt_velocity_mps, (Vec3{0.7, 0, 0}));
+  EXPECT_EQ(s->zones[1].surface.rolling_resistance_m, 0.002);
+  EXPECT_FALSE(s->zones[2].surface.touches);
+  const auto wrong = [](const std::string& zones) { return error_of("version: 1\nground_zones:\n" + zones); };
+  const char* const cases[][2] = {
+      {"  - {name: a}", "dir/s.yaml:3:5: /ground_zones/0: expected one of 'polygon' and 'centre'"},
+      {"  - {name: a, centre: [0, 0], polygon: [[0, 0], [1, 0], [0, 1]]}", "expected one of"},
+      {"  - {name: a, polygon: [[0, 0], [1, 0]]}", "/ground_zones/0/polygon: the list is too short"},
+      {"  - {name: a, polygon: [[0, 0], [1, 1], [2, 2]]}", "no area"},
+      {"  - {name: a, polygon: [[0, 0], [1, 0], [0, 1]], radius: 2}", "no radius"},
+      {"  - {name: a, centre: [0, 0], substance: wood}",
+       "dir/s.yaml:3:42: /ground_zones/0/substance: 'wood'"},
+      {"  - {name: a, centre: [0, 0], friction: -1}", "/ground_zones/0/friction"},
+      {"  - {name: '', centre: [0, 0]}", "name is empty"},
+      {"  - {name: a, centre: [0, 0]}\n  - {name: a, centre: [1, 0]}", "the other one is at dir/s.yaml:3"},
+      {"  - {name: a, centre: [0, 0], ice: 1}", "unknown key 'ice'"}};
+  for (const auto& [zones, message] : cases)
+    EXPECT_NE(wrong(zones).find(message), std::string::npos) << zones << "\n" << wrong(zones);
+}
+
 TEST(Scenario, NamesOfRobotsAndGroupsDoNotMeet) {
   const auto two = [](const std::string& a, const std::string& b) {
     return error_of("version: 1\nrobots:\n  - {" + a + ", model: m}\n  - {" + b + ", model: m}\n");

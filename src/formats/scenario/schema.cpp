@@ -88,22 +88,23 @@ Json object_of(const std::vector<FieldInfo>& fields) {
   return root;
 }
 
-/// A map with `kind` and the keys of that kind; `common` are keys that every kind has.
-Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_needed) {
+/// A map with `kind` (or what `word` says) and the keys of that kind; `common` are keys that every kind has.
+Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_needed,
+              const char* word = "kind") {
   Json names = Json::array(), choices = Json::array();
   Json all = common;
   for (const auto& [name, fields] : kinds) {
     names.push_back(name);
     Json properties = object_of(fields)["properties"];
     for (const auto& [key, value] : common.items()) properties[key] = value;
-    properties["kind"] = {{"const", name}};
-    choices.push_back({{"if", {{"properties", {{"kind", {{"const", name}}}}}, {"required", {"kind"}}}},
+    properties[word] = {{"const", name}};
+    choices.push_back({{"if", {{"properties", {{word, {{"const", name}}}}}, {"required", {word}}}},
                        {"then", {{"properties", properties}, {"additionalProperties", false}}}});
   }
-  all["kind"] = {{"type", "string"}, {"description", "What it is."}};
-  if (!names.empty()) all["kind"]["examples"] = names;
+  all[word] = {{"type", "string"}, {"description", "What it is."}};
+  if (!names.empty()) all[word]["examples"] = names;
   Json out = {{"type", "object"}, {"properties", all}};
-  if (kind_needed) out["required"] = {"kind"};
+  if (kind_needed) out["required"] = {word};
   if (!choices.empty()) out["allOf"] = choices;
   return out;
 }
@@ -135,7 +136,7 @@ std::string schema_of(const std::vector<FieldInfo>& fields) {
 }
 
 std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers,
-                            std::span<const KindFields> stages) {
+                            std::span<const KindFields> stages, std::span<const KindFields> builders) {
   Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sandlot scenario"}};
   root.update(object_of(describe_fields<spec::Root>()));
   // The keys whose form the field lists leave open.
@@ -152,7 +153,13 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
               {{"type", "object"}, {"additionalProperties", {{"type", {"string", "number"}}}}});
   describe_as(keys["include"], {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}});
   Json& robot = keys["robots"]["items"]["properties"];
+  const Json model = {
+      {"anyOf", {Json{{"type", "string"}}, kinds_of(builders, Json::object(), true, "builder")}}};
+  describe_as(robot["model"], model);
   describe_as(robot["pose"], pose_schema(""));
+  Json& thing = keys["things"]["items"]["properties"];
+  describe_as(thing["model"], model);
+  describe_as(thing["pose"], pose_schema(""));
   const Json named = {
       {"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}}};
   const Json controller = kinds_of(controllers, named, true);

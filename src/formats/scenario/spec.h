@@ -1,17 +1,18 @@
 #pragma once
 /// The keys of a scenario file, once: the reader and the schema both come from these lists.
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/fields.h"
 #include "base/node.h"
+#include "formats/scenario/zone_spec.h"
 #include "geometry/vec3.h"
 #include "model/recording.h"
 
 namespace sandlot::formats::scenario_spec {
 
-inline constexpr double max_distance_m = 1e6;
 inline constexpr double max_angle_rad = 1e4;
 inline constexpr int max_robots = 1'000'000;
 
@@ -72,14 +73,20 @@ struct Grid {
 
 struct Uniform {
   Vec3 centre_m;
-  double width_m = 0, height_m = 0;
+  std::optional<double> width_m, height_m, density_per_m2;
   double clearance_m = 0.5;
+  double wall_height_m = 0;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"centre", "m", "Middle of the area, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
-    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m, Field::required}, s.width_m);
-    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m, Field::required}, s.height_m);
+    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m}, s.width_m);
+    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m}, s.height_m);
+    visit(Field{"density", "1/m^2",
+                "In place of width and height: robots per square metre, in a square that holds them all.",
+                1e-6, 1e6},
+          s.density_per_m2);
     visit(Field{"clearance", "m", "No two origins are nearer than this.", 0, 1e4}, s.clearance_m);
+    visit(Field{"wall_height", "m", "Height of walls about the area; 0: none.", 0, 1e3}, s.wall_height_m);
   }
 };
 
@@ -114,9 +121,28 @@ struct Module {
   }
 };
 
+/// What stands about in the world beside the robots.
+struct Thing {
+  std::string name;
+  Node model;
+  int count = 1;
+  Node pose;
+  std::optional<Distribution> distribution;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the thing; with count > 1 the stem of name1, name2, ...", 0, 0,
+                Field::required, 100},
+          s.name);
+    visit(Field{"model", "", "As the model of a robot.", 0, 0, Field::required}, s.model);
+    visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
+    visit(Field{"pose", "m", "Where it stands: as the pose of a robot."}, s.pose);
+    visit(Field{"distribution", "", "Where several stand."}, s.distribution);
+  }
+};
+
 struct Robot {
   std::string name;
-  std::string model;
+  Node model;
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
@@ -132,8 +158,10 @@ struct Robot {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
                 Field::required, 100},
           s.name);
-    visit(Field{"model", "", "Model file (SDF or URDF), relative to this file, or a folder of models.", 0, 0,
-                Field::required, 4096},
+    visit(Field{"model", "",
+                "Model file (SDF or URDF), relative to this file, or a folder of models; or a map with "
+                "builder and its parameters.",
+                0, 0, Field::required},
           s.model);
     visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
     visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
@@ -202,11 +230,13 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
+  std::vector<Thing> things;
   double errors = 1;
   Node values;
   std::vector<Event> events;
   std::optional<Log> log;
   std::optional<model::Recording> record;
+  std::vector<Zone> zones;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -226,12 +256,19 @@ struct Root {
                 0, 0, Field::none, 100},
           s.plugins);
     visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"things", "", "What stands about: walls, ramps, things to push.", 0, 0, Field::none, 100'000},
+          s.things);
     visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
           s.errors);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
     visit(Field{"record", "", "How the run is recorded."}, s.record);
+    visit(
+        Field{"ground_zones", "",
+              "Parts of the ground with a surface of their own, seen from above; of several the last counts.",
+              0, 0, Field::none, 1000},
+        s.zones);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };

@@ -1,10 +1,11 @@
 #pragma once
-/// What happens to the Nodes of a scenario before its keys are read: includes, --set, ${var}.
+/// What happens to the Nodes of a scenario before its keys are read: includes, --set, ${var}; and parts of the reader.
 #include <span>
 #include <string>
 
 #include "base/node.h"
 #include "formats/scenario/scenario.h"
+#include "formats/scenario/spec.h"
 
 namespace sandlot::formats {
 
@@ -19,6 +20,10 @@ Status apply_overrides(Node& root, std::span<const Override> overrides);
 /// A text that is just `${name}` becomes the variable's value, whatever its type, with the variable's place.
 /// @param unused  out: entries of `vars` that nobody asked for, in file order
 Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place>>& unused);
+
+/// Checks and takes over the zones of the ground; zones.cpp.
+Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys, Scenario& out,
+                  Diagnostics& diagnostics);
 
 /// "--set path=value", the `file` of what an override gives.
 inline constexpr std::string_view override_place = "--set ";

@@ -3,14 +3,15 @@
 
 #include "base/text.h"
 #include "formats/sdf/reading.h"
+#include "geometry/barrel.h"
 #include "geometry/mesh.h"
 
 namespace sandlot::formats {
 namespace {
 
 constexpr const char* what_to_write =
-    "give it a <box>, <sphere>, <cylinder>, <capsule>, <cone>, <ellipsoid>, <plane>, <mesh>, <heightmap> or "
-    "<polyline>";
+    "give it a <box>, <sphere>, <cylinder>, <capsule>, <cone>, <ellipsoid>, <plane>, <mesh>, <heightmap>, "
+    "<polyline> or <sandlot:barrel>";
 
 /// A length that SDF has a default for.
 Result<double> length_of(const Xml& form, const char* key, double standard, const Reading& in) {
@@ -43,6 +44,23 @@ Result<std::optional<Shape>> read_primitive(const Xml& form, const Reading& in) 
     if (form.name == "cylinder") return std::optional<Shape>(Cylinder{radius, length});
     if (form.name == "capsule") return std::optional<Shape>(Capsule{radius, length});
     return std::optional<Shape>(Cone{radius, length});
+  }
+  if (form.name == "sandlot:barrel") {
+    in.notes.unused(form, "radius profile length");
+    for (const char* const key : {"radius", "profile", "length"})
+      if (!form.child(key))
+        return form.error("<sandlot:barrel> has no <" + std::string(key) + ">",
+                          "it needs <radius>, <profile> (radius of the arc it is turned from) and <length>");
+    SL_ASSIGN(const double radius, read_double(*form.child("radius"), size_range));
+    SL_ASSIGN(const double profile, read_double(*form.child("profile"), size_range));
+    SL_ASSIGN(const double length, read_double(*form.child("length"), size_range));
+    const Barrel barrel{radius, profile, length};
+    if (!is_barrel(barrel))
+      return form.error(
+          "this <sandlot:barrel> has no such arc",
+          "its <profile> must reach to both ends (half the <length>), and the radius there must not "
+          "fall below 0");
+    return std::optional<Shape>(barrel);
   }
   if (form.name == "ellipsoid") {
     in.notes.unused(form, "radii");
@@ -187,9 +205,9 @@ Result<std::vector<Shape>> read_shapes(const Xml& owner, Pose& X_LG, const Readi
   if (form.name == "mesh") return read_mesh_use(form, owner.name == "collision", said, in);
   if (form.name == "heightmap") return read_heightmap_use(form, X_LG, said, in);
   if (form.name == "polyline") return read_polylines(*geometry, in);
-  static const std::vector<std::string> known{"box",       "sphere", "cylinder",  "capsule",
-                                              "cone",      "plane",  "ellipsoid", "mesh",
-                                              "heightmap", "image",  "polyline",  "empty"};
+  static const std::vector<std::string> known{"box",      "sphere",    "cylinder",      "capsule",   "cone",
+                                              "plane",    "ellipsoid", "mesh",          "heightmap", "image",
+                                              "polyline", "empty",     "sandlot:barrel"};
   if (std::find(known.begin(), known.end(), form.name) == known.end())
     return form.error("unknown geometry <" + form.name.substr(0, 60) + ">", suggestion(form.name, known));
   if (form.name != "empty")

@@ -6,66 +6,6 @@ namespace {
 constexpr double water_kgpm3 = 1000;
 constexpr Range density_range{0, 1e6, true};
 
-Status read_friction(const Xml& friction, model::Surface& out, Notes& notes) {
-  notes.unused(friction, "ode", "bullet torsional");
-  if (const Xml* const torsional = friction.child("torsional"))
-    notes.warn(*torsional, "<torsional> friction is not used");
-  const Xml* const ode = friction.child("ode");
-  if (!ode) return {};
-  notes.unused(*ode, "mu mu2 fdir1 slip1 slip2");
-  SL_TRY(read_capped(*ode, "mu", not_negative, out.mu));
-  // SDF's default for mu2 is 1 whatever mu is; who gives only mu means both directions.
-  out.mu2 = out.mu;
-  SL_TRY(read_capped(*ode, "mu2", not_negative, out.mu2));
-  SL_TRY(read_child(*ode, "fdir1", position_range, out.fdir1));
-  SL_TRY(read_capped(*ode, "slip1", not_negative, out.slip1));
-  SL_TRY(read_capped(*ode, "slip2", not_negative, out.slip2));
-  if (norm(out.fdir1) > 0) out.fdir1 = normalised(out.fdir1);
-  return {};
-}
-
-/// Masks that let some things pass through others are not known to the engines.
-void read_bitmask(const Xml& contact, Notes& notes) {
-  for (const char* const key : {"collide_bitmask", "category_bitmask"}) {
-    const Xml* const mask = contact.child(key);
-    const bool all = !mask || mask->text == "65535" || mask->text == "0xFFFF" || mask->text == "0xffff";
-    if (!all)
-      notes.warn(*mask, std::string("<") + key + "> is not used", "everything collides with everything", key);
-  }
-}
-
-Result<model::Surface> read_surface(const Xml& collision, Notes& notes) {
-  model::Surface out;
-  const Xml* const surface = collision.child("surface");
-  if (!surface) return out;
-  notes.unused(*surface, "friction bounce contact", "soft_contact");
-  if (const Xml* const friction = surface->child("friction")) SL_TRY(read_friction(*friction, out, notes));
-  if (const Xml* const bounce = surface->child("bounce")) {
-    notes.unused(*bounce, "restitution_coefficient threshold");
-    SL_TRY(read_child(*bounce, "restitution_coefficient", {0, 1}, out.restitution));
-    SL_TRY(read_capped(*bounce, "threshold", not_negative, out.restitution_threshold_mps));
-  }
-  if (const Xml* const contact = surface->child("contact")) {
-    notes.unused(*contact, "ode",
-                 "bullet collide_bitmask category_bitmask collide_without_contact "
-                 "collide_without_contact_bitmask poissons_ratio elastic_modulus");
-    read_bitmask(*contact, notes);
-    if (const Xml* const ode = contact->child("ode")) {
-      notes.unused(*ode, "soft_cfm soft_erp", "kp kd max_vel min_depth");
-      double value = 0;
-      if (const Xml* const cfm = ode->child("soft_cfm")) {
-        SL_ASSIGN(value, read_double(*cfm, {0, 1e6}));
-        out.soft_cfm = value;
-      }
-      if (const Xml* const erp = ode->child("soft_erp")) {
-        SL_ASSIGN(value, read_double(*erp, {0, 1}));
-        out.soft_erp = value;
-      }
-    }
-  }
-  return out;
-}
-
 /// The shapes of a collision or visual, named after it: the pieces of a mesh beyond the first get a number.
 template <class Part>
 Result<std::vector<Part>> read_parts(const Xml& element, const Part& pattern, Pose X_LG, const Reading& in) {

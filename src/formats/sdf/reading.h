@@ -31,6 +31,9 @@ Result<model::Inertial> read_inertial(const Xml& element, const model::Link& lin
                                       const std::vector<double>& densities_kgpm3, bool is_static,
                                       const Reading& in);
 
+/// The <surface> of a collision, or the default.
+Result<model::Surface> read_surface(const Xml& owner, Notes& notes);
+
 Result<model::Material> read_material(const Xml& visual, const Reading& in);
 
 /// Type, axes, limits and dynamics of a joint.

@@ -99,6 +99,56 @@ TEST(Sdf, ReadsShapesSurfacesAndInertia) {
   EXPECT_EQ(l.visuals.at(0).material.diffuse.a, 0.25f) << "half of what is half transparent";
 }
 
+TEST(Sdf, ReadsWhatASurfaceIsMadeOf) {
+  const auto collision = [](const std::string& surface) {
+    return model(R"(<link name="l"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy>
+<izz>1</izz></inertia></inertial><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><surface>)" +
+                 surface + "</surface></collision></link>");
+  };
+  Read r = parse(collision(R"(<contact><ode><kp>3000</kp><kd>4</kd><max_vel>0.5</max_vel></ode></contact>
+    <sandlot:substance>rubber(20)</sandlot:substance>
+    <sandlot:skin><axis>0 2 0</axis><ratio>0.1</ratio></sandlot:skin>
+    <sandlot:rolling_resistance>0.003</sandlot:rolling_resistance>
+    <sandlot:belt_velocity>0.7 0 0</sandlot:belt_velocity><sandlot:no_contact>true</sandlot:no_contact>)"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
+  const model::Surface& s = r.content->instances[0].model->links[0].collisions[0].surface;
+  EXPECT_EQ(s.stiffness_N_per_m, 3000);
+  EXPECT_EQ(s.damping_N_s_per_m, 4);
+  EXPECT_EQ(s.max_correction_mps, 0.5);
+  EXPECT_EQ(s.substance, (model::Substance{3, 0, 20, 0.95}));
+  EXPECT_EQ(s.skin->axis, (Vec3{0, 1, 0}));
+  EXPECT_EQ(s.skin->ratio, 0.1);
+  EXPECT_EQ(s.rolling_resistance_m, 0.003);
+  EXPECT_EQ(s.belt_velocity_mps, (Vec3{0.7, 0, 0}));
+  EXPECT_FALSE(s.touches);
+
+  r = parse(collision("<contact><ode><kp>1e12</kp><kd>1</kd></ode></contact>"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_FALSE(r.content->instances[0].model->links[0].collisions[0].surface.stiffness_N_per_m)
+      << "SDF's default means hard";
+  r = parse(collision("<sandlot:substance>rubber(60)</sandlot:substance>"));
+  ASSERT_TRUE(r.content) << r.error;
+  ASSERT_EQ(r.warnings.size(), 1u);
+  EXPECT_NE(r.warnings[0].find("rubber(60) is outside"), std::string::npos) << r.warnings[0];
+
+  for (const auto& [surface, message] :
+       {std::pair{"<sandlot:substance>wood</sandlot:substance>", "'wood' is no substance"},
+        std::pair{"<sandlot:substance>foam(0)</sandlot:substance>", "no foam(0)"},
+        std::pair{"<sandlot:skin><axis>0 0 0</axis><ratio>1</ratio></sandlot:skin>", "no length"},
+        std::pair{"<sandlot:skin><axis>1 0 0</axis></sandlot:skin>", "no <ratio>"},
+        std::pair{"<sandlot:skin><ratio>-1</ratio></sandlot:skin>", "-1"},
+        std::pair{"<sandlot:rolling_resistance>-1</sandlot:rolling_resistance>", "-1"},
+        std::pair{"<sandlot:belt_velocity>fast</sandlot:belt_velocity>", "fast"},
+        std::pair{"<sandlot:belt>1</sandlot:belt>", "has no <sandlot:belt>"},
+        std::pair{"<contact><ode><kp>0</kp></ode></contact>", "stiffness of 0"}}) {
+    r = parse(collision(surface));
+    ASSERT_FALSE(r.content) << surface;
+    EXPECT_NE(r.error.find(message), std::string::npos) << r.error;
+    EXPECT_NE(r.error.find(":"), std::string::npos);
+  }
+}
+
 TEST(Sdf, ReadsJoints) {
   const Read r = parse(model(link("a") + link("b", "<pose>1 0 0 0 0 0</pose>") + link("c") + R"(
     <joint name="hinge" type="revolute"><parent>a</parent><child>b</child><pose>0 0 0.5 0 0 0</pose>

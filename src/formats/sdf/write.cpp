@@ -320,6 +320,7 @@ Result<Xml> sdf_of(const model::Setup& setup, Diagnostics& diagnostics) {
   if (!setup.values.empty()) lost("the named values");
   if (!setup.events.empty()) lost("the events");
   if (setup.log) lost("the log");
+  if (!setup.zones.empty()) lost("the zones of the ground", setup.zones.front().place);
   Xml& scene = add(world, "scene");
   add(scene, "ambient", text_of(setup.ambient));
   add(scene, "background", text_of(setup.background));

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "model/substance.h"
 
 namespace sandlot::formats::writing {
 namespace {
@@ -140,11 +141,25 @@ std::optional<Xml> surface_of(const model::Surface& s) {
     add_number(bounce, "restitution_coefficient", s.restitution);
     add_number(bounce, "threshold", s.restitution_threshold_mps);
   }
-  if (s.soft_cfm || s.soft_erp) {
-    Xml& soft = add(add(out, "contact"), "ode");
-    if (s.soft_cfm) add_number(soft, "soft_cfm", *s.soft_cfm);
-    if (s.soft_erp) add_number(soft, "soft_erp", *s.soft_erp);
+  Xml soft = element("ode");
+  const auto add_given = [&](const char* key, const std::optional<double>& x) {
+    if (x) add_number(soft, key, *x);
+  };
+  add_given("soft_cfm", s.soft_cfm);
+  add_given("soft_erp", s.soft_erp);
+  add_given("kp", s.stiffness_N_per_m);
+  add_given("kd", s.damping_N_s_per_m);
+  add_given("max_vel", s.max_correction_mps);
+  if (!soft.children.empty()) add(add(out, "contact"), std::move(soft));
+  if (s.substance) add(out, "sandlot:substance", model::text_of(*s.substance));
+  if (s.skin) {
+    Xml& skin = add(out, "sandlot:skin");
+    add(skin, "axis", direction_text(s.skin->axis));
+    add_number(skin, "ratio", s.skin->ratio);
   }
+  if (s.rolling_resistance_m != 0) add_number(out, "sandlot:rolling_resistance", s.rolling_resistance_m);
+  if (s.belt_velocity_mps != Vec3{}) add(out, "sandlot:belt_velocity", text_of(s.belt_velocity_mps));
+  if (!s.touches) add(out, "sandlot:no_contact", "true");
   if (out.children.empty()) return std::nullopt;
   return out;
 }
@@ -161,7 +176,12 @@ Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place
   else if (const auto* const can = std::get_if<Cylinder>(&shape)) round(can->radius_m, can->length_m);
   else if (const auto* const pill = std::get_if<Capsule>(&shape)) round(pill->radius_m, pill->length_m);
   else if (const auto* const cone = std::get_if<Cone>(&shape)) round(cone->radius_m, cone->length_m);
-  else if (const auto* const egg = std::get_if<Ellipsoid>(&shape)) add(form, "radii", text_of(egg->radii_m));
+  else if (const auto* const barrel = std::get_if<Barrel>(&shape)) {
+    add_number(form, "radius", barrel->radius_m);
+    add_number(form, "profile", barrel->profile_m);
+    add_number(form, "length", barrel->length_m);
+  } else if (const auto* const egg = std::get_if<Ellipsoid>(&shape))
+    add(form, "radii", text_of(egg->radii_m));
   else if (const auto* const plane = std::get_if<Plane>(&shape))
     add(form, "normal", direction_text(plane->normal));
   else if (const auto* const mesh = std::get_if<Mesh>(&shape)) {

@@ -1,11 +1,13 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
@@ -23,6 +25,7 @@ bool has_size(const Shape& shape) {
     bool operator()(const Sphere& s) const { return positive(s.radius_m); }
     bool operator()(const Cylinder& c) const { return positive(c.radius_m) && positive(c.length_m); }
     bool operator()(const Capsule& c) const { return positive(c.radius_m) && positive(c.length_m); }
+    bool operator()(const Barrel& b) const { return is_barrel(b); }
     bool operator()(const Plane& p) const { return is_finite(p.normal) && norm(p.normal) > 0; }
     bool operator()(const Cone& c) const { return positive(c.radius_m) && positive(c.length_m); }
     bool operator()(const Ellipsoid& e) const {
@@ -55,6 +58,8 @@ struct MakeGeom {
   dGeomID operator()(const Sphere& s) const { return dCreateSphere(nullptr, s.radius_m); }
   dGeomID operator()(const Cylinder& c) const { return dCreateCylinder(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Capsule& c) const { return dCreateCapsule(nullptr, c.radius_m, c.length_m); }
+  /// For its bounds alone: ODE knows no barrels, and is never asked to collide one.
+  dGeomID operator()(const Barrel& b) const { return dCreateCylinder(nullptr, b.radius_m, b.length_m); }
   dGeomID operator()(const Plane&) const { return dCreatePlane(nullptr, 0, 0, 1, 0); }
   template <class OfTriangles>
   dGeomID operator()(const OfTriangles&) const {
@@ -156,7 +161,8 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   library::prepare_thread();
   SL_TRY(check(declared));
   const model::Model& model = *declared.model;
-  SL_ASSIGN(const Lumps lumps, lump_links(model, declared.motion.has_value()));
+  SL_ASSIGN(Lumps lumps, lump_links(model, declared.motion.has_value()));
+  lock_rollers(model, lumps);
   for (const Lump& lump : lumps.lumps)
     for (const std::uint32_t l : lump.links)
       for (const model::Collision& c : model.links[l].collisions)
@@ -176,7 +182,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   instance.guided = declared.motion.has_value();
   make_bodies(instance, lumps);
   give_ids(instance);
-  make_geoms(instance, lumps);
+  make_geoms(instance);
   order_.push_back(&instance);
   place(instance, {declared.X_WM.p, normalised(declared.X_WM.q)});
   if (instance.bodies.empty()) wake_neighbours(instance);
@@ -221,7 +227,7 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
     if (!link.body) continue;
     link.X_BL = inverse(link.body->X_MB) * model.links[l].X_ML;
     if (l == lump.links.front()) link.X_BL.q = {};  // exactly: B takes its axes from this link
-    if (lump.links.size() == 1) link.X_BL.p = -model.links[l].inertial.X_LCo.p;
+    if (lump.links.size() == 1 && !lump.has_rollers) link.X_BL.p = -model.links[l].inertial.X_LCo.p;
   }
 
   instance.joints.resize(model.joints.size());
@@ -244,15 +250,19 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
         joint.child->spin_axis_B == Vec3{})
       joint.child->spin_axis_B = rotate(joint.X_child.q, joint.decl->axis_J);
   }
+  make_wheels(instance);
 }
 
-void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
+void RigidEngine::make_geoms(Instance& instance) {
   const model::Model& model = *instance.model;
   std::size_t count = 0, moving = 0;
   for (std::uint32_t l = 0; l < model.links.size(); ++l) {
     count += model.links[l].collisions.size();
-    if (!lumps.lumps[lumps.of_link[l]].fixed) moving += model.links[l].collisions.size();
+    const Body* const body = instance.links[l].body;
+    if (body && !body->carrier) moving += model.links[l].collisions.size();
   }
+  count += instance.wheels.size();
+  moving += instance.wheels.size();
   // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one by one,
   // because the box around a house says nothing about its walls.
   if (moving > 1) {
@@ -262,31 +272,47 @@ void RigidEngine::make_geoms(Instance& instance, const Lumps& lumps) {
   instance.geoms.reserve(count);
   for (std::uint32_t l = 0; l < model.links.size(); ++l) {
     for (const model::Collision& c : model.links[l].collisions) {
-      Geom& geom = instance.geoms.emplace_back();
-      geom.instance = &instance;
-      geom.body = instance.links[l].body;
-      geom.decl = &c;
-      geom.serial = next_serial_++;
-      geom.link = instance.link_ids[l];
+      Geom& geom = make_geom(instance, l, c);
       geom.number_in_link = static_cast<std::uint32_t>(&c - model.links[l].collisions.data());
-      geom.triangles = triangles_.of(c);
-      geom.size_m = bounding_radius_m(c.shape);
-      geom.ode = std::visit(MakeGeom{geom.triangles.get()}, c.shape);
-      dGeomSetData(geom.ode, &geom);
-      dGeomSetCategoryBits(geom.ode, geom.body ? moving_bit : standing_bit);
-      dGeomSetCollideBits(geom.ode, geom.body ? moving_bit | standing_bit : moving_bit);
-      geom.X_BC = instance.links[l].X_BL * c.X_LC;
-      geom.X_BC.q = normalised(geom.X_BC.q);
-      if (geom.body) {
-        const Pose& X = geom.X_BC;
-        dGeomSetBody(geom.ode, geom.body->ode);
-        dGeomSetOffsetPosition(geom.ode, X.p.x, X.p.y, X.p.z);
-        const dQuaternion q = {X.q.w, X.q.x, X.q.y, X.q.z};
-        dGeomSetOffsetQuaternion(geom.ode, q);
-      }
-      dSpaceAdd(geom.body && instance.space ? instance.space : space_, geom.ode);
     }
   }
+  for (Wheel& wheel : instance.wheels) {
+    make_geom(instance, wheel.link, wheel.solid, &wheel).number_in_link = Contact::no_shape;
+    for (Roller& roller : wheel.rollers)
+      for (Geom& geom : instance.geoms)
+        if (geom.body == roller.body) roller.geom = &geom;
+  }
+}
+
+/// @param wheel  whose outside it is
+Geom& RigidEngine::make_geom(Instance& instance, std::uint32_t link, const model::Collision& c,
+                             Wheel* wheel) {
+  Geom& geom = instance.geoms.emplace_back();
+  geom.instance = &instance;
+  geom.body = instance.links[link].body;
+  geom.decl = &c;
+  geom.wheel = wheel;
+  geom.serial = next_serial_++;
+  geom.link = instance.link_ids[link];
+  geom.triangles = triangles_.of(c);
+  geom.size_m = bounding_radius_m(c.shape);
+  geom.X_BC = instance.links[link].X_BL * c.X_LC;
+  geom.X_BC.q = normalised(geom.X_BC.q);
+  if (geom.body && geom.body->carrier) return geom;
+  geom.ode = wheel ? MakeGeom{nullptr}(wheel->probe) : std::visit(MakeGeom{geom.triangles.get()}, c.shape);
+  dGeomSetData(geom.ode, &geom);
+  const bool touches = c.surface.touches;
+  dGeomSetCategoryBits(geom.ode, !touches ? 0 : geom.body ? moving_bit : standing_bit);
+  dGeomSetCollideBits(geom.ode, !touches ? 0 : geom.body ? moving_bit | standing_bit : moving_bit);
+  if (geom.body) {
+    const Pose& X = geom.X_BC;
+    dGeomSetBody(geom.ode, geom.body->ode);
+    dGeomSetOffsetPosition(geom.ode, X.p.x, X.p.y, X.p.z);
+    const dQuaternion q = {X.q.w, X.q.x, X.q.y, X.q.z};
+    dGeomSetOffsetQuaternion(geom.ode, q);
+  }
+  dSpaceAdd(geom.body && instance.space ? instance.space : space_, geom.ode);
+  return geom;
 }
 
 void RigidEngine::give_ids(Instance& instance) {
@@ -344,7 +370,8 @@ void RigidEngine::remove(InstanceId id) {
 void RigidEngine::destroy(Instance& instance) {
   for (Joint& joint : instance.joints) destroy_joint(joint);
   // The last one first: that is where a body's list of shapes begins, which ODE searches for each.
-  for (std::size_t i = instance.geoms.size(); i-- > 0;) dGeomDestroy(instance.geoms[i].ode);
+  for (std::size_t i = instance.geoms.size(); i-- > 0;)
+    if (instance.geoms[i].ode) dGeomDestroy(instance.geoms[i].ode);
   if (instance.space) dSpaceDestroy(instance.space);
   for (Body& body : instance.bodies) dBodyDestroy(body.ode);
 }

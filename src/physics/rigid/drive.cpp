@@ -40,6 +40,7 @@ void push_drive(Instance& instance, Vec3 gravity, double h) {
   const Vec3 dv_chassis = dv_arm - dot(dv_arm, z) * z;
   const Vec3 weight = gravity - dot(gravity, z) * z;
   for (Body& body : instance.bodies) {
+    if (body.frozen) continue;
     const Vec3 dv = dv_chassis + cross(dw * z, body.p - chassis.p);
     // What turns relative to the chassis (a wheel) has its axis carried round by the last turn.
     const Vec3 spin = body.w - chassis.w;

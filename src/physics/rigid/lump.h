@@ -34,6 +34,7 @@ struct Lump {
   Symmetric3 inertia_B;        ///< [kg m^2] about the centre of mass
   double gravity_mass_kg = 0;  ///< of the links that gravity pulls at
   Vec3 gravity_point_B;        ///< where it pulls
+  bool has_rollers = false;    ///< their masses are in it: see wheels.h
 };
 
 struct Lumps {

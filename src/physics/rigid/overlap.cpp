@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/math.h"
+#include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
@@ -50,6 +51,7 @@ struct Distance {
     const double along = std::clamp(p.z, -0.5 * c.length_m, 0.5 * c.length_m);
     return std::max(norm(p - Vec3{0, 0, along}) - c.radius_m, 0.0);
   }
+  double operator()(const Barrel& b) const { return std::max(nearest(b, p).distance_m, 0.0); }
   double operator()(const Plane& plane) const {
     return std::max(dot(p, normalised(plane.normal, {0, 0, 1})), 0.0);
   }

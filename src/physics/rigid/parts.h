@@ -18,6 +18,7 @@
 namespace sandlot::rigid {
 
 struct Instance;
+struct Wheel;
 
 /// One ODE body: a link, or several that fixed joints lump together.
 struct Body {
@@ -30,6 +31,7 @@ struct Body {
   bool weighs_partly = false;  ///< some of its links have no gravity: the weight below is added by hand
   double gravity_mass_kg = 0;
   Vec3 gravity_point_B;
+  Body* carrier = nullptr;  ///< of a roller: the wheel it sits in
 
   // State. ODE holds copies: p, v, w exactly, the orientation only until its next sub-step (see step.cpp).
   Vec3 p;                   ///< [m] centre of mass in W
@@ -38,6 +40,7 @@ struct Body {
   Vec3 force_N, torque_Nm;  ///< from outside, for the next step
   double quiet_s = 0;       ///< how long it has been slow
   bool awake = true;
+  bool frozen = false;  ///< a roller that is part of its wheel: p, q, v and w follow from that
   bool enabled = true;  ///< ODE's flag, not State
   bool quick = false;   ///< its island was solved quickly last time
 
@@ -45,13 +48,15 @@ struct Body {
   std::uint32_t island = 0;  ///< node of the union-find
   Vec3 pull_mps;             ///< what gravity and forces add to v
   Pose pose() const { return {p, q}; }
+  /// ODE moves it.
+  bool active() const { return awake && !frozen; }
 };
 
 /// One collision shape.
 struct Geom {
   Instance* instance = nullptr;
-  Body* body = nullptr;  ///< null: fixed to the world
-  dGeomID ode = nullptr;
+  Body* body = nullptr;   ///< null: fixed to the world
+  dGeomID ode = nullptr;  ///< null for rollers: their wheel stands for them until contacts are sought
   const model::Collision* decl = nullptr;
   std::uint64_t serial = 0;  ///< grows with every shape made: the order of contacts
   BodyId link;
@@ -59,6 +64,7 @@ struct Geom {
   Pose X_BC;                                   ///< in W where body is null
   std::shared_ptr<const Triangles> triangles;  ///< null for shapes that ODE has itself
   double size_m = 0;                           ///< radius about C's origin; infinite for planes
+  Wheel* wheel = nullptr;                      ///< whose outside it is, as one body
 
   Pose pose() const { return body ? body->pose() * X_BC : X_BC; }
 };
@@ -103,6 +109,35 @@ struct Joint {
   bool slides() const { return is(model::JointType::prismatic); }
 };
 
+/// One roller of a wheel: see wheels.h.
+struct Roller {
+  Body* body = nullptr;
+  Joint* joint = nullptr;
+  Geom* geom = nullptr;  ///< null: it has no shape
+  std::uint32_t link = 0;
+  Pose X_BR;    ///< its body in the wheel's, at position 0
+  Vec3 axis_R;  ///< of its joint
+  Vec3 out_B;   ///< unit, from the wheel's axis
+};
+
+struct Wheel {
+  Joint* joint = nullptr;
+  Body* body = nullptr;
+  const model::RollerWheel* decl = nullptr;
+  std::uint32_t link = 0;
+  Vec3 centre_B, axis_B;
+  std::vector<Roller> rollers;
+  model::Collision solid;       ///< its outside as one body
+  Barrel probe{};               ///< a little thicker and as wide as the rollers: what touches it wakes them
+  Symmetric3 locked_B;          ///< inertia with all rollers in it
+  double spin_inertia = 0;      ///< of a roller about its own axis
+  double wake_cos, freeze_cos;  ///< of the angle between a roller and a point that is touched
+
+  bool on_rollers = false;  ///< State
+
+  std::vector<Vec3> touched_B;  ///< scratch of one sub-step: unit, across the axis
+};
+
 /// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed to.
 struct Instance {
   InstanceId id;
@@ -115,6 +150,7 @@ struct Instance {
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Geom> geoms;
+  std::vector<Wheel> wheels;
   std::vector<BodyId> link_ids;
   std::vector<JointId> joint_ids;
   std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide

@@ -4,6 +4,7 @@
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 
@@ -90,6 +91,7 @@ Pose RigidEngine::pose(InstanceId id) const {
 void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   library::prepare_thread();
   Instance& instance = alive(id);
+  if (!is_finite(X_WM)) return fail({"the new pose of '" + instance.name + "' is not finite", remedy});
   wake_neighbours(instance);
   const Pose move = Pose{X_WM.p, normalised(X_WM.q)} * inverse(pose(id));
   std::vector<Pose> moved;
@@ -98,6 +100,7 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   instance.destination.reset();
   const Pose X_WM_new = instance.bodies.empty() ? X_WM : move * instance.X_WM;
   place(instance, {X_WM_new.p, normalised(X_WM_new.q)});
+  for (Wheel& wheel : instance.wheels) stop_frozen(wheel);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Body& body = instance.bodies[i];
     body.p = moved[i].p;
@@ -105,18 +108,19 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
     body.force_N = body.torque_Nm = {};
     put(body);
   }
+  for (const Wheel& wheel : instance.wheels) follow(wheel);
   show(instance);
   wake_instance(instance);
   wake_neighbours(instance);
-  finite_ = finite_ && is_finite(X_WM);
 }
 
 void RigidEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   Instance& instance = alive(id);
   SL_CHECK_MSG(instance.guided, "guide() needs an instance with a motion");
+  if (!is_finite(X_WM) || !is_finite(V_WM.linear) || !is_finite(V_WM.angular))
+    return fail({"the motion of '" + instance.name + "' is no longer finite", remedy});
   instance.destination = Pose{X_WM.p, normalised(X_WM.q)};
   instance.V_WM = V_WM;
-  finite_ = finite_ && is_finite(X_WM) && is_finite(V_WM.linear) && is_finite(V_WM.angular);
 }
 
 void RigidEngine::become_robot(InstanceId id) {
@@ -146,11 +150,12 @@ void RigidEngine::wake_neighbours(const Instance& instance) {
   for (Instance* other : order_) {
     if (other == &instance) continue;
     for (Geom& sleeper : other->geoms) {
-      if (!sleeper.body || sleeper.body->awake) continue;
+      if (!sleeper.ode || !sleeper.body || sleeper.body->awake) continue;
       dReal theirs[6], mine[6];
       dGeomGetAABB(sleeper.ode, theirs);
       bool touch = false;
       for (const Geom& geom : instance.geoms) {
+        if (!geom.ode) continue;
         dGeomGetAABB(geom.ode, mine);
         bool overlap = true;
         for (int axis = 0; axis < 6; axis += 2)

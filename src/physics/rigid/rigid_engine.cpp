@@ -8,6 +8,7 @@
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/overlap.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 
@@ -20,7 +21,7 @@ RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gra
   dWorldSetGravity(world_, gravity_.x, gravity_.y, gravity_.z);
   dWorldSetERP(world_, spec_.erp);
   dWorldSetCFM(world_, spec_.cfm);
-  dWorldSetContactMaxCorrectingVel(world_, spec_.contact_correction_mps);
+  dWorldSetContactMaxCorrectingVel(world_, dInfinity);  // see attach_contacts()
   dWorldSetContactSurfaceLayer(world_, 0);
   dWorldSetQuickStepNumIterations(world_, spec_.quick_iterations);
   dWorldSetAutoDisableFlag(world_, 0);  // sleeping is ours: ODE's counters cannot be saved
@@ -51,7 +52,8 @@ Capabilities RigidEngine::capabilities() const {
           .ideal_drives = true,
           .rays = false,
           .contact_forces = true,
-          .joint_loads = true};
+          .joint_loads = true,
+          .rollers = true};
 }
 
 BodyName RigidEngine::name(BodyId id) const {
@@ -70,10 +72,11 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
     Body* const body = slot.instance->links[slot.link].body;
     if (!body) continue;
     wake(*body);
-    if (!is_finite(wrench.force_N) || !is_finite(wrench.torque_Nm)) {
-      // Kept away from ODE; the body's state says who it was.
-      finite_ = false;
-      states_[wrench.body.index].V_WB.linear = wrench.force_N + wrench.torque_Nm;
+    if (!is_finite(wrench.force_N) || !is_finite(wrench.torque_Nm)) {  // kept away from ODE
+      fail({"the force on '" + slot.instance->name + "/" + slot.instance->model->links[slot.link].name +
+                "' is no longer finite",
+            remedy});
+      return;
     }
     // At the link's own centre of mass, which is not the body's where fixed joints lump several links.
     const Vec3 com_L = slot.instance->model->links[slot.link].inertial.X_LCo.p;
@@ -97,6 +100,26 @@ void RigidEngine::set_targets(std::span<const JointTarget> targets) {
   }
 }
 
+void RigidEngine::set_wheels(std::span<const WheelTarget> targets) {
+  for (const WheelTarget& target : targets) {
+    SL_CHECK(target.wheel.index < joint_slots_.size());
+    const JointSlot& slot = joint_slots_[target.wheel.index];
+    SL_CHECK_MSG(slot.instance && slot.generation == target.wheel.generation, "no such joint");
+    for (Wheel& wheel : slot.instance->wheels) {
+      if (wheel.joint != &slot.instance->joints[slot.joint] || wheel.on_rollers == target.rollers) continue;
+      wheel.on_rollers = target.rollers;
+      if (!target.rollers) {
+        wheel.touched_B.clear();
+        choose_awake(wheel);
+        stop_frozen(wheel);
+        follow(wheel);
+        show(*slot.instance);
+      }
+      wake_instance(*slot.instance);
+    }
+  }
+}
+
 void RigidEngine::set_drive_targets(std::span<const DriveTarget> targets) {
   for (const DriveTarget& target : targets) {
     SL_CHECK(target.base.index < link_slots_.size());
@@ -114,33 +137,16 @@ void RigidEngine::set_gyroscopic(Instance& instance) {
   for (Body& body : instance.bodies) dBodySetGyroscopicMode(body.ode, !instance.drive.active);
 }
 
-Status RigidEngine::check_finite() const {
-  if (finite_) return {};
-  for (const Instance* instance : order_)
-    for (std::size_t l = 0; l < instance->links.size(); ++l) {
-      const BodyState& s = states_[instance->link_ids[l].index];
-      if (is_finite(s.X_WB) && is_finite(s.V_WB.linear) && is_finite(s.V_WB.angular) &&
-          norm(s.V_WB.linear) + norm(s.V_WB.angular) < 1e9 && norm(s.X_WB.p) < 1e12)
-        continue;
-      return Error{
-          "the state of '" + instance->name + "/" + instance->model->links[l].name + "' is no longer finite",
-          "a smaller time step, or less extreme masses, forces and speeds"};
-    }
-  if (fault_.empty()) return Error{"the state of a body that was removed was no longer finite"};
-  // ODE stopped before there were numbers to look at: the fastest body is the likeliest cause.
-  std::string fastest;
-  double speed = -1;
-  for (const Instance* instance : order_)
-    for (std::size_t l = 0; l < instance->links.size(); ++l) {
-      const BodyState& s = states_[instance->link_ids[l].index];
-      const double mine = norm(s.V_WB.linear) + norm(s.V_WB.angular);
-      if (mine <= speed) continue;
-      speed = mine;
-      fastest = instance->name + "/" + instance->model->links[l].name;
-    }
-  return Error{"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" +
-                   fastest + "'",
-               "a smaller time step, or less extreme masses, forces and speeds"};
+Status RigidEngine::check_finite() const { return failure_ ? Status(*failure_) : Status(); }
+
+/// The run is over. What was to act in this sub-step is forgotten, so that the State can be saved and looked at.
+void RigidEngine::fail(Error error) {
+  if (failure_) return;
+  failure_ = std::move(error);
+  for (Instance* instance : order_) {
+    instance->destination.reset();
+    for (Body& b : instance->bodies) b.force_N = b.torque_Nm = {};
+  }
 }
 
 void RigidEngine::overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,

@@ -5,10 +5,11 @@
 /// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
 ///          exact rotation of the new angular velocity, spin about the own joint axis first.
 /// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h; meshes,
-///          terrain, cones and ellipsoids: see triangles.h.
+///          terrain, cones and ellipsoids: see triangles.h; barrels: see barrel_contacts.h.
+/// Wheels   with rollers: see wheels.h.
 /// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
 ///          sub-step builds what ODE needs from that State, so that a restored run continues with the same bits.
-/// Limits   no rollers; planes and terrain are static; no continuous collision: a body faster than its
+/// Limits   planes and terrain are static; no continuous collision: a body faster than its
 ///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
 /// Cost     direct solver cubic, quick solver linear in the contacts of an island.
 /// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() tells.
@@ -16,15 +17,21 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "physics/engine.h"
+#include "physics/pair_surface.h"
 #include "physics/rigid/parts.h"
 #include "physics/rigid/spec.h"
 
 namespace sandlot::rigid {
 
 extern const EngineKind engine;
+
+/// What to do about a run that has blown up.
+inline constexpr const char* remedy = "a smaller time step, or less extreme masses, forces and speeds";
 
 class RigidEngine final : public Engine {
  public:
@@ -50,6 +57,9 @@ class RigidEngine final : public Engine {
   void apply(std::span<const Wrench> wrenches) override;
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
+  void set_zones(std::span<const model::SurfaceZone> zones) override { zones_ = ZoneMap(zones); }
+  void set_contact_rule(ContactRule rule) override { rule_ = std::move(rule); }
+  void set_wheels(std::span<const WheelTarget> targets) override;
   void watch(const Watch& watch) override;
   std::span<const JointLoad> joint_loads() const override { return loads_; }
   void step(double h_s, std::uint64_t stream_key) override;
@@ -89,7 +99,9 @@ class RigidEngine final : public Engine {
   Instance& alive(InstanceId id) const;
   Status check(const model::Instance& instance) const;
   void make_bodies(Instance& instance, const Lumps& lumps);
-  void make_geoms(Instance& instance, const Lumps& lumps);
+  void make_geoms(Instance& instance);
+  Geom& make_geom(Instance& instance, std::uint32_t link, const model::Collision& collision,
+                  Wheel* wheel = nullptr);
   void give_ids(Instance& instance);
   void destroy(Instance& instance);
 
@@ -111,7 +123,12 @@ class RigidEngine final : public Engine {
   void collide_pair(const Pair& pair);
   int collide_triangles(const Pair& pair, Hit* found);
   int collide_meshes(const Pair& pair);
-  void collide_self(Instance& instance);
+  PairSurface surfaces_at(const Hit& hit) const;
+  void ask_surfaces();
+  void direct_contact(Hit& hit, const PairSurface& pair);
+  int collide_barrels(const Pair& pair, Hit* found);
+  void sense_wheels(const Pair& pair);
+  void collide_rollers(const Pair& pair);
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
 
@@ -135,6 +152,9 @@ class RigidEngine final : public Engine {
   template <class Choose>
   void enable(Choose&& choose);
   void solve_again(double h_s);
+  bool nobody_exploded();
+  std::string fastest_body() const;
+  void fail(Error error);
   void advance(double h_s);
   void send_to_sleep(double h_s);
 
@@ -156,13 +176,16 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> free_instances_, free_links_, free_joints_;
   std::uint64_t next_serial_ = 1;
 
+  ZoneMap zones_;
+  ContactRule rule_;
   TriangleStore triangles_;
   std::vector<BodyState> states_;
   std::vector<JointState> joint_states_;
   std::vector<Contact> contacts_;
   std::vector<JointLoad> loads_;
   EngineCounters counters_;
-  bool finite_ = true;
+  std::optional<Error>
+      failure_;        ///< who broke off the run; the State is that before the sub-step in which it did
   std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
 
   // Scratch of one sub-step; kept for its capacity.
@@ -171,9 +194,11 @@ class RigidEngine final : public Engine {
   dGeomID ray_ = nullptr;             ///< in no space; for pairs of meshes
   std::vector<Hit> hit_buffer_;       ///< never shrinks: clearing 300 bytes per possible point would show
   std::size_t hit_count_ = 0;
+  std::vector<PairSurface> surfaces_;  ///< of each hit, where zones or a rule make them differ
   std::vector<std::uint32_t> island_parent_;
   std::vector<Island> islands_;
   bool woke_ = false;
+  bool unordered_ = false;  ///< hits are not in the order of their shapes yet
   // What is watched in the next sub-step: see loads.cpp.
   struct Push {
     const Instance* instance;

@@ -4,16 +4,20 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/barrel.h"
+
 namespace sandlot::rigid {
 namespace {
 
-/// A cylinder or a capsule in the world.
+/// A cylinder, a capsule or a barrel in the world.
 struct Round {
   Vec3 p, a;    ///< centre, unit axis
   double r, h;  ///< radius, half of the length
   bool capsule;
+  const Barrel* barrel = nullptr;
 
   double support(Vec3 n) const {
+    if (barrel) return reach_m(*barrel, std::clamp(dot(n, a), -1.0, 1.0));
     const double c = std::abs(dot(n, a));
     return h * c + (capsule ? r : r * std::sqrt(std::max(0.0, 1 - c * c)));
   }
@@ -23,6 +27,8 @@ Round round_of(const Shape& shape, const Pose& X) {
   const Vec3 axis = rotate(X.q, {0, 0, 1});
   if (const auto* c = std::get_if<Cylinder>(&shape))
     return {X.p, axis, c->radius_m, 0.5 * c->length_m, false};
+  if (const auto* b = std::get_if<Barrel>(&shape))
+    return {X.p, axis, b->radius_m, 0.5 * b->length_m, false, b};
   const auto& c = std::get<Capsule>(shape);
   return {X.p, axis, c.radius_m, 0.5 * c.length_m, true};
 }
@@ -108,7 +114,11 @@ Face face(const Round& x, Vec3 n) {
   constexpr double flat = 0.02;
   const double c = dot(n, x.a), s = std::sqrt(std::max(0.0, 1 - c * c));
   const Vec3 end = x.p + (c < 0 ? -x.h : x.h) * x.a;
-  if (!x.capsule && s < flat) return {Face::disc, end, x.a, x.r};
+  if (!x.capsule && s < flat) return {Face::disc, end, x.a, x.barrel ? end_radius_m(*x.barrel) : x.r};
+  if (x.barrel) {
+    const Vec3 p = farthest(*x.barrel, {s, 0, c});
+    return {Face::point, x.p + p.x / s * (n - c * x.a) + p.z * x.a, {}, 0};
+  }
   const Vec3 out = x.capsule ? x.r * n : x.r / s * (n - c * x.a);
   if (std::abs(c) < flat) return {Face::line, x.p + out, x.a, x.h};
   return {Face::point, end + out, {}, 0};
@@ -198,6 +208,8 @@ struct Manifold {
 bool is_round_pair(const Shape& a, const Shape& b) {
   const bool cylinder_a = std::holds_alternative<Cylinder>(a),
              cylinder_b = std::holds_alternative<Cylinder>(b);
+  const bool barrel_a = std::holds_alternative<Barrel>(a), barrel_b = std::holds_alternative<Barrel>(b);
+  if ((barrel_a && (barrel_b || cylinder_b)) || (barrel_b && cylinder_a)) return true;
   return (cylinder_a && (cylinder_b || std::holds_alternative<Capsule>(b))) ||
          (cylinder_b && std::holds_alternative<Capsule>(a));
 }

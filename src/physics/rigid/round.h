@@ -1,9 +1,9 @@
 #pragma once
-/// Contacts of cylinders with cylinders and capsules, which ODE leaves out.
+/// Contacts of cylinders with cylinders, capsules and barrels, and of barrels with each other, which ODE leaves out.
 ///
 /// Method   penetration is the least overlap over all directions n, from A to B:
 ///          f(n) = s_A(n) + s_B(-n) - n . (p_B - p_A), with s the support functions h |n.a| + r sqrt(1 - (n.a)^2) of a
-///          cylinder and h |n.a| + r of a capsule. Its minima lie on kinks (n along an axis, n across an axis) or, where
+///          cylinder, h |n.a| + r of a capsule, and reach_m() of a barrel. Its minima lie on kinks (n along an axis, n across an axis) or, where
 ///          two rims meet, in between; the kinks are tried in closed form, a pattern search does the rest.
 ///          Contact points come from the parts that face each other: disc, line or point.
 /// Output   at most 4 points. ODE's convention: the normal points into A.

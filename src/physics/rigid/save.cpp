@@ -2,12 +2,13 @@
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
 
 // Flags of a body.
-constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4;
+constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4, frozen_flag = 8;
 
 bool in_range(Vec3 v) { return dot(v, v) < 1e24; }  // false for NaN too
 bool in_range(double x) { return std::abs(x) < 1e300; }
@@ -73,7 +74,8 @@ void RigidEngine::save(InstanceId id, ByteWriter& w) const {
   for (const Body& b : instance.bodies) {
     const bool pushed = b.force_N != Vec3{} || b.torque_Nm != Vec3{};
     write(w, static_cast<std::uint8_t>((b.awake ? awake_flag : 0) | (b.quick ? quick_flag : 0) |
-                                       (pushed ? pushed_flag : 0)));
+                                       (pushed ? pushed_flag : 0) | (b.frozen ? frozen_flag : 0)));
+    if (b.frozen) continue;
     write(w, b.p);
     write(w, b.q);
     write(w, b.v);
@@ -83,8 +85,10 @@ void RigidEngine::save(InstanceId id, ByteWriter& w) const {
     write(w, b.force_N);
     write(w, b.torque_Nm);
   }
+  for (const Wheel& wheel : instance.wheels) write(w, static_cast<std::uint8_t>(wheel.on_rollers));
   for (const Joint& j : instance.joints) {
     write(w, j.position);
+    if (j.child && j.child->frozen) write(w, j.velocity);
     write(w, j.effort);
     save_target(w, j.target);
   }
@@ -130,6 +134,12 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     read(r, flags);
     b.awake = flags & awake_flag;
     b.quick = flags & quick_flag;
+    b.frozen = flags & frozen_flag;
+    if (b.frozen && !b.carrier) return false;
+    if (b.frozen) {
+      b.force_N = b.torque_Nm = {};
+      continue;
+    }
     read(r, b.p);
     read(r, b.q);
     read(r, b.v);
@@ -148,12 +158,24 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     dBodySetForce(b.ode, 0, 0, 0);
     dBodySetTorque(b.ode, 0, 0, 0);
   }
+  for (Wheel& wheel : instance.wheels) {
+    std::uint8_t on_rollers = 0;
+    read(r, on_rollers);
+    wheel.on_rollers = on_rollers != 0;
+  }
   for (Joint& j : instance.joints) {
+    const bool frozen = j.child && j.child->frozen;
     read(r, j.position);
+    if (frozen) read(r, j.velocity);
+    if (!in_range(j.velocity)) return false;
     read(r, j.effort);
     if (!load_target(r, j.target) || !in_range(j.position) || !in_range(j.effort)) return false;
     set_motor(j);
-    measure_velocity(j, instance.X_WM);
+    if (!frozen) measure_velocity(j, instance.X_WM);
+  }
+  for (Wheel& wheel : instance.wheels) {
+    settle(wheel);
+    follow(wheel);
   }
   show(instance);
   return r.ok();

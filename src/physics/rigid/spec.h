@@ -32,6 +32,7 @@ struct Spec {
   double sleep_speed_mps = 0.01;
   double sleep_spin_radps = 0.05;
   double sleep_time_s = 0.5;
+  double max_speed_mps = 1e4, max_spin_radps = 1e5;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"solver", "", "Solver of an island of touching bodies."}, s.solver);
@@ -50,6 +51,9 @@ struct Spec {
           s.sleep_spin_radps);
     visit(Field{"sleep_time", "s", "How long an island must lie still before it sleeps.", 0, 1e6},
           s.sleep_time_s);
+    visit(Field{"max_speed", "m/s", "A faster body has exploded: the run ends and names it.", 1e-3, 1e9},
+          s.max_speed_mps);
+    visit(Field{"max_spin", "rad/s", "A body that turns faster has exploded.", 1e-3, 1e9}, s.max_spin_radps);
   }
 };
 

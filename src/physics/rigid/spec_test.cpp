@@ -44,7 +44,9 @@ TEST(RigidSpec, EverySettingChangesTheRun) {
                                                                {"sleeping", {"false"}},
                                                                {"sleep_speed", {"1e-9", "0.3"}},
                                                                {"sleep_spin", {"0.001"}},
-                                                               {"sleep_time", {"0.1", "10"}}};
+                                                               {"sleep_time", {"0.1", "10"}},
+                                                               {"max_speed", {"0.01"}},
+                                                               {"max_spin", {"0.01"}}};
   const Settings base{{"direct_limit", "16"}};
   const auto usual = final_bytes(base);
   EXPECT_EQ(usual, final_bytes(base));

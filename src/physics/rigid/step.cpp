@@ -8,13 +8,16 @@
 ///   5 advance     State read back; orientation integrated by us (exactly, and with base/math.h)
 ///   6 sleep
 #include <algorithm>
+#include <limits>
 
 #include "base/check.h"
 #include "base/math.h"
+#include "base/text.h"
 #include "physics/rigid/drive.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
+#include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
@@ -59,7 +62,7 @@ inline Quat turned(Quat q, Vec3 w, Vec3 spin_axis_B, double h) {
 void RigidEngine::step(double h, std::uint64_t stream_key) {
   SL_CHECK(h > 0);
   library::prepare_thread();
-  if (!finite_) return;  // ODE must not see NaN; check_finite() reports it
+  if (failure_) return;  // ODE must not see NaN; check_finite() reports it
   const library::Counts before = library::counts();
   try {
     push_forces(h);
@@ -71,10 +74,14 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
     if (!watched_joints_.empty()) measure_loads(h);
     forget_watch();
   } catch (const library::Fault& fault) {
-    finite_ = false;
     fault_ = fault.message;
+    // ODE stopped before there were numbers to look at: the fastest body is the likeliest cause.
+    fail({"the forces in this step are no longer finite (ODE: " + fault_ + "); the fastest body was '" +
+              fastest_body() + "'",
+          remedy});
     return;
   }
+  if (!nobody_exploded()) return;
   advance(h);
   if (spec_.sleeping) send_to_sleep(h);
   dJointGroupEmpty(contact_joints_);
@@ -87,18 +94,18 @@ void RigidEngine::push_forces(double h) {
     if (instance->guided && !instance->destination) instance->V_WM = {};
     if (instance->bodies.empty()) continue;
     for (Joint& joint : instance->joints) {
-      prepare_joint(joint, spec_.erp, h);
       const Body* const mover = joint.child ? joint.child : joint.parent;
+      if (!mover || !mover->frozen) prepare_joint(joint, spec_.erp, h);
       if (joint.main && joint.is(model::JointType::screw) && mover->awake)
         couple_thread(world_, contact_joints_, joint, spec_.erp, h);
       if (joint.main && joint.target.friction > 0 && !joint.leader && !joint.is(model::JointType::ball) &&
-          joint.target.mode == JointTarget::Mode::effort && mover->awake)
+          joint.target.mode == JointTarget::Mode::effort && mover->active())
         rub(world_, contact_joints_, joint);
       if (joint.told && joint.main) tell(joint);
     }
     if (instance->drive.active) drive(*instance, h);
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       put_orientation(b);
       if (b.weighs_partly) {
         const Vec3 weight = b.gravity_mass_kg * gravity_;
@@ -137,14 +144,14 @@ void RigidEngine::find_islands() {
   island_parent_.clear();
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.island = static_cast<std::uint32_t>(island_parent_.size());
       island_parent_.push_back(b.island);
     }
   counters_.awake_bodies = island_parent_.size();
   for (Instance* instance : order_)
     for (const Joint& joint : instance->joints)
-      if (joint.main && joint.child && joint.child->awake) unite(joint.child, joint.parent);
+      if (joint.main && joint.child && joint.child->active()) unite(joint.child, joint.parent);
   for (const Hit& hit : hits()) unite(hit.a->body, hit.b->body);
 
   islands_.assign(island_parent_.size(), {});
@@ -153,7 +160,7 @@ void RigidEngine::find_islands() {
     bool idle = !instance->is_robot && !instance->drive.active;
     for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
     for (const Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       Island& island = islands_[root(b.island)];
       island.was_quick = island.was_quick || b.quick;
       island.may_sleep = island.may_sleep && idle;
@@ -174,7 +181,7 @@ void RigidEngine::solve(double h, std::uint64_t stream_key) {
   bool any_direct = false, any_quick = false;
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.quick = islands_[root(b.island)].quick;
       (b.quick ? any_quick : any_direct) = true;
     }
@@ -194,7 +201,7 @@ template <class Choose>
 void RigidEngine::enable(Choose&& choose) {
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      const bool wanted = b.awake && choose(b);
+      const bool wanted = b.active() && choose(b);
       if (wanted == b.enabled) continue;
       b.enabled = wanted;
       if (wanted) dBodyEnable(b.ode);
@@ -208,7 +215,7 @@ void RigidEngine::solve_again(double h) {
   const auto reset = [&](std::uint32_t island) {
     for (Instance* instance : order_)
       for (Body& b : instance->bodies) {
-        if (!b.awake || root(b.island) != island) continue;
+        if (!b.active() || root(b.island) != island) continue;
         put(b);
         dBodySetForce(b.ode, b.force_N.x, b.force_N.y, b.force_N.z);
         dBodySetTorque(b.ode, b.torque_Nm.x, b.torque_Nm.y, b.torque_Nm.z);
@@ -226,6 +233,55 @@ void RigidEngine::solve_again(double h) {
   }
 }
 
+std::string RigidEngine::fastest_body() const {
+  std::string fastest;
+  double speed = -1;
+  for (const Instance* instance : order_)
+    for (std::size_t l = 0; l < instance->links.size(); ++l) {
+      const BodyState& s = states_[instance->link_ids[l].index];
+      const double mine = norm(s.V_WB.linear) + norm(s.V_WB.angular);
+      if (mine <= speed) continue;
+      speed = mine;
+      fastest = instance->name + "/" + instance->model->links[l].name;
+    }
+  return fastest;
+}
+
+/// Looks at what ODE has computed before anything takes it over: a body that has no finite state any more, or is faster
+/// than any should be, ends the run with the State of before. The worst is named.
+bool RigidEngine::nobody_exploded() {
+  const Body* worst = nullptr;
+  double worst_excess = 1, speed = 0, spin = 0;
+  for (const Instance* instance : order_)
+    for (const Body& b : instance->bodies) {
+      if (!b.awake) continue;
+      const Vec3 p = vec(dBodyGetPosition(b.ode)), v = vec(dBodyGetLinearVel(b.ode)),
+                 w = vec(dBodyGetAngularVel(b.ode));
+      double excess2 = std::max(dot(v, v) / (spec_.max_speed_mps * spec_.max_speed_mps),
+                                dot(w, w) / (spec_.max_spin_radps * spec_.max_spin_radps));
+      const bool there = dot(p, p) < 1e24 && dot(v, v) < 1e300 && dot(w, w) < 1e300;  // false for NaN
+      if (!there) excess2 = std::numeric_limits<double>::infinity();
+      if (!(excess2 > worst_excess)) continue;
+      worst = &b, worst_excess = excess2, speed = norm(v), spin = norm(w);
+    }
+  if (!worst) return true;
+  const Instance& instance = *worst->instance;
+  std::size_t link = 0;
+  while (instance.links[link].body != worst) ++link;
+  const std::string name = "'" + instance.name + "/" + instance.model->links[link].name + "'";
+  if (worst_excess == std::numeric_limits<double>::infinity())
+    return fail({"the state of " + name + " is no longer finite", remedy}), false;
+  const bool runs = speed > spec_.max_speed_mps;
+  fail({name + " has exploded: it " +
+            (runs ? "moves at " + number_text(std::round(speed)) + " m/s, above max_speed, " +
+                        number_text(spec_.max_speed_mps) + " m/s"
+                  : "turns at " + number_text(std::round(spin)) + " rad/s, above max_spin, " +
+                        number_text(spec_.max_spin_radps) + " rad/s"),
+        std::string(remedy) + "; if it is meant to be that fast, raise physics." +
+            (runs ? "max_speed" : "max_spin")});
+  return false;
+}
+
 void RigidEngine::advance(double h) {
   for (Instance* instance : order_) {
     if (instance->destination) {
@@ -236,20 +292,21 @@ void RigidEngine::advance(double h) {
     if (instance->guided) show(*instance);
     if (instance->bodies.empty()) continue;
     bool any_awake = false;
-    for (const Body& b : instance->bodies) any_awake = any_awake || b.awake;
+    for (const Body& b : instance->bodies) any_awake = any_awake || b.active();
     if (!any_awake) continue;
-    for (Joint& joint : instance->joints) measure_effort(joint);
+    for (Joint& joint : instance->joints)
+      if (!joint.child || !joint.child->frozen) measure_effort(joint);
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.p = vec(dBodyGetPosition(b.ode));
       b.v = vec(dBodyGetLinearVel(b.ode));
       b.w = vec(dBodyGetAngularVel(b.ode));
       b.q = turned(b.q, b.w, b.spin_axis_B, h);
       b.force_N = b.torque_Nm = {};
-      // A velocity above 1e9 m/s, or a place beyond 1e12 m, is a run that has blown up; NaN fails every comparison.
-      finite_ = finite_ && dot(b.v, b.v) + dot(b.w, b.w) < 1e18 && dot(b.p, b.p) < 1e24;
     }
-    for (Joint& joint : instance->joints) measure_position(joint, h, instance->X_WM);
+    for (Joint& joint : instance->joints)
+      if (!joint.child || !joint.child->frozen) measure_position(joint, h, instance->X_WM);
+    for (Wheel& wheel : instance->wheels) roll_on(wheel, h);
     show(*instance);
   }
 }
@@ -259,7 +316,7 @@ void RigidEngine::send_to_sleep(double h) {
   const double spin2 = spec_.sleep_spin_radps * spec_.sleep_spin_radps;
   for (Instance* instance : order_)
     for (Body& b : instance->bodies) {
-      if (!b.awake) continue;
+      if (!b.active()) continue;
       b.quiet_s = dot(b.v, b.v) < speed2 && dot(b.w, b.w) < spin2 ? b.quiet_s + h : 0;
       Island& island = islands_[root(b.island)];
       island.may_sleep = island.may_sleep && b.quiet_s > spec_.sleep_time_s;
@@ -267,14 +324,17 @@ void RigidEngine::send_to_sleep(double h) {
   for (Instance* instance : order_) {
     bool changed = false;
     for (Body& b : instance->bodies) {
-      if (!b.awake || !islands_[root(b.island)].may_sleep) continue;
+      if (!b.active() || !islands_[root(b.island)].may_sleep) continue;
       b.awake = b.quick = false;
       b.v = b.w = {};
       b.quiet_s = 0;
       put(b);
       changed = true;
     }
-    if (changed) show(*instance);
+    if (!changed) continue;
+    for (Wheel& wheel : instance->wheels)
+      if (!wheel.body->awake) stop_frozen(wheel), follow(wheel);
+    show(*instance);
   }
 }
 

@@ -5,50 +5,42 @@
 namespace sandlot::rigid {
 namespace {
 
-TEST(Surface, FrictionIsTheSmallerBounceTheLarger) {
-  model::Surface a, b;
-  a.mu = 0.3, b.mu = 0.7;
-  a.mu2 = 0.1;  // means nothing without a direction
-  a.restitution = 0.2, b.restitution = 0.6;
-  a.restitution_threshold_mps = 1, b.restitution_threshold_mps = 2;
-  for (const auto& pair : {combine(a, b, 1e-6, false), combine(b, a, 1e-6, false)}) {
-    EXPECT_DOUBLE_EQ(pair.parameters.mu, 0.3);
-    EXPECT_DOUBLE_EQ(pair.parameters.mu2, 0.3);
-    EXPECT_EQ(pair.directed, nullptr);
-    EXPECT_TRUE(pair.parameters.mode & dContactBounce);
-    EXPECT_DOUBLE_EQ(pair.parameters.bounce, 0.6);
-    EXPECT_DOUBLE_EQ(pair.parameters.bounce_vel, 2);
-    EXPECT_FALSE(pair.parameters.mode & (dContactSlip1 | dContactSlip2 | dContactSoftERP | dContactSoftCFM));
-  }
-  EXPECT_EQ(combine(a, b, 1e-6, true).parameters.mu, 0);
-  EXPECT_EQ(combine(a, b, 1e-6, true).parameters.mu2, 0);
-}
-
-TEST(Surface, ADirectionBelongsToOneOfThem) {
-  model::Surface wheel, floor;
-  wheel.mu = 1, wheel.mu2 = 0.2, wheel.fdir1 = {1, 0, 0};
-  floor.mu = 0.5;
-  const SurfacePair pair = combine(floor, wheel, 1e-6, false);
-  EXPECT_EQ(pair.directed, &wheel);
-  EXPECT_DOUBLE_EQ(pair.parameters.mu, 0.5);
-  EXPECT_DOUBLE_EQ(pair.parameters.mu2, 0.2);
-  EXPECT_TRUE(pair.parameters.mode & dContactMu2);
-  model::Surface ice = wheel;
-  ice.mu = 0.05;
-  EXPECT_EQ(combine(wheel, ice, 1e-6, false).directed, &ice);
-  EXPECT_EQ(combine(ice, wheel, 1e-6, false).directed, &ice);
-}
-
-TEST(Surface, CompliancesAdd) {
-  model::Surface a, b;
-  a.slip1 = 0.01, b.slip1 = 0.02;
-  a.soft_cfm = 1e-3, b.soft_cfm = 2e-3;
-  a.soft_erp = 0.5, b.soft_erp = 0.1;
-  const dSurfaceParameters p = combine(a, b, 1e-6, false).parameters;
+TEST(Surface, ModesAreSetForWhatThePairHas) {
+  PairSurface pair;
+  pair.mu = pair.mu2 = 0.3;
+  dSurfaceParameters p = parameters_of(pair, 0.01, 1e-6, false);
+  EXPECT_EQ(p.mode, dContactFDir1 | dContactApprox1);
+  EXPECT_EQ(p.mu, 0.3);
+  pair.restitution = 0.6, pair.restitution_threshold_mps = 2;
+  pair.slip1 = 0.03, pair.slip2 = 0.04;
+  pair.mu2 = 0.2;
+  pair.soft_erp = 0.1, pair.soft_cfm = 3e-3;
+  pair.rolling_resistance_m = 0.01;
+  p = parameters_of(pair, 0.01, 1e-6, false);
+  EXPECT_EQ(p.mode, dContactFDir1 | dContactApprox1 | dContactMu2 | dContactBounce | dContactSlip1 |
+                        dContactSlip2 | dContactSoftERP | dContactSoftCFM | dContactRolling);
+  EXPECT_EQ(p.mu2, 0.2);
+  EXPECT_EQ(p.bounce, 0.6);
+  EXPECT_EQ(p.bounce_vel, 2);
   EXPECT_DOUBLE_EQ(p.slip1, 0.030001);
-  EXPECT_DOUBLE_EQ(p.slip2, 0.030001);
-  EXPECT_DOUBLE_EQ(p.soft_cfm, 3e-3);
-  EXPECT_DOUBLE_EQ(p.soft_erp, 0.1);
+  EXPECT_DOUBLE_EQ(p.slip2, 0.040001);
+  EXPECT_EQ(p.soft_cfm, 3e-3);
+  EXPECT_EQ(p.soft_erp, 0.1);
+  EXPECT_EQ(p.rho, 0.01);
+  EXPECT_EQ(p.rho2, 0.01);
+  p = parameters_of(pair, 0.01, 1e-6, true);
+  EXPECT_EQ(p.mu, 0);
+  EXPECT_EQ(p.mu2, 0);
+  EXPECT_FALSE(p.mode & dContactRolling);
+}
+
+TEST(Surface, ASpringWithADamperIsErpAndCfmOfTheStep) {
+  PairSurface pair;
+  pair.stiffness_N_per_m = 2000, pair.damping_N_s_per_m = 30;
+  pair.soft_erp = 0.9, pair.soft_cfm = 1;  // do not count beside a spring
+  const dSurfaceParameters p = parameters_of(pair, 0.01, 1e-6, false);
+  EXPECT_DOUBLE_EQ(p.soft_erp, 20.0 / 50);
+  EXPECT_DOUBLE_EQ(p.soft_cfm, 1.0 / 50);
 }
 
 TEST(Surface, TheDirectionLiesAcrossTheNormal) {

@@ -57,6 +57,12 @@ Triangles::~Triangles() {
   if (heightfield_) dGeomHeightfieldDataDestroy(heightfield_);
 }
 
+const TriangleTree& Triangles::tree() const {
+  SL_CHECK(mesh_);
+  if (!tree_) tree_ = std::make_unique<const TriangleTree>(*mesh_);
+  return *tree_;
+}
+
 dGeomID Triangles::make_geom() const {
   if (heightfield_) return dCreateHeightfield(nullptr, heightfield_, 1);
   return dCreateTriMesh(nullptr, triangles_, nullptr, nullptr, nullptr);

@@ -21,6 +21,7 @@
 #include "geometry/mesh.h"
 #include "model/model.h"
 #include "physics/rigid/samples.h"
+#include "physics/rigid/triangle_tree.h"
 
 namespace sandlot::rigid {
 
@@ -39,6 +40,8 @@ class Triangles {
   Quat q_CO() const { return q_CO_; }
   /// Of all but terrain.
   std::span<const Sample> samples() const { return samples_; }
+  /// Of all but terrain; made when it is asked for first.
+  const TriangleTree& tree() const;
 
  private:
   std::shared_ptr<const TriangleMesh> mesh_;
@@ -47,6 +50,7 @@ class Triangles {
   dTriMeshDataID triangles_ = nullptr;
   dHeightfieldDataID heightfield_ = nullptr;
   Quat q_CO_;
+  mutable std::unique_ptr<const TriangleTree> tree_;
 };
 
 /// The triangles of one engine's shapes, kept while any shape uses them.

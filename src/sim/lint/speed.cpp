@@ -29,6 +29,8 @@ std::optional<double> thickness_m(const Shape& shape) {
   if (const auto* cylinder = std::get_if<Cylinder>(&shape))
     return std::min(2 * cylinder->radius_m, cylinder->length_m);
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return 2 * capsule->radius_m;
+  if (const auto* barrel = std::get_if<Barrel>(&shape))
+    return std::min(2 * barrel->radius_m, barrel->length_m);
   if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape))
     return 2 * std::min({ellipsoid->radii_m.x, ellipsoid->radii_m.y, ellipsoid->radii_m.z});
   return std::nullopt;  // planes and terrain have no far side; of a cone or a mesh it is not known

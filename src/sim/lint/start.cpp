@@ -24,6 +24,34 @@ std::string move_text(Vec3 v) {
   return "[" + one(v.x) + ", " + one(v.y) + ", " + one(v.z) + "]";
 }
 
+/// A contact passes forces between bodies as a joint does (inertia.cpp), but many solvers survive a ratio of 1000 there:
+/// grit under a vehicle. At 10^6 an iterative solver would need as many iterations, and the compliance that keeps a contact
+/// stable is no longer small beside what the light body gives way itself.
+void check_masses(std::span<const Contact> contacts, const std::vector<const model::Instance*>& owner,
+                  Findings& findings) {
+  constexpr double most = 1e6;
+  const auto mass_kg = [](const model::Instance& instance) {
+    double sum = 0;
+    for (const model::Link& link : instance.model->links) sum += link.inertial.mass_kg;
+    return sum;
+  };
+  for (const Contact& contact : contacts) {
+    if (contact.a.index >= owner.size() || contact.b.index >= owner.size()) continue;
+    const model::Instance *light = owner[contact.a.index], *heavy = owner[contact.b.index];
+    if (!light || !heavy || light == heavy) continue;
+    if (light->model->is_static || heavy->model->is_static || light->motion || heavy->motion) continue;
+    if (mass_kg(*light) > mass_kg(*heavy)) std::swap(light, heavy);
+    const double ratio = mass_kg(*heavy) / mass_kg(*light);
+    if (ratio >= most)
+      findings.add("mass_ratio",
+                   "'" + light->original_name + "' of " + short_text(mass_kg(*light)) + " kg touches '" +
+                       heavy->original_name + "' of " + short_text(mass_kg(*heavy)) + " kg" +
+                       at(heavy->place) + ": " + short_text(ratio) + " times as much",
+                   "masses are in kg: is one of them in g or t? Keep the ratio well below 10^6",
+                   light->place);
+  }
+}
+
 /// One step of a second engine finds the contacts of the poses it starts from.
 /// @param buried  things of which more has been said already; only asked, never walked through
 void check_overlaps(const Simulation& simulation, const std::set<const model::Instance*>& buried,
@@ -33,6 +61,7 @@ void check_overlaps(const Simulation& simulation, const std::set<const model::In
   if (!kind) return;
   const auto engine = (*kind)->create(setup.physics, setup.gravity);
   if (!engine) return;
+  (*engine)->set_zones(setup.zones);
   std::vector<const model::Instance*> owner;  // by body
   for (const model::Instance* instance : simulation.instances()) {
     const auto id = (*engine)->add(*instance);
@@ -44,6 +73,7 @@ void check_overlaps(const Simulation& simulation, const std::set<const model::In
   }
   (*engine)->step(setup.step.s() / setup.substeps, 0);
 
+  check_masses((*engine)->contacts(), owner, findings);
   // Of each pair of things the deepest contact, in the order in which the engine lists the pairs.
   std::vector<Contact> deepest;
   std::map<std::pair<const void*, const void*>, std::size_t> pairs;  // found by address, walked by index

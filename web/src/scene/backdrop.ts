@@ -4,6 +4,7 @@ import type { World } from '../protocol';
 import type { Assets } from './assets';
 import type { Bodies } from './bodies';
 import { Grounds } from './ground';
+import { Zones } from './zones';
 import { multiply } from './poses';
 
 export type Theme = 'light' | 'dark';
@@ -39,6 +40,7 @@ export class Backdrop {
   private readonly suns: { light: THREE.DirectionalLight; strength: number }[] = [];
   private readonly lamps: { light: THREE.PointLight | THREE.SpotLight; lamp: { body: { world: Float64Array }; link: number; pose: number[] } | null }[] = [];
   private readonly grounds: Grounds;
+  private readonly zones: Zones;
   private readonly fog = new THREE.Fog(0, 1, 2);
   private readonly direction = new THREE.Vector3(-0.4, 0.3, -0.85);
   private tones = TONES.light;
@@ -49,6 +51,7 @@ export class Backdrop {
   constructor(scene: THREE.Scene) {
     this.scene = scene;
     this.grounds = new Grounds(scene);
+    this.zones = new Zones(scene);
     this.sky = new THREE.Mesh(
       new THREE.SphereGeometry(1, 32, 16).rotateX(Math.PI / 2),
       new THREE.ShaderMaterial({
@@ -96,6 +99,7 @@ export class Backdrop {
   setWorld(world: World, bodies: Bodies, assets: Assets): void {
     this.setLights(world, bodies);
     this.grounds.setWorld(bodies, assets);
+    this.zones.setWorld(world);
     this.setTheme(this.tones === TONES.dark ? 'dark' : 'light');
   }
 
@@ -136,6 +140,7 @@ export class Backdrop {
     this.sky.geometry.dispose();
     this.sky.material.dispose();
     this.grounds.dispose();
+    this.zones.dispose();
     for (const sun of this.suns) sun.light.dispose();
   }
 

@@ -95,16 +95,30 @@ function unitGeometry(key: string): THREE.BufferGeometry {
   }
 }
 
+/** Turned from an arc of radius `profile`, with flat ends. */
+function barrelGeometry(radius: number, profile: number, length: number): THREE.BufferGeometry {
+  const half = length / 2;
+  const rings = 6;
+  const points = [new THREE.Vector2(0, -half)];
+  for (let i = 0; i <= rings; i++) {
+    const z = half * ((2 * i) / rings - 1);
+    points.push(new THREE.Vector2(Math.max(0, radius - profile + Math.sqrt(profile * profile - z * z)), z));
+  }
+  points.push(new THREE.Vector2(0, half));
+  return new THREE.LatheGeometry(points, fineness(radius)).rotateX(Math.PI / 2);
+}
+
 /** Any primitive at its size; undefined for shapes of assets, planes, and what this page does not know. */
 export function primitiveGeometry(shape: Shape): THREE.BufferGeometry | undefined {
   if (shape.type === 'capsule') {
     return new THREE.CapsuleGeometry(shape.radius, shape.length, 8, 24).rotateX(Math.PI / 2);
   }
+  if (shape.type === 'barrel') return barrelGeometry(shape.radius, shape.profile, shape.length);
   const unit = unitOf(shape);
   return unit && unitGeometry(unit.key).scale(...unit.scale);
 }
 
-const isPrimitive = (shape: Shape): boolean => shape.type === 'capsule' || unitOf(shape) !== undefined;
+const isPrimitive = (shape: Shape): boolean => shape.type === 'capsule' || shape.type === 'barrel' || unitOf(shape) !== undefined;
 
 /** The parts of a link that are known at once; `later` gets those that need an asset. Planes are drawn elsewhere. */
 export function partsOfLink(link: Link, index: number, assets: Assets, later: (parts: Part[]) => void): Part[] {

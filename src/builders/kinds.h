@@ -1,0 +1,20 @@
+#pragma once
+/// The builders that come with Sandlot: one line each, the name of the folder. Nothing else knows their names.
+// clang-format off
+#define SANDLOT_BUILDERS(builder) \
+  builder(two_wheeled)            \
+  builder(four_wheeled)           \
+  builder(sphere_robot)           \
+  builder(barrel_robot)           \
+  builder(snake)                  \
+  builder(slider_wheelie)         \
+  builder(armband)                \
+  builder(hexapod)                \
+  builder(diff_robot)             \
+  builder(square_playground)      \
+  builder(octagon_playground)     \
+  builder(terrain)                \
+  builder(box_pile)               \
+  builder(seesaw)                 \
+  builder(stairs)
+// clang-format on

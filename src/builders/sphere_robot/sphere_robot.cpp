@@ -1,0 +1,75 @@
+/// A hollow ball that rolls because three masses inside of it slide along its axes. After the sphererobot3masses of
+/// LpzRobots: diameter 1, shell 0.3 kg, masses of 1 kg, range 0.2, power 100.
+///
+/// Frame    M: centre of the shell; it stands half a diameter above the ground.
+/// Moves    motors `x`, `y`, `z` move the masses along those axes of the shell [m].
+/// Senses   `joints`, `imu`.
+/// Limits   the masses pass through each other: they have no geometry, and their rails no mass.
+#include "builders/builder.h"
+#include "builders/parts.h"
+
+namespace sandlot::builders::sphere_robot {
+namespace {
+
+struct Spec {
+  double diameter_m = 1, shell_mass_kg = 0.3, mass_kg = 1, range_m = 0.2, power_N = 100, speed_mps = 2;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"diameter", "m", "Of the shell.", 0.02, 20}, s.diameter_m);
+    visit(Field{"shell_mass", "kg", "Of the shell.", 1e-4, 1e5}, s.shell_mass_kg);
+    visit(Field{"mass", "kg", "Of each of the three inner masses.", 1e-4, 1e5}, s.mass_kg);
+    visit(Field{"range", "m", "How far a mass moves to each side of the middle.", 1e-3, 10}, s.range_m);
+    visit(Field{"power", "N", "Largest force on a mass.", 0, 1e6}, s.power_N);
+    visit(Field{"speed", "m/s", "Fastest motion of a mass.", 0, 1e3}, s.speed_mps);
+  }
+  Status check(const Node& node, const std::string& path) const {
+    if (range_m < diameter_m / 2) return {};
+    const Node* const key = node.find("range");
+    return (key ? *key : node)
+        .error("the masses would leave the shell", "choose a range below half the diameter", path + "/range");
+  }
+};
+
+Result<Built> build(const Spec& s) {
+  Built out;
+  model::Model& m = out.model;
+  const double radius = s.diameter_m / 2, ball = 0.14 * radius;
+  out.X_WM.p.z = radius;
+  const std::uint32_t shell = add_link(m, "shell", {});
+  add_part(m, shell, {Sphere{radius}, {}, 0, {0.75f, 0.85f, 0.95f, 0.3f}});
+  // All the shell's mass lies on it: 2/3 m r^2.
+  m.links[shell].inertial = {
+      s.shell_mass_kg, {}, 2.0 / 3.0 * s.shell_mass_kg * radius * radius * Vec3{1, 1, 1}, {}};
+  constexpr Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  constexpr Color shades[] = {colors::red, colors::green, colors::blue};
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    add_part(m, shell,
+             {.shape = Cylinder{0.02 * radius, 1.98 * radius},
+              .X_LP = along(axes[i]),
+              .color = shades[i],
+              .touches = false});
+    const std::uint32_t mass = add_link(m, std::string("mass_") + names[i], {});
+    add_part(m, mass, {Sphere{ball}, {}, s.mass_kg, shades[i], {}, false});
+    add_motor(m, names[i],
+              add_joint(m, std::string("slider_") + names[i], shell, mass, {},
+                        {.type = model::JointType::prismatic,
+                         .axis_M = axes[i],
+                         .lower = -s.range_m,
+                         .upper = s.range_m,
+                         .max_effort = s.power_N,
+                         .max_velocity = s.speed_mps}));
+  }
+  add_senses(m);
+  return out;
+}
+
+}  // namespace
+
+extern const Builder builder;
+constinit const Builder builder = make_builder<Spec, build>({
+    .name = "sphere_robot",
+    .help = "Ball that rolls by three masses inside (sphererobot3masses).",
+});
+
+}  // namespace sandlot::builders::sphere_robot

@@ -1,0 +1,87 @@
+// Parts of the ground with a surface of their own: flat patches with their names.
+import * as THREE from 'three';
+import type { World, Zone } from '../protocol';
+
+/** Above the ground, below what stands on it; the offset in depth keeps it from flickering far away. */
+const HEIGHT_M = 0.002;
+
+export class Zones {
+  private readonly group = new THREE.Group();
+
+  constructor(scene: THREE.Scene) {
+    this.group.name = 'zones';
+    scene.add(this.group);
+  }
+
+  setWorld(world: World): void {
+    this.clear();
+    for (const zone of world.zones ?? []) this.add(zone);
+  }
+
+  dispose(): void {
+    this.clear();
+    this.group.removeFromParent();
+  }
+
+  private clear(): void {
+    for (const child of [...this.group.children]) {
+      const mesh = child as THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
+      mesh.geometry.dispose();
+      mesh.material.map?.dispose();
+      mesh.material.dispose();
+      this.group.remove(mesh);
+    }
+  }
+
+  private add(zone: Zone): void {
+    const outline = zone.corners.length > 0
+      ? new THREE.Shape(zone.corners.map(([x, y]) => new THREE.Vector2(x, y)))
+      : new THREE.Shape().absarc(zone.centre[0], zone.centre[1], zone.radius_m, 0, 2 * Math.PI, false);
+    const geometry = new THREE.ShapeGeometry(outline, 48);
+    const material = new THREE.MeshBasicMaterial({
+      color: colorOf(zone), transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2,
+    });
+    const patch = new THREE.Mesh(geometry, material);
+    patch.position.z = HEIGHT_M;
+    this.group.add(patch);
+    geometry.computeBoundingBox();
+    const label = labelOf(zone.name, geometry.boundingBox!);
+    if (label !== null) this.group.add(label);
+  }
+}
+
+/** Belts are yellow, holes black; else from blue, slippery, to brown, rough. */
+function colorOf(zone: Zone): THREE.Color {
+  if (zone.hole) return new THREE.Color('#111417');
+  if (Math.hypot(zone.belt_velocity[0], zone.belt_velocity[1]) > 0) return new THREE.Color('#d9a520');
+  const rough = Math.min(1, Math.sqrt(Math.max(0, zone.friction)));
+  return new THREE.Color('#58b4e8').lerp(new THREE.Color('#7a4a1e'), rough);
+}
+
+/** The name, written on the ground along the longer side. */
+function labelOf(name: string, box: THREE.Box3): THREE.Mesh | null {
+  const canvas = document.createElement('canvas');
+  canvas.width = 512;
+  canvas.height = 128;
+  const context = canvas.getContext('2d');
+  if (context === null) return null;
+  context.font = '600 84px system-ui, sans-serif';
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillStyle = '#ffffff';
+  context.strokeStyle = 'rgba(0, 0, 0, 0.55)';
+  context.lineWidth = 10;
+  context.strokeText(name, 256, 64, 500);
+  context.fillText(name, 256, 64, 500);
+  const size = box.getSize(new THREE.Vector3());
+  const upright = size.y > size.x;
+  const width = Math.min(0.8 * Math.max(size.x, size.y), 2.4 * Math.min(size.x, size.y));
+  const label = new THREE.Mesh(
+    new THREE.PlaneGeometry(width, width / 4),
+    new THREE.MeshBasicMaterial({ map: new THREE.CanvasTexture(canvas), transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }),
+  );
+  box.getCenter(label.position);
+  label.position.z = 2 * HEIGHT_M;
+  if (upright) label.rotation.z = Math.PI / 2;
+  return label;
+}
