@@ -122,6 +122,8 @@ struct Planned {
   Vec2 v;  ///< mean over the step, of the centre of mass
   double w_radps = 0;
   Twist mean;  ///< in the body's frame
+  Vec2 p;      ///< where the step began
+  Turn heading;
 };
 
 struct Drive {
@@ -131,6 +133,20 @@ struct Drive {
   double accel = 0, angular_accel = 0;
   Vec2 arm;    ///< of that link's origin from the centre of mass, in its frame
   Turn frame;  ///< of its x axis there
+  /// Integrals of the true velocity of the centre of mass and of the turning rate, in the lump's frame, over all steps
+  /// in which the drive was active.
+  Vec2 way_m;
+  double turned_rad = 0;
+};
+
+/// A wheel that turns as its base moves: its position is `offset` and so much for each part of the drive's integrals. So it
+/// takes no step to turn it, and it does not matter how often it is looked at.
+struct Roll {
+  RollTarget target;
+  std::uint32_t slot = none;
+  Vec2 per_way;  ///< the target's factors for the centre of mass in the lump's frame
+  double per_turn = 0;
+  double offset = 0;
 };
 
 struct Motor {
@@ -142,6 +158,7 @@ struct Motor {
   enum class Role : std::uint8_t { kinematic, wheel, linkage } role = Role::kinematic;
   bool listed = false;  ///< among those that are moved so
   std::uint32_t slot = none;
+  std::uint32_t roll = none;  ///< among those that turn as their base moves
 };
 
 /// What changes rarely, or is looked at rarely.

@@ -153,6 +153,12 @@ void PlanarEngine::shape(std::uint32_t slot) {
   }
   add_joints(instance);
   aim(slot, drives_[slot].link);
+  for (const JointId joint : instance.joints)
+    if (const std::uint32_t roll = motors_[joint.index].roll; roll != none) {
+      // It goes on from where it is.
+      show(rolls_[roll]);
+      set_roll(joint.index, rolls_[roll].target, joint_states_[joint.index].position);
+    }
   filed_ = ground_fresh_ = false;
   stale();
 }
@@ -209,6 +215,7 @@ void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
   Instance& instance = instances_[slot];
   const Plan& plan = *instance.plan;
   if (plan.lumps.size() > 1) {
+    refresh_rolls();
     states_[instance.bodies[0].index] = {X_WB, {}};
     instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }

@@ -53,7 +53,8 @@ Capabilities PlanarEngine::capabilities() const {
           .ideal_drives = true,
           .rays = true,
           .contact_forces = true,
-          .grips = true};
+          .grips = true,
+          .rolls = true};
 }
 
 BodyName PlanarEngine::name(BodyId id) const {
@@ -144,6 +145,7 @@ void PlanarEngine::remove(InstanceId id) {
     body_slot_[body.index] = none;
   }
   for (const JointId joint : instance.joints) {
+    end_roll(joint.index);
     Motor& motor = motors_[joint.index];
     const bool listed = motor.listed;
     motor = {.generation = motor.generation + 1};
@@ -215,6 +217,8 @@ void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
           if (joint != none && !motors_[joint].listed)
             motors_[joint].listed = true, turning_.push_back(joint);
     }
+    if (!t.active && drive.active)
+      for (const JointId joint : instance.joints) end_roll(joint.index);
     drive.active = t.active;
     drive.target = {{t.vx_mps, t.vy_mps}, t.wz_radps};
     drive.accel = t.max_accel_mps2;
@@ -227,6 +231,7 @@ void PlanarEngine::set_targets(std::span<const JointTarget> targets) {
     SL_CHECK(t.joint.index < motors_.size());
     Motor& motor = motors_[t.joint.index];
     SL_CHECK_MSG(t.joint.generation == motor.generation, "no such joint");
+    end_roll(t.joint.index);
     motor.target = t;
     if (motor.listed || t.mode != JointTarget::Mode::velocity || motor.role == Motor::Role::linkage) continue;
     motor.listed = true;
@@ -339,6 +344,7 @@ void PlanarEngine::refresh_map() const {
 
 void PlanarEngine::refresh_links() const {
   if (links_fresh_.load(std::memory_order_acquire)) return;
+  refresh_rolls();
   const std::lock_guard lock(refreshing_);
   if (links_fresh_.load(std::memory_order_relaxed)) return;
   for (const std::uint32_t slot : order_) {

@@ -15,7 +15,8 @@
 /// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along and across
 ///          within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis alone (wheels.cpp).
 /// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of at most
-///          what brings the robot to its velocity within the step at the acceleration it may have.
+///          what brings the robot to its velocity within the step at the acceleration it may have. Their wheels turn by
+///          the way that the base went, when asked for (rolls.cpp).
 /// Joints   pivots and sliders between lumps of an instance, with motor, limits, friction and spring; steering. All
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
 /// Limits   turning is not swept: long bodies that spin fast may cut into others, and are pushed out. A ball that is hit
@@ -61,7 +62,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   BodyName name(BodyId id) const override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override;
-  std::span<const JointState> joint_states() const override { return joint_states_; }
+  std::span<const JointState> joint_states() const override;
   std::span<const Contact> contacts() const override { return contacts_; }
   void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
                 std::vector<std::uint32_t>& ends) const override;
@@ -69,6 +70,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void apply(std::span<const Wrench> wrenches) override;
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
+  void set_rolls(std::span<const RollTarget> targets) override;
   void set_grips(std::span<const GripTarget> targets) override;
   void step(double h_s, std::uint64_t stream_key) override;
   Status check_finite() const override;
@@ -110,7 +112,14 @@ class PlanarEngine final : public Engine, private RayCaster {
   void refresh_walls() const;
   void refresh_map() const;
   void refresh_links() const;
-  void stale() { map_fresh_ = links_fresh_ = false; }
+  void stale() { map_fresh_ = links_fresh_ = rolls_fresh_ = false; }
+
+  // rolls.cpp
+  void refresh_rolls() const;
+  void show(const Roll& roll) const;
+  void relate(Roll& roll) const;
+  void set_roll(std::uint32_t joint, const RollTarget& target, double position);
+  void end_roll(std::uint32_t joint);
   Linkage make_grip(BodyId a, BodyId b) const;
 
   // step.cpp
@@ -178,18 +187,19 @@ class PlanarEngine final : public Engine, private RayCaster {
   double last_z_m_ = 0;
 
   std::vector<std::uint32_t> body_slot_, body_generation_;
-  std::vector<JointState> joint_states_;
   std::vector<Motor> motors_;
   std::vector<std::uint32_t> turning_;  ///< kinematic joints with a velocity target, and those that had one
+  std::vector<Roll> rolls_;
   std::vector<Linkage> grips_;
 
   // Made when asked for, in const functions that several threads may call at once.
   mutable std::mutex refreshing_;
-  mutable std::atomic<bool> map_fresh_ = false, links_fresh_ = false;
+  mutable std::atomic<bool> map_fresh_ = false, links_fresh_ = false, rolls_fresh_ = false;
   mutable bool walls_fresh_ = false;
   mutable bool filed_ = false;  ///< the broad phase holds
   mutable Map map_;
   mutable std::vector<BodyState> states_;
+  mutable std::vector<JointState> joint_states_;
   mutable std::vector<Floor> floors_;
   mutable bool ground_fresh_ = false;
   bool low_floors_ = false;  ///< some floor has an end, so what stands under a body changes as it moves

@@ -19,11 +19,16 @@ void visit_drive(auto& d, Visit&& visit) {
   visit(d.now.v_mps.x), visit(d.now.v_mps.y), visit(d.now.w_radps);
   visit(d.target.v_mps.x), visit(d.target.v_mps.y), visit(d.target.w_radps);
   visit(d.accel), visit(d.angular_accel);
+  visit(d.way_m.x), visit(d.way_m.y), visit(d.turned_rad);
 }
 template <class Visit>
 void visit_target(auto& t, Visit&& visit) {
   visit(t.velocity), visit(t.max_effort), visit(t.effort), visit(t.damping), visit(t.inertia),
       visit(t.friction);
+}
+template <class Visit>
+void visit_roll(auto& r, Visit&& visit) {
+  visit(r.target.per_vx), visit(r.target.per_vy), visit(r.target.per_wz), visit(r.offset);
 }
 template <class Visit>
 void visit_linkage(auto& l, Visit&& visit) {
@@ -35,6 +40,11 @@ void visit_grip(auto& l, Visit&& visit) {
   visit_linkage(l, visit);
 }
 
+std::uint32_t link_of(const Instance& i, BodyId body) {
+  return static_cast<std::uint32_t>(std::find(i.bodies.begin(), i.bodies.end(), body) - i.bodies.begin());
+}
+
+constexpr std::uint32_t rolling_mode = 3;  ///< in place of a motor's
 constexpr std::uint32_t most_touches = 1u << 24;
 
 }  // namespace
@@ -42,6 +52,7 @@ constexpr std::uint32_t most_touches = 1u << 24;
 void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
   const Instance& instance = get(id);
   const auto put = [&](const auto& x) { write(w, x); };
+  refresh_rolls();
   write(w, canonical_pose(id.index).q);  // of one that stands still; others have it in their lumps
   write(w, instance.tilt);
   put(instance.z_m);
@@ -51,9 +62,16 @@ void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
   for (const JointId joint : instance.joints) {
     const JointState& state = joint_states_[joint.index];
     put(state.position), put(state.velocity), put(state.effort);
-    const JointTarget& target = motors_[joint.index].target;
-    put(static_cast<std::uint32_t>(target.mode));
-    visit_target(target, put);
+    const Motor& motor = motors_[joint.index];
+    if (motor.roll != none) {
+      const Roll& roll = rolls_[motor.roll];
+      put(rolling_mode);
+      put(link_of(instance, roll.target.base));
+      visit_roll(roll, put);
+      continue;
+    }
+    put(static_cast<std::uint32_t>(motor.target.mode));
+    visit_target(motor.target, put);
   }
   for (const Wheel& wheel : instance.wheels) put(wheel.impulse.x), put(wheel.impulse.y);
   for (const Linkage& l : instance.linkages) visit_linkage(l, put);
@@ -75,10 +93,25 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   if (!r.ok() || drive.link >= instance.bodies.size()) return false;
   std::vector<Lump> lumps(instance.lumps.size());
   for (Lump& l : lumps) visit_lump(l, take);
-  std::vector<std::pair<JointState, JointTarget>> joints(instance.joints.size());
-  for (auto& [state, target] : joints) {
+  struct SavedJoint {
+    JointState state;
+    JointTarget target;
+    Roll roll;
+    bool rolls = false;
+  };
+  std::vector<SavedJoint> joints(instance.joints.size());
+  for (auto& [state, target, roll, rolls] : joints) {
     std::uint32_t mode = 0;
     take(state.position), take(state.velocity), take(state.effort), take(mode);
+    rolls = mode == rolling_mode;
+    if (rolls) {
+      std::uint32_t link = 0;
+      take(link);
+      visit_roll(roll, take);
+      if (!r.ok() || link >= instance.bodies.size() || !drive.active || !instance.moves) return false;
+      roll.target.base = instance.bodies[link];
+      continue;
+    }
     visit_target(target, take);
     if (!r.ok() || mode > 2) return false;
     target.mode = static_cast<JointTarget::Mode>(mode);
@@ -108,9 +141,15 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const JointId joint = instance.joints[i];
     Motor& motor = motors_[joint.index];
-    joint_states_[joint.index] = joints[i].first;
-    motor.target = joints[i].second;
+    end_roll(joint.index);
+    joint_states_[joint.index] = joints[i].state;
+    motor.target = joints[i].target;
     motor.target.joint = joint;
+    if (joints[i].rolls) {
+      joints[i].roll.target.wheel = joint;
+      set_roll(joint.index, joints[i].roll.target, 0);
+      rolls_[motor.roll].offset = joints[i].roll.offset;
+    }
     if (motor.listed || motor.target.mode != JointTarget::Mode::velocity) continue;
     motor.listed = true;
     turning_.push_back(joint.index);
@@ -118,9 +157,7 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   for (std::size_t i = 0; i < wheels.size(); ++i) instance.wheels[i].impulse = wheels[i];
   for (std::size_t i = 0; i < linkages.size(); ++i)
     instance.linkages[i].hold = linkages[i].hold, instance.linkages[i].turn = linkages[i].turn;
-  for (const std::uint32_t k : instance.lumps) {
-    place_disc(k);
-  }
+  for (const std::uint32_t k : instance.lumps) { place_disc(k); }
   filed_ = ground_fresh_ = false;
   stale();
   return load_touches(id.index, r);
@@ -151,12 +188,9 @@ void PlanarEngine::save_touches(std::uint32_t slot, ByteWriter& w) const {
   for (const Linkage& l : grips_) {
     if (!held(l)) continue;
     const Instance& other = instances_[body_slot_[l.body_a.index]];
-    const auto link = [](const Instance& i, BodyId body) {
-      return static_cast<std::uint32_t>(std::find(i.bodies.begin(), i.bodies.end(), body) - i.bodies.begin());
-    };
     write(w, rank(other.created));
-    write(w, link(other, l.body_a));
-    write(w, link(instance, l.body_b));
+    write(w, link_of(other, l.body_a));
+    write(w, link_of(instance, l.body_b));
     visit_grip(l, [&](const double& x) { write(w, x); });
   }
 }

@@ -117,10 +117,12 @@ void PlanarEngine::plan_drive(std::uint32_t slot, double h_s) {
   }
   lump.v = planned.v = sinc * rotate(middle, planned.mean.v_mps);
   lump.w_radps = planned.w_radps = mean.w_radps;
+  planned.p = lump.p;
+  planned.heading = lump.heading;
 }
 
 /// What a drive has reached, after its lump has moved.
-void PlanarEngine::finish_drive(std::uint32_t slot, double) {
+void PlanarEngine::finish_drive(std::uint32_t slot, double h_s) {
   Drive& drive = drives_[slot];
   Lump& lump = lumps_[instances_[slot].lumps[0]];
   const Planned& planned = planned_[slot];
@@ -128,8 +130,16 @@ void PlanarEngine::finish_drive(std::uint32_t slot, double) {
     const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
     lump.v = rotate(lump.heading, v);
     lump.w_radps = drive.now.w_radps;
+    drive.way_m = drive.way_m + h_s * planned.mean.v_mps;
+    drive.turned_rad += h_s * planned.mean.w_radps;
     return;
   }
+  // Hindered: the arc from where it was to where it has come.
+  const Turn turn = Turn{planned.heading.c, -planned.heading.s} * lump.heading;
+  const double half = 0.5 * math::atan2(turn.s, turn.c);
+  const double sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn_of(half).s / half;
+  drive.way_m = drive.way_m + (1 / sinc) * rotate_back(planned.heading * turn_of(half), lump.p - planned.p);
+  drive.turned_rad += 2 * half;
   drive.now = {rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
                lump.w_radps};
 }
@@ -355,7 +365,7 @@ void PlanarEngine::turn_joints(double h_s) {
     const bool moved = motor.role == Motor::Role::kinematic ||
                        (motor.role == Motor::Role::wheel && drives_[motor.slot].active);
     const bool asked = motor.slot != none && motor.target.mode == JointTarget::Mode::velocity;
-    if (moved) {
+    if (moved && motor.roll == none) {
       joint.velocity = joint.effort = 0;
       if (asked && motor.target.max_effort > 0) {
         const double before = joint.position;
