@@ -12,6 +12,7 @@ double Row::deviation() const {
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all = {
       {"impacts", "Collisions of two bodies, a bouncing ball, Newton's cradle.", impacts},
+      {"surfaces", "Substances, belts, skins, resistance to rolling, zones.", surfaces},
       {"drives", "Every drive at every level on every engine, driven along straight, side, arc and spin.",
        drives},
       {"friction", "Inclines, sliding, rolling, pushing, piles at rest.", friction},

@@ -50,5 +50,6 @@ const std::vector<Experiment>& experiments();
 Section impacts();   ///< two bodies, a bouncing ball, Newton's cradle
 Section friction();  ///< inclines, sliding, rolling, piles at rest
 Section drives();    ///< each drive at each level on each engine
+Section surfaces();  ///< substances, belts, skins, zones
 
 }  // namespace sandlot::validation
