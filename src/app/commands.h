@@ -120,6 +120,13 @@ struct BenchOptions {
 };
 int bench(const BenchOptions& options);
 
+struct ValidateOptions {
+  std::string name;  ///< "" for all
+  std::string out;   ///< folder for the page; "": none
+  bool json = false;
+};
+int validate(const ValidateOptions& options);
+
 int doctor(bool json);
 
 struct RecordingOptions {

@@ -396,6 +396,16 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   bench_verb->footer("Example: sandlot bench ranges --json");
   bench_verb->callback([&] { result = bench(bench_options); });
 
+  ValidateOptions validate_options;
+  CLI::App* const validate_verb = app.add_subcommand("validate",
+                                                     "Run experiments of which theory knows the result");
+  validate_verb->add_option("name", validate_options.name, "One experiment; all when left out");
+  validate_verb->add_option("--out", validate_options.out,
+                            "Folder to write validation.md and its figures into");
+  validate_verb->add_flag("--json", validate_options.json, "Print as JSON");
+  validate_verb->footer("Example: sandlot validate friction");
+  validate_verb->callback([&] { result = validate(validate_options); });
+
   RecordingOptions recording_options;
   DurationOption from, to;
   CLI::App* const topic_verb = app.add_subcommand("topic", "Look into a recording: list, echo, hz, export");

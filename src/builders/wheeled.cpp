@@ -69,10 +69,10 @@ void add_round_body(model::Model& model, std::uint32_t base, double radius, doub
 std::uint32_t add_steering(model::Model& model, const std::string& name, std::uint32_t base, Vec3 pivot,
                            double limit_rad, double wheel_radius, double mass_kg) {
   const std::uint32_t fork = add_link(model, name + "_fork", {pivot, {}});
-  add_mass(model, fork, mass_kg, 0.5 * wheel_radius);
   add_part(model, fork,
            {.shape = Cylinder{0.18 * wheel_radius, 0.8 * wheel_radius},
             .X_LP = {{0, 0, 1.2 * wheel_radius}, {}},
+            .mass_kg = mass_kg,
             .color = colors::grey,
             .touches = false});
   add_joint(model, name + "_steering", base, fork, pivot,

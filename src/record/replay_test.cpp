@@ -85,7 +85,7 @@ Request twist(const std::string& target, double vx_mps) {
 /// Two rovers that wander, a third that a client drives, and a lot that is asked of them.
 Recorded eventful(const char* engine, std::uint64_t begin = 33) {
   model::Setup setup = test::arena(engine, 2);
-  setup.instances.push_back(test::rover("driven", setup.instances.back().model, {-2.5, -2.5, 0}, 0.5, ""));
+  setup.instances.push_back(test::rover("driven", setup.instances.back().model, {2.5, -2.5, 0}, 0.5, ""));
   model::Instance guest = test::arena(engine, 1).instances.back();
   guest.name = "guest";
   guest.X_WM = {{3, 3, 0}, {}};

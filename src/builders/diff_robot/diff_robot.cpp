@@ -29,7 +29,7 @@ struct Spec {
 Result<Built> build(const Spec& s) {
   Built out;
   model::Model& m = out.model;
-  const double r = s.wheel_radius_m, radius = 0.62 * s.track_m, width = 0.25 * r + 0.01;
+  const double r = s.wheel_radius_m, radius = 0.47 * s.track_m, width = 0.15 * r;
   const std::uint32_t base = add_link(m, "base", {});
   const double ball = 0.3 * r;
   add_round_body(m, base, radius, 1.3 * r, 2 * ball, 0.88 * s.mass_kg, colors::orange);

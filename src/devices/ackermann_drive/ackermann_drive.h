@@ -23,9 +23,9 @@ struct Spec : wheeled::Common {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned required = Field::required;
-    visit(Field{"left_joint", "", "Driven wheels on the left.", 0, 0, required, 16, 1}, s.left_joint);
-    visit(Field{"right_joint", "", "Driven wheels on the right.", 0, 0, required, 16, 1}, s.right_joint);
-    visit(Field{"passive_joint", "", "Wheels that roll along without a motor.", 0, 0, Field::none, 16},
+    visit(Field{"left_joint", "", "Driven wheels on the left.", 0, 0, required, 100, 1}, s.left_joint);
+    visit(Field{"right_joint", "", "Driven wheels on the right.", 0, 0, required, 100, 1}, s.right_joint);
+    visit(Field{"passive_joint", "", "Wheels that roll along without a motor.", 0, 0, Field::none, 100},
           s.passive_joint);
     visit(Field{"left_steering_joint", "", "Upright joint that steers on the left.", 0, 0, required, 1000},
           s.left_steering_joint);

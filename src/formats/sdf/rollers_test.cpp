@@ -11,9 +11,12 @@ namespace {
 Result<SdfContent> parse(const std::string& text, Diagnostics& diagnostics) {
   return parse_sdf(text, "f.sdf", diagnostics, {});
 }
+constexpr const char* inertial =
+    "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>";
 std::string robot(const std::string& rollers) {
-  return "<sdf version='1.9' xmlns:sandlot='urn:sandlot:sdf'><model name='m'><link name='base'/>\n"
-         "<link name='wheel'><collision name='c'><geometry><sandlot:barrel><radius>0.03</radius>"
+  return "<sdf version='1.9' xmlns:sandlot='urn:sandlot:sdf'><model name='m'><link name='base'>" +
+         std::string(inertial) + "</link>\n<link name='wheel'>" + inertial +
+         "<collision name='c'><geometry><sandlot:barrel><radius>0.03</radius>"
          "<profile>0.1</profile><length>0.02</length></sandlot:barrel></geometry></collision></link>\n"
          "<joint name='axle' type='continuous'><parent>base</parent><child>wheel</child>\n"
          "<axis><xyz>0 0 1</xyz></axis>\n" +
@@ -70,7 +73,7 @@ TEST(SdfRollers, FaultsNameTheirLine) {
       {"a whole number", error(changed("<count>9</count>", "<count>2.5</count>"))},
       {"has no <count>", error(changed("<count>9</count>", ""))},
       {"f.sdf:5", error(changed("<radius>0.05</radius>", "<radius>0</radius>"))},
-      {"overlap", error(changed("<count>9</count>", "<count>14</count>"))},
+      {"overlap", error(changed("<count>9</count>", "<count>40</count>"))},
       {"could not be driven", error(changed("-45", "0"))},
       {"has no <diameter>", error(changed("<roller_radius>0.01</roller_radius>", "<diameter>1</diameter>"))},
   };
