@@ -16,10 +16,10 @@ void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.run; }
 
 constexpr Golden goldens[] = {
     {"scenarios/indoor.yaml --duration 20s", "cc10795d35b47444"},
-    {"scenarios/indoor.yaml --duration 20s --set physics=planar", "bf8d9715584d4874"},
+    {"scenarios/indoor.yaml --duration 20s --set physics=planar", "cdd72b600460e2be"},
     {"scenarios/fleet.yaml --duration 20s", "dcf5e57224ad794f"},
-    {"scenarios/fleet.yaml --duration 20s --set physics=planar", "298e5f5f27673617"},
-    {"scenarios/swarm.yaml --duration 10s", "5138a76fa1b8a64d"},
+    {"scenarios/fleet.yaml --duration 20s --set physics=planar", "7ce7e02fb28e0e7d"},
+    {"scenarios/swarm.yaml --duration 10s", "0f65edf31c26363a"},
     {"scenarios/pile.yaml --duration 10s", "de905fdd039c8d8e"},
     {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
     {"scenarios/fig1_robot.yaml --duration 10s", "dfc571904ac15daa"},

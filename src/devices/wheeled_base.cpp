@@ -385,12 +385,31 @@ void follow(Drive drive, const PlanarMotion& wanted, double h_s, Joints joints) 
   aim_all(drive, set, wanted, joints);
 }
 
+/// The engine turns the joints of wheels that nobody steers: per velocity of the base they always turn alike.
+bool engine_rolls(const Base& base) { return base.engine.rolls && base.pivots.empty(); }
+
+void roll_wheels(const Base& base, std::vector<RollTarget>& targets) {
+  for (std::size_t i = 0; i < base.wheels.size(); ++i) {
+    const Wheel& wheel = base.wheels[i];
+    if (!wheel.has_joint) continue;
+    const auto per = [&](PlanarMotion of_base) {
+      return wheel.sign *
+             kinematics::wheel_turn(base.geometry[i], kinematics::seen_from(of_base, -base.dx_m, -base.dy_m));
+    };
+    targets.push_back({wheel.joint, base.body, per({1, 0, 0}), per({0, 1, 0}), per({0, 0, 1})});
+  }
+}
+
 void move_ideal_wheels(Drive drive, const Context& context, double h_s) {
   const Joints joints = context.engine.joint_states();
   Base& base = drive.base;
   std::vector<JointTarget>& targets = context.actuation.joints;
   // The wheels follow what the base really does, so that a robot held by a wall does not count turns. They lag by one
   // sub-step; the angle they are behind by does not grow and is made up when the base stops.
+  const bool by_engine = engine_rolls(base);
+  if (by_engine &&
+      std::all_of(base.wheels.begin(), base.wheels.end(), [](const Wheel& w) { return w.has_joint; }))
+    return;
   const PlanarMotion moving = true_velocity(drive, context);
   if (!base.pivots.empty()) {
     // The steering follows what the rails aim for: the base feels it turn, so following the truth would be a loop.
@@ -403,7 +422,7 @@ void move_ideal_wheels(Drive drive, const Context& context, double h_s) {
     const double radps = kinematics::wheel_turn(base.geometry[i], moving);
     WheelState& state = drive.state.wheels[i];
     if (!base.wheels[i].has_joint) state.virtual_radps = radps, state.virtual_rad += radps * h_s;
-    else
+    else if (!by_engine)
       targets.push_back({.joint = base.wheels[i].joint,
                          .mode = JointTarget::Mode::velocity,
                          .velocity = base.wheels[i].sign * radps,
@@ -431,6 +450,7 @@ void actuate(Drive drive, std::uint32_t levels, const Context& context) {
          .wz_radps = of_base.turn,
          .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
          .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
+    if (engine_rolls(base)) roll_wheels(base, context.actuation.rolls);
   } else if (drive.state.handover & hand_base) {
     context.actuation.drives.push_back({.base = base.body, .active = false});
     for (const Wheel& wheel : base.wheels)  // those without a motor were turned by the ideal level
