@@ -101,21 +101,36 @@ void PlanarEngine::collide(const Candidate& c, double h_s, std::vector<Touch>& o
     Touching met;
     if (!touching(x, y, margin, met)) return;
     struct Surfaced {
-      const model::Surface* surface;
+      Face face;
       std::uint32_t body, shape;
       bool slippery;
     };
     const auto surfaced = [&](const Side& s, std::uint32_t part) -> Surfaced {
-      if (!s.moving)
-        return {map_.walls()[c.wall].surface, map_.walls()[c.wall].body, Contact::no_shape, false};
-      const Instance& instance = instances_[s.moving->slot];
+      if (!s.moving) {
+        const Wall& wall = map_.walls()[c.wall];
+        return {{&wall.collision->surface, wall.collision, wall.instance, wall.link},
+                wall.body,
+                Contact::no_shape,
+                false};
+      }
+      const std::uint32_t slot = s.moving->slot;
+      const Instance& instance = instances_[slot];
       const Part& p = instance.plan->lumps[s.moving->index].parts[part];
-      return {p.surface, instance.bodies[p.link].index, p.collision, drives_[s.moving->slot].active != 0};
+      const auto& collisions = instance.model->links[p.link].collisions;
+      const auto of_surface = [&](const model::Collision& each) { return &each.surface == p.surface; };
+      const auto at = std::find_if(collisions.begin(), collisions.end(), of_surface);
+      return {{p.surface, at == collisions.end() ? nullptr : &*at, slot, p.link, s.moving},
+              instance.bodies[p.link].index,
+              p.collision,
+              drives_[slot].active != 0};
     };
     const Surfaced sa = surfaced(a, i), sb = surfaced(b, j);
-    const model::Surface& bouncer = sb.surface->restitution > sa.surface->restitution ? *sb.surface
-                                                                                      : *sa.surface;
+    const Vec3 normal{met.normal.x, met.normal.y, 0}, tangent{-normal.y, normal.x, 0};
+    const double z_m = middle_of_common(x.outline.heights, y.outline.heights);
     for (int k = 0; k < met.count; ++k) {
+      const PairSurface pair = surfaces_at(sa.face, sb.face, {met.points[k].at.x, met.points[k].at.y, z_m},
+                                           normal);
+      if (!pair.touches) continue;
       Touch t;
       t.key = c.key;
       t.key.part_a += a.moving ? i : 0;
@@ -125,12 +140,13 @@ void PlanarEngine::collide(const Candidate& c, double h_s, std::vector<Touch>& o
       t.normal = met.normal;
       t.at = met.points[k].at;
       t.gap_m = met.points[k].gap_m;
-      t.mu = sa.slippery || sb.slippery ? 0 : std::min(sa.surface->mu, sb.surface->mu);
-      t.restitution = bouncer.restitution;
-      t.threshold_mps = bouncer.restitution_threshold_mps;
+      t.mu = sa.slippery || sb.slippery ? 0 : friction_along(pair, normal, tangent);
+      t.belt_mps = dot(pair.belt_velocity_W_mps, tangent);
+      t.restitution = pair.restitution;
+      t.threshold_mps = pair.restitution_threshold_mps;
       t.body_a = sa.body, t.body_b = sb.body;
       t.shape_a = sa.shape, t.shape_b = sb.shape;
-      t.z_m = middle_of_common(x.outline.heights, y.outline.heights);
+      t.z_m = z_m;
       out.push_back(t);
     }
   });

@@ -18,8 +18,8 @@ const model::Surface default_floor;
 
 }  // namespace
 
-/// The highest floor at or below a body at this place.
-const model::Surface& PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W) const {
+/// The highest floor at or below a body at this place; null: there is none.
+const PlanarEngine::Floor* PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W) const {
   const double bottom = instances_[lumps_[k].slot].plan->bottom_m + spec_.clearance_m;
   const Floor* best = nullptr;
   for (const Floor& floor : floors_) {
@@ -28,85 +28,132 @@ const model::Surface& PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W) cons
       continue;
     best = &floor;
   }
-  return best ? *best->surface : default_floor;
+  return best;
+}
+
+/// What a foot and the ground make together at a place of the lump's frame; the belt is that of the ground as the foot
+/// sees it.
+PairSurface PlanarEngine::on_ground(std::uint32_t k, Face foot, Vec2 at) const {
+  const Lump& lump = lumps_[k];
+  const Instance& instance = instances_[lump.slot];
+  foot.slot = lump.slot;
+  foot.lump = &lump;
+  const Vec2 p = lump.p + rotate(lump.heading, at);
+  const Floor* const floor = floor_under(k, ground_varies_ ? p : lump.p);
+  const Face ground = floor ? floor->face : Face{.surface = &default_floor};
+  const Vec3 point{p.x, p.y, floor ? floor->z_m : instance.plan->bottom_m};
+  if (floor && instances_[floor->face.slot].created > instance.created)
+    return surfaces_at(foot, ground, point, {0, 0, -1});
+  PairSurface pair = surfaces_at(ground, foot, point, {0, 0, 1});
+  pair.belt_velocity_W_mps = -pair.belt_velocity_W_mps;
+  return pair;
 }
 
 void PlanarEngine::find_ground(std::uint32_t k) {
   const Lump& lump = lumps_[k];
   Instance& instance = instances_[lump.slot];
   const LumpPlan& plan = instance.plan->lumps[lump.index];
-  Rubbing& rubbing = rubbing_[k];
-  rubbing.force_N = rubbing.torque_Nm = 0;
-  const auto floor_at = [&](Vec2 at) -> const model::Surface& {
-    return floor_under(k, low_floors_ ? lump.p + rotate(lump.heading, at) : lump.p);
-  };
+  constexpr Vec3 up{0, 0, 1};
   bool wheeled = false;
   std::size_t caster = 0;
   for (Wheel& wheel : instance.wheels) {
     if (wheel.lump != k) continue;
     wheeled = true;
-    double weight_kg;
-    const model::Surface* surface;
+    double weight_N;
+    Face foot;
+    Vec2 ahead{1, 0};
     if (wheel.plan) {
-      weight_kg = wheel.plan->weight_kg;
-      surface = wheel.plan->surface;
+      const WheelPlan& w = *wheel.plan;
+      weight_N = w.weight_kg * gravity_mps2_;
+      foot = {w.surface, w.collision, lump.slot, instance.model->joints[w.joint].child};
+      ahead = w.rollers ? w.grip : Vec2{w.axle.y, -w.axle.x};
+      if (wheel.steering != none && ground_varies_)
+        ahead = rotate(turn_of(w.steering_sign * joint_states_[wheel.steering].position), ahead);
     } else {
       while (!(plan.supports[caster].surface->mu > 0)) ++caster;
-      weight_kg = plan.supports[caster].weight_kg;
-      surface = plan.supports[caster++].surface;
+      const Support& s = plan.supports[caster++];
+      weight_N = s.weight_kg * gravity_mps2_;
+      foot = {s.surface, s.collision, lump.slot, s.link};
     }
-    wheel.limit_N = std::min(surface->mu, floor_at(wheel.at).mu) * weight_kg * gravity_mps2_;
+    const PairSurface pair = on_ground(k, foot, wheel.at);
+    const Vec2 ahead_W = rotate(lump.heading, ahead);
+    wheel.limit_N = pair.touches ? weight_N * friction_along(pair, up, {ahead_W.x, ahead_W.y, 0}) : 0;
+    wheel.rolling_Nm = pair.touches ? weight_N * pair.rolling_resistance_m : 0;
+    wheel.belt_mps = {pair.belt_velocity_W_mps.x, pair.belt_velocity_W_mps.y};
   }
+  Rubbing& rubbing = rubbing_[k];
+  rubbing = {.impulse = rubbing.impulse, .twist = rubbing.twist};
   if (wheeled) return;
+  Vec2 pull;  // of the belts
   for (const Support& s : plan.supports) {
-    const model::Surface& floor = floor_at(s.at);
+    const PairSurface pair = on_ground(k, {s.surface, s.collision, lump.slot, s.link}, s.at);
+    if (!pair.touches) continue;
     const double weight_N = s.weight_kg * gravity_mps2_;
+    const Vec2 belt{pair.belt_velocity_W_mps.x, pair.belt_velocity_W_mps.y};
     if (plan.rolls) {
       // The torque of rolling resistance slows a homogeneous ball, of which 2/7 of the energy is in its spin.
-      rubbing.force_N = (s.surface->rolling_resistance_m + floor.rolling_resistance_m) * weight_N /
-                        (1.4 * s.ball_radius_m);
+      rubbing.force_N = rubbing.side_N = pair.rolling_resistance_m * weight_N / (1.4 * s.ball_radius_m);
+      rubbing.belt_mps = belt;
       return;
     }
-    const double mu = std::min(s.surface->mu, floor.mu);
-    rubbing.force_N += mu * weight_N;
-    rubbing.torque_Nm += mu * weight_N * s.mean_distance_m;
+    double along = pair.mu, across = pair.mu;
+    if (const Vec2 f{pair.fdir1_W.x, pair.fdir1_W.y}; dot(f, f) > 1e-12) {
+      rubbing.along = (1 / std::sqrt(dot(f, f))) * f;
+      across = pair.mu2;
+    }
+    rubbing.force_N += along * weight_N;
+    rubbing.side_N += across * weight_N;
+    const double mean_N = 0.5 * (along + across) * weight_N;
+    rubbing.torque_Nm += mean_N * s.mean_distance_m;
+    pull = pull + mean_N * belt;
   }
+  if (const double sum = 0.5 * (rubbing.force_N + rubbing.side_N); sum > 0)
+    rubbing.belt_mps = (1 / sum) * pull;
 }
 
 void PlanarEngine::rub(std::uint32_t k, double h_s) {
   Rubbing& r = rubbing_[k];
   Lump& lump = lumps_[k];
-  if (!(r.force_N > 0) || (drives_[lump.slot].active && lump.index == 0)) return;
-  // Without what friction has given so far in this step.
-  Vec2 v = lump.v - lump.inverse_kg * r.impulse;
-  double w = lump.w_radps - lump.inverse_kgm2 * r.twist;
-  const double F = h_s * r.force_N, T = h_s * r.torque_Nm;
-  const double stop_v2 = dot(v, v) / (lump.inverse_kg * lump.inverse_kg * F * F);
-  const double stop_w = T > 0 ? w / (lump.inverse_kgm2 * T) : 0;
-  if (stop_v2 + stop_w * stop_w <= 1) {
-    lump.v = {};
-    if (T > 0) lump.w_radps = w = 0;
-    else lump.w_radps = w;
+  if (!(r.force_N > 0 || r.side_N > 0) || (drives_[lump.slot].active && lump.index == 0)) return;
+  // Against the ground, without what friction has given so far in this step.
+  const Vec2 before = lump.v - lump.inverse_kg * r.impulse, v = before - r.belt_mps, side = left_of(r.along);
+  const double w = lump.w_radps - lump.inverse_kgm2 * r.twist;
+  struct Way {
+    double speed, limit, inverse_mass;
+  } ways[] = {{dot(v, r.along), h_s * r.force_N, lump.inverse_kg},
+              {dot(v, side), h_s * r.side_N, lump.inverse_kg},
+              {w, h_s * r.torque_Nm, lump.inverse_kgm2}};
+  double needed = 0;
+  for (const Way& way : ways)
+    if (way.limit > 0) {
+      const double share = way.speed / (way.inverse_mass * way.limit);
+      needed += share * share;
+    }
+  if (needed <= 1) {
+    for (Way& way : ways)
+      if (way.limit > 0) way.speed = 0;
   } else {
-    // P = -x F^2 v', L = -x T^2 w' with v' = v + P / m, w' = w + L / I: find x so that the ellipsoid holds. The left side
-    // below grows with x and bends down, so Newton's steps from 0 never pass the root.
-    const double fm = F * F * lump.inverse_kg, ti = T * T * lump.inverse_kgm2;
-    const double a = F * F * dot(v, v), b = T * T * w * w;
+    // Impulses -x L^2 u' with u' = u + impulse / m, along each way: find x so that the ellipsoid holds. The left side below
+    // grows with x and bends down, so Newton's steps from 0 never pass the root.
     double x = 0;
     for (int i = 0; i < 50; ++i) {
-      const double p = 1 / (1 + x * fm), q = 1 / (1 + x * ti);
-      const double value = std::sqrt(x * x * (a * p * p + b * q * q));
-      const double slope = value > 0 ? x * (a * p * p * p + b * q * q * q) / value : std::sqrt(a + b);
-      const double step = (1 - value) / slope;
+      double sum = 0, slower = 0;
+      for (const Way& way : ways) {
+        const double p = 1 / (1 + x * way.limit * way.limit * way.inverse_mass),
+                     f = way.limit * way.speed * p;
+        sum += f * f;
+        slower += f * f * p;
+      }
+      const double size = std::sqrt(sum), slope = slower / size, step = (1 - x * size) / slope;
       x += step;
       if (!(step > 1e-14 * x)) break;
     }
-    lump.v = (1 / (1 + x * fm)) * v;
-    lump.w_radps = w / (1 + x * ti);
+    for (Way& way : ways) way.speed /= 1 + x * way.limit * way.limit * way.inverse_mass;
   }
-  const Vec2 impulse = lump.inverse_kg > 0 ? (1 / lump.inverse_kg) * (lump.v - v) : Vec2{};
-  r.impulse = impulse;
-  r.twist = lump.inverse_kgm2 > 0 && T > 0 ? (lump.w_radps - w) / lump.inverse_kgm2 : 0;
+  lump.v = r.belt_mps + ways[0].speed * r.along + ways[1].speed * side;
+  lump.w_radps = ways[2].speed;
+  r.impulse = lump.inverse_kg > 0 ? (1 / lump.inverse_kg) * (lump.v - before) : Vec2{};
+  r.twist = lump.inverse_kgm2 > 0 && r.torque_Nm > 0 ? (lump.w_radps - w) / lump.inverse_kgm2 : 0;
 }
 
 }  // namespace sandlot::planar

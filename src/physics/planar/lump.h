@@ -44,8 +44,11 @@ struct Lump {
 
 /// What the ground does to what slides or rolls on it; fixed until it stands elsewhere.
 struct Rubbing {
-  double force_N = 0;    ///< largest, of a patch that slides without turning
+  double force_N = 0;    ///< largest, of a patch that slides along `along` without turning
+  double side_N = 0;     ///< and across
   double torque_Nm = 0;  ///< largest, of one that turns about the centre of mass
+  Vec2 along{1, 0};      ///< unit
+  Vec2 belt_mps;         ///< velocity of the ground below
   Vec2 impulse;          ///< in this step
   double twist = 0;
 };
@@ -54,9 +57,11 @@ struct Rubbing {
 struct Wheel {
   const WheelPlan* plan = nullptr;  ///< null: a caster
   std::uint32_t lump = none, joint = none, steering = none;
-  Vec2 at;             ///< in the lump's frame
-  double limit_N = 0;  ///< largest friction
-  Vec2 impulse;        ///< ahead and along the axle; with rollers: x along the grip
+  Vec2 at;                ///< in the lump's frame
+  double limit_N = 0;     ///< largest friction
+  double rolling_Nm = 0;  ///< resistance against rolling
+  Vec2 belt_mps;          ///< velocity of the ground below
+  Vec2 impulse;           ///< ahead and along the axle; with rollers: x along the grip
   // Of this step.
   Vec2 ahead, across, arm;              ///< the directions it holds, and where; with rollers the first alone
   double roll_m = 0;                    ///< velocity along `ahead` that a spin of 1 rad/s makes up for
@@ -83,6 +88,17 @@ struct Linkage {
   // Of this step.
   Vec2 arm_a, arm_b, axis;
   double rate_before = 0;
+};
+
+/// Largest friction per normal force along a unit vector across the normal: the radius of an ellipse.
+double friction_along(const PairSurface& pair, Vec3 normal, Vec3 way);
+
+/// One side of a contact, as the law of surfaces and the user's rule see it.
+struct Face {
+  const model::Surface* surface = nullptr;
+  const model::Collision* collision = nullptr;  ///< null: the rule is not asked
+  std::uint32_t slot = none, link = 0;
+  const Lump* lump = nullptr;  ///< null: it stands still
 };
 
 /// Orders contacts, and finds them again in the next step.

@@ -41,7 +41,8 @@ struct Wall {
   std::uint32_t body = no_body;
   std::uint32_t instance = ~0u;  ///< slot
   std::uint32_t ordinal = 0;     ///< among those of its instance
-  const model::Surface* surface = nullptr;
+  const model::Collision* collision = nullptr;
+  std::uint32_t link = 0;  ///< of its instance
 };
 
 class Map {

@@ -20,15 +20,6 @@ Turn heading_of(Quat q, Quat& tilt) {
   return tidied({w * w - z * z, 2 * w * z});
 }
 
-Quat about_z(Turn t) {
-  if (t.c >= 0) {
-    const double w = std::sqrt(0.5 * (1 + t.c));
-    return {w, 0, 0, 0.5 * t.s / w};
-  }
-  const double z = std::copysign(std::sqrt(0.5 * (1 - t.c)), t.s);
-  return {0.5 * t.s / z, 0, 0, z};
-}
-
 bool same(Quat a, Quat b) {
   const Quat d = conjugate(a) * b;
   return d.x * d.x + d.y * d.y + d.z * d.z < 1e-18;

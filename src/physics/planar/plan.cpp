@@ -78,7 +78,8 @@ struct Builder {
   }
 
   /// Radius and surface of the round shape with which a link rolls about this joint's axis; 0: it does not.
-  double tyre(const model::Joint& j, const model::Surface*& surface) const {
+  double tyre(const model::Joint& j, const model::Surface*& surface,
+              const model::Collision** collision = nullptr) const {
     const Vec3 axis = axis_H(j), origin = origin_H(j);
     if (std::abs(axis.z) > 0.05) return 0;
     const auto reaches = [&](double radius) {
@@ -99,6 +100,7 @@ struct Builder {
       else if (const auto* pill = std::get_if<Capsule>(&c.shape); pill && along) radius = pill->radius_m;
       if (!(radius > 0) || !reaches(radius)) continue;
       surface = &c.surface;
+      if (collision) *collision = &c;
       return radius;
     }
     return 0;
@@ -150,9 +152,12 @@ struct Builder {
       const model::Surface* surface = nullptr;
       const double sign = branch.outwards ? 1 : -1;
       if (turns(j) && branch.outwards) {
-        if (const double radius = tyre(j, surface); radius > 0) {
+        const model::Collision* collision = nullptr;
+        if (const double radius = tyre(j, surface, &collision); radius > 0) {
           below_wheel[branch.link] = true;
           add_wheel(branch.joint, lump, steering[branch.link], radius, surface);
+          plan.wheels.back().collision = collision;
+          plan.plain = plan.plain && is_plain(*surface);
           continue;
         }
       }
@@ -297,7 +302,8 @@ struct Builder {
     if (below_wheel[link] || !collision.surface.touches) return;
     const Heights h = heights_of(collision.shape, X);
     if (h.empty() || h.min_m > plan.bottom_m + ground_tolerance_m) return;
-    Support s{.at = {X.p.x, X.p.y}, .surface = &collision.surface};
+    Support s{.at = {X.p.x, X.p.y}, .surface = &collision.surface, .collision = &collision, .link = link};
+    plan.plain = plan.plain && is_plain(collision.surface);
     const Vec3 axis = rotate(X.q, {0, 0, 1});
     if (const auto* ball = std::get_if<Sphere>(&collision.shape)) {
       s.ball_radius_m = ball->radius_m;

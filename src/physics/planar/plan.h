@@ -21,6 +21,11 @@
 
 namespace sandlot::planar {
 
+/// True where friction is the same in all directions and nothing moves but the body.
+inline bool is_plain(const model::Surface& s) {
+  return s.fdir1 == Vec3{} && !s.skin && s.belt_velocity_mps == Vec3{};
+}
+
 /// A part of a lump's outline, in the lump's frame.
 struct Part {
   Outline outline;
@@ -37,6 +42,8 @@ struct Support {
   double ball_radius_m = 0;    ///< > 0: a sphere
   double mean_distance_m = 0;  ///< of the patch from the lump's centre of mass
   const model::Surface* surface = nullptr;
+  const model::Collision* collision = nullptr;
+  std::uint32_t link = 0;
 };
 
 struct LumpPlan {
@@ -67,7 +74,8 @@ struct WheelPlan {
   bool rollers = false;
   Vec2 grip;  ///< of a wheel with rollers: the only direction it holds, along the roller on the ground
   const model::Surface* surface = nullptr;
-  double bearing_Nm = 0;  ///< of the rollers
+  const model::Collision* collision = nullptr;  ///< null: rollers
+  double bearing_Nm = 0;                        ///< of the rollers
 };
 
 /// A joint between lumps, or one that steers.
@@ -88,6 +96,7 @@ struct Plan {
   std::vector<LinkagePlan> linkages;
   std::vector<Pose> X_HL;  ///< of the links at joint positions 0
   double bottom_m = 0;     ///< lowest point of all shapes
+  bool plain = true;       ///< all that stands on the ground is so
 };
 
 /// @param tilt, z_m  of the canonical link at heading 0

@@ -317,14 +317,14 @@ void PlanarEngine::refresh_walls() const {
         const Pose X_WC = X_WM * link.X_ML * collision.X_LC;
         add_outlines(collision.shape, X_WC, outlines, edges);
         const bool upright = std::abs(rotate(X_WC.q, {0, 0, 1}).z) > 0.999;
-        if (std::holds_alternative<Plane>(collision.shape)) floors_.push_back({X_WC.p.z, &collision.surface});
+        const Face face{&collision.surface, &collision, slot, static_cast<std::uint32_t>(i)};
+        if (std::holds_alternative<Plane>(collision.shape)) floors_.push_back({X_WC.p.z, face});
         else if (upright && outlines.size() == 1 &&
                  (std::holds_alternative<Box>(collision.shape) ||
                   std::holds_alternative<Cylinder>(collision.shape)))
-          floors_.push_back(
-              {outlines[0].heights.max_m, &collision.surface, static_cast<std::uint32_t>(walls.size())});
+          floors_.push_back({outlines[0].heights.max_m, face, static_cast<std::uint32_t>(walls.size())});
         for (const Outline& outline : outlines)
-          walls.push_back({outline, instance.bodies[i].index, slot, ordinal++, &collision.surface});
+          walls.push_back({outline, instance.bodies[i].index, slot, ordinal++, &collision, face.link});
       }
     }
   }
@@ -360,22 +360,6 @@ void PlanarEngine::refresh_links() const {
       instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }
   links_fresh_.store(true, std::memory_order_release);
-}
-
-Status PlanarEngine::check_finite() const {
-  for (const std::uint32_t slot : order_) {
-    double sum = instances_[slot].z_m;
-    for (const std::uint32_t k : instances_[slot].lumps) {
-      const Lump& b = lumps_[k];
-      sum += b.p.x + b.p.y + b.heading.c + b.heading.s + b.v.x + b.v.y + b.w_radps;
-    }
-    for (const JointId joint : instances_[slot].joints)
-      sum += joint_states_[joint.index].position + joint_states_[joint.index].velocity;
-    if (!std::isfinite(sum))
-      return Error{"the state of '" + instances_[slot].name + "/" + instances_[slot].model->links[0].name +
-                   "' is no longer finite"};
-  }
-  return {};
 }
 
 EngineCounters PlanarEngine::counters() const {

@@ -7,7 +7,12 @@
 /// Paths    an instance with a motion pushes and is not pushed, not even by walls.
 /// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's cradle
 ///          works), then sequential impulses with warm start hold bodies apart with Coulomb friction; overlap beyond
-///          0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp). Surfaces combine as in the 3D engine.
+///          0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp).
+/// Surface  combined by the law of all engines (pair_surface.h), zones and the user's rule included; the rule may be asked
+///          by several threads at once, and sees all joints at 0. Of a pair count: friction along the tangent, belts,
+///          restitution, and on the ground the two directions of friction and rolling resistance. Slip, softness and
+///          correction have no meaning: bodies are hard. So of a substance only the roughness counts (mu = r1 r2), and it
+///          does not bounce. A support stands on the zone or belt below its middle; several belts pull at their mean.
 /// Fast     a body that could pass something in a step moves in pieces from impact to impact; the rest of the step is
 ///          lost after 24 of them.
 /// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an ellipsoidal limit
@@ -27,6 +32,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "physics/pair_surface.h"
 #include "physics/planar/lump.h"
 
 namespace sandlot::planar {
@@ -35,6 +41,7 @@ struct Spec {
   double cell_m = 0.5;
   double clearance_m = 0.005;
   int iterations = 12;
+  double max_speed_mps = 1e4, max_spin_radps = 1e5;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"cell_size", "m",
@@ -44,6 +51,9 @@ struct Spec {
           s.clearance_m);
     visit(Field{"iterations", "", "Passes over the contacts of an island in each sub-step.", 1, 1000},
           s.iterations);
+    visit(Field{"max_speed", "m/s", "A faster body has exploded: the run ends and names it.", 1e-3, 1e9},
+          s.max_speed_mps);
+    visit(Field{"max_spin", "rad/s", "A body that turns faster has exploded.", 1e-3, 1e9}, s.max_spin_radps);
   }
 };
 
@@ -72,6 +82,8 @@ class PlanarEngine final : public Engine, private RayCaster {
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_rolls(std::span<const RollTarget> targets) override;
   void set_grips(std::span<const GripTarget> targets) override;
+  void set_zones(std::span<const model::SurfaceZone> zones) override;
+  void set_contact_rule(ContactRule rule) override;
   void step(double h_s, std::uint64_t stream_key) override;
   Status check_finite() const override;
   void save(InstanceId id, ByteWriter& w) const override;
@@ -87,7 +99,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   /// A flat place to stand on.
   struct Floor {
     double z_m = 0;
-    const model::Surface* surface = nullptr;
+    Face face;
     std::uint32_t wall = none;  ///< whose top it is; none: it has no end
   };
 
@@ -113,6 +125,13 @@ class PlanarEngine final : public Engine, private RayCaster {
   void refresh_map() const;
   void refresh_links() const;
   void stale() { map_fresh_ = links_fresh_ = rolls_fresh_ = false; }
+
+  // surfaces.cpp
+  PairSurface surfaces_at(const Face& a, const Face& b, Vec3 point_W, Vec3 normal_W) const;
+  Pose pose_of(const Face& face) const;
+  void explode(std::uint32_t lump, Vec2 v, double w_radps);
+  double excess(Vec2 v, double w_radps) const;
+  Error exploded(std::uint32_t lump, Vec2 v, double w_radps) const;
 
   // rolls.cpp
   void refresh_rolls() const;
@@ -155,7 +174,8 @@ class PlanarEngine final : public Engine, private RayCaster {
 
   // ground.cpp, wheels.cpp, linkages.cpp
   void find_ground(std::uint32_t lump);
-  const model::Surface& floor_under(std::uint32_t lump, Vec2 at_W) const;
+  const Floor* floor_under(std::uint32_t lump, Vec2 at_W) const;
+  PairSurface on_ground(std::uint32_t lump, Face foot, Vec2 at) const;
   void rub(std::uint32_t lump, double h_s);
   void prepare_wheels(std::uint32_t slot, double h_s);
   double turn_wheels(std::uint32_t slot, double h_s);
@@ -202,7 +222,16 @@ class PlanarEngine final : public Engine, private RayCaster {
   mutable std::vector<JointState> joint_states_;
   mutable std::vector<Floor> floors_;
   mutable bool ground_fresh_ = false;
-  bool low_floors_ = false;  ///< some floor has an end, so what stands under a body changes as it moves
+  bool ground_varies_ = false;  ///< what stands under a body, or how, changes as it moves
+  ZoneMap zones_;
+  ContactRule rule_;
+  struct Explosion {
+    double excess = 0;
+    std::uint32_t lump = none;
+    Vec2 v;
+    double w_radps = 0;
+  } explosion_;  ///< the worst of a step that is not made
+  std::optional<Error> failure_;
 
   // Broad phase: superset of what can touch until somebody has come far.
   Cells cells_;

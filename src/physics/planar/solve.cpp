@@ -73,7 +73,7 @@ void PlanarEngine::bounce(std::span<Touch> touches) {
     const Ends e = ends(lumps_, t);
     const Vec2 tangent = left_of(t.normal);
     const double most = t.mu * normal_Ns;
-    const double j = std::clamp(-t.tangent_kg * dot(e.apart(t), tangent), -most, most);
+    const double j = std::clamp(-t.tangent_kg * (dot(e.apart(t), tangent) + t.belt_mps), -most, most);
     e.push(t, j * tangent);
     t.bounce_tangent_Ns += j;
   };
@@ -129,7 +129,8 @@ void PlanarEngine::hold_apart(std::span<Touch> touches) {
     const Vec2 tangent = left_of(t.normal);
     if (t.mu > 0) {
       const double most = t.mu * t.normal_Ns;
-      const double j = std::clamp(t.tangent_Ns - t.tangent_kg * dot(e.apart(t), tangent), -most, most);
+      const double j = std::clamp(t.tangent_Ns - t.tangent_kg * (dot(e.apart(t), tangent) + t.belt_mps),
+                                  -most, most);
       e.push(t, (j - t.tangent_Ns) * tangent);
       t.tangent_Ns = j;
     }

@@ -159,6 +159,8 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
     instance.linkages[i].hold = linkages[i].hold, instance.linkages[i].turn = linkages[i].turn;
   for (const std::uint32_t k : instance.lumps) { place_disc(k); }
   filed_ = ground_fresh_ = false;
+  failure_.reset();
+  explosion_ = {};
   stale();
   return load_touches(id.index, r);
 }

@@ -25,17 +25,27 @@ void for_each(std::size_t count, std::size_t grain, Work&& work) {
 }  // namespace
 
 void PlanarEngine::step(double h_s, std::uint64_t) {
-  if (!(h_s > 0)) return;
+  if (!(h_s > 0) || failure_) return;
   refresh_walls();
   for_each(order_.size(), 512, [&](std::size_t i) { begin(order_[i], h_s); });
-  if (!ground_fresh_ || low_floors_) {
+  if (explosion_.lump != none) {
+    failure_ = exploded(explosion_.lump, explosion_.v, explosion_.w_radps);
+    return;
+  }
+  if (!ground_fresh_ || ground_varies_) {
     if (!ground_fresh_) {
       double highest = 0;
       for (const std::uint32_t slot : order_)
         if (instances_[slot].moves) highest = std::max(highest, instances_[slot].plan->bottom_m);
-      low_floors_ = std::any_of(floors_.begin(), floors_.end(), [&](const Floor& f) {
-        return f.wall != none && f.z_m <= highest + spec_.clearance_m;
-      });
+      ground_varies_ = !zones_.empty() || rule_ ||
+                       std::any_of(order_.begin(), order_.end(),
+                                   [&](std::uint32_t slot) {
+                                     return instances_[slot].moves && !instances_[slot].plan->plain;
+                                   }) ||
+                       std::any_of(floors_.begin(), floors_.end(), [&](const Floor& f) {
+                         return (f.wall != none || !is_plain(*f.face.surface)) &&
+                                f.z_m <= highest + spec_.clearance_m;
+                       });
     }
     for_each(lumps_.size(), 512, [&](std::size_t k) {
       if (lumps_[k].slot != none) find_ground(static_cast<std::uint32_t>(k));
@@ -71,8 +81,14 @@ void PlanarEngine::begin(std::uint32_t slot, double h_s) {
     for (const std::uint32_t k : instance.lumps) {
       Lump& lump = lumps_[k];
       if (lump.force_N == Vec2{} && lump.torque_Nm == 0) continue;
-      lump.v = lump.v + (h_s * lump.inverse_kg) * lump.force_N;
-      lump.w_radps += h_s * lump.inverse_kgm2 * lump.torque_Nm;
+      const Vec2 v = lump.v + (h_s * lump.inverse_kg) * lump.force_N;
+      const double w = lump.w_radps + h_s * lump.inverse_kgm2 * lump.torque_Nm;
+      if (excess(v, w) > 1) {
+        explode(k, v, w);
+        continue;
+      }
+      lump.v = v;
+      lump.w_radps = w;
       lump.force_N = {};
       lump.torque_Nm = 0;
       pushed = true;
@@ -85,10 +101,19 @@ void PlanarEngine::begin(std::uint32_t slot, double h_s) {
             rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
             lump.w_radps};
       }
+      Lump& lump = lumps_[instance.lumps[0]];
+      const Twist had = drive.now;
+      const Vec2 v = lump.v;
+      const double w = lump.w_radps;
       plan_drive(slot, h_s);
+      if (excess(lump.v, lump.w_radps) > 1) {
+        explode(instance.lumps[0], lump.v, lump.w_radps);
+        drive.now = had, lump.v = v, lump.w_radps = w;
+      }
     }
   }
   for (const std::uint32_t k : instance.lumps) {
+    if (excess(lumps_[k].v, lumps_[k].w_radps) > 1) explode(k, lumps_[k].v, lumps_[k].w_radps);
     lumps_[k].reach_m = reach(lumps_[k], h_s);
     rubbing_[k].impulse = {};
     rubbing_[k].twist = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "geometry/pose.h"
 
 namespace sandlot::planar {
 
@@ -65,6 +66,15 @@ inline Turn turn_of(double rad) {
     case 2: return {-t.c, -t.s};
     default: return {t.s, -t.c};
   }
+}
+
+inline Quat about_z(Turn t) {
+  if (t.c >= 0) {
+    const double w = std::sqrt(0.5 * (1 + t.c));
+    return {w, 0, 0, 0.5 * t.s / w};
+  }
+  const double z = std::copysign(std::sqrt(0.5 * (1 - t.c)), t.s);
+  return {0.5 * t.s / z, 0, 0, z};
 }
 
 /// Brings a turn that rounding has left off unit length back to it (one Newton step).

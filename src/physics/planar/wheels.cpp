@@ -5,7 +5,7 @@
 //
 //   u = v + w x arm - r s e          along e and along a;  with rollers along the roller's axis g alone: u . g
 //
-// and the ground answers with an impulse j, |j| <= mu N h: the one that makes u vanish, or on the cone against the u that
+// (less the velocity of a belt below) and the ground answers with an impulse j, |j| <= mu N h: the one that makes u vanish, or on the cone against the u that
 // is left. For one wheel this is exact: (K + x I) j = -u with K what velocity an impulse brings, x = 0 for a wheel that
 // grips, else the x that puts j on the cone (J. More, D. Sorensen, Computing a trust region step, 1983). The spin is
 // eliminated: it follows from j and the motor, damping and friction of its axle, all acting on the spin at the end of the
@@ -152,6 +152,7 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
       ahead = rotate(steered, plan.rollers ? plan.grip : forward);
       wheel.roll_m = plan.radius_m * (plan.rollers ? dot(plan.grip, forward) : 1);
       wheel.axle = axle_of(motors_[wheel.joint], joint_states_[wheel.joint], plan.inertia_kgm2, h_s);
+      wheel.axle.friction += h_s * wheel.rolling_Nm;
     }
     if (wheel.plan && wheel.plan->rollers) wheel.impulse.y = 0;
     const double size = std::sqrt(dot(wheel.impulse, wheel.impulse)), most = h_s * wheel.limit_N;
@@ -190,7 +191,7 @@ double PlanarEngine::turn_wheels(std::uint32_t slot, double h_s) {
     if (!(most > 0)) continue;
     Lump& lump = lumps_[wheel.lump];
     const bool one_way = wheel.plan && wheel.plan->rollers;
-    const Vec2 v = lump.velocity_at(wheel.arm), before = wheel.impulse;
+    const Vec2 v = lump.velocity_at(wheel.arm) - wheel.belt_mps, before = wheel.impulse;
     const double va = dot(v, wheel.ahead), vc = one_way ? 0 : dot(v, wheel.across);
     Vec2 j = before;
     double held = -1;

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "physics/engine.h"
+#include "physics/exploded.h"
 #include "physics/pair_surface.h"
 #include "physics/rigid/parts.h"
 #include "physics/rigid/spec.h"
@@ -29,9 +30,6 @@
 namespace sandlot::rigid {
 
 extern const EngineKind engine;
-
-/// What to do about a run that has blown up.
-inline constexpr const char* remedy = "a smaller time step, or less extreme masses, forces and speeds";
 
 class RigidEngine final : public Engine {
  public:

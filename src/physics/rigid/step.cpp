@@ -12,7 +12,7 @@
 
 #include "base/check.h"
 #include "base/math.h"
-#include "base/text.h"
+
 #include "physics/rigid/drive.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
@@ -270,17 +270,9 @@ bool RigidEngine::nobody_exploded() {
   const Instance& instance = *worst->instance;
   std::size_t link = 0;
   while (instance.links[link].body != worst) ++link;
-  const std::string name = "'" + instance.name + "/" + instance.model->links[link].name + "'";
-  if (worst_excess == std::numeric_limits<double>::infinity())
-    return fail({"the state of " + name + " is no longer finite", remedy}), false;
-  const bool runs = speed > spec_.max_speed_mps;
-  fail({name + " has exploded: it " +
-            (runs ? "moves at " + number_text(std::round(speed)) + " m/s, above max_speed, " +
-                        number_text(spec_.max_speed_mps) + " m/s"
-                  : "turns at " + number_text(std::round(spin)) + " rad/s, above max_spin, " +
-                        number_text(spec_.max_spin_radps) + " rad/s"),
-        std::string(remedy) + "; if it is meant to be that fast, raise physics." +
-            (runs ? "max_speed" : "max_spin")});
+  const std::string name = instance.name + "/" + instance.model->links[link].name;
+  if (worst_excess == std::numeric_limits<double>::infinity()) fail(not_finite(name));
+  else fail(exploded(name, {speed, spec_.max_speed_mps}, {spin, spec_.max_spin_radps}));
   return false;
 }
 
