@@ -176,10 +176,16 @@ double PlanarEngine::impact(const Candidate& c, double h_s) const {
   const Vec2 va = a.moving ? a.moving->v : Vec2{}, vb = b.moving ? b.moving->v : Vec2{};
   const Vec2 path = h_s * (vb - va);
   const double length = std::sqrt(dot(path, path));
-  if (!(length > 0.25 * std::min(core(a), core(b)))) return 1;
+  const auto turning = [&](const Side& s) {
+    return s.moving && s.moving->figure != none ? h_s * std::abs(s.moving->w_radps) * s.disc->radius_m : 0;
+  };
+  const double turned = turning(a) + turning(b), least = 0.25 * std::min(core(a), core(b));
+  if (!(length > least || turned > least)) return 1;
   double first = 1;
-  for_parts(a, b, length, spec_.clearance_m, [&](std::uint32_t, std::uint32_t, Figure x, Figure y) {
-    first = std::min(first, time_of_impact(x, y, path, impact_gap_m));
+  for_parts(a, b, length + turned, spec_.clearance_m, [&](std::uint32_t, std::uint32_t, Figure x, Figure y) {
+    if (length > least) first = std::min(first, time_of_impact(x, y, path, impact_gap_m));
+    // Who turns fast comes no farther than the gap at a time, or than what contacts look ahead.
+    if (turned > least) first = std::min(first, std::max(separation(x, y).gap_m, least) / (length + turned));
   });
   return first;
 }

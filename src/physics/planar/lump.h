@@ -32,6 +32,7 @@ struct Lump {
   std::uint32_t figure = none;              ///< none: a circle
   double reach_share_m = 0;                 ///< how far it may come in a step beside twice its speed
   double reach_m = 0;                       ///< and altogether
+  double left_m = 0;                        ///< what is left of that in this step
   Vec2 force_N;                             ///< of wrenches, consumed by the next step
   double torque_Nm = 0;
 

@@ -13,7 +13,7 @@
 ///          restitution, and on the ground the two directions of friction and rolling resistance. Slip, softness and
 ///          correction have no meaning: bodies are hard. So of a substance only the roughness counts (mu = r1 r2), and it
 ///          does not bounce. A support stands on the zone or belt below its middle; several belts pull at their mean.
-/// Fast     a body that could pass something in a step moves in pieces from impact to impact; the rest of the step is
+/// Fast     a body that could pass something in a step, or turn into it, moves in pieces from impact to impact; the rest of the step is
 ///          lost after 24 of them.
 /// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an ellipsoidal limit
 ///          surface; one sphere rolls, held by rolling resistance alone (ground.cpp). Without a floor: a surface with mu 1.
@@ -24,7 +24,7 @@
 ///          the way that the base went, when asked for (rolls.cpp).
 /// Joints   pivots and sliders between lumps of an instance, with motor, limits, friction and spring; steering. All
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
-/// Limits   turning is not swept: long bodies that spin fast may cut into others, and are pushed out. A ball that is hit
+/// Limits   a ball that is hit
 ///          rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does accelerating shift weight.
 ///          Steering does not feel the ground. Kinematic joints do not change outlines.
 /// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads there are.
@@ -94,7 +94,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   struct Island {
     std::uint32_t first_lump = 0, lumps = 0, first_candidate = 0, candidates = 0, first_linkage = 0,
                   linkages = 0;
-    std::vector<Touch> touches;  ///< kept from step to step so that they need no heap
+    std::vector<Touch> touches, turned;  ///< kept from step to step so that they need no heap
   };
   /// A flat place to stand on.
   struct Floor {
@@ -166,9 +166,9 @@ class PlanarEngine final : public Engine, private RayCaster {
   void solve(Island& island, double h_s);
   void bounce(std::span<Touch> touches);
   void prepare(Touch& t, double h_s, bool warm);
-  void hold_apart(std::span<Touch> touches);
+  double hold_apart(std::span<Touch> touches);
   double advance_island(const Island& island, double h_s);
-  void take_back(const Island& island, std::span<Touch> touches);
+  void take_back(Island& island, double h_s);
   void move(std::uint32_t lump, double h_s);
   void move_alone(std::uint32_t lump, double h_s);
 

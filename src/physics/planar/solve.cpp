@@ -16,6 +16,10 @@ namespace sandlot::planar {
 namespace {
 
 constexpr double slop_m = 1e-4, most_back_m = 2e-3, share_back = 0.3;
+/// Passes go on while one of them still changes by more than this how far somebody comes in the step, but not for ever: a
+/// heavy body takes many to hold a light one against a wall.
+constexpr double settled_m = 1e-5;
+constexpr int most_times_passes = 20;
 constexpr int bounce_passes = 200, back_passes = 4, most_impacts = 24;
 
 double effective_kg(const Lump* a, const Lump* b, Vec2 arm_a, Vec2 arm_b, Vec2 along) {
@@ -123,7 +127,9 @@ void PlanarEngine::bounce(std::span<Touch> touches) {
   }
 }
 
-void PlanarEngine::hold_apart(std::span<Touch> touches) {
+/// One pass. @return the largest change of velocity along a normal
+double PlanarEngine::hold_apart(std::span<Touch> touches) {
+  double change = 0;
   for (Touch& t : touches) {
     const Ends e = ends(lumps_, t);
     const Vec2 tangent = left_of(t.normal);
@@ -136,8 +142,10 @@ void PlanarEngine::hold_apart(std::span<Touch> touches) {
     }
     const double j = std::max(0.0, t.normal_Ns - t.normal_kg * (dot(e.apart(t), t.normal) - t.bias_mps));
     e.push(t, (j - t.normal_Ns) * t.normal);
+    if (t.normal_kg > 0) change = std::max(change, std::abs(j - t.normal_Ns) / t.normal_kg);
     t.normal_Ns = j;
   }
+  return change;
 }
 
 void PlanarEngine::solve(Island& island, double h_s) {
@@ -155,11 +163,13 @@ void PlanarEngine::solve(Island& island, double h_s) {
   each_instance([&](std::uint32_t slot) { prepare_wheels(slot, h_s); });
   // A row of joints takes as many passes as it is long.
   const int passes = spec_.iterations + 2 * static_cast<int>(std::min<std::size_t>(linkages.size(), 30));
-  for (int pass = 0; pass < passes; ++pass) {
+  double change = 0;
+  for (int pass = 0; pass < passes || (change * h_s > settled_m && pass < most_times_passes * passes);
+       ++pass) {
     for (Linkage* l : linkages) hold_linkage(*l, h_s);
     each_instance([&](std::uint32_t slot) { turn_wheels(slot, h_s); });
     for (const std::uint32_t k : lumps) rub(k, h_s);
-    hold_apart(touches);
+    change = hold_apart(touches);
   }
   each_instance([&](std::uint32_t slot) { finish_wheels(slot, h_s); });
 
@@ -174,12 +184,14 @@ void PlanarEngine::solve(Island& island, double h_s) {
       collide(island_candidates_[island.first_candidate + i], left_s, touches);
     for (Touch& t : touches) prepare(t, left_s, false);
     bounce(touches);
-    for (int pass = 0; pass < spec_.iterations; ++pass) {
+    for (int pass = 0; pass < spec_.iterations ||
+                       (change * left_s > settled_m && pass < most_times_passes * spec_.iterations);
+         ++pass) {
       for (Linkage* l : linkages) hold_linkage(*l, h_s);
-      hold_apart(touches);
+      change = hold_apart(touches);
     }
   }
-  take_back(island, touches);
+  take_back(island, h_s);
   for (Linkage* l : linkages) finish_linkage(*l, h_s);
   each_instance([&](std::uint32_t slot) {
     if (drives_[slot].active) finish_drive(slot, h_s);
@@ -198,8 +210,10 @@ double PlanarEngine::advance_island(const Island& island, double h_s) {
 void PlanarEngine::move(std::uint32_t k, double h_s) {
   Lump& lump = lumps_[k];
   Vec2 way = h_s * lump.v;
-  const double square = dot(way, way);
-  if (square > lump.reach_m * lump.reach_m) way = (lump.reach_m / std::sqrt(square)) * way;
+  // Nobody leaves what the broad phase has looked at, whatever he is hit by on the way.
+  double length = std::sqrt(dot(way, way));
+  if (length > lump.left_m) way = (lump.left_m / length) * way, length = lump.left_m;
+  lump.left_m -= length;
   lump.p = lump.p + way;
   if (lump.w_radps != 0) {
     const Turn half = turn_of(0.5 * lump.w_radps * h_s);
@@ -208,7 +222,22 @@ void PlanarEngine::move(std::uint32_t k, double h_s) {
   place_disc(k);
 }
 
-void PlanarEngine::take_back(const Island& island, std::span<Touch> touches) {
+void PlanarEngine::take_back(Island& island, double h_s) {
+  // The points of who has turned far are no longer those where he touches.
+  const bool turned_far = std::any_of(island_lumps_.begin() + island.first_lump,
+                                      island_lumps_.begin() + island.first_lump + island.lumps,
+                                      [&](std::uint32_t k) {
+                                        const double angle = h_s * lumps_[k].w_radps;
+                                        return 0.5 * angle * angle * map_.discs()[k].radius_m > slop_m;
+                                      });
+  std::span<Touch> touches = island.touches;
+  if (turned_far) {
+    island.turned.clear();
+    for (std::uint32_t i = 0; i < island.candidates; ++i)
+      collide(island_candidates_[island.first_candidate + i], 0, island.turned);
+    for (Touch& t : island.turned) prepare(t, h_s, false);
+    touches = island.turned;
+  }
   const std::span<Linkage* const> linkages(sorted_linkages_.data() + island.first_linkage, island.linkages);
   const auto turned = [](const Lump& lump, Turn before, Vec2 arm) {
     return rotate(lump.heading, rotate_back(before, arm));

@@ -114,7 +114,7 @@ void PlanarEngine::begin(std::uint32_t slot, double h_s) {
   }
   for (const std::uint32_t k : instance.lumps) {
     if (excess(lumps_[k].v, lumps_[k].w_radps) > 1) explode(k, lumps_[k].v, lumps_[k].w_radps);
-    lumps_[k].reach_m = reach(lumps_[k], h_s);
+    lumps_[k].left_m = lumps_[k].reach_m = reach(lumps_[k], h_s);
     rubbing_[k].impulse = {};
     rubbing_[k].twist = 0;
   }
@@ -314,7 +314,10 @@ void PlanarEngine::find_islands(double h_s) {
                      : instances_[lumps_[k].slot].plan->lumps[lumps_[k].index].core_m;
   };
   const auto way = [&](std::uint32_t k) {
-    return k == none ? 0 : lumps_[k].reach_m - lumps_[k].reach_share_m;
+    if (k == none) return 0.0;
+    const Lump& lump = lumps_[k];
+    const double turned = lump.figure == none ? 0 : h_s * std::abs(lump.w_radps) * map_.discs()[k].radius_m;
+    return lump.reach_m - lump.reach_share_m + turned;
   };
   for (int pass = 0; pass < 2; ++pass) {
     fastest_.assign(count, 0);
