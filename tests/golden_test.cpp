@@ -28,7 +28,7 @@ constexpr Golden goldens[] = {
     {"scenarios/creatures.yaml --duration 5s", "85cacfa7ca883f9a"},
     {"scenarios/wheels.yaml --duration 8s", "bda01d56cdbbda27"},
     {"scenarios/wheels.yaml --duration 20s --set level2=ideal --set level3=ideal --set physics=planar",
-     "808a947d46f83630"},
+     "912e822c522d3cf2"},
     {"scenarios/materials.yaml --duration 10s", "9c38c2a0c26c86f3"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
