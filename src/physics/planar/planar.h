@@ -13,8 +13,8 @@
 ///          restitution, and on the ground the two directions of friction and rolling resistance. Slip, softness and
 ///          correction have no meaning: bodies are hard. So of a substance only the roughness counts (mu = r1 r2), and it
 ///          does not bounce. A support stands on the zone or belt below its middle; several belts pull at their mean.
-/// Fast     a body that could pass something in a step, or turn into it, moves in pieces from impact to impact; the rest of the step is
-///          lost after 24 of them.
+/// Fast     a body that could pass something in a step, or turn into it, moves in pieces from impact to impact; the rest of
+///          the step is lost after 24 of them.
 /// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an ellipsoidal limit
 ///          surface; one sphere rolls, held by rolling resistance alone (ground.cpp). Without a floor: a surface with mu 1.
 /// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along and across
@@ -24,8 +24,8 @@
 ///          the way that the base went, when asked for (rolls.cpp).
 /// Joints   pivots and sliders between lumps of an instance, with motor, limits, friction and spring; steering. All
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
-/// Limits   a ball that is hit
-///          rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does accelerating shift weight.
+/// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does
+///          accelerating shift weight.
 ///          Steering does not feel the ground. Kinematic joints do not change outlines.
 /// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads there are.
 #include <array>
