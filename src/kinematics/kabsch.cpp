@@ -58,7 +58,8 @@ Estimate rolled(std::span<const Wheel> wheels, std::span<const double> turns) {
   RigidFit found;
   for (int pass = 0; pass < 3; ++pass) {
     const double half = 0.5 * found.turn_rad, shrink = sinc(half);
-    const auto [s, c] = math::sincos(half);
+    const math::SinCos turned = math::sincos(half);
+    const double s = turned.sin, c = turned.cos;
     found = fit(n, [&](std::size_t k) {
       const Wheel& w = wheels[counted[k]];
       const double chord = shrink * w.radius_m * turns[counted[k]];

@@ -17,7 +17,7 @@ double speed_after_1s(double slope_rad, double direction_rad, double h_s) {
   w.add(test::ground(surface(0.5)));
   const InstanceId id = w.add(
       test::body_of("block", Box{{0.3, 0.3, 0.1}}, 2, {{0, 0, 0.05}, {}}, surface(0.5), true));
-  w.run(static_cast<int>(1 / h_s + 0.5), h_s);
+  w.run(static_cast<int>(std::lround(1 / h_s)), h_s);
   return norm(w.state(id).V_WB.linear);
 }
 

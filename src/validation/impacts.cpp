@@ -60,7 +60,7 @@ void bouncing(Section& s) {
     const InstanceId id = w.add(ball("ball", {0, 0, ball_m + 1}, ball_kg, e, 0.5));
     std::vector<double> heights_m, tops_m;
     bool rising = false;
-    const int steps = static_cast<int>(2.0 / h_s + 0.5);
+    const int steps = static_cast<int>(std::lround(2.0 / h_s));
     for (int i = 0; i < steps; ++i) {
       const double before_m = w.state(id).X_WB.p.z;
       w.run(1, h_s);

@@ -1,9 +1,9 @@
 #pragma once
 /// The state of the planar engine's bodies and of what holds and drives them, as its files share it.
-#include <compare>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -108,7 +108,11 @@ struct TouchKey {
   std::uint32_t lumps = 0;               ///< of the older << 16 | of the younger
   std::uint32_t part_a = 0, part_b = 0;  ///< of a wall: which of its instance's
   std::uint32_t feature = 0;
-  friend constexpr auto operator<=>(const TouchKey&, const TouchKey&) = default;
+  friend constexpr bool operator==(const TouchKey&, const TouchKey&) = default;
+  friend constexpr bool operator<(const TouchKey& a, const TouchKey& b) {
+    return std::tie(a.pair, a.lumps, a.part_a, a.part_b, a.feature) <
+           std::tie(b.pair, b.lumps, b.part_a, b.part_b, b.feature);
+  }
 };
 
 /// What may come to touch: two lumps, or a lump and a wall.

@@ -104,7 +104,7 @@ struct Rig : World {
               .velocity = wheel_speed(mounts[k], vx, vy, wz),
               .max_effort = 2});
   }
-  void run_s(double seconds) { run(static_cast<int>(seconds / h + 0.5), h); }
+  void run_s(double seconds) { run(static_cast<int>(std::lround(seconds / h)), h); }
   double yaw() const { return yaw_of(state(robot).X_WB.q); }
 };
 
@@ -114,7 +114,7 @@ Vec3 measured(Rig& rig, double vx, double vy, double wz) {
   rig.run_s(0.4);
   double turned = 0, last = rig.yaw();
   Vec3 sum;
-  const int n = static_cast<int>(1 / rig.h + 0.5);
+  const int n = static_cast<int>(std::lround(1 / rig.h));
   for (int i = 0; i < n; ++i) {
     rig.run(1, rig.h);
     turned += math::wrap_angle(rig.yaw() - last);
