@@ -26,6 +26,9 @@ function(sandlot_test_executable name sources libraries)
     set(filter_slow "Slow*:*/Slow*")
     set(filter_long "Long*:*/Long*")
     set(timeout_unit 120)
+    if(SANDLOT_SANITIZE)
+      set(timeout_unit 600)  # what takes seconds takes minutes there
+    endif()
     set(timeout_slow 600)
     set(timeout_long 3600)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
