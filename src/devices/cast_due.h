@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "devices/kind.h"
-#include "devices/parallel.h"
+#include "physics/parallel.h"
 
 namespace sandlot {
 

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "base/text.h"
-#include "devices/parallel.h"
 #include "model/motion.h"
+#include "physics/parallel.h"
 #include "sim/monitor.h"
 #include "sim/simulation.h"
 

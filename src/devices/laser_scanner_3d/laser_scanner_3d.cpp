@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/math.h"
-#include "devices/parallel.h"
 #include "devices/sdf_noise.h"
+#include "physics/parallel.h"
 
 namespace sandlot::laser_scanner_3d {
 namespace {

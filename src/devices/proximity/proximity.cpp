@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "base/math.h"
-#include "devices/parallel.h"
+#include "physics/parallel.h"
 
 namespace sandlot::proximity {
 namespace {

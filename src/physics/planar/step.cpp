@@ -1,10 +1,9 @@
 // A step of the planar engine: what each body means to do, who touches whom, islands, and what comes of it.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "physics/parallel.h"
 #include "physics/planar/planar.h"
 
 namespace sandlot::planar {
@@ -12,13 +11,9 @@ namespace {
 
 /// Calls work(i) for all i, in parallel where it pays: what is done for one i depends on no other.
 template <class Work>
-void for_each(std::size_t count, std::size_t grain, Work&& work) {
-  if (count <= grain) {
-    for (std::size_t i = 0; i < count; ++i) work(i);
-    return;
-  }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+void for_each(std::size_t count, std::size_t grain, const Work& work) {
+  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
   });
 }
 
@@ -55,7 +50,7 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
   if (!is_filed(h_s)) file(h_s);
   find_touches(h_s);
   find_islands(h_s);
-  for_each(island_count_, 1, [&](std::size_t i) { solve(islands_[i], h_s); });
+  for_each(island_count_, 8, [&](std::size_t i) { solve(islands_[i], h_s); });
   for_each(lumps_.size(), 512, [&](std::size_t k) {
     if (lumps_[k].slot != none && island_of_[k] == none) move_alone(static_cast<std::uint32_t>(k), h_s);
   });
@@ -353,8 +348,14 @@ void PlanarEngine::find_islands(double h_s) {
     if (a != none && island_of_[a] != none) return island_of_[a];
     return b != none ? island_of_[b] : none;
   };
+  // Two islands that are near each other but slow do not look at each other: they are solved at the same time.
+  const auto island_of_pair = [&](const Candidate& c) {
+    const bool apart = c.a != none && c.b != none && island_of_[c.a] != none && island_of_[c.b] != none &&
+                       island_of_[c.a] != island_of_[c.b];
+    return apart ? none : island_at(c.a, c.b);
+  };
   for (const Candidate& c : candidates_)
-    if (const std::uint32_t i = island_at(c.a, c.b); i != none) ++islands_[i].candidates;
+    if (const std::uint32_t i = island_of_pair(c); i != none) ++islands_[i].candidates;
   for (const Linkage* l : island_linkages_)
     if (const std::uint32_t i = island_at(l->a, l->b); i != none) ++islands_[i].linkages;
   std::uint32_t lump = 0, candidate = 0, linkage = 0;
@@ -374,7 +375,7 @@ void PlanarEngine::find_islands(double h_s) {
         island_lumps_[island.first_lump + island.lumps++] = k;
       }
   for (const Candidate& c : candidates_)
-    if (const std::uint32_t i = island_at(c.a, c.b); i != none)
+    if (const std::uint32_t i = island_of_pair(c); i != none)
       island_candidates_[islands_[i].first_candidate + islands_[i].candidates++] = c;
   for (Linkage* l : island_linkages_)
     if (const std::uint32_t i = island_at(l->a, l->b); i != none)

@@ -1,4 +1,4 @@
-#include "devices/parallel.h"
+#include "physics/parallel.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
