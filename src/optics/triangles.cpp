@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "base/check.h"
 #include "geometry/height_grid.h"
@@ -103,24 +104,61 @@ void TriangleTree::add_grid(RTCDevice device, const HeightGrid& grid) {
   attach(geometry);
 }
 
-F TriangleTree::distance_to(const LocalRays8& rays, F near, F far, const int* valid) const {
-  alignas(64) RTCRayHit8 packet{};
-  lanes::store(packet.ray.org_x, lanes::all(rays.ox));
-  lanes::store(packet.ray.org_y, lanes::all(rays.oy));
-  lanes::store(packet.ray.org_z, lanes::all(rays.oz));
-  lanes::store(packet.ray.dir_x, rays.dx);
-  lanes::store(packet.ray.dir_y, rays.dy);
-  lanes::store(packet.ray.dir_z, rays.dz);
-  lanes::store(packet.ray.tnear, near);
-  lanes::store(packet.ray.tfar, far);
-  lanes::store(packet.ray.mask, lanes::all(-1));
+namespace {
+
+template <class Rays>
+void fill(RTCRay8& ray, const Rays& rays, F near, F far) {
+  const auto each = [](auto origin) {
+    if constexpr (std::is_same_v<decltype(origin), float>) return lanes::all(origin);
+    else return origin;
+  };
+  lanes::store(ray.org_x, each(rays.ox));
+  lanes::store(ray.org_y, each(rays.oy));
+  lanes::store(ray.org_z, each(rays.oz));
+  lanes::store(ray.dir_x, rays.dx);
+  lanes::store(ray.dir_y, rays.dy);
+  lanes::store(ray.dir_z, rays.dz);
+  lanes::store(ray.tnear, near);
+  lanes::store(ray.tfar, far);
+  lanes::store(ray.time, lanes::all(0.0f));
+  lanes::store(ray.mask, lanes::all(-1));
+  lanes::store(ray.flags, lanes::all(0));
+}
+
+template <class Rays>
+void trace(RTCScene scene, RTCRayHit8& packet, const Rays& rays, F near, F far, const int* valid) {
+  fill(packet.ray, rays, near, far);
   lanes::store(packet.hit.geomID, lanes::all(nothing));
   lanes::store(packet.hit.instID[0], lanes::all(nothing));
   embree::QueryContext context;
   embree::init_context(context);
-  embree::intersect8(valid, scene_, context, packet);
+  embree::intersect8(valid, scene, context, packet);
+}
+
+}  // namespace
+
+F TriangleTree::distance_to(const LocalRays8& rays, F near, F far, const int* valid) const {
+  alignas(64) RTCRayHit8 packet;
+  trace(scene_, packet, rays, near, far, valid);
   return lanes::choose(lanes::load<I>(packet.hit.geomID) == nothing,
                        lanes::all(std::numeric_limits<float>::infinity()), lanes::load<F>(packet.ray.tfar));
+}
+
+TriangleTree::Hits TriangleTree::nearest(const LocalSpread8& rays, F near, F far, const int* valid) const {
+  alignas(64) RTCRayHit8 packet;
+  trace(scene_, packet, rays, near, far, valid);
+  return {lanes::choose(lanes::load<I>(packet.hit.geomID) == nothing,
+                        lanes::all(std::numeric_limits<float>::infinity()), lanes::load<F>(packet.ray.tfar)),
+          lanes::load<I>(packet.hit.primID), lanes::load<F>(packet.hit.u), lanes::load<F>(packet.hit.v)};
+}
+
+I TriangleTree::between(const LocalSpread8& rays, F near, F far, const int* valid) const {
+  alignas(32) RTCRay8 packet;
+  fill(packet, rays, near, far);
+  embree::QueryContext context;
+  embree::init_context(context);
+  embree::occluded8(valid, scene_, context, packet);
+  return lanes::load<F>(packet.tfar) < 0;
 }
 
 }  // namespace sandlot::optics

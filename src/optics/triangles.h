@@ -29,6 +29,17 @@ class TriangleTree {
   /// Distance to the first triangle at or behind `near` and not behind `far`; infinite where there is none.
   lanes::F distance_to(const LocalRays8& rays, lanes::F near, lanes::F far, const int* valid) const;
 
+  /// The same, and where: the triangle's index and the weights of its second and third corner. Of a height field's grid
+  /// only the distance means something.
+  struct Hits {
+    lanes::F t;
+    lanes::I triangle;
+    lanes::F b1, b2;
+  };
+  Hits nearest(const LocalSpread8& rays, lanes::F near, lanes::F far, const int* valid) const;
+  /// Whether any triangle lies between near and far.
+  lanes::I between(const LocalSpread8& rays, lanes::F near, lanes::F far, const int* valid) const;
+
  private:
   void add_triangles(RTCDevice device, const TriangleMesh& mesh);
   void add_grid(RTCDevice device, const HeightGrid& grid);
