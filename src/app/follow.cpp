@@ -202,8 +202,10 @@ void Followers::rescue(Error& error) {
   if (simulation.engine().check_finite()) return;
   std::string file = options_.snapshots.file;
   if (file.empty() || options_.snapshots.at_s) {
-    const std::string name = "sandlot-failed-" + sanitised(simulation.setup().name) + ".snapshot";
-    file = (std::filesystem::path(options_.summary_file).parent_path() / name).string();
+    const std::string& name = simulation.setup().name;
+    file = (std::filesystem::path(options_.summary_file).parent_path() /
+            ("sandlot-failed" + (name.empty() ? "" : "-" + sanitised(name)) + ".snapshot"))
+               .string();
     const auto bytes = simulation.snapshot();
     if (Status written = write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         !written)

@@ -41,21 +41,25 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
   const Node* one = config.find("level");
   const Node* many = config.find("levels");
   if (one && many) return one->error("give either 'level' or 'levels'");
-  std::vector<const Node*> named;
-  if (one) named.push_back(one);
-  if (many) {
-    if (!many->is_sequence() || many->items().empty())
-      return wrong_type(*many, "a list of levels", "/levels");
-    for (const Node& item : many->items()) named.push_back(&item);
-  }
-  std::uint32_t bits = named.empty() ? 1u : 0u;
-  for (const Node* node : named) {
-    const auto found = std::find(known.begin(), known.end(), node->text());
+  if (many && (!many->is_sequence() || many->items().empty()))
+    return wrong_type(*many, "a list of levels", "/levels");
+  std::uint32_t bits = many || one ? 0u : 1u;
+  const auto take = [&](const Node& node, const std::string& path) -> Status {
+    const Place& at = node.place().file ? node.place() : place;
+    if (!node.is_scalar())
+      return Error{"expected the name of a level", "several levels at once: levels: [a, b]", at, path};
+    const auto found = std::find(known.begin(), known.end(), node.text());
     if (found == known.end())
-      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node->text() + "'",
-                   suggestion(node->text(), known), node->place().file ? node->place() : place, "/level"};
-    bits |= 1u << (found - known.begin());
-  }
+      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node.text() + "'",
+                   suggestion(node.text(), known), at, path};
+    const std::uint32_t bit = 1u << (found - known.begin());
+    if (bits & bit) return Error{"level '" + node.text() + "' is named twice", "", at, path};
+    bits |= bit;
+    return {};
+  };
+  if (one) SL_TRY(take(*one, "/level"));
+  for (std::size_t i = 0; many && i < many->items().size(); ++i)
+    SL_TRY(take(many->items()[i], "/levels/" + std::to_string(i)));
   config.erase("level");
   config.erase("levels");
   return bits;
