@@ -32,7 +32,7 @@ constexpr Golden goldens[] = {
     {"scenarios/materials.yaml --duration 10s", "9c38c2a0c26c86f3"},
     {"scenarios/gripping.yaml", "cfa82616cb99b098"},
     {"scenarios/gripping.yaml --set physics=planar", "540699f015cce607"},
-    {"scenarios/msl_field.yaml --duration 300ms --set level=image", "fa6dfd6f5b185853"},
+    {"scenarios/msl_field.yaml --duration 300ms --set level=image", "8d2ae9e92af4d6a9"},
     {"scenarios/msl_field.yaml --duration 2s --set level=objects", "92eea66d0480ddc5"},
     {"scenarios/stereo.yaml --duration 300ms", "90f7c59feb79f84e"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},

@@ -16,6 +16,9 @@ inline F3 operator-(const F3& a, const F3& b) { return {a.x - b.x, a.y - b.y, a.
 inline F3 operator*(F s, const F3& a) { return {s * a.x, s * a.y, s * a.z}; }
 inline F3 operator*(const F3& a, const F3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline F dot(const F3& a, const F3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline F3 cross(const F3& a, const F3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline F3 choose(I mask, const F3& a, const F3& b) {
   return {choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z)};
 }

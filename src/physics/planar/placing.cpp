@@ -34,7 +34,8 @@ void PlanarEngine::settle(std::uint32_t slot, const Pose& X_WM) {
   const Quat tilt_before = instance.tilt;
   const double z_before = instance.z_m;
   if (!instance.moves) {
-    instance.still = std::make_unique<Instance::Still>(Instance::Still{.at = {X_WB.p.x, X_WB.p.y}, .q = X_WB.q});
+    instance.still = std::make_unique<Instance::Still>(
+        Instance::Still{.at = {X_WB.p.x, X_WB.p.y}, .q = X_WB.q});
     instance.z_m = X_WB.p.z;
     walls_fresh_ = false;
     stale();
