@@ -41,6 +41,11 @@ foreach(layer IN LISTS sandlot_layers)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/${layer}/*_test.cpp)
   sandlot_test_executable(${layer}_tests "${sources}" sandlot_${layer})
 endforeach()
+# The planar engine is held against Chipmunk. The program itself does without.
+if(NOT sandlot_third_party_chipmunk)
+  message(FATAL_ERROR "The tests need Chipmunk (Debian: libchipmunk-dev)")
+endif()
+target_link_libraries(physics_tests PRIVATE ${sandlot_third_party_chipmunk})
 # tests/plugins/x.cpp become shared libraries beside the command: some fit, each of the others is wrong in one way.
 file(GLOB sources CONFIGURE_DEPENDS tests/plugins/*.cpp)
 set(plugins "")
@@ -60,6 +65,13 @@ list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
 add_dependencies(scenario_tests sandlot ${plugins})
+# tests/vision: what software written for real cameras makes of our pictures.
+if(TARGET sandlot_opencv)
+  file(GLOB sources CONFIGURE_DEPENDS tests/vision/*_test.cpp)
+  sandlot_test_executable(vision_tests "${sources}" "${libraries};sandlot_opencv")
+else()
+  message(STATUS "No OpenCV (Debian: libopencv-calib3d-dev, libopencv-video-dev): the tests in tests/vision are left out")
+endif()
 
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME check_layers COMMAND Python3::Interpreter tools/check_layers.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
@@ -89,8 +101,8 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
     set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
-  # A browser that draws with the processor takes its time.
-  set_tests_properties(js_page_test PROPERTIES LABELS slow TIMEOUT 600)
+  # A browser that draws with the processor takes its time; beside other tests it would wait in vain.
+  set_tests_properties(js_page_test PROPERTIES LABELS slow TIMEOUT 600 RUN_SERIAL ON)
 else()
   message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
 endif()

@@ -13,8 +13,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Cli, every_verb_explains_itself_with_an_example) {
-  for (const char* verb :
-       {"run", "demo", "check", "info", "convert", "list", "plot", "bench", "doctor", "replay", "diff"}) {
+  for (const char* verb : {"run", "demo", "check", "info", "convert", "list", "plot", "bench", "doctor",
+                           "replay", "diff", "render"}) {
     const Printed help = sandlot(std::string(verb) + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.out, HasSubstr("Example: sandlot")) << verb;
@@ -56,9 +56,57 @@ TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
   EXPECT_EQ(s["state_hash"].get<std::string>().size(), 16u);
 }
 
+TEST(Cli, render_takes_a_picture_or_says_what_is_wrong) {
+  const Scratch scratch;
+  const std::string file = scratch.file("a.png"),
+                    view = "render scenarios/indoor.yaml --from 1,1,1 --at 3,3,0 --out ";
+  const Printed printed = sandlot(view + file + " --size 64x48 --samples 1 --time 100ms");
+  EXPECT_EQ(printed.exit_code, 0) << printed.out;
+  EXPECT_EQ(printed.out, "");
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(bytes.substr(1, 3), "PNG");
+  const auto refused = [](const std::string& arguments, const std::string& word) {
+    const Printed said = sandlot(arguments);
+    EXPECT_EQ(said.exit_code, 2) << arguments;
+    EXPECT_THAT(said.out, HasSubstr(word)) << arguments;
+  };
+  refused(view + scratch.file("a.bmp"), "call it .png or .jpg");
+  refused(view + scratch.file("no/such/a.png") + " --size 8x8", "no/such/a.png");
+  refused(view + file + " --size 100000x100000", "100000");
+  refused(view + file + " --size big", "--size");
+  refused(view + file + " --plane red", "--plane");
+  refused(view + file + " --overhead", "--from");
+  refused("render scenarios/indoor.yaml --out " + file, "--camera");
+  refused("render scenarios/indoor.yaml --camera follow:nobody --out " + file, "nobody");
+}
+
+TEST(Cli, a_film_leaves_the_run_as_it_is) {
+  const Scratch scratch;
+  const std::string run = "scenarios/indoor.yaml --duration 400ms --seed 3";
+  const std::string film = " --camera overhead --video-size 64x48 --video-rate 10 --video " +
+                           scratch.file("a.mp4");
+  const auto without = summary_of(run), with = summary_of(run + film);
+  ASSERT_FALSE(with.contains("failed")) << with["failed"];
+  EXPECT_EQ(with["state_hash"], without["state_hash"]);
+  EXPECT_EQ(with["video"]["pictures"], 5) << "at 0, 0.1 ... 0.4 s";
+  const auto refused = [&](const std::string& arguments, const std::string& word) {
+    const Printed said = sandlot("run " + run + " " + arguments);
+    EXPECT_EQ(said.exit_code, 2) << arguments;
+    EXPECT_THAT(said.out, HasSubstr(word)) << arguments;
+  };
+  refused("--video " + scratch.file("b.mp4"), "--camera");
+  refused("--camera overhead", "--video");
+  refused("--camera overhead --video " + scratch.file("b.avi"), "b.avi");
+  refused("--camera overhead --video " + scratch.file("no/such/b.mp4"), "b.mp4");
+  refused("--camera overhead --video-size 63x48 --video " + scratch.file("b.mp4"), "63x48");
+  refused("--camera overhead --video scenarios/indoor.yaml", "indoor.yaml");
+}
+
 TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
-  for (const char* scenario : {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar",
-                               "scenarios/pile.yaml", "scenarios/fleet.yaml"}) {
+  for (const char* scenario :
+       {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar", "scenarios/pile.yaml",
+        "scenarios/fleet.yaml", "scenarios/gripping.yaml", "scenarios/gripping.yaml --set physics=planar"}) {
     const Scratch scratch;
     const std::string snapshot = scratch.file("half.snapshot");
     const auto whole = summary_of(std::string(scenario) + " --duration 6s");

@@ -1,13 +1,16 @@
 /// What models/, worlds/ and scenarios/ promise in their comments.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 
 #include "base/math.h"
+#include "formats/image/image.h"
 #include "formats/sdf/sdf.h"
+#include "geometry/bounds.h"
 #include "sim/load.h"
 #include "sim/simulation.h"
 
@@ -109,6 +112,63 @@ TEST(Materials, DoWhatTheWorldsCommentsSay) {
   EXPECT_LT(x("ball_mud"), 4.5);
   EXPECT_LT(x("ball_mud") + 2, x("ball_carpet"));
   EXPECT_LT(norm(body("ball_mud").V_WB.linear), 1e-3);
+}
+
+TEST(MslField, ItsLinesLieWhereTheRuleBookSays) {
+  const auto image = formats::read_image("worlds/msl_field.png");
+  ASSERT_TRUE(image);
+  const auto white = [&](double x, double y) {  // on a carpet of 24 x 16 m, 100 pixels to the metre
+    return image->at(static_cast<int>((x + 12) * 100), static_cast<int>((8 - y) * 100), 0) > 200;
+  };
+  // Each line 0.125 m wide: white 2 cm from either edge within, green 2 cm outside.
+  const auto line_across_x = [&](double low, double y) {
+    return !white(low - 0.02, y) && white(low + 0.02, y) && white(low + 0.105, y) && !white(low + 0.145, y);
+  };
+  const auto line_across_y = [&](double low, double x) {
+    return !white(x, low - 0.02) && white(x, low + 0.02) && white(x, low + 0.105) && !white(x, low + 0.145);
+  };
+  for (const double side : {1.0, -1.0}) {
+    EXPECT_TRUE(line_across_x(-0.0625, side)) << "half way";
+    EXPECT_TRUE(line_across_x(side > 0 ? 10.875 : -11, 5));
+    EXPECT_TRUE(line_across_y(side > 0 ? 6.875 : -7, 5));
+    EXPECT_TRUE(line_across_x(side > 0 ? 8.75 : -8.875, 3)) << "penalty area 2.25 deep";
+    EXPECT_TRUE(line_across_y(side > 0 ? 3.325 : -3.45, 9)) << "and 6.9 wide";
+    EXPECT_TRUE(line_across_x(side > 0 ? 10.25 : -10.375, 1)) << "goal area 0.75 deep";
+    EXPECT_TRUE(line_across_y(side > 0 ? 1.825 : -1.95, -10.6)) << "and 3.9 wide";
+    EXPECT_TRUE(line_across_x(side > 0 ? 1.875 : -2, 0.0)) << "centre circle of 4 m";
+    EXPECT_TRUE(white(7.4 * side, 0.06) && !white(7.4 * side, 0.09)) << "penalty mark of 0.15 m";
+    const double d = std::sqrt(0.5);
+    EXPECT_TRUE(white(side * (11 - 0.69 * d), 7 - 0.69 * d)) << "corner arc of 0.75 m";
+    EXPECT_FALSE(white(side * (11 - 0.6 * d), 7 - 0.6 * d) || white(side * (11 - 0.78 * d), 7 - 0.78 * d));
+  }
+}
+
+TEST(MslField, HasTwoTeamsOfSixRobotsThatTheLeagueAllows) {
+  const model::Setup setup = loaded("scenarios/msl_field.yaml");
+  std::map<std::string, int> teams;
+  for (const model::Instance& instance : setup.instances) {
+    if (instance.name == "ball") {
+      const model::Inertial& ball = instance.model->links[0].inertial;
+      EXPECT_NEAR(ball.moments.x, 2.0 / 3 * 0.43 * 0.11 * 0.11, 1e-8) << "hollow";
+    }
+    if (!instance.is_robot) continue;
+    ++teams[instance.team];
+    SCOPED_TRACE(instance.name);
+    Bounds bounds;
+    double mass = 0;
+    for (const model::Link& link : instance.model->links) {
+      mass += link.inertial.mass_kg;
+      for (const model::Visual& each : link.visuals)
+        bounds.include(bounds_of(each.shape, link.X_ML * each.X_LC));
+    }
+    EXPECT_LE(bounds.high.x - bounds.low.x, 0.5);
+    EXPECT_LE(bounds.high.y - bounds.low.y, 0.5);
+    EXPECT_NEAR(bounds.low.z, 0, 0.003);
+    EXPECT_GE(bounds.high.z, 0.4);
+    EXPECT_LE(bounds.high.z, 0.8);
+    EXPECT_LE(mass, 40);
+  }
+  EXPECT_EQ(teams, (std::map<std::string, int>{{"cyan", 6}, {"magenta", 6}}));
 }
 
 TEST(Rover, InertiaIsThatOfTheSolidsItNames) {

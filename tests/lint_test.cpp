@@ -186,6 +186,22 @@ TEST(Lint, ManyAlikeAreSaidOnceAndManyDifferentOnesAreCounted) {
   EXPECT_EQ(findings[0].rule, "density");
 }
 
+TEST(Lint, AShellMayBeAsLightAsItLikes) {
+  // 0.3 kg on a ball of 0.52 m^3: 2/3 m r^2 says that all of it lies outside, 2/5 m r^2 that it is a solid.
+  for (const bool hollow : {true, false}) {
+    model::Setup setup = setup_with(Plane{{0, 0, 1}}, Sphere{0.5}, {0, 0, 0.5});
+    auto ball = std::make_shared<model::Model>(*setup.instances.back().model);
+    ball->links[0].inertial.mass_kg = 0.3;
+    ball->links[0].inertial.moments = (hollow ? 2.0 / 3 : 2.0 / 5) * 0.3 * 0.25 * Vec3{1, 1, 1};
+    setup.instances.back().model = ball;
+    const auto simulation = built(setup);
+    ASSERT_TRUE(simulation);
+    const std::vector<Finding> findings = lint(*simulation);
+    ASSERT_EQ(findings.size(), hollow ? 0u : 1u);
+    for (const Finding& finding : findings) EXPECT_EQ(finding.rule, "density");
+  }
+}
+
 TEST(Lint, TheCommandCountsWarningsAsFailuresWhenItIsStrict) {
   using test::sandlot;
   const std::string file = "tests/suspicious/overlap_ground.sdf";

@@ -17,11 +17,12 @@ int bench(const BenchOptions& options) {
     std::vector<sandlot::bench::Row> (*run)();
   };
   static constexpr Suite suites[] = {
-      {"physics", sandlot::bench::physics},     {"wheels", sandlot::bench::wheels},
-      {"pile", sandlot::bench::pile},           {"swarm", sandlot::bench::swarm},
-      {"rays", sandlot::bench::rays},           {"loading", sandlot::bench::loading},
-      {"recording", sandlot::bench::recording}, {"viewer", sandlot::bench::viewer},
-      {"rollers", sandlot::bench::rollers}};
+      {"physics", sandlot::bench::physics}, {"wheels", sandlot::bench::wheels},
+      {"pile", sandlot::bench::pile},       {"swarm", sandlot::bench::swarm},
+      {"rays", sandlot::bench::rays},       {"images", sandlot::bench::images},
+      {"loading", sandlot::bench::loading}, {"recording", sandlot::bench::recording},
+      {"viewer", sandlot::bench::viewer},   {"rollers", sandlot::bench::rollers},
+      {"levels", sandlot::bench::levels}};
   std::vector<std::string> names;
   for (const Suite& suite : suites) names.emplace_back(suite.name);
   if (!options.name.empty() && std::find(names.begin(), names.end(), options.name) == names.end())

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/film.h"
 #include "app/snapshots.h"
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
@@ -56,6 +57,7 @@ struct RunOptions {
   std::string record_compression;
   std::optional<ServeOptions> serve;
   bool paused = false;  ///< begins so
+  FilmOptions film;
 };
 int run(const RunOptions& options);
 

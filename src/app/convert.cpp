@@ -13,6 +13,8 @@
 #include "formats/sdf/sdf.h"
 #include "formats/sdf/write.h"
 #include "formats/text.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
 #include "sim/assets.h"
 #include "sim/load.h"
 
@@ -66,14 +68,55 @@ struct Mover {
   }
 };
 
+/// A file that the written one names.
+struct Beside {
+  std::string path, text;
+};
+
+std::string obj_text(const TriangleMesh& mesh, const std::string& comment) {
+  std::string out = "# " + comment + "\n";
+  for (const Vec3& v : mesh.vertices)
+    out += "v " + number_text(v.x) + " " + number_text(v.y) + " " + number_text(v.z) + "\n";
+  for (const auto& t : mesh.triangles) out += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  return out;
+}
+
 struct Job {
   const ConvertOptions& options;
   Format from, to;
   formats::SearchPath search;
   Diagnostics& diagnostics;
+  std::vector<Beside>& beside;
 
   std::string comment() const {
     return "Made by sandlot convert from " + fs::path(options.in).filename().string() + ".";
+  }
+
+  /// Terrain that a builder made has no file that could be named: it becomes a mesh with the same triangles.
+  void give_terrain_a_file(model::Instance& instance) const {
+    const std::size_t known = beside.size();
+    const auto changed = std::make_shared<model::Model>(*instance.model);
+    for (model::Link& link : changed->links) {
+      const HeightGrid* grid =
+          nullptr;  // of the link's shapes so far: what is seen is mostly what is touched
+      std::shared_ptr<const TriangleMesh> mesh;
+      const auto give = [&](Shape& shape) {
+        const auto* const ground = std::get_if<Heightfield>(&shape);
+        if (!ground || !ground->grid->source.empty()) return;
+        if (grid != ground->grid.get()) {
+          grid = ground->grid.get();
+          TriangleMesh made = tessellate(shape);
+          const fs::path out = options.out;
+          made.source = out.stem().string() + "_" + std::to_string(beside.size() + 1) + ".obj";
+          beside.push_back({(out.parent_path() / made.source).string(), obj_text(made, comment())});
+          mesh = std::make_shared<const TriangleMesh>(std::move(made));
+        }
+        shape = Mesh{mesh};
+      };
+      for (model::Collision& collision : link.collisions) give(collision.shape);
+      for (model::Visual& visual : link.visuals) give(visual.shape);
+    }
+    if (beside.size() > known) instance.model = changed;
   }
 
   /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
@@ -95,7 +138,8 @@ struct Job {
   }
 
   Result<std::string> scenario_to_sdf() const {
-    SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
+    SL_ASSIGN(model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
+    for (model::Instance& instance : setup.instances) give_terrain_a_file(instance);
     SL_ASSIGN(formats::Xml root, formats::sdf_of(setup, diagnostics));
     Mover{formats::folder_of(options.out), search}(root);
     return formats::xml_text(root, comment());
@@ -107,6 +151,7 @@ struct Job {
               load_instance(options.in, "model", {}, diagnostics, options.paths));
     model::Instance named = instance;
     named.original_name = named.name = instance.model->name;
+    give_terrain_a_file(named);
     SL_ASSIGN(formats::Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
                                                     : formats::sdf_of(named, diagnostics));
     return formats::xml_text(root, comment());
@@ -215,9 +260,17 @@ Status run_job(const ConvertOptions& options, Diagnostics& diagnostics) {
   std::error_code ignored;
   if (fs::exists(options.out, ignored) && !options.force)
     return Error{"'" + options.out + "' exists already", "add --force to replace it"};
-  const Job job{options, from, to, formats::search_path(options.paths), diagnostics};
+  std::vector<Beside> beside;
+  const Job job{options, from, to, formats::search_path(options.paths), diagnostics, beside};
   SL_ASSIGN(const std::string text, converted(job));
-  SL_TRY(check_result(job, text));
+  for (const Beside& file : beside)
+    if (fs::exists(file.path, ignored) && !options.force)
+      return Error{"'" + file.path + "' exists already", "add --force to replace it"};
+  for (const Beside& file : beside) SL_TRY(write_file(file.path, file.text));
+  if (Status status = check_result(job, text); !status) {
+    for (const Beside& file : beside) fs::remove(file.path, ignored);
+    return status;
+  }
   return write_file(options.out, text);
 }
 

@@ -79,7 +79,7 @@ std::vector<std::byte> bytes_of(model::Setup setup) {
   std::vector<const model::Instance*> instances;
   for (model::Instance& each : setup.instances) {
     model::Model model = *each.model;
-    for (auto* const devices : {&model.devices, &each.devices})
+    for (auto* const devices : {&model.devices, &each.devices.edit()})
       for (model::DeviceDecl& device : *devices) sort_keys(device.config);
     each.model = std::make_shared<model::Model>(std::move(model));
   }
@@ -462,6 +462,24 @@ TEST(Convert, MeshesAndTerrainKeepTheirFilesScalesAndHeights) {
   EXPECT_EQ(std::get<Mesh>(shape(is, 1)).mesh->vertices, std::get<Mesh>(shape(was, 1)).mesh->vertices);
   // 0.1 x 0.1 x 0.2 / 6 m^3
   EXPECT_NEAR(volume_m3(shape(is, 1)), 0.1 * 0.1 * 0.2 / 6, 1e-12);
+}
+
+TEST(Convert, TerrainOfABuilderBecomesAMeshBesideTheFile) {
+  const Folder folder;
+  const Converted done = convert("builder:terrain?size_x=2&size_y=1&cell=0.5", folder.file("hill.sdf"));
+  ASSERT_EQ(done.exit_code, 0) << done.printed;
+  Diagnostics diagnostics;
+  const auto made = load_instance("builder:terrain?size_x=2&size_y=1&cell=0.5", "x", {}, diagnostics);
+  const auto back = load_instance(folder.file("hill.sdf"), "x", {}, diagnostics);
+  ASSERT_TRUE(made && back);
+  const auto& grid = *std::get<Heightfield>(made->model->links[0].collisions[0].shape).grid;
+  const auto& mesh = *std::get<Mesh>(back->model->links[0].collisions[0].shape).mesh;
+  ASSERT_EQ(mesh.triangles.size(), 2u * 4 * 2) << "two for each cell of half a metre";
+  for (const Vec3& v : mesh.vertices) EXPECT_NEAR(v.z, height_at(grid, v.x, v.y), 1e-6);
+  // The second file is not replaced unasked either.
+  std::filesystem::remove(folder.path / "hill.sdf");
+  EXPECT_EQ(convert("builder:terrain", folder.file("hill.sdf")).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "hill.sdf"));
 }
 
 TEST(Convert, LightsOfNestedModelsKeepTheirNames) {

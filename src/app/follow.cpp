@@ -70,6 +70,10 @@ Status Followers::open(const Prepared& prepared) {
 }
 
 Status Followers::start(const Prepared& prepared, Diagnostics& diagnostics) {
+  if (!options_.film.file.empty()) {
+    SL_ASSIGN(film_, Film::begin(options_.film, session_.simulation()));
+    filming_ = true;
+  }
   const Simulation& simulation = session_.simulation();
   travel_.begin_at(simulation.tick_index());
   if (!options_.svg_file.empty()) session_.add_observer(&svg_.emplace(simulation));
@@ -97,6 +101,11 @@ bool Followers::after_tick() {
   travel_.look(session_.simulation());
   progress_.update(session_.simulation());
   note(snapshots_->after(session_.simulation()));
+  if (filming_)
+    if (Status status = film_->look(session_.simulation()); !status) {
+      note(std::move(status));
+      filming_ = false;
+    }
   return !log_ || log_->status();
 }
 
@@ -115,6 +124,10 @@ void Followers::leave_world(Simulation& next, const std::string& why) {
     session_.remove_observer(recorder_.get());
     tell("the recording", recorded_to_);
     end_recording(said_);
+  }
+  if (filming_) {
+    tell("the film", film_->file());
+    end_film();
   }
   travel_ = {};
   travel_.begin_at(next.tick_index());
@@ -178,13 +191,21 @@ void Followers::end_recording(Diagnostics& diagnostics) {
   warn(std::move(warning), diagnostics);
 }
 
+void Followers::end_film() {
+  if (!filming_) return;
+  filming_ = false;
+  note(film_->finish());
+}
+
 void Followers::rescue(Error& error) {
   const Simulation& simulation = session_.simulation();
   if (simulation.engine().check_finite()) return;
   std::string file = options_.snapshots.file;
   if (file.empty() || options_.snapshots.at_s) {
-    const std::string name = "sandlot-failed-" + sanitised(simulation.setup().name) + ".snapshot";
-    file = (std::filesystem::path(options_.summary_file).parent_path() / name).string();
+    const std::string& name = simulation.setup().name;
+    file = (std::filesystem::path(options_.summary_file).parent_path() /
+            ("sandlot-failed" + (name.empty() ? "" : "-" + sanitised(name)) + ".snapshot"))
+               .string();
     const auto bytes = simulation.snapshot();
     if (Status written = write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         !written)
@@ -197,10 +218,12 @@ void Followers::finish(Diagnostics& diagnostics) {
   end_log();
   note(snapshots_->finish(session_.simulation()));
   end_recording(diagnostics);
+  end_film();
   for (Error& warning : said_.warnings) diagnostics.warn(std::move(warning));
 }
 
 void Followers::add_to(nlohmann::ordered_json& summary) const {
+  if (film_) summary["video"] = {{"file", film_->file()}, {"pictures", film_->pictures()}};
   if (!recorded_) return;
   summary["recording"] = {{"file", recorded_to_},
                           {"messages", recorded_->messages},

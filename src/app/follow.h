@@ -1,12 +1,13 @@
 #pragma once
-/// What goes along with a run: the way its robots took, the drawing, the CSV log, the recording, snapshot files, and the
-/// line on the terminal.
+/// What goes along with a run: the way its robots took, the drawing, the CSV log, the recording, the film, snapshot files,
+/// and the line on the terminal.
 #include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include "app/film.h"
 #include "app/prepare.h"
 #include "app/report.h"
 #include "app/svg.h"
@@ -65,6 +66,7 @@ class Followers {
   void note(Status status);
   void end_log();
   void end_recording(Diagnostics& diagnostics);
+  void end_film();
 
   const RunOptions& options_;
   Session& session_;
@@ -78,6 +80,8 @@ class Followers {
   std::string log_file_, recorded_to_;
   RecordOptions record_options_;  ///< but for the file
   std::optional<SnapshotFiles> snapshots_;
+  std::optional<Film> film_;
+  bool filming_ = false;
   std::vector<Error> errors_;
   Diagnostics said_;  ///< of results that ended before the run
 };

@@ -15,7 +15,10 @@
 #include "formats/ros2_control/ros2_control.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
+#include "noise/depth_noise.h"
+#include "noise/image_noise.h"
 #include "physics/engine.h"
+#include "sim/faults.h"
 #include "sim/plugin.h"
 
 namespace sandlot::app {
@@ -36,6 +39,24 @@ struct Section {
   std::vector<Item> items;
 };
 
+/// What lists of stages of errors may hold.
+struct StageFamily {
+  const char *key, *title, *intro;
+  std::vector<StageSort> sorts;
+};
+std::vector<StageFamily> stage_families() {
+  return {{"noise", "Noise",
+           "Stages of errors: `noise: [{gaussian: {std: 1 cm}}, ...]`; U is the unit of the values.",
+           stage_sorts()},
+          {"image_noise", "Noise of pictures",
+           "Stages of errors of pictures: `noise: [{salt_and_pepper: {salt: 1 %, pepper: 1 %}}, ...]` of a "
+           "camera; 1 is "
+           "full scale.",
+           image_stage_sorts()},
+          {"depth_noise", "Noise of depth pictures",
+           "Stages of errors of depth pictures: `[{quadratic: {std: 1.4 mm}}, ...]`.", depth_stage_sorts()}};
+}
+
 std::vector<Section> sections(std::span<const ControllerKind* const> controller_table) {
   Section devices{"devices", "Devices", "Sensors and actuators: `devices:` of a robot in a scenario.", {}};
   for (const Kind* kind : device_kinds()) {
@@ -50,12 +71,27 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
     engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
-  Section stages{"noise",
-                 "Noise",
-                 "Stages of errors: `noise: [{gaussian: {std: 1 cm}}, ...]`; U is the unit of the values.",
-                 {}};
-  for (const StageSort& sort : stage_sorts())
-    stages.items.push_back({sort.name, sort.help, sort.fields, {}, {}, {}});
+  Section faults{
+      "faults",
+      "Faults",
+      "Keys of every device beside its kind's: `failures: [{kind: stuck, from: 3 s, until: 5 s}]`, "
+      "`clock: {drift: 20e-6}`.",
+      {}};
+  faults.items.push_back({"failures",
+                          "Each entry of the list: a time in which the device is stuck, dead or noisy.",
+                          describe_fields<FailureSpec>(),
+                          {},
+                          {},
+                          {}});
+  faults.items.push_back(
+      {"clock", "Errors of the times in its messages.", describe_fields<ClockSpec>(), {}, {}, {}});
+  std::vector<Section> out{devices, controllers, engines};
+  for (const StageFamily& family : stage_families()) {
+    out.push_back({family.key, family.title, family.intro, {}});
+    for (const StageSort& sort : family.sorts)
+      out.back().items.push_back({sort.name, sort.help, sort.fields, {}, {}, {}});
+  }
+  out.push_back(std::move(faults));
   Section builders{
       "builders",
       "Builders",
@@ -64,7 +100,8 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
       {}};
   for (const Builder* const builder : builder_table())
     builders.items.push_back({builder->name, builder->help, builder->describe(), {}, {}, {}});
-  return {devices, controllers, engines, stages, builders};
+  out.push_back(std::move(builders));
+  return out;
 }
 
 std::string limits(const FieldInfo& field) {
@@ -313,12 +350,17 @@ int list(const ListOptions& options) {
       devices.back().second.push_back(std::move(preset));
     }
     for (const ControllerKind* kind : *known) controllers.emplace_back(kind->name, kind->describe());
-    std::vector<formats::KindFields> stages;
-    for (StageSort& sort : stage_sorts()) stages.emplace_back(sort.name, std::move(sort.fields));
+    std::vector<formats::StageFields> stages;
+    for (StageFamily& family : stage_families()) {
+      stages.push_back({family.key, {}});
+      for (StageSort& sort : family.sorts)
+        stages.back().second.emplace_back(sort.name, std::move(sort.fields));
+    }
     std::vector<formats::KindFields> builders;
     for (const Builder* const builder : builder_table())
       builders.emplace_back(builder->name, builder->describe());
-    fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages, builders));
+    fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages, builders,
+                                                describe_fields<FaultsSpec>()));
     return exit_ok;
   }
   if (options.what == "plugins" && !options.markdown) {

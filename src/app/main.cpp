@@ -6,9 +6,12 @@
 #include <cstdio>
 #include <system_error>
 
+#include "app/calibrate.h"
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/flags.h"
 #include "app/plot.h"
+#include "app/render.h"
 #include "app/topic_export.h"
 #include "base/units.h"
 
@@ -16,20 +19,6 @@ namespace {
 
 using namespace sandlot;
 using namespace sandlot::app;
-
-/// "30s", "2 min", "1.5": a duration option as text, turned into seconds after parsing.
-struct DurationOption {
-  std::string text;
-  Status read(const char* flag, std::optional<double>& out) const {
-    if (text.empty()) return {};
-    auto seconds = parse_quantity(text, "s");
-    if (!seconds) return Error{std::string(flag) + ": " + seconds.error().what, seconds.error().fix};
-    if (!(*seconds >= 0 && *seconds <= 1e9))
-      return Error{std::string(flag) + ": must be in [0, 1e9] s, is " + number_text(*seconds)};
-    out = *seconds;
-    return {};
-  }
-};
 
 /// "-1,1" as a range of an axis.
 Status read_range(const char* flag, const std::string& text, std::optional<std::pair<double, double>>& out) {
@@ -93,7 +82,7 @@ struct RunFlags {
   std::string rate;
   ServeFlags serve;
   std::vector<std::string> sets;
-  std::string log_values, log_rate;
+  std::string log_values, log_rate, video_size;
   bool headless = false;
 
   void add_to(CLI::App& verb) {
@@ -151,6 +140,16 @@ struct RunFlags {
         ->allow_extra_args(false);
     verb.add_option("--record-compression", options.record_compression, "Of the recording's chunks")
         ->check(CLI::IsMember({"none", "lz4", "zstd"}));
+    verb.add_option("--video", options.film.file, "Film the run: an .mp4, .mov or .mkv file");
+    verb.add_option(
+        "--camera", options.film.view.camera,
+        "What films: a robot's camera (robot/device), follow:ROBOT for a view from behind it, or overhead");
+    verb.add_option("--video-size", video_size,
+                    "Width and height, such as 640x480; 960x540 if left out. A robot's camera has its own");
+    verb.add_option("--video-rate", options.film.rate_hz,
+                    "Pictures per simulated second, and per second of the film")
+        ->check(CLI::Range(1, 240))
+        ->capture_default_str();
     verb.add_flag("--json", options.json, "Print the summary as JSON");
   }
 
@@ -160,6 +159,10 @@ struct RunFlags {
     SL_TRY(snapshot_every.read("--snapshot-every", options.snapshots.every_s));
     SL_TRY(check(options.snapshots));
     SL_TRY(serve.finish(options.serve));
+    SL_TRY(read_size("--video-size", video_size, options.film.view));
+    if (options.film.file.empty() != options.film.view.camera.empty())
+      return Error{"--video and --camera go together: the film, and what takes it",
+                   "add --camera overhead, or --video run.mp4"};
     if (options.paused && !options.serve)
       return Error{"--paused: nobody could let the run go on", "add --port 8765"};
     SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.rate));
@@ -172,17 +175,6 @@ struct RunFlags {
       options.log_rate_hz = *hz;
     }
     return read_sets(sets, options.overrides);
-  }
-
-  static Status read_sets(const std::vector<std::string>& texts, std::vector<formats::Override>& out) {
-    for (const std::string& text : texts) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos || equals == 0)
-        return Error{"--set: '" + text + "' is not of the form path=value",
-                     "for example --set physics=planar"};
-      out.push_back({text.substr(0, equals), text.substr(equals + 1)});
-    }
-    return {};
   }
 };
 
@@ -236,6 +228,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   });
 
   add_console_verb(app, result);
+  add_render_verb(app, result);
 
   FileOptions file_options;
   std::vector<std::string> file_sets;
@@ -253,7 +246,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     verb->add_flag("--json", file_options.json, "Print as JSON");
     verb->footer(example);
     verb->callback([&, act] {
-      if (Status status = RunFlags::read_sets(file_sets, file_options.overrides); !status)
+      if (Status status = read_sets(file_sets, file_options.overrides); !status)
         result = complain(status.error());
       else result = act(file_options);
     });
@@ -370,6 +363,54 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       ->allow_extra_args(false);
   convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
   convert_verb->callback([&] { result = convert(convert_options); });
+
+  CalibrateOptions calibrate_options;
+  std::vector<std::string> calibrate_sets;
+  CLI::App* const calibrate_verb = app.add_subcommand(
+      "calibrate", "Measure the errors of a detector in a camera's pictures, as keys of its level `objects`");
+  calibrate_verb->add_option("file", calibrate_options.file, "Scenario with the camera and things to see")
+      ->required();
+  calibrate_verb->add_option("--camera", calibrate_options.camera, "The camera: robot/device")->required();
+  calibrate_verb->add_option("--samples", calibrate_options.samples, "Pictures")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  calibrate_verb
+      ->add_option("--label", calibrate_options.labels,
+                   "Things with this label only; may be given several times")
+      ->allow_extra_args(false);
+  calibrate_verb
+      ->add_option("--max-range", calibrate_options.max_range_m,
+                   "Things are put as far away as this, in metres")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  calibrate_verb
+      ->add_option("--detector", calibrate_options.detector,
+                   "picture: finds things by their colours; objects: the camera's level `objects` itself")
+      ->check(CLI::IsMember({"picture", "objects"}))
+      ->capture_default_str();
+  calibrate_verb->add_flag("--as-it-runs", calibrate_options.as_it_runs,
+                           "Let the scenario run with its controllers instead of moving things about");
+  calibrate_verb->add_option("--seed", calibrate_options.seed,
+                             "Seed of all random numbers, instead of the scenario's");
+  calibrate_verb->add_option("--set", calibrate_sets, "Change the scenario before it is loaded: path=value")
+      ->allow_extra_args(false);
+  calibrate_verb
+      ->add_option("--path", calibrate_options.paths,
+                   "Folder to search for models and other files; may be given several times")
+      ->allow_extra_args(false);
+  calibrate_verb->add_option("--out", calibrate_options.out,
+                             "Write the keys to this file instead, to be included");
+  calibrate_verb->add_option(
+      "--pictures", calibrate_options.pictures,
+      "Folder that gets the first twelve pictures: frames about what was found, crosses where things are");
+  calibrate_verb->add_flag("--json", calibrate_options.json, "Print as JSON");
+  calibrate_verb->footer(
+      "Exit code 0: measured, 1: there was nothing to be seen, 2: the input is wrong.\n"
+      "Example: sandlot calibrate scenarios/ball.yaml --camera seeker/eye --samples 500 --out eye.yaml");
+  calibrate_verb->callback([&] {
+    const Status sets = read_sets(calibrate_sets, calibrate_options.overrides);
+    result = sets ? calibrate(calibrate_options) : complain(sets.error());
+  });
 
   ListOptions list_options;
   CLI::App* const list_verb = app.add_subcommand(

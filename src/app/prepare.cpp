@@ -112,7 +112,7 @@ Result<Prepared> prepare(const RunOptions& options, Diagnostics& diagnostics) {
   SL_ASSIGN(out.recording, recording_of(options, *out.simulation));
   SL_TRY(check_apart({options.file, out.recording ? out.recording->recording.file : "",
                       out.log ? out.log->file : "", options.svg_file, options.summary_file,
-                      options.snapshots.file}));
+                      options.snapshots.file, options.film.file}));
   return out;
 }
 

@@ -43,6 +43,12 @@ std::string markdown(const std::vector<Section>& sections, const std::string& fi
                           number(row.measured), row.unit == "1" ? "" : row.unit, number(row.expected),
                           deviation_text(row, row.deviation()), deviation_text(row, row.bound),
                           row.ok() ? "ok" : "**OFF**");
+    for (const validation::Table& table : section.tables) {
+      page += fmt::format("\n{}:\n\n| {} |\n|", table.title, fmt::join(table.names, " | "));
+      for (std::size_t i = 0; i < table.names.size(); ++i) page += "---|";
+      for (const auto& row : table.rows) page += fmt::format("\n| {} |", fmt::join(row, " | "));
+      page += '\n';
+    }
     for (const Figure& figure : section.figures)
       page += fmt::format("\n![{}]({}/{}.svg)\n", figure.title, figures, figure.name);
   }

@@ -40,6 +40,15 @@ void Stream::refill() {
   ++counter_[0];
 }
 
+void Stream::words(std::uint32_t block, std::span<std::uint32_t> out) const {
+  const r123::Philox4x32 philox;
+  const r123::Philox4x32::key_type key{{key_[0], key_[1]}};
+  for (std::size_t i = 0; i < out.size(); i += 4) {
+    const auto four = philox({{block++, counter_[1], counter_[2], counter_[3]}}, key);
+    for (std::size_t k = 0; k < 4 && i + k < out.size(); ++k) out[i + k] = four[k];
+  }
+}
+
 std::uint32_t Stream::bits32() {
   if (used_ == 4) refill();
   return block_[static_cast<std::size_t>(used_++)];

@@ -9,6 +9,7 @@
 /// Cost     about 10 ns per 128 random bits; a normal about 50 ns.
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "base/hash.h"
@@ -54,6 +55,9 @@ class Stream {
   /// A stream of its own for one use among several of this one's: it depends on the stream's key and sample and on
   /// `use`, not on how many numbers were drawn.
   Stream fork(std::uint64_t use) const;
+  /// The words (as of bits32) from the block of four number `block` on, for those who draw very many and not in one order,
+  /// such as the rows of a picture. Moves nothing and does not depend on how many numbers were drawn.
+  void words(std::uint32_t block, std::span<std::uint32_t> out) const;
 
  private:
   void refill();

@@ -161,6 +161,14 @@ TEST(Random, KeysDoNotCollideOverManyEntitiesAndSamples) {
   EXPECT_EQ(std::adjacent_find(first.begin(), first.end()), first.end());  // by chance: once in 5e9
 }
 
+TEST(Random, WordsAreThoseOfTheSequenceWhereverOneBegins) {
+  Stream drawn = stream(7);
+  std::vector<std::uint32_t> sequence(50), words(38);
+  for (std::uint32_t& word : sequence) word = drawn.bits32();
+  drawn.words(3, words);  // wherever it is
+  EXPECT_TRUE(std::equal(words.begin(), words.end(), sequence.begin() + 12));
+}
+
 using RandomDeathTest = testing::Test;
 TEST(RandomDeathTest, BelowNothingIsABug) { EXPECT_DEATH((void)stream().below(0), "internal error"); }
 

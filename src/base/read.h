@@ -113,7 +113,9 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
                       path);
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!node.is_scalar()) return wrong_type(node, "text", path);
-    if (node.text().size() > field.max_count) return node.error("text is too long", "", path);
+    if (node.text().size() > field.max_count)
+      return node.error("text has " + std::to_string(node.text().size()) + " characters",
+                        "at most " + std::to_string(field.max_count) + " are allowed", path);
     out = node.text();
   } else if constexpr (std::is_same_v<T, Node>) {
     out = node;
@@ -130,7 +132,9 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
     if constexpr (std::is_same_v<typename T::value_type, std::string>) {
       if (node.is_scalar()) {  // one text stands for a list of one
         out.resize(1);
-        return read_value(node, field, out.front(), path);
+        Field of_element = field;
+        of_element.max_count = Field{}.max_count;
+        return read_value(node, of_element, out.front(), path);
       }
     }
     if (!node.is_sequence()) return wrong_type(node, "a list", path);
@@ -143,9 +147,12 @@ Status read_value(const Node& node, const Field& field, T& out, const std::strin
                             (field.min_count == 1 ? " element is needed" : " elements are needed"),
                         path);
     out.clear();
+    Field of_element = field;  // whose own length is not that of the list
+    of_element.max_count = Field{}.max_count;
+    of_element.min_count = 0;
     for (std::size_t i = 0; i < node.items().size(); ++i) {
       typename T::value_type element{};
-      SL_TRY(read_value(node.items()[i], field, element, path + "/" + std::to_string(i)));
+      SL_TRY(read_value(node.items()[i], of_element, element, path + "/" + std::to_string(i)));
       out.push_back(std::move(element));
     }
   } else if constexpr (is_optional<T>::value) {

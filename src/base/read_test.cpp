@@ -43,7 +43,7 @@ struct Spec {
     visit(Field{"colour", "", "Colour."}, s.colour);
     visit(Field{"offset", "m", "Offset.", -1, 1}, s.offset);
     visit(Field{"list", "m", "Numbers.", 0, 1, Field::none, 3}, s.list);
-    visit(Field{"names", "", "Names."}, s.names);
+    visit(Field{"names", "", "Names.", 0, 0, Field::none, 4, 1}, s.names);
     visit(Field{"maybe", "m", "Optional."}, s.maybe);
     visit(Field{"many", "", "Several."}, s.many);
     visit(Field{"noise", "", "Noise."}, s.noise);
@@ -130,7 +130,8 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
             "a.yaml:7:3: /range: 'wide' is not a number; write a number, in m or with its unit");
   EXPECT_EQ(complaint(map("range", list({"1"}))), "a.yaml:7:3: /range: expected a number, found a list");
   EXPECT_EQ(complaint(map("on", text("maybe"))), "a.yaml:7:3: /on: expected true or false, found 'maybe'");
-  EXPECT_EQ(complaint(map("name", text("sixsix"))), "a.yaml:7:3: /name: text is too long");
+  EXPECT_EQ(complaint(map("name", text("sixsix"))),
+            "a.yaml:7:3: /name: text has 6 characters; at most 5 are allowed");
   EXPECT_EQ(complaint(map("colour", text("gren"))),
             "a.yaml:7:3: /colour: 'gren' is no choice here; did you mean 'green'?");
   EXPECT_EQ(complaint(map("offset", list({"1", "2"}))),
@@ -152,6 +153,15 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
   EXPECT_EQ(complaint(map("many", std::move(two))),
             "a.yaml:7:3: /many/1/fixed: must be in [0, 10], is 99; Fixed.");
   EXPECT_EQ(complaint(text("5")), "a.yaml:7:3: expected a map of keys, found '5'");
+}
+
+TEST(Read, TheLengthOfAListIsNotThatOfItsTexts) {
+  const auto spec = read_spec<Spec>(map("names", list({"front_left_wheel_joint", "", "c", "d"})));
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_EQ(spec->names.front(), "front_left_wheel_joint");
+  EXPECT_TRUE(read_spec<Spec>(map("names", text("front_left_wheel_joint")))) << "one text is a list of one";
+  EXPECT_EQ(complaint(map("names", list({"a", "b", "c", "d", "e"}))),
+            "a.yaml:7:3: /names: list has 5 elements; at most 4 are allowed");
 }
 
 TEST(Read, TheFirstFaultIsReportedAndASlipInAKeyBeforeAll) {

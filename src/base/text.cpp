@@ -62,6 +62,12 @@ std::string number_text(double x) {
   return std::string(buffer, end);
 }
 
+std::string short_text(double x) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 3).ptr;
+  return std::string(buffer, end);
+}
+
 bool parse_number(std::string_view text, double& out) {
   text = trim(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

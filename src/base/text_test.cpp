@@ -38,6 +38,13 @@ TEST(Text, NumbersReadBackAsThemselves) {
   }
 }
 
+TEST(Text, NumbersInMessagesHaveThreeDigits) {
+  EXPECT_EQ(short_text(0.1 + 0.2), "0.3");
+  EXPECT_EQ(short_text(-1.0 / 3), "-0.333");
+  EXPECT_EQ(short_text(123456), "1.23e+05");
+  EXPECT_EQ(short_text(0), "0");
+}
+
 TEST(Text, NumbersAreTakenWholeOrNotAtAll) {
   double x = 0;
   for (const char* good : {"1", " 1 ", "+1", "1.0", "1e0", "1.", "\t1\n"}) {

@@ -27,6 +27,8 @@ inline Row row(std::string name, std::string unit, double value, double referenc
 // The suites; src/app runs them by name.
 std::vector<Row> swarm();      ///< P1: the swarm's scenario, robot by robot
 std::vector<Row> rays();       ///< P2, P5: rays of both kinds of world
+std::vector<Row> images();     ///< P5: pictures against their depth alone
+std::vector<Row> levels();     ///< A8: sensors at their low and at their high levels
 std::vector<Row> physics();    ///< P3: steps of the engines
 std::vector<Row> wheels();     ///< P3: robots on wheels alone
 std::vector<Row> pile();       ///< P3: a pile in the solver for large islands

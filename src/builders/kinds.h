@@ -14,6 +14,7 @@
   builder(skid_robot)             \
   builder(ackermann_robot)        \
   builder(omni_robot)             \
+  builder(msl_robot)              \
   builder(mecanum_robot)          \
   builder(swerve_robot)           \
   builder(tracked_robot)          \
@@ -21,6 +22,7 @@
   builder(octagon_playground)     \
   builder(terrain)                \
   builder(box_pile)               \
+  builder(soccer_goal)            \
   builder(seesaw)                 \
   builder(stairs)
 // clang-format on

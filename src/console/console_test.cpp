@@ -43,6 +43,20 @@ TEST(Console, PatternsSetManyAndNothingElse) {
   EXPECT_EQ(talk.ok("show **.noise.white"), talk.ok("show */laser.noise.white"));
 }
 
+TEST(Console, ErrorsHaveSlidersOfTheWorldAndOfRobots) {
+  Talk talk(test::arena("rigid", 2));
+  EXPECT_EQ(talk.ok("set errors 0.5"), "sim.errors = 0.5 with the next tick");
+  EXPECT_EQ(talk.ok("set rover*.errors 2"),
+            "rover1.errors = 2 with the next tick\nrover2.errors = 2 with the next tick");
+  EXPECT_EQ(talk.ok("set rover2.errors = 300 %"), "rover2.errors = 300 % with the next tick");
+  talk.step();
+  EXPECT_EQ(talk.ok("show sim.errors"), "sim.errors = 0.5");
+  EXPECT_EQ(talk.ok("show rover1.errors"), "rover1.errors = 2");
+  EXPECT_EQ(talk.ok("show rover2.errors"), "rover2.errors = 3");
+  EXPECT_TRUE(has(talk.refused("set errors -1"), "must be in [0, 1000]"));
+  EXPECT_TRUE(has(talk.refused("set rovr1.errors 1"), "did you mean 'rover1'"));
+}
+
 TEST(Console, WrongValuesAreAnsweredAtOnce) {
   Talk talk(test::arena("rigid", 1));
   EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white -1"), "must be"))

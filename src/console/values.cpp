@@ -11,6 +11,7 @@
 #include "devices/kind.h"
 #include "formats/yaml.h"
 #include "messages/registry.h"
+#include "noise/chain.h"
 #include "sim/monitor.h"
 
 namespace sandlot::console {
@@ -206,6 +207,37 @@ Said say_show(Call& call) {
   return std::optional(std::move(text));
 }
 
+namespace {
+
+/// `errors`, `sim.errors`: of all devices; `rover.errors`, `*.errors`: of all devices of robots.
+Said set_errors(Call& call, std::string_view thing, const Node& value, std::string_view written) {
+  auto factor = read_number(value, errors_field, errors_field.min, errors_field.max, false, "");
+  if (!factor) return std::move(factor.error());
+  std::vector<Asked> asked;
+  std::vector<std::string> names;
+  const auto ask = [&](const std::string& target) {
+    asked.push_back({ParameterRequest{target, errors_field.key, value},
+                     target + ".errors = " + std::string(written.substr(0, 100))});
+  };
+  if (thing == "sim") ask("sim");
+  else
+    for (const auto& entity : call.simulation().entities()) {
+      const std::string& name = entity->instance.name;
+      names.push_back(name);
+      if (is_pattern(thing) ? !entity->devices.empty() && fits(thing, name) : thing == name) ask(name);
+    }
+  if (asked.empty()) {
+    call.unknown_thing = true;
+    return Error{"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, names)};
+  }
+  if (asked.size() > most_matches)
+    return Error{"'" + std::string(thing) + "' meets more than " + std::to_string(most_matches) + " things",
+                 "narrow it down"};
+  return submit(call, std::move(asked));
+}
+
+}  // namespace
+
 Said say_set(Call& call) {
   const std::string_view address = without_slash(call.words.front());
   if (address.size() > most_pattern)
@@ -218,6 +250,9 @@ Said say_set(Call& call) {
   if (parsed->is_null()) return Error{"a value is missing", "set ADDRESS VALUE"};
   Node value = std::move(*parsed);
   const std::string_view thing = thing_of(address);
+  if (address == "errors" || (thing.find('/') == std::string_view::npos && address.size() > thing.size() &&
+                              address.substr(thing.size() + 1) == "errors"))
+    return set_errors(call, address == "errors" ? "sim" : thing, value, written);
   if (thing.size() == address.size() || thing.find('/') == std::string_view::npos) {
     if (!is_pattern(thing) || thing.size() == address.size())
       return Error{"'" + std::string(address) + "' is no parameter",

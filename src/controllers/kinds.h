@@ -4,6 +4,7 @@
 #define SANDLOT_CONTROLLERS(controller) \
   controller(diffusion)                 \
   controller(playback)                  \
+  controller(seeker)                    \
   controller(sequence)                  \
   controller(sine)                      \
   controller(wander)                    \

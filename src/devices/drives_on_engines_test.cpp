@@ -320,8 +320,10 @@ TEST(DrivesOnRigid, ASwitchInMidRunKeepsPoseVelocityAndOdometry) {
       EXPECT_NEAR(world.base().X_WB.p.y, at.y, 5e-4);
       EXPECT_NEAR(world.base().V_WB.linear.x, v.x, 0.02);
       EXPECT_NEAR(world.odometry().p.x, counted.p.x + 0.005, 1e-3);
-      world.run(30);
-      EXPECT_NEAR(world.base().V_WB.linear.x, 0.5, 0.01);  // the command is still in force
+      // The command is still in force. In the mean: rollers with gaps between them jolt at each change from one to the next.
+      const double from = world.base().X_WB.p.x;
+      world.run(40);
+      EXPECT_NEAR((world.base().X_WB.p.x - from) / 0.4, 0.5, 0.005);
     }
   }
 }

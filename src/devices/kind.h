@@ -14,12 +14,16 @@
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
 /// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
 /// one pool: one call per kind and phase, not per device. A Spec with a member `errors` (noise/chain.h, errors_field)
-/// takes part in the factors that scenarios and robots put on the errors of all their devices.
+/// takes part in the factors that scenarios and robots put on the errors of all their devices: while a phase function runs
+/// it is the product of all factors, before and after it is the device's own.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -27,109 +31,22 @@
 #include "base/random.h"
 #include "base/read.h"
 #include "base/time.h"
-#include "media/emission.h"
-#include "messages/topic.h"
-#include "model/model.h"
+#include "devices/context.h"
+#include "devices/device_build.h"
+#include "devices/scaled_errors.h"
+#include "devices/shared_spec.h"
 #include "physics/engine.h"
 
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 5;
-
-/// One level of abstraction of a kind. The first level of a kind is its default.
-struct LevelInfo {
-  const char* name;     ///< "ranges"
-  const char* message;  ///< ROS type published on <device>/<level>, or ""
-  const char* command;  ///< ROS type accepted on <device>/<level>/command, or ""
-  const char* help;
-};
+inline constexpr int device_api_version = 7;
 
 /// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys go before.
 struct Preset {
   const char* name;  ///< "sick_lms200"
   const char* help;  ///< one sentence; says where the numbers come from
   const char* keys;  ///< a map in YAML
-};
-
-/// Creates topics and command slots while a device is built; they live as long as the device.
-class TopicMaker {
- public:
-  virtual ~TopicMaker() = default;
-  virtual void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) = 0;
-  virtual void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) = 0;
-};
-
-/// What a device is built from.
-struct DeviceBuild {
-  const model::DeviceDecl& decl;
-  const model::Instance& instance;
-  std::string path;       ///< "robot1/laser"
-  std::uint64_t key = 0;  ///< entity_key(path), for Stream
-  std::uint64_t seed = 0;
-  std::span<const BodyId> bodies;  ///< one per link of the instance's model
-  std::span<const JointId> joints;
-  Capabilities engine;
-  Time tick;                 ///< length of a tick
-  std::uint32_t levels = 1;  ///< bit i: level i is active
-  TopicMaker& topics;
-  Vec3 gravity_mps2{0, 0, -9.81};
-  std::optional<model::Geography> geography = {};  ///< where the world lies on the Earth, if a file says so
-  Vec3 magnetic_field_T{};                         ///< of the Earth, in W
-
-  BodyId body() const { return bodies[decl.link]; }
-  /// Frame of the sensor in messages: "robot1/laser".
-  const std::string& frame_id() const { return path; }
-
-  /// The topic of a level, `/robot1/laser/<level>`; the first level's is also what `/robot1/laser` names.
-  template <class M>
-  Topic<M>* publish(std::uint32_t level, const char* level_name) const {
-    auto made = std::make_unique<Topic<M>>("/" + path + "/" + level_name);
-    Topic<M>* const topic = made.get();
-    topics.adopt_topic(std::move(made), level);
-    return topic;
-  }
-  /// The command slot of a level, `/robot1/drive/<level>/command`.
-  template <class M>
-  Topic<M>* accept(std::uint32_t level, const char* level_name) const {
-    auto made = std::make_unique<Topic<M>>("/" + path + "/" + level_name + "/command");
-    Topic<M>* const slot = made.get();
-    topics.adopt_command(std::move(made), level);
-    return slot;
-  }
-  /// The joint a spec names, or an error with the nearest name.
-  Result<JointId> joint(std::string_view name, const char* spec_key) const;
-  /// As above, and its place in the model.
-  Result<std::uint32_t> joint_index(std::string_view name, const char* spec_key) const;
-};
-
-/// What actuators want from the engine in this sub-step; filled in pool order, capacity reused.
-struct Actuation {
-  std::vector<Wrench> wrenches;
-  std::vector<JointTarget> joints;
-  std::vector<DriveTarget> drives;
-  std::vector<RollTarget> rolls;
-  std::vector<WheelTarget> wheels;
-  std::vector<GripTarget> grips;
-  Watch watch;  ///< forces of this sub-step that somebody wants to see after it
-  void clear() {
-    watch.clear(), rolls.clear(), wheels.clear(), grips.clear();
-    wrenches.clear();
-    joints.clear();
-    drives.clear();
-  }
-};
-
-/// What a kind's phase functions may see and touch.
-struct Context {
-  Time now;   ///< end of the tick that is being computed
-  Time tick;  ///< its length
-  std::uint64_t tick_index = 0;
-  std::uint64_t seed = 0;
-  const Engine& engine;
-  const RayCaster& rays;
-  Actuation& actuation;
-  EmissionBuffer& emissions;
 };
 
 /// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
@@ -154,6 +71,11 @@ class PoolBase {
   /// What an actuator that goes away leaves behind (a joint set free, a base released), into context.actuation.
   virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
+  /// Of the kind: whether its devices have errors; of a device: its own factor on them.
+  virtual bool has_errors() const = 0;
+  virtual double errors(std::uint32_t index) const = 0;
+  /// What multiplies a device's own factor `errors` in the phases; 1 at first.
+  virtual void scale_errors(std::uint32_t index, double factor) = 0;
   struct Due {
     std::span<const std::uint32_t> due;
     std::span<const std::uint64_t> sample;
@@ -192,6 +114,7 @@ struct Kind {
   bool (*accepts)(const Node& element) = nullptr;
   const char* sdf_note = "";  ///< for the docs: what of those elements has no effect here
   std::span<const Preset> presets = {};
+  bool sees = false;  ///< its devices look at Context::pictures or Context::things
   int api_version = device_api_version;
   // Filled by make_kind:
   unsigned phases = 0;
@@ -203,35 +126,61 @@ template <class Device>
 class DevicePool final : public PoolBase {
  public:
   Status add(const DeviceBuild& build) override {
-    auto spec = read_spec<typename Device::Spec>(build.decl.config);
-    if (!spec) return at_declaration(std::move(spec.error()), build);
-    auto device = Device::create(build, std::move(*spec));
-    if (!device) return at_declaration(std::move(device.error()), build);
-    devices_.push_back(std::move(*device));
-    return {};
+    if constexpr (shares) {
+      const Node& config = build.decl.config;
+      // Copies of one node are copies of one declaration.
+      if (!latest_ || !config.is_map() || &config.entries() != &std::as_const(latest_config_).entries()) {
+        auto spec = read_spec<Spec>(config);
+        if (!spec) return at_declaration(std::move(spec.error()), build);
+        latest_.emplace(std::move(*spec));
+        latest_config_ = config;
+      }
+      return keep(*latest_, build);
+    } else {
+      auto spec = read_spec<Spec>(build.decl.config);
+      if (!spec) return at_declaration(std::move(spec.error()), build);
+      return keep(std::move(*spec), build);
+    }
   }
-  void remove(std::uint32_t index) override { devices_.erase(devices_.begin() + index); }
+  void remove(std::uint32_t index) override {
+    devices_.erase(devices_.begin() + index);
+    errors_.remove(index);
+  }
+  bool has_errors() const override { return Errors::exist; }
+  double errors([[maybe_unused]] std::uint32_t index) const override {
+    if constexpr (Errors::exist) return spec_of(devices_[index]).errors;
+    else return 1;
+  }
+  void scale_errors(std::uint32_t index, double factor) override { errors_.set(index, factor); }
   void release(std::uint32_t index, const Context& context) override {
     if constexpr (requires { devices_[index].release(context); }) devices_[index].release(context);
     else (void)index, (void)context;
   }
   double rate_hz(std::uint32_t index) const override {
-    if constexpr (requires { devices_[index].spec.rate_hz; }) return devices_[index].spec.rate_hz;
+    if constexpr (requires(const Spec& s) { s.rate_hz; }) return spec_of(devices_[index]).rate_hz;
     else return 0;
   }
   void actuate([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
-    if constexpr (requires { &Device::actuate; }) Device::actuate(view(due), context);
+    if constexpr (requires { &Device::actuate; }) {
+      errors_.run(devices_, due.due, [&] { Device::actuate(view(due), context); });
+    }
   }
   void pre_substep([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due,
                    [[maybe_unused]] double h_s) override {
-    if constexpr (requires { &Device::pre_substep; }) Device::pre_substep(view(due), context, h_s);
+    if constexpr (requires { &Device::pre_substep; }) {
+      errors_.run(devices_, due.due, [&] { Device::pre_substep(view(due), context, h_s); });
+    }
   }
   void post_substep([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due,
                     [[maybe_unused]] double h_s) override {
-    if constexpr (requires { &Device::post_substep; }) Device::post_substep(view(due), context, h_s);
+    if constexpr (requires { &Device::post_substep; }) {
+      errors_.run(devices_, due.due, [&] { Device::post_substep(view(due), context, h_s); });
+    }
   }
   void sense([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
-    if constexpr (requires { &Device::sense; }) Device::sense(view(due), context);
+    if constexpr (requires { &Device::sense; }) {
+      errors_.run(devices_, due.due, [&] { Device::sense(view(due), context); });
+    }
   }
   Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
                       const Context& context) override {
@@ -240,43 +189,66 @@ class DevicePool final : public PoolBase {
     else return (void)index, (void)before, (void)after, (void)context, Status();
   }
   Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) override {
-    typename Device::Spec changed = devices_[index].spec;
+    Spec changed = spec_of(devices_[index]);
     SL_TRY(set_tunable(changed, path, value));
-    devices_[index].spec = std::move(changed);
+    set_spec(devices_[index], std::move(changed));
     return {};
   }
   ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, devices_[index].spec, devices_[index].state, path);
+    return value_at(part, spec_of(devices_[index]), devices_[index].state, path);
   }
   void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, devices_[index].spec, devices_[index].state, visit);
+    sandlot::list_values(part, spec_of(devices_[index]), devices_[index].state, visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
-    write_tunables(w, devices_[index].spec);
+    const Spec& spec = spec_of(devices_[index]);
+    write_tunables(w, spec);
     write(w, devices_[index].state);
     // Last and only where it is not 1: the bytes of a device without it are those of before it was.
-    if constexpr (requires { devices_[index].spec.errors; })
-      if (devices_[index].spec.errors != 1) write(w, devices_[index].spec.errors);
+    if constexpr (requires { spec.errors; })
+      if (spec.errors != 1) write(w, spec.errors);
   }
   void load(std::uint32_t index, ByteReader& r) override {  // r ends where the device's bytes end
     Device& d = devices_[index];
-    read_tunables(r, d.spec);
+    Spec spec = spec_of(d);
+    read_tunables(r, spec);
     read(r, d.state);
-    if constexpr (requires { d.spec.errors; }) {
-      if (d.spec.errors = 1; r.remaining() > 0) read(r, d.spec.errors);
-      if (!(d.spec.errors >= 0 && d.spec.errors <= 1e6)) r.fail();
+    if constexpr (requires { spec.errors; }) {
+      if (spec.errors = 1; r.remaining() > 0) read(r, spec.errors);
+      if (!(spec.errors >= 0 && spec.errors <= 1e6)) r.fail();
     }
+    set_spec(d, std::move(spec));
     if constexpr (requires { d.fits(); })
       if (!d.fits()) r.fail();
   }
 
  private:
+  using Spec = typename Device::Spec;
+  using Errors = ScaledErrors<Device>;
+  static constexpr bool shares = shares_spec<Device>;
+  /// What create() tells of the errors (a covariance) is of all factors together; the device keeps its own.
+  Status keep(typename Errors::Held spec, const DeviceBuild& build) {
+    [[maybe_unused]] const auto own = [&] {
+      if constexpr (Errors::exist) return errors_.take(spec, build.errors);
+      else return 0;
+    }();
+    auto device = Device::create(build, std::move(spec));
+    if (!device) return at_declaration(std::move(device.error()), build);
+    if constexpr (Errors::exist) Errors::give_back(device->spec, own);
+    devices_.push_back(std::move(*device));
+    errors_.add(build.errors);
+    return {};
+  }
   static Error at_declaration(Error error, const DeviceBuild& build) {
     if (!error.place.file && error.place.line == 0) error.place = build.decl.place;
     return error;
   }
   PoolView<Device> view(const Due& due) { return {devices_, due.due, due.sample, due.levels, due.since}; }
   std::vector<Device> devices_;
+  struct None {};
+  [[no_unique_address]] std::conditional_t<shares, std::optional<SharedSpec<Spec>>, None> latest_;
+  [[no_unique_address]] std::conditional_t<shares, Node, None> latest_config_;
+  Errors errors_;
 };
 
 template <class Device>

@@ -6,11 +6,17 @@
   device(altimeter)             \
   device(barometer)             \
   device(body_velocity)         \
+  device(boundingbox_camera)    \
+  device(camera)                \
+  device(color_sensor)          \
   device(contact)               \
   device(dc_motor)              \
+  device(depth_camera)          \
   device(diff_drive)            \
   device(force_torque)          \
   device(gps)                   \
+  device(gripper)               \
+  device(ground_sensor)         \
   device(ground_truth)          \
   device(imu)                   \
   device(joint_motor)           \
@@ -18,13 +24,22 @@
   device(joint_trajectory)      \
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
+  device(light_sensor)          \
+  device(line_camera)           \
   device(magnetometer)          \
   device(mecanum_drive)         \
+  device(omni_camera)           \
   device(omni_drive)            \
+  device(overhead_camera)       \
+  device(pan_tilt)              \
   device(proximity)             \
   device(range_finder)          \
+  device(rgbd_camera)           \
+  device(segmentation_camera)   \
   device(skid_drive)            \
+  device(stereo_camera)         \
   device(swerve_drive)          \
+  device(thermometer)           \
   device(track_drive)           \
   device(wheel_encoder)         \
   device(wheel_odometry)

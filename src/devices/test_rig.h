@@ -139,7 +139,12 @@ class Rig : public TopicMaker {
   std::unique_ptr<HandEngine> engine;
   std::unique_ptr<PoolBase> pool;
   std::map<std::string, std::unique_ptr<TopicBase>> topics;  ///< messages and commands by name
+  std::map<std::string, Pose> frames;                        ///< beside the sensors' own, as X_SF
   const RayCaster* rays = nullptr;
+  optics::PictureScene* pictures = nullptr;
+  std::vector<Thing> things;
+  const TopicFinder* finder = nullptr;
+  ImageEncoder encoder = nullptr;
   Time now, tick;
   std::uint64_t tick_index = 0, seed = 1;
   Vec3 gravity_mps2{0, 0, -9.81}, magnetic_field_T{};
@@ -161,7 +166,8 @@ class Rig : public TopicMaker {
     decl.place = {std::make_shared<const std::string>("robot.yaml"), 12, 5};
     const std::string path = "robot1/" + name;
     SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids,
-                      engine->what, tick, level_bits, *this, gravity_mps2, geography, magnetic_field_T}));
+                      engine->what, tick, level_bits, *this, gravity_mps2, geography, magnetic_field_T, 1,
+                      encoder}));
     all.push_back(static_cast<std::uint32_t>(all.size()));
     levels.push_back(level_bits);
     sample.push_back(0);
@@ -182,7 +188,8 @@ class Rig : public TopicMaker {
     ++slot.count;
   }
   Context context(Time at) {
-    return {at, tick, tick_index, seed, *engine, rays ? *rays : none_, actuation, emissions};
+    return {at,        tick,      tick_index, seed,   *engine, rays ? *rays : none_,
+            actuation, emissions, pictures,   things, finder};
   }
   PoolBase::Due due() const { return {all, sample, levels, since}; }
 
@@ -226,6 +233,7 @@ class Rig : public TopicMaker {
 
   void adopt_topic(std::unique_ptr<TopicBase> made, std::uint32_t) override { keep(std::move(made)); }
   void adopt_command(std::unique_ptr<TopicBase> made, std::uint32_t) override { keep(std::move(made)); }
+  void adopt_frame(std::string name, const Pose& X_SF) override { frames[name] = X_SF; }
 
  private:
   void keep(std::unique_ptr<TopicBase> made) {

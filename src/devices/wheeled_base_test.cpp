@@ -562,6 +562,10 @@ TEST(Drives, WhatCannotBeIsRefusedWithItsPlace) {
   twice.links[3].X_ML.p = twice.links[1].X_ML.p;
   EXPECT_NE(refused(skid_drive::kind, twice, skid()).find("'fl' and 'bl' stand on the same point"),
             std::string::npos);
+  model::Model narrow = four_wheels();
+  for (model::Link& link : narrow.links) link.X_ML.p.y = 0;
+  EXPECT_NE(refused(skid_drive::kind, narrow, skid()).find("no distance between them; move them apart"),
+            std::string::npos);
   EXPECT_EQ(
       refused(mecanum_drive::kind, four_wheels(), with(mecanum(), {{"back_left_joint", "bk"}})).substr(0, 55),
       "robot.yaml:1:1: /back_left_joint: model 'rover' has no ");

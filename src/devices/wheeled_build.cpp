@@ -178,7 +178,10 @@ Result<Base> skid_base(const char* noun, const DeviceBuild& build, const Common&
   std::vector<double> along;
   for (const kinematics::Wheel& wheel : base.geometry) along.push_back(wheel.x_m);
   const double between = left.y - right.y;
-  if (between < 1e-3)
+  if (std::abs(between) < 1e-3)
+    return error_at(build, "left_joint", "the left and the right wheels have no distance between them",
+                    "move them apart, left to +y and right to -y");
+  if (between < 0)
     return error_at(build, "left_joint", "the left wheels are not to the left of the right ones",
                     "exchange left_joint and right_joint");
   if (!(track > 0)) track = between;

@@ -110,15 +110,15 @@ Status check(std::span<const Wheel> wheels, std::optional<double> pivot_x_m) {
   for (std::size_t i = 0; i < wheels.size(); ++i) {
     const Wheel& w = wheels[i];
     if (!(w.radius_m > 0) || !std::isfinite(w.radius_m))
-      return Error{called(w, i) + " has a radius of " + number_text(w.radius_m) + " m", "give it a size"};
+      return Error{called(w, i) + " has a radius of " + short_text(w.radius_m) + " m", "give it a size"};
     if (!w.ordinary && std::abs(dot(w.grip, w.along)) < 0.02)
       return Error{called(w, i) + " has rollers whose axes lie along the wheel's: it pushes nothing",
                    "their angle is 90 deg for an omni wheel, 45 or -45 deg for a Mecanum wheel"};
     for (std::size_t j = 0; j < i; ++j)
       if (std::abs(w.x_m - wheels[j].x_m) + std::abs(w.y_m - wheels[j].y_m) < 1e-6)
         return Error{called(wheels[j], j) + " and " + called(w, i) + " stand on the same point",
-                     "move one of them: it touches the ground at (" + number_text(w.x_m) + ", " +
-                         number_text(w.y_m) + ") m"};
+                     "move one of them: it touches the ground at (" + short_text(w.x_m) + ", " +
+                         short_text(w.y_m) + ") m"};
   }
   // Normal equations with the turn in units of the mean distance, so that its size does not depend on that of the robot.
   double squares = 0, rows = 0;

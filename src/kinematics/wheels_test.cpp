@@ -122,6 +122,7 @@ TEST(Wheels, WhatCannotBeBuiltOrDrivenIsRefused) {
   wheels[2].x_m = wheels[0].x_m, wheels[2].y_m = wheels[0].y_m;
   wheels[2].name = "rear";
   EXPECT_EQ(refused(wheels), "wheel 1 and 'rear' stand on the same point");
+  EXPECT_EQ(check(wheels).error().fix, "move one of them: it touches the ground at (0.2, 0) m");
   EXPECT_EQ(refused({}), "a chassis without wheels does not move");
   // All rolling ahead without holding across: nothing pushes sideways.
   wheels.clear();

@@ -14,3 +14,4 @@
 #include "messages/sensor_ranges.h"
 #include "messages/std_msgs.h"
 #include "messages/trajectory_msgs.h"
+#include "messages/vision_msgs.h"

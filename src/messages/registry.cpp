@@ -7,6 +7,7 @@
 #include "messages/cdr.h"
 #include "messages/diagnostic_msgs.h"
 #include "messages/json.h"
+#include "messages/line_segments.h"
 #include "messages/make_info.h"
 #include "messages/messages.h"
 #include "messages/rcl_interfaces.h"

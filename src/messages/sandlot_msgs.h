@@ -66,6 +66,21 @@ struct Altimeter {
   }
 };
 
+/// What a gripper holds.
+struct GripperState {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/GripperState";
+  Header header;
+  bool closed = false;
+  std::string held;
+  Vec3 force;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"closed", "", "It was told to close."}, s.closed);
+    visit(Field{"held", "", "Instance and link, \"can::body\"; empty: nothing."}, s.held);
+    visit(Field{"force", "N", "What holds it there, on what is held, in the gripper's frame."}, s.force);
+  }
+};
+
 /// What a motor is doing.
 struct MotorState {
   static constexpr const char* ros_type = "sandlot_msgs/msg/MotorState";
@@ -141,6 +156,104 @@ struct StateParts {
     visit(Field{"tick", "1", "Its number."}, s.tick);
     visit(Field{"revision", "1", "Revision of the model."}, s.revision);
     visit(Field{"paths", "", "Addresses of the entities."}, s.paths);
+  }
+};
+
+/// Something that a camera sees, as a detector tells it.
+struct Object {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/Object";
+  std::string label;
+  std::string name;
+  ColorRGBA color;
+  double bearing = 0;
+  double elevation = 0;
+  double range = 0;
+  Point position;
+  double visible = 0;
+  double confidence = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"label", "", "Its class, such as ball."}, s.label);
+    visit(Field{"name", "", "Which one; empty where the detector does not tell."}, s.name);
+    visit(Field{"color", "", "Of its largest part."}, s.color);
+    visit(Field{"bearing", "rad", "To its middle: from x to y of the frame."}, s.bearing);
+    visit(Field{"elevation", "rad", "To its middle: up from the xy plane."}, s.elevation);
+    visit(Field{"range", "m", "To its middle."}, s.range);
+    visit(Field{"position", "m", "Of its middle: the three above as a point."}, s.position);
+    visit(Field{"visible", "1", "The part of it that is seen, from 0 to 1."}, s.visible);
+    visit(Field{"confidence", "1", "How sure the detector is, from 0 to 1."}, s.confidence);
+  }
+};
+
+/// All that a camera sees.
+struct ObjectArray {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/ObjectArray";
+  Header header;
+  std::vector<Object> objects;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"objects", "", "In no particular order."}, s.objects);
+  }
+};
+
+/// Where something is.
+struct ObjectPose {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/ObjectPose";
+  std::string label;
+  std::string name;
+  ColorRGBA color;
+  Pose pose;
+  double position_std = 0;
+  double confidence = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"label", "", "Its class, such as ball."}, s.label);
+    visit(Field{"name", "", "Which one; empty where the detector does not tell."}, s.name);
+    visit(Field{"color", "", "Of its largest part."}, s.color);
+    visit(Field{"pose", "", "Of its body in header.frame_id."}, s.pose);
+    visit(Field{"position_std", "m", "Standard deviation of x and y."}, s.position_std);
+    visit(Field{"confidence", "1", "How sure the detector is, from 0 to 1."}, s.confidence);
+  }
+};
+
+/// Where things are.
+struct ObjectPoseArray {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/ObjectPoseArray";
+  Header header;
+  std::vector<ObjectPose> objects;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"objects", "", "In no particular order."}, s.objects);
+  }
+};
+
+/// What a pan-tilt unit is doing.
+struct PanTiltState {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/PanTiltState";
+  static constexpr std::uint8_t idle = 0, moving = 1, arrived = 2, searching = 3, tracking = 4, lost = 5,
+                                out_of_reach = 6;
+  Header header;
+  std::uint8_t status = idle;
+  std::string label;
+  double pan = 0;
+  double tilt = 0;
+  double pan_target = 0;
+  double tilt_target = 0;
+  static void constants(auto&& visit) {
+    visit("IDLE", idle);
+    visit("MOVING", moving);
+    visit("ARRIVED", arrived);
+    visit("SEARCHING", searching);
+    visit("TRACKING", tracking);
+    visit("LOST", lost);
+    visit("OUT_OF_REACH", out_of_reach);
+  }
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"status", "1", "IDLE, MOVING ..."}, s.status);
+    visit(Field{"label", "", "What it searches or tracks."}, s.label);
+    visit(Field{"pan", "rad", "Angle of the pan joint."}, s.pan);
+    visit(Field{"tilt", "rad", "Angle of the tilt joint."}, s.tilt);
+    visit(Field{"pan_target", "rad", "Where it shall turn."}, s.pan_target);
+    visit(Field{"tilt_target", "rad", "Where it shall turn."}, s.tilt_target);
   }
 };
 

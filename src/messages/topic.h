@@ -35,6 +35,10 @@ class TopicBase {
   virtual void list_values(const ValueVisit& visit) const = 0;
   /// Takes message, stamp and count from a topic of the same type; costs no heap once it has held as much.
   virtual void copy_from(const TopicBase& other) = 0;
+  /// Counts the message it holds as one of `now`, once more.
+  virtual void republish(Time now) = 0;
+  /// Writes another time into the message; false when it holds none.
+  virtual bool restamp(Time stamp) = 0;
   /// About what it holds in memory.
   virtual std::size_t memory_bytes() const = 0;
 
@@ -81,6 +85,11 @@ class Topic : public TopicBase {
     stamp = now;
     ++count;
     if constexpr (requires { message.header; }) message.header.stamp = now;
+  }
+  void republish(Time now) override { publish(now); }
+  bool restamp([[maybe_unused]] Time other) override {
+    if constexpr (requires { message.header; }) return message.header.stamp = other, true;
+    else return false;
   }
   void save(ByteWriter& w) const override {
     write(w, stamp);

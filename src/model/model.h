@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/node.h"
+#include "base/shared_list.h"
 #include "base/time.h"
 #include "geometry/color.h"
 #include "geometry/pose.h"
@@ -191,9 +192,11 @@ struct Instance {
   Pose X_WM;
   bool is_robot = false;
   std::string team;
-  std::vector<DeviceDecl> devices;  ///< the model's own with the scenario's changes
-  std::vector<ControllerDecl> controllers;
+  std::string label;               ///< what detectors call it: "ball"; "" for its model's name
+  SharedList<DeviceDecl> devices;  ///< the model's own with the scenario's changes
+  SharedList<ControllerDecl> controllers;
   std::optional<Motion> motion;
+  double errors = 1;  ///< factor on the errors of all its devices
   Place place;
 };
 
@@ -253,6 +256,7 @@ struct Setup {
   int substeps = 1;          ///< physics steps per tick; a longer tick of a continuous clock has more
   int control_interval = 1;  ///< ticks between control steps
   std::uint64_t seed = 1;
+  double errors = 1;                ///< factor on the errors of all devices
   std::optional<Time> stop;         ///< simulated time at which the run ends by itself
   std::optional<Recording> record;  ///< how the run is to be recorded: no part of it, nor of its snapshots
   std::vector<PluginDecl> plugins;

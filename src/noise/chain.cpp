@@ -64,18 +64,7 @@ void corrupt_all(const Spec& spec, State& state, std::span<float> values, const 
 
 }  // namespace
 
-std::vector<StageSort> stage_sorts() {
-  std::vector<StageSort> out;
-  [&]<std::size_t... i>(std::index_sequence<i...>) {
-    const auto one = [&]<class Sort>(const Sort& sort) {
-      out.push_back({Sort::name, Sort::help, {}});
-      describe_struct(sort, "", "U", out.back().fields, false);
-    };
-    (one(std::variant_alternative_t<i + 1, noise_detail::All::Spec>()), ...);
-  }
-  (std::make_index_sequence<StageSpec::sorts - 1>());
-  return out;
-}
+std::vector<StageSort> stage_sorts() { return sorts_of<StageSpec>("U"); }
 
 double variance_of(std::span<const StageSpec> stages, double dt_s, double errors) {
   double sum = 0;

@@ -54,6 +54,20 @@ struct StageSort {
 };
 std::vector<StageSort> stage_sorts();
 
+template <class StageType>
+std::vector<StageSort> sorts_of(const char* unit) {
+  std::vector<StageSort> out;
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    const auto one = [&]<class Sort>(const Sort& sort) {
+      out.push_back({Sort::name, Sort::help, {}});
+      describe_struct(sort, "", unit, out.back().fields, false);
+    };
+    (one(std::variant_alternative_t<i + 1, typename StageType::Sorts>()), ...);
+  }
+  (std::make_index_sequence<StageType::sorts - 1>());
+  return out;
+}
+
 /// Sum of the variances of the stages about their constant errors, where they have one of their own (walk,
 /// proportional and lost values have none).
 double variance_of(std::span<const StageSpec> stages, double dt_s, double errors = 1);

@@ -13,7 +13,7 @@
 ///          a hit into a miss or a miss into a hit.
 /// Time     b depends on the time since the previous sample; w does not.
 /// Random   as noise/channel_noise.h.
-/// Limits   no reflectance or mixed pixels.
+/// Limits   no reflectance; no error that depends on the angle at which a surface is met.
 /// Cost     one normal per finite distance if `white` > 0, two more per sample if a bias is configured; the stages.
 /// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 6.3.1 (the "hit" term); noise/chain.h.
 #include <algorithm>

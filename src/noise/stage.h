@@ -16,28 +16,23 @@
 
 #include "noise/faults.h"
 #include "noise/latency.h"
+#include "noise/ranging.h"
 #include "noise/response.h"
 
 namespace sandlot {
 
-namespace noise_detail {
-template <class... Stages>
-struct Sorts {
-  using Spec = std::variant<std::monostate, Stages...>;
-  using State = std::variant<std::monostate, typename Stages::State...>;
-};
-using All = Sorts<GaussianSpec, WhiteSpec, UniformSpec, ProportionalSpec, DriftSpec, BiasSpec, WalkSpec,
-                  ScaleSpec, QuantiseSpec, ClipSpec, DeadZoneSpec, DropoutsSpec, OutliersSpec, LatencySpec>;
-}  // namespace noise_detail
+/// A stage of one of the sorts of a family, which says under what name they are described (`described_as`) and has them
+/// as a std::variant<std::monostate, ...> `Spec`.
+template <class Family>
+struct StageOf {
+  using Sorts = typename Family::Spec;
+  static constexpr const char* described_as = Family::described_as;
+  static constexpr std::size_t sorts = std::variant_size_v<Sorts>;
+  Sorts stage;
 
-struct StageSpec {
-  static constexpr const char* described_as = "noise";
-  static constexpr std::size_t sorts = std::variant_size_v<noise_detail::All::Spec>;
-  noise_detail::All::Spec stage;
-
-  StageSpec() = default;
+  StageOf() = default;
   template <class Stage>
-  requires std::constructible_from<noise_detail::All::Spec, Stage> StageSpec(Stage s)
+  requires std::constructible_from<Sorts, Stage> StageOf(Stage s)
       : stage(std::move(s)) {}  // NOLINT: a stage of a sort is a stage
 
   /// "gaussian"; "" before it was read.
@@ -66,7 +61,7 @@ struct StageSpec {
  private:
   template <std::size_t i>
   static void field(auto& s, auto&& visit) {
-    using Sort = std::variant_alternative_t<i, noise_detail::All::Spec>;
+    using Sort = std::variant_alternative_t<i, Sorts>;
     std::optional<Sort> here;
     if (s.stage.index() == i) here = std::get<i>(s.stage);
     visit(Field{Sort::name, "", Sort::help}, here);
@@ -74,6 +69,21 @@ struct StageSpec {
       if (here) s.stage = std::move(*here);
   }
 };
+
+namespace noise_detail {
+template <class... Stages>
+struct Sorts {
+  static constexpr const char* described_as = "noise";
+  using Spec = std::variant<std::monostate, Stages...>;
+  using State = std::variant<std::monostate, typename Stages::State...>;
+};
+using All = Sorts<GaussianSpec, WhiteSpec, UniformSpec, ProportionalSpec, DriftSpec, BiasSpec, WalkSpec,
+                  ScaleSpec, QuantiseSpec, ClipSpec, DeadZoneSpec, DropoutsSpec, OutliersSpec, LatencySpec,
+                  GrowingSpec, MixedSpec, ShortSpec, MultipathSpec>;
+}  // namespace noise_detail
+
+/// A stage for values: a reading, an axis, the beams of a scan.
+using StageSpec = StageOf<noise_detail::All>;
 
 struct StageState {
   noise_detail::All::State state;  ///< of the sort of its StageSpec

@@ -392,5 +392,101 @@ TEST(Stages, BeamsAreLostAloneOrAllAtOnce) {
   EXPECT_NEAR(scans / 500, 0.2, bound * std::sqrt(0.16 / 500));
 }
 
+std::vector<float> scans_of(const StageSpec& stage, const std::vector<float>& scan, int n,
+                            double errors = 1) {
+  ChannelChain chain;
+  const std::vector<StageSpec> stages{stage};
+  chain.reset(stages, Stream(1, 2, Purpose::initial, 0));
+  std::vector<float> out;
+  for (int k = 0; k < n; ++k) {
+    std::vector<float> one = scan;
+    chain.corrupt(stages, one, 0.1, Stream(1, 2, Purpose::noise, static_cast<std::uint64_t>(k)), errors);
+    out.insert(out.end(), one.begin(), one.end());
+  }
+  return out;
+}
+struct Spread {
+  double mean = 0, variance = 0;
+};
+template <class Values>
+Spread spread(const Values& values) {
+  Spread out;
+  const auto n = static_cast<double>(values.size());
+  for (const auto v : values) out.mean += static_cast<double>(v) / n;
+  for (const auto v : values)
+    out.variance += (static_cast<double>(v) - out.mean) * (static_cast<double>(v) - out.mean) / n;
+  return out;
+}
+
+double square(double x) { return x * x; }
+
+TEST(RangeStages, GrowingHasItsDeviationWhereItSaysAndThePowerBeyond) {
+  constexpr int n = 20'000;
+  for (const double power : {1.0, 2.0, 3.0})
+    for (const double x : {10.0, 20.0}) {
+      const auto seen = scans_of(GrowingSpec{.std = 0.02, .at = 10, .power = power}, {static_cast<float>(x)},
+                                 n);
+      const double variance = square(0.02 * math::pow(x / 10, power));
+      EXPECT_NEAR(spread(seen).variance, variance, variance * 5 * std::sqrt(2.0 / n)) << power << " " << x;
+    }
+}
+
+TEST(RangeStages, BeamsAtAnEdgeShowSomethingBetween) {
+  const auto inf = std::numeric_limits<float>::infinity();
+  const std::vector<float> scan{4, 4, 4, 1, 1, 1, inf, inf, 2, 2.1F};
+  constexpr int n = 20'000;
+  const auto seen = scans_of(MixedSpec{.rate = 0.2, .jump = 0.5}, scan, n, 2);
+  int changed[10] = {};
+  std::vector<double> between;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] != scan[i % 10]) {
+      ++changed[i % 10];
+      between.push_back(static_cast<double>(seen[i]));
+    }
+  for (int i = 0; i < 10; ++i) {  // at 4 | 1 alone: infinite neighbours and small steps are no edges
+    const double p = i == 2 || i == 3 ? 0.4 : 0;
+    EXPECT_NEAR(changed[i], p * n, 5 * std::sqrt(p * (1 - p) * n)) << i;
+  }
+  const auto m = static_cast<double>(between.size());
+  EXPECT_NEAR(spread(between).mean, 2.5, 5 * std::sqrt(9.0 / 12 / m));
+  EXPECT_NEAR(spread(between).variance, 9.0 / 12, 5 * 9.0 / 12 * std::sqrt(0.8 / m));
+}
+
+TEST(RangeStages, ShortReadingsAreExponentialUpToTheWall) {
+  constexpr int n = 40'000;
+  const float inf = std::numeric_limits<float>::infinity();
+  for (const float x : {2.0F, inf}) {
+    const auto seen = scans_of(ShortSpec{.rate = 0.25, .mean = 1.5}, {x}, n);
+    std::vector<double> shorter;
+    for (const float each : seen)
+      if (each != x) shorter.push_back(static_cast<double>(each));
+    EXPECT_NEAR(static_cast<double>(shorter.size()), 0.25 * n, 5 * std::sqrt(0.25 * 0.75 * n));
+    // Mean of an exponential distribution cut at x: m - x / (exp(x / m) - 1).
+    const double mean = x < inf ? 1.5 - 2 / (math::exp(2 / 1.5) - 1) : 1.5;
+    const Spread got = spread(shorter);
+    EXPECT_NEAR(got.mean, mean, 5 * std::sqrt(got.variance / static_cast<double>(shorter.size())));
+    EXPECT_LE(*std::max_element(shorter.begin(), shorter.end()), static_cast<double>(x));
+    EXPECT_GE(*std::min_element(shorter.begin(), shorter.end()), 0);
+  }
+}
+
+TEST(RangeStages, EchoesByALongerWayAreExponentialBehindTheWall) {
+  constexpr int n = 40'000;
+  const MultipathSpec spec{.rate = 0.3, .mean = 0.8};
+  const auto seen = scans_of(spec, {2.0F, std::numeric_limits<float>::infinity()}, n);
+  std::vector<double> longer, all;
+  for (std::size_t i = 0; i < seen.size(); i += 2) {
+    all.push_back(static_cast<double>(seen[i]));
+    if (seen[i] != 2.0F) longer.push_back(static_cast<double>(seen[i]) - 2);
+    ASSERT_TRUE(std::isinf(seen[i + 1]));
+  }
+  const auto m = static_cast<double>(longer.size());
+  EXPECT_NEAR(m, 0.3 * n, 5 * std::sqrt(0.3 * 0.7 * n));
+  EXPECT_NEAR(spread(longer).mean, 0.8, 5 * 0.8 / std::sqrt(m));
+  // The variance of an exponential's estimated variance is 8 v^2 / m.
+  EXPECT_NEAR(spread(longer).variance, 0.64, 5 * 0.64 * std::sqrt(8 / m));
+  EXPECT_NEAR(spread(all).variance, spec.variance(0.1), 0.1 * spec.variance(0.1));
+}
+
 }  // namespace
 }  // namespace sandlot

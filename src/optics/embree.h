@@ -22,6 +22,20 @@ inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, 
   arguments.context = &context;
   rtcIntersect8(valid, scene, &rays, &arguments);
 }
+inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &context;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &context;
+  rtcOccluded8(valid, scene, &rays, &arguments);
+}
 #else
 using QueryContext = RTCIntersectContext;
 inline void init_context(QueryContext& context) {
@@ -30,6 +44,16 @@ inline void init_context(QueryContext& context) {
 }
 inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
   rtcIntersect8(valid, scene, &context, &rays);
+}
+/// For packets of neighbouring pixels.
+inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
+}
+/// What is hit has tfar < 0. Never coherent: with that flag Embree 3.13 does not come back from some packets.
+inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcOccluded8(valid, scene, &context, &rays);
 }
 #endif
 

@@ -19,11 +19,19 @@ typedef int I __attribute__((vector_size(32)));  ///< masks: -1 true, 0 false
 
 inline F all(float x) { return F{x, x, x, x, x, x, x, x}; }
 inline I all(int x) { return I{x, x, x, x, x, x, x, x}; }
+// The instructions are asked for by name where the compiler does not find them: it takes two or three for each.
+#if defined(__AVX__)
+inline F choose(I mask, F yes, F no) { return F(_mm256_blendv_ps(__m256(no), __m256(yes), __m256(F(mask)))); }
+inline I choose(I mask, I yes, I no) { return I(choose(mask, F(yes), F(no))); }
+/// `b` where the comparison with NaN decides, as in (a < b ? a : b).
+inline F lesser(F a, F b) { return F(_mm256_min_ps(__m256(a), __m256(b))); }
+inline F greater(F a, F b) { return F(_mm256_max_ps(__m256(a), __m256(b))); }
+#else
 inline F choose(I mask, F yes, F no) { return mask ? yes : no; }
 inline I choose(I mask, I yes, I no) { return mask ? yes : no; }
-/// `b` where the comparison with NaN decides, as in (a < b ? a : b).
 inline F lesser(F a, F b) { return choose(a < b, a, b); }
 inline F greater(F a, F b) { return choose(a > b, a, b); }
+#endif
 
 inline F root(F x) {
 #if defined(__AVX__)
@@ -32,6 +40,17 @@ inline F root(F x) {
   F r;
   for (int i = 0; i < width; ++i) r[i] = std::sqrt(x[i]);
   return r;
+#endif
+}
+
+/// Bit i is set where lane i is true.
+inline unsigned bits(I mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(__m256(F(mask))));
+#else
+  unsigned out = 0;
+  for (int i = 0; i < width; ++i) out |= mask[i] ? 1u << i : 0u;
+  return out;
 #endif
 }
 

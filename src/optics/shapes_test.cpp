@@ -187,6 +187,23 @@ TEST(RayShapes, RaysMeetTerrainAtItsHeight) {
   }
 }
 
+TEST(RayShapes, TrianglesAreMetWhereIeeeDivisionSaysOnAnyProcessor) {
+  // Flat, with corners at powers of two: all but one division is exact. Estimates of reciprocals, which differ from
+  // processor to processor, would show in the last bit of many.
+  const auto square = std::make_shared<const TriangleMesh>(TriangleMesh{
+      .vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  const auto flat = std::make_shared<const HeightGrid>(HeightGrid{5, 5, 8, 8, std::vector<float>(25), {}});
+  for (const Shape& shape : {Shape(Mesh{square}), Shape(Heightfield{flat})}) {
+    const World world({at(shape, {})});
+    Stream r(9, entity_key("division"), Purpose::experiment, 0);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 from{0.1, 0.2, 1.1}, to{7 * (r.uniform() - 0.5), 7 * (r.uniform() - 0.5), 0};
+      const auto down = static_cast<float>(-normalised(to - from).z);
+      EXPECT_EQ(world.see(from, to), 1.1f / down) << to.x << " " << to.y;
+    }
+  }
+}
+
 TEST(RayShapes, SharedMeshesAnswerAsTheirOwnAndRaysDoNotSeeTheirPacket) {
   Stream r(8, entity_key("shapes"), Purpose::experiment, 0);
   const Shape ball = mesh_of(Sphere{0.5}, 24);

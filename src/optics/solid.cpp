@@ -19,8 +19,6 @@ using lanes::lesser;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-using Local = LocalRays8;
-
 /// The part of each ray's line inside a convex solid; empty when first > last.
 struct Interval {
   F first, last;
@@ -39,38 +37,46 @@ Interval unless_empty(Interval a) {
 }
 
 /// Between the planes -half and +half. A ray parallel to them divides by zero: +-inf puts it inside or outside.
-Interval slab(float o, F d, float half) {
+template <class O>
+Interval slab(O o, F d, float half) {
   const F towards = choose(I(d) < 0, all(-half),
                            all(half));  // by sign bit, so that -0 and +0 stay consistent
   return {(-towards - o) / d, (towards - o) / d};
 }
 
-Interval ball(float ox, float oy, float oz, const Local& ray, float radius) {
+template <class O>
+Interval ball(O ox, O oy, O oz, const LocalRaysOf<O>& ray, float radius) {
   const F along = -(ox * ray.dx + oy * ray.dy + oz * ray.dz);
   const F px = ox + along * ray.dx, py = oy + along * ray.dy, pz = oz + along * ray.dz;
   const F half = lanes::root(radius * radius - (px * px + py * py + pz * pz));  // NaN: missed
   return {along - half, along + half};
 }
 
+F which(bool yes, float a, float b) { return all(yes ? a : b); }
+F which(I yes, float a, float b) { return choose(yes, all(a), all(b)); }
+
 /// Inside the infinite cylinder about z.
-Interval tube(const Local& ray, float radius) {
+template <class O>
+Interval tube(const LocalRaysOf<O>& ray, float radius) {
   const F a = ray.dx * ray.dx + ray.dy * ray.dy;
   const F b = ray.ox * ray.dx + ray.oy * ray.dy;
   const F side = ray.ox * ray.dy - ray.oy * ray.dx;  // |side| / sqrt(a): distance between axis and ray
   const F half = lanes::root(a * (radius * radius) - side * side);
-  const bool inside = ray.ox * ray.ox + ray.oy * ray.oy <= radius * radius;
+  const auto inside = ray.ox * ray.ox + ray.oy * ray.oy <= radius * radius;
   // Within 1e-10 rad of the axis the ray never leaves a tube that it is in, and squares would underflow.
   const I parallel = a < 1e-20f;
-  return {choose(parallel, all(inside ? -inf : inf), (-b - half) / a),
-          choose(parallel, all(inside ? inf : -inf), (-b + half) / a)};
+  return {choose(parallel, which(inside, -inf, inf), (-b - half) / a),
+          choose(parallel, which(inside, inf, -inf), (-b + half) / a)};
 }
 
-Interval capped(const Local& ray, float radius, float half_length) {
+template <class O>
+Interval capped(const LocalRaysOf<O>& ray, float radius, float half_length) {
   return meet(tube(ray, radius), slab(ray.oz, ray.dz, half_length));
 }
 
 /// Inside the ellipsoid with these radii about the origin.
-Interval oval(const Local& ray, const float* r) {
+template <class O>
+Interval oval(const LocalRaysOf<O>& ray, const float* r) {
   // From the point of the ray nearest to the centre, so that the squares below do not grow with the distance; then in
   // space scaled to a unit ball.
   const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);
@@ -89,7 +95,8 @@ Interval oval(const Local& ray, const float* r) {
 /// With the apex as origin and k = radius / (2 half) the double cone is f(p, p) = x x + y y - k k z z <= 0. Along a ray
 /// f = a t^2 + 2 b t + c. Flat rays (a > 0) are inside between the roots and steep ones outside of them, below the lower
 /// root when they rise; the slab of the height takes the upper half of the double cone away.
-Interval pointed(const Local& ray, float radius, float half) {
+template <class O>
+Interval pointed(const LocalRaysOf<O>& ray, float radius, float half) {
   const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);
   const F x = ray.ox + along * ray.dx, y = ray.oy + along * ray.dy, z = ray.oz + along * ray.dz - half;
   const float k = radius / (2 * half), k2 = k * k;
@@ -109,7 +116,8 @@ Interval pointed(const Local& ray, float radius, float half) {
           along + choose(steep, choose(rises, low, all(inf)), high)};
 }
 
-Interval inside(const Solid& solid, const Local& ray) {
+template <class O>
+Interval inside(const Solid& solid, const LocalRaysOf<O>& ray) {
   const float* s = solid.size;
   switch (solid.type) {
     case Solid::Type::box: {
@@ -129,8 +137,9 @@ Interval inside(const Solid& solid, const Local& ray) {
     case Solid::Type::triangles: break;
   }
   // Convex, so its interval is the union of those of its three parts.
-  const Interval top = unless_empty(ball(ray.ox, ray.oy, ray.oz - s[1], ray, s[0]));
-  const Interval bottom = unless_empty(ball(ray.ox, ray.oy, ray.oz + s[1], ray, s[0]));
+  const O up = ray.oz + s[1], down = ray.oz - s[1];
+  const Interval top = unless_empty(ball(ray.ox, ray.oy, down, ray, s[0]));
+  const Interval bottom = unless_empty(ball(ray.ox, ray.oy, up, ray, s[0]));
   return join(join(top, bottom), unless_empty(capped(ray, s[0], s[1])));
 }
 
@@ -214,24 +223,51 @@ Bounds bounds(const Solid& solid) {
   return result;
 }
 
-LocalRays8 to_local(const Solid& solid, const double origin[3], const Rays8& rays) {
+void origin_in(const Solid& solid, const double origin[3], float out[3]) {
   const double px = origin[0] - solid.position[0];
   const double py = origin[1] - solid.position[1];
   const double pz = origin[2] - solid.position[2];
   const float* m = solid.axes;
+  for (std::size_t i = 0; i < 3; ++i)
+    out[i] = static_cast<float>(m[3 * i] * px + m[3 * i + 1] * py + m[3 * i + 2] * pz);
+}
+
+LocalRays8 to_local(const Solid& solid, const double origin[3], const Rays8& rays) {
+  float o[3];
+  origin_in(solid, origin, o);
+  const float* m = solid.axes;
   // The same rounded axes turn origin and directions: an error of the axes only turns the solid a little.
-  return {static_cast<float>(m[0] * px + m[1] * py + m[2] * pz),
-          static_cast<float>(m[3] * px + m[4] * py + m[5] * pz),
-          static_cast<float>(m[6] * px + m[7] * py + m[8] * pz),
+  return {o[0],
+          o[1],
+          o[2],
           m[0] * rays.dx + m[1] * rays.dy + m[2] * rays.dz,
           m[3] * rays.dx + m[4] * rays.dy + m[5] * rays.dz,
           m[6] * rays.dx + m[7] * rays.dy + m[8] * rays.dz};
 }
 
-F distance_to(const Solid& solid, const double origin[3], const Rays8& rays) {
-  const Interval part = inside(solid, to_local(solid, origin, rays));
-  const F seen = choose(part.first >= rays.near, part.first, part.last);
+LocalSpread8 to_local(const Solid& solid, const double origin[3], const Spread8& from, const Rays8& rays) {
+  const LocalRays8 one = to_local(solid, origin, rays);
+  const float* m = solid.axes;
+  return {one.ox + (m[0] * from.x + m[1] * from.y + m[2] * from.z),
+          one.oy + (m[3] * from.x + m[4] * from.y + m[5] * from.z),
+          one.oz + (m[6] * from.x + m[7] * from.y + m[8] * from.z),
+          one.dx,
+          one.dy,
+          one.dz};
+}
+
+namespace {
+F first_behind(F near, Interval part) {
+  const F seen = choose(part.first >= near, part.first, part.last);
   return choose(part.first <= part.last, seen, all(inf));
+}
+}  // namespace
+
+F distance_to(const Solid& solid, const double origin[3], const Rays8& rays) {
+  return first_behind(rays.near, inside(solid, to_local(solid, origin, rays)));
+}
+F distance_to(const Solid& solid, const LocalSpread8& rays, F near) {
+  return first_behind(near, inside(solid, rays));
 }
 
 }  // namespace sandlot::optics

@@ -51,16 +51,28 @@ struct Rays8 {
   lanes::F near;  ///< surfaces before it are not seen
 };
 
-/// The same rays seen from the solid's frame: one origin, eight directions.
-struct LocalRays8 {
-  float ox, oy, oz;
+/// The same rays seen from the solid's frame: one origin (float) or one for each (lanes::F), eight directions.
+template <class Origin>
+struct LocalRaysOf {
+  Origin ox, oy, oz;
   lanes::F dx, dy, dz;
 };
+using LocalRays8 = LocalRaysOf<float>;
+using LocalSpread8 = LocalRaysOf<lanes::F>;
+
+/// A point of W in the solid's frame.
+void origin_in(const Solid& solid, const double origin[3], float out[3]);
 LocalRays8 to_local(const Solid& solid, const double origin[3], const Rays8& rays);
+/// Rays that begin at `from`, near `origin`: their places relative to it, in W.
+struct Spread8 {
+  lanes::F x, y, z;
+};
+LocalSpread8 to_local(const Solid& solid, const double origin[3], const Spread8& from, const Rays8& rays);
 
 /// Distance to the first surface of the solid at or behind `near`; NaN or infinite where there is none.
 /// @pre not triangles
 /// @param origin  in W
 lanes::F distance_to(const Solid& solid, const double origin[3], const Rays8& rays);
+lanes::F distance_to(const Solid& solid, const LocalSpread8& rays, lanes::F near);
 
 }  // namespace sandlot::optics

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/math.h"
+#include "model/rollers.h"
 #include "physics/test_world.h"
 
 namespace sandlot {
@@ -414,6 +415,100 @@ TEST_P(EngineContract, AGuidedInstancePushesAndIsNotPushed) {
   for (const Contact& c : world.engine->contacts())
     touch = touch || (c.a == world.engine->bodies(walker)[0] && c.b == world.engine->bodies(crate)[0]);
   EXPECT_TRUE(touch);
+}
+
+/// A crate of 1 kg that stands on the ground, 0.1 wide.
+model::Instance crate(const std::string& name, Vec3 p) {
+  return body_of(name, Box{{0.1, 0.1, 0.1}}, 1, {{p.x, p.y, 0.05}, {}});
+}
+
+TEST_P(EngineContract, AZoneIsSlipperyWhereItIs) {
+  World world(kind);
+  model::SurfaceZone ice{.name = "ice", .centre_W = {0, 5, 0}, .radius_m = 2};
+  ice.surface.mu = ice.surface.mu2 = 0;
+  world.engine->set_zones(std::span(&ice, 1));
+  world.add(ground());
+  const InstanceId on_ice = world.add(crate("on_ice", {0, 5, 0})), beside = world.add(crate("beside", {}));
+  for (int i = 0; i < 50; ++i) {
+    world.push(on_ice, {1, 0, 0});
+    world.push(beside, {1, 0, 0});
+    world.run(1);
+  }
+  // 1 N on 1 kg for half a second; friction of 9.81 N holds the other, but for the creep of ODE's contacts.
+  EXPECT_NEAR(world.state(on_ice).V_WB.linear.x, 0.5, 1e-6);
+  EXPECT_NEAR(world.state(beside).V_WB.linear.x, 0, 1e-3);
+}
+
+TEST_P(EngineContract, ARuleMayLetSomethingPass) {
+  World world(kind);
+  world.engine->set_contact_rule(
+      [](const ContactSide& a, const ContactSide& b, Vec3, Vec3, PairSurface& pair) {
+        if (a.instance == "ghost" || b.instance == "ghost") pair.touches = a.instance == "ground";
+      });
+  world.add(ground());
+  world.add(static_of("ghost", Box{{0.2, 1, 0.5}}, {{1, 0, 0.25}, {}}));
+  world.add(static_of("wall", Box{{0.2, 1, 0.5}}, {{2, 0, 0.25}, {}}));
+  const InstanceId id = world.add(disc_robot("a", {0, 0, 0}));
+  world.drive(id, {.vx_mps = 0.5, .max_accel_mps2 = 2.0});
+  world.run(500);
+  EXPECT_NEAR(world.state(id).X_WB.p.x, 1.8, 1e-3);  // through the ghost, up to the face of the wall
+}
+
+/// A disc with one wheel beside it that touches nothing.
+model::Instance with_wheel(const std::string& name) {
+  model::Model m;
+  m.links.push_back(link_of("base", Cylinder{0.1, 0.1}, 2, {{0, 0, 0.05}, {}}));
+  m.links.push_back(
+      link_of("wheel", Cylinder{0.03, 0.02}, 0.1, {{0, 0.12, 0.05}, quat_from_rpy(-math::pi / 2, 0, 0)}));
+  model::Joint joint;
+  joint.name = "axle";
+  joint.type = model::JointType::continuous;
+  joint.parent = 0;
+  joint.child = 1;
+  m.joints.push_back(joint);
+  return instance_of(name, m, {}, true);
+}
+
+TEST_P(EngineContract, WheelsOfAnIdealDriveRollOrAreLeftAlone) {
+  World world(kind, {}, {0, 0, 0});
+  const InstanceId id = world.add(with_wheel("a"));
+  const auto before = world.bytes(id);
+  world.drive(id, {.vx_mps = 0.6});
+  const RollTarget roll{world.engine->joints(id)[0], world.engine->bodies(id)[0], 1 / 0.03, 0, 0.12 / 0.03};
+  const auto driven = world.bytes(id);
+  world.engine->set_rolls(std::span(&roll, 1));
+  // An engine that does not claim it must not do half of it.
+  EXPECT_EQ(world.bytes(id) != driven, world.engine->capabilities().rolls);
+  EXPECT_NE(driven, before);
+  world.run(50);
+  if (world.engine->capabilities().rolls) {
+    // Reaching 0.6 m/s at 1e9 m/s^2 costs 0.6^2 / 2e9 m of way.
+    EXPECT_NEAR(world.joint(id).position, 0.5 * 0.6 / 0.03, 1e-8);
+    EXPECT_NEAR(world.joint(id).velocity, 0.6 / 0.03, 1e-9);
+  } else {
+    EXPECT_NEAR(world.joint(id).velocity, 0, 1e-9);
+  }
+}
+
+TEST_P(EngineContract, WheelsRunOnTheirRollersOrAreLeftAlone) {
+  World world(kind);
+  world.add(ground());
+  model::Instance instance = with_wheel("a");
+  model::Model m = *instance.model;
+  m.links[1].X_ML.p.z = 0.03;  // on the ground
+  m.links[1].collisions.clear();
+  m.joints[0].rollers = model::RollerWheel{
+      .radius_m = 0.03, .count = 8, .angle_rad = math::pi / 2, .roller_length_m = 0.02};
+  const Status made = model::add_rollers(m);
+  ASSERT_TRUE(made) << made.error().text();
+  const InstanceId id = world.add(instance_of("a", m, {}, true));
+  const auto before = world.bytes(id);
+  const WheelTarget rollers{world.engine->joints(id)[0], true};
+  world.engine->set_wheels(std::span(&rollers, 1));
+  EXPECT_EQ(world.bytes(id) != before, world.engine->capabilities().rollers);
+  const WheelTarget one_body{world.engine->joints(id)[0], false};
+  world.engine->set_wheels(std::span(&one_body, 1));
+  EXPECT_EQ(world.bytes(id), before);
 }
 
 std::string engine_name(const ::testing::TestParamInfo<const EngineKind*>& param) {

@@ -106,10 +106,17 @@ struct WheelTarget {
 };
 
 /// Holds two bodies together as they stand to each other now, or lets go again: a gripper. Both may belong to any instance;
-/// removing one lets go. Holds until the next target for this pair.
+/// what stands still counts as the world, and two of those cannot hold each other. Who holds each other does not collide.
+/// Removing one or setting its pose lets go. Holds until the next target for this pair.
 struct GripTarget {
   BodyId a, b;
   bool hold = true;
+};
+
+/// A grip that holds.
+struct Grip {
+  BodyId a, b;   ///< of the older instance and the younger; of one instance, in the order of its links
+  Vec3 force_N;  ///< on b through the grip, in W, mean over the last step; zero before the first
 };
 
 struct Contact {
@@ -127,6 +134,7 @@ struct Contact {
 struct BodyName {
   std::string_view instance;
   const model::Link* link = nullptr;  ///< null: there is no such body
+  bool moves = false;                 ///< forces move it
 };
 
 /// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the motor's part
@@ -196,11 +204,19 @@ class Engine {
   /// The instance is a robot from now on, as if it had been added as one: it does not sleep.
   virtual void become_robot(InstanceId) {}
   virtual BodyName name(BodyId) const { return {}; }
+  /// The body that has this index now; its name is empty when there is none.
+  virtual BodyId body_at(std::uint32_t index) const { return {index, 0}; }
   /// Pose of the model frame, from the canonical link.
   virtual Pose pose(InstanceId id) const = 0;
 
   /// Indexed by BodyId::index; entries of dead ids hold rubbish. Valid until the next non-const call.
   virtual std::span<const BodyState> states() const = 0;
+  /// The same of some bodies alone, by their indices: an engine that does not keep the states of all saves the rest.
+  /// @pre they live; `out` is as long as `bodies`
+  virtual void states_of(std::span<const std::uint32_t> bodies, std::span<BodyState> out) const {
+    const auto all = states();
+    for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = all[bodies[i]];
+  }
   virtual std::span<const JointState> joint_states() const = 0;
   /// Contacts of the last step, ordered by creation of the two bodies.
   virtual std::span<const Contact> contacts() const = 0;
@@ -216,6 +232,8 @@ class Engine {
   virtual void set_rolls(std::span<const RollTarget>) {}
   virtual void set_wheels(std::span<const WheelTarget>) {}
   virtual void set_grips(std::span<const GripTarget>) {}
+  /// All that hold, in an order that follows from the order of creation. Valid until the next non-const call.
+  virtual std::span<const Grip> grips() const { return {}; }
   /// The ground's zones, and the user's exceptions (null: none). Before the first step.
   virtual void set_zones(std::span<const model::SurfaceZone>) {}
   virtual void set_contact_rule(ContactRule) {}

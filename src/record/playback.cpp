@@ -194,8 +194,11 @@ Status resolve(Node& config, std::span<const std::string> paths, const Place& pl
 
 Status resolve_playbacks(model::Setup& setup, std::span<const std::string> paths) {
   for (model::Instance& instance : setup.instances)
-    for (model::ControllerDecl& controller : instance.controllers)
-      if (controller.kind == "playback") SL_TRY(resolve(controller.config, paths, controller.place));
+    for (std::size_t i = 0; i < instance.controllers.size(); ++i) {
+      if (std::as_const(instance.controllers)[i].kind != "playback") continue;
+      model::ControllerDecl& controller = instance.controllers[i];
+      SL_TRY(resolve(controller.config, paths, controller.place));
+    }
   return {};
 }
 

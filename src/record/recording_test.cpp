@@ -219,10 +219,10 @@ TEST(Playback, orders_of_a_recorded_robot_lead_another_one_along_the_same_path) 
   const Folder folder;
   const auto original = record(folder.file("r.mcap"));
   model::Setup setup = test::arena("planar", 2);
-  model::ControllerDecl& controller = setup.instances.back().controllers.front();
   ASSERT_EQ(setup.instances.back().name, "rover2");
-  controller.kind = "playback";
   const auto configure = [&](std::initializer_list<std::pair<const char*, std::string>> keys) {
+    model::ControllerDecl& controller = setup.instances.back().controllers.front();
+    controller.kind = "playback";
     controller.config = test::map(keys);
     return resolve_playbacks(setup, {});
   };

@@ -7,6 +7,7 @@
 #include "messages/sandlot_msgs.h"
 #include "server/hub.h"
 #include "server/parameters.h"
+#include "server/preview.h"
 #include "sim/transforms.h"
 
 namespace sandlot::server {
@@ -70,17 +71,27 @@ void Feed::find_topics() {
   std::unordered_map<std::uint32_t, std::uint64_t> counts;
   for (const Shown& shown : topics_) counts[shown.channel] = shown.count;
   topics_.clear();
+  previews_ = 0;
   if (interest_->topics.empty()) return;
   std::unordered_map<std::string_view, const TopicBase*> by_name;
   for (const auto& entity : session_.simulation().entities())
     for (const auto& device : entity->devices)
       for (const Simulation::Slot& slot : device->topics) by_name[slot.topic->name()] = slot.topic.get();
   for (const auto& [channel, name] : interest_->topics) {
-    const auto found = by_name.find(name);
+    auto found = by_name.find(name);
+    const bool preview = found == by_name.end() && name.ends_with(preview_suffix);
+    if (preview) found = by_name.find(previewed_name(name));
     const TopicBase* const topic = found == by_name.end() ? nullptr : found->second;
     const auto count = counts.find(channel);
     // Of one that nobody had subscribed to, new messages count.
-    topics_.push_back({channel, topic, count != counts.end() ? count->second : topic ? topic->count : 0});
+    topics_.push_back({channel,
+                       topic,
+                       count != counts.end() ? count->second
+                       : topic               ? topic->count
+                                             : 0,
+                       preview,
+                       {}});
+    previews_ += preview;
   }
 }
 
@@ -108,8 +119,16 @@ void Feed::tell(bool again_world, bool again_static) {
   next_tell_ = Clock::now() + std::chrono::milliseconds(500);
 }
 
-ChannelMessage Feed::message(const Shown& shown) const {
+ChannelMessage Feed::message(Shown& shown) const {
   auto bytes = std::make_shared<std::vector<std::byte>>();
+  if (shown.preview) {
+    const Clock::time_point begin = Clock::now();
+    if (const auto* const image = topic_cast<msg::Image>(shown.topic)) *bytes = preview_of(image->message);
+    // All previews together take a quarter of the time at most.
+    const auto rest = 4 * static_cast<Clock::rep>(previews_) * (Clock::now() - begin);
+    shown.next = begin + std::max<Clock::duration>(preview_period, rest);
+    return {shown.channel, shown.topic->stamp, std::move(bytes)};
+  }
   bytes->reserve(scratch_.capacity());
   shown.topic->to_cdr(*bytes);
   return {shown.channel, shown.topic->stamp, std::move(bytes)};
@@ -179,6 +198,7 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   if (!session_.rerunning()) {
     for (Shown& shown : topics_) {
       if (!shown.topic || shown.topic->count == shown.count) continue;
+      if (shown.preview && Clock::now() < shown.next) continue;
       shown.count = shown.topic->count;
       if (shown.count > 0) batch.messages.push_back(message(shown));
     }

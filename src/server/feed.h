@@ -3,7 +3,7 @@
 ///
 /// Threads   everything belongs to the simulation's thread (Session::post brings calls there), but stale().
 /// Cost      without clients it watches nothing. Frames with links are asked for `poses_hz` times a second of the wall
-///           clock; messages are written once, only those with subscribers.
+///           clock; messages are written once, only those with subscribers. Pictures: server/preview.h.
 #include <atomic>
 #include <chrono>
 #include <string>
@@ -63,6 +63,8 @@ class Feed final : public Observer {
     std::uint32_t channel = 0;
     const TopicBase* topic = nullptr;  ///< null: it is not there now
     std::uint64_t count = 0;           ///< of the message that was sent last
+    bool preview = false;              ///< a small JPEG of the topic's image
+    Clock::time_point next;            ///< previews: none before
   };
   struct Watch {
     std::uint32_t channel = 0;
@@ -78,7 +80,7 @@ class Feed final : public Observer {
   void follow();
   void find_topics();
   void tell(bool again_world, bool again_static);
-  ChannelMessage message(const Shown& shown) const;
+  ChannelMessage message(Shown& shown) const;
   ChannelMessage sample(Watch& watch);
   void add_samples(Batch& batch);
   void tell_parameters(const Frame& frame);
@@ -91,6 +93,7 @@ class Feed final : public Observer {
   std::shared_ptr<const Interest> interest_ = std::make_shared<Interest>();
   std::uint64_t epoch_ = 0, revision_ = 0;  ///< that it follows
   std::vector<Shown> topics_;
+  std::size_t previews_ = 0;  ///< of them
   std::vector<Watch> watches_;
   std::vector<std::byte> scratch_;
 

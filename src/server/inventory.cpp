@@ -3,6 +3,8 @@
 #include <map>
 
 #include "base/text.h"
+#include "messages/sensor_images.h"
+#include "server/preview.h"
 
 namespace sandlot::server {
 namespace {
@@ -43,6 +45,11 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
     for (const auto& device : entity->devices) {
       for (const Simulation::Slot& slot : device->topics)
         out->topics.push_back({slot.topic->name(), &slot.topic->info(), device->path});
+      for (const Simulation::Slot& slot : device->topics)
+        if (topic_cast<msg::Image>(slot.topic.get()) &&
+            !simulation.find_topic(preview_name(slot.topic->name())))
+          out->topics.push_back(
+              {preview_name(slot.topic->name()), &message_info<msg::CompressedImage>(), device->path});
       for (const Simulation::Slot& slot : device->commands) {
         auto& blank = blanks[slot.topic->type()];
         if (!blank) blank = slot.topic->clone();

@@ -116,6 +116,14 @@ void for_each_part(const Simulation& simulation, const Simulation::Entity& entit
     f(program->path, look_at(simulation, *program), fields.of(*program));
 }
 
+/// The factor on the errors of the whole world or of one robot.
+Parameter factor(const std::string& target, double value) {
+  Parameter out;
+  out.name = target + ".errors";
+  set_value(out, nullptr, value);
+  return out;
+}
+
 }  // namespace
 
 std::string parameter_name(std::string_view target, std::string_view field) {
@@ -125,6 +133,10 @@ std::string parameter_name(std::string_view target, std::string_view field) {
 bool list_parameters(const Simulation& simulation, std::vector<Parameter>& out) {
   bool all = true;
   Fields known(simulation);
+  out.push_back(factor("sim", simulation.setup().errors));
+  for (const auto& entity : simulation.entities())
+    if (!entity->devices.empty() && out.size() < most_parameters)
+      out.push_back(factor(entity->instance.name, entity->instance.errors));
   for (const auto& entity : simulation.entities())
     for_each_part(simulation, *entity, known,
                   [&](const std::string& path, const Look& look, const std::vector<FieldInfo>& fields) {
@@ -159,7 +171,10 @@ std::vector<Parameter> read_parameters(const Simulation& simulation, std::span<c
     const std::string_view target = std::string_view(name).substr(0, dot);
     const std::string rest = name.substr(dot + 1);
     const Simulation::Entity* const entity = simulation.find_entity(target.substr(0, target.find('/')));
+    if (target == "sim" && rest == "errors") out = factor("sim", simulation.setup().errors);
     if (!entity) continue;
+    if (target == entity->instance.name && rest == "errors")
+      out = factor(entity->instance.name, entity->instance.errors);
     for_each_part(simulation, *entity, known_fields,
                   [&](const std::string& path, const Look& look, const std::vector<FieldInfo>& fields) {
                     if (path != target) return;

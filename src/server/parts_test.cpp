@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include "formats/image/visible.h"
 #include "messages/messages.h"
 #include "server/inventory.h"
 #include "server/mailbox.h"
 #include "server/name_filter.h"
 #include "server/parameters.h"
+#include "server/preview.h"
 #include "sim/test_world.h"
 
 namespace sandlot::server::test {
@@ -100,6 +102,38 @@ TEST(Parameters, are_listed_read_and_set_by_the_same_names) {
   for (const char* unknown :
        {"rover1", "rover1.x", "rover1/laser.noise", "rover1/laser.", "nobody/x.y", ".", ""})
     EXPECT_EQ(read_parameter(*simulation, unknown).value.index(), 0u) << unknown;
+}
+
+TEST(Preview, is_a_small_jpeg_of_the_image) {
+  // 960 x 720, the left half green and the right half red.
+  msg::Image image;
+  image.header.frame_id = "eye";
+  image.width = 960;
+  image.height = 720;
+  image.encoding = "rgb8";
+  image.step = 3 * image.width;
+  for (std::uint32_t i = 0; i < image.width * image.height; ++i)
+    for (const int c : {i % image.width < 480 ? 0 : 255, i % image.width < 480 ? 255 : 0, 0})
+      image.data.push_back(static_cast<std::uint8_t>(c));
+  msg::CompressedImage got;
+  ASSERT_TRUE(read_cdr(message_info<msg::CompressedImage>(), preview_of(image), &got));
+  EXPECT_EQ(got.header.frame_id, "eye");
+  EXPECT_EQ(got.format, "jpeg");
+  EXPECT_LT(got.data.size(), 10'000u);
+  const auto picture = formats::visible(got);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->width, 480);
+  EXPECT_EQ(picture->height, 360);
+  const auto channel = [&](std::size_t x, std::size_t k) {
+    return static_cast<int>(picture->rgb[3 * (180 * 480 + x) + k]);
+  };
+  EXPECT_NEAR(channel(120, 0), 0, 4);
+  EXPECT_NEAR(channel(120, 1), 255, 4);
+  EXPECT_NEAR(channel(360, 0), 255, 4);
+  EXPECT_NEAR(channel(360, 1), 0, 4);
+  image.data.resize(100);
+  ASSERT_TRUE(read_cdr(message_info<msg::CompressedImage>(), preview_of(image), &got));
+  EXPECT_TRUE(got.data.empty()) << "what cannot be shown";
 }
 
 TEST(Inventory, knows_where_a_message_goes) {

@@ -191,6 +191,8 @@ TEST(Server, a_parameter_changes_the_run_and_everybody_hears_of_it) {
   for (const json& each : viewer.parameters[0]["parameters"]) values[each["name"]] = each["value"];
   EXPECT_EQ(values["rover1/laser.noise.white"], 0.01);
   EXPECT_EQ(values.count("rover1/controller.speed"), 1u);
+  EXPECT_EQ(values["sim.errors"], 1);
+  EXPECT_EQ(values["rover1.errors"], 1);
   EXPECT_EQ(values["sandlot.paused"], false);
   EXPECT_EQ(values["sandlot.speed"], 0) << "as fast as possible";
 

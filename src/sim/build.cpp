@@ -7,10 +7,13 @@
 
 #include "base/text.h"
 #include "controllers/controllers.h"
+#include "formats/image/write.h"
 #include "model/motion.h"
+#include "sim/faults.h"
 #include "sim/monitor.h"
 #include "sim/plugin.h"
 #include "sim/presets.h"
+#include "sim/sight.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -19,11 +22,15 @@ namespace {
 /// Collects what a device creates while it is built.
 struct SlotMaker final : TopicMaker {
   std::vector<Simulation::Slot> topics, commands;
+  std::vector<std::pair<std::string, Pose>> frames;
   void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
     topics.push_back({std::move(topic), level});
   }
   void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) override {
     commands.push_back({std::move(slot), level});
+  }
+  void adopt_frame(std::string name, const Pose& X_SF) override {
+    frames.emplace_back(std::move(name), X_SF);
   }
 };
 
@@ -34,24 +41,39 @@ Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& p
   const Node* one = config.find("level");
   const Node* many = config.find("levels");
   if (one && many) return one->error("give either 'level' or 'levels'");
-  std::vector<const Node*> named;
-  if (one) named.push_back(one);
-  if (many) {
-    if (!many->is_sequence() || many->items().empty())
-      return wrong_type(*many, "a list of levels", "/levels");
-    for (const Node& item : many->items()) named.push_back(&item);
-  }
-  std::uint32_t bits = named.empty() ? 1u : 0u;
-  for (const Node* node : named) {
-    const auto found = std::find(known.begin(), known.end(), node->text());
+  if (many && (!many->is_sequence() || many->items().empty()))
+    return wrong_type(*many, "a list of levels", "/levels");
+  std::uint32_t bits = many || one ? 0u : 1u;
+  const auto take = [&](const Node& node, const std::string& path) -> Status {
+    const Place& at = node.place().file ? node.place() : place;
+    if (!node.is_scalar())
+      return Error{"expected the name of a level", "several levels at once: levels: [a, b]", at, path};
+    const auto found = std::find(known.begin(), known.end(), node.text());
     if (found == known.end())
-      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node->text() + "'",
-                   suggestion(node->text(), known), node->place().file ? node->place() : place, "/level"};
-    bits |= 1u << (found - known.begin());
-  }
+      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node.text() + "'",
+                   suggestion(node.text(), known), at, path};
+    const std::uint32_t bit = 1u << (found - known.begin());
+    if (bits & bit) return Error{"level '" + node.text() + "' is named twice", "", at, path};
+    bits |= bit;
+    return {};
+  };
+  if (one) SL_TRY(take(*one, "/level"));
+  for (std::size_t i = 0; many && i < many->items().size(); ++i)
+    SL_TRY(take(many->items()[i], "/levels/" + std::to_string(i)));
   config.erase("level");
   config.erase("levels");
   return bits;
+}
+
+std::string encode_image(int width, int height, int channels, std::span<const std::uint8_t> pixels,
+                         int quality) {
+  const formats::Pixels8 image{width, height, channels, pixels};
+  return quality > 0 ? formats::jpeg_of(image, quality) : formats::png_of(image);
+}
+
+/// What a topic is called behind its device's path: "right/image".
+std::string_view part_of(const Simulation::Device& device, const TopicBase& topic) {
+  return std::string_view(topic.name()).substr(device.path.size() + 2);
 }
 
 }  // namespace
@@ -115,6 +137,7 @@ Status Simulation::build(Diagnostics& diagnostics) {
   for (model::Instance& instance : std::exchange(setup_.instances, {}))
     SL_TRY(add_entity(std::move(instance), diagnostics));
   rebuild_scene();
+  rebuild_sight(diagnostics);
   SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
 }
@@ -176,10 +199,10 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   if (added.instance.motion) guided_.push_back(&added);
   by_name_[added.instance.name] = &added;
   Status status;
-  for (const model::DeviceDecl& decl : added.instance.devices)
+  for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = add_device(added, decl, diagnostics);
-  for (const model::ControllerDecl& decl : added.instance.controllers)
-    if (status) status = add_program(added, decl);
+  for (std::size_t i = 0; i < added.instance.controllers.size(); ++i)
+    if (status) status = add_program(added, added.instance.controllers.share(i));
   if (!status) remove_entity(entities_.size() - 1);
   return status;
 }
@@ -201,6 +224,7 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   SL_ASSIGN(const std::uint32_t levels, take_levels(decl.config, *kind, decl.place));
   const auto pool = std::find_if(pools_.begin(), pools_.end(), [&](const Pool& p) { return p.kind == kind; });
   SL_CHECK(pool != pools_.end());
+  SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, *pool->pool, kind->name));
 
   SlotMaker maker;
   const DeviceBuild build{decl,
@@ -216,9 +240,15 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
                           maker,
                           setup_.gravity,
                           setup_.geography,
-                          setup_.magnetic_field_T};
+                          setup_.magnetic_field_T,
+                          setup_.errors * entity.instance.errors,
+                          encode_image};
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
+  if (Status fits = faults ? faults->check(maker.topics) : Status(); !fits) {
+    pool->pool->remove(index);
+    return fits;
+  }
   const double rate_hz = pool->pool->rate_hz(index);
   const double tick_hz = 1e9 / static_cast<double>(setup_.step.ns);
   const bool fixed = setup_.clock.mode == model::Clock::Mode::fixed;
@@ -254,6 +284,10 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   device->index = index;
   device->topics = std::move(maker.topics);
   device->commands = std::move(maker.commands);
+  device->frames = std::move(maker.frames);
+  device->errors = build.errors;
+  device->faults = std::move(faults);
+  if (device->faults) ++pool->faulty;
   pool->devices.push_back(device.get());
   pool->all.push_back(index);
   pool->levels.push_back(levels);
@@ -266,10 +300,11 @@ Status Simulation::add_device(Entity& entity, const model::DeviceDecl& declared,
   return {};
 }
 
-Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl) {
-  SL_ASSIGN(auto program, make_program(entity, decl));
+Status Simulation::add_program(Entity& entity, std::shared_ptr<const model::ControllerDecl> declared) {
+  SL_ASSIGN(auto program, make_program(entity, declared));
   if (find_device(program->path) || find_program(program->path))
-    return Error{"'" + program->path + "' names two things", "give the controller another name", decl.place};
+    return Error{"'" + program->path + "' names two things", "give the controller another name",
+                 declared->place};
   entity.programs.push_back(std::move(program));
   programs_changed_ = true;
   point_programs_at_active_levels(entity);
@@ -277,7 +312,8 @@ Status Simulation::add_program(Entity& entity, const model::ControllerDecl& decl
 }
 
 Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
-    const Entity& entity, const model::ControllerDecl& decl) {
+    const Entity& entity, std::shared_ptr<const model::ControllerDecl> declared) {
+  const model::ControllerDecl& decl = *declared;
   const auto at = [&](Error error) {
     if (!error.place.file) error.place = decl.place;
     return error;
@@ -289,8 +325,7 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
     if (decl.kind == each->name) kind = each;
   }
   if (!kind) return at({"no controller '" + decl.kind + "'", suggestion(decl.kind, names)});
-  auto program = std::make_unique<ProgramEntry>();
-  program->decl = decl;
+  auto program = std::make_unique<ProgramEntry>(std::move(declared));
   program->path = entity.instance.name + "/" + sanitised(decl.name);
   program->key = entity_key(program->path);
 
@@ -343,6 +378,13 @@ std::shared_ptr<const Description> Simulation::describe(const Entity& entity) {
         if (!level.empty())
           entries.push_back({device->decl.name, level, slot.topic->type(),
                              static_cast<std::uint32_t>(entries.size()), X_BS});
+        // Of several of one type at one level, such as the pictures of a pair of eyes, each has its own name, too.
+        const auto alike = std::count_if(slots.begin(), slots.end(), [&](const Slot& other) {
+          return other.level == slot.level && std::string_view(other.topic->type()) == slot.topic->type();
+        });
+        if (alike > 1)
+          entries.push_back({device->decl.name, std::string(part_of(*device, *slot.topic)),
+                             slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
       }
     };
     describe(device->topics, description.readings);
@@ -384,7 +426,8 @@ void Simulation::point_programs_at_active_levels(Entity& entity) {
         for (const Slot& slot : device->topics) {
           if (entry.type != slot.topic->type()) continue;
           const bool always = slot.level >= levels.size();
-          if (!entry.level.empty() && (always || entry.level != levels[slot.level].name)) continue;
+          const bool named = entry.level == part_of(*device, *slot.topic);
+          if (!entry.level.empty() && !named && (always || entry.level != levels[slot.level].name)) continue;
           if (!first) first = slot.topic.get();
           if (!chosen && (always || (device->levels >> slot.level & 1))) chosen = slot.topic.get();
         }
@@ -423,6 +466,7 @@ void Simulation::remove_from_pool(const Device& device) {
   pool.levels.erase(pool.levels.begin() + device.index);
   pool.sample.pop_back();
   pool.since.pop_back();
+  if (device.faults) --pool.faulty;
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
 
@@ -512,6 +556,25 @@ void Simulation::rebuild_scene() {
   }
   scene_->set_shapes(shapes);
   scene_frame_.revision = revision_;
+}
+
+/// Nothing to do as long as nobody sees.
+void Simulation::rebuild_sight(Diagnostics& diagnostics) {
+  const bool seen = std::any_of(pools_.begin(), pools_.end(),
+                                [](const Pool& pool) { return pool.kind->sees && !pool.devices.empty(); });
+  if (!sight_ && !seen) return;
+  if (!sight_) sight_ = std::make_unique<Sight>();
+  sight_->rebuild(entities_, *engine_, setup_, diagnostics);
+}
+
+Sight& Simulation::sight() {
+  if (!sight_) {
+    Diagnostics ignored;
+    sight_ = std::make_unique<Sight>();
+    sight_->rebuild(entities_, *engine_, setup_, ignored);
+  }
+  sight_->update(*engine_, tick_, revision_);
+  return *sight_;
 }
 
 }  // namespace sandlot

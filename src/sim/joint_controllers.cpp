@@ -44,7 +44,7 @@ Result<std::vector<model::DeviceDecl>> controllers_of_plugin(const model::Device
 
 Status add_devices(model::Instance& instance, std::vector<model::DeviceDecl> devices) {
   for (model::DeviceDecl& device : devices) {
-    for (const model::DeviceDecl& other : instance.devices)
+    for (const model::DeviceDecl& other : std::as_const(instance.devices))
       if (sanitised(other.name) == sanitised(device.name))
         return Error{"the robot has a device named '" + device.name + "' already",
                      other.place.file ? "the other one is at " + to_string(other.place) : "", device.place};

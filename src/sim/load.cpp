@@ -135,29 +135,6 @@ Status merge_devices(model::Instance& instance, const Node& devices) {
   return {};
 }
 
-/// Puts a factor on the errors of all devices of an instance that have any: their key `errors`.
-void scale_errors(model::Instance& instance, double factor) {
-  if (factor == 1) return;
-  for (model::DeviceDecl& decl : instance.devices) {
-    const auto kind = find_device_kind(decl.kind);
-    if (!kind) continue;  // told when it is built
-    const std::vector<FieldInfo> fields = (*kind)->describe();
-    if (std::none_of(fields.begin(), fields.end(),
-                     [](const FieldInfo& f) { return f.path == errors_field.key; }))
-      continue;
-    if (decl.config.is_null()) decl.config = Node::map(decl.place);
-    const Node* const own = decl.config.find(errors_field.key);
-    double value = 1;
-    if (own) {
-      const auto read = read_number(*own, errors_field, errors_field.min, errors_field.max, false, "");
-      if (!read) continue;  // told when it is built
-      value = *read;
-    }
-    Node scaled = Node::scalar(number_text(value * factor), own ? own->place() : decl.place);
-    decl.config.set(errors_field.key, std::move(scaled));
-  }
-}
-
 /// Fixes the scenario's modules to a robot, in order, so that one may carry the next.
 Status attach_modules(model::Instance& robot, const formats::RobotGroup& group,
                       const formats::Scenario& scenario, const formats::SearchPath& search,
@@ -345,13 +322,11 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
                    "write its parameters behind a ?, such as builder:snake?segments=12"};
     SL_ASSIGN(const Node map, *words);
     SL_ASSIGN(setup, load_built(map));
-    for (model::Instance& instance : setup.instances) scale_errors(instance, options.errors);
   } else if (extension == ".sdf" || extension == ".world" || extension == ".urdf" || extension == ".xacro") {
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
     SL_ASSIGN(setup, load_bare_world(path, sdf, diagnostics));
-    for (model::Instance& instance : setup.instances) scale_errors(instance, options.errors);
   } else if (extension == ".yaml" || extension == ".yml") {
     SL_ASSIGN(const formats::Scenario scenario,
               options.text ? formats::parse_scenario(*options.text, path, options.overrides, diagnostics)
@@ -365,8 +340,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     } else {
       setup.instances.push_back(bare_ground());
     }
-    const double errors = options.errors * scenario.errors;
-    for (model::Instance& instance : setup.instances) scale_errors(instance, errors);
+    setup.errors = scenario.errors;
     if (auto engine = find_engine(scenario.engine); !engine) {
       engine.error().place = scenario.engine_place;
       return std::move(engine.error());
@@ -409,6 +383,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
                                std::span<const Pose> poses) {
       for (int i = 0; i < group.count; ++i) {
         model::Instance instance = pattern;
+        instance.label = group.label;
         instance.original_name = group.count == 1 ? group.name : group.name + std::to_string(i + 1);
         instance.name = sanitised(instance.original_name);
         instance.X_WM = poses[static_cast<std::size_t>(i)] * pattern.X_WM;
@@ -427,7 +402,6 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       const formats::RobotGroup& group = scenario.things[i];
       SL_ASSIGN(model::Instance pattern, pattern_of(group, "/things/" + std::to_string(i)));
       pattern.place = group.place;
-      scale_errors(pattern, errors);
       fence(thing_placer, group);
       SL_ASSIGN(const std::vector<Pose> poses, thing_placer.place(group));
       add_group(group, pattern, poses);
@@ -449,7 +423,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
         SL_TRY(add_devices(pattern, std::move(controllers)));
       }
       SL_TRY(merge_devices(pattern, group.devices));
-      scale_errors(pattern, errors * group.errors);
+      pattern.errors = group.errors;
       fence(placer, group);
       SL_ASSIGN(const std::vector<Pose> poses, placer.place(group));
       add_group(group, pattern, poses);
@@ -459,6 +433,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     if (!std::filesystem::exists(path, ignored)) return Error{"'" + path + "' is not there"};
     return Error{"'" + path + "' is neither a scenario (.yaml) nor a world or robot (.sdf, .world, .urdf)"};
   }
+  setup.errors = std::min(max_errors, setup.errors * options.errors);
   if (options.seed) setup.seed = *options.seed;
   if (options.stop_s) setup.stop = Time::from_s(*options.stop_s);
   std::map<std::string_view, const model::Instance*> names;

@@ -216,7 +216,7 @@ TEST_F(Files, options_replace_seed_and_stop) {
   EXPECT_EQ(changed->stop->s(), 2.5);
 }
 
-TEST_F(Files, factors_on_errors_multiply) {
+TEST_F(Files, factors_on_errors_are_the_worlds_and_the_robots) {
   const std::string file = write("s.yaml",
                                  "version: 1\nname: s\nerrors: 2\nrobots:\n"
                                  "- {name: a, model: models/bot, errors: 3, devices: {eye: {errors: 0.25}}}\n"
@@ -224,22 +224,19 @@ TEST_F(Files, factors_on_errors_multiply) {
                                  "- {name: c, model: models/bot, devices: {turn: {kind: body_velocity}}}\n");
   const auto errors_of = [&](const model::Setup& setup, std::string_view robot) {
     for (const model::Instance& instance : setup.instances)
-      if (instance.name == robot) {
-        const Node* const errors = instance.devices.front().config.find("errors");
-        return errors ? errors->text() : std::string("none");
-      }
-    return std::string("no robot");
+      if (instance.name == robot) return instance.errors;
+    return -1.0;
   };
   const auto setup = load(file, {}, diagnostics);
   ASSERT_TRUE(setup) << setup.error().text();
-  EXPECT_EQ(errors_of(*setup, "a"), "1.5");
-  EXPECT_EQ(errors_of(*setup, "b"), "0");
-  EXPECT_EQ(errors_of(*setup, "c"), "2");
-  EXPECT_EQ(setup->instances.back().devices.back().config.find("errors"), nullptr) << "it has no errors";
+  EXPECT_EQ(setup->errors, 2);
+  EXPECT_EQ(errors_of(*setup, "a"), 3);
+  EXPECT_EQ(errors_of(*setup, "b"), 0);
+  EXPECT_EQ(errors_of(*setup, "c"), 1);
   const auto halved = load(file, {.errors = 0.5}, diagnostics);
   ASSERT_TRUE(halved);
-  EXPECT_EQ(errors_of(*halved, "a"), "0.75");
-  EXPECT_EQ(errors_of(*halved, "c"), "none") << "1 is what it is anyway";
+  EXPECT_EQ(halved->errors, 1);
+  EXPECT_EQ(errors_of(*halved, "a"), 3);
   EXPECT_THAT(error_of("errors: -1\n"), HasSubstr("/errors: must be in [0, 1000]"));
   EXPECT_THAT(error_of("robots: [{name: a, model: models/bot, errors: x}]\n"),
               HasSubstr("/errors: 'x' is not a number"));

@@ -1,3 +1,4 @@
+/// long file: one function for each struct of a Model, in their order; the writer and the reader of all are these.
 #include "sim/model_bytes.h"
 
 #include <algorithm>
@@ -45,6 +46,13 @@ void list(Io& io, T& items, Each&& each) {
   }
   for (auto& item : items)
     if (io.ok()) each(io, item);
+}
+
+/// As list().
+template <class Io, class T, class Each>
+void shared_list(Io& io, T& items, Each&& each) {
+  if constexpr (Io::loading) list(io, items.edit(), each);
+  else list(io, items.get(), each);
 }
 
 template <class Io, class T, class Each>
@@ -408,6 +416,7 @@ void setup_values(auto& io, auto& s) {
   io.value(s.substeps);
   io.value(s.control_interval);
   io.value(s.seed);
+  io.value(s.errors);
   io.value(s.stop);
   list(io, s.plugins, [](auto& i, auto& p) {
     i.value(p.file);
@@ -440,8 +449,10 @@ void instance_values(auto& io, auto& x) {
   io.value(x.X_WM);
   io.value(x.is_robot);
   io.value(x.team);
-  list(io, x.devices, [](auto& i, auto& d) { device(i, d); });
-  list(io, x.controllers, [](auto& i, auto& c) { controller(i, c); });
+  io.value(x.label);
+  io.value(x.errors);
+  shared_list(io, x.devices, [](auto& i, auto& d) { device(i, d); });
+  shared_list(io, x.controllers, [](auto& i, auto& c) { controller(i, c); });
   optional(io, x.motion, [](auto& i, auto& m) {
     list(i, m.keys, [](auto& each, auto& key) {
       each.value(key.time_s);
@@ -458,6 +469,9 @@ bool is_timing(const model::Setup& s) {
          (s.clock.mode == model::Clock::Mode::fixed ||
           (s.clock.min_step.ns > 0 && s.clock.min_step <= s.clock.max_step));
 }
+
+/// On errors.
+bool is_factor(double x) { return x >= 0 && x <= 1000; }
 
 /// An engine stops at an orientation that it cannot make a rotation of.
 bool is_pose(const Pose& X) {
@@ -487,7 +501,7 @@ bool consistent(const model::Model& m) {
 
 bool consistent(const model::Instance& x) {
   if (x.motion && x.motion->keys.empty()) return false;
-  if (!is_pose(x.X_WM)) return false;
+  if (!is_pose(x.X_WM) || !is_factor(x.errors)) return false;
   for (const model::DeviceDecl& d : x.devices)
     if (d.link >= x.model->links.size()) return false;
   return true;
@@ -524,7 +538,7 @@ void write_setup(ByteWriter& w, const model::Setup& setup,
 bool read_setup(ByteReader& r, model::Setup& setup) {
   Load io{r};
   setup_values(io, setup);
-  if (!r.ok() || !is_timing(setup)) return false;
+  if (!r.ok() || !is_timing(setup) || !is_factor(setup.errors)) return false;
   if (setup.clock.mode > model::Clock::Mode::continuous) return false;
   std::uint32_t count = 0;
   io.value(count);

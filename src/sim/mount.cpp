@@ -29,6 +29,7 @@ Status Simulation::mount_device(const LoadDeviceRequest& request) {
   if (!entity->instance.is_robot) engine_->become_robot(entity->id);
   entity->instance.is_robot = true;
   ++revision_;
+  rebuild_sight(ignored);
   return {};
 }
 
@@ -50,9 +51,10 @@ Status Simulation::unmount_device(const UnloadDeviceRequest& request) {
   engine_->set_targets(actuation_.joints);
   engine_->set_drive_targets(actuation_.drives);
   engine_->set_wheels(actuation_.wheels);
+  engine_->set_grips(actuation_.grips);
   actuation_.clear();
   remove_from_pool(*taken);
-  entity.instance.devices.erase(entity.instance.devices.begin() + index);
+  entity.instance.devices.erase(static_cast<std::size_t>(index));
   ++revision_;
   return {};
 }
@@ -62,7 +64,7 @@ Status Simulation::describe_anew(Entity& entity) {
   std::vector<std::unique_ptr<ProgramEntry>> fresh;
   std::uint64_t refused = 0;
   for (const auto& old : entity.programs) {
-    SL_ASSIGN(auto program, make_program(entity, old->decl));
+    SL_ASSIGN(auto program, make_program(entity, old->shared_decl));
     program->steps = old->steps;
     program->ended = old->ended;
     ByteWriter w;

@@ -10,6 +10,8 @@
 
 namespace sandlot {
 
+struct Faults;  // sim/faults.h
+
 struct SimulationParts {
   struct Slot {
     std::unique_ptr<TopicBase> topic;
@@ -26,6 +28,9 @@ struct SimulationParts {
     std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
     std::vector<Slot> topics, commands;
+    std::vector<std::pair<std::string, Pose>> frames;  ///< beside its own, as X_SF
+    double errors = 1;                                 ///< the world's factor on errors times the robot's
+    std::shared_ptr<Faults> faults;                    ///< null: it has none
   };
   /// When a device takes its samples: looked at in every tick, so those of a pool lie side by side.
   struct Timing {
@@ -42,7 +47,10 @@ struct SimulationParts {
     Slot* slot = nullptr;  ///< null: nothing takes it
   };
   struct ProgramEntry {
-    model::ControllerDecl decl;
+    explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
+        : shared_decl(std::move(declared)), decl(*shared_decl) {}
+    std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< by robots alike
+    const model::ControllerDecl& decl;
     std::string path;
     std::uint64_t key = 0;
     const ControllerKind* kind = nullptr;

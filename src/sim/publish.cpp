@@ -197,9 +197,11 @@ void Simulation::fill_hashes(Frame& frame) {
   for (const auto& entity : entities_) {
     add(entity->key, always, [&](ByteWriter& w) { engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
-      const bool only_senses = pools_[device->kind].kind->phases == phase_sense && device->commands.empty();
-      add(device->key, only_senses ? timing(*device).sample : always,
-          [&](ByteWriter& w) { save_device(*device, w); });
+      const bool only_senses = pools_[device->kind].kind->phases == phase_sense;
+      // Samples and commands only become more, and so does their sum.
+      std::uint64_t version = timing(*device).sample;
+      for (const Slot& slot : device->commands) version += slot.topic->count;
+      add(device->key, only_senses ? version : always, [&](ByteWriter& w) { save_device(*device, w); });
     }
     for (const auto& program : entity->programs)
       add(program->key, 2 * program->steps + (program->command.orders().empty() ? 0 : 1),

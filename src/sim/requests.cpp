@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
+#include "messages/geometry_msgs.h"
+#include "messages/std_msgs.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -51,6 +54,9 @@ Status Simulation::carry_out(Request& request, const Source& source) {
     }
     if (ProgramEntry* program = find_program(parameter->target))
       return program->program->set_parameter(parameter->field, parameter->value);
+    if (parameter->target == "sim") return set_errors(nullptr, parameter->field, parameter->value);
+    if (Entity* const entity = find_entity(parameter->target))
+      return set_errors(entity, parameter->field, parameter->value);
     return Error{"there is no device or program '" + parameter->target + "'"};
   }
   if (const auto* level = std::get_if<LevelRequest>(&request)) return set_levels(*level);
@@ -59,6 +65,7 @@ Status Simulation::carry_out(Request& request, const Source& source) {
     SL_TRY(add_entity(spawn->instance, ignored));
     ++revision_;
     rebuild_scene();
+    rebuild_sight(ignored);
     return {};
   }
   if (const auto* removal = std::get_if<DeleteRequest>(&request)) {
@@ -67,6 +74,8 @@ Status Simulation::carry_out(Request& request, const Source& source) {
       remove_entity(i);
       ++revision_;
       rebuild_scene();
+      Diagnostics ignored;
+      rebuild_sight(ignored);
       return {};
     }
     return Error{"there is nothing named '" + removal->name + "'"};
@@ -125,7 +134,29 @@ Simulation::Slot* Simulation::active_command_slot(Device& device, std::string_vi
   return nullptr;
 }
 
+namespace {
+
+/// A velocity or a single number has no "leave that as it is", as NaN is in a list of joints: it asks for what nobody can do,
+/// and would stay in the state and in its snapshots.
+template <class Message>
+bool is_finite_message(std::span<const std::byte> bytes) {
+  static_assert(sizeof(Message) % sizeof(double) == 0);
+  ByteReader r(bytes);
+  for (std::size_t i = 0; i < sizeof(Message) / sizeof(double); ++i) {
+    double x = 0;
+    read(r, x);
+    if (r.ok() && !std::isfinite(x)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Status Simulation::give_command(Slot& slot, std::span<const std::byte> bytes) {
+  const TopicBase* const topic = slot.topic.get();
+  if ((topic_cast<msg::Twist>(topic) && !is_finite_message<msg::Twist>(bytes)) ||
+      (topic_cast<msg::Float64>(topic) && !is_finite_message<msg::Float64>(bytes)))
+    return Error{"the command is not finite", "numbers; what is to stay as it is needs no command"};
   if (!slot.topic->assign(bytes)) return Error{"the bytes are no " + std::string(slot.topic->type())};
   slot.topic->stamp = now_;
   ++slot.topic->count;
@@ -161,6 +192,7 @@ Status Simulation::apply_command(const CommandRequest& command, const Source& so
   }
   const bool by_program = source.kind == Source::Kind::program;
   Status status = by_program && is_held(*device) ? Error{"'" + command.target + "' is driven from outside"}
+                  : !takes_commands(*device)     ? Error{"'" + command.target + "' has failed"}
                                                  : give_command(*slot, command.bytes);
   if (!status) ++refused_commands_;
   else if (!by_program) hold(*device);
@@ -173,9 +205,19 @@ void Simulation::apply_program_orders() {
   gather_programs();
   for (std::size_t i = 0; i < programs_.size(); ++i) {
     ProgramEntry& program = *programs_[i];
+    // Programs lie all over the memory; see control().
+    if (i + 16 < programs_.size()) {
+      __builtin_prefetch(&programs_[i + 16]->routes);
+      __builtin_prefetch(&programs_[i + 16]->command);
+      const ProgramEntry& next = *programs_[i + 8];
+      __builtin_prefetch(next.routes.data());
+      __builtin_prefetch(next.command.orders().data());
+    }
     for (const Command::Order& order : program.command.orders()) {
       const Route& route = program.routes[order.slot];
-      Slot* const slot = route.slot && (holds_.empty() || !is_held(*route.device)) ? route.slot : nullptr;
+      const bool taken = route.slot && (holds_.empty() || !is_held(*route.device)) &&
+                         takes_commands(*route.device);
+      Slot* const slot = taken ? route.slot : nullptr;
       const std::span<const std::byte> bytes = program.command.bytes(order);
       // A level that was switched off under a controller's feet, a device that somebody drives by hand: its commands
       // are refused and counted.

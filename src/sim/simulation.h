@@ -33,6 +33,7 @@ class task_arena;
 namespace sandlot {
 
 class Monitor;
+class Sight;
 
 struct SimulationOptions {
   int threads = 1;           ///< 0: as many as the machine has
@@ -44,7 +45,7 @@ struct SimulationOptions {
   std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
 };
 
-class Simulation : public SimulationParts {
+class Simulation final : public SimulationParts, public TopicFinder {
  public:
   static Result<std::unique_ptr<Simulation>> create(model::Setup setup, const SimulationOptions& options,
                                                     Diagnostics& diagnostics);
@@ -97,7 +98,7 @@ class Simulation : public SimulationParts {
   const RayCaster& rays() const { return *rays_; }
   std::optional<InstanceId> find_instance(std::string_view name) const;
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
-  const TopicBase* find_topic(std::string_view name) const;
+  const TopicBase* find_topic(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
   /// What stands in the world now, in creation order.
   std::vector<const model::Instance*> instances() const;
@@ -111,6 +112,10 @@ class Simulation : public SimulationParts {
 
   /// A frame of the present, for those who come between two ticks: instances, and links and contacts if asked for.
   std::shared_ptr<const Frame> look(const Observer::Wants& wants) const;
+
+  /// The world as cameras draw it, at the end of the last tick, for those who come between two ticks. Not State: asking
+  /// for it changes no run. Made at the first call where no device sees; warnings of textures are then dropped.
+  Sight& sight();
 
   const PhaseTimes& phase_times() const { return phase_times_; }
   std::uint64_t refused_commands() const { return refused_commands_; }
@@ -134,6 +139,7 @@ class Simulation : public SimulationParts {
     std::vector<std::uint32_t> all, due, levels;  ///< `levels` per device: a copy of Device::levels
     std::vector<std::uint64_t> sample;
     std::vector<Time> since;
+    std::uint32_t faulty = 0;  ///< how many have faults
   };
   struct Pending {
     Source source;
@@ -148,8 +154,9 @@ class Simulation : public SimulationParts {
   Status gather_controllers(Diagnostics& diagnostics);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status add_device(Entity& entity, const model::DeviceDecl& decl, Diagnostics& diagnostics);
-  Status add_program(Entity& entity, const model::ControllerDecl& decl);
-  Result<std::unique_ptr<ProgramEntry>> make_program(const Entity& entity, const model::ControllerDecl& decl);
+  Status add_program(Entity& entity, std::shared_ptr<const model::ControllerDecl> declared);
+  Result<std::unique_ptr<ProgramEntry>> make_program(const Entity& entity,
+                                                     std::shared_ptr<const model::ControllerDecl> declared);
   void remove_entity(std::size_t index);
   void remove_from_pool(const Device& device);
   void point_programs_at_active_levels(Entity& entity);
@@ -157,6 +164,7 @@ class Simulation : public SimulationParts {
   Device* find_device(std::string_view path);
   ProgramEntry* find_program(std::string_view path);
   void rebuild_scene();
+  void rebuild_sight(Diagnostics& diagnostics);
   void plan_next_sample(const Device& device);
   void set_active_levels(Device& device, std::uint32_t levels);
   std::shared_ptr<const Description> describe(const Entity& entity);
@@ -198,6 +206,14 @@ class Simulation : public SimulationParts {
   Status set_levels(const LevelRequest& request);
   void apply_program_orders();
 
+  // faults.cpp
+  bool takes_commands(const Device& device) const;
+  void sense_faulty(Pool& pool, const Context& context);
+  std::span<const std::uint32_t> acting(Pool& pool, const Context* let_go);
+  Status set_errors(Entity* entity, std::string_view field, const Node& value);
+  bool errors_scaled() const;
+  void save_errors(ByteWriter& w) const;
+
   // mount.cpp
   Status mount_device(const LoadDeviceRequest& request);
   Status unmount_device(const UnloadDeviceRequest& request);
@@ -223,6 +239,7 @@ class Simulation : public SimulationParts {
   std::unique_ptr<RayScene> scene_;  ///< null when the engine casts rays itself
   const RayCaster* rays_ = nullptr;
   SceneFrame scene_frame_;
+  std::unique_ptr<Sight> sight_;  ///< null as long as nobody sees
 
   std::vector<std::unique_ptr<Entity>> entities_;
   std::vector<const Entity*> guided_;  ///< those with a motion

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "messages/messages.h"
 #include "sim/test_world.h"
 #include "sim/values.h"
@@ -212,6 +214,24 @@ TEST(Requests, commands_of_an_inactive_level_are_refused_until_it_is_switched_on
   ASSERT_FALSE(simulation->outcomes().back().status);
   EXPECT_NE(simulation->outcomes().back().status.error().text().find("did you mean 'other'"),
             std::string::npos);
+}
+
+TEST(Requests, a_command_that_is_no_number_is_refused_and_leaves_no_trace_in_the_state) {
+  const auto simulation = build(arena("planar", 1));
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    msg::Twist twist;
+    twist.angular.z = bad;
+    ByteWriter w;
+    write(w, twist);
+    simulation->submit(CommandRequest{"rover1/drive", "geometry_msgs/msg/Twist", w.buffer()});
+    advance(*simulation, 1);
+    ASSERT_FALSE(simulation->outcomes().back().status);
+    EXPECT_EQ(simulation->outcomes().back().status.error().what, "the command is not finite");
+    auto held = NamedValue::find(*simulation, "rover1/drive/ideal/command.angular.z");
+    ASSERT_TRUE(held);
+    EXPECT_TRUE(std::isfinite(held->read().value_or(0)));
+  }
 }
 
 TEST(Requests, who_drives_from_outside_is_not_disturbed_by_the_robots_controller_for_half_a_second) {

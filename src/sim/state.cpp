@@ -168,8 +168,11 @@ void Simulation::save_run(ByteWriter& w) const {
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
   monitor_->save(w);
   // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
-  if (!pulls_.empty() || !holds_.empty()) write_block(w, [&](ByteWriter& block) { save_pulls(block); });
-  if (!holds_.empty()) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
+  const bool scaled = errors_scaled();
+  if (!pulls_.empty() || !holds_.empty() || scaled)
+    write_block(w, [&](ByteWriter& block) { save_pulls(block); });
+  if (!holds_.empty() || scaled) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
+  if (scaled) write_block(w, [&](ByteWriter& block) { save_errors(block); });
 }
 
 void Simulation::save_pulls(ByteWriter& w) const {
@@ -213,7 +216,10 @@ bool Simulation::load_run(ByteReader& r) {
   if (r.remaining() == 0) return true;
   ByteReader holds = read_block(r);
   read(holds, holds_);
-  return r.ok() && holds.ok() && holds.remaining() == 0;
+  if (!r.ok() || !holds.ok() || holds.remaining() != 0) return false;
+  if (r.remaining() == 0) return true;
+  read_block(r);  // factors on errors: for the hash; the Model has brought them
+  return r.ok();
 }
 
 /// Calls visit(path, key, fill) for each entity's part of the State, in creation order.

@@ -141,5 +141,32 @@ TEST(Swarm, ADriveWithoutOdometryMovesTheSame) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i], b[i]);
 }
 
+TEST(Swarm, RobotsOfAGroupShareWhatTheyWereDeclaredWithUntilOneIsTuned) {
+  const auto sim = simulation(swarm(20));
+  const auto entities = sim->entities();
+  const Simulation::Entity &first = *entities[entities.size() - 2], &second = *entities.back();
+  EXPECT_TRUE(first.instance.devices.shares_with(second.instance.devices));
+  EXPECT_TRUE(first.instance.controllers.shares_with(second.instance.controllers));
+  EXPECT_EQ(&first.programs[0]->decl, &second.programs[0]->decl);
+  run(*sim, 2);
+  const auto number = [](const Simulation& of, const Simulation::Entity& entity) {
+    const ValueStep path[] = {{"max_linear_speed"}};
+    return of.pool(*entity.devices[0]).value(entity.devices[0]->index, ValuePart::parameter, path).value;
+  };
+  sim->submit(ParameterRequest{second.devices[0]->path, "max_linear_speed", Node::scalar("0.05")});
+  run(*sim, 1);
+  EXPECT_EQ(number(*sim, first), 0.5) << "a neighbour's speed was changed";
+  EXPECT_EQ(number(*sim, second), 0.05);
+  // A snapshot gives each its own again.
+  Diagnostics diagnostics;
+  const auto back = Simulation::restore(sim->snapshot(), {}, diagnostics);
+  ASSERT_TRUE(back);
+  const auto again = (*back)->entities();
+  EXPECT_EQ(number(**back, *again[again.size() - 2]), 0.5);
+  EXPECT_EQ(number(**back, *again.back()), 0.05);
+  run(*sim, 3), run(**back, 3);
+  EXPECT_EQ(sim->state_hash(), (*back)->state_hash());
+}
+
 }  // namespace
 }  // namespace sandlot

@@ -8,6 +8,7 @@
 #include "model/motion.h"
 #include "physics/parallel.h"
 #include "sim/monitor.h"
+#include "sim/sight.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -33,7 +34,13 @@ Status Simulation::tick(std::optional<Time> measured) {
 }
 
 Context Simulation::context() {
-  return {now_, step_, tick_, setup_.seed, *engine_, *rays_, actuation_, emissions_};
+  Context all{now_, step_, tick_, setup_.seed, *engine_, *rays_, actuation_, emissions_};
+  all.topics = this;
+  if (sight_) {
+    all.pictures = &sight_->pictures;
+    all.things = sight_->things;
+  }
+  return all;
 }
 
 /// A clock that measures takes longer sub-steps no further than the setup allows: it takes more of them.
@@ -92,7 +99,7 @@ void Simulation::actuate() {
   ctx.now = now_ + step_;
   for (Pool& pool : pools_) {
     if (!(pool.kind->phases & phase_actuate) || pool.devices.empty()) continue;
-    pool.pool->actuate(ctx, {pool.all, pool.sample, pool.levels, pool.since});
+    pool.pool->actuate(ctx, {acting(pool, &ctx), pool.sample, pool.levels, pool.since});
   }
 }
 
@@ -113,7 +120,7 @@ void Simulation::physics() {
     const std::size_t held = actuation_.wrenches.size();
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
-        pool.pool->pre_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+        pool.pool->pre_substep(ctx, {acting(pool, nullptr), pool.sample, pool.levels, pool.since}, h_s);
     pull();
     if (!actuation_.watch.empty()) engine_->watch(actuation_.watch);
     engine_->apply(actuation_.wrenches);
@@ -130,7 +137,7 @@ void Simulation::physics() {
     engine_->step(h_s, hash_combine(mix64(setup_.seed), key(substep)));
     for (Pool& pool : pools_)
       if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
-        pool.pool->post_substep(ctx, {pool.all, pool.sample, pool.levels, pool.since}, h_s);
+        pool.pool->post_substep(ctx, {acting(pool, nullptr), pool.sample, pool.levels, pool.since}, h_s);
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
@@ -162,6 +169,7 @@ void Simulation::pull() {
 
 void Simulation::update_scene() {
   const PhaseTimer timer(phase_times_, Phase::scene);
+  if (sight_) sight_->update(*engine_, tick_, revision_);
   if (!scene_) return;
   const auto states = engine_->states();
   scene_frame_.tick = tick_;
@@ -195,7 +203,9 @@ void Simulation::sense() {
       }
       when.due = due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz);
     }
-    if (!pool.due.empty()) pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
+    if (pool.due.empty()) continue;
+    if (pool.faulty > 0) sense_faulty(pool, ctx);
+    else pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
   }
 }
 
@@ -242,6 +252,31 @@ void Simulation::gather_programs() {
   });
 }
 
+namespace {
+
+/// Programs lie all over the memory. What those of a batch need of it is asked for at once, as far as pointers lead, so that
+/// in a large swarm the machine waits once per batch and not once per pointer.
+void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
+  for (const SimulationParts::ProgramEntry* const entry : programs) {
+    __builtin_prefetch(&entry->key);
+    __builtin_prefetch(&entry->topics);
+    __builtin_prefetch(&entry->steps);
+  }
+  for (const SimulationParts::ProgramEntry* const entry : programs) {
+    __builtin_prefetch(entry->controller);
+    __builtin_prefetch(entry->topics.data());
+    __builtin_prefetch(entry->seen.data());
+    __builtin_prefetch(entry->command.orders().data(), 1);
+  }
+  for (const SimulationParts::ProgramEntry* const entry : programs)
+    for (const TopicBase* const topic : entry->topics) {
+      __builtin_prefetch(topic);
+      __builtin_prefetch(reinterpret_cast<const std::byte*>(topic) + 128);
+    }
+}
+
+}  // namespace
+
 void Simulation::control() {
   const PhaseTimer timer(phase_times_, Phase::control);
   if (!options_.run_programs || tick_ % static_cast<std::uint64_t>(setup_.control_interval) != 0) return;
@@ -254,6 +289,7 @@ void Simulation::control() {
     while (begin < end) {
       const ControllerKind* const kind = running_[begin]->kind;
       std::size_t count = 0;
+      prefetch({&running_[begin], std::min(most, end - begin)});
       for (; count < most && begin + count < end && running_[begin + count]->kind == kind; ++count) {
         ProgramEntry& entry = *running_[begin + count];
         entry.command.clear();

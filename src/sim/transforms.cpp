@@ -59,6 +59,8 @@ msg::TFMessage static_transforms(const Simulation& simulation) {
       if (!taken)
         set(message.transforms.emplace_back(), now, frame_of(device->decl.link), device->path,
             device->decl.X_LS);
+      for (const auto& [name, X_SF] : device->frames)
+        set(message.transforms.emplace_back(), now, device->path, name, X_SF);
     }
   }
   return message;

@@ -60,6 +60,7 @@ bool NamedValue::resolve() {
     if (path_.size() != 1) return false;
     if (first == "time") return take(What::time, 1, number(0, "s"));
     if (first == "tick") return take(What::tick, 1, number(0, "1"));
+    if (first == "errors") return take(What::all_errors, 1, number(0, "1"));
     return first == "revision" && take(What::revision, 1, number(0, "1"));
   }
   if (thing == "values") {
@@ -99,6 +100,7 @@ bool NamedValue::resolve_thing(const Simulation::Entity& entity) {
   const Engine& engine = simulation_->engine();
   const model::Model& model = *entity.instance.model;
   const std::string& first = path_.front().key;
+  if (first == "errors" && path_.size() == 1) return take(What::errors, 1, number(0, "1"));
   if (first == "links" && path_.size() > 2) {
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       if (sanitised(model.links[i].name) != path_[1].key) continue;
@@ -170,6 +172,8 @@ ValueFound NamedValue::look() const {
     case What::time: return number(simulation_->now().s(), "");
     case What::tick: return number(static_cast<double>(simulation_->tick_index()), "");
     case What::revision: return number(static_cast<double>(simulation_->revision()), "");
+    case What::all_errors: return number(simulation_->setup().errors, "");
+    case What::errors: return number(entity_->instance.errors, "");
     case What::named: {
       const auto value = simulation_->monitor().value(index_);
       return value ? number(*value, "") : ValueFound{Is::absent};
@@ -252,6 +256,9 @@ void list_thing(const Simulation& simulation, const Simulation::Entity& entity, 
               prefixed(name + ".pose"));
   if (!model.is_static || entity.instance.motion)
     list_values(engine.states()[bodies.front().index].V_WB, "", "", "", prefixed(name + ".twist"));
+  if (!entity.devices.empty())
+    visit({name + ".errors", "1", "Factor on the errors of all its devices.", Is::value,
+           entity.instance.errors});
   if (model.links.size() > 1)
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       const std::string link = name + ".links." + sanitised(model.links[i].name);
@@ -330,7 +337,7 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   }
   if (!known) return {"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, things)};
   std::vector<std::string> addresses;
-  if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision"};
+  if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision", "sim.errors"};
   if (thing == "values")
     for (const std::string& name : simulation.monitor().value_names()) addresses.push_back("values." + name);
   if (entity)
@@ -407,6 +414,7 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
     visit({"sim.tick", "1", "Ticks so far.", Is::value, static_cast<double>(simulation.tick_index())});
     visit({"sim.revision", "1", "Counts spawns, deletions and level changes.", Is::value,
            static_cast<double>(simulation.revision())});
+    visit({"sim.errors", "1", "Factor on the errors of all devices.", Is::value, simulation.setup().errors});
     const Monitor& watch = simulation.monitor();
     for (std::uint32_t i = 0; i < watch.value_names().size(); ++i) {
       const auto value = watch.value(i);

@@ -1,10 +1,11 @@
 #pragma once
 /// Every number of a running simulation by its address: `rover.pose.x`, `rover/laser.ranges[3]`.
 ///
-///   sim.time|tick|revision                          simulated time [s], tick, revision of the Model
+///   sim.time|tick|revision|errors                   simulated time [s], tick, revision of the Model, factor on all errors
 ///   values.NAME or NAME                             a value that the scenario names
 ///   rover.pose.x|y|z|roll|pitch|yaw                 of the model frame in the world [m, rad]
 ///   rover.twist.linear.x, .angular.z                of the first link, in the world [m/s, rad/s]
+///   rover.errors                                    factor on the errors of all its devices
 ///   rover.links.NAME.pose.x, .twist.linear.x        of a link, in the world
 ///   rover.joints.NAME.position|velocity|effort      [rad or m, ... per s, Nm or N]
 ///   rover/laser.PATH                                a device: its reading, else a parameter, else its state, else
@@ -47,6 +48,8 @@ class NamedValue {
     time,
     tick,
     revision,
+    all_errors,
+    errors,
     named,
     model_pose,
     body_pose,

@@ -15,6 +15,8 @@ const std::vector<Experiment>& experiments() {
       {"surfaces", "Substances, belts, skins, resistance to rolling, zones.", surfaces},
       {"drives", "Every drive at every level on every engine, driven along straight, side, arc and spin.",
        drives},
+      {"switching", "A drive whose level is switched while it moves.", switching},
+      {"odometry", "Wheel odometry by least squares and by Kabsch, with and without slip.", odometry},
       {"friction", "Inclines, sliding, rolling, pushing, piles at rest.", friction},
   };
   return all;

@@ -30,12 +30,20 @@ struct Figure {
   std::vector<std::vector<double>> columns;  ///< the first is x
 };
 
+/// Numbers without bounds, to look up.
+struct Table {
+  std::string title;
+  std::vector<std::string> names;  ///< of the columns
+  std::vector<std::vector<std::string>> rows;
+};
+
 struct Section {
   std::string name;   ///< as the command line spells it
   std::string title;  ///< as the page does
   std::string text;   ///< what is done, which theory, which limits; Markdown
   std::vector<Row> rows;
   std::vector<Figure> figures;
+  std::vector<Table> tables = {};
 };
 
 /// One line per section in validation.cpp.
@@ -47,9 +55,11 @@ struct Experiment {
 const std::vector<Experiment>& experiments();
 
 // The sections.
-Section impacts();   ///< two bodies, a bouncing ball, Newton's cradle
-Section friction();  ///< inclines, sliding, rolling, piles at rest
-Section drives();    ///< each drive at each level on each engine
-Section surfaces();  ///< substances, belts, skins, zones
+Section impacts();    ///< two bodies, a bouncing ball, Newton's cradle
+Section friction();   ///< inclines, sliding, rolling, piles at rest
+Section drives();     ///< each drive at each level on each engine
+Section odometry();   ///< of wheels that slip
+Section switching();  ///< of a drive's level, on the way
+Section surfaces();   ///< substances, belts, skins, zones
 
 }  // namespace sandlot::validation

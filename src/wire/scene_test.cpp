@@ -193,7 +193,9 @@ TEST(World, tells_what_stands_in_it) {
   EXPECT_EQ(rover["devices"][1],
             Json::parse(R"({"name":"laser","path":"rover1/laser","kind":"laser_scanner","link":0,
                             "pose":[0,0,0.12,1,0,0,0],"active":["ranges"],
-                            "topics":[{"name":"/rover1/laser/ranges","type":"sensor_msgs/msg/LaserScan","level":"ranges"}],
+                            "topics":[{"name":"/rover1/laser/ranges","type":"sensor_msgs/msg/LaserScan","level":"ranges"},
+                                      {"name":"/rover1/laser/segments","type":"sandlot_msgs/msg/LineSegmentArray","level":"segments"},
+                                      {"name":"/rover1/laser/pose","type":"geometry_msgs/msg/PoseWithCovarianceStamped","level":"pose"}],
                             "commands":[]})"));
   EXPECT_THAT(rover["devices"][0]["commands"].dump(), testing::HasSubstr("geometry_msgs/msg/Twist"));
   EXPECT_EQ(rover["controllers"],

@@ -26,7 +26,7 @@ const picture = (of, name) => of.screenshot({ path: `${pictures}/${name}.png` })
 async function open(url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
   const opened = await context.newPage();
-  opened.setDefaultTimeout(20000);
+  opened.setDefaultTimeout(60000);
   opened.on("pageerror", (error) => complaints.push(String(error)));
   opened.on("console", (message) => { if (message.type() === "error") complaints.push(message.text()); });
   await opened.goto(url);
@@ -230,7 +230,7 @@ test("a jump back leads to the same end", { skip }, async () => {
   const line = await steered.locator(by("timeline")).boundingBox();
   // The line goes from the beginning to the end at 3 s: a third of it is about 1 s.
   await steered.mouse.click(line.x + line.width / 3, line.y + line.height / 2);
-  await until("another world", () => viewer.status.epoch > epoch && viewer.status.state === "paused");
+  await until("another world", () => viewer.status.epoch > epoch && viewer.status.state === "paused" && viewer.status.time_s > 0);
   assert.ok(viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2, `${viewer.status.time_s} s`);
   await picture(steered, "rewound");
   await steered.locator(by("reset")).click();
@@ -264,4 +264,64 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.equal(await player.stop(), 0, player.error);
   assert.equal(player.summary.different_ticks, 0);
   assert.ok(player.summary.compared_ticks >= 200);
+});
+
+test("what a camera sees is shown in a pane, its view and what it finds in the scene", { skip }, async () => {
+  const yard = makeYard(scratch);
+  const model = scratch.write("eye.sdf", `<?xml version="1.0"?><sdf version="1.9" xmlns:sandlot="urn:sandlot:sdf"><model name="eye"><link name="body">
+    <visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></visual>
+    <collision name="c"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>
+    </link>
+    <sandlot:device name="camera" kind="camera" link="body"><pose>0 0 0.3 0 0 0</pose><width>160</width><height>120</height><rate>10</rate>
+    </sandlot:device></model></sdf>`);
+  const file = scratch.write("eyes.yaml", `${readFileSync(yard, "utf8")}  - {name: watcher, model: ${model}, pose: [-2.4, -0.6, 0.05, 0, 0, 0.6]}\n`);
+  const run = await Served.start(["run", file], scratch);
+  const viewer = await watch(run.ws);
+  const shown = await open(run.url);
+  await shown.locator(by("tab-pictures")).click();
+  const canvas = shown.locator(by("picture")).first();
+  await canvas.waitFor({ state: "visible" });
+  const colours = () => canvas.evaluate((c) => {
+    const { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
+    const seen = new Set();
+    for (let i = 0; i < data.length; i += 4) seen.add(data[i] >> 4 << 8 | data[i + 1] >> 4 << 4 | data[i + 2] >> 4);
+    return { size: `${c.width}x${c.height}`, count: seen.size };
+  });
+  const first = await colours();
+  assert.equal(first.size, "160x120");
+  assert.ok(first.count > 5, `walls, ground and a rover: ${first.count} colours`);
+  // A second pane, and one less again.
+  await shown.locator(by("add-picture")).click();
+  assert.equal(await shown.locator(by("picture-topic")).count(), 2);
+  await shown.locator(by("close-picture")).last().click();
+  assert.equal(await shown.locator(by("picture-topic")).count(), 1);
+  // The pyramid has the width that the camera says: 60 degrees, at 1 m 2 tan(30 deg) = 1.155 m wide, 0.866 m high.
+  await shown.locator(by("overlays")).click();
+  await shown.getByText("Camera views").click();
+  await shown.keyboard.press("Escape");
+  const pyramids = () => shown.evaluate(() => {
+    const { pyramids } = window.sandlot.scene.marks;
+    const m = pyramids.matrices;
+    return { count: pyramids.mesh.count, wide: Math.hypot(m[4], m[5], m[6]), high: Math.hypot(m[8], m[9], m[10]) };
+  });
+  await until("the camera's view", async () => (await pyramids()).count === 1);
+  const view = await pyramids();
+  assert.ok(Math.abs(view.wide - 1.1547) < 0.01 && Math.abs(view.high - 0.866) < 0.01, JSON.stringify(view));
+  await picture(shown, "pictures");
+  // Another level, from the page and from the console: what is found is drawn where the things are.
+  await shown.locator(by("tree-filter")).fill("watcher camera");
+  await shown.locator(row("watcher/camera")).click();
+  await shown.locator(by("level-objects")).click();
+  const diamonds = () => shown.evaluate(() => {
+    const { diamonds } = window.sandlot.scene.marks;
+    return Array.from({ length: diamonds.mesh.count }, (_, i) => [diamonds.matrices[16 * i + 12], diamonds.matrices[16 * i + 13]]);
+  });
+  await until("an object", async () => (await diamonds()).length > 0);
+  const answer = await viewer.say("level watcher/camera objects");
+  assert.equal(answer.ok, true, answer.text);
+  await until("the idle rover among them", async () => (await diamonds()).some(([x, y]) => Math.hypot(x - 0, y - 1.5) < 0.2));
+  await picture(shown, "objects");
+  await shown.context().close();
+  viewer.close();
+  assert.equal(await run.stop(), 0, run.error);
 });

@@ -103,3 +103,17 @@ test('a yard fills the view, upright or wide, and a narrow view turns to have it
     if (aspect < 1) assert.ok(Math.abs(camera.position.x) > Math.abs(camera.position.y), 'along the long side');
   }
 });
+
+test('a long field seen along its length is in the view to its nearest corner', () => {
+  const corners = [];
+  // Its near end is narrower than its far one, and the eye near to it.
+  for (const [x, y] of [[-0.2, -12], [2.8, -12], [-0.2, 4], [5.2, 4], [-0.2, 9], [5.2, 9]]) for (const z of [0, 0.4]) corners.push(new THREE.Vector3(x, y, z));
+  const rig = new CameraRig();
+  rig.setAspect(1.57);
+  rig.frameAll(corners);
+  const seen = corners.map((c) => c.clone().project(settled(rig)));
+  // The edges that the fit leaves free are met, each by the point that decides: 0.94 of the half to a side or 0.84 up and 0.92 down.
+  const side = Math.max(...seen.map((p) => Math.abs(p.x))), top = Math.max(...seen.map((p) => p.y)), bottom = Math.max(...seen.map((p) => -p.y));
+  assert.ok(side < 0.945 && top < 0.845 && bottom < 0.925, `${side} ${top} ${bottom}`);
+  assert.ok(side > 0.935 || (top > 0.835 && bottom > 0.915), 'it is as near as may be');
+});

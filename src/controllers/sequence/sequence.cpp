@@ -11,7 +11,7 @@ Result<double> number_of(const Node& node, const std::string& device) {
   double value = 0;
   if (!node.is_scalar() || !parse_number(node.text(), value) || !std::isfinite(value))
     return node.error("the order for '" + device + "' is no number",
-                      "write a number or [forward, left, turn]", "/steps");
+                      "write a number, true, false or [forward, left, turn]", "/steps");
   return value;
 }
 
@@ -21,6 +21,13 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
     error.path = "/steps";
     return error;
   };
+  if (entry.value.is_scalar() && (entry.value.text() == "true" || entry.value.text() == "false")) {
+    Sequence::Switch order{.value = {entry.value.text() == "true"}};
+    auto to = robot.actuator<msg::Bool>(entry.key);
+    if (!to) return at_key(std::move(to.error()));
+    order.to = *to;
+    return Sequence::Order{at_s, order};
+  }
   if (!entry.value.is_sequence()) {
     Sequence::Number number;
     SL_ASSIGN(number.value.data, number_of(entry.value, entry.key));
@@ -81,7 +88,7 @@ void Sequence::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Sequence>({
     .name = "sequence",
-    .help = "Gives orders to joints and drives at set times.",
+    .help = "Gives orders to joints, drives and grippers at set times.",
 });
 
 }  // namespace sandlot::controllers::sequence

@@ -3,7 +3,8 @@
 ///
 /// Reads    nothing.
 /// Orders   to the devices it names: a number is a Float64 (joint motors: angle, speed or effort by their level), a list
-///          [forward, left, turn] a Twist in m/s and rad/s for a drive. Lists may be shorter; the rest is 0.
+///          [forward, left, turn] a Twist in m/s and rad/s for a drive. Lists may be shorter; the rest is 0. The words true
+///          and false are a Bool (grippers).
 /// Time     an order is given in the first control step not before its time. With `repeat` the list begins again every
 ///          so many seconds, counted from the start; orders at or after the end of a round are never given.
 /// Limits   open loop: it does not look whether anything came of it.
@@ -22,7 +23,8 @@ struct Step {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"at", "s", "When, from the start of a round.", 0, 1e9, Field::required}, s.at_s);
-    visit(Field{"orders", "", "Map: device -> number, or [forward, left, turn].", 0, 0, Field::required},
+    visit(Field{"orders", "", "Map: device -> number, true, false, or [forward, left, turn].", 0, 0,
+                Field::required},
           s.orders);
   }
 };
@@ -59,13 +61,17 @@ struct Sequence {
     Actuator<msg::Float64> to;
     msg::Float64 value;
   };
+  struct Switch {
+    Actuator<msg::Bool> to;
+    msg::Bool value;
+  };
   struct Motion {
     Actuator<msg::Twist> to;
     msg::Twist value;
   };
   struct Order {
     double at_s;
-    std::variant<Number, Motion> what;
+    std::variant<Number, Switch, Motion> what;
   };
   std::vector<Order> orders;
 

@@ -89,6 +89,26 @@ TEST(Sequence, AListIsAMotionOfADrive) {
   EXPECT_EQ(twist.angular.z, -0.25);
 }
 
+TEST(Sequence, TrueAndFalseAreBool) {
+  Sequence controller;
+  controller.spec.steps = list_of(
+      {step_at("0", {{"hand", "true"}, {"elbow", "1"}}), step_at("1", {{"hand", "false"}})});
+  Description robot = description();
+  robot.actuators.push_back({"hand", "hold", msg::Bool::ros_type, 3, {}});
+  ASSERT_TRUE(controller.init(robot));
+  for (const double now_s : {0.0, 1.0}) {
+    const Observation obs(Time::from_s(now_s), {}, {}, Stream(1, 2, Purpose::controller, 3));
+    Command cmd;
+    controller.step(obs, cmd);
+    ASSERT_EQ(cmd.orders().size(), now_s == 0 ? 2u : 1u);
+    EXPECT_EQ(cmd.orders()[0].slot, 3u);
+    ByteReader r(cmd.bytes(cmd.orders()[0]));
+    msg::Bool order;
+    read(r, order);
+    EXPECT_EQ(order.data, now_s == 0);
+  }
+}
+
 TEST(Sequence, RefusesWhatItCannotOrder) {
   const auto complaint = [](std::vector<Node> steps) {
     Sequence controller;
@@ -99,6 +119,8 @@ TEST(Sequence, RefusesWhatItCannotOrder) {
   EXPECT_NE(complaint({step_at("0", {{"elbo", "1"}})}).find("'elbo'"), std::string::npos);
   EXPECT_NE(complaint({step_at("0", {{"base", "1"}})}).find("'base'"), std::string::npos)
       << "no Float64 there";
+  EXPECT_NE(complaint({step_at("0", {{"elbow", "true"}})}).find("'elbow'"), std::string::npos)
+      << "no Bool there";
   EXPECT_NE(complaint({step_at("0", {{"elbow", "fast"}})}).find("is no number"), std::string::npos);
   EXPECT_NE(complaint({step_at("2", {{"elbow", "1"}}), step_at("1", {{"elbow", "1"}})})
                 .find("before the one above"),

@@ -32,7 +32,7 @@ Result<wheeled::Base> Car::build(const DeviceBuild& build, const Spec& spec) {
   fixed_x = fixed > 0 ? fixed_x / fixed : steered_x - *spec.wheelbase_m;
   const double wheelbase = spec.wheelbase_m.value_or(steered_x - fixed_x);
   if (std::abs(wheelbase) < 1e-3)
-    return Error{"the wheelbase is " + number_text(wheelbase) + " m",
+    return Error{"the wheelbase is " + short_text(wheelbase) + " m",
                  "the steered wheels stand before or behind the fixed axle", build.decl.place, "/wheelbase"};
   for (std::size_t i = 0; i < base.wheels.size(); ++i)
     if (base.wheels[i].pivot < 0 && std::abs(base.geometry[i].x_m - fixed_x) > 0.05 * std::abs(wheelbase))

@@ -55,7 +55,7 @@ void take_command(Drive& drive, Level level) {
 
 /// What the drive aims for in this tick: the command within all limits.
 DriveVelocity goal(const Drive& drive, const Context& context) {
-  const Spec& spec = drive.spec;
+  const Spec& spec = *drive.spec;
   const Time age = context.now - context.tick - drive.state.command_time;
   if (spec.command_timeout_s > 0 && age.s() > spec.command_timeout_s) return {};
   const DriveVelocity wanted{
@@ -74,7 +74,7 @@ void drive_wheels(const Drive& drive, WheelSpeeds speeds, bool kinematic, std::v
                          .velocity = wheel.sign * radps,
                          .max_effort = kinematic
                                            ? kinematic_effort_Nm
-                                           : std::min(drive.spec.max_wheel_effort_Nm, wheel.max_effort)});
+                                           : std::min(drive.spec->max_wheel_effort_Nm, wheel.max_effort)});
   };
   side(drive.left, speeds.left_radps);
   side(drive.right, speeds.right_radps);
@@ -114,7 +114,7 @@ Status check_levels(std::uint32_t levels, const Capabilities& engine) {
 void Drive::actuate(PoolView<Drive> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
-    if (drive.spec.odometry) count_wheels(drive, context.engine.joint_states());
+    if (drive.spec->odometry) count_wheels(drive, context.engine.joint_states());
     take_command(drive, is_ideal(pool.levels[index]) ? ideal : contact);
     const DriveVelocity wanted = goal(drive, context);
     if (is_ideal(pool.levels[index])) {
@@ -124,8 +124,8 @@ void Drive::actuate(PoolView<Drive> pool, const Context& context) {
            .vx_mps = wanted.v_mps + wanted.omega_radps * drive.dy_m,
            .vy_mps = -wanted.omega_radps * drive.dx_m,
            .wz_radps = wanted.omega_radps,
-           .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
-           .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
+           .max_accel_mps2 = drive.spec->max_linear_acceleration_mps2,
+           .max_angular_accel_radps2 = drive.spec->max_angular_acceleration_radps2});
       if (drive.engine.rolls) roll_wheels(drive, context.actuation.rolls);
     } else if (drive.state.release) {
       context.actuation.drives.push_back({.base = drive.base, .active = false});
@@ -149,19 +149,19 @@ void Drive::pre_substep(PoolView<Drive> pool, const Context& context, double h_s
     }
     const DriveVelocity wanted = goal(drive, context);
     drive.state.setpoint_mps = towards(drive.state.setpoint_mps, wanted.v_mps,
-                                       drive.spec.max_linear_acceleration_mps2 * h_s);
+                                       drive.spec->max_linear_acceleration_mps2 * h_s);
     drive.state.setpoint_radps = towards(drive.state.setpoint_radps, wanted.omega_radps,
-                                         drive.spec.max_angular_acceleration_radps2 * h_s);
+                                         drive.spec->max_angular_acceleration_radps2 * h_s);
     drive_wheels(drive, drive.geometry.inverse({drive.state.setpoint_mps, drive.state.setpoint_radps}), false,
                  context.actuation.joints);
   }
 }
 
 void Drive::sense(PoolView<Drive> pool, const Context& context) {
-  const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
-    if (!drive.spec.odometry) continue;
+    if (!drive.spec->odometry) continue;
+    const auto joints = context.engine.joint_states();  // not before: engines make them when asked
     count_wheels(drive, joints);
     Topic<msg::Odometry>& topic = *drive.odometry[is_ideal(pool.levels[index]) ? ideal : contact];
     const Pose X_BD{{drive.dx_m, drive.dy_m, 0}, {}};
@@ -260,10 +260,10 @@ Result<Side> resolve_side(const DeviceBuild& build, std::span<const std::string>
 
 }  // namespace
 
-Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
+Result<Drive> Drive::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
   SL_TRY(check_levels(build.levels, build.engine));
-  SL_ASSIGN(Side left, resolve_side(build, spec.left_joint, "left_joint"));
-  SL_ASSIGN(Side right, resolve_side(build, spec.right_joint, "right_joint"));
+  SL_ASSIGN(Side left, resolve_side(build, spec->left_joint, "left_joint"));
+  SL_ASSIGN(Side right, resolve_side(build, spec->right_joint, "right_joint"));
   for (const Wheel& wheel : left.wheels)
     for (const Wheel& other : right.wheels)
       if (wheel.joint == other.joint)
@@ -272,12 +272,16 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
   Drive drive{std::move(spec)};
   drive.base = build.bodies[0];
   drive.engine = build.engine;
-  drive.geometry.wheel_separation_m = drive.spec.wheel_separation_m.value_or(left.centre_B.y -
-                                                                             right.centre_B.y);
-  if (drive.geometry.wheel_separation_m < 1e-3)
+  drive.geometry.wheel_separation_m = drive.spec->wheel_separation_m.value_or(left.centre_B.y -
+                                                                              right.centre_B.y);
+  if (std::abs(drive.geometry.wheel_separation_m) < 1e-3)
+    return Error{"the left and the right wheels have no distance between them",
+                 "move them apart, left to +y and right to -y, or give wheel_separation", build.decl.place};
+  if (drive.geometry.wheel_separation_m < 0)
     return Error{"the left wheels are not to the left of the right ones",
                  "exchange left_joint and right_joint, or give wheel_separation", build.decl.place};
-  drive.geometry.wheel_radius_m = drive.spec.wheel_radius_m.value_or(std::max(left.radius_m, right.radius_m));
+  drive.geometry.wheel_radius_m = drive.spec->wheel_radius_m.value_or(
+      std::max(left.radius_m, right.radius_m));
   if (drive.geometry.wheel_radius_m <= 0)
     return Error{"the wheels have no round collision shape", "give wheel_radius", build.decl.place};
   drive.dx_m = 0.5 * (left.centre_B.x + right.centre_B.x);
@@ -293,7 +297,7 @@ Result<Drive> Drive::create(const DeviceBuild& build, Spec spec) {
   for (const Level level : {ideal, contact}) {
     const char* const name = level == ideal ? "ideal" : "contact";
     drive.command[level] = build.accept<msg::Twist>(level, name);
-    if (!drive.spec.odometry) continue;
+    if (!drive.spec->odometry) continue;
     drive.odometry[level] = build.publish<msg::Odometry>(level, name);
     drive.odometry[level]->message.header.frame_id = robot + "/odom";
     drive.odometry[level]->message.child_frame_id = robot + "/" + build.instance.model->links[0].name;

@@ -103,7 +103,7 @@ struct Wheel {
 struct Drive {
   using Spec = diff_drive::Spec;
   using State = diff_drive::State;
-  Spec spec;
+  SharedSpec<Spec> spec;
   State state;
 
   BodyId base;
@@ -115,7 +115,7 @@ struct Drive {
   std::array<Topic<msg::Twist>*, 2> command{};
   std::array<Topic<msg::Odometry>*, 2> odometry{};
 
-  static Result<Drive> create(const DeviceBuild& build, Spec spec);
+  static Result<Drive> create(const DeviceBuild& build, SharedSpec<Spec> spec);
   static void actuate(PoolView<Drive> pool, const Context& context);
   static void pre_substep(PoolView<Drive> pool, const Context& context, double h_s);
   static void sense(PoolView<Drive> pool, const Context& context);

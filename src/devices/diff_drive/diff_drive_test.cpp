@@ -308,6 +308,13 @@ TEST(DiffDrive, WhatIsWrongIsSaidAtItsPlace) {
   EXPECT_EQ(
       complaint(config({{"left_joint", "left"}})),
       "robot.yaml:1:1: key 'right_joint' is missing; Wheel joint on the right side, or a list of them.");
+  model::Model narrow = test::two_wheels();
+  for (model::Link& link : narrow.links) link.X_ML.p.y = 0;
+  Rig none(kind, narrow);
+  EXPECT_EQ(none.add("drive", config({{"left_joint", "left"}, {"right_joint", "right"}})).error().text(),
+            "robot.yaml:12:5: the left and the right wheels have no distance between them; move them apart, "
+            "left to +y "
+            "and right to -y, or give wheel_separation");
   model.joints[0].axis_J = {1, 0, 0};
   Rig skew(kind, model);
   EXPECT_EQ(skew.add("drive", drive()).error().text(),

@@ -6,7 +6,8 @@
 namespace sandlot::gps {
 namespace {
 
-enum Level : std::uint32_t { fix_level, velocity_level };
+enum Level : std::uint32_t { fix_level, velocity_level, pose_level };
+constexpr std::uint64_t pose_use = 1;  // of the device's stream
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   using namespace sdf_element;
@@ -41,6 +42,7 @@ Result<Receiver> Receiver::create(const DeviceBuild& build, Spec spec) {
   Receiver gps{spec};
   gps.key = build.key;
   gps.body = build.body().index;
+  gps.base = build.bodies.front().index;
   gps.X_LS = build.decl.X_LS;
   gps.q_EW = quat_from_axis_angle({0, 0, 1}, build.geography->heading_rad);
   gps.plane = geodesy::LocalPlane(
@@ -56,6 +58,9 @@ Result<Receiver> Receiver::create(const DeviceBuild& build, Spec spec) {
   gps.fix = build.publish<msg::NavSatFix>(fix_level, "fix");
   gps.velocity = build.publish<msg::TwistStamped>(velocity_level, "velocity");
   gps.velocity->message.header.frame_id = "enu";
+  gps.state.pose.reset(spec.pose, random.fork(pose_use));
+  gps.pose = build.publish<msg::PoseWithCovarianceStamped>(pose_level, "pose");
+  gps.pose->message.header.frame_id = "world";
   msg::NavSatFix& message = gps.fix->message;
   message.header.frame_id = build.frame_id();
   message.status.status = static_cast<std::int8_t>(spec.status);
@@ -81,7 +86,15 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
     const Vec3 arm_W = rotate(body.X_WB.q, gps.X_LS.p);
     Stream random(context.seed, gps.key, Purpose::noise, pool.sample[index]);
     const double dt_s = pool.since[index].s();
-    // All six, whatever is shown: the errors of one level do not depend on the other.
+    if (pool.levels[index] >> pose_level & 1) {
+      msg::PoseWithCovariance& told = gps.pose->message.pose;
+      told.pose = state.pose.corrupt(spec.pose, states[gps.base].X_WB, dt_s, random.fork(pose_use),
+                                     spec.errors);
+      told.covariance = covariance_of(spec.pose, spec.errors);
+      gps.pose->publish(context.now);
+    }
+    if (!(pool.levels[index] & (1u << fix_level | 1u << velocity_level))) continue;
+    // All six, whichever of both is shown: the errors of one level do not depend on the other.
     Vec3 p = rotate(gps.q_EW, body.X_WB.p + arm_W);
     p.x = state.east.corrupt(spec.horizontal, p.x, dt_s, random, spec.errors);
     p.y = state.north.corrupt(spec.horizontal, p.y, dt_s, random, spec.errors);
@@ -114,6 +127,7 @@ namespace {
 constexpr LevelInfo levels[] = {
     {"fix", msg::NavSatFix::ros_type, "", "Latitude, longitude and altitude with their covariance."},
     {"velocity", msg::TwistStamped::ros_type, "", "Velocity east, north, up."},
+    {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Pose in the world, as a filter tells it."},
 };
 constexpr const char* sdf_types[] = {"sensor:navsat", "sensor:gps", "plugin:gazebo_ros_gps_sensor",
                                      "plugin:hector_gazebo_ros_gps"};

@@ -5,7 +5,9 @@
 ///          the world file (<spherical_coordinates>) or the scenario; the world's plane touches the WGS 84 ellipsoid there,
 ///          exactly (geometry/geodesy.h).
 /// Levels   `fix` (the default): sensor_msgs/NavSatFix; covariance diagonal, of the errors configured. `velocity`:
-///          geometry_msgs/TwistStamped, east, north, up [m/s]. Both may be active.
+///          geometry_msgs/TwistStamped, east, north, up [m/s]. `pose`: geometry_msgs/PoseWithCovarianceStamped of the
+///          canonical link in `world`, as a filter tells it that has the receiver and a compass; errors of its own: `pose:`
+///          (noise/pose_estimate.h), roll and pitch true. Any of them at once; `pose` alone computes no fix.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h on east and north (`horizontal`, each with its own draw), up (`vertical`) and the three
 ///          velocities (`speed`). The drifting bias is a first-order Gauss-Markov process: the error that atmosphere,
@@ -22,11 +24,13 @@
 #include "geometry/geodesy.h"
 #include "messages/messages.h"
 #include "noise/channel_noise.h"
+#include "noise/pose_estimate.h"
 
 namespace sandlot::gps {
 
 struct Spec {
   ChannelNoiseSpec horizontal, vertical, speed;
+  PoseEstimateSpec pose;
   int status = 0;
   double rate_hz = 10;
   double errors = 1;
@@ -35,6 +39,7 @@ struct Spec {
     visit(Field{"horizontal", "m", "Errors to the east and to the north."}, s.horizontal);
     visit(Field{"vertical", "m", "Errors of the altitude."}, s.vertical);
     visit(Field{"speed", "m/s", "Errors of each component of the velocity."}, s.speed);
+    visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
     visit(Field{"status", "1", "0: fix, 1: with satellite based, 2: with ground based augmentation (RTK).", 0,
                 2},
           s.status);
@@ -45,6 +50,7 @@ struct Spec {
 
 struct State {
   ChannelNoise east, north, up, v_east, v_north, v_up;
+  PoseEstimate pose;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"east", "m", "Errors."}, s.east);
@@ -53,6 +59,7 @@ struct State {
     visit(Field{"v_east", "m/s", "Errors."}, s.v_east);
     visit(Field{"v_north", "m/s", "Errors."}, s.v_north);
     visit(Field{"v_up", "m/s", "Errors."}, s.v_up);
+    visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
   }
 };
 
@@ -64,11 +71,13 @@ struct Receiver {
 
   std::uint64_t key = 0;
   std::uint32_t body = 0;
+  std::uint32_t base = 0;  ///< of the canonical link
   Pose X_LS;
   Quat q_EW;  ///< world in ENU
   geodesy::LocalPlane plane{{}};
   Topic<msg::NavSatFix>* fix = nullptr;
   Topic<msg::TwistStamped>* velocity = nullptr;
+  Topic<msg::PoseWithCovarianceStamped>* pose = nullptr;
 
   static Result<Receiver> create(const DeviceBuild& build, Spec spec);
   static void sense(PoolView<Receiver> pool, const Context& context);

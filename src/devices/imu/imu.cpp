@@ -1,10 +1,15 @@
 #include "devices/imu/imu.h"
 
+#include <cmath>
+
 #include "base/math.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::imu {
 namespace {
+
+enum Level : std::uint32_t { imu_level, pose_level };
+constexpr std::uint64_t pose_use = 1;  // of the device's stream
 
 struct Motion {
   Vec3 v_W;  ///< of S's origin
@@ -51,6 +56,36 @@ void reset(const AxesSpec& spec, Axes& axes, Stream& random, const std::string& 
   axes.x.reset(spec.x, random, name + "/x");
   axes.y.reset(spec.y, random, name + "/y");
   axes.z.reset(spec.z, random, name + "/z");
+}
+
+/// The exact discretisation of the walk over dt, of errors and of their variances.
+void walk(const PoseSpec& spec, PoseState& state, double dt_s, double errors, Stream random) {
+  const double q = errors * spec.velocity_walk, step = q * std::sqrt(dt_s);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double a = random.normal(), b = random.normal();
+    state.position_m[i] += state.velocity_mps[i] * dt_s + step * dt_s * (0.5 * a + b / std::sqrt(12.0));
+    state.velocity_mps[i] += step * a;
+  }
+  state.yaw_rad += errors * spec.yaw_walk * std::sqrt(dt_s) * random.normal();
+  auto& [velocity, position, yaw] = state.variance;
+  position += dt_s * (2 * state.covariance + dt_s * velocity) + q * q * dt_s * dt_s * dt_s / 3;
+  state.covariance += dt_s * velocity + q * q * dt_s * dt_s / 2;
+  velocity += q * q * dt_s;
+  yaw += errors * errors * spec.yaw_walk * spec.yaw_walk * dt_s;
+}
+
+void tell_pose(Imu& imu, std::uint64_t sample, Time since, const Context& context) {
+  PoseState& state = imu.state.pose;
+  const Stream random = Stream(context.seed, imu.key, Purpose::noise, sample).fork(pose_use);
+  if (state.begun) walk(imu.spec.pose, state, since.s(), imu.spec.errors, random);
+  state.begun = true;
+  msg::PoseWithCovariance& told = imu.pose->message.pose;
+  const Pose& X_WB = context.engine.states()[imu.base].X_WB;
+  told.pose = {X_WB.p + state.position_m,
+               normalised(quat_from_axis_angle({0, 0, 1}, state.yaw_rad) * X_WB.q)};
+  for (const std::size_t i : {0u, 7u, 14u}) told.covariance[i] = state.variance[1];
+  told.covariance[35] = state.variance[2];
+  imu.pose->publish(context.now);
 }
 
 std::array<double, 9> covariance(const AxesSpec& spec, double dt_s, double errors) {
@@ -174,7 +209,10 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
   Stream random(build.seed, build.key, Purpose::initial, 0);
   reset(spec.gyro, imu.state.gyro, random, "gyro");
   reset(spec.accel, imu.state.accel, random, "accel");
-  imu.message = build.publish<msg::Imu>(0, "imu");
+  imu.base = build.bodies.front().index;
+  imu.message = build.publish<msg::Imu>(imu_level, "imu");
+  imu.pose = build.publish<msg::PoseWithCovarianceStamped>(pose_level, "pose");
+  imu.pose->message.header.frame_id = "world";
   msg::Imu& message = imu.message->message;
   message.header.frame_id = build.frame_id();
   const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : build.tick.s();
@@ -186,6 +224,7 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
 void Imu::pre_substep(PoolView<Imu> pool, const Context& context, double h_s) {
   const auto states = context.engine.states();
   for (const std::uint32_t index : pool.due) {
+    if (!(pool.levels[index] >> imu_level & 1)) continue;
     Imu& imu = pool.all[index];
     const Motion now = motion_of(imu, states[imu.body]);
     count(imu, now);
@@ -199,6 +238,8 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
   const auto states = context.engine.states();
   for (const std::uint32_t index : pool.due) {
     Imu& imu = pool.all[index];
+    if (pool.levels[index] >> pose_level & 1) tell_pose(imu, pool.sample[index], pool.since[index], context);
+    if (!(pool.levels[index] >> imu_level & 1)) continue;
     State& state = imu.state;
     const Motion now = motion_of(imu, states[imu.body]);
     count(imu, now);
@@ -220,9 +261,20 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
   }
 }
 
+Status Imu::switch_level(std::uint32_t before, std::uint32_t after, const Context&) {
+  const std::uint32_t fresh = after & ~before;
+  if (fresh >> imu_level & 1) {
+    state.running_s = state.counted_s = 0;
+    state.velocity_S = state.turn_S = {};
+  }
+  if (fresh >> pose_level & 1) state.pose = {};
+  return {};
+}
+
 namespace {
 constexpr LevelInfo levels[] = {
     {"imu", msg::Imu::ros_type, "", "Rates, specific force and orientation."},
+    {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Pose by inertial navigation."},
 };
 constexpr const char* sdf_types[] = {"sensor:imu", "plugin:gazebo_ros_imu", "plugin:gazebo_ros_imu_sensor",
                                      "plugin:hector_gazebo_ros_imu"};

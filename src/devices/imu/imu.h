@@ -2,10 +2,18 @@
 /// Inertial measurement unit: three gyroscopes, three accelerometers and the orientation computed from them.
 ///
 /// Frame    sensor frame S: the link's frame moved by the device's own pose. Rates and accelerations are given in S.
+/// Levels   `imu` (the default) and `pose`, one or both.
 /// Output   level `imu`: sensor_msgs/Imu. angular_velocity [rad/s]. linear_acceleration: the specific force [m/s^2],
 ///          acceleration of S's origin less gravity, so (0, 0, 9.81) at rest. orientation of S in the frame that
 ///          `reference` names. Covariances are those of the noise configured,
 ///          at the factor `errors` of the start.
+///          Level `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as an inertial navigation
+///          tells it that was right when the level became active and has had nothing but its sensors since:
+///
+///            dv = velocity_walk sqrt(dt) n,  dp = v dt + its integral        std(p) = velocity_walk sqrt(t^3 / 3)
+///            turn about the vertical: std = yaw_walk sqrt(t)
+///
+///          for each of x, y, z; roll and pitch, which gravity keeps right, are true. No sub-step is integrated for it.
 /// Time     rates and forces are means over the interval since the previous sample, as integrating sensors show them:
 ///          per sub-step h the velocity of S's origin changes by dv and S turns by dq;
 ///
@@ -20,6 +28,8 @@
 /// Errors   a bad spec: place and path of the key.
 /// Source   D. Titterton, J. Weston, Strapdown Inertial Navigation Technology, 2nd ed. (2004), sec. 3.5 (specific
 ///          force), ch. 11 (increments of velocity and angle). REP 145.
+#include <array>
+
 #include "devices/kind.h"
 #include "messages/messages.h"
 #include "noise/channel_noise.h"
@@ -53,11 +63,41 @@ struct Axes {
   }
 };
 
+/// Errors of the level pose.
+struct PoseSpec {
+  double velocity_walk = 0, yaw_walk = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"velocity_walk", "m/s/sqrt(s)", "Growth of the velocity's error.", 0, 1e3, Field::tunable},
+          s.velocity_walk);
+    visit(Field{"yaw_walk", "rad/sqrt(s)", "Growth of the heading's error.", 0, 10, Field::tunable},
+          s.yaw_walk);
+  }
+};
+
+struct PoseState {
+  Vec3 velocity_mps, position_m;     ///< errors
+  double yaw_rad = 0;                ///< error
+  std::array<double, 3> variance{};  ///< of velocity, position along each axis, and heading
+  double covariance = 0;             ///< of velocity and position
+  bool begun = false;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"velocity", "m/s", "Error."}, s.velocity_mps);
+    visit(Field{"position", "m", "Error."}, s.position_m);
+    visit(Field{"yaw", "rad", "Error."}, s.yaw_rad);
+    visit(Field{"variance", "", "Of velocity, position and heading."}, s.variance);
+    visit(Field{"covariance", "m^2/s", "Of velocity and position."}, s.covariance);
+    visit(Field{"begun", "", "Whether it has told a pose."}, s.begun);
+  }
+};
+
 struct Spec {
   double rate_hz = 100.0;
   Reference reference = Reference::world;
   Vec3 reference_rpy_rad;
   AxesSpec gyro, accel;
+  PoseSpec pose;
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
@@ -72,6 +112,7 @@ struct Spec {
           s.reference_rpy_rad);
     visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
     visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
+    visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
     visit(errors_field, s.errors);
   }
 };
@@ -84,6 +125,7 @@ struct State {
   Vec3 velocity_S;       ///< [m/s] sum of R_m^T (dv - g h)
   Vec3 turn_S;           ///< [rad] sum of the rotation vectors
   Axes gyro, accel;
+  PoseState pose;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"v", "m/s", "Velocity when the running sub-step began."}, s.v_W);
@@ -94,6 +136,7 @@ struct State {
     visit(Field{"turn", "rad", "Rate integrated since then."}, s.turn_S);
     visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
     visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
+    visit(Field{"pose", "", "Of the level pose."}, s.pose);
   }
 };
 
@@ -105,14 +148,18 @@ struct Imu {
 
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link
+  std::uint32_t base = 0;  ///< of the canonical link
   Pose X_LS;
   Vec3 gravity_mps2;
   Quat q_RW;  ///< world in the orientation's reference frame
   Topic<msg::Imu>* message = nullptr;
+  Topic<msg::PoseWithCovarianceStamped>* pose = nullptr;
 
   static Result<Imu> create(const DeviceBuild& build, Spec spec);
   static void pre_substep(PoolView<Imu> pool, const Context& context, double h_s);
   static void sense(PoolView<Imu> pool, const Context& context);
+  /// A level that becomes active begins anew: `imu` with an interval of its own, `pose` at the true pose.
+  Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 };
 
 extern const Kind kind;

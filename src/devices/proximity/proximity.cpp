@@ -15,7 +15,7 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 
 /// From distances along the rays to what the ring tells, with errors. Only data of this ring is touched.
 void finish(Ring& ring, std::uint64_t sample, Time since, const Context& context) {
-  const Spec& spec = ring.spec;
+  const Spec& spec = *ring.spec;
   std::vector<float>&ranges = ring.scan->message.ranges, &readings = ring.scan->message.intensities;
   const auto radius_m = static_cast<float>(spec.radius_m);
   const bool anything = std::any_of(ranges.begin(), ranges.end(), [](float r) { return r < inf; });
@@ -62,12 +62,12 @@ float reading(const Spec& spec, float d_m) {
   return static_cast<float>(share * share);
 }
 
-Result<Ring> Ring::create(const DeviceBuild& build, Spec spec) {
-  const double around = spec.spacing_rad > 0 ? spec.spacing_rad : math::tau / spec.sensors;
-  if ((spec.sensors - 1) * around > math::tau + 1e-6) {
+Result<Ring> Ring::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
+  const double around = spec->spacing_rad > 0 ? spec->spacing_rad : math::tau / spec->sensors;
+  if ((spec->sensors - 1) * around > math::tau + 1e-6) {
     const Node* const node = build.decl.config.find("spacing");
     return Error{"the sensors go round more than once",
-                 "a spacing of 0 spreads them evenly; " + std::to_string(spec.sensors) +
+                 "a spacing of 0 spreads them evenly; " + std::to_string(spec->sensors) +
                      " sensors have at most 360 deg together",
                  node ? node->place() : build.decl.place, "/spacing"};
   }
@@ -75,41 +75,44 @@ Result<Ring> Ring::create(const DeviceBuild& build, Spec spec) {
   ring.key = build.key;
   ring.body = build.body().index;
   ring.X_LS = build.decl.X_LS;
-  const auto sensors = static_cast<std::size_t>(ring.spec.sensors);
-  ring.directions_S = directions(sensors, ring.spec.first_angle_rad, around);
+  const auto sensors = static_cast<std::size_t>(ring.spec->sensors);
+  ring.directions_S = directions(sensors, ring.spec->first_angle_rad, around);
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  ring.state.noise.reset(ring.spec.noise, random);
+  ring.state.noise.reset(ring.spec->noise, random);
 
   ring.scan = build.publish<msg::LaserScan>(0, "proximity");
   msg::LaserScan& message = ring.scan->message;
   message.header.frame_id = build.frame_id();
-  message.angle_min = static_cast<float>(ring.spec.first_angle_rad);
+  message.angle_min = static_cast<float>(ring.spec->first_angle_rad);
   message.angle_increment = static_cast<float>(around);
-  message.angle_max = static_cast<float>(ring.spec.first_angle_rad + (ring.spec.sensors - 1) * around);
-  message.scan_time = static_cast<float>(ring.spec.rate_hz > 0 ? 1 / ring.spec.rate_hz : build.tick.s());
-  message.range_min = static_cast<float>(ring.spec.radius_m);
-  message.range_max = static_cast<float>(ring.spec.radius_m + ring.spec.range_m);
+  message.angle_max = static_cast<float>(ring.spec->first_angle_rad + (ring.spec->sensors - 1) * around);
+  message.scan_time = static_cast<float>(ring.spec->rate_hz > 0 ? 1 / ring.spec->rate_hz : build.tick.s());
+  message.range_min = static_cast<float>(ring.spec->radius_m);
+  message.range_max = static_cast<float>(ring.spec->radius_m + ring.spec->range_m);
   message.ranges.assign(sensors, inf);
   message.intensities.assign(sensors, 0);
   return ring;
 }
 
 void Ring::sense(PoolView<Ring> pool, const Context& context) {
-  const auto states = context.engine.states();
   constexpr std::size_t batch = 16;  // few enough to stay on the stack
   parallel_for(pool.due.size(), 4 * batch, [&](std::size_t begin, std::size_t end) {
     std::array<RayJob, batch> jobs;
+    std::array<std::uint32_t, batch> bodies;
+    std::array<BodyState, batch> states;
     while (begin < end) {
       const std::size_t count = std::min(batch, end - begin);
+      for (std::size_t i = 0; i < count; ++i) bodies[i] = pool.all[pool.due[begin + i]].body;
+      context.engine.states_of({bodies.data(), count}, {states.data(), count});
       for (std::size_t i = 0; i < count; ++i) {
         Ring& ring = pool.all[pool.due[begin + i]];
         // A message may have been restored from a file.
         ring.scan->message.ranges.resize(ring.directions_S->size());
         ring.scan->message.intensities.resize(ring.directions_S->size());
-        jobs[i] = {.X_WS = states[ring.body].X_WB * ring.X_LS,
+        jobs[i] = {.X_WS = states[i].X_WB * ring.X_LS,
                    .directions = *ring.directions_S,
-                   .min_m = ring.spec.radius_m,
-                   .max_m = ring.spec.radius_m + ring.spec.range_m,
+                   .min_m = ring.spec->radius_m,
+                   .max_m = ring.spec->radius_m + ring.spec->range_m,
                    .ignore_body = ring.body,
                    .distance_m = ring.scan->message.ranges};
       }

@@ -67,7 +67,7 @@ struct State {
 struct Ring {
   using Spec = proximity::Spec;
   using State = proximity::State;
-  Spec spec;
+  SharedSpec<Spec> spec;
   State state;
 
   std::uint64_t key = 0;
@@ -76,7 +76,7 @@ struct Ring {
   std::shared_ptr<const std::vector<Vec3>> directions_S;  ///< shared by rings that look alike
   Topic<msg::LaserScan>* scan = nullptr;
 
-  static Result<Ring> create(const DeviceBuild& build, Spec spec);
+  static Result<Ring> create(const DeviceBuild& build, SharedSpec<Spec> spec);
   static void sense(PoolView<Ring> pool, const Context& context);
 };
 

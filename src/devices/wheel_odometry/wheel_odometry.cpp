@@ -8,6 +8,9 @@
 namespace sandlot::wheel_odometry {
 namespace {
 
+enum Level : std::uint32_t { odometry_level, pose_level };
+constexpr std::uint64_t pose_use = 1;  // of the device's stream
+
 /// The joints of one side; `sum_B` gathers their origins in B.
 Result<std::vector<Wheel>> wheels(const DeviceBuild& build, const std::vector<std::string>& names,
                                   const char* key, Vec3& sum_B) {
@@ -55,11 +58,73 @@ void propagate(std::array<double, 6>& P, double d, double t, double var_d, doubl
   P[5] = tt + var_a;
 }
 
+void set_covariance(std::array<double, 36>& pose, const std::array<double, 6>& P) {
+  const auto [xx, xy, xt, yy, yt, tt] = P;
+  pose[0] = xx, pose[7] = yy, pose[35] = tt;
+  pose[1] = pose[6] = xy;
+  pose[5] = pose[30] = xt;
+  pose[11] = pose[31] = yt;
+}
+
+/// B from the axle's centre.
+kinematics::PlanarPose base_of(const Odometer& o, const kinematics::PlanarPose& axle) {
+  const auto [s, c] = math::sincos(axle.theta_rad);
+  return {axle.x_m - c * o.dx_m + s * o.dy_m, axle.y_m - s * o.dx_m - c * o.dy_m, axle.theta_rad};
+}
+
+/// Reckons with B's true motion since the previous sample.
+void tell_pose(Odometer& o, std::uint64_t sample, Time since, const Context& context) {
+  const PoseSpec& spec = o.spec.pose;
+  PoseState& state = o.state.pose;
+  const Pose& X_WB = context.engine.states()[o.base].X_WB;
+  const double yaw = yaw_of(X_WB.q);
+  if (!state.begun) state.seen_W = {X_WB.p.x, X_WB.p.y, yaw};
+  state.begun = true;
+  const double dx_W = X_WB.p.x - state.seen_W.x_m, dy_W = X_WB.p.y - state.seen_W.y_m;
+  const auto [s0, c0] = math::sincos(state.seen_W.theta_rad);
+  const double dx = c0 * dx_W + s0 * dy_W, dy = c0 * dy_W - s0 * dx_W, way = math::hypot(dx, dy);
+  const double turn = math::wrap_angle(yaw - state.seen_W.theta_rad);
+  state.seen_W = {X_WB.p.x, X_WB.p.y, yaw};
+
+  const double e2 = o.spec.errors * o.spec.errors;
+  const double var_d = e2 * spec.distance_walk * spec.distance_walk * way;
+  const double var_a = e2 * (spec.heading_walk * spec.heading_walk * way +
+                             spec.turn_walk * spec.turn_walk * std::abs(turn));
+  double stretch = 1, bend = 0;
+  // The way's own direction in B: robots that move sideways have errors along it, too.
+  const double course = way > 0 ? math::atan2(dy, dx) : 0;
+  propagate(state.covariance, way, state.told_O.theta_rad + course, var_d, var_a);
+  if (var_d > 0 || var_a > 0) {
+    Stream random = Stream(context.seed, o.key, Purpose::noise, sample).fork(pose_use);
+    const double along = std::sqrt(var_d) * random.normal();
+    bend = std::sqrt(var_a) * random.normal();
+    if (way > 0) stretch += along / way;
+  }
+  const auto [s, c] = math::sincos(state.told_O.theta_rad + 0.5 * bend);
+  state.told_O.x_m += stretch * (c * dx - s * dy);
+  state.told_O.y_m += stretch * (s * dx + c * dy);
+  state.told_O.theta_rad += turn + bend;
+
+  msg::Odometry& message = o.pose->message;
+  message.pose.pose = kinematics::to_pose(state.told_O);
+  set_covariance(message.pose.covariance, state.covariance);
+  // As means over the interval, in B half way.
+  const double dt_s = since.s();
+  const auto half = math::sincos(0.5 * turn);
+  message.twist.twist = {
+      {stretch * (half.cos * dx + half.sin * dy) / dt_s, stretch * (half.cos * dy - half.sin * dx) / dt_s, 0},
+      {0, 0, (turn + bend) / dt_s}};
+  message.twist.covariance[0] = message.twist.covariance[7] = var_d / (dt_s * dt_s);
+  message.twist.covariance[35] = var_a / (dt_s * dt_s);
+  o.pose->publish(context.now);
+}
+
 }  // namespace
 
 Result<Odometer> Odometer::create(const DeviceBuild& build, Spec spec) {
   Odometer o{std::move(spec)};
   o.key = build.key;
+  o.base = build.bodies.front().index;
   Vec3 sum_B;
   SL_ASSIGN(o.left, wheels(build, o.spec.left_joint, "left_joint", sum_B));
   SL_ASSIGN(o.right, wheels(build, o.spec.right_joint, "right_joint", sum_B));
@@ -67,9 +132,12 @@ Result<Odometer> Odometer::create(const DeviceBuild& build, Spec spec) {
   o.dx_m = sum_B.x / count;
   o.dy_m = sum_B.y / count;
   o.state.X_OD = {o.dx_m, o.dy_m, 0};
-  o.odometry = build.publish<msg::Odometry>(0, "odometry");
-  o.odometry->message.header.frame_id = build.instance.name + "/odom";
-  o.odometry->message.child_frame_id = build.instance.name + "/" + build.instance.model->links.front().name;
+  o.odometry = build.publish<msg::Odometry>(odometry_level, "odometry");
+  o.pose = build.publish<msg::Odometry>(pose_level, "pose");
+  for (auto* const topic : {o.odometry, o.pose}) {
+    topic->message.header.frame_id = build.instance.name + "/odom";
+    topic->message.child_frame_id = build.instance.name + "/" + build.instance.model->links.front().name;
+  }
   return o;
 }
 
@@ -77,6 +145,8 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
   const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Odometer& o = pool.all[index];
+    if (pool.levels[index] >> pose_level & 1) tell_pose(o, pool.sample[index], pool.since[index], context);
+    if (!(pool.levels[index] >> odometry_level & 1)) continue;
     const Spec& spec = o.spec;
     State& state = o.state;
     const double left_rad = mean_angle(o.left, joints), right_rad = mean_angle(o.right, joints);
@@ -99,15 +169,8 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
     state.X_OD = kinematics::along_arc(state.X_OD, d, a);
 
     msg::Odometry& message = o.odometry->message;
-    const auto [s, c] = math::sincos(state.X_OD.theta_rad);
-    message.pose.pose = kinematics::to_pose({state.X_OD.x_m - c * o.dx_m + s * o.dy_m,
-                                             state.X_OD.y_m - s * o.dx_m - c * o.dy_m, state.X_OD.theta_rad});
-    const auto [xx, xy, xt, yy, yt, tt] = state.covariance;
-    auto& pose = message.pose.covariance;
-    pose[0] = xx, pose[7] = yy, pose[35] = tt;
-    pose[1] = pose[6] = xy;
-    pose[5] = pose[30] = xt;
-    pose[11] = pose[31] = yt;
+    message.pose.pose = kinematics::to_pose(base_of(o, state.X_OD));
+    set_covariance(message.pose.covariance, state.covariance);
     const double dt_s = pool.since[index].s(), v = d / dt_s, w = a / dt_s;
     message.twist.twist = {{v + w * o.dy_m, -w * o.dx_m, 0}, {0, 0, w}};
     message.twist.covariance[0] = var_d / (dt_s * dt_s);
@@ -116,9 +179,35 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
   }
 }
 
+/// Who takes over alone goes on from where the other is.
+Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
+  const std::uint32_t fresh = after & ~before;
+  const bool had_odometry = before >> odometry_level & 1, had_pose = before >> pose_level & 1;
+  if (fresh >> odometry_level & 1) {
+    const auto joints = context.engine.joint_states();
+    state.left_rad = mean_angle(left, joints);
+    state.right_rad = mean_angle(right, joints);
+    if (had_pose && state.pose.begun) {
+      const auto [s, c] = math::sincos(state.pose.told_O.theta_rad);
+      state.X_OD = {state.pose.told_O.x_m + c * dx_m - s * dy_m, state.pose.told_O.y_m + s * dx_m + c * dy_m,
+                    state.pose.told_O.theta_rad};
+      state.covariance = state.pose.covariance;
+    }
+  }
+  if (fresh >> pose_level & 1) {
+    state.pose.begun = false;
+    if (had_odometry) {
+      state.pose.told_O = base_of(*this, state.X_OD);
+      state.pose.covariance = state.covariance;
+    }
+  }
+  return {};
+}
+
 namespace {
 constexpr LevelInfo levels[] = {
     {"odometry", msg::Odometry::ros_type, "", "Pose and velocity reckoned from the wheels."},
+    {"pose", msg::Odometry::ros_type, "", "Pose and velocity as a good odometry tells them."},
 };
 }  // namespace
 

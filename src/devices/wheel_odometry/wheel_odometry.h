@@ -2,8 +2,13 @@
 /// Dead reckoning from two sides of wheels, with the errors it has on a real robot.
 ///
 /// Frame    B: the canonical link. D: centre of the axle, the mean of the wheel joints' origins, axes as B.
+/// Levels   `odometry` (the default) and `pose`, one or both.
 /// Output   level `odometry`: nav_msgs/Odometry of B: frame "<robot>/odom", child "<robot>/<canonical link>". The pose counts from
 ///          where B stood when the device was built. Covariances: of the random errors alone, propagated.
+///          Level `pose`: the same message and frames from B's true motion in the plane, with errors that grow as those of a
+///          well calibrated odometry do: std of the distance `distance_walk` sqrt(way), of the heading `heading_walk`
+///          sqrt(way) and `turn_walk` sqrt(turn). No wheel is looked at, so slip does not show. A level that becomes
+///          active alone takes over the other's pose and covariance.
 /// Time     one exact arc per sample (kinematics/differential.h); the twist is the mean over the interval.
 /// Noise    systematic: the robot believes in `wheel_radius` and `wheel_separation`, while its wheels have the radii and the
 ///          distance that its model gives them; `left_error`, `right_error` and `separation_error` are the relative errors of
@@ -29,11 +34,26 @@
 
 namespace sandlot::wheel_odometry {
 
+/// Errors of the level pose.
+struct PoseSpec {
+  double distance_walk = 0, heading_walk = 0, turn_walk = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    constexpr unsigned tunable = Field::tunable;
+    visit(Field{"distance_walk", "m/sqrt(m)", "Error of the distance.", 0, 100, tunable}, s.distance_walk);
+    visit(Field{"heading_walk", "rad/sqrt(m)", "Error of the heading by way.", 0, 100, tunable},
+          s.heading_walk);
+    visit(Field{"turn_walk", "rad/sqrt(rad)", "Error of the heading by turning.", 0, 100, tunable},
+          s.turn_walk);
+  }
+};
+
 struct Spec {
   std::vector<std::string> left_joint, right_joint;
   double wheel_radius_m = 0.1, wheel_separation_m = 0.5;
   double left_error = 0, right_error = 0, separation_error = 0;
   double alpha_1 = 0, alpha_2 = 0, alpha_3 = 0, alpha_4 = 0;
+  PoseSpec pose;
   double rate_hz = 50;
   double errors = 1;
 
@@ -53,8 +73,23 @@ struct Spec {
     visit(Field{"alpha_2", "rad^2/m", "Variance of the heading per distance.", 0, 100}, s.alpha_2);
     visit(Field{"alpha_3", "m^2/m", "Variance of the distance per distance.", 0, 100}, s.alpha_3);
     visit(Field{"alpha_4", "m^2/rad", "Variance of the distance per turn.", 0, 100}, s.alpha_4);
+    visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
+  }
+};
+
+struct PoseState {
+  kinematics::PlanarPose seen_W;       ///< where B was at the previous sample
+  kinematics::PlanarPose told_O;       ///< where it is said to be
+  std::array<double, 6> covariance{};  ///< as below
+  bool begun = false;                  ///< false: nothing has been seen since the level became active
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"seen", "m", "Where it was."}, s.seen_W);
+    visit(Field{"told", "m", "Where it is said to be."}, s.told_O);
+    visit(Field{"covariance", "", "Of x, y and heading."}, s.covariance);
+    visit(Field{"begun", "", "Whether it has told a pose."}, s.begun);
   }
 };
 
@@ -62,12 +97,14 @@ struct State {
   double left_rad = 0, right_rad = 0;  ///< mean wheel angles counted
   kinematics::PlanarPose X_OD;
   std::array<double, 6> covariance{};  ///< of x, y, heading: xx xy xt yy yt tt
+  PoseState pose;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"left", "rad", "Left wheel angle counted."}, s.left_rad);
     visit(Field{"right", "rad", "Right wheel angle counted."}, s.right_rad);
     visit(Field{"odometry", "m", "Of the axle's centre."}, s.X_OD);
     visit(Field{"covariance", "", "Of x, y and heading."}, s.covariance);
+    visit(Field{"pose", "", "Of the level pose."}, s.pose);
   }
 };
 
@@ -83,12 +120,14 @@ struct Odometer {
   State state;
 
   std::uint64_t key = 0;
+  std::uint32_t base = 0;  ///< of the canonical link
   std::vector<Wheel> left, right;
   double dx_m = 0, dy_m = 0;  ///< D in B
-  Topic<msg::Odometry>* odometry = nullptr;
+  Topic<msg::Odometry>*odometry = nullptr, *pose = nullptr;
 
   static Result<Odometer> create(const DeviceBuild& build, Spec spec);
   static void sense(PoolView<Odometer> pool, const Context& context);
+  Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 };
 
 extern const Kind kind;

@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "formats/image/write.h"
+
 namespace sandlot::formats {
 namespace {
 
@@ -128,6 +130,36 @@ TEST(Image, JpegGreyAndColour) {
   EXPECT_NEAR(colour.at(4, 4, 0), 200, 2);
   EXPECT_NEAR(colour.at(4, 4, 1), 30, 2);
   EXPECT_NEAR(colour.at(4, 4, 2), 40, 2);
+}
+
+TEST(Image, WhatIsWrittenIsRead) {
+  for (const int channels : {1, 2, 3, 4}) {
+    constexpr int width = 37, height = 11;
+    std::vector<std::uint8_t> pixels;
+    std::vector<std::uint16_t> deep;
+    for (int i = 0; i < width * height * channels; ++i) {
+      pixels.push_back(static_cast<std::uint8_t>(i * 89));
+      deep.push_back(static_cast<std::uint16_t>(i * 7919));
+    }
+    const Image image = parse_image(png_of(Pixels8{width, height, channels, pixels}), "a.png").value();
+    EXPECT_EQ(image.width, width);
+    EXPECT_EQ(image.height, height);
+    EXPECT_EQ(image.channels, channels);
+    EXPECT_EQ(image.data, std::vector<std::uint16_t>(pixels.begin(), pixels.end()));
+    const Image fine = parse_image(png_of(Pixels16{width, height, channels, deep}), "b.png").value();
+    EXPECT_EQ(fine.bits, 16);
+    EXPECT_EQ(fine.data, deep);
+  }
+  // A smooth picture survives JPEG within a few grey levels; the better, the closer.
+  std::vector<std::uint8_t> smooth;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (const int c : {x * 3, y * 4, 255 - x * 2 - y}) smooth.push_back(static_cast<std::uint8_t>(c));
+  const std::string small = jpeg_of({64, 48, 3, smooth}, 50), large = jpeg_of({64, 48, 3, smooth}, 98);
+  EXPECT_LT(small.size(), large.size());
+  const Image back = parse_image(large, "c.jpg").value();
+  ASSERT_EQ(back.data.size(), smooth.size());
+  for (std::size_t i = 0; i < smooth.size(); ++i) ASSERT_NEAR(back.data[i], smooth[i], 6) << i;
 }
 
 TEST(Image, CutOffOrDamagedIsOneError) {

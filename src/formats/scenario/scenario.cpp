@@ -168,6 +168,7 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
                             "name a model file, or write {builder: ...}", path + "/model");
   }
   group.count = keys.count;
+  group.label = keys.label;
   if (!keys.pose.is_null() && keys.distribution)
     return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (keys.distribution) {

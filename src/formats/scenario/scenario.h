@@ -50,6 +50,7 @@ struct RobotGroup {
   int count = 1;
   Placement placement;
   std::string team;
+  std::string label;  ///< what detectors call it
   std::vector<Module> modules;
   std::vector<model::ControllerDecl> controllers;
   std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
@@ -111,14 +112,19 @@ Result<Pose> read_pose(const Node& node, const std::string& path);
 /// A kind's name and its fields, for the schema.
 using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 
+/// "noise" and the sorts of stages that such a list may hold.
+using StageFields = std::pair<std::string, std::vector<KindFields>>;
+
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
-/// @param stages    what lists of stages of errors may hold (FieldInfo::elements "noise")
+/// @param stages    what lists of stages of errors may hold, by the name they are described under (FieldInfo::elements)
 /// @param builders  of models with parameters
+/// @param device_keys  keys that every device has beside its kind's
 std::string scenario_schema(std::span<const KindFields> devices = {},
                             std::span<const KindFields> controllers = {},
-                            std::span<const KindFields> stages = {},
-                            std::span<const KindFields> builders = {});
+                            std::span<const StageFields> stages = {},
+                            std::span<const KindFields> builders = {},
+                            std::span<const FieldInfo> device_keys = {});
 
 }  // namespace sandlot::formats

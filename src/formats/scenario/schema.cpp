@@ -136,7 +136,8 @@ std::string schema_of(const std::vector<FieldInfo>& fields) {
 }
 
 std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers,
-                            std::span<const KindFields> stages, std::span<const KindFields> builders) {
+                            std::span<const StageFields> stages, std::span<const KindFields> builders,
+                            std::span<const FieldInfo> device_keys) {
   Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sandlot scenario"}};
   root.update(object_of(describe_fields<spec::Root>()));
   // The keys whose form the field lists leave open.
@@ -165,16 +166,17 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   const Json controller = kinds_of(controllers, named, true);
   describe_as(robot["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
   describe_as(robot["controllers"], {{"type", "array"}, {"items", controller}});
-  const Json mounted = {
+  Json mounted = {
       {"link",
        {{"type", "string"}, {"description", "Link it is mounted on; the model's first one by default."}}},
       {"pose", pose_schema("Pose in the link.")},
       {"level", {{"type", "string"}, {"description", "Level of abstraction."}}},
       {"levels",
        {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
+  mounted.update(object_of({device_keys.begin(), device_keys.end()})["properties"]);
   describe_as(robot["devices"],
               {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
-  if (!stages.empty()) root["$defs"]["noise"] = stages_of(stages);
+  for (const auto& [name, sorts] : stages) root["$defs"][name] = stages_of(sorts);
   return root.dump(2);
 }
 

@@ -120,6 +120,10 @@ struct Module {
   }
 };
 
+inline constexpr Field label_field{
+    "label",     "", "What detectors call it, such as ball; its model's name if left out.", 0, 0,
+    Field::none, 100};
+
 /// What stands about in the world beside the robots.
 struct Thing {
   std::string name;
@@ -127,6 +131,7 @@ struct Thing {
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
+  std::string label;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the thing; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -136,6 +141,7 @@ struct Thing {
     visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
     visit(Field{"pose", "m", "Where it stands: as the pose of a robot."}, s.pose);
     visit(Field{"distribution", "", "Where several stand."}, s.distribution);
+    visit(label_field, s.label);
   }
 };
 
@@ -145,7 +151,7 @@ struct Robot {
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
-  std::string team;
+  std::string team, label;
   std::vector<Module> modules;
   Node controller;
   Node controllers;
@@ -167,6 +173,7 @@ struct Robot {
           s.pose);
     visit(Field{"distribution", "", "Where several start."}, s.distribution);
     visit(Field{"team", "", "Team it plays for.", 0, 0, Field::none, 100}, s.team);
+    visit(label_field, s.label);
     visit(Field{"modules", "", "Models fixed to its own: scanners, camera heads, arms.", 0, 0, Field::none,
                 1000},
           s.modules);

@@ -82,6 +82,7 @@ double way(const Side& side, double h_s) {
 }  // namespace
 
 void PlanarEngine::collide(const Candidate& c, double h_s, std::vector<Touch>& out) const {
+  if (!grips_.empty() && hold_each_other(c)) return;
   const auto core = [&](const Side& s) {
     return s.moving ? instances_[s.moving->slot].plan->lumps[s.moving->index].core_m
                     : std::numeric_limits<double>::infinity();
@@ -166,6 +167,7 @@ void PlanarEngine::remember(std::span<Touch> touches) const {
 
 /// The part of h after which two that could pass each other meet; 1: they do not.
 double PlanarEngine::impact(const Candidate& c, double h_s) const {
+  if (!grips_.empty() && hold_each_other(c)) return 1;
   Side a, b;
   take_side(a, c.a, c, lumps_, map_);
   take_side(b, c.b, c, lumps_, map_);

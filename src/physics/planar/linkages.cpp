@@ -106,7 +106,7 @@ void PlanarEngine::prepare_linkage(Linkage& l, double h_s) {
   const Motor& motor = motors_[l.joint];
   l.rate_before = joint_states_[l.joint].velocity;
   if (motor.target.mode == JointTarget::Mode::effort)
-    push_rate(t, l, h_s * std::clamp(motor.target.effort, -motor.max_effort, motor.max_effort));
+    push_rate(t, l, h_s * std::clamp(motor.target.effort, -motor.joint->max_effort, motor.joint->max_effort));
 }
 
 void PlanarEngine::hold_linkage(Linkage& l, double h_s) {
@@ -118,31 +118,33 @@ void PlanarEngine::hold_linkage(Linkage& l, double h_s) {
     // Implicit: impulse = -h (stiffness (x - x0 + h v) + damping v) - inertia (v - v_before).
     const bool by_effort = motor.target.mode == JointTarget::Mode::effort;
     const double inertia = by_effort ? motor.target.inertia : 0;
-    const double damping = motor.damping + (by_effort ? motor.target.damping : 0);
-    const double slope = h_s * (damping + h_s * motor.stiffness) + inertia;
+    const double damping = motor.joint->damping + (by_effort ? motor.target.damping : 0);
+    const double slope = h_s * (damping + h_s * motor.joint->spring_stiffness) + inertia;
     if (slope > 0) {
-      const double offset = inertia * l.rate_before -
-                            h_s * motor.stiffness * (joint.position - motor.reference);
+      const double offset = inertia * l.rate_before - h_s * motor.joint->spring_stiffness *
+                                                          (joint.position - motor.joint->spring_reference);
       // The new sum s obeys s = offset - slope * (v + k (s - spring)).
       const double sum = (offset - slope * (rate(t, l) - k * l.spring)) / (1 + slope * k);
       push_rate(t, l, sum - l.spring);
       l.spring = sum;
     }
     if (motor.target.mode == JointTarget::Mode::velocity) {
-      const double most = h_s * std::clamp(motor.target.max_effort, 0.0, motor.max_effort);
-      const double wanted = std::clamp(motor.target.velocity, -motor.max_velocity, motor.max_velocity);
+      const double most = h_s * std::clamp(motor.target.max_effort, 0.0, motor.joint->max_effort);
+      const double wanted = std::clamp(motor.target.velocity, -motor.max_velocity(), motor.max_velocity());
       const double sum = std::clamp(l.motor + (wanted - rate(t, l)) / k, -most, most);
       push_rate(t, l, sum - l.motor);
       l.motor = sum;
     }
-    if (const double most = h_s * (motor.friction + (by_effort ? motor.target.friction : 0)); most > 0) {
+    if (const double most = h_s * (motor.joint->friction + (by_effort ? motor.target.friction : 0));
+        most > 0) {
       const double sum = std::clamp(l.friction - rate(t, l) / k, -most, most);
       push_rate(t, l, sum - l.friction);
       l.friction = sum;
     }
-    if (motor.lower > -1e15 || motor.upper < 1e15) {
+    if (motor.lower() > -1e15 || motor.upper() < 1e15) {
       // Within the step it may reach a limit, not pass it.
-      const double low = (motor.lower - joint.position) / h_s, high = (motor.upper - joint.position) / h_s;
+      const double low = (motor.lower() - joint.position) / h_s,
+                   high = (motor.upper() - joint.position) / h_s;
       const double v = rate(t, l) - k * l.limit;  // without what the limit gave
       const double sum = v < low    ? (std::min(low, 1.0) - v) / k
                          : v > high ? (std::max(high, -1.0) - v) / k
@@ -217,7 +219,7 @@ void PlanarEngine::finish_linkage(Linkage& l, double h_s) {
   const JointTarget& target = motor.target;
   joint.effort = target.mode == JointTarget::Mode::velocity ? l.motor / h_s
                  : target.mode == JointTarget::Mode::effort
-                     ? std::clamp(target.effort, -motor.max_effort, motor.max_effort) -
+                     ? std::clamp(target.effort, -motor.joint->max_effort, motor.joint->max_effort) -
                            target.damping * joint.velocity -
                            target.inertia * (joint.velocity - l.rate_before) / h_s
                      : 0;

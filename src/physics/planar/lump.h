@@ -1,7 +1,7 @@
 #pragma once
 /// The state of the planar engine's bodies and of what holds and drives them, as its files share it.
+#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -21,18 +21,17 @@ constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 constexpr Vec2 left_of(Vec2 a) { return {-a.y, a.x}; }
 
 /// Links that move as one, about their centre of mass.
-struct Lump {
+struct alignas(64) Lump {
   Vec2 p;  ///< centre of mass
   Turn heading;
   Vec2 v;  ///< of p
   double w_radps = 0;
   double inverse_kg = 0, inverse_kgm2 = 0;  ///< 0: on a path of its own
+  const LumpPlan* plan = nullptr;           ///< the instance's
   std::uint32_t slot = none;                ///< of its instance; none: there is no such lump
   std::uint32_t index = 0;                  ///< in the instance's plan
   std::uint32_t figure = none;              ///< none: a circle
-  double reach_share_m = 0;                 ///< how far it may come in a step beside twice its speed
-  double reach_m = 0;                       ///< and altogether
-  double left_m = 0;                        ///< what is left of that in this step
+  double reach_m = 0;                       ///< how far it may come in this step
   Vec2 force_N;                             ///< of wrenches, consumed by the next step
   double torque_Nm = 0;
 
@@ -63,16 +62,20 @@ struct Wheel {
   double rolling_Nm = 0;  ///< resistance against rolling
   Vec2 belt_mps;          ///< velocity of the ground below
   Vec2 impulse;           ///< ahead and along the axle; with rollers: x along the grip
-  // Of this step.
-  Vec2 ahead, across, arm;              ///< the directions it holds, and where; with rollers the first alone
-  double roll_m = 0;                    ///< velocity along `ahead` that a spin of 1 rad/s makes up for
-  double k_aa = 0, k_ac = 0, k_cc = 0;  ///< what the lump's velocity there gains per impulse
   struct Axle {
     double slope = 0;  ///< inertia and damping over the step: angular impulse = slope * spin - start
     double start = 0;  ///< of inertia and effort
     double wanted_radps = 0, motor = 0, friction = 0;  ///< angular impulses at most
     double thrust = 0;                                 ///< what the velocity motor gave
-  } axle;
+  };
+  /// Of this step.
+  struct Now {
+    Vec2 ahead, across, arm;  ///< the directions it holds, and where; with rollers the first alone
+    double roll_m = 0;        ///< velocity along `ahead` that a spin of 1 rad/s makes up for
+    double k_aa = 0, k_ac = 0, k_cc = 0;  ///< what the lump's velocity there gains per impulse
+    Axle axle;
+  };
+  std::unique_ptr<Now> now;  ///< made when it first drives: in a swarm on rails nobody's
 };
 
 /// A pivot or slider between two lumps of an instance, or a grip between two instances.
@@ -142,12 +145,11 @@ struct Touch {
 struct Planned {
   Vec2 v;  ///< mean over the step, of the centre of mass
   double w_radps = 0;
-  Twist mean;  ///< in the body's frame
-  Vec2 p;      ///< where the step began
+  Vec2 p;  ///< where the step began
   Turn heading;
 };
 
-struct Drive {
+struct alignas(64) Drive {
   std::uint32_t active = 0;
   std::uint32_t link = 0;  ///< of the instance's model: whose frame the velocities are in
   Twist now, target;
@@ -173,20 +175,35 @@ struct Roll {
 struct Motor {
   std::uint32_t generation = 0;
   JointTarget target;
-  double lower = 0, upper = 0, max_velocity = 0, max_effort = 0;
-  double damping = 0, friction = 0, stiffness = 0, reference = 0;
+  const model::Joint* joint = nullptr;  ///< null: there is none
   /// Kinematic joints, and the wheels of a robot that runs on rails, are moved as their targets say.
   enum class Role : std::uint8_t { kinematic, wheel, linkage } role = Role::kinematic;
   bool listed = false;  ///< among those that are moved so
   std::uint32_t slot = none;
   std::uint32_t roll = none;  ///< among those that turn as their base moves
+
+  bool bounded() const {
+    return joint->type == model::JointType::revolute || joint->type == model::JointType::prismatic;
+  }
+  double lower() const { return bounded() ? joint->lower : -std::numeric_limits<double>::infinity(); }
+  double upper() const { return bounded() ? joint->upper : std::numeric_limits<double>::infinity(); }
+  double max_velocity() const {
+    return joint->type == model::JointType::fixed || joint->type == model::JointType::ball
+               ? 0
+               : joint->max_velocity;
+  }
+};
+
+/// Of an instance, what every step looks at.
+struct Brief {
+  std::uint32_t lump = none;  ///< its only one; none: it has several, or none at all
+  bool moves = false, guided = false;
 };
 
 /// What changes rarely, or is looked at rarely.
 struct Instance {
   bool alive = false, moves = false;
-  bool guided = false;                                   ///< moves along a path
-  std::optional<std::pair<Pose, Velocity>> destination;  ///< of a guided one, after the next step
+  bool guided = false;  ///< moves along a path
   std::uint32_t generation = 0;
   std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
   std::string name;
@@ -200,8 +217,13 @@ struct Instance {
   std::vector<Linkage> linkages;
   Quat tilt;       ///< attitude of the canonical link at heading 0
   double z_m = 0;  ///< its height
-  Vec2 still_at;   ///< of one that stands still: its canonical link
-  Quat still_q;
+  /// Of one that stands still: its canonical link.
+  struct Still {
+    Vec2 at;
+    Quat q;
+  };
+  std::unique_ptr<Still> still;
+  std::unique_ptr<std::pair<Pose, Velocity>> destination;  ///< of a guided one, after the next step
 };
 
 }  // namespace sandlot::planar

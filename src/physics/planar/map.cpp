@@ -70,6 +70,9 @@ void Map::set_walls(std::span<const Wall> walls, std::span<const Edge> edges) {
     return range;
   });
   area_ = wall_area_;
+  walled_.assign(std::size_t{wall_cells_.columns()} * wall_cells_.rows(), false);
+  for (std::uint32_t slot = 0; slot < walled_.size(); ++slot)
+    walled_[slot] = !wall_cells_.in_slot(slot).empty();
 }
 
 void Map::file_discs() {
@@ -309,7 +312,7 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
     return false;
   for (std::int64_t j = range.y0; j <= range.y1; ++j)
     for (std::int64_t i = range.x0; i <= range.x1; ++i) {
-      if (!walls_.empty() && !wall_cells_.in_slot(wall_cells_.slot(i, j)).empty()) return false;
+      if (!walls_.empty() && walled_[wall_cells_.slot(i, j)]) return false;
       for (const std::uint32_t k : disc_cells_.in_slot(disc_cells_.slot(i, j))) {
         const Disc* const disc = &discs_[k];
         if (disc->instance == ignored || !touches(o, job.max_m + 1e-6, *disc)) continue;

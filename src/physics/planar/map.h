@@ -87,6 +87,8 @@ class Map {
   std::vector<Disc> discs_;
   std::vector<Silhouette> figures_;
   Cells wall_cells_, disc_cells_;
+  /// By slot of wall_cells_: whether there is any. A hundredth of its size: rays of a swarm mostly are where none is.
+  std::vector<bool> walled_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
   Area wall_area_, area_;                  ///< of the walls, and of all there is
 };

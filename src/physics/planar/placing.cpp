@@ -34,8 +34,8 @@ void PlanarEngine::settle(std::uint32_t slot, const Pose& X_WM) {
   const Quat tilt_before = instance.tilt;
   const double z_before = instance.z_m;
   if (!instance.moves) {
-    instance.still_at = {X_WB.p.x, X_WB.p.y};
-    instance.still_q = X_WB.q;
+    instance.still = std::make_unique<Instance::Still>(
+        Instance::Still{.at = {X_WB.p.x, X_WB.p.y}, .q = X_WB.q});
     instance.z_m = X_WB.p.z;
     walls_fresh_ = false;
     stale();
@@ -76,6 +76,7 @@ void PlanarEngine::free_lumps(Instance& instance) {
     free_lumps_.push_back(k);
   }
   instance.lumps.clear();
+  linked_fresh_ = false;
 }
 
 /// What follows from attitude and height: lumps, outlines and wheels.
@@ -110,13 +111,12 @@ void PlanarEngine::shape(std::uint32_t slot) {
     }
     Lump& lump = lumps_[k];
     lump = i < before.size() ? before[i] : Lump{};
+    lump.plan = &p;
     lump.slot = slot;
     lump.index = i;
     lump.figure = none;
     lump.inverse_kg = instance.guided ? 0 : 1 / p.mass_kg;
     lump.inverse_kgm2 = instance.guided ? 0 : 1 / p.inertia_kgm2;
-    // What has no shape can meet nothing.
-    lump.reach_share_m = p.radius_m > 0 ? std::min(0.1 * p.radius_m, 0.5 * p.core_m) + 1e-4 : 1e9;
     instance.lumps.push_back(k);
     Disc& disc = map_.discs()[k];
     disc = {.centre = {},
@@ -142,6 +142,7 @@ void PlanarEngine::shape(std::uint32_t slot) {
       disc.figure = lump.figure;
     }
   }
+  briefs_[slot] = {instance.lumps.size() == 1 ? instance.lumps[0] : none, instance.moves, instance.guided};
   add_joints(instance);
   aim(slot, drives_[slot].link);
   for (const JointId joint : instance.joints)
@@ -166,21 +167,27 @@ void PlanarEngine::add_joints(Instance& instance) {
     return joint == model::Joint::no_joint ? none : instance.joints[joint].index;
   };
   for (const WheelPlan& w : plan.wheels) {
-    Wheel wheel{.plan = &w,
-                .lump = instance.lumps[w.lump],
-                .joint = global(w.joint),
-                .steering = global(w.steering),
-                .at = w.at};
+    Wheel wheel;
+    wheel.plan = &w;
+    wheel.lump = instance.lumps[w.lump];
+    wheel.joint = global(w.joint);
+    wheel.steering = global(w.steering);
+    wheel.at = w.at;
     motors_[wheel.joint].role = Motor::Role::wheel;
     if (wheel.steering != none) motors_[wheel.steering].role = Motor::Role::wheel;
-    instance.wheels.push_back(wheel);
+    instance.wheels.push_back(std::move(wheel));
   }
   for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
     const bool wheeled = std::any_of(plan.wheels.begin(), plan.wheels.end(),
                                      [&](const WheelPlan& w) { return w.lump == i; });
     if (!wheeled) continue;
     for (const Support& s : plan.lumps[i].supports)
-      if (s.surface->mu > 0) instance.wheels.push_back({.lump = instance.lumps[i], .at = s.at});
+      if (s.surface->mu > 0) {
+        Wheel caster;
+        caster.lump = instance.lumps[i];
+        caster.at = s.at;
+        instance.wheels.push_back(std::move(caster));
+      }
   }
   for (const LinkagePlan& l : plan.linkages) {
     if (l.kind == LinkagePlan::Kind::steering) continue;
@@ -207,6 +214,7 @@ void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
   const Plan& plan = *instance.plan;
   if (plan.lumps.size() > 1) {
     refresh_rolls();
+    states_.resize(body_slot_.size());
     states_[instance.bodies[0].index] = {X_WB, {}};
     instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }
@@ -230,14 +238,13 @@ void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
 /// Brings what others see of a lump to where it is.
 void PlanarEngine::place_disc(std::uint32_t k) {
   const Lump& lump = lumps_[k];
-  map_.discs()[k].centre = lump.p +
-                           rotate(lump.heading, instances_[lump.slot].plan->lumps[lump.index].centre);
+  map_.discs()[k].centre = lump.p + rotate(lump.heading, lump.plan->centre);
   if (lump.figure != none) move_figure(k);
 }
 
 void PlanarEngine::move_figure(std::uint32_t k) {
   const Lump& lump = lumps_[k];
-  const LumpPlan& plan = instances_[lump.slot].plan->lumps[lump.index];
+  const LumpPlan& plan = *lump.plan;
   Silhouette& figure = map_.figures()[lump.figure];
   for (std::size_t i = 0; i < plan.parts.size(); ++i)
     figure.parts[i].centre = lump.p + rotate(lump.heading, plan.parts[i].outline.centre);
@@ -249,12 +256,13 @@ void PlanarEngine::move_figure(std::uint32_t k) {
 
 void PlanarEngine::set_pose(InstanceId id, const Pose& X_WM) {
   get(id);
+  let_go(id.index);
   settle(id.index, X_WM);
 }
 
 void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   SL_CHECK_MSG(get(id).guided, "guide() needs an instance with a motion");
-  instances_[id.index].destination = {X_WM, V_WM};
+  instances_[id.index].destination = std::make_unique<std::pair<Pose, Velocity>>(X_WM, V_WM);
 }
 
 /// The velocity of a guided instance in this step.
@@ -296,7 +304,7 @@ void PlanarEngine::arrive(std::uint32_t slot) {
 
 Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
   const Instance& instance = instances_[slot];
-  if (!instance.moves) return {{instance.still_at.x, instance.still_at.y, instance.z_m}, instance.still_q};
+  if (!instance.moves) return {{instance.still->at.x, instance.still->at.y, instance.z_m}, instance.still->q};
   const Lump& lump = lumps_[instance.lumps[0]];
   const Vec2 p = lump.p - rotate(lump.heading, instance.plan->lumps[0].com_H);
   return {{p.x, p.y, instance.z_m}, about_z(lump.heading) * instance.tilt};
@@ -304,34 +312,6 @@ Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
 
 Pose PlanarEngine::pose(InstanceId id) const {
   return canonical_pose(id.index) * inverse(get(id).model->links[0].X_ML);
-}
-
-Linkage PlanarEngine::make_grip(BodyId a, BodyId b) const {
-  Linkage l;
-  l.body_a = a;
-  l.body_b = b;
-  const auto lump_of = [&](BodyId id) {
-    const Instance& instance = instances_[body_slot_[id.index]];
-    if (!instance.moves) return none;
-    for (std::size_t i = 0; i < instance.bodies.size(); ++i)
-      if (instance.bodies[i] == id) return instance.lumps[instance.plan->lump_of_link[i]];
-    return none;
-  };
-  l.a = lump_of(a);
-  l.b = lump_of(b);
-  // The anchor lies in the middle, where neither gets a longer arm than it needs.
-  const Vec2 in_a = l.a != none ? lumps_[l.a].p : lumps_[l.b == none ? 0 : l.b].p;
-  const Vec2 in_b = l.b != none ? lumps_[l.b].p : in_a;
-  if (l.a == none && l.b == none) return l;
-  const Vec2 at = 0.5 * (in_a + in_b);
-  const auto local = [&](std::uint32_t k) {
-    return k == none ? at : rotate_back(lumps_[k].heading, at - lumps_[k].p);
-  };
-  l.at_a = local(l.a);
-  l.at_b = local(l.b);
-  const Turn ha = l.a == none ? Turn{} : lumps_[l.a].heading, hb = l.b == none ? Turn{} : lumps_[l.b].heading;
-  l.apart = Turn{ha.c, -ha.s} * hb;
-  return l;
 }
 
 }  // namespace sandlot::planar

@@ -451,6 +451,7 @@ struct Builder {
       lump.core_m = std::min(lump.core_m, std::max(inscribed, 1e-4));
     }
     lump.disc = lump.parts.size() == 1 && lump.parts[0].outline.edge_count == 0;
+    if (lump.radius_m > 0) lump.reach_share_m = std::min(0.1 * lump.radius_m, 0.5 * lump.core_m) + 1e-4;
   }
 
   /// Every lump carries itself; one without supports is carried by its parent.

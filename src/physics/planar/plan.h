@@ -53,6 +53,8 @@ struct LumpPlan {
   double radius_m = 0;  ///< its radius; 0: nothing to meet
   double core_m =
       0;  ///< radius of the smallest part's inscribed circle: what must not be passed over in a step
+  double reach_share_m =
+      1e9;  ///< how far it may come in a step beside twice its speed: what has no shape meets nothing
   Heights heights;
   bool disc = false;  ///< that circle is all there is
   Vec2 com_H;

@@ -61,8 +61,13 @@ BodyName PlanarEngine::name(BodyId id) const {
   if (id.index >= body_slot_.size() || body_generation_[id.index] != id.generation) return {};
   const Instance& instance = instances_[body_slot_[id.index]];
   for (std::size_t l = 0; l < instance.bodies.size(); ++l)
-    if (instance.alive && instance.bodies[l] == id) return {instance.name, &instance.model->links[l]};
+    if (instance.alive && instance.bodies[l] == id)
+      return {instance.name, &instance.model->links[l], instance.moves && !instance.guided};
   return {};
+}
+
+BodyId PlanarEngine::body_at(std::uint32_t index) const {
+  return index < body_generation_.size() ? body_id(index) : BodyId{};
 }
 
 const Instance& PlanarEngine::get(InstanceId id) const {
@@ -93,7 +98,8 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   }
   const std::uint32_t slot = take_index(free_instances_, instances_);
   drives_.resize(instances_.size());
-  planned_.resize(instances_.size());
+  briefs_.resize(instances_.size());
+  means_.resize(instances_.size());
   Instance& instance = instances_[slot];
   instance.alive = true;
   instance.guided = declared.motion.has_value();
@@ -102,10 +108,11 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   instance.name = declared.name;
   instance.model = declared.model;
   instance.tree = last_tree_;
+  instance.bodies.reserve(model.links.size());
+  instance.joints.reserve(model.joints.size());
   for (std::size_t l = 0; l < model.links.size(); ++l) {
     const std::uint32_t body = take_index(free_bodies_, body_slot_);
     body_generation_.resize(body_slot_.size());
-    states_.resize(body_slot_.size());
     body_slot_[body] = slot;
     instance.bodies.push_back(body_id(body));
   }
@@ -118,17 +125,7 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
     motor = {.generation = motor.generation};
     motor.listed = listed;
     motor.slot = slot;
-    motor.max_velocity = joint.max_velocity;
-    motor.max_effort = joint.max_effort;
-    motor.damping = joint.damping;
-    motor.friction = joint.friction;
-    motor.stiffness = joint.spring_stiffness;
-    motor.reference = joint.spring_reference;
-    const bool bounded = joint.type == model::JointType::revolute ||
-                         joint.type == model::JointType::prismatic;
-    motor.lower = bounded ? joint.lower : -std::numeric_limits<double>::infinity();
-    motor.upper = bounded ? joint.upper : std::numeric_limits<double>::infinity();
-    if (joint.type == model::JointType::fixed || joint.type == model::JointType::ball) motor.max_velocity = 0;
+    motor.joint = &joint;
     instance.joints.push_back({index, motor.generation});
   }
   order_.push_back(slot);
@@ -139,6 +136,7 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
 
 void PlanarEngine::remove(InstanceId id) {
   get(id);
+  let_go(id.index);
   Instance& instance = instances_[id.index];
   for (const BodyId body : instance.bodies) {
     ++body_generation_[body.index];
@@ -160,10 +158,12 @@ void PlanarEngine::remove(InstanceId id) {
   std::erase_if(touches_, [&](const Touch& t) {
     return t.key.pair >> 32 == instance.created || (t.key.pair & 0xffffffffu) == instance.created;
   });
-  instance = {.generation = instance.generation + 1};
+  const std::uint32_t generation = instance.generation + 1;
+  instance = {};
+  instance.generation = generation;
+  briefs_[id.index] = {};
   order_.erase(std::find(order_.begin(), order_.end(), id.index));
   free_instances_.push_back(id.index);
-  std::erase_if(grips_, [&](const Linkage& l) { return !alive(l.body_a) || !alive(l.body_b); });
   filed_ = ground_fresh_ = false;
   stale();
 }
@@ -239,29 +239,6 @@ void PlanarEngine::set_targets(std::span<const JointTarget> targets) {
   }
 }
 
-void PlanarEngine::set_grips(std::span<const GripTarget> targets) {
-  for (const GripTarget& t : targets) {
-    if (instances_[slot_of(t.b)].created < instances_[slot_of(t.a)].created ||
-        (body_slot_[t.a.index] == body_slot_[t.b.index] && t.b.index < t.a.index)) {
-      const GripTarget swapped{t.b, t.a, t.hold};
-      set_grips({&swapped, 1});
-      continue;
-    }
-    const auto same = std::find_if(grips_.begin(), grips_.end(),
-                                   [&](const Linkage& l) { return l.body_a == t.a && l.body_b == t.b; });
-    if (t.hold && same == grips_.end()) grips_.push_back(make_grip(t.a, t.b));
-    if (!t.hold && same != grips_.end()) grips_.erase(same);
-  }
-  std::sort(grips_.begin(), grips_.end(), [&](const Linkage& x, const Linkage& y) {
-    const auto key = [&](const Linkage& l) {
-      return std::array<std::uint64_t, 4>{instances_[body_slot_[l.body_b.index]].created,
-                                          instances_[body_slot_[l.body_a.index]].created, l.body_b.index,
-                                          l.body_a.index};
-    };
-    return key(x) < key(y);
-  });
-}
-
 void PlanarEngine::apply(std::span<const Wrench> wrenches) {
   for (const Wrench& w : wrenches) {
     const Instance& instance = instances_[slot_of(w.body)];
@@ -306,7 +283,7 @@ void PlanarEngine::refresh_walls() const {
   for (const std::uint32_t slot : order_) {
     const Instance& instance = instances_[slot];
     if (instance.moves) continue;
-    const Pose X_WM = Pose{{instance.still_at.x, instance.still_at.y, instance.z_m}, instance.still_q} *
+    const Pose X_WM = Pose{{instance.still->at.x, instance.still->at.y, instance.z_m}, instance.still->q} *
                       inverse(instance.model->links[0].X_ML);
     std::uint32_t ordinal = 0;
     for (std::size_t i = 0; i < instance.bodies.size(); ++i) {
@@ -347,19 +324,33 @@ void PlanarEngine::refresh_links() const {
   refresh_rolls();
   const std::lock_guard lock(refreshing_);
   if (links_fresh_.load(std::memory_order_relaxed)) return;
+  states_.resize(body_slot_.size());
   for (const std::uint32_t slot : order_) {
     const Instance& instance = instances_[slot];
-    BodyState& base = states_[instance.bodies[0].index];
-    base = {canonical_pose(slot), {}};
-    if (instance.moves) {
-      const Lump& lump = lumps_[instance.lumps[0]];
-      const Vec2 v = lump.velocity_at(rotate(lump.heading, -1.0 * instance.plan->lumps[0].com_H));
-      base.V_WB = {{v.x, v.y, 0}, {0, 0, lump.w_radps}};
-    }
+    states_[instance.bodies[0].index] = canonical_state(slot);
     if (instance.bodies.size() > 1)
       instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }
   links_fresh_.store(true, std::memory_order_release);
+}
+
+BodyState PlanarEngine::canonical_state(std::uint32_t slot) const {
+  BodyState base{canonical_pose(slot), {}};
+  const Instance& instance = instances_[slot];
+  if (!instance.moves) return base;
+  const Lump& lump = lumps_[instance.lumps[0]];
+  const Vec2 v = lump.velocity_at(rotate(lump.heading, -1.0 * instance.plan->lumps[0].com_H));
+  base.V_WB = {{v.x, v.y, 0}, {0, 0, lump.w_radps}};
+  return base;
+}
+
+/// Sensors mostly sit on canonical links, whose states need no tree of joints and no memory.
+void PlanarEngine::states_of(std::span<const std::uint32_t> bodies, std::span<BodyState> out) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::uint32_t slot = body_slot_[bodies[i]];
+    SL_CHECK_MSG(slot != none, "no such body");
+    out[i] = instances_[slot].bodies[0].index == bodies[i] ? canonical_state(slot) : states()[bodies[i]];
+  }
 }
 
 EngineCounters PlanarEngine::counters() const {

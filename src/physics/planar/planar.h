@@ -26,7 +26,7 @@
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
 /// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does
 ///          accelerating shift weight.
-///          Steering does not feel the ground. Kinematic joints do not change outlines.
+///          Steering does not feel the ground. Kinematic joints do not change outlines. A lying cylinder slides.
 /// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads there are.
 #include <array>
 #include <atomic>
@@ -70,8 +70,10 @@ class PlanarEngine final : public Engine, private RayCaster {
   void set_pose(InstanceId id, const Pose& X_WM) override;
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   BodyName name(BodyId id) const override;
+  BodyId body_at(std::uint32_t index) const override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override;
+  void states_of(std::span<const std::uint32_t> bodies, std::span<BodyState> out) const override;
   std::span<const JointState> joint_states() const override;
   std::span<const Contact> contacts() const override { return contacts_; }
   void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
@@ -82,6 +84,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_rolls(std::span<const RollTarget> targets) override;
   void set_grips(std::span<const GripTarget> targets) override;
+  std::span<const Grip> grips() const override { return told_grips_; }
   void set_zones(std::span<const model::SurfaceZone> zones) override;
   void set_contact_rule(ContactRule rule) override;
   void step(double h_s, std::uint64_t stream_key) override;
@@ -121,6 +124,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void lead(std::uint32_t slot, double h_s);
   void arrive(std::uint32_t slot);
   Pose canonical_pose(std::uint32_t slot) const;
+  BodyState canonical_state(std::uint32_t slot) const;
   void refresh_walls() const;
   void refresh_map() const;
   void refresh_links() const;
@@ -131,6 +135,11 @@ class PlanarEngine final : public Engine, private RayCaster {
   Pose pose_of(const Face& face) const;
   void explode(std::uint32_t lump, Vec2 v, double w_radps);
   double excess(Vec2 v, double w_radps) const;
+  /// excess() is at most 1.
+  bool is_sound(Vec2 v, double w_radps) const {
+    return dot(v, v) <= spec_.max_speed_mps * spec_.max_speed_mps &&
+           w_radps * w_radps <= spec_.max_spin_radps * spec_.max_spin_radps;
+  }
   Error exploded(std::uint32_t lump, Vec2 v, double w_radps) const;
 
   // rolls.cpp
@@ -139,19 +148,26 @@ class PlanarEngine final : public Engine, private RayCaster {
   void relate(Roll& roll) const;
   void set_roll(std::uint32_t joint, const RollTarget& target, double position);
   void end_roll(std::uint32_t joint);
+
+  // grips.cpp
   Linkage make_grip(BodyId a, BodyId b) const;
+  void let_go(std::uint32_t slot);
+  void list_grips();
+  void measure_grips(double h_s);
+  bool hold_each_other(const Candidate& c) const;
 
   // step.cpp
   void begin(std::uint32_t slot, double h_s);
-  void plan_drive(std::uint32_t slot, double h_s);
-  bool is_filed(double h_s) const;
+  void plan_drive(std::uint32_t slot, Lump& lump, double h_s);
   double reach(const Lump& lump, double h_s) const;
   void file(double h_s);
   void find_touches(double h_s);
   void find_islands(double h_s);
   std::uint32_t root(std::uint32_t lump);
   void unite(std::uint32_t a, std::uint32_t b);
-  void finish_drive(std::uint32_t slot, double h_s);
+  void finish_drive(std::uint32_t slot, Lump& lump, double h_s);
+  void finish_hindered(std::uint32_t slot, Lump& lump, const Planned& planned);
+  void refresh_linked();
   void turn_joints(double h_s);
   void list_contacts(double h_s);
 
@@ -169,7 +185,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   double hold_apart(std::span<Touch> touches);
   double advance_island(const Island& island, double h_s);
   void take_back(Island& island, double h_s);
-  void move(std::uint32_t lump, double h_s);
+  void move(std::uint32_t lump, double h_s, double& left_m);
   void move_alone(std::uint32_t lump, double h_s);
 
   // ground.cpp, wheels.cpp, linkages.cpp
@@ -193,8 +209,9 @@ class PlanarEngine final : public Engine, private RayCaster {
   Spec spec_;
   double gravity_mps2_;
   std::vector<Instance> instances_;
-  std::vector<Drive> drives_;     ///< by slot
-  std::vector<Planned> planned_;  ///< by slot
+  std::vector<Drive> drives_;  ///< by slot
+  std::vector<Brief> briefs_;  ///< by slot
+  std::vector<Twist> means_;   ///< by slot: of a drive's step, in the lump's frame
   std::vector<Lump> lumps_;
   std::vector<Rubbing> rubbing_;  ///< by lump
   std::vector<std::uint32_t> free_instances_, free_bodies_, free_joints_, free_lumps_, free_figures_;
@@ -211,12 +228,13 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::vector<std::uint32_t> turning_;  ///< kinematic joints with a velocity target, and those that had one
   std::vector<Roll> rolls_;
   std::vector<Linkage> grips_;
+  std::vector<Grip> told_grips_;  ///< the same, as others see them
 
   // Made when asked for, in const functions that several threads may call at once.
   mutable std::mutex refreshing_;
   mutable std::atomic<bool> map_fresh_ = false, links_fresh_ = false, rolls_fresh_ = false;
   mutable bool walls_fresh_ = false;
-  mutable bool filed_ = false;  ///< the broad phase holds
+  mutable std::atomic<bool> filed_ = false;  ///< the broad phase holds
   mutable Map map_;
   mutable std::vector<BodyState> states_;
   mutable std::vector<JointState> joint_states_;
@@ -243,6 +261,11 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::vector<Touch> touches_;  ///< of the last step, by key: their impulses are State
   std::vector<Touch> found_;
   std::vector<std::uint32_t> parent_, island_of_, island_lumps_, island_slots_;
+  std::vector<std::uint32_t> marked_;  ///< lumps that are in an island
+  std::vector<std::uint32_t> linked_;  ///< slots with linkages
+  bool linked_fresh_ = false;
+  std::vector<Planned> planned_;  ///< of those on rails, as island_lumps_
+  std::vector<double> left_m_;    ///< how far they may still come in this step, as island_lumps_
   std::vector<Candidate> island_candidates_;
   std::vector<Linkage*> island_linkages_, sorted_linkages_;
   std::vector<double> fastest_;

@@ -52,6 +52,29 @@ TEST(PlanarRoll, AWheelTurnsByTheWayOfItsBase) {
   EXPECT_NEAR(w.joint().velocity, (0.5 - 0.15 * 0.8) / wheel_m, 1e-12);
 }
 
+TEST(PlanarRoll, TheStatesOfSomeBodiesAreThoseOfAll) {
+  Rolling w(1), other(-1);
+  w.drive(w.id, 0.5, 0.1, 0.8);
+  w.roll();
+  w.run(20);
+  const BodyId base = w.engine.bodies(w.id)[0], wheel = w.engine.bodies(w.id)[1];
+  const std::uint32_t asked[] = {wheel.index, base.index};
+  // Asked for alone first, so that nothing is ready; then after all have been.
+  for (int round = 0; round < 2; ++round) {
+    BodyState got[2];
+    w.engine.states_of({asked + 1, 1}, {got + 1, 1});
+    EXPECT_EQ(got[1].X_WB.p.y, w.p(w.id).y);
+    w.engine.states_of(asked, got);
+    for (int i = 0; i < 2; ++i) {
+      const BodyState& is = w.engine.states()[asked[i]];
+      EXPECT_EQ(got[i].X_WB, is.X_WB) << i;
+      EXPECT_EQ(got[i].V_WB.linear, is.V_WB.linear) << i;
+      EXPECT_EQ(got[i].V_WB.angular, is.V_WB.angular) << i;
+    }
+    EXPECT_GT(got[1].V_WB.linear.x, 0.4);
+  }
+}
+
 TEST(PlanarRoll, ItCountsTheVelocityOfTheOriginItWasGivenNotOfTheCentreOfMass) {
   Rolling w;
   w.drive(w.id, 0, 0,

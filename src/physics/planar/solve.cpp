@@ -152,6 +152,11 @@ void PlanarEngine::solve(Island& island, double h_s) {
   const std::span<const std::uint32_t> lumps(island_lumps_.data() + island.first_lump, island.lumps);
   const std::span<Linkage* const> linkages(sorted_linkages_.data() + island.first_linkage, island.linkages);
   std::vector<Touch>& touches = island.touches;
+  for (std::size_t i = 0; i < lumps.size(); ++i) {
+    const Lump& lump = lumps_[lumps[i]];
+    planned_[island.first_lump + i] = {lump.v, lump.w_radps, lump.p, lump.heading};
+    left_m_[island.first_lump + i] = lump.reach_m;
+  }
   for (Touch& t : touches) prepare(t, h_s, true);
   bounce(touches);
   for (Touch& t : touches) ends(lumps_, t).push(t, t.normal_Ns * t.normal + t.tangent_Ns * left_of(t.normal));
@@ -193,9 +198,13 @@ void PlanarEngine::solve(Island& island, double h_s) {
   }
   take_back(island, h_s);
   for (Linkage* l : linkages) finish_linkage(*l, h_s);
-  each_instance([&](std::uint32_t slot) {
-    if (drives_[slot].active) finish_drive(slot, h_s);
-  });
+  for (std::size_t i = 0; i < lumps.size(); ++i) {
+    Lump& lump = lumps_[lumps[i]];
+    if (lump.index != 0 || !drives_[lump.slot].active) continue;
+    const Planned& planned = planned_[island.first_lump + i];
+    if (lump.v == planned.v && lump.w_radps == planned.w_radps) finish_drive(lump.slot, lump, h_s);
+    else finish_hindered(lump.slot, lump, planned);
+  }
 }
 
 /// Moves everybody for h, or until the first of those that could pass each other meet. @return for how long
@@ -203,17 +212,18 @@ double PlanarEngine::advance_island(const Island& island, double h_s) {
   double first = 1;
   for (std::uint32_t i = 0; i < island.candidates; ++i)
     first = std::min(first, impact(island_candidates_[island.first_candidate + i], h_s));
-  for (std::uint32_t i = 0; i < island.lumps; ++i) move(island_lumps_[island.first_lump + i], first * h_s);
+  for (std::uint32_t i = island.first_lump; i < island.first_lump + island.lumps; ++i)
+    move(island_lumps_[i], first * h_s, left_m_[i]);
   return first < 1 ? first * h_s : h_s;
 }
 
-void PlanarEngine::move(std::uint32_t k, double h_s) {
+void PlanarEngine::move(std::uint32_t k, double h_s, double& left_m) {
   Lump& lump = lumps_[k];
   Vec2 way = h_s * lump.v;
   // Nobody leaves what the broad phase has looked at, whatever he is hit by on the way.
   double length = std::sqrt(dot(way, way));
-  if (length > lump.left_m) way = (lump.left_m / length) * way, length = lump.left_m;
-  lump.left_m -= length;
+  if (length > left_m) way = (left_m / length) * way, length = left_m;
+  left_m -= length;
   lump.p = lump.p + way;
   if (lump.w_radps != 0) {
     const Turn half = turn_of(0.5 * lump.w_radps * h_s);
@@ -277,12 +287,13 @@ void PlanarEngine::take_back(Island& island, double h_s) {
 
 /// A lump that touches nothing and is held by nothing.
 void PlanarEngine::move_alone(std::uint32_t k, double h_s) {
-  const Lump& lump = lumps_[k];
+  Lump& lump = lumps_[k];
   if (lump.inverse_kg == 0) return;
   const std::uint32_t slot = lump.slot;
+  double left_m = lump.reach_m;
   if (drives_[slot].active && lump.index == 0) {
-    move(k, h_s);
-    finish_drive(slot, h_s);
+    move(k, h_s, left_m);
+    finish_drive(slot, lump, h_s);
     return;
   }
   if (!instances_[slot].wheels.empty()) {
@@ -294,7 +305,7 @@ void PlanarEngine::move_alone(std::uint32_t k, double h_s) {
     rub(k, h_s);
   }
   if (lump.v == Vec2{} && lump.w_radps == 0) return;
-  move(k, h_s);
+  move(k, h_s, left_m);
 }
 
 }  // namespace sandlot::planar

@@ -56,7 +56,8 @@ void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
   write(w, canonical_pose(id.index).q);  // of one that stands still; others have it in their lumps
   write(w, instance.tilt);
   put(instance.z_m);
-  put(instance.still_at.x), put(instance.still_at.y);
+  const Vec2 still_at = instance.still ? instance.still->at : Vec2{};
+  put(still_at.x), put(still_at.y);
   visit_drive(drives_[id.index], put);
   for (const std::uint32_t k : instance.lumps) visit_lump(lumps_[k], put);
   for (const JointId joint : instance.joints) {
@@ -124,12 +125,11 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
 
   instance.tilt = tilt;
   instance.z_m = z_m;
-  instance.still_at = still_at;
-  instance.still_q = q;
   if (instance.moves) {
     drives_[id.index] = drive;
     shape(id.index);
   } else {
+    instance.still = std::make_unique<Instance::Still>(Instance::Still{.at = still_at, .q = q});
     walls_fresh_ = false;
   }
   for (std::size_t i = 0; i < lumps.size(); ++i) {
@@ -201,6 +201,7 @@ bool PlanarEngine::load_touches(std::uint32_t slot, ByteReader& r) {
   const Instance& instance = instances_[slot];
   std::erase_if(touches_, [&](const Touch& t) { return (t.key.pair & 0xffffffffu) == instance.created; });
   std::erase_if(grips_, [&](const Linkage& l) { return body_slot_[l.body_b.index] == slot; });
+  list_grips();
   std::uint32_t count = 0;
   read(r, count);
   if (!r.ok() || count > most_touches) return false;

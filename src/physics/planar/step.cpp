@@ -47,7 +47,7 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
     });
     ground_fresh_ = true;
   }
-  if (!is_filed(h_s)) file(h_s);
+  if (!filed_) file(h_s);
   find_touches(h_s);
   find_islands(h_s);
   for_each(island_count_, 8, [&](std::size_t i) { solve(islands_[i], h_s); });
@@ -55,30 +55,34 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
     if (lumps_[k].slot != none && island_of_[k] == none) move_alone(static_cast<std::uint32_t>(k), h_s);
   });
   for (const std::uint32_t slot : order_)
-    if (instances_[slot].guided) arrive(slot);
+    if (briefs_[slot].guided) arrive(slot);
   touches_.clear();
   for (std::size_t i = 0; i < island_count_; ++i)
     touches_.insert(touches_.end(), islands_[i].touches.begin(), islands_[i].touches.end());
   std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) { return x.key < y.key; });
   turn_joints(h_s);
   list_contacts(h_s);
+  measure_grips(h_s);
   stale();
 }
 
 /// Velocities before contacts: wrenches, drives, paths.
 void PlanarEngine::begin(std::uint32_t slot, double h_s) {
-  Instance& instance = instances_[slot];
-  if (!instance.moves) return;
-  if (instance.guided) {
+  const Brief& brief = briefs_[slot];
+  if (!brief.moves) return;
+  const std::span<const std::uint32_t> lumps = brief.lump != none ? std::span(&brief.lump, 1)
+                                                                  : std::span(instances_[slot].lumps);
+  Drive& drive = drives_[slot];
+  if (brief.guided) {
     lead(slot, h_s);
   } else {
     bool pushed = false;
-    for (const std::uint32_t k : instance.lumps) {
+    for (const std::uint32_t k : lumps) {
       Lump& lump = lumps_[k];
       if (lump.force_N == Vec2{} && lump.torque_Nm == 0) continue;
       const Vec2 v = lump.v + (h_s * lump.inverse_kg) * lump.force_N;
       const double w = lump.w_radps + h_s * lump.inverse_kgm2 * lump.torque_Nm;
-      if (excess(v, w) > 1) {
+      if (!is_sound(v, w)) {
         explode(k, v, w);
         continue;
       }
@@ -88,44 +92,50 @@ void PlanarEngine::begin(std::uint32_t slot, double h_s) {
       lump.torque_Nm = 0;
       pushed = true;
     }
-    Drive& drive = drives_[slot];
     if (drive.active) {
+      Lump& lump = lumps_[lumps[0]];
       if (pushed) {
-        const Lump& lump = lumps_[instance.lumps[0]];
         drive.now = {
             rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
             lump.w_radps};
       }
-      Lump& lump = lumps_[instance.lumps[0]];
       const Twist had = drive.now;
       const Vec2 v = lump.v;
       const double w = lump.w_radps;
-      plan_drive(slot, h_s);
-      if (excess(lump.v, lump.w_radps) > 1) {
-        explode(instance.lumps[0], lump.v, lump.w_radps);
+      plan_drive(slot, lump, h_s);
+      if (!is_sound(lump.v, lump.w_radps)) {
+        explode(lumps[0], lump.v, lump.w_radps);
         drive.now = had, lump.v = v, lump.w_radps = w;
       }
     }
   }
-  for (const std::uint32_t k : instance.lumps) {
-    if (excess(lumps_[k].v, lumps_[k].w_radps) > 1) explode(k, lumps_[k].v, lumps_[k].w_radps);
-    lumps_[k].left_m = lumps_[k].reach_m = reach(lumps_[k], h_s);
-    rubbing_[k].impulse = {};
-    rubbing_[k].twist = 0;
+  const bool filed = filed_.load(std::memory_order_relaxed);
+  for (const std::uint32_t k : lumps) {
+    Lump& lump = lumps_[k];
+    if (!is_sound(lump.v, lump.w_radps)) explode(k, lump.v, lump.w_radps);
+    lump.reach_m = reach(lump, h_s);
+    if (!(drive.active && lump.index == 0)) {  // else nothing rubs
+      rubbing_[k].impulse = {};
+      rubbing_[k].twist = 0;
+    }
+    // The candidates must hold all that may touch in this step.
+    if (!filed) continue;
+    const Vec2 d = map_.discs()[k].centre - filed_at_[k];
+    const double left = slack_m_[k] - lump.reach_m;
+    if (!(left >= 0 && dot(d, d) <= left * left)) filed_.store(false, std::memory_order_relaxed);
   }
 }
 
-void PlanarEngine::plan_drive(std::uint32_t slot, double h_s) {
+void PlanarEngine::plan_drive(std::uint32_t slot, Lump& lump, double h_s) {
   Drive& drive = drives_[slot];
-  Lump& lump = lumps_[instances_[slot].lumps[0]];
   Vec2 turning{drive.now.w_radps, 0};
   Twist mean;
   mean.v_mps = ramp(drive.now.v_mps, drive.target.v_mps, drive.accel, h_s);
   mean.w_radps = ramp(turning, {drive.target.w_radps, 0}, drive.angular_accel, h_s).x;
   drive.now.w_radps = turning.x;
   // From the drive's frame to the centre of mass: v_C = v_L - w x r_CL.
-  Planned& planned = planned_[slot];
-  planned.mean = {rotate(drive.frame, mean.v_mps) - mean.w_radps * left_of(drive.arm), mean.w_radps};
+  const Vec2 v_mps = rotate(drive.frame, mean.v_mps) - mean.w_radps * left_of(drive.arm);
+  means_[slot] = {v_mps, mean.w_radps};
   // The chord of the arc, so that a step along it ends on the arc.
   const double half = 0.5 * mean.w_radps * h_s;
   Turn middle = lump.heading;
@@ -135,26 +145,23 @@ void PlanarEngine::plan_drive(std::uint32_t slot, double h_s) {
     sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn.s / half;
     middle = lump.heading * turn;
   }
-  lump.v = planned.v = sinc * rotate(middle, planned.mean.v_mps);
-  lump.w_radps = planned.w_radps = mean.w_radps;
-  planned.p = lump.p;
-  planned.heading = lump.heading;
+  lump.v = sinc * rotate(middle, v_mps);
+  lump.w_radps = mean.w_radps;
 }
 
-/// What a drive has reached, after its lump has moved.
-void PlanarEngine::finish_drive(std::uint32_t slot, double h_s) {
+/// What a drive has reached, after its lump has moved as planned.
+void PlanarEngine::finish_drive(std::uint32_t slot, Lump& lump, double h_s) {
   Drive& drive = drives_[slot];
-  Lump& lump = lumps_[instances_[slot].lumps[0]];
-  const Planned& planned = planned_[slot];
-  if (lump.v == planned.v && lump.w_radps == planned.w_radps) {
-    const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
-    lump.v = rotate(lump.heading, v);
-    lump.w_radps = drive.now.w_radps;
-    drive.way_m = drive.way_m + h_s * planned.mean.v_mps;
-    drive.turned_rad += h_s * planned.mean.w_radps;
-    return;
-  }
-  // Hindered: the arc from where it was to where it has come.
+  const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
+  lump.v = rotate(lump.heading, v);
+  lump.w_radps = drive.now.w_radps;
+  drive.way_m = drive.way_m + h_s * means_[slot].v_mps;
+  drive.turned_rad += h_s * means_[slot].w_radps;
+}
+
+/// The same of one that was hindered: the arc from where it was to where it has come.
+void PlanarEngine::finish_hindered(std::uint32_t slot, Lump& lump, const Planned& planned) {
+  Drive& drive = drives_[slot];
   const Turn turn = Turn{planned.heading.c, -planned.heading.s} * lump.heading;
   const double half = 0.5 * math::atan2(turn.s, turn.c);
   const double sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn_of(half).s / half;
@@ -166,22 +173,10 @@ void PlanarEngine::finish_drive(std::uint32_t slot, double h_s) {
 
 /// How far a lump can come in a step at most: what comes of a collision has to wait for the next.
 double PlanarEngine::reach(const Lump& lump, double h_s) const {
-  return lump.reach_share_m + 2 * h_s * std::sqrt(dot(lump.v, lump.v));
+  return lump.plan->reach_share_m + 2 * h_s * std::sqrt(dot(lump.v, lump.v));
 }
 
 // --- broad phase ----------------------------------------------------------------------------------------------------
-
-/// True while the candidates hold all that may touch in this step.
-bool PlanarEngine::is_filed(double) const {
-  if (!filed_) return false;
-  for (std::size_t k = 0; k < lumps_.size(); ++k) {
-    if (lumps_[k].slot == none) continue;
-    const Vec2 d = map_.discs()[k].centre - filed_at_[k];
-    const double left = slack_m_[k] - lumps_[k].reach_m;
-    if (!(left >= 0 && dot(d, d) <= left * left)) return false;
-  }
-  return true;
-}
 
 void PlanarEngine::file(double) {
   const auto count = static_cast<std::uint32_t>(lumps_.size());
@@ -274,6 +269,13 @@ void PlanarEngine::find_touches(double h_s) {
   remember(found_);
 }
 
+void PlanarEngine::refresh_linked() {
+  if (std::exchange(linked_fresh_, true)) return;
+  linked_.clear();
+  for (const std::uint32_t slot : order_)
+    if (!instances_[slot].linkages.empty()) linked_.push_back(slot);
+}
+
 std::uint32_t PlanarEngine::root(std::uint32_t k) {
   while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
   return k;
@@ -282,8 +284,8 @@ std::uint32_t PlanarEngine::root(std::uint32_t k) {
 void PlanarEngine::unite(std::uint32_t a, std::uint32_t b) {
   const auto join = [&](std::uint32_t k) { return k == none || lumps_[k].inverse_kg == 0 ? none : k; };
   a = join(a), b = join(b);
-  if (a != none) island_of_[a] = 0;
-  if (b != none) island_of_[b] = 0;
+  for (const std::uint32_t k : {a, b})
+    if (k != none && island_of_[k] == none) island_of_[k] = 0, marked_.push_back(k);
   if (a == none || b == none) return;
   a = root(a), b = root(b);
   // Towards the smaller index: nothing depends on it but the shape of the forest.
@@ -294,10 +296,12 @@ void PlanarEngine::find_islands(double h_s) {
   const std::size_t count = lumps_.size();
   parent_.resize(count);
   island_of_.assign(count, none);
+  marked_.clear();
   for (std::uint32_t k = 0; k < count; ++k) parent_[k] = k;
   for (const Touch& t : found_) unite(t.a, t.b);
   island_linkages_.clear();
-  for (const std::uint32_t slot : order_)
+  refresh_linked();
+  for (const std::uint32_t slot : linked_)
     for (Linkage& l : instances_[slot].linkages) island_linkages_.push_back(&l);
   for (Linkage& l : grips_)
     if (l.a != none || l.b != none) island_linkages_.push_back(&l);
@@ -305,19 +309,18 @@ void PlanarEngine::find_islands(double h_s) {
   // Whoever is fast goes from impact to impact together with all that it may hit on the way.
   const double fast = 0.25;
   const auto core = [&](std::uint32_t k) {
-    return k == none ? std::numeric_limits<double>::infinity()
-                     : instances_[lumps_[k].slot].plan->lumps[lumps_[k].index].core_m;
+    return k == none ? std::numeric_limits<double>::infinity() : lumps_[k].plan->core_m;
   };
   const auto way = [&](std::uint32_t k) {
     if (k == none) return 0.0;
     const Lump& lump = lumps_[k];
     const double turned = lump.figure == none ? 0 : h_s * std::abs(lump.w_radps) * map_.discs()[k].radius_m;
-    return lump.reach_m - lump.reach_share_m + turned;
+    return lump.reach_m - lump.plan->reach_share_m + turned;
   };
   for (int pass = 0; pass < 2; ++pass) {
-    fastest_.assign(count, 0);
-    for (std::uint32_t k = 0; k < count; ++k)
-      if (island_of_[k] != none) fastest_[root(k)] = std::max(fastest_[root(k)], way(k));
+    fastest_.resize(count);  // 0 but for those in islands
+    for (const std::uint32_t k : marked_) fastest_[k] = 0;
+    for (const std::uint32_t k : marked_) fastest_[root(k)] = std::max(fastest_[root(k)], way(k));
     for (const Candidate& c : candidates_) {
       const double most = std::max(way(c.a), way(c.b)), least = std::min(core(c.a), core(c.b));
       const bool hit_on = (c.a != none && island_of_[c.a] != none) ||
@@ -327,23 +330,27 @@ void PlanarEngine::find_islands(double h_s) {
         if (near(c, h_s)) unite(c.a, c.b);
     }
   }
+  for (const std::uint32_t k : marked_) fastest_[k] = 0;
   island_count_ = 0;
   // Islands in the order of their first lumps' creation.
-  island_slots_.assign(count, none);  // by root: its island
-  for (const std::uint32_t slot : order_)
-    for (const std::uint32_t k : instances_[slot].lumps) {
-      if (island_of_[k] == none) continue;
-      std::uint32_t& island = island_slots_[root(k)];
-      if (island == none) {
-        island = static_cast<std::uint32_t>(island_count_++);
-        if (islands_.size() < island_count_) islands_.emplace_back();
-        Island& fresh = islands_[island];
-        fresh.lumps = fresh.candidates = fresh.linkages = 0;
-        fresh.touches.clear();
-      }
-      island_of_[k] = island;
-      ++islands_[island].lumps;
+  std::sort(marked_.begin(), marked_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const Lump &x = lumps_[a], &y = lumps_[b];
+    return x.slot == y.slot ? x.index < y.index : instances_[x.slot].created < instances_[y.slot].created;
+  });
+  island_slots_.resize(count);  // by root: its island
+  for (const std::uint32_t k : marked_) island_slots_[k] = none;
+  for (const std::uint32_t k : marked_) {
+    std::uint32_t& island = island_slots_[root(k)];
+    if (island == none) {
+      island = static_cast<std::uint32_t>(island_count_++);
+      if (islands_.size() < island_count_) islands_.emplace_back();
+      Island& fresh = islands_[island];
+      fresh.lumps = fresh.candidates = fresh.linkages = 0;
+      fresh.touches.clear();
     }
+    island_of_[k] = island;
+    ++islands_[island].lumps;
+  }
   const auto island_at = [&](std::uint32_t a, std::uint32_t b) {
     if (a != none && island_of_[a] != none) return island_of_[a];
     return b != none ? island_of_[b] : none;
@@ -368,12 +375,12 @@ void PlanarEngine::find_islands(double h_s) {
   island_lumps_.resize(lump);
   island_candidates_.resize(candidate);
   sorted_linkages_.resize(linkage);
-  for (const std::uint32_t slot : order_)
-    for (const std::uint32_t k : instances_[slot].lumps)
-      if (island_of_[k] != none) {
-        Island& island = islands_[island_of_[k]];
-        island_lumps_[island.first_lump + island.lumps++] = k;
-      }
+  for (const std::uint32_t k : marked_) {
+    Island& island = islands_[island_of_[k]];
+    island_lumps_[island.first_lump + island.lumps++] = k;
+  }
+  planned_.resize(lump);
+  left_m_.resize(lump);
   for (const Candidate& c : candidates_)
     if (const std::uint32_t i = island_of_pair(c); i != none)
       island_candidates_[islands_[i].first_candidate + islands_[i].candidates++] = c;
@@ -398,9 +405,10 @@ void PlanarEngine::turn_joints(double h_s) {
       joint.velocity = joint.effort = 0;
       if (asked && motor.target.max_effort > 0) {
         const double before = joint.position;
-        const double velocity = std::clamp(motor.target.velocity, -motor.max_velocity, motor.max_velocity);
+        const double velocity = std::clamp(motor.target.velocity, -motor.max_velocity(),
+                                           motor.max_velocity());
         const double goal = before + velocity * h_s;
-        joint.position = std::clamp(goal, std::min(motor.lower, before), std::max(motor.upper, before));
+        joint.position = std::clamp(goal, std::min(motor.lower(), before), std::max(motor.upper(), before));
         joint.velocity = joint.position == goal ? velocity : (joint.position - before) / h_s;
       }
     }

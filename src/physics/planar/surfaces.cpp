@@ -98,6 +98,7 @@ Status PlanarEngine::check_finite() const {
     for (const std::uint32_t k : instance.lumps) {
       const Lump& b = lumps_[k];
       sum += b.p.x + b.p.y + b.heading.c + b.heading.s;
+      if (is_sound(b.v, b.w_radps)) continue;
       if (const double mine = excess(b.v, b.w_radps); mine > worst) worst = mine, exploding = k;
     }
     for (const JointId joint : instance.joints)

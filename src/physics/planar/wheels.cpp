@@ -31,8 +31,8 @@ void ease(std::span<Wheel> wheels) {
   double G[3][3] = {}, b[3] = {};
   const auto each = [&](auto&& visit) {
     for (Wheel& w : wheels) {
-      visit(w.ahead, w.arm, w.impulse.x);
-      if (!(w.plan && w.plan->rollers)) visit(w.across, w.arm, w.impulse.y);
+      visit(w.now->ahead, w.now->arm, w.impulse.x);
+      if (!(w.plan && w.plan->rollers)) visit(w.now->across, w.now->arm, w.impulse.y);
     }
   };
   each([&](Vec2 along, Vec2 arm, double& j) {
@@ -90,19 +90,20 @@ Spin spin_after(Wheel::Axle& axle, double impulse) {
 Wheel::Axle axle_of(const Motor& motor, const JointState& state, double inertia, double h_s) {
   const JointTarget& t = motor.target;
   Wheel::Axle axle;
-  double damping = motor.damping;
-  axle.friction = h_s * motor.friction;
+  double damping = motor.joint->damping;
+  axle.friction = h_s * motor.joint->friction;
   if (t.mode == JointTarget::Mode::velocity) {
-    axle.wanted_radps = std::clamp(t.velocity, -motor.max_velocity, motor.max_velocity);
-    axle.motor = h_s * std::clamp(t.max_effort, 0.0, motor.max_effort);
+    axle.wanted_radps = std::clamp(t.velocity, -motor.max_velocity(), motor.max_velocity());
+    axle.motor = h_s * std::clamp(t.max_effort, 0.0, motor.joint->max_effort);
   } else if (t.mode == JointTarget::Mode::effort) {
     inertia += t.inertia;
     damping += t.damping;
     axle.friction += h_s * t.friction;
-    axle.start = h_s * std::clamp(t.effort, -motor.max_effort, motor.max_effort);
+    axle.start = h_s * std::clamp(t.effort, -motor.joint->max_effort, motor.joint->max_effort);
   }
-  axle.start += inertia * state.velocity - h_s * motor.stiffness * (state.position - motor.reference);
-  axle.slope = std::max(inertia + h_s * (damping + h_s * motor.stiffness), 1e-12);
+  axle.start += inertia * state.velocity -
+                h_s * motor.joint->spring_stiffness * (state.position - motor.joint->spring_reference);
+  axle.slope = std::max(inertia + h_s * (damping + h_s * motor.joint->spring_stiffness), 1e-12);
   return axle;
 }
 
@@ -111,7 +112,7 @@ double effort_of(const JointTarget& t, const Motor& motor, double thrust, double
                  double h_s) {
   if (t.mode == JointTarget::Mode::velocity) return thrust / h_s;
   if (t.mode != JointTarget::Mode::effort) return 0;
-  return std::clamp(t.effort, -motor.max_effort, motor.max_effort) - t.damping * after -
+  return std::clamp(t.effort, -motor.joint->max_effort, motor.joint->max_effort) - t.damping * after -
          t.inertia * (after - before) / h_s;
 }
 
@@ -127,7 +128,7 @@ void PlanarEngine::steer(std::uint32_t slot, double h_s) {
     joint.velocity = spin_after(axle, 0).radps;
     joint.effort = effort_of(motor.target, motor, axle.thrust, before, joint.velocity, h_s);
     const double goal = at + h_s * joint.velocity;
-    joint.position = std::clamp(goal, std::min(motor.lower, at), std::max(motor.upper, at));
+    joint.position = std::clamp(goal, std::min(motor.lower(), at), std::max(motor.upper(), at));
     if (joint.position != goal) joint.velocity = (joint.position - at) / h_s;
   }
 }
@@ -139,7 +140,8 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
   for (Wheel& wheel : instance.wheels) {
     Lump& lump = lumps_[wheel.lump];
     Vec2 at = wheel.at, ahead{1, 0}, across{0, 1};
-    wheel.roll_m = 0;
+    if (!wheel.now) wheel.now = std::make_unique<Wheel::Now>();
+    wheel.now->roll_m = 0;
     if (wheel.plan) {
       const WheelPlan& plan = *wheel.plan;
       Turn steered;
@@ -150,16 +152,16 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
       const Vec2 forward{plan.axle.y, -plan.axle.x};
       across = rotate(steered, plan.axle);
       ahead = rotate(steered, plan.rollers ? plan.grip : forward);
-      wheel.roll_m = plan.radius_m * (plan.rollers ? dot(plan.grip, forward) : 1);
-      wheel.axle = axle_of(motors_[wheel.joint], joint_states_[wheel.joint], plan.inertia_kgm2, h_s);
-      wheel.axle.friction += h_s * wheel.rolling_Nm;
+      wheel.now->roll_m = plan.radius_m * (plan.rollers ? dot(plan.grip, forward) : 1);
+      wheel.now->axle = axle_of(motors_[wheel.joint], joint_states_[wheel.joint], plan.inertia_kgm2, h_s);
+      wheel.now->axle.friction += h_s * wheel.rolling_Nm;
     }
     if (wheel.plan && wheel.plan->rollers) wheel.impulse.y = 0;
     const double size = std::sqrt(dot(wheel.impulse, wheel.impulse)), most = h_s * wheel.limit_N;
     if (size > most) wheel.impulse = (most / size) * wheel.impulse;
-    wheel.ahead = rotate(lump.heading, ahead);
-    wheel.across = rotate(lump.heading, across);
-    wheel.arm = rotate(lump.heading, at);
+    wheel.now->ahead = rotate(lump.heading, ahead);
+    wheel.now->across = rotate(lump.heading, across);
+    wheel.now->arm = rotate(lump.heading, at);
   }
   const bool one = std::all_of(instance.wheels.begin(), instance.wheels.end(),
                                [&](const Wheel& w) { return w.lump == instance.wheels[0].lump; });
@@ -170,14 +172,14 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
     Lump& lump = lumps_[wheel.lump];
     // The turn of half a step, by the rate before any of this lump's wheels have pushed.
     if (wheel.lump != of) half = turn_of(0.5 * h_s * lump.w_radps), of = wheel.lump;
-    lump.push(wheel.impulse.x * wheel.ahead + wheel.impulse.y * wheel.across, wheel.arm);
-    wheel.ahead = rotate(half, wheel.ahead);
-    wheel.across = rotate(half, wheel.across);
-    wheel.arm = rotate(half, wheel.arm);
-    const double a = cross(wheel.arm, wheel.ahead), c = cross(wheel.arm, wheel.across);
-    wheel.k_aa = lump.inverse_kg + lump.inverse_kgm2 * a * a;
-    wheel.k_ac = wheel.plan && wheel.plan->rollers ? 0 : lump.inverse_kgm2 * a * c;
-    wheel.k_cc = lump.inverse_kg + lump.inverse_kgm2 * c * c;
+    lump.push(wheel.impulse.x * wheel.now->ahead + wheel.impulse.y * wheel.now->across, wheel.now->arm);
+    wheel.now->ahead = rotate(half, wheel.now->ahead);
+    wheel.now->across = rotate(half, wheel.now->across);
+    wheel.now->arm = rotate(half, wheel.now->arm);
+    const double a = cross(wheel.now->arm, wheel.now->ahead), c = cross(wheel.now->arm, wheel.now->across);
+    wheel.now->k_aa = lump.inverse_kg + lump.inverse_kgm2 * a * a;
+    wheel.now->k_ac = wheel.plan && wheel.plan->rollers ? 0 : lump.inverse_kgm2 * a * c;
+    wheel.now->k_cc = lump.inverse_kg + lump.inverse_kgm2 * c * c;
   }
 }
 
@@ -191,18 +193,19 @@ double PlanarEngine::turn_wheels(std::uint32_t slot, double h_s) {
     if (!(most > 0)) continue;
     Lump& lump = lumps_[wheel.lump];
     const bool one_way = wheel.plan && wheel.plan->rollers;
-    const Vec2 v = lump.velocity_at(wheel.arm) - wheel.belt_mps, before = wheel.impulse;
-    const double va = dot(v, wheel.ahead), vc = one_way ? 0 : dot(v, wheel.across);
+    const Vec2 v = lump.velocity_at(wheel.now->arm) - wheel.belt_mps, before = wheel.impulse;
+    const double va = dot(v, wheel.now->ahead), vc = one_way ? 0 : dot(v, wheel.now->across);
     Vec2 j = before;
     double held = -1;
     for (int i = 0; i < 6; ++i) {
-      const Spin spin = wheel.plan ? spin_after(wheel.axle, -wheel.roll_m * j.x) : Spin{};
+      const Spin spin = wheel.plan ? spin_after(wheel.now->axle, -wheel.now->roll_m * j.x) : Spin{};
       if (spin.per_impulse == held && i > 1) break;
       held = spin.per_impulse;
       const Vec2 d = j - before;
-      const Vec2 u{va + wheel.k_aa * d.x + wheel.k_ac * d.y - wheel.roll_m * spin.radps,
-                   one_way ? 0 : vc + wheel.k_ac * d.x + wheel.k_cc * d.y};
-      const double kaa = wheel.k_aa + wheel.roll_m * wheel.roll_m * held, kac = wheel.k_ac, kcc = wheel.k_cc;
+      const Vec2 u{va + wheel.now->k_aa * d.x + wheel.now->k_ac * d.y - wheel.now->roll_m * spin.radps,
+                   one_way ? 0 : vc + wheel.now->k_ac * d.x + wheel.now->k_cc * d.y};
+      const double kaa = wheel.now->k_aa + wheel.now->roll_m * wheel.now->roll_m * held,
+                   kac = wheel.now->k_ac, kcc = wheel.now->k_cc;
       if (one_way) {
         j.x = std::clamp(j.x - u.x / kaa, -most, most);
         continue;
@@ -221,8 +224,8 @@ double PlanarEngine::turn_wheels(std::uint32_t slot, double h_s) {
     }
     const Vec2 d = j - before;
     wheel.impulse = j;
-    lump.push(d.x * wheel.ahead + d.y * wheel.across, wheel.arm);
-    change = std::max({change, std::abs(d.x) * wheel.k_aa, std::abs(d.y) * wheel.k_cc});
+    lump.push(d.x * wheel.now->ahead + d.y * wheel.now->across, wheel.now->arm);
+    change = std::max({change, std::abs(d.x) * wheel.now->k_aa, std::abs(d.y) * wheel.now->k_cc});
   }
   return change;
 }
@@ -233,10 +236,10 @@ void PlanarEngine::finish_wheels(std::uint32_t slot, double h_s) {
     if (!wheel.plan) continue;
     JointState& joint = joint_states_[wheel.joint];
     const double before = joint.velocity;
-    joint.velocity = spin_after(wheel.axle, -wheel.roll_m * wheel.impulse.x).radps;
+    joint.velocity = spin_after(wheel.now->axle, -wheel.now->roll_m * wheel.impulse.x).radps;
     joint.position += h_s * joint.velocity;
     const Motor& motor = motors_[wheel.joint];
-    joint.effort = effort_of(motor.target, motor, wheel.axle.thrust, before, joint.velocity, h_s);
+    joint.effort = effort_of(motor.target, motor, wheel.now->axle.thrust, before, joint.velocity, h_s);
   }
 }
 

@@ -350,6 +350,7 @@ void RigidEngine::remove(InstanceId id) {
   library::prepare_thread();
   Instance& instance = alive(id);
   forget_watch();
+  let_go(instance);
   wake_neighbours(instance);
   std::erase_if(contacts_, [&](const Contact& c) {
     const auto mine = [&](BodyId b) { return link_slots_[b.index].instance == &instance; };

@@ -51,6 +51,7 @@ void RigidEngine::see_pair(Geom* a, Geom* b) {
     for (const auto& [first, second] : a->instance->joined)
       if ((first == a->body && second == b->body) || (first == b->body && second == a->body)) return;
   }
+  if (!grips_.empty() && hold_each_other(*a, *b)) return;
   if (b->serial < a->serial) std::swap(a, b);
   (is_awake(*a) || is_awake(*b) ? pairs_ : dormant_).push_back({a->serial, b->serial, a, b});
 }
@@ -256,7 +257,23 @@ void RigidEngine::ask_surfaces() {
   hit_count_ = kept;
 }
 
+namespace {
+
+/// The roller of a wheel that touches with its own body, if one does.
+const Body* roller_of(const Geom& a, const Geom& b) {
+  for (const Geom* g : {&a, &b})
+    if (g->body && g->body->carrier) return g->body;
+  return nullptr;
+}
+
+}  // namespace
+
 /// What ODE needs beside the parameters of the surfaces: the direction of friction, and that a surface moves.
+///
+/// A roller on its hinge is held along its axis alone: whatever slips across, it soon turns along with. Its axis is thus the
+/// direction of the force, sliding or not; that of its slip is not, since the point of contact wanders on the barrel to where
+/// that is thinner, and that little slip across would pass for the whole of it (the box of friction then lies askew, and a
+/// spinning Mecanum robot goes by whichever wheels it went by before).
 void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   const Geom &a = *hit.a, &b = *hit.b;
   dContact& contact = hit.contact;
@@ -264,13 +281,16 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   const double mu = contact.surface.mu;
   const Vec3 belt = pair.belt_velocity_W_mps;
   const Wheel* const wheel = a.wheel ? a.wheel : b.wheel;
-  const bool directed = wheel || pair.fdir1_W != Vec3{};
+  const Body* const roller = roller_of(a, b);
+  const bool directed = wheel || roller || pair.fdir1_W != Vec3{};
   Vec3 slip, wanted;
   if (wheel) {
     wanted = roller_axis_W(*wheel, point);
     give_way(contact.surface, *wheel->decl);
-  } else if (directed) {
+  } else if (pair.fdir1_W != Vec3{}) {
     wanted = pair.fdir1_W;
+  } else if (roller) {
+    wanted = rotate(roller->q, roller->spin_axis_B);
   } else if (mu > 0) {
     slip = velocity_at(a, point) - velocity_at(b, point) - belt;
     wanted = slip;

@@ -172,4 +172,13 @@ struct Instance {
   double load_N = 0;
 };
 
+/// A grip between two links, by a joint of each sub-step: ODE keeps nothing of it.
+struct Held {
+  BodyId link_a, link_b;  ///< in the order of creation
+  Instance *instance_a = nullptr, *instance_b = nullptr;
+  Body *a = nullptr, *b = nullptr;  ///< null: fixed to the world, at most one
+  Pose X_AB;                        ///< State. Of a null one the frame is W
+  dJointFeedback load{};            ///< of the last sub-step
+};
+
 }  // namespace sandlot::rigid

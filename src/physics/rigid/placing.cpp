@@ -92,6 +92,7 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   library::prepare_thread();
   Instance& instance = alive(id);
   if (!is_finite(X_WM)) return fail({"the new pose of '" + instance.name + "' is not finite", remedy});
+  let_go(instance);
   wake_neighbours(instance);
   const Pose move = Pose{X_WM.p, normalised(X_WM.q)} * inverse(pose(id));
   std::vector<Pose> moved;

@@ -5,9 +5,9 @@
 
 #include "base/check.h"
 #include "base/read.h"
+#include "physics/distance.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
-#include "physics/rigid/overlap.h"
 #include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
@@ -53,14 +53,20 @@ Capabilities RigidEngine::capabilities() const {
           .rays = false,
           .contact_forces = true,
           .joint_loads = true,
-          .rollers = true};
+          .rollers = true,
+          .grips = true};
 }
 
 BodyName RigidEngine::name(BodyId id) const {
   if (id.index >= link_slots_.size()) return {};
   const LinkSlot& slot = link_slots_[id.index];
   if (!slot.instance || slot.generation != id.generation) return {};
-  return {slot.instance->name, &slot.instance->model->links[slot.link]};
+  return {slot.instance->name, &slot.instance->model->links[slot.link],
+          slot.instance->links[slot.link].body != nullptr};
+}
+
+BodyId RigidEngine::body_at(std::uint32_t index) const {
+  return index < link_slots_.size() ? BodyId{index, link_slots_[index].generation} : BodyId{};
 }
 
 void RigidEngine::apply(std::span<const Wrench> wrenches) {

@@ -45,6 +45,7 @@ class RigidEngine final : public Engine {
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   void become_robot(InstanceId id) override;
   BodyName name(BodyId id) const override;
+  BodyId body_at(std::uint32_t index) const override;
   Pose pose(InstanceId id) const override;
   std::span<const BodyState> states() const override { return states_; }
   std::span<const JointState> joint_states() const override { return joint_states_; }
@@ -56,6 +57,8 @@ class RigidEngine final : public Engine {
   void set_targets(std::span<const JointTarget> targets) override;
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_wheels(std::span<const WheelTarget> targets) override;
+  void set_grips(std::span<const GripTarget> targets) override;
+  std::span<const Grip> grips() const override { return told_grips_; }
   void set_zones(std::span<const model::SurfaceZone> zones) override { zones_ = ZoneMap(zones); }
   void set_contact_rule(ContactRule rule) override { rule_ = std::move(rule); }
   void watch(const Watch& watch) override;
@@ -131,6 +134,20 @@ class RigidEngine final : public Engine {
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);
 
+  // grips.cpp
+  std::uint64_t rank(const Instance& instance) const;
+  Held grip_of(BodyId one, BodyId other) const;
+  void keep(const Held& grip);
+  void let_go(const Instance& instance);
+  void list_grips();
+  void wake_held();
+  void attach_grips();
+  void measure_grips();
+  bool hold_each_other(const Geom& a, const Geom& b) const;
+  std::size_t grips_of(const Instance& instance) const;
+  void save_grips(const Instance& instance, ByteWriter& w) const;
+  bool load_grips(Instance& instance, ByteReader& r);
+
   // loads.cpp
   bool begin_contacts(std::size_t count);
   void tell_contact(const Geom& a, const Geom& b, dJointID joint);
@@ -175,6 +192,8 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> free_instances_, free_links_, free_joints_;
   std::uint64_t next_serial_ = 1;
 
+  std::vector<Held> grips_;
+  std::vector<Grip> told_grips_;  ///< the same, as others see them
   ZoneMap zones_;
   ContactRule rule_;
   TriangleStore triangles_;

@@ -7,6 +7,8 @@
 namespace sandlot::rigid {
 namespace {
 
+// Beside the drive's: grips follow at the end, so that who holds nothing saves nothing of it.
+constexpr std::uint8_t driven_flag = 1, grips_flag = 2;
 // Flags of a body.
 constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4, frozen_flag = 8;
 
@@ -64,7 +66,8 @@ void RigidEngine::save(InstanceId id, ByteWriter& w) const {
     write(w, instance.V_WM.linear);
     write(w, instance.V_WM.angular);
   }
-  write(w, static_cast<std::uint8_t>(instance.drive.active));
+  const bool holds = grips_of(instance) > 0;
+  write(w, static_cast<std::uint8_t>((instance.drive.active ? driven_flag : 0) | (holds ? grips_flag : 0)));
   if (instance.drive.active) {
     write(w, instance.drive_link);
     const DriveTarget& d = instance.drive;
@@ -92,6 +95,7 @@ void RigidEngine::save(InstanceId id, ByteWriter& w) const {
     write(w, j.effort);
     save_target(w, j.target);
   }
+  if (holds) save_grips(instance, w);
 }
 
 bool RigidEngine::load(InstanceId id, ByteReader& r) {
@@ -115,7 +119,7 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
   }
   std::uint8_t driven = 0;
   read(r, driven);
-  instance.drive = {.active = driven != 0};
+  instance.drive = {.active = (driven & driven_flag) != 0};
   instance.drive_link = 0;
   if (instance.drive.active) {
     read(r, instance.drive_link);
@@ -178,7 +182,9 @@ bool RigidEngine::load(InstanceId id, ByteReader& r) {
     follow(wheel);
   }
   show(instance);
-  return r.ok();
+  std::erase_if(grips_, [&](const Held& grip) { return grip.instance_b == &instance; });
+  list_grips();
+  return r.ok() && (!(driven & grips_flag) || load_grips(instance, r));
 }
 
 }  // namespace sandlot::rigid

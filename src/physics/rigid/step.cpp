@@ -65,11 +65,14 @@ void RigidEngine::step(double h, std::uint64_t stream_key) {
   if (failure_) return;  // ODE must not see NaN; check_finite() reports it
   const library::Counts before = library::counts();
   try {
+    wake_held();
     push_forces(h);
     collide();
     attach_contacts(h);
+    attach_grips();
     find_islands();
     solve(h, stream_key);
+    measure_grips();
     if (!watched_links_.empty()) measure_contacts();
     if (!watched_joints_.empty()) measure_loads(h);
     forget_watch();
@@ -153,6 +156,8 @@ void RigidEngine::find_islands() {
     for (const Joint& joint : instance->joints)
       if (joint.main && joint.child && joint.child->active()) unite(joint.child, joint.parent);
   for (const Hit& hit : hits()) unite(hit.a->body, hit.b->body);
+  for (const Held& grip : grips_)
+    if (grip.a && grip.a->active()) unite(grip.a, grip.b);
 
   islands_.assign(island_parent_.size(), {});
   for (const Hit& hit : hits()) ++islands_[root((hit.a->body ? hit.a->body : hit.b->body)->island)].contacts;

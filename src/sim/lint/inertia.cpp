@@ -75,6 +75,10 @@ void check_link(const model::Link& link, Findings& findings) {
                  "give about " + short_text(mass * solids.trace_m2 / 3) + " kg m^2", link.place);
   }
 
+  // Whoever gives more than a solid has means something hollow, which may be as light as it likes: a ball, whose shell has
+  // 5/3 of it, a tube. A quarter more is what rounding and the shape's simplification may do.
+  const bool hollow = trace(I) > 1.25 * mass * solids.trace_m2;
+
   // The densest metal has 22,600 kg/m^3, air 1.2. Too dense: the box around all that is seen or touched holds too little
   // volume; too light: the solid shapes, which hold no more than they say.
   const Vec3 size = seen.size();
@@ -86,7 +90,7 @@ void check_link(const model::Link& link, Findings& findings) {
                  "masses are in kg: is this one in grams (" + short_text(mass / 1000) +
                      " kg), or is the size too small?",
                  link.place);
-  else if (solids.volume_m3 > 0 && mass < 1.0 * solids.volume_m3)
+  else if (solids.volume_m3 > 0 && mass < 1.0 * solids.volume_m3 && !hollow)
     findings.add("density",
                  name + " has a mass of " + short_text(mass) + " kg in " + short_text(solids.volume_m3) +
                      " m^3 of collision shapes: lighter than air",

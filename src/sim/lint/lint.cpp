@@ -54,8 +54,6 @@ std::string length_text(double m) {
   return fmt::format("{:.0f} m", m);
 }
 
-std::string short_text(double x) { return fmt::format("{:.3g}", x); }
-
 std::string at(const Place& place) { return place.file ? " (" + to_string(place) + ")" : ""; }
 
 }  // namespace lint_rules

@@ -40,8 +40,6 @@ Bounds bounds_in_link(const model::Link& link, bool visuals);
 
 /// "12 mm", "0.35 m": a length with two digits.
 std::string length_text(double m);
-/// Three digits.
-std::string short_text(double x);
 
 /// Says where the other thing was declared: " (file:line)", or "".
 std::string at(const Place& place);

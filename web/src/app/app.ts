@@ -21,6 +21,7 @@ import {saveBlob} from '../ui/save';
 import {CameraMode, cameras, overlays, SceneTools, Tool} from '../ui/scene_tools';
 import {Teleop} from '../ui/teleop';
 import {TopicsPanel} from '../ui/topics';
+import {PicturesPanel} from '../ui/pictures';
 import {Tree} from '../ui/tree';
 import {Video} from '../ui/video';
 import {Actions, keyOf} from './actions';
@@ -99,7 +100,7 @@ export class App {
     this.console = new ConsolePanel(this.context);
     const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
     const matrix = new MatrixPanel(this.context);
-    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['console', 'Console', this.console], ['log', 'Log', log], ['topics', 'Topics', new TopicsPanel(this.context)],
+    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['topics', 'Topics', new TopicsPanel(this.context)],
       ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
       this.frame.addPane({id, title, panel});
     }
@@ -118,7 +119,7 @@ export class App {
     this.frame.sceneHost.append(...this.tools.elements);
     const sensors = new SensorOverlays(this.client, this.store, this.scene);
     this.tools.onOverlays = () => {
-      sensors.show(this.tools.on.scans ?? false, this.tools.on.ranges ?? false);
+      sensors.show({scans: this.tools.on.scans ?? false, ranges: this.tools.on.ranges ?? false, views: this.tools.on.frusta ?? false, objects: this.tools.on.objects ?? false});
       this.listenContacts(this.tools.on.contacts ?? false);
     };
     this.tools.onOverlays();
@@ -262,7 +263,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'log', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'pictures', 'log', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),

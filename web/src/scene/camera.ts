@@ -117,10 +117,11 @@ export class CameraRig {
 
   /**
    * Goes to where these points fill the view, round the world where that brings them much nearer. `steepness`: height of
-   * the walls by the width of the place; who looks into a house looks from above.
+   * the walls by the width of the place; who looks into a house looks from above. `keep_heading`: from where it looks now.
+   * @return how far away that is
    */
-  frameAll(points: readonly THREE.Vector3[], steepness = 0): void {
-    const azimuths = [-2.2, -Math.PI, -Math.PI / 2, -2.7, -1.1];
+  frameAll(points: readonly THREE.Vector3[], steepness = 0, keep_heading = false): number {
+    const azimuths = keep_heading ? [this.goal.azimuth] : [-2.2, -Math.PI, -Math.PI / 2, -2.7, -1.1];
     // A view that stands upright has room for what is seen from further above.
     const elevation = Math.min(1.1, (this.aspect < 1 ? 0.8 : 0.5) + 3 * steepness);
     const fit = fitPoints(points, azimuths, elevation, Math.tan(((FOV_DEG / 2) * Math.PI) / 180), this.aspect);
@@ -130,6 +131,7 @@ export class CameraRig {
     this.goal.distance = clamp(fit.distance, 4 * NEAREST_M, FARTHEST_M);
     this.flight_s = FLIGHT_S * 5;
     this.leaveRobot();
+    return this.goal.distance;
   }
 
   /** There at once: for the first sight of a world. */

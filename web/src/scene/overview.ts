@@ -1,14 +1,33 @@
 // What of a world belongs into the first picture of it.
 import * as THREE from 'three';
 import type { Body } from './bodies';
-import { transform } from './poses';
+import { composeMatrix, transform } from './poses';
 
 const flatSize = (points: readonly THREE.Vector3[]): number => {
   const box = new THREE.Box3().setFromPoints(points as THREE.Vector3[]);
   return box.isEmpty() ? 0 : Math.hypot(box.max.x - box.min.x, box.max.y - box.min.y);
 };
 
+/** What is wide is seldom a box: an octagon or a landscape is measured by what it is made of, as far as that is few. */
+const WIDE_M = 2;
+const MOST_POINTS = 2000;
+
+function verticesOf(body: Body): THREE.Vector3[] {
+  const points: THREE.Vector3[] = [];
+  const matrix = new THREE.Matrix4();
+  const columns = new Float32Array(16);
+  for (const slot of body.slots) {
+    const position = slot.batch.geometry.getAttribute('position');
+    const stride = Math.ceil((position.count * body.slots.length) / MOST_POINTS);
+    composeMatrix(body.world, 7 * slot.link, slot.local, columns, 0);
+    matrix.fromArray(columns);
+    for (let i = 0; i < position.count; i += stride) points.push(new THREE.Vector3().fromBufferAttribute(position, i).applyMatrix4(matrix));
+  }
+  return points;
+}
+
 function cornersOf(body: Body): THREE.Vector3[] {
+  if (body.is_static && body.radius_m > WIDE_M) return verticesOf(body);
   const { min, max } = body.bounds;
   const at = [0, 0, 0];
   return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
@@ -28,7 +47,7 @@ export function overviewOf(bodies: Iterable<Body>): { points: THREE.Vector3[]; s
     const corners = cornersOf(body);
     all.push(...corners);
     if (!body.is_static) moving.push(...corners);
-    else walls_m = Math.max(walls_m, ...corners.map((c) => c.z));
+    else for (const { z } of corners) walls_m = Math.max(walls_m, z);
   }
   // A room around what moves belongs into the picture, a town does not.
   const is_town = moving.length > 0 && flatSize(all) > 2 * Math.max(3, flatSize(moving));
@@ -39,4 +58,17 @@ export function overviewOf(bodies: Iterable<Body>): { points: THREE.Vector3[]; s
   const middle = box.isEmpty() ? new THREE.Vector3() : box.getCenter(new THREE.Vector3());
   for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) points.push(middle.clone().add(new THREE.Vector3(room_m * x, room_m * y, 0)));
   return { points, steepness: is_town ? 0 : walls_m / Math.max(1, flatSize(all)) };
+}
+
+/** Whether something that moves is about to leave the picture. */
+export function someLeave(bodies: Iterable<Body>, camera: THREE.Camera): boolean {
+  const at = new THREE.Vector3();
+  const middle = new Float64Array(3);
+  for (const body of bodies) {
+    if (body.is_static || body.slots.length === 0) continue;
+    body.middle(middle);
+    at.fromArray(middle).project(camera);
+    if (Math.abs(at.x) > 0.95 || at.y < -0.95 || at.y > 0.9) return true;
+  }
+  return false;
 }

@@ -1,4 +1,5 @@
 // The 3D view: what stands in the world, where it is, and hands to take hold of it.
+// long file: what the page may ask of the scene, in one place; each part that does it has a file of its own.
 //
 // Frame    the world's: z up, metres. Positions in the view are CSS pixels from its upper left corner.
 // Time     draws at most once per animation frame, and only when something has changed.
@@ -14,9 +15,9 @@ import { Foresight } from './foresight';
 import { Hands, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
-import { overviewOf } from './overview';
+import { overviewOf, someLeave } from './overview';
 import { Labels } from './overlays/labels';
-import { Marks, teamColors, type RangeReading } from './overlays/marks';
+import { type CameraView, type Detection, Marks, teamColors, type RangeReading } from './overlays/marks';
 import { PullLine } from './overlays/pull';
 import { Scans, type Scan } from './overlays/scans';
 import { Trails } from './overlays/trails';
@@ -33,10 +34,12 @@ export interface Picked {
   point: [number, number, number];
 }
 
-export const OVERLAYS = ['trails', 'names', 'frames', 'velocity', 'contacts', 'scans', 'ranges', 'frusta', 'grid', 'shadows', 'collisions', 'teams'] as const;
+export const OVERLAYS = ['trails', 'names', 'frames', 'velocity', 'contacts', 'scans', 'ranges', 'frusta', 'objects', 'grid', 'shadows', 'collisions', 'teams'] as const;
 export type Overlay = (typeof OVERLAYS)[number];
 
 const MOST_PIXELS_PER_CSS_PIXEL = 2;
+/** How often a view of all looks whether it still is one. */
+const OVERVIEW_MS = 1000;
 
 export class SceneView {
   onSelect: (address: string | null) => void = () => {};
@@ -61,7 +64,7 @@ export class SceneView {
   private readonly foresight: Foresight;
   private readonly meter = new Meter();
   private readonly overlays: Record<Overlay, boolean> = {
-    trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, grid: true, shadows: true, collisions: false, teams: true,
+    trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, objects: true, grid: true, shadows: true, collisions: false, teams: true,
   };
   private readonly header = emptyPosesHeader();
   private readonly contacts = emptyContacts();
@@ -82,6 +85,8 @@ export class SceneView {
   private follow_name: string | null = null;
   /** It shows all, and nobody has looked elsewhere: it does so too when the view has another size. */
   private is_overview = false;
+  private overview_ms = 0;
+  private overview_reach_m = 0;
   private scheduled = 0;
   private last_frame_ms = 0;
   private dirty = true;
@@ -231,9 +236,10 @@ export class SceneView {
     this.invalidate();
   }
 
-  frameAll(): void {
+  frameAll(keep_heading = false): void {
     const { points, steepness } = overviewOf(this.bodies.list);
-    this.rig.frameAll(points, steepness);
+    const reach_m = this.rig.frameAll(points, steepness, keep_heading);
+    if (!keep_heading) this.overview_reach_m = reach_m;
     this.is_overview = true;
     this.invalidate();
   }
@@ -277,6 +283,23 @@ export class SceneView {
 
   setRange(path: string, range: RangeReading | null): void {
     this.marks.setRange(path, range);
+    this.invalidate();
+  }
+
+  /** @param places  in the frame of the device at `path` when it looked; null path: in the world */
+  setDetections(topic: string, path: string | null, detections: Detection[] | null, time_s = NaN): void {
+    if (path !== null && detections !== null) {
+      const found = this.bodies.devices.get(path);
+      if (found === undefined) return;
+      found.body.devicePoseAt(found.device, time_s, this.device_pose);
+      for (const each of detections) transform(this.device_pose, 0, each.place[0], each.place[1], each.place[2], each.place);
+    }
+    this.marks.setDetections(topic, detections);
+    this.invalidate();
+  }
+
+  setView(topic: string, path: string, view: CameraView | null): void {
+    this.marks.setView(topic, path, view);
     this.invalidate();
   }
 
@@ -407,6 +430,12 @@ export class SceneView {
     this.last_frame_ms = now_ms;
     this.dirty = false;
     if (this.bodies.update()) this.backdrop.placeLamps();
+    if (this.is_overview && now_ms > this.overview_ms + OVERVIEW_MS) {
+      this.overview_ms = now_ms;
+      // Not after what falls out of the world.
+      const may_grow = this.rig.reach_m < 3 * this.overview_reach_m;
+      if (may_grow && someLeave(this.bodies.list, this.rig.camera)) this.frameAll(true);
+    }
     const changes = this.rig.update(dt_s, this.subjectNow(), this.is_hidden);
     const camera = this.rig.camera;
     camera.updateMatrixWorld();

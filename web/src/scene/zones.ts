@@ -1,4 +1,4 @@
-// Parts of the ground with a surface of their own: flat patches with their names.
+// Parts of the ground with a surface of their own: flat patches with their names, and arrows where they carry what stands on them.
 import * as THREE from 'three';
 import type { World, Zone } from '../protocol';
 
@@ -45,8 +45,33 @@ export class Zones {
     patch.position.z = HEIGHT_M;
     this.group.add(patch);
     geometry.computeBoundingBox();
+    this.addArrows(zone, geometry.boundingBox!);
     const label = labelOf(zone.name, geometry.boundingBox!);
     if (label !== null) this.group.add(label);
+  }
+
+  /** Two arrow heads beside the name, the way the belt runs. */
+  private addArrows(zone: Zone, box: THREE.Box3): void {
+    const [vx, vy] = zone.belt_velocity;
+    if (!(Math.hypot(vx, vy) > 0)) return;
+    const size = box.getSize(new THREE.Vector3());
+    const length = 0.16 * Math.min(size.x, size.y);
+    const head = new THREE.Shape([[0.6, 0], [-0.4, 0.9], [-0.9, 0.9], [0.1, 0], [-0.9, -0.9], [-0.4, -0.9]].map(([x, y]) => new THREE.Vector2(length * x, length * y)));
+    for (const side of [-1, 1]) {
+      const arrow = new THREE.Mesh(
+        new THREE.ShapeGeometry(head),
+        new THREE.MeshBasicMaterial({ color: '#6b4a00', transparent: true, opacity: 0.75, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }),
+      );
+      arrow.rotation.z = Math.atan2(vy, vx);
+      box.getCenter(arrow.position);
+      // Beside the name, which lies along the longer side: over and under it, or before and after.
+      const along_name = Math.abs(vx) > Math.abs(vy) === size.x >= size.y;
+      const gap = (along_name ? 0.42 : 0.3) * (Math.abs(vx) > Math.abs(vy) ? size.x : size.y);
+      arrow.position.x += (side * gap * vx) / Math.hypot(vx, vy);
+      arrow.position.y += (side * gap * vy) / Math.hypot(vx, vy);
+      arrow.position.z = 1.5 * HEIGHT_M;
+      this.group.add(arrow);
+    }
   }
 }
 
@@ -69,16 +94,19 @@ function labelOf(name: string, box: THREE.Box3): THREE.Mesh | null {
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.fillStyle = '#ffffff';
-  context.strokeStyle = 'rgba(0, 0, 0, 0.55)';
-  context.lineWidth = 10;
+  context.strokeStyle = 'rgba(0, 0, 0, 0.6)';
+  context.lineWidth = 7;
   context.strokeText(name, 256, 64, 500);
   context.fillText(name, 256, 64, 500);
+  const map = new THREE.CanvasTexture(canvas);
+  map.colorSpace = THREE.SRGBColorSpace;
+  map.anisotropy = 8;  // it is mostly seen at a slant
   const size = box.getSize(new THREE.Vector3());
   const upright = size.y > size.x;
-  const width = Math.min(0.8 * Math.max(size.x, size.y), 2.4 * Math.min(size.x, size.y));
+  const width = Math.min(0.9 * Math.max(size.x, size.y), 2.4 * Math.min(size.x, size.y));
   const label = new THREE.Mesh(
     new THREE.PlaneGeometry(width, width / 4),
-    new THREE.MeshBasicMaterial({ map: new THREE.CanvasTexture(canvas), transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }),
+    new THREE.MeshBasicMaterial({ map, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 }),
   );
   box.getCenter(label.position);
   label.position.z = 2 * HEIGHT_M;

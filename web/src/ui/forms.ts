@@ -46,10 +46,18 @@ export function fieldViews(owner: string, fields: Field[]): FieldView[] {
     const control = controlOf(field);
     return {
       path: field.path, address: `${owner}.${parts.join('.')}`, label: words(parts[parts.length - 1] ?? field.path), group: parts.slice(0, -1).map(words).join(' › '),
-      control, unit: field.unit ?? '', help: field.help ?? '', tunable: field.tunable === true, slider: control === 'number' ? sliderOf(field.min, field.max, integer) : null,
+      control, unit: field.unit ?? '', help: field.help ?? '', tunable: field.tunable === true, slider: field.path === 'errors' ? errorsSlider : control === 'number' ? sliderOf(field.min, field.max, integer) : null,
       integer, length: field.length ?? 0, fallback: field.default ?? '', choices: field.choices ?? [], min: field.min ?? null, max: field.max ?? null,
     };
   });
+}
+
+const errorsSlider = {min: 0, max: 2, step: 0.05};
+
+/** The slider for the errors of a robot, or of all: `rover.errors`, `sim.errors`. More than twice can be typed. */
+export function errorsView(owner: string, help: string): FieldView {
+  return {path: 'errors', address: `${owner}.errors`, label: 'errors', group: '', control: 'number', unit: '', help: `${help}: 0 none, 1 as configured`, tunable: true,
+    slider: errorsSlider, integer: false, length: 0, fallback: '1', choices: [], min: 0, max: 1000};
 }
 
 function words(name: string): string {

@@ -6,7 +6,7 @@ import type {Device, Field} from '../protocol';
 import {clear, h, setReason} from './dom';
 import {DriveSection} from './drive_section';
 import {FieldRow} from './field_row';
-import {FieldView, fieldViews} from './forms';
+import {errorsView, FieldView, fieldViews} from './forms';
 import {icon} from './icons';
 import {heading, PoseSection} from './pose_section';
 import {Readings} from './readings';
@@ -76,8 +76,9 @@ export class Inspector implements Panel {
     if (!selected && store.world && this.visible) {
       this.head.append(h('div', {class: 'title'}, h('h2', {class: 'ellipsis', title: store.world.name}, store.world.name)), h('div', {class: 'chips'}, h('span', {class: 'chip'}, 'World')));
       const section = new WorldSection(this.context, store.world);
-      this.body.append(section.element);
       this.parts.push(section);
+      this.form([errorsView('sim', 'Factor on the errors of all devices of all robots')], 'Errors');
+      for (const part of this.parts) this.body.append(part.element);
       return;
     }
     if (!selected) {
@@ -137,6 +138,7 @@ export class Inspector implements Panel {
       this.parts.push({element: h('section', {class: 'block'}, heading(title), ...rows.map((row) =>
         h('button', {class: 'plain part-row', title: row.path, on: {click: () => this.context.store.select(row.path)}}, icon(symbol, 14), h('span', {}, row.name), h('span', {class: 'faint ellipsis'}, row.detail), icon('chevron', 12))))});
     };
+    if ((instance.devices ?? []).length > 0) this.form([errorsView(instance.name, 'Factor on the errors of all its devices')], 'Errors');
     list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
     list('Controllers', 'brain', (instance.controllers ?? []).map((c) => ({path: c.path, name: c.name, detail: c.kind.replace(/_/g, ' ')})));
   }
@@ -178,7 +180,7 @@ export class Inspector implements Panel {
     this.parts.push(part);
   }
 
-  private form(views: FieldView[]): void {
+  private form(views: FieldView[], title = 'Parameters'): void {
     const {parameters, store} = this.context;
     if (views.length === 0) return;
     const ordered = [...views].sort((a, b) => Number(b.tunable) - Number(a.tunable));
@@ -198,7 +200,7 @@ export class Inspector implements Panel {
     };
     const tunable = ordered.filter((v) => v.tunable);
     const fixed = ordered.filter((v) => !v.tunable);
-    section.append(heading('Parameters'));
+    section.append(heading(title));
     if (tunable.length === 0) section.append(h('div', {class: 'none faint'}, 'Nothing here changes while running'));
     put(section, tunable);
     if (fixed.length > 0) {

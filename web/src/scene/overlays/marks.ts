@@ -13,6 +13,24 @@ export interface RangeReading {
   field_of_view: number;
 }
 
+/** What a detector tells of one thing, its place in the world. */
+export interface Detection {
+  place: [number, number, number];
+  color: { r: number; g: number; b: number };
+}
+
+/** What a camera says of its lens (sensor_msgs/CameraInfo). */
+export interface CameraView {
+  width: number;
+  height: number;
+  fx: number;
+  fy: number;
+  /** Of the right one of a pair: its place, to the left. */
+  left_m: number;
+  /** A lens that sees all round, or wider than a pyramid can show. */
+  round: boolean;
+}
+
 /** Colours that stay apart for most colour-blind eyes and on both themes. */
 const TEAM_COLORS = ['#e5484d', '#3e7bfa', '#f5a524', '#30a46c', '#8e4ec6', '#12a5c9', '#e93d82', '#978365'];
 
@@ -25,10 +43,12 @@ export function teamColors(names: Iterable<string>): Map<string, THREE.Color> {
 /** A team that is called by a colour has it. */
 const NAMED: Record<string, string> = {
   red: TEAM_COLORS[0], blue: TEAM_COLORS[1], yellow: '#f2c40f', orange: TEAM_COLORS[2], green: TEAM_COLORS[3], purple: TEAM_COLORS[4], pink: TEAM_COLORS[6],
+  cyan: TEAM_COLORS[5], magenta: '#d6189b', white: '#e8e8e8', black: '#202428',
 };
 
 /** Above so many link frames the picture would be all arrows. */
 const MOST_FRAMES = 2000;
+const MOST_DETECTIONS = 5000;
 const FLAT = 0.7;
 
 export class Marks {
@@ -37,11 +57,16 @@ export class Marks {
   private readonly velocities: Stamps;
   private readonly contacts: Stamps;
   private readonly pyramids: Stamps;
+  private readonly circles: Stamps;
+  private readonly diamonds: Stamps;
   private readonly cones: Stamps;
   private readonly all: Record<string, Stamps>;
   private readonly ranges = new Map<string, RangeReading>();
-  private readonly shown: Record<string, boolean> = { teams: true, ranges: true };
+  private readonly detections = new Map<string, Detection[]>();
+  private readonly views = new Map<string, {path: string; view: CameraView}>();
+  private readonly shown: Record<string, boolean> = { teams: true, ranges: true, objects: true };
   private teams = new Map<string, THREE.Color>();
+  private readonly paint = new THREE.Color();
   private readonly pose = new Float64Array(7);
   private readonly local = Float64Array.of(1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0);
 
@@ -53,8 +78,10 @@ export class Marks {
     this.velocities = new Stamps(root, arrowGeometry(0.05, 0.13, 0.28), flat('#18a058', 0.95, { depthTest: false }));
     this.contacts = new Stamps(root, arrowGeometry(0.06, 0.16, 0.36), flat('#f5a524', 0.95, { depthTest: false }));
     this.pyramids = new Stamps(root, pyramidGeometry(), flat('#6aa5ff', 0.5, { side: THREE.DoubleSide }));
+    this.diamonds = new Stamps(root, new THREE.OctahedronGeometry(0.09), flat('#ffffff', 0.75, { depthTest: false }), true);
+    this.circles = new Stamps(root, new THREE.TorusGeometry(1, 0.006, 6, 72), flat('#6aa5ff', 0.5));
     this.cones = new Stamps(root, coneGeometry(), flat('#37c2d6', 0.15, { side: THREE.DoubleSide }));
-    this.all = { frames: this.frames, teams: this.rings, velocity: this.velocities, contacts: this.contacts, frusta: this.pyramids, ranges: this.cones };
+    this.all = { frames: this.frames, teams: this.rings, velocity: this.velocities, contacts: this.contacts, frusta: this.pyramids, circles: this.circles, objects: this.diamonds, ranges: this.cones };
     for (const [name, stamps] of Object.entries(this.all)) {
       stamps.visible = this.shown[name] ?? false;
       stamps.mesh.renderOrder = name === 'frames' || name === 'contacts' ? 12 : 4;
@@ -65,6 +92,13 @@ export class Marks {
     this.shown[name] = show;
     const stamps = this.all[name];
     if (stamps) stamps.visible = show;
+    if (name === 'frusta') this.circles.visible = show;
+  }
+
+  /** @param topic  that told of the view; `path`: of its device */
+  setView(topic: string, path: string, view: CameraView | null): void {
+    if (view) this.views.set(topic, {path, view});
+    else this.views.delete(topic);
   }
 
   setTeams(teams: Map<string, THREE.Color>): void {
@@ -74,6 +108,22 @@ export class Marks {
   setRange(path: string, range: RangeReading | null): void {
     if (range) this.ranges.set(path, range);
     else this.ranges.delete(path);
+  }
+
+  /** @param source  the topic that told of them */
+  setDetections(source: string, detections: Detection[] | null): void {
+    if (detections) this.detections.set(source, detections);
+    else this.detections.delete(source);
+    this.diamonds.begin();
+    for (const { place, color } of [...this.detections.values()].flat().slice(0, MOST_DETECTIONS)) {
+      if (!Number.isFinite(place[0] + place[1] + place[2])) continue;
+      const o = this.diamonds.next();
+      this.diamonds.color(this.paint.setRGB(color.r, color.g, color.b, THREE.SRGBColorSpace));
+      this.setScale(1, 1, 1);
+      this.pose.set([...place, 1, 0, 0, 0]);
+      composeMatrix(this.pose, 0, this.local, this.diamonds.matrices, o);
+    }
+    this.diamonds.end();
   }
 
   setContacts(contacts: Contacts): void {
@@ -92,6 +142,10 @@ export class Marks {
 
   clear(): void {
     this.ranges.clear();
+    this.views.clear();
+    this.detections.clear();
+    this.diamonds.begin();
+    this.diamonds.end();
     this.contacts.begin();
     this.contacts.end();
   }
@@ -169,14 +223,24 @@ export class Marks {
 
   private writePyramids(bodies: Bodies): void {
     this.pyramids.begin();
-    for (const { body, device } of bodies.devices.values()) {
-      if (!device.kind.includes('camera')) continue;
-      body.devicePose(device, this.pose);
-      // 60 degrees wide, 4 : 3, a metre deep, until the camera says what it sees.
-      this.setScale(1, 2 * Math.tan(Math.PI / 6), 2 * Math.tan(Math.PI / 6) * 0.75);
-      composeMatrix(this.pose, 0, this.local, this.pyramids.matrices, this.pyramids.next());
+    this.circles.begin();
+    for (const { path, view } of this.views.values()) {
+      const found = bodies.devices.get(path);
+      if (found === undefined) continue;
+      found.body.devicePose(found.device, this.pose);
+      this.local[10] = view.left_m;
+      if (view.round) {
+        this.setScale(0.6, 0.6, 0.6);
+        composeMatrix(this.pose, 0, this.local, this.circles.matrices, this.circles.next());
+      } else {
+        // A metre deep.
+        this.setScale(1, view.width / view.fx, view.height / view.fy);
+        composeMatrix(this.pose, 0, this.local, this.pyramids.matrices, this.pyramids.next());
+      }
+      this.local[10] = 0;
     }
     this.pyramids.end();
+    this.circles.end();
   }
 
   private writeCones(bodies: Bodies): void {

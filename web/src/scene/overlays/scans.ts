@@ -28,10 +28,11 @@ export class Scans {
     side: THREE.DoubleSide,
     depthWrite: false,
     // Strong at the sensor and faint where it ends, so that several fans do not dye the room.
+    uniforms: { share: { value: 1 } },
     vertexShader: `attribute float strength; varying float alpha;
       void main() { alpha = strength; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-    fragmentShader: `varying float alpha;
-      void main() { gl_FragColor = vec4(1.0, 0.25, 0.12, alpha * alpha * 0.09 + 0.008);
+    fragmentShader: `varying float alpha; uniform float share;
+      void main() { gl_FragColor = vec4(1.0, 0.25, 0.12, share * (alpha * alpha * 0.09 + 0.008));
         #include <colorspace_fragment>
       }`,
   });
@@ -176,7 +177,13 @@ export class Scans {
     drawn.fan.renderOrder = 5;
     drawn.points.renderOrder = 6;
     this.drawn.set(path, drawn);
+    this.share();
     return drawn;
+  }
+
+  /** Many fans over each other are as strong as three. */
+  private share(): void {
+    this.fan_material.uniforms.share.value = Math.min(1, 3 / Math.max(1, this.drawn.size));
   }
 
   private remove(path: string, drawn: Drawn): void {
@@ -184,6 +191,7 @@ export class Scans {
     drawn.points.geometry.dispose();
     drawn.fan.geometry.dispose();
     this.drawn.delete(path);
+    this.share();
   }
 }
 

@@ -1,4 +1,4 @@
-#include "physics/rigid/overlap.h"
+#include "physics/distance.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
-namespace sandlot::rigid {
+namespace sandlot {
 namespace {
 
 TEST(Overlap, DistancesAreThoseOfTheSolids) {
@@ -73,4 +73,4 @@ TEST(Overlap, AMeshOfABoxIsABoxAndTerrainIsItsTriangles) {
 }
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot

@@ -1,4 +1,4 @@
-#include "physics/rigid/overlap.h"
+#include "physics/distance.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
-namespace sandlot::rigid {
+namespace sandlot {
 namespace {
 
 double from_segment(Vec3 a, Vec3 b) {
@@ -147,4 +147,4 @@ double distance_m(const Shape& shape, Vec3 point_G, double limit_m) {
   return std::visit(Distance{point_G, limit_m}, shape);
 }
 
-}  // namespace sandlot::rigid
+}  // namespace sandlot

@@ -9,10 +9,10 @@
 
 #include "geometry/shape.h"
 
-namespace sandlot::rigid {
+namespace sandlot {
 
 /// Distance [m] from a point in the shape's own frame to the solid; 0 inside.
 /// @param limit_m  a distance above it may come out as any number above it
 double distance_m(const Shape& shape, Vec3 point_G, double limit_m = std::numeric_limits<double>::infinity());
 
-}  // namespace sandlot::rigid
+}  // namespace sandlot

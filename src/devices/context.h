@@ -1,0 +1,64 @@
+#pragma once
+/// What the phase functions of devices see and touch in a tick.
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/time.h"
+#include "devices/thing.h"
+#include "geometry/rays.h"
+#include "media/emission.h"
+#include "physics/engine.h"
+
+namespace sandlot::optics {
+class PictureScene;  // optics/picture.h
+}
+
+namespace sandlot {
+
+class TopicBase;  // messages/topic.h
+
+/// What other devices have published; for those that work with another one, such as a pan-tilt unit with its camera.
+class TopicFinder {
+ public:
+  /// "/robot1/camera/objects"; null when there is none. Valid within the phase.
+  virtual const TopicBase* find_topic(std::string_view name) const = 0;
+
+ protected:
+  ~TopicFinder() = default;
+};
+
+/// What actuators want from the engine in this sub-step; filled in pool order, capacity reused.
+struct Actuation {
+  std::vector<Wrench> wrenches;
+  std::vector<JointTarget> joints;
+  std::vector<DriveTarget> drives;
+  std::vector<RollTarget> rolls;
+  std::vector<WheelTarget> wheels;
+  std::vector<GripTarget> grips;
+  Watch watch;  ///< forces of this sub-step that somebody wants to see after it
+  void clear() {
+    watch.clear(), rolls.clear(), wheels.clear(), grips.clear();
+    wrenches.clear();
+    joints.clear();
+    drives.clear();
+  }
+};
+
+/// What a kind's phase functions may see and touch.
+struct Context {
+  Time now;   ///< end of the tick that is being computed
+  Time tick;  ///< its length
+  std::uint64_t tick_index = 0;
+  std::uint64_t seed = 0;
+  const Engine& engine;
+  const RayCaster& rays;
+  Actuation& actuation;
+  EmissionBuffer& emissions;
+  // For kinds that see (Kind::sees), in the sense phase; nothing for the others.
+  optics::PictureScene* pictures = nullptr;  ///< draws the visuals as they are at `now`
+  std::span<const Thing> things = {};        ///< what detectors tell apart
+  const TopicFinder* topics = nullptr;       ///< null in tests of single kinds alone
+};
+
+}  // namespace sandlot
