@@ -1,7 +1,9 @@
 #include "devices/camera_sdf.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/math.h"
 #include "base/text.h"
@@ -10,7 +12,7 @@
 namespace sandlot::sdf_element {
 namespace {
 
-constexpr double sdf_fov_rad = 1.047;
+constexpr double sdf_fov_rad = 1.047, sdf_width = 320;
 
 void set(Node& config, const char* key, const char* value, const Node& from) {
   config.set(key, Node::scalar(value, from.place()));
@@ -65,7 +67,80 @@ Status copy_distortion(const Node& camera, Node& config) {
   return {};
 }
 
-/// The lens of a wide-angle camera: one of gazebo's names for r(theta).
+/// How a wide-angle lens maps angles, r = c1 f fun(theta / c2): written with slope 1 at 0 as c2 fun(theta / c2), and what
+/// that has to be multiplied by.
+struct Curve {
+  enum class Function : std::uint8_t { id, sin, tan } function;
+  double c2, scale;
+
+  double radius(double theta) const {
+    switch (function) {
+      case Function::sin: return c2 * math::sin(theta / c2);
+      case Function::tan: return c2 * math::tan(theta / c2);
+      case Function::id: break;
+    }
+    return theta;
+  }
+  /// Where it ends: the sine falls again, and of the tangent an image of some size takes in no more.
+  double largest_theta() const {
+    const double half_turn = std::numbers::pi;
+    if (function == Function::sin) return std::min(half_turn, 0.5 * half_turn * c2);
+    if (function == Function::tan) return std::min(half_turn, 0.47 * half_turn * c2);
+    return half_turn;
+  }
+};
+
+struct NamedCurve {
+  const char *sdf, *ours;
+  Curve curve;
+};
+constexpr NamedCurve named_curves[] = {{"stereographic", "stereographic", {Curve::Function::tan, 2, 1}},
+                                       {"equidistant", "equidistant", {Curve::Function::id, 1, 1}},
+                                       {"equisolid_angle", "equisolid", {Curve::Function::sin, 2, 1}},
+                                       {"orthographic", "orthographic", {Curve::Function::sin, 1, 1}}};
+
+Result<Curve> custom_curve(const Node& lens, Diagnostics& diagnostics) {
+  double c1 = 1, c2 = 1, c3 = 0, f = 1;
+  for (auto [key, value] : {std::pair{"c1", &c1}, {"c2", &c2}, {"c3", &c3}, {"f", &f}}) {
+    SL_ASSIGN(const auto given, number(lens, std::string("custom_function/") + key));
+    if (given) *value = *given;
+  }
+  if (!(c1 * f > 0) || !(c2 > 0)) return lens.error("c1 f and c2 of a lens' <custom_function> are above 0");
+  if (c3 != 0)
+    diagnostics.warn(lens.error("c3 of <custom_function> is not supported: the optical axis is its own image",
+                                "0 is used"));
+  const Node* const node = find(lens, "custom_function/fun");
+  const std::string fun = text(node);
+  if (node && fun != "tan" && fun != "sin" && fun != "id")
+    return node->error("'" + fun.substr(0, 40) + "' is no function of a lens", "write sin, tan or id");
+  if (fun == "id") return Curve{Curve::Function::id, 1, c1 * f / c2};
+  return Curve{fun == "sin" ? Curve::Function::sin : Curve::Function::tan, c2, c1 * f / c2};
+}
+
+/// The polynomial of a fisheye (kannala_brandt) through four places of the curve: those of Chebyshev in theta^2, so that
+/// what it errs by between them is spread evenly.
+Node polynomial_of(const Curve& curve, double up_to_rad, const Place& place) {
+  constexpr int n = 4;
+  double x[n], p[n];
+  for (int i = 0; i < n; ++i) {
+    x[i] = 0.5 * up_to_rad * up_to_rad * (1 - math::cos(std::numbers::pi * (2 * i + 1) / (2 * n)));
+    const double theta = std::sqrt(x[i]);
+    p[i] = (curve.radius(theta) / theta - 1) / x[i];
+  }
+  for (int k = 1; k < n; ++k)  // Newton's divided differences ...
+    for (int i = n - 1; i >= k; --i) p[i] = (p[i] - p[i - 1]) / (x[i] - x[i - k]);
+  double k[n] = {p[n - 1]};  // ... multiplied out
+  for (int i = n - 2; i >= 0; --i) {
+    for (int j = n - 1; j > 0; --j) k[j] = k[j - 1] - x[i] * k[j];
+    k[0] = p[i] - x[i] * k[0];
+  }
+  Node keys = Node::map(place);
+  for (int i = 0; i < n; ++i) keys.set("k" + std::to_string(i + 1), Node::scalar(number_text(k[i]), place));
+  return keys;
+}
+
+/// The lens of a wide-angle camera. The image ends at <horizontal_fov> (or has the scale of the lens' own function), the
+/// picture in it at <cutoff_angle>.
 Status copy_lens(const Node& camera, Node& config, Diagnostics& diagnostics) {
   const Node* const lens = find(camera, "lens");
   if (!lens) return {};
@@ -76,20 +151,36 @@ Status copy_lens(const Node& camera, Node& config, Diagnostics& diagnostics) {
   const Node* const type = find(*lens, "type");
   const std::string name = text(type);
   if (!type || name == "gnomonical" || name.empty()) return {};
-  for (const auto& [sdf, ours] : {std::pair{"stereographic", "stereographic"},
-                                  {"equidistant", "equidistant"},
-                                  {"equisolid_angle", "equisolid"},
-                                  {"orthographic", "orthographic"}})
-    if (name == sdf) {
-      set(config, "lens", ours, *type);
-      const Node* const scale = find(*lens, "scale_to_hfov");
-      if (const std::string value = text(scale); scale && value != "true" && value != "1")
-        diagnostics.warn(scale->error("a lens that is not scaled to the field of view is not supported",
-                                      "it is scaled to <horizontal_fov>"));
-      return {};
-    }
-  diagnostics.warn(
-      type->error("the lens '" + name.substr(0, 40) + "' is not supported", "a pinhole is used"));
+  const auto named = std::find_if(std::begin(named_curves), std::end(named_curves),
+                                  [&](const NamedCurve& each) { return name == each.sdf; });
+  if (named == std::end(named_curves) && name != "custom") {
+    std::vector<std::string> known{"gnomonical", "custom"};
+    for (const NamedCurve& each : named_curves) known.emplace_back(each.sdf);
+    return type->error("'" + name.substr(0, 40) + "' is no type of a lens", suggestion(name, known));
+  }
+  Curve curve{};
+  if (named != std::end(named_curves)) {
+    curve = named->curve;
+  } else {
+    SL_ASSIGN(curve, custom_curve(*lens, diagnostics));
+  }
+  SL_ASSIGN(const auto fov, number(camera, "horizontal_fov"));
+  SL_ASSIGN(const auto width, number(camera, "image/width"));
+  SL_ASSIGN(const auto cutoff, number(*lens, "cutoff_angle"));
+  const double largest = std::min(cutoff.value_or(std::numbers::pi / 2), curve.largest_theta());
+  const double edge = 0.5 * fov.value_or(sdf_fov_rad), half_width = 0.5 * width.value_or(sdf_width);
+  if (!(largest > 0) || !(edge > 0)) return type->error("this lens sees nothing", "angles above 0");
+  if (!config.find("fx")) {
+    const std::string scaled = text(find(*lens, "scale_to_hfov"));
+    const bool own = scaled == "false" || scaled == "0";
+    if (!own && edge > curve.largest_theta())
+      return type->error("no lens of this type is as wide as <horizontal_fov>",
+                         "at most " + short_text(2 * curve.largest_theta()) + " rad");
+    config.set("fx", scalar(half_width * (own ? curve.scale : 1 / curve.radius(edge)), *type));
+  }
+  config.set("horizontal_fov", scalar(2 * largest, *type));
+  set(config, "lens", named != std::end(named_curves) ? named->ours : "kannala_brandt", *type);
+  if (named == std::end(named_curves)) config.set("distortion", polynomial_of(curve, largest, type->place()));
   return {};
 }
 
