@@ -233,6 +233,7 @@ model::Model random_model(Random& random) {
   model::Model m;
   m.name = "m";
   m.self_collide = random() > 0;
+  m.label = random() > 0 ? "40" : "";
   const char* const scopes[] = {"", "", "in::", "in::deep::", "other::"};
   for (const char* const scope : scopes)
     for (int i = 0, n = 1 + random.below(3); i < n; ++i) {

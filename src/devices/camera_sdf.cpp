@@ -207,6 +207,10 @@ Result<Node> camera_keys(const Node& element, Diagnostics& diagnostics, CameraUs
   if (const Node* const pose = find(camera, "pose"); pose && !use.pose)
     diagnostics.warn(
         pose->error("<pose> of <camera> is not supported and has no effect", "give it to the <sensor>"));
+  if (const Node* const mask = find(camera, "visibility_mask"))
+    if (const std::string bits = text(mask);
+        bits != "4294967295" && bits != "0xFFFFFFFF" && bits != "0xffffffff")
+      diagnostics.warn(mask->error("visibility masks are not supported", "every visual is seen"));
   warn_unknown(camera,
                {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens", "depth_camera",
                 "topic", "camera_info_topic", "optical_frame_id", "visibility_mask", "save",

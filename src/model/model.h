@@ -147,6 +147,7 @@ struct Model {
   std::string name;  ///< as the file spells it
   bool is_static = false;
   bool self_collide = false;
+  std::string label;        ///< what detectors call it; "": its name
   std::vector<Link> links;  ///< [0] is the canonical link
   std::vector<Joint> joints;
   std::vector<Frame> frames;
@@ -192,7 +193,7 @@ struct Instance {
   Pose X_WM;
   bool is_robot = false;
   std::string team;
-  std::string label;               ///< what detectors call it: "ball"; "" for its model's name
+  std::string label;               ///< what detectors call it: "ball"; "" for its model's label
   SharedList<DeviceDecl> devices;  ///< the model's own with the scenario's changes
   SharedList<ControllerDecl> controllers;
   std::optional<Motion> motion;

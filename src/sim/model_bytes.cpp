@@ -373,6 +373,7 @@ void controller(auto& io, auto& c) {
 
 void whole_model(auto& io, auto& m) {
   io.value(m.name);
+  io.value(m.label);
   io.value(m.is_static);
   io.value(m.self_collide);
   list(io, m.links, [](auto& i, auto& l) { link(i, l); });

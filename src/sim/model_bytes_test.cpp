@@ -64,6 +64,7 @@ model::Setup full_setup() {
   joint.mimic = model::Mimic{0, 2, 0.1, 0.2};
   joint.rollers = model::RollerWheel{.radius_m = 0.06, .count = 7, .rows = 2, .surface = {.mu = 0.3}};
   joint.roller_of = 0;
+  made->label = "7";
   made->joints.push_back(joint);
   model::Light lamp{model::Light::Type::spot,
                     "lamp",

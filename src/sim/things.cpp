@@ -57,7 +57,9 @@ std::vector<Thing> things_of(std::span<const std::unique_ptr<SimulationParts::En
     if (bounds.empty()) continue;
     Thing& thing = things.emplace_back();
     thing.name = instance.name;
-    thing.label = instance.label.empty() ? instance.model->name : instance.label;
+    const std::string& of_model = instance.model->label.empty() ? instance.model->name
+                                                                : instance.model->label;
+    thing.label = instance.label.empty() ? of_model : instance.label;
     thing.team = instance.team;
     thing.is_robot = instance.is_robot;
     thing.moves = !instance.model->is_static || instance.motion.has_value();

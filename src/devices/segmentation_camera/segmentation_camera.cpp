@@ -1,7 +1,9 @@
 #include "devices/segmentation_camera/segmentation_camera.h"
 
+#include <cmath>
 #include <cstring>
 
+#include "base/text.h"
 #include "devices/camera_sdf.h"
 #include "devices/instances.h"
 
@@ -26,6 +28,16 @@ std::array<std::uint8_t, 3> color_of(std::uint32_t number) {
   }
 }
 
+std::uint8_t number_of(const std::string& label, const std::vector<std::string>& labels) {
+  if (labels.empty()) {
+    double number = 0;
+    const bool whole = parse_number(label, number) && number == std::floor(number);
+    return whole && number >= 1 && number <= 255 ? static_cast<std::uint8_t>(number) : std::uint8_t{0};
+  }
+  const auto at = std::find(labels.begin(), labels.end(), label);
+  return at == labels.end() ? std::uint8_t{0} : static_cast<std::uint8_t>(at - labels.begin() + 1);
+}
+
 void show(Camera& camera, const Context& context) {
   std::uint32_t last = 0;  // neighbours are mostly of one thing
   std::uint8_t label = 0;
@@ -40,10 +52,7 @@ void show(Camera& camera, const Context& context) {
       last = instance;
       label = 0;
       const Thing* const thing = eye::thing_of(context.things, instance);
-      const auto& all = camera.spec.labels;
-      if (const auto at = thing ? std::find(all.begin(), all.end(), thing->label) : all.end();
-          at != all.end())
-        label = static_cast<std::uint8_t>(at - all.begin() + 1);
+      if (thing) label = number_of(thing->label, camera.spec.labels);
       color = color_of(label == 0 || camera.spec.color_by == ColorBy::label ? label : instance);
     }
     const std::uint32_t shown = label == 0 ? 0 : instance;
@@ -91,18 +100,12 @@ namespace {
 constexpr LevelInfo levels[] = {{"labels", msg::Image::ros_type, "", "Class and instance of every pixel."}};
 constexpr const char* sdf_types[] = {"sensor:segmentation", "sensor:segmentation_camera"};
 
-/// SDF's labels are numbers of visuals (a plugin of Gazebo's); ours are names of things.
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   SL_ASSIGN(Node config, sdf_element::camera_keys(element, diagnostics, {}));
   const Node* const type = sdf_element::find(element, "camera/segmentation_type");
   const std::string name = sdf_element::text(type);
   if (type && (name == "panoptic" || name == "instance"))
     config.set("color_by", Node::scalar("instance", type->place()));
-  diagnostics.warn(element.error("labels of a segmentation camera are not read from this file",
-                                 "give the list 'labels' to the device in the scenario"));
-  Node labels = Node::sequence(element.place());
-  labels.push(Node::scalar("robot", element.place()));
-  config.set("labels", std::move(labels));
   return config;
 }
 }  // namespace

@@ -2,7 +2,8 @@
 /// Camera that knows what it sees: for every pixel the class and the instance.
 ///
 /// Frame, lens   as camera.
-/// Output   <device>/labels: mono8, the place of the thing's label in `labels` counted from 1, or 0 for everything else.
+/// Output   <device>/labels: mono8, the place of the thing's label in `labels` counted from 1 (without them the number that the label
+///          is, as in Gazebo's worlds), or 0 for everything else.
 ///          <device>/instances: 32SC1, a number per thing that is never given twice in a run, or 0. <device>/colored: rgb8, a
 ///          colour per label (`color_by: instance`: per instance), black for 0. <device>/camera_info.
 /// Noise    none: this is truth, for training and comparing.
@@ -29,7 +30,11 @@ struct Spec : eye::LensKeys {
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"near", "m", "Nearer surfaces are not seen.", 0, 1e4}, s.near_m);
     visit(Field{"far", "m", "Nor farther ones.", 1e-3, 1e6}, s.far_m);
-    visit(Field{"labels", "", "The classes, in the order of their numbers.", 0, 0, Field::required, 255, 1},
+    visit(Field{"labels", "",
+                "The classes, in the order of their numbers from 1 on; none: labels that are whole numbers "
+                "up to 255 "
+                "stand for themselves.",
+                0, 0, Field::none, 255},
           s.labels);
     visit(Field{"color_by", "", "What the coloured picture shows."}, s.color_by);
   }

@@ -89,6 +89,10 @@ class ModelReader {
         read_frame(child, prefix);
       } else if (child.name == "plugin") {
         SL_ASSIGN(model::DeviceDecl device, read_plugin(child));
+        if (is_label(device)) {
+          if (prefix.empty()) SL_TRY(read_label(child));
+          continue;
+        }
         device.link = first_link;
         add(std::move(device), prefix);
       } else if (child.name == "model") {
@@ -103,6 +107,15 @@ class ModelReader {
         add(std::move(device), prefix);
       }
     }
+    return {};
+  }
+
+  /// Gazebo's Label plugin says by which number segmentation cameras know a model.
+  static bool is_label(const model::DeviceDecl& plugin) { return plugin.sdf_types.front() == "plugin:Label"; }
+  Status read_label(const Xml& plugin) {
+    const Xml* const label = plugin.child("label");
+    out_.label = label ? std::string(trim(label->text)) : "";
+    if (out_.label.empty()) return plugin.error("this plugin gives no <label>", "<label>40</label>");
     return {};
   }
 

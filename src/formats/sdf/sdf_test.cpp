@@ -254,6 +254,18 @@ TEST(Sdf, ReadsWorlds) {
   EXPECT_TRUE(r.content->instances[1].model->is_static);
 }
 
+TEST(Sdf, ALabelIsTheModelsAndNoDevice) {
+  const std::string label = R"(<plugin name="gz::sim::systems::Label" filename="gz-sim-label-system">)";
+  const Read r = parse(
+      model("<link name='base'>" + std::string(body) + "</link>" + label + "<label> 40 </label></plugin>"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_EQ(r.content->instances[0].model->label, "40");
+  EXPECT_TRUE(r.content->instances[0].model->devices.empty());
+  EXPECT_FALSE(r.content->instances[0].is_robot);
+  EXPECT_NE(parse(model("<link name='base'/>" + label + "</plugin>")).error.find("gives no <label>"),
+            std::string::npos);
+}
+
 TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
   const Read r = parse(model(R"(<link name="base">)" + std::string(body) + R"(
       <sensor name="lidar" type="gpu_lidar"><pose>0.1 0 0.2 0 0 0</pose><always_on>1</always_on><update_rate>10</update_rate>

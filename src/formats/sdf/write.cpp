@@ -67,6 +67,12 @@ class ModelWriter {
     if (model_.is_static) add(out, "static", "true");
     if (model_.self_collide) add(out, "self_collide", "true");
     SL_TRY(write_scope("", out));
+    if (!model_.label.empty()) {
+      Xml& plugin = add(out, "plugin");
+      plugin.set_attribute("filename", "gz-sim-label-system");
+      plugin.set_attribute("name", "gz::sim::systems::Label");
+      add(plugin, "label", model_.label);
+    }
     for (const model::DeviceDecl& device : devices_) {
       if (!is_native(device) && is_sensor(device)) continue;
       Xml each = device_of(device, device.X_LS);
