@@ -19,7 +19,7 @@ render $field --camera follow:cyan4 --size 480x320 --samples 16 --time 2s --no-s
 # Eyes of robots.
 render $field --camera cyan4/omni --set vars.devices.omni.width=480 --set vars.devices.omni.height=480 --set vars.devices.omni.samples=9 \
   --time 2s --out $out/omni.png
-render $field --camera cyan5/head_eye --set vars.devices.head_eye.samples=9 --time 2s --out $out/robot_camera.png
+render $field --camera cyan4/head_eye --set vars.devices.head_eye.samples=9 --time 2s --out $out/robot_camera.png
 for eye in eye fisheye barrel deep gaussian shot salt hundreds pattern dead rows vignetting; do
   render tools/pictures.yaml --camera bot/$eye --time 20ms --out $out/eye_$eye.png
 done
