@@ -27,7 +27,7 @@ constexpr const char* poor_eye =
     " --camera seeker/eye --set robots[0].devices.eye.width=128 --set robots[0].devices.eye.height=96"
     " --set 'robots[0].devices.eye.noise=[{gaussian: {std: 6 %}}, {hundreds_and_thousands: {rate: 30 %}}]'";
 
-TEST(Calibrate, what_it_writes_makes_the_high_level_err_as_the_pictures_did) {
+TEST(SlowCalibrate, what_it_writes_makes_the_high_level_err_as_the_pictures_did) {
   const Scratch scratch;
   const std::string run = "scenarios/ball.yaml" + std::string(poor_eye) + " --samples 1500";
   const auto pictures = calibrated(run + " --out " + scratch.file("eye.yaml"));
@@ -55,7 +55,7 @@ TEST(Calibrate, what_it_writes_makes_the_high_level_err_as_the_pictures_did) {
   EXPECT_NEAR(range_std(told, 3), range_std(pictures, 3), range_std(pictures, 3) * 5 * 0.76 / std::sqrt(n));
 }
 
-TEST(Calibrate, gives_back_the_errors_that_the_level_was_given) {
+TEST(SlowCalibrate, gives_back_the_errors_that_the_level_was_given) {
   const auto told = calibrated(
       "scenarios/ball.yaml --camera seeker/eye --samples 1500 --detector objects"
       " --set 'objects={labels: [ball, goal_blue, goal_yellow, magenta, cyan], miss_rate: 0.1, confusion: "
