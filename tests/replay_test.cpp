@@ -38,6 +38,27 @@ TEST(Replay, a_recording_verifies_both_ways_and_ends_in_the_hash_of_the_run) {
   }
 }
 
+/// Sliders, failures and levels moved by hand: what they do is in the recording, and the same for any number of threads.
+TEST(Replay, a_run_whose_errors_failures_and_levels_are_changed_on_the_way_is_reproducible) {
+  const Scratch scratch;
+  const std::string quiet = "scenarios/errors.yaml --duration 4s";
+  const std::string steered = quiet +
+                              " --command 'at 0.5s set errors 1.7' --command 'at 1s set rover.errors 0.4'"
+                              " --command 'at 1.5s level rover/exact pose'"
+                              " --command 'at 2s set rover/uniform.failure dead'"
+                              " --command 'at 3s level rover/exact ranges'"
+                              " --command 'at 3s set rover/uniform.failure none'";
+  const std::string file = recorded(scratch, "r.mcap", steered);
+  const auto run = read_json(file + ".json");
+  for (const char* way : {"--recompute", "--recompute --threads 4", "--logged --threads 2"}) {
+    const auto replay = json_of("replay " + file + " --verify --json " + way);
+    EXPECT_EQ(replay["verified"], true) << way << replay.dump(2);
+  }
+  for (const char* threads : {"1", "2", "4"})
+    EXPECT_EQ(summary_of(steered + " --threads " + threads)["state_hash"], run["state_hash"]) << threads;
+  EXPECT_NE(summary_of(quiet)["state_hash"], run["state_hash"]);
+}
+
 TEST(Replay, a_continuous_clock_is_replayed_from_the_lengths_it_measured) {
   const Scratch scratch;
   const std::string file = recorded(

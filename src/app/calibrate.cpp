@@ -20,12 +20,15 @@
 namespace sandlot::app {
 namespace {
 
-constexpr double gate_rad = 0.2;  ///< detections farther off in bearing are of something else
+/// Detections farther off in bearing than that, beyond the edge of the thing, are of something else: of a goal that is half out of
+/// the picture a detector tells the middle of the other half.
+constexpr double gate_rad = 0.2;
 constexpr int most_pictures = 12;
 
 struct Seen {
   std::string label, name;
   double bearing_rad = 0, elevation_rad = 0, range_m = 0, visible = 1;
+  double radius_m = 0;  ///< of the truth: half of its size over the ground
 };
 
 /// A world with the camera in it.
@@ -43,6 +46,7 @@ class Stand {
   const model::DeviceDecl& decl() const { return *decl_; }
   const model::Instance& robot() const { return *robot_; }
   double min_visible() const { return min_visible_; }
+  const std::vector<std::string>& labels() const { return labels_; }  ///< that the level looks for; none: all
   std::vector<Seen> told() const;
 
  private:
@@ -54,6 +58,7 @@ class Stand {
   const model::DeviceDecl* decl_ = nullptr;
   const model::Instance* robot_ = nullptr;
   double min_visible_ = 0.15;
+  std::vector<std::string> labels_;
 };
 
 Status Stand::tick() {
@@ -103,8 +108,10 @@ Result<std::unique_ptr<Stand>> Stand::make(const CalibrateOptions& options, bool
     for (const char* field : {"miss_rate", "miss_rate_per_m", "miss_rate_hidden", "ghost_rate", "confusion",
                               "bearing_std", "range_std", "range_std_per_m"})
       SL_TRY(stand->set((std::string("objects/") + field).c_str(), "0"));
+  const Node* const objects = stand->decl_->config.find("objects");
+  if (const Node* const labels = objects ? objects->find("labels") : nullptr)
+    for (const Node& label : labels->items()) stand->labels_.push_back(label.text());
   if (exact) {
-    const Node* objects = stand->decl_->config.find("objects");
     const Node* least = objects ? objects->find("min_visible") : nullptr;
     if (double given = 0; least && parse_number(least->text(), given)) stand->min_visible_ = given;
     SL_TRY(stand->set("objects/min_visible", "0.02"));
@@ -133,9 +140,14 @@ Status Stand::next_sample(Time not_before) {
 
 std::vector<Seen> Stand::told() const {
   std::vector<Seen> out;
-  for (const msg::Object& object : topic<msg::ObjectArray>("objects")->message.objects)
+  const std::vector<Thing>& things = sim_->sight().things;
+  for (const msg::Object& object : topic<msg::ObjectArray>("objects")->message.objects) {
     out.push_back(
         {object.label, object.name, object.bearing, object.elevation, object.range, object.visible});
+    for (const Thing& thing : things)
+      if (!object.name.empty() && thing.name == object.name)
+        out.back().radius_m = 0.5 * math::hypot(thing.bounds_B.size().x, thing.bounds_B.size().y);
+  }
   return out;
 }
 
@@ -145,20 +157,26 @@ struct Wanted {
   double height_m = 0;
 };
 
-std::vector<Wanted> wanted_of(Simulation& sim, const Stand& stand, const CalibrateOptions& options) {
+std::vector<Wanted> wanted_of(Simulation& sim, const Stand& stand, const CalibrateOptions& options,
+                              Diagnostics& diagnostics) {
   std::vector<Wanted> out;
+  std::vector<std::string> grey;
   for (const Thing& thing : sim.sight().things) {
     if (thing.name == stand.robot().name) continue;
     if (!options.labels.empty() &&
         std::find(options.labels.begin(), options.labels.end(), thing.label) == options.labels.end())
       continue;
+    const auto red = static_cast<double>(thing.color.r), green = static_cast<double>(thing.color.g),
+               blue = static_cast<double>(thing.color.b);
+    if (options.detector == "picture" && !perception::has_hue(perception::hsv_of(red, green, blue))) {
+      if (std::find(grey.begin(), grey.end(), thing.label) == grey.end()) grey.push_back(thing.label);
+      continue;
+    }
     const Vec3 size = thing.bounds_B.size();
     const double most = std::max({size.x, size.y, size.z}), least = std::min({size.x, size.y, size.z});
     Wanted w;
     w.target.label = thing.label;
-    w.target.colour = perception::range_around(static_cast<double>(thing.color.r),
-                                               static_cast<double>(thing.color.g),
-                                               static_cast<double>(thing.color.b));
+    w.target.colour = perception::range_around(red, green, blue);
     w.height_m = size.z;
     if (least > 0.85 * most && most < 1) {
       w.target.form = perception::Form::ball;
@@ -176,6 +194,10 @@ std::vector<Wanted> wanted_of(Simulation& sim, const Stand& stand, const Calibra
     };
     if (out.size() < 200 && std::none_of(out.begin(), out.end(), alike)) out.push_back(w);
   }
+  for (const std::string& label : grey)
+    diagnostics.warn({"things with the label '" + label.substr(0, 100) +
+                          "' are black, white or grey for the most part, and so is much else in a picture",
+                      "they are left out: their errors have to come from elsewhere"});
   return out;
 }
 
@@ -237,24 +259,40 @@ class Shuffle {
   std::vector<Piece> things_, fixed_;
 };
 
-/// Pairs what was detected with what is there, the nearest bearings first, and counts.
-void compare(const std::vector<Seen>& truth, const std::vector<Seen>& detected, double min_visible,
-             std::vector<Sighted>& sighted, Calibration& out) {
+double bearing_off(const Seen& is, const Seen& told) {
+  return std::abs(math::wrap_angle(told.bearing_rad - is.bearing_rad));
+}
+/// Whether that may have been told of this, whatever its label.
+bool is_near(const Seen& is, const Seen& told) {
+  return bearing_off(is, told) < gate_rad + math::atan2(is.radius_m, is.range_m) &&
+         std::abs(told.range_m - is.range_m) < std::max(0.6, 0.6 * is.range_m) + is.radius_m;
+}
+
+/// Pairs what was detected with what is there, the nearest bearings first, and counts. Another label at the place of a thing is a
+/// confusion, where nothing with the right one is about as near.
+/// @param aside  things that are not in the truth: a strip of a goal at the picture's edge is none, and no ghost either
+void compare(const std::vector<Seen>& truth, const std::vector<Seen>& aside,
+             const std::vector<Seen>& detected, double min_visible, std::vector<Sighted>& sighted,
+             Calibration& out) {
+  constexpr double other_label_rad = 0.05;
   struct Pair {
     double off;
     std::size_t t, d;
   };
   std::vector<Pair> pairs;
-  for (std::size_t t = 0; t < truth.size(); ++t)
-    for (std::size_t d = 0; d < detected.size(); ++d) {
-      const double off = std::abs(math::wrap_angle(detected[d].bearing_rad - truth[t].bearing_rad));
-      const bool near = std::abs(detected[d].range_m - truth[t].range_m) <
-                        std::max(0.6, 0.6 * truth[t].range_m);
-      if (truth[t].label == detected[d].label && off < gate_rad && near) pairs.push_back({off, t, d});
-    }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.off < b.off; });
   std::vector<std::size_t> of_truth(truth.size(), detected.size());
-  std::vector<bool> used(detected.size());
+  std::vector<bool> used(detected.size()), beside(detected.size());
+  for (std::size_t d = 0; d < detected.size(); ++d) {
+    beside[d] = std::any_of(aside.begin(), aside.end(), [&](const Seen& is) {
+      return is.label == detected[d].label && is_near(is, detected[d]);
+    });
+    for (std::size_t t = 0; t < truth.size(); ++t) {
+      const bool same_label = truth[t].label == detected[d].label;
+      if (is_near(truth[t], detected[d]) && (same_label || !beside[d]))
+        pairs.push_back({bearing_off(truth[t], detected[d]) + (same_label ? 0 : other_label_rad), t, d});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.off < b.off; });
   for (const Pair& pair : pairs)
     if (of_truth[pair.t] == detected.size() && !used[pair.d]) of_truth[pair.t] = pair.d, used[pair.d] = true;
   for (std::size_t t = 0; t < truth.size(); ++t) {
@@ -265,14 +303,20 @@ void compare(const std::vector<Seen>& truth, const std::vector<Seen>& detected, 
     if (of_truth[t] < detected.size()) {
       const Seen& d = detected[of_truth[t]];
       s.found = true;
+      s.confused = d.label != truth[t].label;
       s.bearing_error_rad = math::wrap_angle(d.bearing_rad - truth[t].bearing_rad);
       s.range_error_m = d.range_m - truth[t].range_m;
       ++label.found, ++out.found;
+      label.confused += s.confused, out.confused += s.confused;
+      if (!s.confused) {
+        label.bearing_squares += s.bearing_error_rad * s.bearing_error_rad;
+        label.range_squares += s.range_error_m * s.range_error_m;
+      }
     }
     sighted.push_back(s);
   }
   for (std::size_t d = 0; d < detected.size(); ++d)
-    if (!used[d]) ++out.labels[detected[d].label].ghosts, ++out.ghosts;
+    if (!used[d] && !beside[d]) ++out.labels[detected[d].label].ghosts, ++out.ghosts;
 }
 
 /// The picture with frames about what was found and crosses where the truth is.
@@ -316,10 +360,12 @@ Status draw(const std::string& path, const perception::ImageView& view,
 
 }  // namespace
 
-Result<Calibration> calibrate_camera(const CalibrateOptions& options, Diagnostics& diagnostics,
+Result<Calibration> calibrate_camera(const CalibrateOptions& asked, Diagnostics& diagnostics,
                                      const std::function<bool(double)>& progress) {
-  const bool by_picture = options.detector == "picture";
-  SL_ASSIGN(const auto stand, Stand::make(options, true, diagnostics));
+  const bool by_picture = asked.detector == "picture";
+  SL_ASSIGN(const auto stand, Stand::make(asked, true, diagnostics));
+  CalibrateOptions options = asked;
+  if (options.labels.empty()) options.labels = stand->labels();
   std::unique_ptr<Stand> other;
   if (!by_picture) {
     Diagnostics again;
@@ -335,7 +381,7 @@ Result<Calibration> calibrate_camera(const CalibrateOptions& options, Diagnostic
   const model::Model& model = *stand->robot().model;
   const Pose X_BS = inverse(model.links.front().X_ML) * model.links[stand->decl().link].X_ML *
                     stand->decl().X_LS;
-  const std::vector<Wanted> wanted = wanted_of(sim, *stand, options);
+  const std::vector<Wanted> wanted = wanted_of(sim, *stand, options, diagnostics);
   if (wanted.empty())
     return Error{"there is nothing to see beside '" + stand->robot().name + "'",
                  options.labels.empty() ? "put a ball or other robots into the scenario"
@@ -396,7 +442,18 @@ Result<Calibration> calibrate_camera(const CalibrateOptions& options, Diagnostic
       if (!options.pictures.empty() && picture < most_pictures)
         SL_TRY(draw(fmt::format("{}/{:02}.png", options.pictures, picture), view, found, camera, truth));
     }
-    compare(truth, detected, stand->min_visible(), sighted, out);
+    std::vector<Seen> aside;
+    for (const Thing& thing : sim.sight().things) {
+      const auto is_it = [&](const Seen& seen) { return seen.name == thing.name; };
+      if (thing.name == stand->robot().name || std::any_of(truth.begin(), truth.end(), is_it)) continue;
+      const auto& states = sim.engine().states();
+      const Vec3 middle_W = states[thing.bodies[0]].X_WB * thing.bounds_B.centre();
+      const Vec3 at = X_SB * (inverse(states[base].X_WB) * middle_W);
+      const Vec3 size = thing.bounds_B.size();
+      aside.push_back({thing.label, thing.name, math::atan2(at.y, at.x), 0, norm(at), 0,
+                       0.5 * math::hypot(size.x, size.y)});
+    }
+    compare(truth, aside, detected, stand->min_visible(), sighted, out);
     ++out.pictures;
     if (progress && !progress(static_cast<double>(picture + 1) / options.samples)) {
       out.interrupted = true;
@@ -416,12 +473,17 @@ std::string calibration_yaml(const CalibrateOptions& options, const Calibration&
   std::string text = fmt::format(
       "# Errors of a detector in the pictures of {}, for its level `objects`.\n"
       "# Measured by sandlot calibrate in {} pictures: {} things to be seen from {:.2g} to {:.2g} m, {} "
-      "found, {} ghosts.\n",
+      "found ({} taken for something else), {} ghosts.\n",
       options.camera, calibration.pictures, calibration.sighted, fit.nearest_m, fit.farthest_m,
-      calibration.found, calibration.ghosts);
-  for (const auto& [label, counts] : calibration.labels)
-    text += fmt::format("#   {}: {} of {} found, {} ghosts\n", label, counts.found, counts.sighted,
-                        counts.ghosts);
+      calibration.found, calibration.confused, calibration.ghosts);
+  for (const auto& [label, counts] : calibration.labels) {
+    text += fmt::format("#   {}: {} of {} found ({} taken for something else), {} ghosts", label,
+                        counts.found, counts.sighted, counts.confused, counts.ghosts);
+    if (const int right = counts.found - counts.confused; right > 0)
+      text += fmt::format("; rms error {:.2g} rad, {:.2g} m", std::sqrt(counts.bearing_squares / right),
+                          std::sqrt(counts.range_squares / right));
+    text += "\n";
+  }
   text += fmt::format(
       "# Mean errors, which are part of the deviations: bearing {:.2g} rad, range {:.2g} m.\n",
       fit.bearing_mean_rad, fit.range_mean_m);
@@ -436,6 +498,7 @@ std::string calibration_yaml(const CalibrateOptions& options, const Calibration&
   line("miss_rate_per_m", fit.miss_rate_per_m, "");
   line("miss_rate_hidden", fit.miss_rate_hidden, "");
   line("ghost_rate", fit.ghost_rate_hz, "");
+  line("confusion", fit.confusion, "");
   line("bearing_std", fit.bearing_std_rad, "");
   line("range_std", fit.range_std_m, "");
   line("range_std_per_m", fit.range_std_per_m, "");
@@ -468,6 +531,7 @@ int calibrate(const CalibrateOptions& options) {
                                       {"pictures", calibration->pictures},
                                       {"sighted", calibration->sighted},
                                       {"found", calibration->found},
+                                      {"confused", calibration->confused},
                                       {"ghosts", calibration->ghosts},
                                       {"seconds", calibration->seconds},
                                       {"objects",
@@ -475,6 +539,7 @@ int calibrate(const CalibrateOptions& options) {
                                         {"miss_rate_per_m", fit.miss_rate_per_m},
                                         {"miss_rate_hidden", fit.miss_rate_hidden},
                                         {"ghost_rate", fit.ghost_rate_hz},
+                                        {"confusion", fit.confusion},
                                         {"bearing_std", fit.bearing_std_rad},
                                         {"range_std", fit.range_std_m},
                                         {"range_std_per_m", fit.range_std_per_m}}}};

@@ -32,10 +32,11 @@ struct CalibrateOptions {
 
 struct Calibration {
   DetectorFit fit;
-  int pictures = 0, sighted = 0, found = 0, ghosts = 0;
+  int pictures = 0, sighted = 0, found = 0, confused = 0, ghosts = 0;  ///< found: those confused, too
   double seconds = 0;
   struct Label {
-    int sighted = 0, found = 0, ghosts = 0;
+    int sighted = 0, found = 0, confused = 0, ghosts = 0;
+    double bearing_squares = 0, range_squares = 0;  ///< [rad^2, m^2] sums over those found and not confused
   };
   std::map<std::string, Label> labels;
   bool interrupted = false;

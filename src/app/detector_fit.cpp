@@ -43,11 +43,13 @@ DetectorFit fit_detector(std::span<const Sighted> sighted, int ghosts, double se
   if (seconds > 0) fit.ghost_rate_hz = ghosts / seconds;
   if (sighted.empty()) return fit;
   fit.nearest_m = fit.farthest_m = sighted[0].range_m;
-  std::vector<const Sighted*> found;
+  std::vector<const Sighted*> found;  // with its own label: of the others it is less sure what they are
+  int confused = 0;
   for (const Sighted& s : sighted) {
     fit.nearest_m = std::min(fit.nearest_m, s.range_m);
     fit.farthest_m = std::max(fit.farthest_m, s.range_m);
-    if (s.found) found.push_back(&s);
+    if (s.found && !s.confused) found.push_back(&s);
+    confused += s.confused;
   }
 
   const auto all = static_cast<Eigen::Index>(sighted.size());
@@ -71,6 +73,8 @@ DetectorFit fit_detector(std::span<const Sighted> sighted, int ghosts, double se
   fit.miss_rate = std::min(1.0, rates(0));
   fit.miss_rate_per_m = std::min(1.0, rates(1));
   fit.miss_rate_hidden = std::min(1.0, rates(2));
+  if (confused > 0)
+    fit.confusion = confused / static_cast<double>(found.size() + static_cast<std::size_t>(confused));
   if (found.empty()) return fit;
 
   const auto seen = static_cast<Eigen::Index>(found.size());

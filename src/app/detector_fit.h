@@ -2,11 +2,13 @@
 /// From what a detector got right and wrong to the error parameters of a camera's level `objects` (devices/detector.h).
 ///
 /// Model    P(missed) = miss_rate + miss_rate_per_m range + miss_rate_hidden (1 - visible); bearing + bearing_std n;
-///          range + (range_std + range_std_per_m range) n; ghosts come at a constant rate.
+///          range + (range_std + range_std_per_m range) n; ghosts come at a constant rate; of what
+///          is found the part `confusion` is taken for something else.
 /// Method   misses: least squares, weighted by 1 / (P (1 - P)) again and again, of which no parameter may become negative; deviation of
-///          ranges: the same on |error| sqrt(pi / 2), whose mean is the deviation. Systematic errors are in the deviations, and told beside.
+///          ranges: the same on |error| sqrt(pi / 2), whose mean is the deviation. Systematic errors are in the deviations, and told beside. Deviations are those of
+///          what has its own label.
 /// Errors   of N sightings: bearing_std by the factor 1 +- 0.71 / sqrt(N), a deviation of ranges by 1 +- 0.76 / sqrt(N), a miss rate P by
-///          +- sqrt(P (1 - P) / N), where the ranges are alike.
+///          +- sqrt(P (1 - P) / N), where the ranges are alike; the confusion by the same.
 #include <span>
 #include <vector>
 
@@ -15,12 +17,12 @@ namespace sandlot::app {
 /// A thing that was to be seen in a picture.
 struct Sighted {
   double range_m = 0, visible = 1;
-  bool found = false;
+  bool found = false, confused = false;             ///< confused: found, with another label
   double bearing_error_rad = 0, range_error_m = 0;  ///< of those found
 };
 
 struct DetectorFit {
-  double miss_rate = 0, miss_rate_per_m = 0, miss_rate_hidden = 0, ghost_rate_hz = 0;
+  double miss_rate = 0, miss_rate_per_m = 0, miss_rate_hidden = 0, ghost_rate_hz = 0, confusion = 0;
   double bearing_std_rad = 0, range_std_m = 0, range_std_per_m = 0;
   double bearing_mean_rad = 0, range_mean_m = 0;  ///< systematic errors
   double nearest_m = 0, farthest_m = 0;           ///< of what was sighted

@@ -20,6 +20,7 @@ std::vector<Sighted> sightings(const DetectorFit& errors, int n) {
     const double p = errors.miss_rate + errors.miss_rate_per_m * s.range_m +
                      errors.miss_rate_hidden * (1 - s.visible);
     s.found = random.uniform() >= p;
+    s.confused = s.found && i % 10 == 0;
     s.bearing_error_rad = errors.bearing_std_rad * random.normal();
     s.range_error_m = (errors.range_std_m + errors.range_std_per_m * s.range_m) * random.normal();
     out.push_back(s);
@@ -43,6 +44,7 @@ TEST(DetectorFit, GivesBackTheErrorsThatWereThere) {
   EXPECT_NEAR(fit.miss_rate_hidden, 0.3, 4 * 0.021);
   EXPECT_NEAR(fit.miss_rate + 5 * fit.miss_rate_per_m + fit.miss_rate_hidden / 6, 0.18, 4 * 0.005);
   EXPECT_NEAR(fit.ghost_rate_hz, 0.3, 1e-12);
+  EXPECT_NEAR(fit.confusion, 0.1, 4 * std::sqrt(0.1 * 0.18 / n));  // every tenth, of which 18 % were missed
   EXPECT_NEAR(fit.bearing_std_rad, 0.02, 0.02 * 4 * 0.71 / std::sqrt(0.82 * n));
   // At the middle, 5 m, the deviation is 0.19 m within 0.76 / sqrt(N); its slope that over 2.3 m.
   const double sigma = 0.19 * 0.76 / std::sqrt(0.82 * n);

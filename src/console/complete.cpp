@@ -5,6 +5,7 @@
 #include "console/command.h"
 #include "console/words.h"
 #include "devices/kind.h"
+#include "sim/faults.h"
 #include "sim/values.h"
 
 namespace sandlot {
@@ -136,6 +137,7 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
         for (const std::string& path : device_paths(entity, true))
           for (const console::Parameter& parameter : console::parameters_of(simulation, entity, path))
             out.add(parameter.address());
+        for (const auto& device : entity.devices) out.add(device->path + "." + failure_field);
       });
       break;
     case Argument::value: complete_values(simulation, out); break;

@@ -57,6 +57,17 @@ TEST(Console, ErrorsHaveSlidersOfTheWorldAndOfRobots) {
   EXPECT_TRUE(has(talk.refused("set rovr1.errors 1"), "did you mean 'rover1'"));
 }
 
+TEST(Console, DevicesFailAtAWord) {
+  Talk talk(test::arena("rigid", 2));
+  EXPECT_EQ(talk.ok("set rover1/laser.failure dead"), "rover1/laser.failure = dead with the next tick");
+  EXPECT_EQ(talk.ok("set */laser.failure = {kind: noisy, factor: 3}"),
+            "rover1/laser.failure = {kind: noisy, factor: 3} with the next tick\n"
+            "rover2/laser.failure = {kind: noisy, factor: 3} with the next tick");
+  EXPECT_EQ(talk.ok("set rover1/drive.failure planned"), "rover1/drive.failure = planned with the next tick");
+  EXPECT_TRUE(has(talk.refused("set rover1/laser.failure ded"), "dead"));
+  EXPECT_TRUE(has(talk.refused("set rover1/lasr.failure dead"), "rover1/laser"));
+}
+
 TEST(Console, WrongValuesAreAnsweredAtOnce) {
   Talk talk(test::arena("rigid", 1));
   EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white -1"), "must be"))

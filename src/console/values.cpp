@@ -12,6 +12,7 @@
 #include "formats/yaml.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
+#include "sim/faults.h"
 #include "sim/monitor.h"
 
 namespace sandlot::console {
@@ -236,6 +237,18 @@ Said set_errors(Call& call, std::string_view thing, const Node& value, std::stri
   return submit(call, std::move(asked));
 }
 
+/// `rover/laser.failure`, `*/laser.failure`.
+Said set_failure(Call& call, std::string_view thing, const Node& value, std::string_view written) {
+  auto order = read_failure_order(value);
+  if (!order) return std::move(order.error());
+  SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, thing));
+  std::vector<Asked> asked;
+  for (const std::string& device : devices)
+    asked.push_back({ParameterRequest{device, failure_field, value},
+                     device + ".failure = " + std::string(written.substr(0, 100))});
+  return submit(call, std::move(asked));
+}
+
 }  // namespace
 
 Said say_set(Call& call) {
@@ -253,6 +266,9 @@ Said say_set(Call& call) {
   if (address == "errors" || (thing.find('/') == std::string_view::npos && address.size() > thing.size() &&
                               address.substr(thing.size() + 1) == "errors"))
     return set_errors(call, address == "errors" ? "sim" : thing, value, written);
+  if (thing.find('/') != std::string_view::npos && address.size() > thing.size() &&
+      address.substr(thing.size() + 1) == failure_field)
+    return set_failure(call, thing, value, written);
   if (thing.size() == address.size() || thing.find('/') == std::string_view::npos) {
     if (!is_pattern(thing) || thing.size() == address.size())
       return Error{"'" + std::string(address) + "' is no parameter",

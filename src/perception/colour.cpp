@@ -29,10 +29,12 @@ bool ColourRange::holds(const Hsv& colour) const {
   return std::min(off, 2 * math::pi - off) <= hue_tolerance_rad;
 }
 
+bool has_hue(const Hsv& colour) { return colour.saturation >= 0.25; }
+
 ColourRange range_around(double r, double g, double b) {
   const Hsv colour = hsv_of(r, g, b);
   ColourRange range;
-  if (colour.saturation >= 0.25) {
+  if (has_hue(colour)) {
     // Light from the side takes value, highlights take saturation.
     range.hue_rad = colour.hue_rad;
     range.min_saturation = 0.6 * colour.saturation;

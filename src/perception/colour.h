@@ -37,8 +37,10 @@ struct ColourRange {
   }
 };
 
-/// The range around a colour of a thing as its maker declares it, in whatever light. Colours with a saturation below 0.25 have
-/// no hue worth the name: whites, greys and blacks get a range of values instead.
+/// Whites, greys and blacks have no hue worth the name: a saturation below 0.25.
+bool has_hue(const Hsv& colour);
+/// The range around a colour of a thing as its maker declares it, in whatever light; what has no hue gets a range of values
+/// instead.
 ColourRange range_around(double r, double g, double b);
 
 class ColourTable {

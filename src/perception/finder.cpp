@@ -20,6 +20,50 @@ std::array<float, 3> narrow(Vec3 v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+/// A line of pixels, at most two wide: where two surfaces meet, a pixel of both has a colour between theirs, and that between a yellow
+/// goal and a magenta robot is the ball's.
+bool is_edge(const Blob& patch) {
+  const int longest = std::max(patch.right - patch.left, patch.bottom - patch.top) + 1;
+  const double thickness = static_cast<double>(patch.pixels) / longest;
+  return thickness < 2 && longest > 4 * thickness;
+}
+
+/// Two things do not stand in one place: patches of one target nearer to each other than most of its width are pieces of one
+/// thing that a net or a post parts. The largest takes the others in.
+void join_pieces(const FinderSpec& spec, std::vector<Found>& found) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.patch.pixels > b.patch.pixels; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Found& piece = found[i];
+    const double within = 0.8 * spec.targets[piece.target].size_m;
+    std::size_t whole = 0;
+    while (whole < kept && !(found[whole].target == piece.target &&
+                             norm(found[whole].position_B - piece.position_B) < within))
+      ++whole;
+    if (whole == kept) {
+      if (kept != i) found[kept] = piece;
+      ++kept;
+      continue;
+    }
+    Found& all = found[whole];
+    const double part = static_cast<double>(piece.patch.pixels) / (all.patch.pixels + piece.patch.pixels);
+    all.position_B += part * (piece.position_B - all.position_B);
+    all.bearing_rad = math::atan2(all.position_B.y, all.position_B.x);
+    all.range_m = math::hypot(all.position_B.x, all.position_B.y);
+    all.visible = std::min(1.0, all.visible + piece.visible);
+    all.confidence = std::min(1.0, all.confidence + piece.confidence);
+    all.patch.u += part * (piece.patch.u - all.patch.u);
+    all.patch.v += part * (piece.patch.v - all.patch.v);
+    all.patch.pixels += piece.patch.pixels;
+    all.patch.left = std::min(all.patch.left, piece.patch.left);
+    all.patch.right = std::max(all.patch.right, piece.patch.right);
+    all.patch.top = std::min(all.patch.top, piece.patch.top);
+    all.patch.bottom = std::max(all.patch.bottom, piece.patch.bottom);
+  }
+  found.resize(kept);
+}
+
 }  // namespace
 
 Finder::Finder(FinderSpec spec, const CameraModel& camera, const Pose& X_BS)
@@ -74,7 +118,8 @@ Vec3 Finder::foot_on(std::size_t pixel, double height_B) const {
   return origin + ((height_B - origin.z) / direction.z) * direction;
 }
 
-bool Finder::ball(const Target& target, const Sum& sum, std::uint32_t pixels, Found& out) const {
+bool Finder::ball(const Target& target, const Sum& sum, const Blob& patch, Found& out) const {
+  if (is_edge(patch)) return false;
   const double radius = 0.5 * target.size_m;
   const Vec3 direction = normalised(sum.direction);
   // A cone of half angle rho has the solid angle 2 pi (1 - cos rho), and the ball fills it: sin rho = radius / distance.
@@ -88,7 +133,7 @@ bool Finder::ball(const Target& target, const Sum& sum, std::uint32_t pixels, Fo
   const double expected = 2 * math::pi * (1 - std::sqrt(1 - sin_rho * sin_rho));
   const double seen = sum.solid_angle / expected;
   // Pixels of the edge count wholly or not at all: about two of the square roots of their number.
-  const double slack = 1 + 4 / std::sqrt(static_cast<double>(pixels));
+  const double slack = 1 + 4 / std::sqrt(static_cast<double>(patch.pixels));
   if (seen < spec_.min_visible / slack || seen > 1.6 * slack) return false;
   out.position_B = eye_B_ + distance * direction;
   out.visible = std::min(1.0, seen);
@@ -186,8 +231,7 @@ Status Finder::find(const ImageView& picture, std::vector<Found>& out) {
     found.target = blobs[i].colour;
     found.patch = blobs[i];
     const Target& target = spec_.targets[found.target];
-    if (!(target.form == Form::ball ? ball(target, sum, blobs[i].pixels, found)
-                                    : standing(target, i, sum, found)))
+    if (!(target.form == Form::ball ? ball(target, sum, blobs[i], found) : standing(target, i, sum, found)))
       continue;
     found.bearing_rad = math::atan2(found.position_B.y, found.position_B.x);
     found.range_m = math::hypot(found.position_B.x, found.position_B.y);
@@ -196,6 +240,7 @@ Status Finder::find(const ImageView& picture, std::vector<Found>& out) {
     found.confidence = found.visible * pixels / (pixels + spec_.min_pixels);
     out.push_back(found);
   }
+  join_pieces(spec_, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Found& a, const Found& b) { return a.range_m < b.range_m; });
   return {};

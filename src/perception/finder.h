@@ -4,9 +4,10 @@
 /// Frame    B: the robot's base, z up; the ground is the plane z = -base_height. Pictures come from a camera at X_BS.
 /// Ball     its middle is where the ray of the patch's middle meets the plane of its radius; rays that hardly fall (less than 1.5
 ///          degrees) meet it anywhere, so there the size of the patch decides. `visible` is the size seen of that expected; patches
-///          too small or too large for their place are no balls.
+///          too small or too large for their place are no balls, nor are lines of mixed colour where two surfaces meet.
 /// Standing things (goals, robots, posts) have a lower edge at a known height. In each of up to 48 directions the lowest pixel of the
 ///          patch is a point of it; those near the nearest one are averaged, and `depth` leads on to the middle.
+/// Pieces   patches of one target nearer to each other than 0.8 of its size are one thing, parted by what stands before it.
 /// Horizon  patches of standing things without a pixel below the horizon are none of them.
 /// Noise    specks are bridged (`gap`) and small patches dropped (`min_pixels`).
 /// Limits   no tracking from picture to picture; one thing behind another of the same colour becomes one thing.
@@ -85,7 +86,7 @@ class Finder {
     Vec3 direction;
     double solid_angle = 0, lowest = 1;
   };
-  bool ball(const Target& target, const Sum& sum, std::uint32_t pixels, Found& out) const;
+  bool ball(const Target& target, const Sum& sum, const Blob& patch, Found& out) const;
   bool standing(const Target& target, std::uint32_t blob, const Sum& sum, Found& out);
   /// Where the lower edge of a pixel meets the plane.
   Vec3 foot_on(std::size_t pixel, double height_B) const;

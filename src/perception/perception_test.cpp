@@ -281,6 +281,48 @@ TEST(Perception, WhatCannotBeABallIsNone) {
   EXPECT_FALSE(finder.find(*image_view(other), found));
 }
 
+TEST(Perception, AnEdgeOfMixedColourIsNoBall) {
+  // Row 85 looks down by 15 - atan(35 / 260) = 7.4 degrees, at a ball 3 m away: 19 pixels wide, 285 in all. A line of 36 has more
+  // than the 26 that would be enough for a ball that is hidden for the most part.
+  const Painter& c = painters()[0];
+  Finder finder({.targets = {Target{.colour = range_around(1, 0.47, 0.04)}}}, c.model, c.X_BS);
+  const auto balls_in = [&](std::uint32_t width, std::uint32_t height) {
+    msg::Image image = c.paint([](Vec3, Vec3) { return grey; });
+    const std::uint32_t u0 = (image.width - width) / 2, v0 = 85 - height / 2;
+    for (std::uint32_t v = v0; v < v0 + height; ++v)
+      for (std::uint32_t u = u0; u < u0 + width; ++u) dot_at(image, u, v, orange);
+    std::vector<Found> found;
+    EXPECT_TRUE(finder.find(*image_view(image), found));
+    return found.size();
+  };
+  EXPECT_EQ(balls_in(6, 6), 1u);
+  EXPECT_EQ(balls_in(1, 36), 0u);
+  EXPECT_EQ(balls_in(36, 1), 0u);
+  EXPECT_EQ(balls_in(3, 12), 1u);  // that may be the part beside a post
+}
+
+TEST(Perception, ABallBehindANetIsOne) {
+  for (const Painter& c : painters()) {
+    Finder finder({.targets = {Target{.colour = range_around(1, 0.47, 0.04)}}}, c.model, c.X_BS);
+    const Vec3 at{1.5, 0.1, 0.11}, beside{1.5, 0.45, 0.11};
+    // A cord of 4 cm before its middle, upright, parts it in two halves; the other ball is a ball.
+    const auto colour = [&](Vec3 o, Vec3 d) {
+      const double side = o.y + d.y * (1.5 - o.x) / d.x;
+      if (std::abs(side - 0.1) < 0.02) return blue;
+      return meets_ball(o, d, at, 0.11) || meets_ball(o, d, beside, 0.11) ? orange : grey;
+    };
+    std::vector<Found> found;
+    ASSERT_TRUE(finder.find(*image_view(c.paint(colour)), found));
+    ASSERT_EQ(found.size(), 2u) << c.name;
+    // Half a pixel of the mirror, 0.4 degrees, is 0.5 cm at 1.5 m across and 1.5 cm along; each half is symmetric to the other.
+    EXPECT_NEAR(found[0].position_B.y, 0.1, 0.015) << c.name;
+    EXPECT_NEAR(found[0].position_B.x, 1.5, 0.03) << c.name;
+    EXPECT_NEAR(found[1].position_B.y, 0.45, 0.015) << c.name;
+    // A strip of 4 of 22 cm through the middle: 1 - 0.23 of the disc.
+    EXPECT_NEAR(found[0].visible, 0.77, 0.08) << c.name;
+  }
+}
+
 TEST(Perception, BadPicturesAndCamerasAreRefused) {
   msg::Image image = picture(8, 8);
   EXPECT_TRUE(image_view(image));

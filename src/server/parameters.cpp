@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "sim/faults.h"
 
 namespace sandlot::server {
 namespace {
@@ -116,6 +117,16 @@ void for_each_part(const Simulation& simulation, const Simulation::Entity& entit
     f(program->path, look_at(simulation, *program), fields.of(*program));
 }
 
+/// What was ordered to go wrong with a device.
+Parameter failure(const Simulation::Device& device) {
+  Parameter out;
+  out.name = device.path + "." + failure_field;
+  const auto kind = device.faults ? device.faults->order.kind : FailureOrder::Kind::planned;
+  for (const auto& [name, each] : enum_names(kind))
+    if (each == kind) out.value = std::string(name);
+  return out;
+}
+
 /// The factor on the errors of the whole world or of one robot.
 Parameter factor(const std::string& target, double value) {
   Parameter out;
@@ -175,9 +186,11 @@ std::vector<Parameter> read_parameters(const Simulation& simulation, std::span<c
     if (!entity) continue;
     if (target == entity->instance.name && rest == "errors")
       out = factor(entity->instance.name, entity->instance.errors);
+    for (const auto& device : entity->devices)
+      if (device->path == target && rest == failure_field) out = failure(*device);
     for_each_part(simulation, *entity, known_fields,
                   [&](const std::string& path, const Look& look, const std::vector<FieldInfo>& fields) {
-                    if (path != target) return;
+                    if (path != target || rest == failure_field) return;
                     const FieldInfo* known = nullptr;
                     for (const FieldInfo& field : fields)
                       if (field.path == field_path(rest)) known = &field;

@@ -35,7 +35,7 @@ Result<std::unique_ptr<Faults>> take_faults(Node& config, const PoolBase& pool, 
   });
   if (!status) return std::move(status.error());
   if (!any) return std::unique_ptr<Faults>();
-  return std::make_unique<Faults>(Faults{std::move(spec), {}, clock_place});
+  return std::make_unique<Faults>(Faults{std::move(spec), {}, clock_place, {}});
 }
 
 Failing failing_at(const FaultsSpec& spec, Time now) {
@@ -47,6 +47,33 @@ Failing failing_at(const FaultsSpec& spec, Time now) {
     if (failure.kind == FailureSpec::Kind::noisy) out.factor *= failure.factor;
   }
   return out;
+}
+
+Result<FailureOrder> read_failure_order(const Node& value) {
+  FailureOrder order;
+  Node whole = value;
+  if (value.is_scalar()) {
+    whole = Node::map(value.place());
+    whole.set("kind", value);
+  }
+  SL_TRY(read_value(whole, Field{failure_field, "", "What goes wrong."}, order,
+                    std::string("/") + failure_field));
+  return order;
+}
+
+Failing Faults::at(Time now) const {
+  switch (order.kind) {
+    case FailureOrder::Kind::planned: return failing_at(spec, now);
+    case FailureOrder::Kind::none: return {};
+    case FailureOrder::Kind::stuck: return {.stuck = true};
+    case FailureOrder::Kind::dead: return {.dead = true};
+    case FailureOrder::Kind::noisy: return {.factor = order.factor};
+  }
+  return {};
+}
+
+bool Faults::idle() const {
+  return order.kind == FailureOrder::Kind::planned && spec.failures.empty() && !spec.clock;
 }
 
 Time clock_at(const ClockSpec& spec, Time now, double errors, const Stream& random) {
@@ -67,7 +94,7 @@ Status Faults::check(std::span<const SimulationParts::Slot> topics) const {
 
 bool Simulation::takes_commands(const Device& device) const {
   if (!device.faults) return true;
-  const Failing failing = failing_at(device.faults->spec, now_);
+  const Failing failing = device.faults->at(now_);
   return !failing.stuck && !failing.dead;
 }
 
@@ -76,7 +103,7 @@ void Simulation::sense_faulty(Pool& pool, const Context& ctx) {
   for (const std::uint32_t index : pool.due) {
     const Device& device = *pool.devices[index];
     if (!device.faults) continue;
-    const Failing failing = failing_at(device.faults->spec, now_);
+    const Failing failing = device.faults->at(now_);
     if (failing.factor != 1) pool.pool->scale_errors(index, device.errors * failing.factor);
     auto& before = device.faults->before;
     if (!failing.stuck && !failing.dead) continue;
@@ -89,7 +116,7 @@ void Simulation::sense_faulty(Pool& pool, const Context& ctx) {
     const Device& device = *pool.devices[index];
     if (!device.faults) continue;
     const FaultsSpec& spec = device.faults->spec;
-    const Failing failing = failing_at(spec, now_);
+    const Failing failing = device.faults->at(now_);
     if (failing.factor != 1) pool.pool->scale_errors(index, device.errors);
     if (failing.stuck || failing.dead)
       for (std::size_t i = 0; i < device.topics.size(); ++i) {
@@ -114,7 +141,7 @@ std::span<const std::uint32_t> Simulation::acting(Pool& pool, const Context* let
   pool.due.clear();
   for (const std::uint32_t index : pool.all) {
     const Device& device = *pool.devices[index];
-    if (device.commands.empty() || !device.faults || !failing_at(device.faults->spec, now_).dead) {
+    if (device.commands.empty() || !device.faults || !device.faults->at(now_).dead) {
       pool.due.push_back(index);
     } else if (let_go) {
       // Wheels keep their rollers: only a switch of the level would bring them back.
@@ -124,6 +151,22 @@ std::span<const std::uint32_t> Simulation::acting(Pool& pool, const Context* let
     }
   }
   return pool.due;
+}
+
+Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std::uint32_t& faulty,
+                     const FailureOrder& order) {
+  if (order.kind == FailureOrder::Kind::noisy && !pool.has_errors())
+    return Error{"a " + device.decl.kind + " has no errors that could grow", "it can be stuck or dead"};
+  if (!device.faults) {
+    device.faults = std::make_shared<Faults>();
+    ++faulty;
+  }
+  device.faults->order = order;
+  if (device.faults->idle()) {
+    device.faults.reset();
+    --faulty;
+  }
+  return {};
 }
 
 Status Simulation::set_errors(Entity* entity, std::string_view field, const Node& value) {

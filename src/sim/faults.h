@@ -11,6 +11,9 @@
 /// dead    It publishes nothing and takes no commands. An actuator exerts nothing.
 /// noisy   Its errors are `factor` times as large: as if its key `errors` were, of kinds that have one.
 ///
+/// Or by an order while the run goes on: the parameter `failure` of the device, whatever its kind, is stuck, dead, noisy or {kind: noisy, factor: 5}; `none` is no failure even if one
+/// is planned, `planned` what its key `failures` says. An order holds until the next one.
+///
 /// Inside the device life goes on: its samples are counted, its biases drift, so that it is as it would have been once a
 /// failure is over, and no other number in the run changes. A failure lasts from the tick at `from` to the one before
 /// `until`; dead goes before stuck, and the factors of several noisy ones multiply.
@@ -19,7 +22,7 @@
 ///         n ~ Normal(0, 1) drawn per sample and the factor e of `errors`. When the sample was taken stays as it is, and so
 ///         do files, viewers and everything that knows messages by the time of their tick.
 ///
-/// All of it follows from the declaration and the time: nothing here is State.
+/// What is planned follows from the declaration and the time; an order is State.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -50,6 +53,28 @@ inline std::span<const EnumName<FailureSpec::Kind>> enum_names(FailureSpec::Kind
                                                           {"noisy", FailureSpec::Kind::noisy}};
   return names;
 }
+
+/// What somebody orders while the run goes on.
+struct FailureOrder {
+  enum class Kind : std::uint8_t { planned, none, stuck, dead, noisy } kind = Kind::planned;
+  double factor = 10;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"kind", "", "What goes wrong from now on.", 0, 0, Field::required}, s.kind);
+    visit(Field{"factor", "1", "On the errors of a noisy one.", 0, 1000}, s.factor);
+  }
+};
+inline std::span<const EnumName<FailureOrder::Kind>> enum_names(FailureOrder::Kind) {
+  static constexpr EnumName<FailureOrder::Kind> names[] = {{"planned", FailureOrder::Kind::planned},
+                                                           {"none", FailureOrder::Kind::none},
+                                                           {"stuck", FailureOrder::Kind::stuck},
+                                                           {"dead", FailureOrder::Kind::dead},
+                                                           {"noisy", FailureOrder::Kind::noisy}};
+  return names;
+}
+inline constexpr const char* failure_field = "failure";
+/// From the name of a kind, or a map with a factor.
+Result<FailureOrder> read_failure_order(const Node& value);
 
 struct ClockSpec {
   double offset_s = 0, drift = 0, jitter_s = 0;
@@ -82,14 +107,25 @@ Failing failing_at(const FaultsSpec& spec, Time now);
 /// @param random  stream of the device for this sample, Purpose::noise; its position does not matter
 Time clock_at(const ClockSpec& spec, Time now, double errors, const Stream& random);
 
-/// Of one device: its spec, and where its messages of before wait while it takes a sample.
+/// Of one device: its spec, what was ordered, and where its messages of before wait while it takes a sample.
 struct Faults {
   FaultsSpec spec;
   std::vector<std::unique_ptr<TopicBase>> before;  ///< per topic; used again
   Place clock_place;
+  FailureOrder order{};
 
+  Failing at(Time now) const;
+  /// Nothing is planned, ordered or wrong with its clock.
+  bool idle() const;
   Status check(std::span<const SimulationParts::Slot> topics) const;
 };
+
+inline bool is_ordered(const SimulationParts::Device& device) {
+  return device.faults && device.faults->order.kind != FailureOrder::Kind::planned;
+}
+/// @param faulty  how many devices of the pool have faults
+Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std::uint32_t& faulty,
+                     const FailureOrder& order);
 
 /// Takes the keys above out of the keys of a device of this kind. Null: it has none of them.
 Result<std::unique_ptr<Faults>> take_faults(Node& config, const PoolBase& pool, std::string_view kind);

@@ -87,6 +87,110 @@ TEST(Faults, a_stuck_device_without_a_message_before_has_nothing_to_repeat) {
   EXPECT_EQ(laser(*simulation).count, 1u);
 }
 
+TEST(Faults, a_stuck_device_repeats_only_what_it_would_have_published) {
+  model::Setup setup = standing();
+  device(setup, "rover1", "laser").config.set("failures", list({failure("stuck", "1 s", "3 s")}));
+  const auto simulation = build(std::move(setup));
+  const auto count = [&](const char* topic) { return simulation->find_topic(topic)->count; };
+  simulation->submit(LevelRequest{"rover1/laser", {"ranges", "pose"}});
+  advance(*simulation, 150);
+  EXPECT_EQ(count("/rover1/laser/ranges"), 16u);  // at 0, 0.1, ... 1.5 s
+  EXPECT_EQ(count("/rover1/laser/pose"), 15u);
+  simulation->submit(LevelRequest{"rover1/laser", {"ranges"}});
+  advance(*simulation, 50);
+  EXPECT_EQ(count("/rover1/laser/ranges"), 21u);
+  EXPECT_EQ(count("/rover1/laser/pose"), 15u) << "a level that is off is silent, stuck or not";
+  EXPECT_EQ(simulation->find_topic("/rover1/laser/ranges")->stamp, simulation->now());
+}
+
+struct Log : Observer {
+  Wants wants() const override { return {.log = true, .hash = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    ticks.push_back(frame->log);
+    hashes.push_back(frame->hash);
+  }
+  std::vector<std::vector<LogEntry>> ticks;
+  std::vector<std::uint64_t> hashes;
+};
+
+TEST(Faults, an_order_begins_and_ends_them_in_the_run_and_the_log_repeats_it) {
+  const auto make = [] {
+    model::Setup setup = standing();
+    device(setup, "rover2", "laser").config.set("failures", list({failure("dead", "1 s", "9 s")}));
+    return build(std::move(setup));
+  };
+  Log live, repeated;
+  const auto whole = build(standing()), run = make();
+  run->add_observer(&live);
+  const auto order = [&](const char* name, Node value) {
+    run->submit(ParameterRequest{name, "failure", std::move(value)});
+  };
+  std::vector<float> last;
+  for (int tick = 1; tick <= 500; ++tick) {
+    if (tick == 100) order("rover1/laser", Node::scalar("stuck"));
+    if (tick == 200) order("rover1/laser", Node::scalar("none"));
+    if (tick == 300) order("rover1/laser", map({{"kind", "noisy"}, {"factor", "3"}}));
+    if (tick == 400) order("rover1/laser", Node::scalar("planned"));
+    if (tick == 300) order("rover2/laser", Node::scalar("none"));  // against the plan
+    if (tick == 400) order("rover2/laser", Node::scalar("planned"));
+    advance(*whole, 1);
+    advance(*run, 1);
+    const double t = run->now().s();
+    const auto &seen = laser(*run), &right = laser(*whole);
+    if (t < 1) last = right.message.ranges;
+    if (t >= 1 && t < 2) {
+      ASSERT_EQ(seen.message.ranges, last) << t;
+      ASSERT_EQ(seen.count, right.count) << t;
+    } else if (t >= 3 && t < 4) {
+      ASSERT_NE(seen.message.ranges, right.message.ranges) << t;
+    } else {
+      ASSERT_EQ(seen.message.ranges, right.message.ranges) << t;
+    }
+    const auto planned = laser(*run, "rover2/laser").count;
+    if (t < 1) ASSERT_EQ(planned, right.count);
+    else ASSERT_EQ(planned, t < 3 ? 10u : t < 4 ? right.count - 20 : 20u) << t;
+    if (tick % 100 != 50) continue;
+    const auto restored = again(*run, {.threads = 2});
+    ASSERT_TRUE(restored) << t;
+    ASSERT_EQ(restored->state_hash(), run->state_hash()) << t;
+    advance(*restored, 7);
+    const auto twice = again(*restored);
+    ASSERT_TRUE(twice) << t;
+    ASSERT_EQ(twice->state_hash(), restored->state_hash()) << t;
+  }
+  EXPECT_EQ(by_path(*run).at("rover1/laser"), by_path(*whole).at("rover1/laser"));
+  EXPECT_EQ(run->sub_hashes()[0].hash, whole->sub_hashes()[0].hash) << "nothing of it stays";
+
+  const auto replay = make();
+  replay->add_observer(&repeated);
+  for (const auto& entries : live.ticks) {
+    for (const LogEntry& entry : entries) {
+      if (entry.source.kind == Source::Kind::program) continue;
+      Request request;
+      ByteReader r(entry.bytes);
+      ASSERT_TRUE(read_request(r, request));
+      replay->submit(std::move(request), entry.source);
+    }
+    advance(*replay, 1);
+  }
+  EXPECT_EQ(repeated.hashes, live.hashes);
+}
+
+TEST(Faults, orders_that_cannot_be_are_refused) {
+  const auto simulation = build(standing());
+  const auto error_of = [&](const char* target, Node value) {
+    simulation->submit(ParameterRequest{target, "failure", std::move(value)});
+    advance(*simulation, 1);
+    const Status& status = simulation->outcomes().front().status;
+    return status ? std::string() : status.error().text();
+  };
+  EXPECT_EQ(error_of("rover1/drive", Node::scalar("dead")), "");
+  EXPECT_THAT(error_of("rover1/drive", Node::scalar("noisy")), HasSubstr("diff_drive has no errors"));
+  EXPECT_THAT(error_of("rover1/laser", Node::scalar("ded")), HasSubstr("dead"));
+  EXPECT_THAT(error_of("rover1/laser", map({{"kind", "noisy"}, {"factor", "-1"}})), HasSubstr("factor"));
+  EXPECT_THAT(error_of("rover1", Node::scalar("dead")), HasSubstr("no parameter of the whole"));
+}
+
 TEST(Faults, a_noisy_device_errs_more_by_its_factor) {
   const auto exact = with("laser", "errors", Node::scalar("0"));
   const auto whole = build(standing());

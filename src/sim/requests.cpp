@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "messages/geometry_msgs.h"
 #include "messages/std_msgs.h"
+#include "sim/faults.h"
 #include "sim/simulation.h"
 
 namespace sandlot {
@@ -48,6 +49,11 @@ Status Simulation::carry_out(Request& request, const Source& source) {
   if (const auto* command = std::get_if<CommandRequest>(&request)) return apply_command(*command, source);
   if (const auto* parameter = std::get_if<ParameterRequest>(&request)) {
     if (Device* device = find_device(parameter->target)) {
+      if (parameter->field == failure_field) {
+        SL_ASSIGN(const FailureOrder order, read_failure_order(parameter->value));
+        Pool& pool = pools_[device->kind];
+        return order_failure(*device, *pool.pool, pool.faulty, order);
+      }
       SL_TRY(pools_[device->kind].pool->set_parameter(device->index, parameter->field, parameter->value));
       plan_next_sample(*device);
       return {};

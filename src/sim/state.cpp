@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "sim/faults.h"
 #include "sim/model_bytes.h"
 #include "sim/monitor.h"
 #include "sim/plugin.h"
@@ -169,10 +170,25 @@ void Simulation::save_run(ByteWriter& w) const {
   monitor_->save(w);
   // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
   const bool scaled = errors_scaled();
-  if (!pulls_.empty() || !holds_.empty() || scaled)
+  // Orders of failures; few devices have any faults.
+  const bool ordered = std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) {
+    return pool.faulty > 0 && std::any_of(pool.devices.begin(), pool.devices.end(),
+                                          [](const Device* device) { return is_ordered(*device); });
+  });
+  if (!pulls_.empty() || !holds_.empty() || scaled || ordered)
     write_block(w, [&](ByteWriter& block) { save_pulls(block); });
-  if (!holds_.empty() || scaled) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
-  if (scaled) write_block(w, [&](ByteWriter& block) { save_errors(block); });
+  if (!holds_.empty() || scaled || ordered) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
+  if (scaled || ordered) write_block(w, [&](ByteWriter& block) { save_errors(block); });
+  if (!ordered) return;
+  write_block(w, [&](ByteWriter& block) {
+    for (const auto& entity : entities_)
+      for (const auto& device : entity->devices) {
+        if (!is_ordered(*device)) continue;
+        write(block, device->path);
+        write(block, device->faults->order.kind);
+        write(block, device->faults->order.factor);
+      }
+  });
 }
 
 void Simulation::save_pulls(ByteWriter& w) const {
@@ -219,7 +235,21 @@ bool Simulation::load_run(ByteReader& r) {
   if (!r.ok() || !holds.ok() || holds.remaining() != 0) return false;
   if (r.remaining() == 0) return true;
   read_block(r);  // factors on errors: for the hash; the Model has brought them
-  return r.ok();
+  if (!r.ok() || r.remaining() == 0) return r.ok();
+  ByteReader failures = read_block(r);
+  while (failures.ok() && failures.remaining() > 0) {
+    std::string path;
+    FailureOrder order;
+    read(failures, path);
+    read(failures, order.kind);
+    read(failures, order.factor);
+    Device* const device = failures.ok() ? find_device(path) : nullptr;
+    if (!device || order.kind > FailureOrder::Kind::noisy || !(order.factor >= 0 && order.factor <= 1000))
+      return false;
+    Pool& pool = pools_[device->kind];
+    if (!order_failure(*device, *pool.pool, pool.faulty, order)) return false;
+  }
+  return r.ok() && failures.ok();
 }
 
 /// Calls visit(path, key, fill) for each entity's part of the State, in creation order.
