@@ -121,7 +121,7 @@ struct Job {
 
   /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
   Result<std::string> tree_to_sdf() const {
-    const formats::SdfOptions sdf{.path = search, .assets = asset_reader(false)};
+    const formats::SdfOptions sdf{.path = search, .assets = asset_reader()};
     SL_ASSIGN(const std::string text, formats::read_text_file(options.in, sdf.limits.max_bytes));
     SL_ASSIGN([[maybe_unused]] const formats::SdfContent content,
               formats::parse_sdf(text, options.in, diagnostics, sdf));
@@ -159,7 +159,7 @@ struct Job {
 
   Result<std::string> model_to_urdf() const {
     SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, diagnostics, {.path = search, .assets = asset_reader(false)}));
+              formats::read_sdf(options.in, diagnostics, {.path = search, .assets = asset_reader()}));
     if (!content.world_name.empty())
       return Error{"'" + options.in + "' is a world, and a URDF file holds one robot",
                    "name a file with one <model>"};
@@ -173,7 +173,7 @@ struct Job {
     SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
     Diagnostics said_already;
     SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, said_already, {.path = search, .assets = asset_reader(false)}));
+              formats::read_sdf(options.in, said_already, {.path = search, .assets = asset_reader()}));
     double fastest_hz = 0;
     for (const model::Instance& instance : setup.instances)
       for (const model::DeviceDecl& device : instance.devices)
@@ -247,7 +247,7 @@ Status check_result(const Job& job, const std::string& text) {
     error = back.error();
   } else {
     const auto back = formats::parse_sdf(text, job.options.out, unheard,
-                                         {.path = job.search, .assets = asset_reader(false)});
+                                         {.path = job.search, .assets = asset_reader()});
     if (back) return {};
     error = back.error();
   }

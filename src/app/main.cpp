@@ -117,7 +117,7 @@ struct RunFlags {
         ->allow_extra_args(false);
     verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
     verb.add_flag("--skip-missing", options.skip_missing,
-                  "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
+                  "Leave out, with a warning, what a world names and nobody has: models, meshes, heightmaps");
     verb.add_option("--stop-when", options.stop_when,
                     "End the run when this expression over addresses holds, such as 'rover.pose.x > 3'");
     verb.add_option("--log", options.log_file, "Write values to this CSV file while it runs");
@@ -238,8 +238,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
     verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
         ->allow_extra_args(false);
-    verb->add_flag("--skip-missing", file_options.skip_missing,
-                   "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
+    verb->add_flag(
+        "--skip-missing", file_options.skip_missing,
+        "Leave out, with a warning, what a world names and nobody has: models, meshes, heightmaps");
     verb->add_option("--path", file_options.paths,
                      "Folder to search for models and other files; may be given several times")
         ->allow_extra_args(false);

@@ -99,7 +99,7 @@ void add_render_verb(CLI::App& app, int& result) {
                    "Folder to search for models and other files; may be given several times")
       ->allow_extra_args(false);
   verb->add_flag("--skip-missing", options.world.skip_missing,
-                 "Leave out, with a warning, what a world names and nobody has: models, meshes, textures");
+                 "Leave out, with a warning, what a world names and nobody has: models, meshes, heightmaps");
   verb->footer(
       "Example: sandlot render scenarios/msl_field.yaml --from -6,-9,5 --at 0,0,0 --out field.png\n"
       "         sandlot render scenarios/msl_field.yaml --camera follow:cyan4 --time 2s --size 640x480 --out "

@@ -162,6 +162,27 @@ Result<std::string> find_resource(const std::string& uri, const std::string& fol
                place};
 }
 
+void warn_of_texture(const std::string& file, Error problem, Diagnostics& diagnostics) {
+  constexpr std::size_t most = 20, longest = 160;
+  const std::string begin = "the texture '", more = "more textures cannot be used";
+  const std::string name = begin +
+                           (file.size() > longest ? "..." + file.substr(file.size() - longest) : file) + "'";
+  std::size_t said = 0;
+  for (const Error& each : diagnostics.warnings) {
+    if (starts_with(each.what, name) || each.what == more) return;
+    if (starts_with(each.what, begin)) ++said;
+  }
+  const std::string shown = "a checker is shown in its place";
+  if (said == most) {
+    problem.what = more;
+    problem.fix = shown;
+  } else {
+    problem.what = name + " " + problem.what;
+    problem.fix = problem.fix.empty() ? shown : shown + ": " + problem.fix;
+  }
+  diagnostics.warn(std::move(problem));
+}
+
 std::string own_folder(const std::string& name) {
   std::error_code failed;
   for (const std::string& program : program_files())

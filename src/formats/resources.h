@@ -32,6 +32,12 @@ SearchPath search_path(std::span<const std::string> asked_for = {});
 Result<std::string> find_resource(const std::string& uri, const std::string& folder, const SearchPath& path,
                                   const Place& place);
 
+/// Says that a texture cannot be used and that cameras show a checker in its place: once per file, whoever names it, and of
+/// no more than twenty files.
+/// @param file     as the model keeps it
+/// @param problem  what follows its name ("does not exist"), what would be right, and where it is named
+void warn_of_texture(const std::string& file, Error problem, Diagnostics& diagnostics);
+
 /// Sandlot's folder `name` ("models", "scenarios"): beside or above the program or Sandlot's library, or in
 /// ../share/sandlot there; "" if nowhere.
 std::string own_folder(const std::string& name);

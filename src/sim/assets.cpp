@@ -17,23 +17,16 @@ const char* word_for(MeshUse::Optimization optimization) {
   }
 }
 
-Result<std::vector<Shape>> load_mesh(const MeshUse& use, bool skip_missing, Diagnostics& diagnostics) {
+Result<std::vector<Shape>> load_mesh(const MeshUse& use, Diagnostics& diagnostics) {
   const bool collision = use.purpose == MeshUse::Purpose::collision;
   formats::MeshOptions options;
   options.scale = use.scale;
   options.submesh = use.submesh;
   options.centre = use.centre_submesh;
   options.textures = !collision;  // nobody sees a collision
-  auto mesh = formats::read_mesh(use.file, options, diagnostics);
-  if (!mesh && skip_missing && options.textures) {
-    options.textures = false;
-    auto plain = formats::read_mesh(use.file, options, diagnostics);
-    if (plain) diagnostics.warn({mesh.error().what, "drawn without it", mesh.error().place});
-    mesh = std::move(plain);
-  }
-  if (!mesh) return std::move(mesh.error());
-  if (!collision) return std::vector<Shape>{Mesh{*mesh}};
-  SL_ASSIGN(auto parts, formats::collision_meshes(*mesh, word_for(use.optimization)));
+  SL_ASSIGN(auto mesh, formats::read_mesh(use.file, options, diagnostics));
+  if (!collision) return std::vector<Shape>{Mesh{std::move(mesh)}};
+  SL_ASSIGN(auto parts, formats::collision_meshes(std::move(mesh), word_for(use.optimization)));
   std::vector<Shape> out;
   for (auto& part : parts) out.emplace_back(Mesh{std::move(part)});
   return out;
@@ -46,13 +39,6 @@ Result<Shape> load_heightmap(const formats::HeightmapUse& use, Diagnostics& diag
 
 }  // namespace
 
-formats::AssetReader asset_reader(bool skip_missing) {
-  formats::AssetReader out;
-  out.mesh = [skip_missing](const MeshUse& use, Diagnostics& diagnostics) {
-    return load_mesh(use, skip_missing, diagnostics);
-  };
-  out.heightmap = load_heightmap;
-  return out;
-}
+formats::AssetReader asset_reader() { return {load_mesh, load_heightmap}; }
 
 }  // namespace sandlot

@@ -4,7 +4,6 @@
 
 namespace sandlot {
 
-/// @param skip_missing  a mesh whose textures are missing comes without them, with a warning
-formats::AssetReader asset_reader(bool skip_missing);
+formats::AssetReader asset_reader();
 
 }  // namespace sandlot

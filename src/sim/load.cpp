@@ -248,7 +248,7 @@ formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_mi
   formats::SdfOptions out;
   out.path = formats::search_path(paths);
   out.skip_missing = skip_missing;
-  out.assets = asset_reader(skip_missing);
+  out.assets = asset_reader();
   return out;
 }
 

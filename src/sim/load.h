@@ -15,8 +15,8 @@ struct LoadOptions {
   std::optional<std::uint64_t> seed;        ///< replaces the scenario's
   std::optional<double> stop_s;             ///< replaces the scenario's
   std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
-  bool skip_missing = false;  ///< missing includes, meshes and textures are left out with a warning
-  double errors = 1;          ///< factor on the errors of all devices, beside the scenario's and the robots'
+  bool skip_missing = false;                ///< missing includes and meshes are left out with a warning
+  double errors = 1;  ///< factor on the errors of all devices, beside the scenario's and the robots'
   /// The text of a scenario, which is not read from its path then.
   std::optional<std::string_view> text = {};
 };

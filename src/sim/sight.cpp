@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/image/image.h"
+#include "formats/resources.h"
 #include "geometry/mesh.h"
 
 namespace sandlot {
@@ -13,10 +14,9 @@ Sight::TexturePointer Sight::texture(const std::string& file, const Place& place
   if (!fresh) return known->second;
   auto image = formats::read_image(file);
   if (!image) {
-    Error error = std::move(image.error());
-    if (!error.place.file) error.place = place;
-    error.what += "; a checker is shown in place of the texture";
-    diagnostics.warn(std::move(error));
+    // Who read the model has mostly said it already, with the line that names the texture.
+    const Error& error = image.error();
+    formats::warn_of_texture(file, {"cannot be used: " + error.what, error.fix, place}, diagnostics);
     known->second = optics::Texture::missing();
     return known->second;
   }

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "sim/load.h"
 #include "sim/simulation.h"
 #include "sim/test_world.h"
 
@@ -90,6 +95,71 @@ TEST(Sight, DrawsTheWorldWithoutChangingTheRun) {
     EXPECT_EQ(instance[0], sight.things[1].instance);  // the cart stands straight ahead
   }
   EXPECT_EQ((*seen)->state_hash(), (*plain)->state_hash());
+}
+
+/// Boards of 1.6 m x 1.6 m at x = 2, whose textures are missing or broken: y = 0 a mesh, 10 a material, 20 a broken file, and
+/// another mesh and material with the same textures.
+constexpr const char* boards = R"(<sdf version="1.9"><world name="w">
+<model name="mesh"><static>1</static><link name="l"><visual name="v"><geometry><mesh><uri>board.obj</uri></mesh></geometry></visual></link></model>
+<model name="box"><static>1</static><pose>2.5 10 0 0 0 0</pose><link name="l"><visual name="v"><geometry><box><size>1 1.6 1.6</size></box></geometry>
+<material><pbr><metal><albedo_map>no.png</albedo_map></metal></pbr></material></visual></link></model>
+<model name="broken"><static>1</static><pose>2.5 20 0 0 0 0</pose><link name="l"><visual name="v"><geometry><box><size>1 1.6 1.6</size></box></geometry>
+<material><pbr><metal><albedo_map>broken.png</albedo_map></metal></pbr></material></visual>
+<visual name="u"><pose>0 0 50 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry>
+<material><pbr><metal><albedo_map>no.png</albedo_map></metal></pbr></material></visual></link></model>
+<model name="again"><static>1</static><pose>0 50 0 0 0 0</pose><link name="l"><visual name="v"><geometry><mesh><uri>board.obj</uri></mesh></geometry></visual></link></model>
+<model name="eye"><static>1</static><link name="l"><sensor name="camera" type="camera"><update_rate>10</update_rate><camera>
+<image><width>8</width><height>8</height></image></camera></sensor></link></model>
+</world></sdf>)";
+
+TEST(Sight, MissingTexturesAreACheckerAndOneWarningEach) {
+  std::string folder = (std::filesystem::temp_directory_path() / "sandlot-sight-XXXXXX").string();
+  folder = mkdtemp(folder.data());
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder + "/" + name) << text;
+  };
+  write("w.sdf", boards);
+  write("board.obj",
+        "mtllib board.mtl\nusemtl paint\nv 2 0.8 -0.8\nv 2 -0.8 -0.8\nv 2 -0.8 0.8\nv 2 0.8 0.8\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  write("board.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd gone.png\n");
+  write("broken.png", "no image");
+  Diagnostics diagnostics;
+  auto setup = load(folder + "/w.sdf", {}, diagnostics);
+  ASSERT_TRUE(setup) << setup.error().text();
+  auto sim = Simulation::create(std::move(*setup), {}, diagnostics);
+  ASSERT_TRUE(sim) << sim.error().text();
+  std::vector<std::string> said;
+  for (const Error& each : diagnostics.warnings)
+    if (each.text().find("checker") != std::string::npos) said.push_back(each.text());
+  std::filesystem::remove_all(folder);
+  std::sort(said.begin(), said.end());
+  ASSERT_EQ(said.size(), 3u);
+  const auto begins = [](const std::string& text, const std::string& with) {
+    EXPECT_EQ(text.substr(0, with.size()), with);
+  };
+  begins(said[0], folder + "/board.mtl:3: the texture '" + folder + "/gone.png' does not exist; a checker");
+  begins(said[1], folder + "/w.sdf:4: the texture '" + folder + "/no.png' is not there; a checker");
+  begins(said[2], folder + "/w.sdf:5: the texture '" + folder + "/broken.png' cannot be used: ");
+
+  // 200 px at 2 m are 2 m: the board fills the picture, each of its 8 x 8 squares 20 x 20 pixels. The upper left is magenta.
+  for (const double y : {0.0, 10.0, 20.0}) {
+    std::vector<std::uint8_t> rgb(std::size_t{3} * 160 * 160);
+    optics::PictureJob job;
+    job.X_WS = {{0, y, 0}, {}};
+    job.lens = optics::LensTable::make(
+        {160, 160, optics::Pinhole{.fx = 200, .fy = 200, .cx = 79.5, .cy = 79.5}});
+    job.exposure.lit = false;
+    job.rgb = rgb;
+    (*sim)->sight().pictures.render(std::span(&job, 1));
+    for (std::size_t row = 0; row < 8; ++row)
+      for (std::size_t column = 0; column < 8; ++column) {
+        const std::size_t at = 3 * ((20 * row + 10) * 160 + 20 * column + 10);
+        const int on = (row + column) % 2 == 0 ? 255 : 0;
+        ASSERT_EQ((std::array{int{rgb[at]}, int{rgb[at + 1]}, int{rgb[at + 2]}}), (std::array{on, 0, on}))
+            << y << ": square " << row << ", " << column;
+      }
+  }
 }
 
 }  // namespace

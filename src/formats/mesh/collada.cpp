@@ -206,12 +206,13 @@ class Reader {
                      c.size() > 3 ? static_cast<float>(c[3]) : 1.0f};
     }
     if (const Xml* texture = diffuse->child("texture"))
-      out.texture = image_of(*profile, value_of(*texture, "texture"));
+      if (const Xml* file = image_of(*profile, value_of(*texture, "texture")))
+        out.texture = file->text, out.place = file->place;
     return out;
   }
 
-  /// texture -> sampler -> surface -> image, or the image at once.
-  std::string image_of(const Xml& profile, std::string name) {
+  /// texture -> sampler -> surface -> image, or the image at once: the element that names its file, or null.
+  const Xml* image_of(const Xml& profile, std::string name) {
     const auto parameter = [&](const std::string& sid) -> const Xml* {
       for (const Xml& each : profile.children)
         if (each.name == "newparam" && value_of(each, "sid") == sid) return &each;
@@ -222,10 +223,10 @@ class Reader {
     if (const Xml* surface = parameter(name))
       if (const Xml* init = down(surface, {"surface", "init_from"})) name = init->text;
     const auto image = ids_.find(name);
-    if (image == ids_.end() || image->second->name != "image") return "";
+    if (image == ids_.end() || image->second->name != "image") return nullptr;
     const Xml* file = image->second->child("init_from");
     if (file && file->child("ref")) file = file->child("ref");
-    return file ? file->text : "";
+    return file;
   }
 
   /// Null with the reason as an error.

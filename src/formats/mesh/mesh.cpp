@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <unordered_map>
 
 #include "base/text.h"
 #include "formats/mesh/reader.h"
+#include "formats/resources.h"
 #include "formats/text.h"
 
 namespace sandlot::formats {
@@ -31,28 +31,38 @@ std::string extension_of(const std::string& path) {
 /// A texture's name as a path: exporters write URIs and Windows paths.
 std::string decoded(const std::string& name) {
   std::string text = mesh::percent_decoded(name);
+  text.erase(std::min(text.find('\0'), text.size()));
   std::replace(text.begin(), text.end(), '\\', '/');
   for (const std::string_view scheme : {"file://", "./"})
     if (starts_with(text, scheme)) text.erase(0, scheme.size());
   return text;
 }
 
-/// The file of a texture, or "".
-std::string find_texture(const std::string& name, const std::string& mesh_path) {
+struct TextureFile {
+  std::string path;
+  bool is_there = false;
+};
+/// Where a texture lies, or would lie by what the mesh says.
+TextureFile find_texture(const std::string& name, const std::string& mesh_path) {
   const std::string folder = folder_of(mesh_path), file = decoded(name),
                     bare = fs::path(file).filename().string();
-  if (file.find('\0') != std::string::npos || file.size() > 4000) return "";
   for (const std::string& each : {file, bare, "../materials/textures/" + bare}) {
     const std::string path = beside(folder, each);
     std::error_code failed;
-    if (!bare.empty() && fs::is_regular_file(path, failed)) return path;
+    if (!bare.empty() && fs::is_regular_file(path, failed)) return {path, true};
   }
-  return "";
+  return {beside(folder, file), false};
 }
+
+/// A texture that is not there.
+struct Missing {
+  std::string file;
+  Error error;
+};
 
 struct Parsed {
   TriangleMesh mesh;
-  std::optional<Error> no_texture;  ///< the first texture that is not there
+  std::vector<Missing> missing;
 };
 
 struct VertexKey {
@@ -148,7 +158,7 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
                      suggestion(options.submesh, out.names));
   if (!options.submesh.empty())
     std::erase_if(mesh.parts, [&](const MeshPart& part) { return part.name != options.submesh; });
-  if (!out.uses_texture) mesh.texture_uv.clear();
+  if (out.textures.empty()) mesh.texture_uv.clear();
   for (Vec3& v : mesh.vertices) {
     v = {v.x * scale.x, v.y * scale.y, v.z * scale.z};
     if (!(std::abs(v.x) < farthest_m && std::abs(v.y) < farthest_m && std::abs(v.z) < farthest_m))
@@ -160,13 +170,19 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   if (mesh.triangles.empty())
     return out.error("has no triangles", "lines, points and faces without area do not count");
   if (options.centre) centre(mesh);
+  std::map<std::string, std::string> files;  // by the name in the mesh
   for (MeshPart& part : mesh.parts) {
     if (part.texture.empty()) continue;
-    const std::string found = find_texture(part.texture, path);
-    if (found.empty() && !parsed.no_texture)
-      parsed.no_texture = out.error("its texture '" + part.texture.substr(0, 80) + "' does not exist",
-                                    "put it beside the mesh or into ../materials/textures");
-    part.texture = found;
+    const auto [known, fresh] = files.try_emplace(part.texture);
+    if (fresh) {
+      auto [file, is_there] = find_texture(part.texture, path);
+      if (!is_there)
+        parsed.missing.push_back({file,
+                                  {"does not exist", "put it beside the mesh or into ../materials/textures",
+                                   out.textures.at(part.texture)}});
+      known->second = std::move(file);
+    }
+    part.texture = known->second;
   }
   return parsed;
 }
@@ -177,7 +193,7 @@ class Cache {
   struct Entry {
     std::weak_ptr<const TriangleMesh> mesh;
     std::vector<Error> warnings;
-    std::optional<Error> no_texture;
+    std::vector<Missing> missing;
   };
   std::shared_ptr<const TriangleMesh> find(const std::string& key, Entry& entry) {
     const std::lock_guard lock(mutex_);
@@ -277,12 +293,16 @@ void pass_on(const std::vector<Error>& warnings, Diagnostics& diagnostics) {
   }
 }
 
+void pass_on(const std::vector<Missing>& missing, Diagnostics& diagnostics) {
+  for (const Missing& each : missing) warn_of_texture(each.file, each.error, diagnostics);
+}
+
 }  // namespace
 
 Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& path, const MeshOptions& options,
                                 Diagnostics& diagnostics) {
   SL_ASSIGN(Parsed parsed, parse(bytes, path, options, diagnostics));
-  if (options.textures && parsed.no_texture) return *parsed.no_texture;
+  if (options.textures) pass_on(parsed.missing, diagnostics);
   return std::move(parsed.mesh);
 }
 
@@ -296,11 +316,11 @@ Result<std::shared_ptr<const TriangleMesh>> read_mesh(const std::string& path, c
     Diagnostics own;
     SL_ASSIGN(Parsed parsed, parse(bytes, path, options, own));
     mesh = std::make_shared<const TriangleMesh>(std::move(parsed.mesh));
-    entry = {mesh, std::move(own.warnings), std::move(parsed.no_texture)};
+    entry = {mesh, std::move(own.warnings), std::move(parsed.missing)};
     if (!key.empty()) mesh = cache().add(key, mesh, entry);
   }
-  if (options.textures && entry.no_texture) return *entry.no_texture;
   pass_on(entry.warnings, diagnostics);
+  if (options.textures) pass_on(entry.missing, diagnostics);
   return mesh;
 }
 

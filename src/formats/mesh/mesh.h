@@ -10,7 +10,8 @@
 /// Names    a part is called as the node that carries it (without a name: as the geometry or mesh), in OBJ by `o` or
 ///          `g`, in ASCII STL by `solid`, in MS3D as the group: what <submesh> may ask for.
 /// Look     one colour and one colour texture per part. A texture is looked for where the file says, beside the mesh by
-///          its bare name, and in ../materials/textures.
+///          its bare name, and in ../materials/textures. One that is not there keeps the path where it would be; a warning
+///          tells, with the line in files that have lines.
 /// Polygons any simple ones; a polygon that crosses itself, or has more than 1000 corners, becomes a fan.
 /// Limits   no normals, bones, animation, morph targets, lights, cameras; no Draco compression, no textures inside the
 ///          file; lines and points are skipped. MTL files and buffers come from the mesh's own folder or below it.
@@ -43,7 +44,7 @@ struct MeshOptions {
   std::string submesh;  ///< only parts of that name; "" for all
   bool centre = false;  ///< move the middle of the submesh's bounding box to the origin
   UpAxis up = UpAxis::usual;
-  bool textures = true;  ///< a texture that is not there is an error; who needs only the shape does not care
+  bool textures = true;  ///< a texture that is not there is a warning; who needs only the shape does not care
   std::size_t max_bytes = std::size_t{256} << 20;
   std::size_t max_triangles = 2'000'000;
 };

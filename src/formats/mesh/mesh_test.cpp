@@ -356,17 +356,75 @@ TEST_F(MeshFiles, MaterialsAndTexturesComeFromBesideTheMesh) {
   ASSERT_EQ((*mesh)->texture_uv.size(), 3u);
   EXPECT_EQ((*mesh)->texture_uv[0], (std::array{0.5f, 0.25f}));
   EXPECT_TRUE(diagnostics_.warnings.empty());
+}
 
-  write("meshes/m.mtl", "newmtl red\nKd 1 0.25 0\nmap_Kd C:\\models\\gone.png\n");
-  write("meshes/a.obj", text + "# new\n");
-  const auto missing = read_mesh(path, {}, diagnostics_);
-  ASSERT_FALSE(missing);
-  expect_says(missing.error().text(),
-              "a.obj: its texture 'C:\\models\\gone.png' does not exist; put it beside");
+TEST_F(MeshFiles, AMissingTextureIsOneWarningWithItsLine) {
+  // Two parts and two meshes name it, one of them twice.
+  write("meshes/m.mtl",
+        "newmtl red\nKd 1 0.25 0\nmap_Kd C:\\models\\gone.png\nnewmtl blue\nmap_Kd gone.png\n");
+  const std::string red = "mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                    path = write("meshes/a.obj", red + "usemtl blue\nf 3 2 1\nusemtl red\nf 2 1 3\n");
   const auto shape_only = read_mesh(path, {.textures = false}, diagnostics_);
   ASSERT_TRUE(shape_only);
-  EXPECT_EQ((*shape_only)->parts[0].texture, "");
-  EXPECT_FALSE(read_mesh(path, {}, diagnostics_)) << "also when the cache has it";
+  EXPECT_TRUE(diagnostics_.warnings.empty()) << "who needs only the shape does not care";
+  const auto mesh = read_mesh(path, {}, diagnostics_);
+  ASSERT_TRUE(mesh) << mesh.error().text();
+  EXPECT_EQ(mesh->get(), shape_only->get());
+  ASSERT_EQ(diagnostics_.warnings.size(), 2u);
+  const std::string folder = (folder_ / "meshes").string();
+  EXPECT_EQ(diagnostics_.warnings[0].text(),
+            folder + "/m.mtl:3: the texture '" + folder +
+                "/C:/models/gone.png' does not exist; a checker is shown in its place: put it beside the "
+                "mesh or into ../materials/textures");
+  expect_says(diagnostics_.warnings[1].text(), "m.mtl:5: the texture '" + folder + "/gone.png' does not");
+  EXPECT_EQ((*mesh)->parts[0].texture, folder + "/C:/models/gone.png");
+  EXPECT_EQ((*mesh)->parts[1].texture, folder + "/gone.png");
+  EXPECT_FALSE((*mesh)->texture_uv.empty()) << "the checker needs them";
+  ASSERT_TRUE(read_mesh(path, {}, diagnostics_));
+  ASSERT_TRUE(read_mesh(write("meshes/b.obj", red), {}, diagnostics_));
+  EXPECT_EQ(diagnostics_.warnings.size(), 2u) << "said once, whoever names it";
+  Diagnostics later;
+  ASSERT_TRUE(read_mesh(path, {}, later));
+  EXPECT_EQ(later.warnings.size(), 2u) << "also when the cache has it";
+}
+
+TEST_F(MeshFiles, MissingTexturesOfColladaAndGltfAreNamedToo) {
+  std::string dae = collada();
+  const auto put = [](std::string& text, const std::string& before, const std::string& more) {
+    const std::size_t at = text.find(before);
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at, more);
+  };
+  put(dae, "<library_effects>",
+      "<library_images><image id=\"i\"><init_from>bark%20a.png</init_from></image></library_images>\n");
+  put(dae, "<color>1 0.5 0 1</color>", "<texture texture=\"i\"/>");
+  ASSERT_TRUE(read_mesh(write("meshes/a.dae", dae), {}, diagnostics_));
+  ASSERT_EQ(diagnostics_.warnings.size(), 1u);
+  expect_says(diagnostics_.warnings[0].text(),
+              "a.dae:4: the texture '" + (folder_ / "meshes/bark a.png").string());
+  std::string gltf_text = gltf();
+  put(gltf_text, "\"baseColorFactor\"", "\"baseColorTexture\":{\"index\":0},");
+  put(gltf_text, "\"materials\"", "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"leaf.png\"}],");
+  ASSERT_TRUE(read_mesh(write("meshes/a.gltf", gltf_text), {}, diagnostics_));
+  ASSERT_EQ(diagnostics_.warnings.size(), 2u);
+  expect_says(diagnostics_.warnings[1].text(),
+              "a.gltf: the texture '" + (folder_ / "meshes/leaf.png").string());
+}
+
+TEST_F(MeshFiles, ManyMissingTexturesAreNotAllNamed) {
+  std::string mtl, text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = std::to_string(i);
+    mtl += "newmtl m" + name + "\nmap_Kd " + name + ".png\n";
+    text += "usemtl m" + name + "\nf 1 2 3\n";
+  }
+  write("meshes/m.mtl", mtl);
+  const auto mesh = read_mesh(write("meshes/a.obj", text), {}, diagnostics_);
+  ASSERT_TRUE(mesh) << mesh.error().text();
+  EXPECT_EQ((*mesh)->parts.size(), 1000u);
+  ASSERT_EQ(diagnostics_.warnings.size(), 21u);
+  expect_says(diagnostics_.warnings.back().text(),
+              "m.mtl:42: more textures cannot be used; a checker is shown");
 }
 
 TEST_F(MeshFiles, NothingOutsideTheMeshsFolderIsRead) {

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "formats/mesh/reader.h"
+#include "formats/text.h"
 
 namespace sandlot::formats::mesh {
 namespace {
@@ -15,7 +16,8 @@ std::string rest_of(std::string_view line, const Words& words) {
   return std::string(trim(line.substr(words.at())));
 }
 
-void read_mtl(std::string_view text, Materials& materials) {
+void read_mtl(std::string_view text, const std::string& file, Materials& materials) {
+  const auto name = std::make_shared<const std::string>(file);
   Words in(text);
   std::string_view line;
   Material* open = nullptr;
@@ -42,6 +44,7 @@ void read_mtl(std::string_view text, Materials& materials) {
       const std::string rest = rest_of(line, words);
       const std::size_t last = !rest.empty() && rest.front() == '-' ? rest.find_last_of(" \t") + 1 : 0;
       open->texture = rest.substr(last);
+      open->place = {name, in.line() - 1, 0};
     }
   }
 }
@@ -157,7 +160,7 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
       const std::string file = rest_of(line, words);
       if (!libraries.insert(file).second) continue;  // some exporters name it before each part
       const auto text = out.read_beside(file, here);
-      if (text) read_mtl(*text, obj.materials);
+      if (text) read_mtl(*text, beside(folder_of(out.path()), file), obj.materials);
       else diagnostics.warn(text.error());
     }
   }

@@ -56,7 +56,8 @@ void Builder::begin_part(const std::string& name, const Material& material) {
        .triangles = 0,
        .color = {unit(c.r, otherwise.r), unit(c.g, otherwise.g), unit(c.b, otherwise.b), unit(c.a, 1)},
        .texture = material.texture});
-  uses_texture = uses_texture || !material.texture.empty();
+  if (!material.texture.empty())
+    textures.try_emplace(material.texture, material.place.file ? material.place : Place{file_, 0, 0});
 }
 
 std::uint32_t Builder::vertex(Vec3 p, std::array<float, 2> uv) {

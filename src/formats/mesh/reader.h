@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@ namespace sandlot::formats::mesh {
 struct Material {
   Color color;
   std::string texture;  ///< as the file says it
+  Place place;          ///< of the texture's name; no file: the mesh as a whole
 };
 
 /// Collects what a reader finds.
@@ -48,7 +50,8 @@ class Builder {
 
   TriangleMesh mesh;
   std::vector<std::string> names;  ///< the first few
-  bool found_submesh = false, uses_texture = false;
+  bool found_submesh = false;
+  std::map<std::string, Place> textures;  ///< and where each is named first
 
  private:
   std::string path_;

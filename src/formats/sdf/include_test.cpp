@@ -175,11 +175,42 @@ TEST_F(SdfFiles, WhatIsMissingStopsOrIsLeftOut) {
   ASSERT_TRUE(read(text)) << error_;
   ASSERT_EQ(content_.instances.size(), 1u);
   ASSERT_EQ(model().links[0].visuals.size(), 1u);
-  EXPECT_EQ(model().links[0].visuals[0].material.texture, "");
+  EXPECT_EQ(model().links[0].visuals[0].material.texture, folder_ + "gone.png") << "seen as a checker";
   int missing = 0;
   for (const std::string& warning : warnings_)
     if (warning.find("gone") != std::string::npos || warning.find("Far") != std::string::npos) ++missing;
   EXPECT_EQ(missing, 5);
+}
+
+TEST_F(SdfFiles, AMissingTextureIsOneWarningAndNoError) {
+  const auto ball = [](const std::string& name, const std::string& map) {
+    return "<visual name='" + name + "'><geometry><sphere/></geometry><material><pbr><metal>\n<albedo_map>" +
+           map + "</albedo_map></metal></pbr></material></visual>";
+  };
+  ASSERT_TRUE(
+      read("<model name='m'>" +
+           link("l", ball("a", "gone.png") + ball("b", "gone.png") + ball("c", "model://far/it's gone.png") +
+                         ball("d", "https://fuel.gazebosim.org/1.0/O/models/Far")) +
+           "</model>"))
+      << error_;
+  const auto& visuals = model().links[0].visuals;
+  EXPECT_EQ(visuals[0].material.texture, folder_ + "gone.png");
+  EXPECT_EQ(visuals[1].material.texture, folder_ + "gone.png");
+  EXPECT_EQ(visuals[2].material.texture, "model://far/it's gone.png");
+  std::vector<std::string> said;
+  for (const std::string& warning : warnings_)
+    if (warning.find("the texture") != std::string::npos) said.push_back(warning);
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_NE(said[0].find("w.sdf:2: the texture '" + folder_ +
+                         "gone.png' is not there; a checker is shown in its place: looked for "),
+            std::string::npos)
+      << said[0];
+  EXPECT_NE(said[1].find("w.sdf:4: the texture 'model://far/it's gone.png' is not there; "),
+            std::string::npos)
+      << said[1];
+  EXPECT_NE(said[2].find("would have to be downloaded; a checker is shown in its place: fetch it from "),
+            std::string::npos)
+      << said[2];
 }
 
 TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {

@@ -79,15 +79,13 @@ Status read_script(const Xml& script, model::Material& out, const Reading& in) {
 }
 
 /// PBR is reduced to its colour texture; roughness says how dull the highlight is.
-Status read_pbr(const Xml& pbr, model::Material& out, const Reading& in) {
+void read_pbr(const Xml& pbr, model::Material& out, const Reading& in) {
   const Xml* const metal = pbr.child("metal");
   const Xml* const flow = metal ? metal : pbr.child("specular");
   const Xml* const albedo = flow ? flow->child("albedo_map") : nullptr;
-  if (!albedo || albedo->text.empty()) return {};
-  SL_ASSIGN(const std::optional<std::string> file,
-            in.find(*albedo, albedo->text, "it is drawn in its plain colour"));
-  if (file) out.texture = *file, out.from_mesh = false;
-  return {};
+  if (!albedo || albedo->text.empty()) return;
+  out.texture = in.find_texture(*albedo, albedo->text);
+  out.from_mesh = false;
 }
 
 }  // namespace
@@ -116,7 +114,7 @@ Result<model::Material> read_material(const Xml& visual, const Reading& in) {
     double shininess = 0;
     SL_TRY(read_child(*material, "shininess", not_negative, shininess));
     out.shininess = static_cast<float>(shininess);
-    if (pbr) SL_TRY(read_pbr(*pbr, out, in));
+    if (pbr) read_pbr(*pbr, out, in);
   }
   out.diffuse.a *= static_cast<float>(1 - transparency);
   return out;

@@ -16,6 +16,8 @@ struct Reading {
   /// The file that `uri`, written at `element`, names; nothing and one warning when it is missing and may be.
   Result<std::optional<std::string>> find(const Xml& element, const std::string& uri,
                                           const char* without) const;
+  /// The file of a texture. One that is missing is a warning and keeps its name: cameras show a checker.
+  std::string find_texture(const Xml& element, const std::string& uri) const;
 };
 
 /// The child of a child ..., or null.

@@ -16,7 +16,7 @@
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
 /// Includes models, actors, lights and whole worlds, by everything that formats/resources.h finds; merged by the proxy
 ///          frame rule of SDF 1.9. A path is relative to the file that says it. What a file names and nobody has is an
-///          error, or with `skip_missing` a warning.
+///          error, or with `skip_missing` a warning; a texture is a warning in any case.
 /// Inertia  what has no <inertial>, or auto="true", is computed from the collisions, 1000 kg/m^3 unless a <density> says
 ///          otherwise; a mesh that is not closed counts as the box around it.
 /// Names    a link and a joint may share one: where a frame is named, the link is meant. `::` in a name, as files that
