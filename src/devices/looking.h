@@ -94,12 +94,31 @@ class Look {
   Topic<msg::Float64>* zoom_ = nullptr;
 };
 
-/// The sense phase of a device with spec, state and `look`.
-template <class Device>
-void look_due(PoolView<Device> pool, const Context& context) {
+/// A camera whose Spec has the keys above and a lens: lens_of(spec, build).
+template <class Keys>
+struct LookingCamera {
+  using Spec = Keys;
+  using State = LookState;
+  Spec spec;
+  State state;
+  Look look;
+
+  static Result<LookingCamera> create(const DeviceBuild& build, Spec spec) {
+    SL_TRY(check_exposure(spec, build));
+    SL_ASSIGN(const optics::Lens lens, lens_of(spec, build));
+    LookingCamera camera{std::move(spec), {}, {}};
+    camera.look = Look(build, lens, camera.spec);
+    return camera;
+  }
+  static void sense(PoolView<LookingCamera> pool, const Context& context);
+  bool fits() const { return Look::fits(spec, state); }
+};
+
+template <class Keys>
+void LookingCamera<Keys>::sense(PoolView<LookingCamera> pool, const Context& context) {
   bool pictures = false;
   for (const std::uint32_t index : pool.due) {
-    Device& device = pool.all[index];
+    LookingCamera& device = pool.all[index];
     device.look.turn_zoom(device.spec, device.state, pool.since[index].s());
     pictures = pictures || (pool.levels[index] >> image & 1);
   }
@@ -115,7 +134,7 @@ void look_due(PoolView<Device> pool, const Context& context) {
   parallel_for(pool.due.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
       const std::uint32_t index = pool.due[begin];
-      Device& device = pool.all[index];
+      LookingCamera& device = pool.all[index];
       device.look.detect(device.spec, pool.levels[index], pool.sample[index], pool.since[index].s(), context);
     }
   });

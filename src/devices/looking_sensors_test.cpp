@@ -102,6 +102,21 @@ TEST(LightSensor, AShadowLeavesTheAmbientLight) {
   }
 }
 
+TEST(LightSensor, ItsHousingThrowsShadowsOnlyWhereAskedForThoseOfOtherLinksAlways) {
+  Scene scene;
+  scene.light(model::Light::Type::directional, {}, {0.5f, 0.5f, 0.5f, 1});
+  scene.add(Box{{0.2, 0.2, 0.2}}, {0, 0, 0.05}, {}, 0);  // both sensors sit inside it
+  scene.finish(0.1f);
+  Rig rig(light_sensor::kind, test::two_wheels());
+  ASSERT_TRUE(rig.add("free", config({}), 1, 0, looking_up));
+  ASSERT_TRUE(rig.add("shaded", config({{"own_shadow", "true"}}), 1, 0, looking_up));
+  ASSERT_TRUE(rig.add("guest", config({}), 1, 3, looking_up));  // on another link, in the same place
+  sense(rig, scene);
+  EXPECT_NEAR(rig.topic<msg::Illuminance>("free/illuminance").message.illuminance, 600, 1e-3);
+  EXPECT_NEAR(rig.topic<msg::Illuminance>("shaded/illuminance").message.illuminance, 100, 1e-3);
+  EXPECT_NEAR(rig.topic<msg::Illuminance>("guest/illuminance").message.illuminance, 100, 1e-3);
+}
+
 TEST(ColorSensor, ShowsTheSurfacesOwnColourByItsLampAndTheLightThereWithout) {
   Scene scene;
   scene.add(Plane{{0, 0, 1}}, {}, {0.2f, 0.6f, 1, 1});

@@ -269,6 +269,7 @@ void PictureScene::illuminate(std::span<LightProbe> probes) {
       SL_CHECK(light.group < s.frame.X_WG.size());
       scenery.lights.push_back(light_now(light, s.frame.X_WG, base));
     }
+    scenery.shadowless_body = probe.ignore_body;
     const float normal[] = {static_cast<float>(probe.normal_W.x), static_cast<float>(probe.normal_W.y),
                             static_cast<float>(probe.normal_W.z)};
     const F zero = all(0.0f);

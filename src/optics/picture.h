@@ -100,7 +100,8 @@ struct PictureJob {
 
 /// A small flat surface that light falls on.
 struct LightProbe {
-  Vec3 p_W, normal_W;  ///< unit normal, towards the side that looks
+  Vec3 p_W, normal_W;                   ///< unit normal, towards the side that looks
+  std::uint32_t ignore_body = no_body;  ///< casts no shadow on it
   Color light{
       0, 0, 0,
       1};  ///< out: what a white matt surface there would send on; ambient and lights, with their shadows
@@ -125,7 +126,7 @@ class PictureScene {
   void render(std::span<const PictureJob> jobs);
 
   /// How light it is at some places: lights, attenuation, cosine and shadows as in pictures. What is nearer than 0.2 mm
-  /// casts no shadow; all else does, the carrier of the probe included. Not to be called from two threads at once.
+  /// casts no shadow; all else does, but for `ignore_body`. Not to be called from two threads at once.
   void illuminate(std::span<LightProbe> probes);
 
   const char* isa() const;

@@ -260,6 +260,7 @@ void PictureTree::occluded(const RTCOccludedFunctionNArguments* arguments) {
   const Visual& visual = layer.owner->visuals_[layer.visuals[arguments->primID]];
   if (!visual.given.cast_shadows) return;
   const auto& query = *static_cast<const Query*>(arguments->context);
+  if (visual.given.body == query.ignore_body && visual.given.body != no_body) return;
   SL_CHECK_MSG(is_whole(arguments->N), "Embree splits packets");
   const Rays& rays = *query.rays;
   const I valid = lanes::load<I>(arguments->valid);
@@ -304,10 +305,11 @@ Hits PictureTree::trace(const Rays& rays, std::uint32_t ignore_body) const {
           lanes::load<I>(packet.hit.geomID), lanes::load<F>(packet.hit.u), lanes::load<F>(packet.hit.v)};
 }
 
-I PictureTree::shadowed(const Rays& rays) const {
+I PictureTree::shadowed(const Rays& rays, std::uint32_t ignore_body) const {
   I dark{};
   for (const std::uint32_t i : planes_) {
     if (!visuals_[i].given.cast_shadows) continue;
+    if (visuals_[i].given.body == ignore_body && ignore_body != no_body) continue;
     // Mostly all points lie above a ground that the light does not come through.
     const Vec3 n = visuals_[i].normal_W;
     const F3 normal = to_floats(n);
@@ -327,7 +329,7 @@ I PictureTree::shadowed(const Rays& rays) const {
   Query query;
   embree::init_context(query);
   query.rays = &rays;
-  query.ignore_body = no_body;
+  query.ignore_body = ignore_body;
   for (const Layer* layer : {&moving_, &fixed_})
     if (layer->scene) embree::occluded8(valid, layer->scene, query, packet);
   return dark | (open & (lanes::load<F>(packet.tfar) < 0));

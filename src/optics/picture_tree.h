@@ -61,7 +61,8 @@ class PictureTree {
 
   Hits trace(const Rays& rays, std::uint32_t ignore_body) const;
   /// Whether anything that casts shadows lies between near and far.
-  lanes::I shadowed(const Rays& rays) const;
+  /// @param ignore_body  casts none
+  lanes::I shadowed(const Rays& rays, std::uint32_t ignore_body) const;
 
   const Visual& visual(std::size_t i) const { return visuals_[i]; }
   std::uint32_t groups() const { return groups_; }

@@ -164,7 +164,7 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
   if (!any(lit)) return;
   if (light.shadows && scenery.shadows) {
     Rays shadow{rays.base, at + lift * met.face_normal, false, to_light, all(0.0f), far - lift, lit};
-    lit = lit & ~scenery.tree->shadowed(shadow);
+    lit = lit & ~scenery.tree->shadowed(shadow, scenery.shadowless_body);
     if (!any(lit)) return;
   }
   strength = choose(lit, strength, all(0.0f));

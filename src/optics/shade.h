@@ -27,6 +27,7 @@ struct Scenery {
   Surroundings surroundings;
   bool shadows = true, srgb = false;
   bool lit = true;  ///< false: surfaces show their own colour
+  std::uint32_t shadowless_body = no_body;
 };
 
 /// Of every lane that is valid; where nothing was hit, the background.

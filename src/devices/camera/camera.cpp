@@ -4,20 +4,12 @@
 
 namespace sandlot::camera {
 
-Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
-  SL_TRY(eye::check_exposure(spec, build));
-  SL_ASSIGN(const optics::Lens lens, eye::lens_of(spec, build));
-  Camera camera{std::move(spec), {}, {}};
-  camera.look = eye::Look(build, lens, camera.spec);
-  return camera;
-}
-
 namespace {
 constexpr const char* sdf_types[] = {"sensor:camera", "sensor:wideanglecamera", "sensor:wide_angle_camera",
                                      "sensor:wide_angle"};
 }  // namespace
 
-constinit const Kind kind = make_kind<Camera>({
+constinit const Kind kind = make_kind<eye::LookingCamera<Spec>>({
     .name = "camera",
     .help = "Camera with a pinhole, wide-angle or fisheye lens: pictures, things seen, or their poses.",
     .levels = eye::look_levels,

@@ -22,18 +22,6 @@ struct Spec : eye::LensKeys, eye::LookKeys {
   }
 };
 
-struct Camera {
-  using Spec = camera::Spec;
-  using State = eye::LookState;
-  Spec spec;
-  State state;
-  eye::Look look;
-
-  static Result<Camera> create(const DeviceBuild& build, Spec spec);
-  static void sense(PoolView<Camera> pool, const Context& context) { eye::look_due(pool, context); }
-  bool fits() const { return eye::Look::fits(spec, state); }
-};
-
 extern const Kind kind;
 
 }  // namespace sandlot::camera

@@ -27,7 +27,7 @@ void LightSensor::sense(PoolView<LightSensor> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     const LightSensor& sensor = pool.all[index];
     const Pose X_WS = context.engine.states()[sensor.body].X_WB * sensor.X_LS;
-    probes.push_back({X_WS.p, rotate(X_WS.q, {1, 0, 0})});
+    probes.push_back({X_WS.p, rotate(X_WS.q, {1, 0, 0}), sensor.spec.own_shadow ? no_body : sensor.body});
   }
   context.pictures->illuminate(probes);
   for (std::size_t i = 0; i < pool.due.size(); ++i) {

@@ -10,7 +10,8 @@
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h; never below 0.
 /// Limits   direct light and the world's ambient alone, nothing reflected or emitted by surfaces. Visuals throw shadows, its own
-///          robot's too: a sensor inside a visual is in the dark. Lights with cast_shadows off shine through all.
+///          robot's too, but the link that carries the sensor does so only with `own_shadow`: it is its housing, which light
+///          comes through a window of. Lights with cast_shadows off shine through all.
 /// Cost     one shadow ray per light, no allocation by this kind.
 /// Errors   a bad spec: place and path of the key.
 /// Source   J. H. Lambert's cosine law; ITU-R BT.709 (weights); attenuation as in pictures: optics/shade.h.
@@ -22,12 +23,16 @@ namespace sandlot::light_sensor {
 
 struct Spec {
   double lux = 1000;
+  bool own_shadow = false;
   ChannelNoiseSpec noise;
   double rate_hz = 20;
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"lux", "lx", "What light of strength 1 is worth.", 1e-6, 1e6}, s.lux);
+    visit(
+        Field{"own_shadow", "", "The link that carries it throws shadows on it, too.", 0, 1, Field::tunable},
+        s.own_shadow);
     visit(Field{"noise", "lx", "Errors."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);

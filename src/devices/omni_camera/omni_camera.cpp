@@ -27,7 +27,12 @@ optics::Catadioptric mirror_of(const Spec& spec) {
   return m;
 }
 
+}  // namespace
+
 Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build) {
+  if (spec.aperture_m > 0)
+    return eye::rule_error(build, "aperture", "depth of field below a mirror is not simulated",
+                           "leave it out");
   const optics::Catadioptric mirror = mirror_of(spec);
   const char* const key = static_cast<double>(spec.width) * spec.height > (1 << 24) ? "width"
                           : build.decl.config.find("a")                             ? "a"
@@ -45,20 +50,7 @@ Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build) {
   return lens;
 }
 
-}  // namespace
-
-Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
-  SL_TRY(eye::check_exposure(spec, build));
-  if (spec.aperture_m > 0)
-    return eye::rule_error(build, "aperture", "depth of field below a mirror is not simulated",
-                           "leave it out");
-  SL_ASSIGN(const optics::Lens lens, lens_of(spec, build));
-  Camera camera{std::move(spec), {}, {}};
-  camera.look = eye::Look(build, lens, camera.spec);
-  return camera;
-}
-
-constinit const Kind kind = make_kind<Camera>({
+constinit const Kind kind = make_kind<eye::LookingCamera<Spec>>({
     .name = "omni_camera",
     .help = "Camera that looks into a convex mirror and sees all around.",
     .levels = eye::look_levels,

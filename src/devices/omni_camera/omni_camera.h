@@ -58,17 +58,7 @@ struct Spec : MirrorKeys, eye::LookKeys {
   }
 };
 
-struct Camera {
-  using Spec = omni_camera::Spec;
-  using State = eye::LookState;
-  Spec spec;
-  State state;
-  eye::Look look;
-
-  static Result<Camera> create(const DeviceBuild& build, Spec spec);
-  static void sense(PoolView<Camera> pool, const Context& context) { eye::look_due(pool, context); }
-  bool fits() const { return eye::Look::fits(spec, state); }
-};
+Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build);
 
 extern const Kind kind;
 

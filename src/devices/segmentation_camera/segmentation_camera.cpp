@@ -85,14 +85,7 @@ Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
 }
 
 void Camera::sense(PoolView<Camera> pool, const Context& context) {
-  eye::JobBatch batch(context);
-  for (const std::uint32_t index : pool.due) {
-    Camera& camera = pool.all[index];
-    optics::PictureJob job = camera.eye.job({camera.spec.near_m, camera.spec.far_m}, context);
-    job.instance = camera.seen;
-    batch.add(std::move(job));
-  }
-  batch.flush();
+  eye::draw_instances(pool, context);
   for (const std::uint32_t index : pool.due) show(pool.all[index], context);
 }
 

@@ -171,6 +171,28 @@ TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {
             std::string::npos);
 }
 
+TEST(Scenario, AVariableMayChooseAmongTheEntriesOfAnother) {
+  const std::string text =
+      "version: 1\nname: ${of[level]}-${ of [ level ] }\nvars: {level: image, of: {image: \"${low}\", world: "
+      "pose}, low: ranges}\n";
+  const auto s = parse(text);
+  ASSERT_TRUE(s) << s.error().text();
+  EXPECT_EQ(s->name, "ranges-ranges");
+  const auto high = parse(text, {{"level", "world"}});
+  ASSERT_TRUE(high) << high.error().text();
+  EXPECT_EQ(high->name, "pose-pose");
+  EXPECT_EQ(error_of(text, {{"level", "imge"}}),
+            "--set level=imge: 'level' is 'imge', and 'of' has no entry for that; did you mean 'image'?");
+  EXPECT_EQ(error_of("version: 1\nname: ${a[b]}\nvars: {a: 1, b: 2}\n"),
+            "dir/s.yaml:2:7: variable 'a' is '1' and has no entries to choose from");
+  EXPECT_EQ(error_of("version: 1\nname: ${a[b]}\nvars: {a: {x: 1}, b: [2]}\n"),
+            "dir/s.yaml:2:7: variable 'b' is a list and names no entry of 'a'");
+  EXPECT_EQ(error_of("version: 1\nname: ${a[c]}\nvars: {a: {x: 1}}\n"),
+            "dir/s.yaml:2:7: no variable 'c'; did you mean 'a'?");
+  EXPECT_EQ(error_of("version: 1\nname: ${a[x]}\nvars: {a: {x: \"${a[x]}\"}, x: x}\n"),
+            "dir/s.yaml:3:11: variable 'a' is defined by itself");
+}
+
 TEST(Scenario, VariablesCannotExplode) {
   std::string text = "version: 1\nname: ${v40}\nvars:\n  v0: xxxxxxxx\n";
   std::string lists = "version: 1\nname: ${v9}\nvars:\n  v0: [x, x, x, x, x, x, x, x, x, x]\n";

@@ -42,7 +42,6 @@ class Variables {
   struct Variable {
     Node value;
     enum { raw, busy, done } state = raw;
-    std::size_t nodes = 0;
   };
 
   Result<const Node*> value_of(const std::string& name, const Node& use) {
@@ -60,10 +59,31 @@ class Variables {
       SL_TRY(replace(value));
       --depth_;
       variable.value = std::move(value);
-      variable.nodes = number_of_nodes(variable.value);
       variable.state = Variable::done;
     }
     return &variable.value;
+  }
+
+  /// Of `name`, or of `map[key]`: the entry of the variable `map` that the variable `key` names.
+  Result<const Node*> meaning_of(const std::string& name, const Node& use) {
+    const std::size_t bracket = name.find('[');
+    if (bracket == std::string::npos || name.back() != ']') return value_of(name, use);
+    const std::string map_name(trim(std::string_view(name).substr(0, bracket)));
+    const std::string key_name(trim(std::string_view(name).substr(bracket + 1, name.size() - bracket - 2)));
+    SL_ASSIGN(const Node* const map, value_of(map_name, use));
+    if (!map->is_map())
+      return use.error("variable '" + map_name + "' is " + describe(*map) +
+                       " and has no entries to choose from");
+    SL_ASSIGN(const Node* const key, value_of(key_name, use));
+    if (!key->is_scalar())
+      return use.error("variable '" + key_name + "' is " + describe(*key) + " and names no entry of '" +
+                       map_name + "'");
+    if (const Node* const entry = map->find(key->text())) return entry;
+    std::vector<std::string> keys;
+    for (const Node::Entry& each : map->entries()) keys.push_back(each.key);
+    return key->error("'" + key_name + "' is '" + key->text().substr(0, 60) + "', and '" + map_name +
+                          "' has no entry for that",
+                      suggestion(key->text(), keys));
   }
 
   Status replace_scalar(Node& node) {
@@ -79,9 +99,9 @@ class Variables {
         if (end == std::string::npos)
           return node.error("'${' is never closed", "write ${name}, or $${ for a plain ${");
         const std::string name(trim(std::string_view(text).substr(i + 2, end - i - 2)));
-        SL_ASSIGN(const Node* value, value_of(name, node));
+        SL_ASSIGN(const Node* value, meaning_of(name, node));
         if (i == 0 && end + 1 == text.size()) {
-          nodes_ += variables_.find(name)->second.nodes;
+          nodes_ += number_of_nodes(*value);
           if (nodes_ > TextLimits{}.max_nodes) return node.error("variables make too many values");
           node = Node(*value);
           return {};
