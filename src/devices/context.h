@@ -18,11 +18,15 @@ namespace sandlot {
 
 class TopicBase;  // messages/topic.h
 
-/// What other devices have published; for those that work with another one, such as a pan-tilt unit with its camera.
+/// What other devices have published and what they are told; for those that work with another one, such as a pan-tilt unit
+/// with its camera.
 class TopicFinder {
  public:
   /// "/robot1/camera/objects"; null when there is none. Valid within the phase.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
+  /// "/robot1/camera/zoom/command", to write a command into in the actuate phase; null when there is none, or when its device
+  /// has failed. Valid within the phase.
+  virtual TopicBase* find_command(std::string_view name) const = 0;
 
  protected:
   ~TopicFinder() = default;

@@ -22,17 +22,21 @@ Look::Look(const DeviceBuild& build, const optics::Lens& lens, const LookKeys& k
   objects_->message.header.frame_id = build.frame_id();
   poses_ = build.publish<msg::ObjectPoseArray>(world, "world");
   poses_->message.header.frame_id = "world";
-  // A level beyond all: taken whatever is active.
-  if (keys.zoom) zoom_ = build.accept<msg::Float64>(std::size(look_levels), "zoom");
+  if (!keys.zoom) return;
+  constexpr std::uint32_t always = std::size(look_levels);  // a level beyond all: whatever is active
+  zoom_command_ = build.accept<msg::Float64>(always, "zoom");
+  zoom_ = build.publish<msg::Float64>(always, "zoom");
 }
 
-void Look::turn_zoom(const LookKeys& keys, LookState& state, double since_s) {
+void Look::turn_zoom(const LookKeys& keys, LookState& state, double since_s, Time now) {
   if (!keys.zoom) return;
-  const double wanted = zoom_->message.data;
-  if (zoom_->count > 0 && std::isfinite(wanted)) {
+  const double wanted = zoom_command_->message.data;
+  if (zoom_command_->count > 0 && std::isfinite(wanted)) {
     const double most = math::pow(keys.zoom->rate_per_s, since_s);
     state.zoom = std::clamp(std::clamp(wanted, 1.0, keys.zoom->max), state.zoom / most, state.zoom * most);
   }
+  zoom_->message.data = state.zoom;
+  zoom_->publish(now);
   if (state.zoom == zoom_of_table_) return;
   optics::Lens lens = unzoomed_;
   std::visit([&](auto& model) { model.fx *= state.zoom, model.fy *= state.zoom; }, lens.model);

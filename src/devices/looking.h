@@ -5,24 +5,16 @@
 ///          CompressedImage on <device>/image/compressed. `objects`:
 ///          sandlot_msgs/ObjectArray in the sensor's frame. `world`: sandlot_msgs/ObjectPoseArray in `world`. See
 ///          devices/detector.h. Any of them together; what is not active costs nothing: without `image` no picture is drawn.
-/// Zoom     with `zoom`: <device>/zoom/command, a std_msgs/Float64 from 1 to `max`, is approached by at most the factor
-///          `rate` per second. All levels look through the zoomed lens.
+/// Zoom     with `zoom`: devices/zoom.h. All levels look through the zoomed lens.
 /// Switch   zoom and numbers of samples go on; the topics of a level that is left keep their last message.
 /// Time     everything is as it is at the end of the tick (with a shutter: the middle of the first row's exposure).
 #include <optional>
 
 #include "devices/detector.h"
+#include "devices/zoom.h"
 #include "physics/parallel.h"
 
 namespace sandlot::eye {
-
-struct Zoom {
-  double max = 4, rate_per_s = 4;
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"max", "1", "Longest focal length, in those of the spec.", 1, 1000}, s.max);
-    visit(Field{"rate", "1/s", "Largest factor per second.", 1.001, 1e6}, s.rate_per_s);
-  }
-};
 
 /// A Spec derives from it and from the keys of its lens.
 struct LookKeys : ExposureKeys {
@@ -75,7 +67,7 @@ class Look {
     return state.zoom >= 1 && state.zoom <= (keys.zoom ? keys.zoom->max : 1);
   }
   /// Takes the zoom where it shall be at this sample.
-  void turn_zoom(const LookKeys& keys, LookState& state, double since_s);
+  void turn_zoom(const LookKeys& keys, LookState& state, double since_s, Time now);
   optics::PictureJob job(const LookKeys& keys, const Context& context);
   void finish(const LookKeys& keys, std::uint64_t sample, const Context& context);
   void detect(const LookKeys& keys, std::uint32_t levels, std::uint64_t sample, double since_s,
@@ -91,7 +83,8 @@ class Look {
   Topic<msg::CameraInfo>* info_ = nullptr;
   Topic<msg::ObjectArray>* objects_ = nullptr;
   Topic<msg::ObjectPoseArray>* poses_ = nullptr;
-  Topic<msg::Float64>* zoom_ = nullptr;
+  Topic<msg::Float64>* zoom_command_ = nullptr;
+  Topic<msg::Float64>* zoom_ = nullptr;  ///< what it is
 };
 
 /// A camera whose Spec has the keys above and a lens: lens_of(spec, build).
@@ -119,7 +112,7 @@ void LookingCamera<Keys>::sense(PoolView<LookingCamera> pool, const Context& con
   bool pictures = false;
   for (const std::uint32_t index : pool.due) {
     LookingCamera& device = pool.all[index];
-    device.look.turn_zoom(device.spec, device.state, pool.since[index].s());
+    device.look.turn_zoom(device.spec, device.state, pool.since[index].s(), context.now);
     pictures = pictures || (pool.levels[index] >> image & 1);
   }
   if (pictures) {

@@ -237,6 +237,8 @@ struct PanTiltState {
   double tilt = 0;
   double pan_target = 0;
   double tilt_target = 0;
+  double zoom = 1;
+  double zoom_target = 1;
   static void constants(auto&& visit) {
     visit("IDLE", idle);
     visit("MOVING", moving);
@@ -254,6 +256,9 @@ struct PanTiltState {
     visit(Field{"tilt", "rad", "Angle of the tilt joint."}, s.tilt);
     visit(Field{"pan_target", "rad", "Where it shall turn."}, s.pan_target);
     visit(Field{"tilt_target", "rad", "Where it shall turn."}, s.tilt_target);
+    visit(Field{"zoom", "1", "Focal length of the camera, in its shortest ones; 1 without a zoom lens."},
+          s.zoom);
+    visit(Field{"zoom_target", "1", "What it shall become."}, s.zoom_target);
   }
 };
 

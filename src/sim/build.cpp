@@ -511,6 +511,16 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
   return nullptr;
 }
 
+TopicBase* Simulation::find_command(std::string_view name) const {
+  const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
+  const Entity* const entity = find_entity(name.substr(begin, name.find('/', begin) - begin));
+  if (!entity) return nullptr;
+  for (const auto& device : entity->devices)
+    for (const Slot& slot : device->commands)
+      if (slot.topic->name() == name) return takes_commands(*device) ? slot.topic.get() : nullptr;
+  return nullptr;
+}
+
 std::vector<const TopicBase*> Simulation::topics() const {
   std::vector<const TopicBase*> all;
   for (const auto& entity : entities_)

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "messages/messages.h"
+#include "messages/sensor_images.h"
 #include "sim/settings.h"
 #include "sim/test_world.h"
 
@@ -61,6 +62,42 @@ TEST(Presets, MotorsTurnWithoutLoadAsFastAsTheirCataloguesSay) {
     const double k = number("torque_constant"), no_load_A = number("friction") / k;
     const double speed = (number("supply_voltage") - number("resistance") * no_load_A) / k;
     EXPECT_NEAR(speed, rpm * 2 * 3.14159265 / 60, 0.005 * speed) << preset;  // three digits are given
+  }
+}
+
+/// The sheets name the vertical field of view, too, and pixels are square: height and width must fit it. Sheets round, and
+/// cut a few rows.
+TEST(Presets, CamerasSeeAsHighAsTheirSheetsSay) {
+  struct Sheet {
+    const char *kind, *preset;
+    double vertical_deg;
+  };
+  for (const Sheet& sheet : {Sheet{"camera", "raspberry_pi_v2", 48.8}, Sheet{"camera", "logitech_c920", 43.3},
+                             Sheet{"rgbd_camera", "kinect_v1", 43}, Sheet{"rgbd_camera", "kinect_v2", 60},
+                             Sheet{"rgbd_camera", "realsense_d435", 58}}) {
+    const auto simulation = simulate(sheet.kind, map({{"preset", sheet.preset}}));
+    ASSERT_TRUE(simulation) << simulation.error().text();
+    const auto* info = topic_cast<msg::CameraInfo>((*simulation)->find_topic("/robot/device/camera_info"));
+    ASSERT_NE(info, nullptr);
+    const double half = std::atan(0.5 * info->message.height / info->message.k[4]);
+    EXPECT_NEAR(2 * half * 180 / 3.14159265, sheet.vertical_deg, 1.6) << sheet.preset;
+  }
+}
+
+/// f baseline is the number of disparities at 1 m: focal length of the preset's own lens times the maker's baseline.
+TEST(Presets, DepthCamerasStepByTheirLensAndBaseline) {
+  for (const auto& [preset, baseline_m, step] :
+       {std::tuple{"kinect_v1", 0.075, 0.125}, {"realsense_d435", 0.05, 0.03125}}) {
+    const auto simulation = simulate("rgbd_camera", map({{"preset", preset}}));
+    ASSERT_TRUE(simulation) << simulation.error().text();
+    const auto* info = topic_cast<msg::CameraInfo>((*simulation)->find_topic("/robot/device/camera_info"));
+    const model::DeviceDecl& decl = (*simulation)->entities()[0]->devices[0]->decl;
+    const Node* const stage = decl.config.find("depth_noise")->items().at(1).find("disparity");
+    ASSERT_NE(stage, nullptr);
+    EXPECT_NEAR(std::stod(stage->find("focal_baseline")->text()), info->message.k[0] * baseline_m,
+                0.005 * info->message.k[0] * baseline_m)
+        << preset;
+    EXPECT_EQ(std::stod(stage->find("step")->text()), step);
   }
 }
 

@@ -99,6 +99,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::optional<InstanceId> find_instance(std::string_view name) const;
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
   const TopicBase* find_topic(std::string_view name) const override;
+  TopicBase* find_command(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
   /// What stands in the world now, in creation order.
   std::vector<const model::Instance*> instances() const;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "devices/zoom.h"
 
 namespace sandlot::pan_tilt {
 namespace {
@@ -40,6 +41,23 @@ Result<Unit::Axis> axis_of(const DeviceBuild& build, const std::string& name, co
   return axis;
 }
 
+/// Devices of a module are called by the module's name and theirs: in the module "head" `eye` means head_eye.
+Result<const model::DeviceDecl*> camera_of(const DeviceBuild& build, const std::string& name) {
+  std::string prefix;
+  for (const char c : build.decl.scope)
+    if (c != ':') prefix += c;
+    else if (prefix.back() != '_') prefix += '_';
+  std::vector<std::string> names;
+  for (const std::string& wanted : {prefix + name, name})
+    for (const model::DeviceDecl& each : build.instance.devices) {
+      if (each.name == wanted) return &each;
+      names.push_back(each.name);
+    }
+  const Node* const node = build.decl.config.find("camera");
+  return Error{"'" + build.instance.name + "' has no device '" + name + "'", suggestion(name, names),
+               node ? node->place() : build.decl.place, "/camera"};
+}
+
 Vec3 axis_W(const Unit::Axis& axis, const Context& context) {
   return rotate(context.engine.states()[axis.child].X_WB.q, rotate(axis.X_CJ.q, axis.axis_J));
 }
@@ -64,6 +82,30 @@ const JointState& joint_of(const Unit::Axis& axis, const Context& context) {
 
 Pose eye_pose(const Unit& unit, const Context& context) {
   return context.engine.states()[unit.eye_body].X_WB * unit.X_LE;
+}
+
+/// What the camera's zoom is told; null: it has none, is gone or has failed.
+Topic<msg::Float64>* told_zoom(const Unit& unit, const Context& context) {
+  if (unit.zoom_command_topic.empty() || !context.topics) return nullptr;
+  return topic_cast<msg::Float64>(context.topics->find_command(unit.zoom_command_topic));
+}
+
+void zoom_to(const Unit& unit, double wanted, const Context& context) {
+  Topic<msg::Float64>* const slot = told_zoom(unit, context);
+  wanted = std::clamp(wanted, 1.0, unit.longest_zoom);
+  if (!slot || (slot->count > 0 && slot->message.data == wanted)) return;
+  slot->message.data = wanted;
+  slot->stamp = context.now - context.tick;
+  ++slot->count;
+}
+
+/// @return [0]: the zoom, [1]: what it shall become
+std::array<double, 2> zoom_of(const Unit& unit, const Context& context) {
+  if (unit.zoom_topic.empty() || !context.topics) return {1, 1};
+  const auto* const now = topic_cast<msg::Float64>(context.topics->find_topic(unit.zoom_topic));
+  const double zoom = now && now->count > 0 ? now->message.data : 1;
+  const Topic<msg::Float64>* const told = told_zoom(unit, context);
+  return {zoom, told && told->count > 0 ? std::clamp(told->message.data, 1.0, unit.longest_zoom) : zoom};
 }
 
 /// Turns both joints so that the eye's x axis comes to the point. In the frame F of the axes (y: tilt, z: pan) the two
@@ -201,7 +243,10 @@ void follow_task(Unit& unit, const Context& context) {
     if (state.task == Task::track && state.sighted &&
         (context.now - state.sighted_at).s() > unit.spec.lost_after_s)
       state.sighted = false;
-    if (!state.sighted) return sweep(unit, context);
+    if (!state.sighted) {
+      if (unit.spec.search_zoom > 0) zoom_to(unit, unit.spec.search_zoom, context);
+      return sweep(unit, context);
+    }
   } else if (state.task != Task::look) {
     return;
   }
@@ -209,7 +254,10 @@ void follow_task(Unit& unit, const Context& context) {
                         ? Pose{}
                         : context.engine.states()[unit.frames[static_cast<std::size_t>(state.link)].second]
                               .X_WB;
-  look_at(unit, X_WF * state.point, context);
+  const Vec3 point_W = X_WF * state.point;
+  look_at(unit, point_W, context);
+  if (unit.spec.zoom_per_m > 0)
+    zoom_to(unit, unit.spec.zoom_per_m * norm(point_W - eye_pose(unit, context).p), context);
 }
 
 void drive(const Unit& unit, const Unit::Axis& axis, AxisState& state, double fastest, const Context& context,
@@ -239,14 +287,14 @@ void drive(const Unit& unit, const Unit::Axis& axis, AxisState& state, double fa
                                       .max_effort = std::min(unit.spec.max_effort_Nm, axis.max_effort)});
 }
 
-std::uint8_t status_of(const Unit& unit, const Context& context) {
+std::uint8_t status_of(const Unit& unit, bool zoomed, const Context& context) {
   using S = msg::PanTiltState;
   const State& state = unit.state;
   const auto there = [&](const Unit::Axis& axis, const AxisState& s) {
     return !axis.there ||
            (!s.turns_on && std::abs(s.target - joint_of(axis, context).position) < arrived_rad);
   };
-  const bool arrived = there(unit.pan, state.pan) && there(unit.tilt, state.tilt);
+  const bool arrived = zoomed && there(unit.pan, state.pan) && there(unit.tilt, state.tilt);
   if (state.task == Task::hold) return arrived ? S::idle : S::moving;
   if (state.task != Task::look && !state.sighted)
     return state.task == Task::track && state.sighted_at.ns > 0 ? S::lost : S::searching;
@@ -269,21 +317,25 @@ Result<Unit> Unit::create(const DeviceBuild& build, Spec spec) {
   unit.eye_body = unit.tilt.there ? unit.tilt.child : unit.pan.child;
   unit.robot = build.instance.name;
   if (!unit.spec.camera.empty()) {
-    std::vector<std::string> names;
-    const model::DeviceDecl* camera = nullptr;
-    for (const model::DeviceDecl& each : build.instance.devices) {
-      names.push_back(each.name);
-      if (each.name == unit.spec.camera) camera = &each;
-    }
-    if (!camera) {
-      const Node* const node = build.decl.config.find("camera");
-      return Error{"'" + build.instance.name + "' has no device '" + unit.spec.camera + "'",
-                   suggestion(unit.spec.camera, names), node ? node->place() : build.decl.place, "/camera"};
-    }
+    SL_ASSIGN(const model::DeviceDecl* const camera, camera_of(build, unit.spec.camera));
     unit.eye_body = build.bodies[camera->link].index;
     unit.X_LE = camera->X_LS;
-    unit.objects_topic = "/" + build.path.substr(0, build.path.rfind('/') + 1) + sanitised(camera->name) +
-                         "/objects";
+    const std::string device = "/" + build.path.substr(0, build.path.rfind('/') + 1) +
+                               sanitised(camera->name);
+    unit.objects_topic = device + "/objects";
+    if (const Node* const zoom = camera->config.find("zoom"); zoom && !zoom->is_null()) {
+      SL_ASSIGN(const Zoom lens, read_spec<Zoom>(*zoom));
+      unit.longest_zoom = lens.max;
+      unit.zoom_topic = device + "/zoom";
+      unit.zoom_command_topic = device + "/zoom/command";
+    }
+  }
+  for (const char* const key : {"search_zoom", "zoom_per_m"}) {
+    const bool wanted = (key[0] == 's' ? unit.spec.search_zoom : unit.spec.zoom_per_m) > 0;
+    if (!wanted || !unit.zoom_topic.empty()) continue;
+    const Node* const node = build.decl.config.find(key);
+    return Error{"this unit has no camera that zooms", "give the camera a 'zoom', or leave this out",
+                 node ? node->place() : build.decl.place, std::string("/") + key};
   }
   const auto& links = build.instance.model->links;
   unit.frames.emplace_back(unit.robot, build.bodies[0].index);
@@ -294,6 +346,7 @@ Result<Unit> Unit::create(const DeviceBuild& build, Spec spec) {
   unit.point_command = build.accept<msg::PointStamped>(view, "view");
   unit.text_command = build.accept<msg::String>(view, "view/task");
   constexpr std::uint32_t always = 2;
+  if (!unit.zoom_topic.empty()) unit.zoom_command = build.accept<msg::Float64>(always, "zoom");
   unit.joint_state = build.publish<msg::JointState>(always, "state");
   unit.status = build.publish<msg::PanTiltState>(always, "status");
   unit.joint_state->message.header.frame_id = unit.status->message.header.frame_id = build.frame_id();
@@ -315,6 +368,8 @@ void Unit::actuate(PoolView<Unit> pool, const Context& context) {
     // All are looked at in every tick: a command for a level that is not active is not kept for later.
     const bool angles = fresh(*unit.joints_command, 0), point = fresh(*unit.point_command, 1),
                text = fresh(*unit.text_command, 2);
+    if (unit.zoom_command && fresh(*unit.zoom_command, 3))
+      zoom_to(unit, unit.zoom_command->message.data, context);
     if (pool.levels[index] >> joints & 1) {
       if (angles) take_joints(unit);
     } else {
@@ -350,7 +405,10 @@ void Unit::sense(PoolView<Unit> pool, const Context& context) {
     }
     unit.joint_state->publish(context.now);
     msg::PanTiltState& status = unit.status->message;
-    status.status = status_of(unit, context);
+    const auto [zoom, zoom_target] = zoom_of(unit, context);
+    status.zoom = zoom;
+    status.zoom_target = zoom_target;
+    status.status = status_of(unit, zoom == zoom_target, context);
     const bool labelled = unit.state.task == Task::search || unit.state.task == Task::track;
     if (labelled) status.label = unit.state.label;
     else status.label.clear();

@@ -8,8 +8,10 @@
 ///          camera's objects hold a ball, and looks at it; "track ball" keeps it in the middle, and searches when it was
 ///          lost for `lost_after`; "stop". Exactly one level is active.
 /// Camera   `camera` names a camera of the robot on the tilted link: its x axis is what is turned to the point, and its level
-///          `objects` must be active for search and track. Without it the child link's x axis is turned. Its zoom has a
-///          command of its own: <camera>/zoom/command.
+///          `objects` must be active for search and track. Without it the child link's x axis is turned.
+/// Zoom     of a camera with a zoom lens (devices/zoom.h), whose speed and limits hold. std_msgs/Float64 at either level goes on to the
+///          camera. At level `view` the unit zooms by itself where asked for: to `search_zoom` while it searches, and to
+///          `zoom_per_m` times the distance of what it looks at or tracks, which then keeps its size in the picture.
 /// Output   <device>/state: sensor_msgs/JointState; <device>/status: sandlot_msgs/PanTiltState. Every tick.
 /// Control  once per sub-step: each joint's speed follows sqrt(2 a |error|), at most its largest speed, with at most its largest
 ///          acceleration; the engine holds the joint to that speed. Angles are cut to the joint's limits; a joint that can turn all
@@ -18,7 +20,7 @@
 /// Switch   what was turned to last is held. Before the first command it holds where it is.
 /// Limits   one thing at a time: of several of a label the one nearest to the last is tracked. Aiming takes the axes as perpendicular.
 /// Cost     a few dozen operations per tick; no allocation after the first messages.
-/// Errors   joints that are not there or do not turn, no joint at all, a camera that is not there.
+/// Errors   joints that are not there or do not turn, no joint at all, a camera that is not there, zoom keys without a zoom lens.
 #include <array>
 
 #include "devices/kind.h"
@@ -31,6 +33,7 @@ struct Spec {
   double max_pan_speed_radps = 2, max_tilt_speed_radps = 2, max_acceleration_radps2 = 20, max_effort_Nm = 1e9;
   double search_speed_radps = 1, lost_after_s = 1;
   std::vector<double> search_tilts{0.0};
+  double search_zoom = 0, zoom_per_m = 0;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
@@ -52,6 +55,13 @@ struct Spec {
     visit(Field{"search_tilts", "rad", "Angles of the tilt joint at which it searches, in turn.", -7, 7,
                 Field::none, 100, 1},
           s.search_tilts);
+    visit(Field{"search_zoom", "1", "Zoom while it searches; 0: left as it is.", 0, 1000, tunable},
+          s.search_zoom);
+    visit(
+        Field{"zoom_per_m", "1/m",
+              "Zoom per metre to what it looks at or tracks, so that that keeps its size; 0: left as it is.",
+              0, 1e4, tunable},
+        s.zoom_per_m);
     visit(Field{"lost_after", "s", "What is tracked counts as lost after so long.", 0, 1e6, tunable},
           s.lost_after_s);
   }
@@ -76,7 +86,7 @@ struct AxisState {
 struct State {
   bool begun = false, out_of_reach = false;
   Task task = Task::hold;
-  std::array<std::uint64_t, 3> taken{};  ///< commands seen: joints, point, text
+  std::array<std::uint64_t, 4> taken{};  ///< commands seen: joints, point, text, zoom
   std::uint64_t looked = 0;              ///< messages of the camera seen
   std::string label;
   std::int32_t link = -1;  ///< whose frame `point` is in; -1: the world
@@ -122,10 +132,13 @@ struct Unit {
   std::uint32_t eye_body = 0;
   Pose X_LE;  ///< the eye on its link
   std::string objects_topic, robot;
+  std::string zoom_topic, zoom_command_topic;  ///< of the camera; empty: it has no zoom lens
+  double longest_zoom = 1;
   std::vector<std::pair<std::string, std::uint32_t>> frames;  ///< names of links, and their bodies
   Topic<msg::JointState>* joints_command = nullptr;
   Topic<msg::PointStamped>* point_command = nullptr;
   Topic<msg::String>* text_command = nullptr;
+  Topic<msg::Float64>* zoom_command = nullptr;  ///< null: the camera has no zoom lens
   Topic<msg::JointState>* joint_state = nullptr;
   Topic<msg::PanTiltState>* status = nullptr;
 

@@ -42,9 +42,15 @@ model::Model owl(double pan_up = 1, double tilt_left = 1) {
 class Found final : public TopicFinder {
  public:
   const TopicBase* find_topic(std::string_view name) const override {
+    if (name == zoom.name()) return &zoom;
     return name == objects.name() ? &objects : nullptr;
   }
+  TopicBase* find_command(std::string_view name) const override {
+    return name == told.name() ? &told : nullptr;
+  }
   Topic<msg::ObjectArray> objects{"/robot1/eye/objects"};
+  Topic<msg::Float64> zoom{"/robot1/eye/zoom"};
+  mutable Topic<msg::Float64> told{"/robot1/eye/zoom/command"};
 };
 
 class Owl : public Rig {
@@ -220,6 +226,92 @@ TEST(PanTilt, SearchesTracksAndLoses) {
   EXPECT_EQ(owl.status(), S::idle);
 }
 
+/// The owl with a zoom lens that gets to 8 by at most a factor of 2 a second, as a camera that samples in every tick turns it.
+class ZoomingOwl : public Owl {
+ public:
+  ZoomingOwl() {
+    Node zoom = config({{"max", "8"}, {"rate", "2"}});
+    instance.devices[0].config = Node::map({});
+    instance.devices[0].config.set("zoom", std::move(zoom));
+    found.zoom.message.data = 1;
+  }
+  void run_zooming(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      act();
+      place();
+      double& zoom = found.zoom.message.data;
+      const double most = math::pow(2, tick.s());
+      if (found.told.count > 0) zoom = std::clamp(found.told.message.data, zoom / most, zoom * most);
+      ++found.zoom.count;
+      sense();
+    }
+  }
+  const msg::PanTiltState& told_status() { return topic<msg::PanTiltState>("head/status").message; }
+};
+
+TEST(PanTilt, PassesZoomOnAtEitherLevelAndTellsWhereItIs) {
+  for (const std::uint32_t level : {joints_bit, view_bit}) {
+    ZoomingOwl owl;
+    ASSERT_TRUE(owl.mount(level));
+    owl.run_zooming(1);
+    EXPECT_EQ(owl.found.told.count, 0u) << "nobody asked for anything";
+    EXPECT_EQ(owl.told_status().zoom_target, 1);
+    EXPECT_EQ(owl.status(), S::idle);
+    owl.command("head/zoom", msg::Float64{4});
+    owl.run_zooming(100);
+    EXPECT_EQ(owl.found.told.count, 1u) << "told once";
+    EXPECT_NEAR(owl.told_status().zoom, 2, 1e-9);  // 2^1
+    EXPECT_EQ(owl.told_status().zoom_target, 4);
+    EXPECT_EQ(owl.status(), S::moving);
+    owl.run_zooming(101);
+    EXPECT_EQ(owl.told_status().zoom, 4);
+    EXPECT_EQ(owl.status(), S::idle);
+    owl.command("head/zoom", msg::Float64{100});
+    owl.run_zooming(1);
+    EXPECT_EQ(owl.told_status().zoom_target, 8) << "no longer than its lens";
+  }
+}
+
+TEST(PanTilt, KeepsTheSizeOfWhatItLooksAtAndSearchesWide) {
+  ZoomingOwl owl;
+  ASSERT_TRUE(owl.mount(view_bit, {{"zoom_per_m", "0.5"}, {"search_zoom", "1.5"}, {"lost_after", "0.2"}}));
+  // Ahead of the eye, which sits 0.1 m before the axes at a height of 1 m: 6 m away.
+  owl.look("", {6.1, 0, 1});
+  owl.run_zooming(400);
+  EXPECT_NEAR(owl.told_status().zoom, 3, 1e-6);
+  owl.tell("search ball");
+  owl.run_zooming(200);
+  EXPECT_EQ(owl.told_status().zoom, 1.5);
+  owl.tell("track ball");
+  for (int i = 0; i < 1200; ++i) {
+    owl.see({-3, 2.5, 0.8});
+    owl.run_zooming(1);
+  }
+  EXPECT_EQ(owl.status(), S::tracking);
+  EXPECT_NEAR(owl.told_status().zoom, 0.5 * norm(Vec3{-3, 2.5, 0.8} - owl.eye().p), 1e-6);
+  for (int i = 0; i < 300; ++i) {
+    owl.see({0, 0, -100});
+    owl.run_zooming(1);
+  }
+  EXPECT_EQ(owl.status(), S::lost);
+  EXPECT_EQ(owl.told_status().zoom, 1.5);
+}
+
+TEST(PanTilt, AModulesUnitTurnsTheModulesCamera) {
+  Owl owl;
+  owl.instance.devices[0].name = "front_eye";
+  model::DeviceDecl unit{
+      .name = "head", .scope = "front::", .config = config({{"pan_joint", "pan"}, {"camera", "eye"}})};
+  const auto add = [&] {
+    const std::string path = "robot1/head";
+    return owl.pool->add({unit, owl.instance, path, 1, 1, owl.engine->body_ids, owl.engine->joint_ids,
+                          owl.engine->what, owl.tick, joints_bit, owl});
+  };
+  EXPECT_TRUE(add());
+  owl.instance.devices[0].name = "back_eye";
+  EXPECT_FALSE(add());
+}
+
 TEST(PanTilt, SwitchesLevelsAndSurvivesSaving) {
   Owl a, b;
   for (Owl* owl : {&a, &b}) ASSERT_TRUE(owl->mount(view_bit));
@@ -251,6 +343,9 @@ TEST(PanTilt, BadSpecsAreErrors) {
       complaint({{"pan_joint", "pam"}}).find("robot.yaml:1:9: /pan_joint: model 'owl' has no joint 'pam'"),
       std::string::npos);
   EXPECT_NE(complaint({{"pan_joint", "pan"}, {"camera", "eyes"}}).find("robot.yaml:2:9: /camera"),
+            std::string::npos);
+  EXPECT_NE(complaint({{"pan_joint", "pan"}, {"camera", "eye"}, {"zoom_per_m", "1"}})
+                .find("robot.yaml:3:9: /zoom_per_m: this unit has no camera that zooms"),
             std::string::npos);
   EXPECT_NE(complaint({{"pan_joint", "pan"}, {"max_acceleration", "-1"}}).find("/max_acceleration"),
             std::string::npos);
