@@ -77,5 +77,23 @@ TEST_P(LevelsOnTheWay, end_in_the_same_state_for_1_2_and_4_threads) {
   }
 }
 
+TEST(MslField, one_setting_switches_every_sense_of_every_robot) {
+  struct Level {
+    const char *set, *eyes, *laser;
+  };
+  for (const Level& level : {Level{"image", "image", "ranges"}, Level{"objects", "objects", "segments"},
+                             Level{"world", "world", "pose"}}) {
+    const Printed printed = sandlot(std::string("check scenarios/msl_field.yaml --set level=") + level.set);
+    EXPECT_EQ(printed.exit_code, 0);
+    for (const std::string& part :
+         {std::string(" camera ") + level.eyes, std::string(" omni_camera ") + level.eyes,
+          std::string(" laser_scanner ") + level.laser})
+      EXPECT_NE(printed.out.find(part + " (12)"), std::string::npos) << part << "\n" << printed.out;
+  }
+  const Printed wrong = sandlot("check scenarios/msl_field.yaml --set level=imge");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.out.find("did you mean 'image'?"), std::string::npos) << wrong.out;
+}
+
 }  // namespace
 }  // namespace sandlot::test

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -24,6 +25,24 @@ nlohmann::ordered_json to_json(const Error& e, const char* severity, const std::
 
 std::string counted(std::size_t n, const char* what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+/// What works at which level, of the kinds that have several: "camera image (12), laser_scanner pose".
+std::string levels_text(const Simulation& simulation) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& entity : simulation.entities())
+    for (const auto& device : entity->devices) {
+      const auto kind = find_device_kind(device->decl.kind);
+      if (!kind || (*kind)->levels.size() < 2) continue;
+      std::string text = (*kind)->name;
+      for (std::size_t level = 0; level < (*kind)->levels.size(); ++level)
+        if (device->levels >> level & 1) text += std::string(" ") + (*kind)->levels[level].name;
+      ++counts[text];
+    }
+  std::string all;
+  for (const auto& [text, count] : counts)
+    all += (all.empty() ? "" : ", ") + text + (count > 1 ? fmt::format(" ({})", count) : "");
+  return all;
 }
 
 /// What lint says of a file that was built.
@@ -63,10 +82,14 @@ int check(const FileOptions& options) {
     for (const Finding& finding : findings)
       std::fprintf(stderr, "warning: %s%s\n", finding.text.text().c_str(),
                    finding.rule.empty() ? "" : (" [" + finding.rule + "]").c_str());
-    if (!built) complain(built.error());
-    else
-      fmt::print("{}: {}, {}, {}\n", file, options.strict && !findings.empty() ? "refused" : "ok",
-                 counted((*built)->instances().size(), "thing"), counted(findings.size(), "warning"));
+    if (!built) {
+      complain(built.error());
+      continue;
+    }
+    fmt::print("{}: {}, {}, {}\n", file, options.strict && !findings.empty() ? "refused" : "ok",
+               counted((*built)->instances().size(), "thing"), counted(findings.size(), "warning"));
+    if (const std::string levels = levels_text(**built); !levels.empty())
+      fmt::print("  levels: {}\n", levels);
   }
   if (options.json) fmt::print("{}\n", json_text(report));
   return result;
