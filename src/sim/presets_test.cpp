@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math.h"
 #include "messages/messages.h"
 #include "messages/sensor_images.h"
 #include "sim/settings.h"
@@ -79,7 +80,7 @@ TEST(Presets, CamerasSeeAsHighAsTheirSheetsSay) {
     ASSERT_TRUE(simulation) << simulation.error().text();
     const auto* info = topic_cast<msg::CameraInfo>((*simulation)->find_topic("/robot/device/camera_info"));
     ASSERT_NE(info, nullptr);
-    const double half = std::atan(0.5 * info->message.height / info->message.k[4]);
+    const double half = math::atan(0.5 * info->message.height / info->message.k[4]);
     EXPECT_NEAR(2 * half * 180 / 3.14159265, sheet.vertical_deg, 1.6) << sheet.preset;
   }
 }
