@@ -172,8 +172,10 @@ struct PictureScene::Impl {
   Surroundings surroundings;
   SceneFrame frame;
   std::vector<Velocity> velocities;
-  std::vector<Pose> later;  ///< poses at another time of the exposure
+  std::vector<Pose> later;        ///< poses at another time of the exposure
+  std::vector<ShadowGrid> grids;  ///< one per light, used of suns
   bool new_shapes = false, new_fixed = true, new_poses = true;
+  bool new_grids = true;  ///< shapes or lights stand elsewhere than when the grids were made
 
   void make_current() {
     if (new_shapes) {
@@ -185,18 +187,36 @@ struct PictureScene::Impl {
     SL_CHECK(frame.X_WG.size() >= tree.groups());
     tree.place(frame.X_WG, new_fixed);
     new_fixed = new_poses = false;
+    new_grids = true;
   }
   void place_at(double t_s) {
     later = frame.X_WG;
     for (std::size_t i = 0; i < velocities.size(); ++i) later[i] = moved(later[i], velocities[i], t_s);
     tree.place(later, false);
-    new_poses = true;
+    new_poses = new_grids = true;
   }
   void light(Shot& shot, std::span<const Pose> X_WG) const {
     shot.scenery.lights.clear();
     const Vec3 p = shot.job->X_WS.p;
     const double base[] = {p.x, p.y, p.z};
     for (const PictureLight& l : lights) shot.scenery.lights.push_back(light_now(l, X_WG, base));
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      if (has_grid(lights[i].light) && i < grids.size()) shot.scenery.lights[i].grid = grids[i].from(base);
+  }
+  /// The shadow grids for the present placement of the scene, where one of the jobs asks for shadows.
+  void look_from_suns(std::span<const PictureJob> jobs, std::span<const Pose> X_WG) {
+    const bool wanted = std::any_of(jobs.begin(), jobs.end(), [](const PictureJob& job) {
+      return !job.rgb.empty() && job.exposure.shadows && job.exposure.lit;
+    });
+    if (!wanted || !new_grids) return;
+    new_grids = false;
+    grids.resize(lights.size());
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      if (has_grid(lights[i].light))
+        grids[i].make(tree, rotate((X_WG[lights[i].group] * lights[i].light.X_PLight).q, {0, 0, 1}));
+  }
+  static bool has_grid(const model::Light& light) {
+    return light.type == model::Light::Type::directional && light.cast_shadows;
   }
 };
 
@@ -210,6 +230,7 @@ void PictureScene::set_shapes(std::span<const PictureShape> shapes) {
 }
 void PictureScene::set_lights(std::span<const PictureLight> lights) {
   impl_->lights.assign(lights.begin(), lights.end());
+  impl_->new_grids = true;
 }
 void PictureScene::set_surroundings(const Surroundings& surroundings) { impl_->surroundings = surroundings; }
 
@@ -229,6 +250,7 @@ void PictureScene::render(std::span<const PictureJob> jobs) {
   const embree::FlushDenormals flush;
   s.make_current();
   for (const PictureLight& light : s.lights) SL_CHECK(light.group < s.frame.X_WG.size());
+  s.look_from_suns(jobs, s.frame.X_WG);
   std::vector<Shot> shots;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> work;  // shot and tile
   shots.reserve(jobs.size());
@@ -247,6 +269,7 @@ void PictureScene::render(std::span<const PictureJob> jobs) {
     if (shot.camera.slices() == 1) continue;
     for (shot.slice = 0; shot.slice < shot.camera.slices(); ++shot.slice) {
       s.place_at(shot.camera.time_of_slice(shot.slice));
+      s.look_from_suns({shot.job, 1}, s.later);
       s.light(shot, s.later);
       parallel_for(shot.tiles(), 2, [&](std::size_t begin, std::size_t end) {
         const embree::FlushDenormals in_this_thread;

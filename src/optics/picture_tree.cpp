@@ -305,7 +305,7 @@ Hits PictureTree::trace(const Rays& rays, std::uint32_t ignore_body) const {
           lanes::load<I>(packet.hit.geomID), lanes::load<F>(packet.hit.u), lanes::load<F>(packet.hit.v)};
 }
 
-I PictureTree::shadowed(const Rays& rays, std::uint32_t ignore_body) const {
+I PictureTree::shadowed(const Rays& rays, I doubtful, std::uint32_t ignore_body) const {
   I dark{};
   for (const std::uint32_t i : planes_) {
     if (!visuals_[i].given.cast_shadows) continue;
@@ -319,7 +319,7 @@ I PictureTree::shadowed(const Rays& rays, std::uint32_t ignore_body) const {
     const F t = -height / climbs;
     dark |= rays.valid & (t >= rays.near) & (t <= rays.far) & (t <= largest);
   }
-  const I open = rays.valid & ~dark;
+  const I open = doubtful & ~dark;
   if (!any(open) || (!fixed_.scene && !moving_.scene)) return dark;
   alignas(64) RTCRay8 packet;
   fill(packet, rays);

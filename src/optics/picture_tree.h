@@ -61,10 +61,12 @@ class PictureTree {
 
   Hits trace(const Rays& rays, std::uint32_t ignore_body) const;
   /// Whether anything that casts shadows lies between near and far.
+  /// @param doubtful     of the valid lanes those on which anything but a plane may throw a shadow
   /// @param ignore_body  casts none
-  lanes::I shadowed(const Rays& rays, std::uint32_t ignore_body) const;
+  lanes::I shadowed(const Rays& rays, lanes::I doubtful, std::uint32_t ignore_body) const;
 
   const Visual& visual(std::size_t i) const { return visuals_[i]; }
+  std::size_t size() const { return visuals_.size(); }
   std::uint32_t groups() const { return groups_; }
   const char* isa() const { return isa_; }
 

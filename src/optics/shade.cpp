@@ -24,6 +24,7 @@ struct Met {
   F3 diffuse, specular, emissive;
   F shininess;
   bool shiny = false;
+  I convex = all(-1);  ///< the visual of those that see the outside of a convex solid
 };
 
 int first_lane(I mask) {
@@ -123,6 +124,7 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
   // Mostly a packet sees one thing.
   const bool alone = lanes::bits(mask) == lanes::bits(rays.valid & (hits.visual >= 0));
   const auto take = [&](const F3& from, F3& to) { to = alone ? from : choose(mask, from, to); };
+  if (!visual.is_plane && !visual.skin) met.convex = lanes::choose(mask, hits.visual, met.convex);
   take(in_world(s.normal), met.normal);
   if (visual.skin) take(in_world(s.face_normal), met.face_normal);
   else take(met.normal, met.face_normal);
@@ -164,7 +166,8 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
   if (!any(lit)) return;
   if (light.shadows && scenery.shadows) {
     Rays shadow{rays.base, at + lift * met.face_normal, false, to_light, all(0.0f), far - lift, lit};
-    lit = lit & ~scenery.tree->shadowed(shadow, scenery.shadowless_body);
+    const I doubtful = light.grid.grid ? ShadowGrid::doubtful(light.grid, shadow.from, lit, met.convex) : lit;
+    lit = lit & ~scenery.tree->shadowed(shadow, doubtful, scenery.shadowless_body);
     if (!any(lit)) return;
   }
   strength = choose(lit, strength, all(0.0f));
@@ -234,6 +237,7 @@ F3 shade(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone) {
   if (!scenery.lit) return choose(hit, met.emissive + met.diffuse, background);
   // Both sides of a surface look alike.
   const I behind = dot(met.face_normal, rays.direction) > 0;
+  met.convex |= behind;
   met.normal = choose(behind, F3{-met.normal.x, -met.normal.y, -met.normal.z}, met.normal);
   met.face_normal = choose(behind, F3{-met.face_normal.x, -met.face_normal.y, -met.face_normal.z},
                            met.face_normal);

@@ -7,6 +7,7 @@
 /// Source   J. Blinn, Models of light reflection for computer synthesized pictures (1977). Spots as OGRE has them: between
 ///          the inner and the outer cone ((cos - cos_outer) / (cos_inner - cos_outer))^falloff.
 #include "optics/picture_tree.h"
+#include "optics/shadow_grid.h"
 
 namespace sandlot::optics {
 
@@ -18,6 +19,7 @@ struct LightNow {
   float constant, linear, quadratic, range;
   float cos_inner, cos_outer, falloff;
   bool shadows;
+  ShadowGrid::View grid;  ///< of suns
 };
 LightNow light_now(const PictureLight& light, std::span<const Pose> X_WG, const double base[3]);
 
