@@ -156,7 +156,7 @@ TEST(Playback, a_robot_drives_again_as_another_was_recorded) {
                                   ", topic: /rover/drive/ideal}'";
   const auto follows = summary_of(scenario + " --set " + by_odometry);
   ASSERT_FALSE(follows.contains("failed")) << follows["failed"];
-  for (const int i : {0, 1})
+  for (const std::size_t i : {0, 1})
     EXPECT_NEAR(follows["robots"][0]["pose"][i].get<double>(), original["robots"][0]["pose"][i].get<double>(),
                 0.15);
   const Printed missing = sandlot("run " + scenario +

@@ -18,6 +18,7 @@ using lanes::F;
 using lanes::F3;
 using lanes::I;
 
+constexpr float largest = std::numeric_limits<float>::max();
 constexpr int nothing = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
 
 struct Range {
@@ -174,8 +175,8 @@ void TriangleTree::place_on_mesh(const Rays& rays, Hits& hits) const {
           w_a = dot(cross(opposite_a, b + c), direction), all = w_a + w_b + w_c;
   const F3 normal = cross(opposite_b, opposite_c);
   const F across = dot(normal, direction), t = dot(normal, a) / across;
-  // What is too thin for this stays as it is.
-  hits.t = lanes::choose(found & (across != 0) & (t == t), t, hits.t);
+  // What is too thin for this (t may be no number) stays as it is.
+  hits.t = lanes::choose(found & (across != 0) & (lanes::magnitude(t) < largest), t, hits.t);
   const auto weight = [&](F w) { return lanes::lesser(lanes::greater(w / all, F{}), lanes::all(1.0f)); };
   hits.b1 = lanes::choose(found & (all != 0), weight(w_b), hits.b1);
   hits.b2 = lanes::choose(found & (all != 0), weight(w_c), hits.b2);
