@@ -1,4 +1,4 @@
-# The page: web/ is bundled by node into build/PRESET/page and its files become part of the program (src/server/page.cpp).
+# The page: web/ is bundled by node into build/PRESET/page and its files become part of the program (src/server/http/page.cpp).
 # Without node or the packages that `./dev` installs into web/node_modules, the page says how to get it instead.
 #
 # Included by CMakeLists.txt this declares the rule; run by that rule (cmake -P, with FOLDER and OUT) it writes the list

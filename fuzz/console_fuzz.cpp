@@ -3,8 +3,8 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "console/console.h"
-#include "formats/resources.h"
-#include "sim/load.h"
+#include "files/resources.h"
+#include "sim/load/load.h"
 
 namespace {
 
@@ -13,7 +13,7 @@ using namespace sandlot;
 const std::vector<std::byte>& first_state() {
   static const std::vector<std::byte> state = [] {
     Diagnostics diagnostics;
-    auto setup = load(formats::own_folder("scenarios") + "/indoor.yaml", {}, diagnostics);
+    auto setup = load(own_folder("scenarios") + "/indoor.yaml", {}, diagnostics);
     SL_CHECK_MSG(setup, setup ? "" : setup.error().what.c_str());
     auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
     SL_CHECK(simulation);

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "sim/expression.h"
+#include "sim/watch/expression.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "assets/mesh/mesh.h"
 #include "base/check.h"
-#include "formats/mesh/mesh.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sandlot;
@@ -14,12 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string path = std::string("/nowhere/fuzz.") + formats[data[0] % formats.size()];
   Diagnostics diagnostics;
-  const auto mesh = formats::parse_mesh(bytes, path,
-                                        {.scale = {1, -2, 1},
-                                         .centre = (data[0] & 0x40) != 0,
-                                         .textures = (data[0] & 0x80) != 0,
-                                         .max_triangles = 20'000},
-                                        diagnostics);
+  const auto mesh = assets::parse_mesh(bytes, path,
+                                       {.scale = {1, -2, 1},
+                                        .centre = (data[0] & 0x40) != 0,
+                                        .textures = (data[0] & 0x80) != 0,
+                                        .max_triangles = 20'000},
+                                       diagnostics);
   if (!mesh) {
     SL_CHECK(!mesh.error().what.empty() && mesh.error().place.file);
     return 0;

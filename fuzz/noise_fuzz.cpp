@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "formats/yaml.h"
+#include "files/yaml.h"
 #include "noise/channel_noise.h"
 #include "noise/depth_noise.h"
 #include "noise/image_noise.h"
@@ -35,8 +35,7 @@ struct All {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto node = formats::parse_yaml(text, "fuzz.yaml",
-                                        {.max_bytes = 1 << 14, .max_depth = 16, .max_nodes = 1000});
+  const auto node = parse_yaml(text, "fuzz.yaml", {.max_bytes = 1 << 14, .max_depth = 16, .max_nodes = 1000});
   if (!node) return 0;
   const auto read = read_spec<All>(*node);
   if (!read) {

@@ -1,9 +1,9 @@
 /// Forged logs: a run of two robots is replayed with entries as the input says. A target is one of the real ones or what
 /// stands in the input, the bytes are those of a real request or the input's.
 #include "base/check.h"
-#include "formats/resources.h"
+#include "files/resources.h"
 #include "record/replay.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace {
 
@@ -12,7 +12,7 @@ using namespace sandlot;
 std::vector<std::byte> real_snapshot() {
   Diagnostics diagnostics;
   const formats::Override overrides[] = {{"physics", "planar"}};
-  auto setup = load(formats::own_folder("scenarios") + "/indoor.yaml", {.overrides = overrides}, diagnostics);
+  auto setup = load(own_folder("scenarios") + "/indoor.yaml", {.overrides = overrides}, diagnostics);
   SL_CHECK_MSG(setup, setup.error().text().c_str());
   auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
   SL_CHECK(simulation);

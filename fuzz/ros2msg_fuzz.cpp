@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace sandlot;
   const std::string_view all(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(all.find('\0'), all.size());
-  const auto schema = DynamicSchema::parse("my_msgs/Thing", all.substr(0, end));
+  const auto schema = DynamicSchema::parse("my_msgs/LabelledObject", all.substr(0, end));
   if (!schema) {
     SL_CHECK(!schema.error().what.empty());
     return 0;

@@ -6,10 +6,10 @@
 
 #include "base/check.h"
 #include "base/hash.h"
-#include "formats/resources.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
-#include "sim/snapshot.h"
+#include "files/resources.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
+#include "sim/world/snapshot.h"
 
 namespace {
 
@@ -49,7 +49,7 @@ robots:
 
 std::vector<std::vector<std::byte>> real_snapshots() {
   std::vector<std::vector<std::byte>> out;
-  const std::string folder = sandlot::formats::own_folder("scenarios");
+  const std::string folder = sandlot::own_folder("scenarios");
   for (const auto& [file, engine] :
        {std::pair{"/indoor.yaml", "planar"}, std::pair{"/indoor.yaml", "rigid"},
         std::pair{"/fig1_robot.yaml", "rigid"}, std::pair{"/mario.yaml", "rigid"},

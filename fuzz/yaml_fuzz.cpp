@@ -1,6 +1,6 @@
 /// Any bytes: parse_yaml answers with a Node or one error that has a file, and both can be used.
 #include "base/check.h"
-#include "formats/yaml.h"
+#include "files/yaml.h"
 
 namespace {
 
@@ -15,8 +15,8 @@ std::size_t size_of(const sandlot::Node& node) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto result = sandlot::formats::parse_yaml(
-      text, "fuzz.yaml", {.max_bytes = 1 << 16, .max_depth = 32, .max_nodes = 10'000});
+  const auto result = sandlot::parse_yaml(text, "fuzz.yaml",
+                                          {.max_bytes = 1 << 16, .max_depth = 32, .max_nodes = 10'000});
   if (result) {
     SL_CHECK(size_of(*result) > 0);
   } else {

@@ -8,15 +8,15 @@
 #include "base/hash.h"
 #include "base/random.h"
 #include "command.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::test {
 namespace {
 
 const std::string scenario = "tests/scenarios/all_devices.yaml";
 
-TEST(AllDevices, go_on_from_half_time_to_the_same_hash_in_any_number_of_threads) {
+TEST(AllDevices, GoOnFromHalfTimeToTheSameHashInAnyNumberOfThreads) {
   const Scratch scratch;
   const std::string half = scratch.file("half.snapshot");
   const auto whole = summary_of(scenario + " --snapshot-at 2s --snapshot " + half);
@@ -31,7 +31,7 @@ TEST(AllDevices, go_on_from_half_time_to_the_same_hash_in_any_number_of_threads)
 }
 
 /// A checksum finds damage, not forgery: whatever the bytes say, they are refused or run without a crash.
-TEST(AllDevices, forged_state_is_refused_or_harmless) {
+TEST(AllDevices, ForgedStateIsRefusedOrHarmless) {
   Diagnostics diagnostics;
   auto setup = load(scenario, {}, diagnostics);
   ASSERT_TRUE(setup) << setup.error().text();

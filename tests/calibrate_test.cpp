@@ -27,7 +27,7 @@ constexpr const char* poor_eye =
     " --camera seeker/eye --set robots[0].devices.eye.width=128 --set robots[0].devices.eye.height=96"
     " --set 'robots[0].devices.eye.noise=[{gaussian: {std: 6 %}}, {hundreds_and_thousands: {rate: 30 %}}]'";
 
-TEST(SlowCalibrate, what_it_writes_makes_the_high_level_err_as_the_pictures_did) {
+TEST(SlowCalibrate, WhatItWritesMakesTheHighLevelErrAsThePicturesDid) {
   const Scratch scratch;
   const std::string run = "scenarios/ball.yaml" + std::string(poor_eye) + " --samples 1500";
   const auto pictures = calibrated(run + " --out " + scratch.file("eye.yaml"));
@@ -55,7 +55,7 @@ TEST(SlowCalibrate, what_it_writes_makes_the_high_level_err_as_the_pictures_did)
   EXPECT_NEAR(range_std(told, 3), range_std(pictures, 3), range_std(pictures, 3) * 5 * 0.76 / std::sqrt(n));
 }
 
-TEST(SlowCalibrate, gives_back_the_errors_that_the_level_was_given) {
+TEST(SlowCalibrate, GivesBackTheErrorsThatTheLevelWasGiven) {
   const auto told = calibrated(
       "scenarios/ball.yaml --camera seeker/eye --samples 1500 --detector objects"
       " --set 'objects={labels: [ball, goal_blue, goal_yellow, magenta, cyan], miss_rate: 0.1, confusion: "
@@ -73,7 +73,7 @@ TEST(SlowCalibrate, gives_back_the_errors_that_the_level_was_given) {
   EXPECT_NEAR(told["ghosts"].get<double>(), ghosts, 5 * std::sqrt(ghosts));
 }
 
-TEST(Calibrate, of_a_clear_picture_there_are_hardly_any_ghosts) {
+TEST(Calibrate, OfAClearPictureThereAreHardlyAnyGhosts) {
   const auto pictures = calibrated("scenarios/ball.yaml --camera seeker/eye --samples 300");
   ASSERT_FALSE(pictures.contains("failed")) << pictures["failed"];
   // Edges between a yellow goal and a magenta post, orange as the ball, made one in ten pictures; goals that are half hidden or

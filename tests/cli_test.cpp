@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Cli, every_verb_explains_itself_with_an_example) {
+TEST(Cli, EveryVerbExplainsItselfWithAnExample) {
   for (const char* verb : {"run", "demo", "check", "info", "convert", "list", "plot", "bench", "doctor",
                            "replay", "diff", "render"}) {
     const Printed help = sandlot(std::string(verb) + " --help");
@@ -24,7 +24,7 @@ TEST(Cli, every_verb_explains_itself_with_an_example) {
   EXPECT_EQ(sandlot("run scenarios/indoor.yaml --sed 3").exit_code, 2);
 }
 
-TEST(Cli, wrong_options_name_the_option_and_exit_2) {
+TEST(Cli, WrongOptionsNameTheOptionAndExit2) {
   const auto refused = [](const std::string& arguments, const std::string& word) {
     const Printed printed = sandlot("run " + arguments);
     EXPECT_EQ(printed.exit_code, 2) << arguments;
@@ -43,7 +43,7 @@ TEST(Cli, wrong_options_name_the_option_and_exit_2) {
   refused("--from nowhere.snap", "cannot read");
 }
 
-TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
+TEST(Cli, ARunLeavesASummaryWithWhatTheDocsPromise) {
   const auto s = summary_of("scenarios/indoor.yaml --duration 5s --seed 3");
   ASSERT_FALSE(s.contains("failed")) << s["failed"];
   for (const char* key : {"ticks", "sim_seconds", "wall_seconds", "real_time_factor", "phase_us",
@@ -56,7 +56,7 @@ TEST(Cli, a_run_leaves_a_summary_with_what_the_docs_promise) {
   EXPECT_EQ(s["state_hash"].get<std::string>().size(), 16u);
 }
 
-TEST(Cli, render_takes_a_picture_or_says_what_is_wrong) {
+TEST(Cli, RenderTakesAPictureOrSaysWhatIsWrong) {
   const Scratch scratch;
   const std::string file = scratch.file("a.png"),
                     view = "render scenarios/indoor.yaml --from 1,1,1 --at 3,3,0 --out ";
@@ -81,7 +81,7 @@ TEST(Cli, render_takes_a_picture_or_says_what_is_wrong) {
   refused("render scenarios/indoor.yaml --camera follow:nobody --out " + file, "nobody");
 }
 
-TEST(Cli, a_film_leaves_the_run_as_it_is) {
+TEST(Cli, AFilmLeavesTheRunAsItIs) {
   const Scratch scratch;
   const std::string run = "scenarios/indoor.yaml --duration 400ms --seed 3";
   const std::string film = " --camera overhead --video-size 64x48 --video-rate 10 --video " +
@@ -103,7 +103,7 @@ TEST(Cli, a_film_leaves_the_run_as_it_is) {
   refused("--camera overhead --video scenarios/indoor.yaml", "indoor.yaml");
 }
 
-TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
+TEST(Cli, ASnapshotGoesOnInANewProcessToTheSameHash) {
   for (const char* scenario :
        {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar", "scenarios/pile.yaml",
         "scenarios/fleet.yaml", "scenarios/gripping.yaml", "scenarios/gripping.yaml --set physics=planar"}) {
@@ -121,7 +121,7 @@ TEST(Cli, a_snapshot_goes_on_in_a_new_process_to_the_same_hash) {
   }
 }
 
-TEST(Cli, a_snapshot_in_mid_run_changes_nothing) {
+TEST(Cli, ASnapshotInMidRunChangesNothing) {
   const Scratch scratch;
   const auto plain = summary_of("scenarios/pile.yaml --duration 4s");
   const auto with = summary_of("scenarios/pile.yaml --duration 4s --snapshot-at 2s --snapshot " +
@@ -131,7 +131,7 @@ TEST(Cli, a_snapshot_in_mid_run_changes_nothing) {
   EXPECT_EQ(plain["state_hash"], rest["state_hash"]) << "--from alone goes on to the stop time of the run";
 }
 
-TEST(Cli, a_world_that_explodes_is_named_and_left_as_a_snapshot) {
+TEST(Cli, AWorldThatExplodesIsNamedAndLeftAsASnapshot) {
   const Scratch scratch;
   const std::string world = scratch.write("drop.sdf",
                                           R"(<sdf version="1.9"><world name="drop"><model name="stone">
@@ -159,14 +159,14 @@ TEST(Cli, a_world_that_explodes_is_named_and_left_as_a_snapshot) {
   EXPECT_NE(summary["errors"][0].dump().find("has exploded"), std::string::npos);
 }
 
-TEST(Cli, files_that_cannot_be_written_fail_the_run_with_1) {
+TEST(Cli, FilesThatCannotBeWrittenFailTheRunWith1) {
   const Printed printed = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --summary /nonexistent/s.json");
   EXPECT_EQ(printed.exit_code, 1);
   EXPECT_THAT(printed.out, HasSubstr("/nonexistent/s.json"));
 }
 
-TEST(Cli, check_tells_file_line_and_remedy) {
+TEST(Cli, CheckTellsFileLineAndRemedy) {
   const Scratch scratch;
   const std::string good = "version: 1\nname: g\nrobots: []\n";
   EXPECT_EQ(sandlot("check " + scratch.write("good.yaml", good)).exit_code, 0);
@@ -180,7 +180,7 @@ TEST(Cli, check_tells_file_line_and_remedy) {
   EXPECT_EQ(json[0]["severity"], "error");
 }
 
-TEST(Cli, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
+TEST(Cli, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
   const Scratch scratch;
   const std::string log = scratch.write("run.csv", "worth keeping\n");
   const Printed printed = sandlot(
@@ -193,7 +193,7 @@ TEST(Cli, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
   EXPECT_EQ(kept, "worth keeping");
 }
 
-TEST(Cli, no_result_of_a_run_overwrites_another_one) {
+TEST(Cli, NoResultOfARunOverwritesAnotherOne) {
   const Scratch scratch;
   const std::string file = scratch.file("x.csv");
   const Printed twice = sandlot(
@@ -206,7 +206,7 @@ TEST(Cli, no_result_of_a_run_overwrites_another_one) {
   EXPECT_EQ(sandlot("run " + scenario + " --duration 1s --summary /dev/null --svg /dev/null").exit_code, 0);
 }
 
-TEST(Cli, a_snapshot_that_the_run_did_not_reach_is_said_to_be_another) {
+TEST(Cli, ASnapshotThatTheRunDidNotReachIsSaidToBeAnother) {
   const Scratch scratch;
   const Printed printed = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --snapshot-at 9s --snapshot " +
@@ -215,7 +215,7 @@ TEST(Cli, a_snapshot_that_the_run_did_not_reach_is_said_to_be_another) {
   EXPECT_THAT(printed.out, HasSubstr("the run ended before 9 s"));
 }
 
-TEST(Cli, list_shows_message_types_with_units_and_constants) {
+TEST(Cli, ListShowsMessageTypesWithUnitsAndConstants) {
   EXPECT_THAT(sandlot("list messages").out, HasSubstr("\n  sensor_msgs/msg/LaserScan\n"));
   const std::string all = sandlot("list messages --verbose").out;
   for (const char* part : {"float32[]", "STATUS_NO_FIX = -1", "[m]", "float64[36]"})
@@ -233,7 +233,7 @@ TEST(Cli, list_shows_message_types_with_units_and_constants) {
     }
 }
 
-TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
+TEST(Cli, ListShowsEveryKindAndTheSchemaIsJson) {
   const Printed text = sandlot("list --verbose");
   for (const char* kind : {"laser_scanner", "diff_drive", "wheel_encoder", "joint_motor", "ground_truth",
                            "wander", "waypoints", "rigid", "planar"})
@@ -249,7 +249,7 @@ TEST(Cli, list_shows_every_kind_and_the_schema_is_json) {
   EXPECT_THAT(wrong.out, HasSubstr("did you mean 'devices'?"));
 }
 
-TEST(Cli, info_prints_the_tree) {
+TEST(Cli, InfoPrintsTheTree) {
   const Printed text = sandlot("info scenarios/indoor.yaml");
   EXPECT_EQ(text.exit_code, 0);
   for (const char* part :
@@ -271,7 +271,7 @@ TEST(Cli, info_prints_the_tree) {
   EXPECT_EQ(json["warnings"].size(), 0u);
 }
 
-TEST(Cli, info_folds_what_is_alike_and_tells_what_was_mapped_and_what_was_not) {
+TEST(Cli, InfoFoldsWhatIsAlikeAndTellsWhatWasMappedAndWhatWasNot) {
   const Scratch scratch;
   std::string world = "<sdf version='1.9'><world name='w'>\n";
   const auto add_box = [&](const std::string& name, const char* mu) {
@@ -309,13 +309,13 @@ TEST(Cli, info_folds_what_is_alike_and_tells_what_was_mapped_and_what_was_not) {
   EXPECT_EQ(json["instances"][501]["original_name"], "my robot");
 }
 
-TEST(Cli, doctor_is_content) {
+TEST(Cli, DoctorIsContent) {
   const Printed printed = sandlot("doctor");
   EXPECT_EQ(printed.exit_code, 0) << printed.out;
   EXPECT_THAT(printed.out, Not(HasSubstr("BAD")));
 }
 
-TEST(Cli, the_picture_is_svg_with_the_robots_path) {
+TEST(Cli, ThePictureIsSvgWithTheRobotsPath) {
   const Scratch scratch;
   const std::string file = scratch.file("run.svg");
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --headless --duration 10s --svg " + file).exit_code, 0);
@@ -326,7 +326,7 @@ TEST(Cli, the_picture_is_svg_with_the_robots_path) {
   EXPECT_THAT(svg, HasSubstr("rover"));
 }
 
-TEST(Cli, a_run_without_an_end_can_be_interrupted_and_still_reports) {
+TEST(Cli, ARunWithoutAnEndCanBeInterruptedAndStillReports) {
   const Scratch scratch;
   const std::string file = scratch.file("s.json");
   const std::string command = "timeout -s INT 2 " + std::string(SANDLOT_BIN) +

@@ -7,12 +7,12 @@
 #include <map>
 #include <set>
 
+#include "assets/image/image.h"
 #include "base/math.h"
-#include "formats/image/image.h"
 #include "formats/sdf/sdf.h"
 #include "geometry/bounds.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 namespace {
@@ -115,7 +115,7 @@ TEST(Materials, DoWhatTheWorldsCommentsSay) {
 }
 
 TEST(MslField, ItsLinesLieWhereTheRuleBookSays) {
-  const auto image = formats::read_image("worlds/msl_field.png");
+  const auto image = assets::read_image("worlds/msl_field.png");
   ASSERT_TRUE(image);
   const auto white = [&](double x, double y) {  // on a carpet of 24 x 16 m, 100 pixels to the metre
     return image->at(static_cast<int>((x + 12) * 100), static_cast<int>((8 - y) * 100), 0) > 200;

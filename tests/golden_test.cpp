@@ -45,7 +45,7 @@ constexpr Golden goldens[] = {
 class GoldenRun : public testing::TestWithParam<Golden> {};
 INSTANTIATE_TEST_SUITE_P(Scenarios, GoldenRun, testing::ValuesIn(goldens));
 
-TEST_P(GoldenRun, ends_in_the_known_state_for_1_2_and_4_threads) {
+TEST_P(GoldenRun, EndsInTheKnownStateFor12And4Threads) {
   for (const int threads : {1, 2, 4}) {
     const auto summary = summary_of(std::string(GetParam().run) + " --threads " + std::to_string(threads));
     ASSERT_FALSE(summary.contains("failed")) << summary["failed"];

@@ -53,7 +53,7 @@ struct Package {
   Printed run(const std::string& arguments) const { return shell(prefix + "/bin/sandlot " + arguments); }
 };
 
-TEST(SlowInstall, theCommandFindsItsScenariosAndModelsWhereverItStands) {
+TEST(SlowInstall, TheCommandFindsItsScenariosAndModelsWhereverItStands) {
   const Package package;
   const std::string summary = package.scratch.file("s.json");
   const Printed demo = package.run("demo --headless --duration 1s --summary " + summary);
@@ -62,7 +62,7 @@ TEST(SlowInstall, theCommandFindsItsScenariosAndModelsWhereverItStands) {
   EXPECT_THAT(package.run("--version").out, HasSubstr("sandlot 0."));
 }
 
-TEST(SlowInstall, aControllerOfTheUsersOwnDrivesARobot) {
+TEST(SlowInstall, AControllerOfTheUsersOwnDrivesARobot) {
   const Package package;
   package.build("controller");
   const std::string plugin = package.built("controller") + "/my_controllers.so";
@@ -101,7 +101,7 @@ TEST(SlowInstall, aControllerOfTheUsersOwnDrivesARobot) {
   EXPECT_EQ(package.run("check " + package.example("controller/wall.yaml")).exit_code, 0);
 }
 
-TEST(SlowInstall, aProgramWithASimulationInsideGivesTheSameStateTwice) {
+TEST(SlowInstall, AProgramWithASimulationInsideGivesTheSameStateTwice) {
   const Package package;
   package.build("embed");
   const std::string run = package.built("embed") + "/embed " + package.example("embed/room.yaml");
@@ -111,7 +111,7 @@ TEST(SlowInstall, aProgramWithASimulationInsideGivesTheSameStateTwice) {
   EXPECT_EQ(first.out, second.out);
 }
 
-TEST(SlowInstall, anExperimentIsTheRunCommandWithHooks) {
+TEST(SlowInstall, AnExperimentIsTheRunCommandWithHooks) {
   const Package package;
   package.build("experiment");
   const std::string run = package.built("experiment") + "/experiment " +
@@ -131,7 +131,7 @@ TEST(SlowInstall, anExperimentIsTheRunCommandWithHooks) {
       << "no such ball when its time comes";
 }
 
-TEST(SlowInstall, everyPublicHeaderCompilesByItself) {
+TEST(SlowInstall, EveryPublicHeaderCompilesByItself) {
   const Package package;
   const std::string include = package.prefix + "/include";
   const Printed printed = shell(

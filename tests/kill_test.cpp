@@ -22,7 +22,7 @@ pid_t start(const std::string& file) {
   _exit(3);
 }
 
-TEST(SlowKill, at_fifty_random_moments_every_file_opens_and_is_the_beginning_of_the_undisturbed_one) {
+TEST(SlowKill, AtFiftyRandomMomentsEveryFileOpensAndIsTheBeginningOfTheUndisturbedOne) {
   std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-kill-XXXXXX").string();
   const std::filesystem::path folder = mkdtemp(pattern.data());
   const std::string whole = (folder / "whole.mcap").string(), killed = (folder / "killed.mcap").string();

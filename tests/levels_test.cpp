@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, LevelsOnTheWay,
 /// The robot goes round at 0.3 m/s and 0.5 rad/s, 3 mm and 5 mrad per tick, and nobody tells it so again. Place and
 /// odometry go on by that in the tick of a switch as in all others. On rollers both swing by some per cent as rollers pass
 /// (docs/validation.md): 0.3 mm and 0.8 mrad are twice what is seen, and a lost tick would be ten times as much.
-TEST_P(LevelsOnTheWay, keep_place_velocity_and_odometry) {
+TEST_P(LevelsOnTheWay, KeepPlaceVelocityAndOdometry) {
   const Scratch scratch;
   const auto [engine, third] = GetParam();
   const std::string run =
@@ -62,7 +62,7 @@ TEST_P(LevelsOnTheWay, keep_place_velocity_and_odometry) {
   }
 }
 
-TEST_P(LevelsOnTheWay, end_in_the_same_state_for_1_2_and_4_threads) {
+TEST_P(LevelsOnTheWay, EndInTheSameStateFor12And4Threads) {
   const auto [engine, third] = GetParam();
   std::string hash;
   for (const char* threads : {"1", "2", "4"}) {
@@ -77,7 +77,7 @@ TEST_P(LevelsOnTheWay, end_in_the_same_state_for_1_2_and_4_threads) {
   }
 }
 
-TEST(MslField, one_setting_switches_every_sense_of_every_robot) {
+TEST(MslField, OneSettingSwitchesEverySenseOfEveryRobot) {
   struct Level {
     const char *set, *eyes, *laser;
   };

@@ -11,7 +11,7 @@
 #include "messages/messages.h"
 #include "physics/engine.h"
 #include "sim/lint/lint.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot {
 namespace {

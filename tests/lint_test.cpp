@@ -13,7 +13,7 @@
 #include "command.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot {
 namespace {

@@ -13,7 +13,7 @@ using testing::Not;
 
 const std::string short_run = "run scenarios/indoor.yaml --set physics=planar --duration 0.2s";
 
-TEST(Output, a_full_disk_behind_the_output_is_an_error) {
+TEST(Output, AFullDiskBehindTheOutputIsAnError) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
@@ -26,7 +26,7 @@ TEST(Output, a_full_disk_behind_the_output_is_an_error) {
   }
 }
 
-TEST(Output, a_pipe_and_a_link_stay_what_they_are) {
+TEST(Output, APipeAndALinkStayWhatTheyAre) {
   const Scratch scratch;
   ASSERT_EQ(mkfifo(scratch.file("pipe").c_str(), 0600), 0);
   const Printed piped = shell("cat " + scratch.file("pipe") + " & " + SANDLOT_BIN + " " + short_run +
@@ -41,7 +41,7 @@ TEST(Output, a_pipe_and_a_link_stay_what_they_are) {
   EXPECT_EQ(read_json(scratch.file("old.json")).at("ticks"), 20);
 }
 
-TEST(Output, a_table_goes_into_a_pipe_too) {
+TEST(Output, ATableGoesIntoAPipeToo) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
@@ -52,7 +52,7 @@ TEST(Output, a_table_goes_into_a_pipe_too) {
   EXPECT_TRUE(std::filesystem::is_fifo(scratch.file("pipe")));
 }
 
-TEST(Output, names_that_are_no_utf8_are_written_all_the_same) {
+TEST(Output, NamesThatAreNoUtf8AreWrittenAllTheSame) {
   const Scratch scratch;
   const std::string recording = scratch.file("b\xff.mcap"), summary = scratch.file("s.json");
   EXPECT_EQ(sandlot(short_run + " --record " + recording + " --summary " + summary).exit_code, 0);
@@ -62,7 +62,7 @@ TEST(Output, names_that_are_no_utf8_are_written_all_the_same) {
   EXPECT_EQ(sandlot("doctor " + recording + " --json").exit_code, 0);
 }
 
-TEST(Output, a_topic_without_a_name_is_refused) {
+TEST(Output, ATopicWithoutANameIsRefused) {
   const Scratch scratch;
   ASSERT_EQ(sandlot(short_run + " --record " + scratch.file("r.mcap")).exit_code, 0);
   const Printed printed = sandlot("topic echo " + scratch.file("r.mcap") + " ''");
@@ -70,7 +70,7 @@ TEST(Output, a_topic_without_a_name_is_refused) {
   EXPECT_THAT(printed.out, HasSubstr("topic list"));
 }
 
-TEST(Output, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
+TEST(Output, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
   const Scratch scratch;
   const std::string log = scratch.write("run.csv", "time\n1\n");
   const Printed printed = sandlot(short_run + " --log " + log +
@@ -80,7 +80,7 @@ TEST(Output, a_run_that_is_refused_leaves_the_log_of_the_one_before) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "time\n1\n");
 }
 
-TEST(Output, a_replay_that_was_interrupted_verifies_nothing) {
+TEST(Output, AReplayThatWasInterruptedVerifiesNothing) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 150s --record-topics none --record " + recording)

@@ -24,7 +24,7 @@ std::string scenario(const std::string& plugin, const std::string& controller) {
          fs::absolute("models/rover").string() + "\n    controller: " + controller + "\n";
 }
 
-TEST(Plugin, itsControllerDrivesARobot) {
+TEST(Plugin, ItsControllerDrivesARobot) {
   const Scratch scratch;
   // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050 rad. Each begins
   // 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
@@ -46,7 +46,7 @@ TEST(Plugin, itsControllerDrivesARobot) {
   }
 }
 
-TEST(Plugin, itsControllersAreListedWithTheirFields) {
+TEST(Plugin, ItsControllersAreListedWithTheirFields) {
   const Printed listed = sandlot("list controllers --verbose --plugin " + plugins() + "/good.so");
   EXPECT_EQ(listed.exit_code, 0) << listed.out;
   EXPECT_THAT(listed.out,
@@ -55,7 +55,7 @@ TEST(Plugin, itsControllersAreListedWithTheirFields) {
   EXPECT_EQ(sandlot("list controllers --plugin nowhere").exit_code, 2);
 }
 
-TEST(Plugin, aSnapshotNamesItsPluginAndGoesOnWithIt) {
+TEST(Plugin, ASnapshotNamesItsPluginAndGoesOnWithIt) {
   const Scratch scratch;
   fs::copy_file(plugins() + "/good.so", scratch.file("mine.so"));
   const std::string run = scratch.write("s.yaml", scenario("mine.so", "spinner"));
@@ -89,7 +89,7 @@ TEST(Plugin, aSnapshotNamesItsPluginAndGoesOnWithIt) {
   EXPECT_THAT(rebuilt.out, HasSubstr("warning: plugin '" + scratch.file("mine.so") + "' is not the build"));
 }
 
-TEST(Plugin, whatDoesNotFitIsRefusedWithItsPlace) {
+TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
   const Scratch scratch;
   const auto refused = [&](const std::string& plugin, auto&& matcher) {
     const std::string file = scratch.write("bad.yaml", scenario(plugin, "spinner"));
@@ -118,7 +118,7 @@ TEST(Plugin, whatDoesNotFitIsRefusedWithItsPlace) {
     refused(scratch.write("cut.so", whole.substr(0, size)), HasSubstr("cut.so"));
 }
 
-TEST(Plugin, aNameThatNoControllerHasSuggestsThoseOfThePlugin) {
+TEST(Plugin, ANameThatNoControllerHasSuggestsThoseOfThePlugin) {
   const Scratch scratch;
   const Printed printed = sandlot("check " +
                                   scratch.write("s.yaml", scenario(plugins() + "/good.so", "spiner")));
@@ -126,7 +126,7 @@ TEST(Plugin, aNameThatNoControllerHasSuggestsThoseOfThePlugin) {
   EXPECT_THAT(printed.out, HasSubstr("did you mean 'spinner'?"));
 }
 
-TEST(Plugin, aControllerThatThrowsEndsTheRunAndKeepsItsResults) {
+TEST(Plugin, AControllerThatThrowsEndsTheRunAndKeepsItsResults) {
   const Scratch scratch;
   const auto run = [&](const std::string& end) {
     return scratch.write("s.yaml",

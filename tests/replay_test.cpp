@@ -22,7 +22,7 @@ nlohmann::json json_of(const std::string& arguments) {
   return nlohmann::json::parse(printed.out, nullptr, false);
 }
 
-TEST(Replay, a_recording_verifies_both_ways_and_ends_in_the_hash_of_the_run) {
+TEST(Replay, ARecordingVerifiesBothWaysAndEndsInTheHashOfTheRun) {
   const Scratch scratch;
   for (const char* scenario : {"scenarios/indoor.yaml --duration 3s", "scenarios/fleet.yaml --duration 1s",
                                "scenarios/mario.yaml --duration 2s"}) {
@@ -39,7 +39,7 @@ TEST(Replay, a_recording_verifies_both_ways_and_ends_in_the_hash_of_the_run) {
 }
 
 /// Sliders, failures and levels moved by hand: what they do is in the recording, and the same for any number of threads.
-TEST(Replay, a_run_whose_errors_failures_and_levels_are_changed_on_the_way_is_reproducible) {
+TEST(Replay, ARunWhoseErrorsFailuresAndLevelsAreChangedOnTheWayIsReproducible) {
   const Scratch scratch;
   const std::string quiet = "scenarios/errors.yaml --duration 4s";
   const std::string steered = quiet +
@@ -59,7 +59,7 @@ TEST(Replay, a_run_whose_errors_failures_and_levels_are_changed_on_the_way_is_re
   EXPECT_NE(summary_of(quiet)["state_hash"], run["state_hash"]);
 }
 
-TEST(Replay, a_continuous_clock_is_replayed_from_the_lengths_it_measured) {
+TEST(Replay, AContinuousClockIsReplayedFromTheLengthsItMeasured) {
   const Scratch scratch;
   const std::string file = recorded(
       scratch, "r.mcap",
@@ -73,7 +73,7 @@ TEST(Replay, a_continuous_clock_is_replayed_from_the_lengths_it_measured) {
   EXPECT_EQ(replay["end_time"], run["end_time"]);
 }
 
-TEST(Replay, a_state_from_the_middle_of_a_recording_is_the_one_that_the_run_would_have_left) {
+TEST(Replay, AStateFromTheMiddleOfARecordingIsTheOneThatTheRunWouldHaveLeft) {
   const Scratch scratch;
   const std::string file = recorded(scratch, "r.mcap",
                                     "scenarios/indoor.yaml --set physics=planar --duration 2s");
@@ -87,7 +87,7 @@ TEST(Replay, a_state_from_the_middle_of_a_recording_is_the_one_that_the_run_woul
   EXPECT_THAT(same.out, HasSubstr("tick 100 (1 s)"));
 }
 
-TEST(Diff, two_seeds_differ_first_in_what_draws_random_numbers) {
+TEST(Diff, TwoSeedsDifferFirstInWhatDrawsRandomNumbers) {
   const Scratch scratch;
   const std::string arguments = "scenarios/indoor.yaml --set physics=planar --duration 1s";
   const std::string a = recorded(scratch, "a.mcap", arguments),
@@ -106,7 +106,7 @@ TEST(Diff, two_seeds_differ_first_in_what_draws_random_numbers) {
   EXPECT_THAT(text.out, HasSubstr("first difference at tick "));
 }
 
-TEST(Replay, what_is_no_recording_is_refused) {
+TEST(Replay, WhatIsNoRecordingIsRefused) {
   const Scratch scratch;
   const auto refused = [](const std::string& arguments, const char* word) {
     const Printed printed = sandlot(arguments);
@@ -121,7 +121,7 @@ TEST(Replay, what_is_no_recording_is_refused) {
   refused("diff README.md README.md", "README.md");
 }
 
-TEST(Replay, a_recording_that_was_torn_off_verifies_as_far_as_it_goes_and_a_flipped_byte_is_named) {
+TEST(Replay, ARecordingThatWasTornOffVerifiesAsFarAsItGoesAndAFlippedByteIsNamed) {
   const Scratch scratch;
   const std::string file = recorded(scratch, "r.mcap",
                                     "scenarios/indoor.yaml --set physics=planar --duration 20s");
@@ -140,7 +140,7 @@ TEST(Replay, a_recording_that_was_torn_off_verifies_as_far_as_it_goes_and_a_flip
   EXPECT_THAT(damaged.out, testing::AllOf(HasSubstr("behind tick "), HasSubstr("damaged at byte")));
 }
 
-TEST(Playback, a_robot_drives_again_as_another_was_recorded) {
+TEST(Playback, ARobotDrivesAgainAsAnotherWasRecorded) {
   const Scratch scratch;
   const std::string scenario = "scenarios/indoor.yaml --set physics=planar --duration 3s";
   const std::string file = recorded(scratch, "r.mcap", scenario);
@@ -167,7 +167,7 @@ TEST(Playback, a_robot_drives_again_as_another_was_recorded) {
               testing::AllOf(HasSubstr("no topic '/rover/none'"), HasSubstr("/rover/drive/ideal")));
 }
 
-TEST(Playback, a_table_needs_no_recording_and_a_snapshot_needs_no_table) {
+TEST(Playback, ATableNeedsNoRecordingAndASnapshotNeedsNoTable) {
   const Scratch scratch;
   const std::string table = scratch.write("path.csv", "time,vx,vy,wz\n0,0.2,0,0\n1,0,0,0.5\n2,0,0,0\n");
   const std::string scenario =

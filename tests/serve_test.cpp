@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 const std::string indoor = "run scenarios/indoor.yaml --set physics=planar --duration 1s --rate max ";
 
-TEST(Serve, a_run_with_a_page_ends_by_itself_in_the_state_of_one_without) {
+TEST(Serve, ARunWithAPageEndsByItselfInTheStateOfOneWithout) {
   const Scratch scratch;
   const Printed served = sandlot(indoor + "--port 0 --summary " + scratch.file("served.json"));
   ASSERT_EQ(served.exit_code, 0) << served.out;
@@ -26,7 +26,7 @@ TEST(Serve, a_run_with_a_page_ends_by_itself_in_the_state_of_one_without) {
   EXPECT_FALSE(b.contains("server"));
 }
 
-TEST(Serve, elsewhere_than_on_this_machine_a_token_is_made) {
+TEST(Serve, ElsewhereThanOnThisMachineATokenIsMade) {
   EXPECT_THAT(sandlot(indoor + "--port 0 --address 0.0.0.0").out,
               ContainsRegex("page: http://[^ ]+\\?token=[0-9a-f]{32}\n"));
   EXPECT_THAT(sandlot(indoor + "--port 0 --address 0.0.0.0 --token sesame").out,
@@ -35,7 +35,7 @@ TEST(Serve, elsewhere_than_on_this_machine_a_token_is_made) {
   EXPECT_THAT(sandlot(indoor + "--port 0 --token sesame").out, HasSubstr("/?token=sesame\n"));
 }
 
-TEST(Serve, a_port_that_is_taken_is_refused_before_anything_is_written) {
+TEST(Serve, APortThatIsTakenIsRefusedBeforeAnythingIsWritten) {
   const Scratch scratch;
   // The first holds its port until it is stopped; the second wants the same and must leave its log alone.
   const std::string log = scratch.write("log.csv", "kept");
@@ -51,7 +51,7 @@ TEST(Serve, a_port_that_is_taken_is_refused_before_anything_is_written) {
   EXPECT_EQ(shell("cat " + log).out, "kept");
 }
 
-TEST(Serve, options_that_do_not_go_together_are_refused) {
+TEST(Serve, OptionsThatDoNotGoTogetherAreRefused) {
   const auto refused = [](const std::string& arguments, const char* why) {
     const Printed printed = sandlot(arguments);
     EXPECT_EQ(printed.exit_code, 2) << arguments << printed.out;
@@ -70,7 +70,7 @@ TEST(Serve, options_that_do_not_go_together_are_refused) {
   refused("replay r.mcap --rate 2", "--port");
 }
 
-TEST(Serve, console_lines_steer_a_run_without_a_page_and_are_in_its_recording) {
+TEST(Serve, ConsoleLinesSteerARunWithoutAPageAndAreInItsRecording) {
   const Scratch scratch;
   const std::string recording = scratch.file("r.mcap");
   const std::string script = scratch.write("s.txt", "# a comment\nat 0.5s pose rover 3 4.65\n");
@@ -88,7 +88,7 @@ TEST(Serve, console_lines_steer_a_run_without_a_page_and_are_in_its_recording) {
 }
 
 /// By hand: it would wait for ever.
-TEST(Serve, a_run_without_a_page_that_is_paused_ends_with_a_reason) {
+TEST(Serve, ARunWithoutAPageThatIsPausedEndsWithAReason) {
   for (const char* line : {"at 0.5s pause", "at 0.45s step 5"}) {
     const Printed paused = sandlot(indoor + "--command '" + line + "'");
     EXPECT_EQ(paused.exit_code, 1) << paused.out;
@@ -98,7 +98,7 @@ TEST(Serve, a_run_without_a_page_that_is_paused_ends_with_a_reason) {
   EXPECT_EQ(sandlot(indoor + "--command 'at 0.5s jump 0.8 s'").exit_code, 0);
 }
 
-TEST(Serve, demos_are_listed_and_an_unknown_one_names_those_there_are) {
+TEST(Serve, DemosAreListedAndAnUnknownOneNamesThoseThereAre) {
   EXPECT_THAT(sandlot("demo list").out, AllOf(HasSubstr("demo\n"), HasSubstr("indoor\n")));
   const Printed unknown = sandlot("demo nothing --headless");
   EXPECT_EQ(unknown.exit_code, 2);

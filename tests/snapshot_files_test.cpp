@@ -27,7 +27,7 @@ std::string contents(const std::string& path) {
 
 const std::string run = "run scenarios/indoor.yaml --set physics=planar --headless ";
 
-TEST(SnapshotFiles, one_each_interval_the_last_ones_stay_and_a_continued_run_keeps_the_names) {
+TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames) {
   const Scratch scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 1s --snapshot-every 0.25s --snapshot " + file).exit_code, 0);
@@ -50,7 +50,7 @@ TEST(SnapshotFiles, one_each_interval_the_last_ones_stay_and_a_continued_run_kee
               ElementsAre("a-000000.750.snapshot", "a-000001.000.snapshot", "a.snapshot", "mid.snapshot"));
 }
 
-TEST(SnapshotFiles, info_says_what_is_in_one) {
+TEST(SnapshotFiles, InfoSaysWhatIsInOne) {
   const Scratch scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.5s --seed 12 --snapshot " + file).exit_code, 0);
@@ -63,7 +63,7 @@ TEST(SnapshotFiles, info_says_what_is_in_one) {
   EXPECT_EQ(json["snapshot"]["time"], "0.5 s, tick 50");
 }
 
-TEST(SnapshotFiles, bad_ones_are_refused_with_the_files_name_and_what_is_wrong) {
+TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
   const Scratch scratch;
   const std::string file = scratch.file("good.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
@@ -91,7 +91,7 @@ TEST(SnapshotFiles, bad_ones_are_refused_with_the_files_name_and_what_is_wrong) 
   EXPECT_EQ(sandlot("run --from " + scratch.folder.string()).exit_code, 2);
 }
 
-TEST(SnapshotFiles, what_cannot_be_written_fails_the_run_and_costs_no_older_file) {
+TEST(SnapshotFiles, WhatCannotBeWrittenFailsTheRunAndCostsNoOlderFile) {
   const Scratch scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
@@ -109,7 +109,7 @@ TEST(SnapshotFiles, what_cannot_be_written_fails_the_run_and_costs_no_older_file
   EXPECT_THAT(nowhere.out, HasSubstr("/nowhere/a.snapshot"));
 }
 
-TEST(SnapshotFiles, options_that_do_not_go_together_are_refused) {
+TEST(SnapshotFiles, OptionsThatDoNotGoTogetherAreRefused) {
   const auto refused = [](const std::string& options, const char* word) {
     const Printed printed = sandlot(run + options);
     EXPECT_EQ(printed.exit_code, 2) << options;
@@ -121,7 +121,7 @@ TEST(SnapshotFiles, options_that_do_not_go_together_are_refused) {
 }
 
 /// Every scenario there is: from the state at half time, in a new process, to the same end in any number of threads.
-TEST(SlowSnapshotFiles, every_scenario_goes_on_from_half_time_to_the_same_hash) {
+TEST(SlowSnapshotFiles, EveryScenarioGoesOnFromHalfTimeToTheSameHash) {
   int scenarios = 0;
   for (const auto& entry : std::filesystem::directory_iterator("scenarios")) {
     if (entry.path().extension() != ".yaml") continue;

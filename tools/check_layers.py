@@ -29,7 +29,7 @@ BANS = [
      "is not reproducible: draw from a stream of base/random.h", ["base/random"]),
     (re.compile(r"_clock\s*::\s*now\s*\(|\b(?:gettimeofday|clock_gettime)\s*\(|\bstd\s*::\s*time\s*\("),
      "reads a wall clock: simulation time comes with the tick",
-     ["app/", "bench/", "server/", "sim/runner", "sim/session", "sim/phase_timer", "base/log"]),
+     ["app/", "bench/", "server/", "sim/session/", "sim/world/phase_timer", "base/log"]),
 ]
 
 COMMENT_OR_LITERAL = re.compile(
@@ -65,9 +65,11 @@ class Rules:
             return f"{here[0]} is not a layer of layers.txt"
         if there[0] != here[0] and there[0] not in self.layers[here[0]]:
             return f"{here[0]} must not include {there[0]}"
-        siblings = len(here) > 2 and len(there) > 2 and here[0] == there[0] and here[1] != there[1]
-        if here[0] in self.peers and siblings:
-            return f"{here[0]}/{here[1]} must not include its sibling {there[0]}/{there[1]}"
+        for depth in range(1, min(len(here), len(there)) - 1):
+            if here[:depth] != there[:depth]:
+                break
+            if here[depth] != there[depth] and "/".join(here[:depth]) in self.peers:
+                return f"{'/'.join(here[:depth + 1])} must not include its sibling {'/'.join(there[:depth + 1])}"
         return None
 
     def third(self, here, header):

@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/json_text.h"
+#include "assets/image/write.h"
 #include "base/math.h"
 #include "base/text.h"
-#include "formats/image/write.h"
 #include "perception/finder.h"
 #include "record/playback.h"
-#include "sim/load.h"
-#include "sim/sight.h"
+#include "sim/load/load.h"
+#include "sim/visuals/render_scene.h"
 
 namespace sandlot::app {
 namespace {
@@ -140,11 +140,11 @@ Status Stand::next_sample(Time not_before) {
 
 std::vector<Seen> Stand::told() const {
   std::vector<Seen> out;
-  const std::vector<Thing>& things = sim_->sight().things;
+  const std::vector<LabelledObject>& things = sim_->render_scene().labelled_objects;
   for (const msg::Object& object : topic<msg::ObjectArray>("objects")->message.objects) {
     out.push_back(
         {object.label, object.name, object.bearing, object.elevation, object.range, object.visible});
-    for (const Thing& thing : things)
+    for (const LabelledObject& thing : things)
       if (!object.name.empty() && thing.name == object.name)
         out.back().radius_m = 0.5 * math::hypot(thing.bounds_B.size().x, thing.bounds_B.size().y);
   }
@@ -161,7 +161,7 @@ std::vector<Wanted> wanted_of(Simulation& sim, const Stand& stand, const Calibra
                               Diagnostics& diagnostics) {
   std::vector<Wanted> out;
   std::vector<std::string> grey;
-  for (const Thing& thing : sim.sight().things) {
+  for (const LabelledObject& thing : sim.render_scene().labelled_objects) {
     if (thing.name == stand.robot().name) continue;
     if (!options.labels.empty() &&
         std::find(options.labels.begin(), options.labels.end(), thing.label) == options.labels.end())
@@ -206,7 +206,7 @@ class Shuffle {
  public:
   Shuffle(Simulation& sim, const Stand& stand, const CalibrateOptions& options, double half_view_rad)
       : half_view_rad_(half_view_rad), most_m_(options.max_range_m) {
-    for (const Thing& thing : sim.sight().things) {
+    for (const LabelledObject& thing : sim.render_scene().labelled_objects) {
       const Pose X = sim.engine().states()[thing.bodies[0]].X_WB;
       const Vec3 size = thing.bounds_B.size();
       const double radius = 0.5 * math::hypot(size.x, size.y);
@@ -355,7 +355,7 @@ Status draw(const std::string& path, const perception::ImageView& view,
       }
     for (int k = -3; k <= 3; ++k) dot_at(best_u + k, best_v, 0), dot_at(best_u, best_v + k, 0);
   }
-  return formats::write_png(path, {view.width, view.height, 3, rgb});
+  return assets::write_png(path, {view.width, view.height, 3, rgb});
 }
 
 }  // namespace
@@ -390,7 +390,7 @@ Result<Calibration> calibrate_camera(const CalibrateOptions& asked, Diagnostics&
   spec.targets.clear();
   for (const Wanted& w : wanted) spec.targets.push_back(w.target);
   std::uint32_t base = 0;
-  for (const Thing& thing : sim.sight().things)
+  for (const LabelledObject& thing : sim.render_scene().labelled_objects)
     if (thing.name == stand->robot().name) base = thing.bodies[0];
   spec.base_height_m = sim.engine().states()[base].X_WB.p.z;
   perception::Finder finder(spec, camera, X_BS);
@@ -443,7 +443,7 @@ Result<Calibration> calibrate_camera(const CalibrateOptions& asked, Diagnostics&
         SL_TRY(draw(fmt::format("{}/{:02}.png", options.pictures, picture), view, found, camera, truth));
     }
     std::vector<Seen> aside;
-    for (const Thing& thing : sim.sight().things) {
+    for (const LabelledObject& thing : sim.render_scene().labelled_objects) {
       const auto is_it = [&](const Seen& seen) { return seen.name == thing.name; };
       if (thing.name == stand->robot().name || std::any_of(truth.begin(), truth.end(), is_it)) continue;
       const auto& states = sim.engine().states();

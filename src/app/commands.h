@@ -11,7 +11,7 @@
 #include "app/snapshots.h"
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
-#include "sim/experiment.h"
+#include "sim/session/experiment.h"
 
 namespace sandlot::app {
 

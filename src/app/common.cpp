@@ -13,7 +13,7 @@
 #include "app/commands.h"
 #include "base/program.h"
 #include "record/playback.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {

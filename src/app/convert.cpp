@@ -9,14 +9,14 @@
 
 #include "app/commands.h"
 #include "base/text.h"
+#include "files/text.h"
 #include "formats/sdf/document.h"
 #include "formats/sdf/sdf.h"
 #include "formats/sdf/write.h"
-#include "formats/text.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
-#include "sim/assets.h"
-#include "sim/load.h"
+#include "sim/load/assets.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {
@@ -36,24 +36,24 @@ Result<Format> format_of(const std::string& path) {
 
 /// A path written in `file_folder`, as one that means the same file when written in `new_folder`.
 std::string moved(const std::string& uri, const std::string& file_folder, const std::string& new_folder,
-                  const formats::SearchPath& search) {
-  const auto there = formats::find_resource(uri, file_folder, search, {});
+                  const SearchPath& search) {
+  const auto there = find_resource(uri, file_folder, search, {});
   if (!there) return uri;  // the reader has said that already
-  const auto here = formats::find_resource(uri, new_folder, search, {});
-  if (here && formats::canonical_path(*here) == formats::canonical_path(*there)) return uri;
+  const auto here = find_resource(uri, new_folder, search, {});
+  if (here && canonical_path(*here) == canonical_path(*there)) return uri;
   std::error_code failed;
-  const std::string target = formats::canonical_path(*there);
+  const std::string target = canonical_path(*there);
   const fs::path relative = fs::relative(target, fs::absolute(new_folder.empty() ? "." : new_folder), failed);
   return failed || relative.empty() ? target : relative.string();
 }
 
 struct Mover {
   std::string new_folder;
-  const formats::SearchPath& search;
+  const SearchPath& search;
 
   /// Where an element without a file of its own was written from: the working folder.
-  void operator()(formats::Xml& element, const std::string& parent = "") const {
-    const std::string from = element.place.file ? formats::folder_of(*element.place.file) : "";
+  void operator()(Xml& element, const std::string& parent = "") const {
+    const std::string from = element.place.file ? folder_of(*element.place.file) : "";
     const bool is_map = element.name.size() > 4 && element.name.substr(element.name.size() - 4) == "_map";
     const bool names_file = (element.name == "uri" && (parent == "mesh" || parent == "heightmap")) ||
                             (is_map && (parent == "metal" || parent == "specular")) ||
@@ -64,7 +64,7 @@ struct Mover {
     if (element.name == "mesh" || element.name == "texture")
       if (const std::string* const file = element.attribute("filename"))
         element.set_attribute("filename", moved(*file, from, new_folder, search));
-    for (formats::Xml& child : element.children) (*this)(child, element.name);
+    for (Xml& child : element.children) (*this)(child, element.name);
   }
 };
 
@@ -84,7 +84,7 @@ std::string obj_text(const TriangleMesh& mesh, const std::string& comment) {
 struct Job {
   const ConvertOptions& options;
   Format from, to;
-  formats::SearchPath search;
+  SearchPath search;
   Diagnostics& diagnostics;
   std::vector<Beside>& beside;
 
@@ -122,27 +122,27 @@ struct Job {
   /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
   Result<std::string> tree_to_sdf() const {
     const formats::SdfOptions sdf{.path = search, .assets = asset_reader()};
-    SL_ASSIGN(const std::string text, formats::read_text_file(options.in, sdf.limits.max_bytes));
+    SL_ASSIGN(const std::string text, read_text_file(options.in, sdf.limits.max_bytes));
     SL_ASSIGN([[maybe_unused]] const formats::SdfContent content,
               formats::parse_sdf(text, options.in, diagnostics, sdf));
     Diagnostics said_already;
     formats::Notes notes(said_already);
-    SL_ASSIGN(formats::Xml root, formats::load_document(text, options.in, notes, sdf));
+    SL_ASSIGN(Xml root, formats::load_document(text, options.in, notes, sdf));
     // Older versions have been rewritten as 1.9.
     double minor = 0;
     const std::string* const version = root.attribute("version");
     if (!version || !starts_with(*version, "1.") || !parse_number(version->substr(2), minor) || minor < 9)
       root.set_attribute("version", "1.9");
-    Mover{formats::folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    Mover{folder_of(options.out), search}(root);
+    return xml_text(root, comment());
   }
 
   Result<std::string> scenario_to_sdf() const {
     SL_ASSIGN(model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
     for (model::Instance& instance : setup.instances) give_terrain_a_file(instance);
-    SL_ASSIGN(formats::Xml root, formats::sdf_of(setup, diagnostics));
-    Mover{formats::folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    SL_ASSIGN(Xml root, formats::sdf_of(setup, diagnostics));
+    Mover{folder_of(options.out), search}(root);
+    return xml_text(root, comment());
   }
 
   /// A model with parameters as the one model of a file.
@@ -152,9 +152,9 @@ struct Job {
     model::Instance named = instance;
     named.original_name = named.name = instance.model->name;
     give_terrain_a_file(named);
-    SL_ASSIGN(formats::Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
-                                                    : formats::sdf_of(named, diagnostics));
-    return formats::xml_text(root, comment());
+    SL_ASSIGN(Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
+                                           : formats::sdf_of(named, diagnostics));
+    return xml_text(root, comment());
   }
 
   Result<std::string> model_to_urdf() const {
@@ -163,9 +163,9 @@ struct Job {
     if (!content.world_name.empty())
       return Error{"'" + options.in + "' is a world, and a URDF file holds one robot",
                    "name a file with one <model>"};
-    SL_ASSIGN(formats::Xml root, formats::urdf_of(content.instances.front(), diagnostics));
-    Mover{formats::folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    SL_ASSIGN(Xml root, formats::urdf_of(content.instances.front(), diagnostics));
+    Mover{folder_of(options.out), search}(root);
+    return xml_text(root, comment());
   }
 
   /// A scenario that runs the file: ticks of 10 ms or as fine as the sensors need, physics at the file's own step.
@@ -184,8 +184,7 @@ struct Job {
     const int substeps = std::clamp(static_cast<int>(std::floor(longest_s / step_s + 1e-9)), 1, 1000);
     const std::string stem = fs::path(options.out).stem().string();
     std::error_code failed;
-    const fs::path folder = fs::absolute(
-        formats::folder_of(options.out).empty() ? "." : formats::folder_of(options.out));
+    const fs::path folder = fs::absolute(folder_of(options.out).empty() ? "." : folder_of(options.out));
     const fs::path relative = fs::relative(fs::absolute(options.in), folder, failed);
     const std::string named = failed || relative.empty() ? fs::absolute(options.in).string()
                                                          : relative.string();
@@ -261,7 +260,7 @@ Status run_job(const ConvertOptions& options, Diagnostics& diagnostics) {
   if (fs::exists(options.out, ignored) && !options.force)
     return Error{"'" + options.out + "' exists already", "add --force to replace it"};
   std::vector<Beside> beside;
-  const Job job{options, from, to, formats::search_path(options.paths), diagnostics, beside};
+  const Job job{options, from, to, search_path(options.paths), diagnostics, beside};
   SL_ASSIGN(const std::string text, converted(job));
   for (const Beside& file : beside)
     if (fs::exists(file.path, ignored) && !options.force)

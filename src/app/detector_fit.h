@@ -1,5 +1,5 @@
 #pragma once
-/// From what a detector got right and wrong to the error parameters of a camera's level `objects` (devices/detector.h).
+/// From what a detector got right and wrong to the error parameters of a camera's level `objects` (devices/cameras/detector.h).
 ///
 /// Model    P(missed) = miss_rate + miss_rate_per_m range + miss_rate_hidden (1 - visible); bearing + bearing_std n;
 ///          range + (range_std + range_std_per_m range) n; ghosts come at a constant rate; of what

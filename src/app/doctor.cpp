@@ -10,7 +10,7 @@
 #include "base/math.h"
 #include "base/random.h"
 #include "server/server.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 /// `sandlot run` with an experiment of the user's own inside.
-#include "sim/experiment.h"
+#include "sim/session/experiment.h"
 
 namespace sandlot {
 

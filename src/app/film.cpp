@@ -26,7 +26,7 @@ Status Film::look(Simulation& simulation) {
   while (simulation.now() >= time_of(due_)) {
     // A tick longer than the time between pictures shows one of them several times.
     ++due_;
-    SL_ASSIGN(const formats::Picture picture, view_.picture(simulation));
+    SL_ASSIGN(const assets::Picture picture, view_.picture(simulation));
     if (picture.rgb.empty()) continue;
     if (!writer_) {
       SL_ASSIGN(writer_,

@@ -12,8 +12,8 @@
 #include "app/report.h"
 #include "app/svg.h"
 #include "server/server.h"
-#include "sim/csv_log.h"
-#include "sim/session.h"
+#include "sim/session/session.h"
+#include "sim/watch/csv_log.h"
 
 namespace sandlot::app {
 

@@ -8,7 +8,7 @@
 
 #include "app/commands.h"
 #include "app/json_text.h"
-#include "sim/values.h"
+#include "sim/watch/values.h"
 
 namespace sandlot::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "geometry/bounds.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::app {
 

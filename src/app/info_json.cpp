@@ -3,7 +3,7 @@
 #include "app/info.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
-#include "sim/settings.h"
+#include "sim/load/device_settings.h"
 
 namespace sandlot::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 #include "model/substance.h"
-#include "sim/settings.h"
+#include "sim/load/device_settings.h"
 
 namespace sandlot::app {
 namespace {

@@ -18,8 +18,8 @@
 #include "noise/depth_noise.h"
 #include "noise/image_noise.h"
 #include "physics/engine.h"
-#include "sim/faults.h"
-#include "sim/plugin.h"
+#include "sim/load/plugin.h"
+#include "sim/world/faults.h"
 
 namespace sandlot::app {
 namespace {

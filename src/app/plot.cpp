@@ -9,7 +9,7 @@
 
 #include "app/commands.h"
 #include "base/text.h"
-#include "formats/text.h"
+#include "files/text.h"
 
 namespace sandlot::app {
 namespace {
@@ -394,7 +394,7 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
 int plot(const PlotOptions& options) {
   std::vector<Table> tables;
   for (const std::string& file : options.files) {
-    const auto text = formats::read_text_file(file, most_bytes);
+    const auto text = read_text_file(file, most_bytes);
     if (!text) return complain(text.error());
     auto table = read_csv(*text, file);
     if (!table) return complain(table.error());

@@ -10,7 +10,7 @@
 
 #include "app/snapshots.h"
 #include "record/playback.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "app/commands.h"
 #include "record/recorder.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::app {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/transport.h"
+#include "server/http/transport.h"
 
 namespace sandlot::app {
 

@@ -7,9 +7,9 @@
 #include "app/commands.h"
 #include "app/flags.h"
 #include "app/view.h"
+#include "assets/image/write.h"
 #include "base/math.h"
 #include "base/text.h"
-#include "formats/image/write.h"
 
 namespace sandlot::app {
 namespace {
@@ -31,7 +31,7 @@ Status run_to(Simulation& simulation, Time end) {
   return {};
 }
 
-Result<formats::Picture> take(const RenderOptions& options, Diagnostics& diagnostics) {
+Result<assets::Picture> take(const RenderOptions& options, Diagnostics& diagnostics) {
   SL_ASSIGN(auto simulation, build(options.file, options.world, diagnostics));
   simulation->set_stop(std::nullopt);
   // Who looks for no camera should not wait for the run.
@@ -56,8 +56,8 @@ int render(const RenderOptions& options) {
   const auto picture = take(options, diagnostics);
   print_warnings(diagnostics);
   if (!picture) return complain(picture.error());
-  const formats::Pixels8 pixels{picture->width, picture->height, 3, picture->rgb};
-  const std::string bytes = png ? formats::png_of(pixels) : formats::jpeg_of(pixels, 92);
+  const assets::Pixels8 pixels{picture->width, picture->height, 3, picture->rgb};
+  const std::string bytes = png ? assets::png_of(pixels) : assets::jpeg_of(pixels, 92);
   if (Status status = write_file(options.out, bytes); !status) return complain(status.error());
   return exit_ok;
 }

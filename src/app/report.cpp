@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/monitor.h"
+#include "sim/watch/monitor.h"
 
 namespace sandlot::app {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/runner.h"
-#include "sim/simulation.h"
+#include "sim/session/runner.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::app {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "console/console.h"
-#include "sim/session.h"
+#include "sim/session/session.h"
 
 namespace sandlot::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "app/remote_console.h"
-#include "server/http.h"
+#include "server/http/http.h"
 
 namespace sandlot::app {
 namespace {

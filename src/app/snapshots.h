@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "sim/simulation.h"
-#include "sim/snapshot.h"
+#include "sim/world/simulation.h"
+#include "sim/world/snapshot.h"
 
 namespace sandlot::app {
 

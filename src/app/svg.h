@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/plan.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 

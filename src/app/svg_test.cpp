@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/math.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot {
 namespace {

@@ -13,7 +13,7 @@
 #include "base/text.h"
 #include "messages/dynamic.h"
 #include "record/mcap/reader.h"
-#include "sim/csv_log.h"
+#include "sim/watch/csv_log.h"
 
 namespace sandlot::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "base/math.h"
 #include "base/text.h"
-#include "sim/sight.h"
+#include "sim/visuals/render_scene.h"
 
 namespace sandlot::app {
 namespace {
@@ -44,15 +44,15 @@ Result<std::string> picture_topic(const std::string& camera, const Simulation& s
   return Error{"there is no camera '" + camera + "'", suggestion(camera, known)};
 }
 
-const Thing* find_thing(const Sight& sight, const std::string& name) {
-  const auto found = std::find_if(sight.things.begin(), sight.things.end(),
-                                  [&](const Thing& thing) { return thing.name == name; });
-  return found == sight.things.end() ? nullptr : &*found;
+const LabelledObject* find_thing(const RenderScene& scene, const std::string& name) {
+  const auto found = std::find_if(scene.labelled_objects.begin(), scene.labelled_objects.end(),
+                                  [&](const LabelledObject& thing) { return thing.name == name; });
+  return found == scene.labelled_objects.end() ? nullptr : &*found;
 }
 
 Bounds bounds_of_everything(Simulation& simulation) {
   Bounds all;
-  for (const Thing& thing : simulation.sight().things) {
+  for (const LabelledObject& thing : simulation.render_scene().labelled_objects) {
     const Pose& X_WB = simulation.engine().states()[thing.bodies[0]].X_WB;
     for (unsigned corner = 0; corner < 8; ++corner) {
       const Bounds& b = thing.bounds_B;
@@ -130,11 +130,11 @@ Result<View> View::make(const ViewOptions& options, Simulation& simulation) {
       return Error{"--from and --at are the same point", "look at something else"};
     view.X_WS_ = looking(*options.from, *options.at);
   } else if (!view.follow_.empty()) {
-    const Sight& sight = simulation.sight();
-    const Thing* const thing = find_thing(sight, view.follow_);
+    const RenderScene& scene = simulation.render_scene();
+    const LabelledObject* const thing = find_thing(scene, view.follow_);
     if (!thing) {
       std::vector<std::string> known;
-      for (const Thing& each : sight.things)
+      for (const LabelledObject& each : scene.labelled_objects)
         if (each.is_robot || each.moves) known.push_back(each.name);
       return Error{"there is no '" + view.follow_ + "' to follow", suggestion(view.follow_, known)};
     }
@@ -151,7 +151,7 @@ Result<View> View::make(const ViewOptions& options, Simulation& simulation) {
 
 Result<Pose> View::pose(Simulation& simulation) {
   if (follow_.empty()) return X_WS_;
-  const Thing* const thing = find_thing(simulation.sight(), follow_);
+  const LabelledObject* const thing = find_thing(simulation.render_scene(), follow_);
   if (!thing) return Error{"'" + follow_ + "', which the picture follows, has gone"};
   const Pose& X_WB = simulation.engine().states()[thing->bodies[0]].X_WB;
   const Vec3 place = X_WB * thing->bounds_B.centre();
@@ -178,7 +178,7 @@ Result<Pose> View::pose(Simulation& simulation) {
   job.near_m = 0.55 * norm(thing->bounds_B.size());  // not the robot itself
   job.far_m = norm(back);
   job.depth_m = {&free_m, 1};
-  simulation.sight().pictures.render({&job, 1});
+  simulation.render_scene().pictures.render({&job, 1});
   const double share_of_way = std::min(1.0, 0.9 * static_cast<double>(free_m) / norm(back));
   return looking(place + share_of_way * back, place + 0.2 * distance_m_ * heading);
 }
@@ -188,20 +188,20 @@ std::uint64_t View::messages(const Simulation& simulation) const {
   return topic ? topic->count : 0;
 }
 
-Result<formats::Picture> View::picture(Simulation& simulation) {
+Result<assets::Picture> View::picture(Simulation& simulation) {
   if (!topic_.empty()) {
     const TopicBase* const topic = simulation.find_topic(topic_);
     if (!topic) return Error{"the camera '" + topic_ + "' has gone"};
-    if (topic->count == 0) return formats::Picture();
-    if (const auto* const image = topic_cast<msg::Image>(topic)) return formats::visible(image->message);
+    if (topic->count == 0) return assets::Picture();
+    if (const auto* const image = topic_cast<msg::Image>(topic)) return assets::visible(image->message);
     if (const auto* const image = topic_cast<msg::CompressedImage>(topic))
-      return formats::visible(image->message);
+      return assets::visible(image->message);
     return Error{"the topic '" + topic_ + "' has no pictures"};
   }
-  Sight& sight = simulation.sight();
+  RenderScene& scene = simulation.render_scene();
   SL_ASSIGN(const Pose X_WS, pose(simulation));
   const optics::Lens& lens = lens_->lens();
-  formats::Picture out{lens.width, lens.height, {}};
+  assets::Picture out{lens.width, lens.height, {}};
   const auto pixels = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
   optics::PictureJob job{.X_WS = X_WS, .lens = lens_, .key = hash64("view")};
   job.exposure.samples = options_.samples;
@@ -209,32 +209,32 @@ Result<formats::Picture> View::picture(Simulation& simulation) {
   if (options_.plane == "rgb") {
     out.rgb.resize(3 * pixels);
     job.rgb = out.rgb;
-    sight.pictures.render({&job, 1});
+    scene.pictures.render({&job, 1});
     return out;
   }
   if (options_.plane == "depth") {
     std::vector<float> depth(pixels);
     job.depth_m = depth;
-    sight.pictures.render({&job, 1});
-    out.rgb = formats::distance_colours(depth);
+    scene.pictures.render({&job, 1});
+    out.rgb = assets::distance_colours(depth);
     return out;
   }
   std::vector<std::uint32_t> ids(pixels);
   job.instance = ids;
-  sight.pictures.render({&job, 1});
+  scene.pictures.render({&job, 1});
   if (options_.plane == "labels") {
     // A number for each label, in their alphabetical order.
     std::set<std::string> labels;
-    for (const Thing& thing : sight.things) labels.insert(thing.label);
+    for (const LabelledObject& thing : scene.labelled_objects) labels.insert(thing.label);
     std::vector<std::uint32_t> label_of;
-    for (const Thing& thing : sight.things) {
+    for (const LabelledObject& thing : scene.labelled_objects) {
       label_of.resize(std::max<std::size_t>(label_of.size(), thing.instance + std::size_t{1}));
       label_of[thing.instance] = 1 + static_cast<std::uint32_t>(
                                          std::distance(labels.begin(), labels.find(thing.label)));
     }
     for (std::uint32_t& id : ids) id = id < label_of.size() ? label_of[id] : 0;
   }
-  out.rgb = formats::label_colours(ids);
+  out.rgb = assets::label_colours(ids);
   return out;
 }
 

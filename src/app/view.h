@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "formats/image/visible.h"
+#include "assets/image/visible.h"
 #include "geometry/vec3.h"
 #include "optics/picture.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::app {
 
@@ -37,7 +37,7 @@ class View {
   /// The picture at the end of the last tick. A robot's camera: the last one that it published; an empty picture if there is
   /// none yet.
   /// Errors   the robot has gone, or the camera's messages are no pictures.
-  Result<formats::Picture> picture(Simulation& simulation);
+  Result<assets::Picture> picture(Simulation& simulation);
   /// Where a view that is no device looks from, at the end of the last tick.
   Result<Pose> pose(Simulation& simulation);
   bool is_device() const { return !topic_.empty(); }

@@ -10,7 +10,7 @@
 
 #include "app/film.h"
 #include "base/math.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::app {
 namespace {
@@ -50,7 +50,7 @@ class Views : public testing::Test {
     const auto view = View::make(options, *simulation);
     return view ? "" : view.error().text();
   }
-  formats::Picture picture(const ViewOptions& options) {
+  assets::Picture picture(const ViewOptions& options) {
     auto view = View::make(options, *simulation);
     EXPECT_TRUE(view) << view.error().text();
     auto out = view->picture(*simulation);
@@ -61,7 +61,7 @@ class Views : public testing::Test {
 };
 
 using Rgb = std::array<int, 3>;
-Rgb at(const formats::Picture& p, int x, int y) {
+Rgb at(const assets::Picture& p, int x, int y) {
   const auto i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) +
                       static_cast<std::size_t>(x));
   return {p.rgb[i], p.rgb[i + 1], p.rgb[i + 2]};
@@ -77,7 +77,7 @@ TEST_F(Views, ShowWhatIsThereWhereItIs) {
                       .height = 100,
                       .fov_rad = math::pi / 2,
                       .samples = 1};
-  const formats::Picture p = picture(options);
+  const assets::Picture p = picture(options);
   EXPECT_EQ(at(p, 100, 50), red);
   for (const int y : {30, 50, 70}) {
     EXPECT_EQ(at(p, 76, y), red);
@@ -95,7 +95,7 @@ TEST_F(Views, ShowWhatIsThereWhereItIs) {
 
 TEST_F(Views, FromAboveNorthIsUpAndEverythingIsThere) {
   // The robot on the left, the cube on the right.
-  const formats::Picture p = picture({.camera = "overhead", .width = 200, .height = 100, .samples = 1});
+  const assets::Picture p = picture({.camera = "overhead", .width = 200, .height = 100, .samples = 1});
   int left = 200, right = 0;
   for (int x = 0; x < 200; ++x)
     for (int y = 0; y < 100; ++y)

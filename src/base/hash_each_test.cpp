@@ -8,7 +8,7 @@
 namespace sandlot {
 namespace {
 
-TEST(HashEach, is_hash64_for_any_number_and_lengths) {
+TEST(HashEach, IsHash64ForAnyNumberAndLengths) {
   std::vector<std::byte> bytes(4000);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(mix64(i));
   for (std::size_t count = 0; count < 40; ++count) {

@@ -11,9 +11,9 @@
 #include "base/check.h"
 #include "base/math.h"
 #include "bench/bench.h"
-#include "formats/resources.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "files/resources.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::bench {
 namespace {
@@ -93,7 +93,7 @@ model::Setup own_field() {
 }
 
 model::Setup field() {
-  const std::string match = formats::own_folder("scenarios") + "/msl_field.yaml";
+  const std::string match = own_folder("scenarios") + "/msl_field.yaml";
   if (!std::filesystem::exists(match)) return own_field();
   Diagnostics diagnostics;
   auto setup = load(match, {}, diagnostics);

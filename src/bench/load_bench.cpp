@@ -10,8 +10,8 @@
 #include "base/check.h"
 #include "bench/bench.h"
 #include "formats/sdf/sdf.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::bench {
 namespace {

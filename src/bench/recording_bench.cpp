@@ -12,7 +12,7 @@
 #include "bench/bench.h"
 #include "messages/sensor_images.h"
 #include "record/recorder.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::bench {
 namespace {

@@ -21,9 +21,9 @@
 #include "base/random.h"
 #include "bench/bare_grid.h"
 #include "bench/bench.h"
-#include "formats/resources.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "files/resources.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::bench {
 namespace {
@@ -36,7 +36,7 @@ std::unique_ptr<Simulation> ours(int robots) {
   const std::vector<formats::Override> overrides{{"robots.count", std::to_string(robots)}};
   LoadOptions options;
   options.overrides = overrides;
-  auto setup = load(formats::own_folder("scenarios") + "/swarm.yaml", options, diagnostics);
+  auto setup = load(own_folder("scenarios") + "/swarm.yaml", options, diagnostics);
   SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
   auto made = Simulation::create(std::move(*setup), {}, diagnostics);
   SL_CHECK_MSG(made, made ? "" : made.error().text().c_str());

@@ -12,8 +12,8 @@
 #include "bench/bench.h"
 #include "console/console.h"
 #include "server/server.h"
-#include "sim/load.h"
-#include "sim/session.h"
+#include "sim/load/load.h"
+#include "sim/session/session.h"
 
 namespace sandlot::bench {
 namespace {

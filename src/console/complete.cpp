@@ -5,8 +5,8 @@
 #include "console/command.h"
 #include "console/words.h"
 #include "devices/kind.h"
-#include "sim/faults.h"
-#include "sim/values.h"
+#include "sim/watch/values.h"
+#include "sim/world/faults.h"
 
 namespace sandlot {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "sim/session.h"
+#include "sim/session/session.h"
 
 namespace sandlot {
 

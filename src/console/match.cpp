@@ -9,7 +9,7 @@
 #include "console/words.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
-#include "formats/resources.h"
+#include "files/resources.h"
 
 namespace sandlot::console {
 namespace {
@@ -219,7 +219,7 @@ Result<std::string> file_within(const Console::Options& options, std::string_vie
 
 std::vector<ModelFile> model_files(const Console::Options& options) {
   constexpr std::size_t most = 1000;
-  std::vector<std::string> folders = formats::search_path(options.paths).folders;
+  std::vector<std::string> folders = search_path(options.paths).folders;
   std::vector<ModelFile> out;
   std::error_code failed;
   for (const std::string& folder : folders) {

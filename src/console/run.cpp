@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "console/command.h"
 #include "console/words.h"
-#include "sim/snapshot.h"
+#include "sim/world/snapshot.h"
 
 namespace sandlot::console {
 namespace {

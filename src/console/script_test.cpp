@@ -2,7 +2,7 @@
 
 #include "console/test_talk.h"
 #include "record/replay.h"
-#include "sim/values.h"
+#include "sim/watch/values.h"
 
 namespace sandlot {
 namespace {

@@ -1,5 +1,5 @@
 /// Commands about values, parameters and devices.
-#include "sim/values.h"
+#include "sim/watch/values.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -9,11 +9,11 @@
 #include "console/command.h"
 #include "console/words.h"
 #include "devices/kind.h"
-#include "formats/yaml.h"
+#include "files/yaml.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
-#include "sim/faults.h"
-#include "sim/monitor.h"
+#include "sim/watch/monitor.h"
+#include "sim/world/faults.h"
 
 namespace sandlot::console {
 namespace {
@@ -257,7 +257,7 @@ Said say_set(Call& call) {
     return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
   std::string_view written = call.rest(1);
   if (!written.empty() && written.front() == '=') written = trim(written.substr(1));
-  auto parsed = formats::parse_yaml(written, "");
+  auto parsed = parse_yaml(written, "");
   if (!parsed)
     return Error{"'" + std::string(written.substr(0, 60)) + "' is no value: " + parsed.error().what};
   if (parsed->is_null()) return Error{"a value is missing", "set ADDRESS VALUE"};

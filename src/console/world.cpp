@@ -8,8 +8,8 @@
 #include "console/command.h"
 #include "console/words.h"
 #include "geometry/bounds.h"
-#include "sim/load.h"
-#include "sim/pull.h"
+#include "sim/load/load.h"
+#include "sim/world/pull.h"
 
 namespace sandlot::console {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/time.h"
-#include "devices/thing.h"
+#include "devices/labelled_object.h"
 #include "geometry/rays.h"
 #include "media/emission.h"
 #include "physics/engine.h"
@@ -60,9 +60,9 @@ struct Context {
   Actuation& actuation;
   EmissionBuffer& emissions;
   // For kinds that see (Kind::sees), in the sense phase; nothing for the others.
-  optics::PictureScene* pictures = nullptr;  ///< draws the visuals as they are at `now`
-  std::span<const Thing> things = {};        ///< what detectors tell apart
-  const TopicFinder* topics = nullptr;       ///< null in tests of single kinds alone
+  optics::PictureScene* pictures = nullptr;               ///< draws the visuals as they are at `now`
+  std::span<const LabelledObject> labelled_objects = {};  ///< what detectors tell apart
+  const TopicFinder* topics = nullptr;                    ///< null in tests of single kinds alone
 };
 
 }  // namespace sandlot

@@ -114,7 +114,7 @@ struct Kind {
   bool (*accepts)(const Node& element) = nullptr;
   const char* sdf_note = "";  ///< for the docs: what of those elements has no effect here
   std::span<const Preset> presets = {};
-  bool sees = false;  ///< its devices look at Context::pictures or Context::things
+  bool needs_render_scene = false;  ///< its devices look at Context::pictures or Context::labelled_objects
   int api_version = device_api_version;
   // Filled by make_kind:
   unsigned phases = 0;

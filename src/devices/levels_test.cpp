@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/gps/gps.h"
-#include "devices/imu/imu.h"
-#include "devices/laser_scanner/laser_scanner.h"
+#include "devices/drives/wheel_odometry/wheel_odometry.h"
+#include "devices/inertial/gps/gps.h"
+#include "devices/inertial/imu/imu.h"
+#include "devices/ranges/laser_scanner/laser_scanner.h"
 #include "devices/test_rig.h"
-#include "devices/wheel_odometry/wheel_odometry.h"
 
 namespace sandlot {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 /// Winding, gear and power stage of a brushed DC motor: what devices with motors share. The equations are in
-/// devices/dc_motor/dc_motor.h.
+/// devices/joints/dc_motor/dc_motor.h.
 ///
 /// In every sub-step: winding_on_voltage() or winding_for_torque(), motor_target() to the engine, and flow_after() when the
 /// step is done. In between lies the mean current, affine in the speed that the step ends with.

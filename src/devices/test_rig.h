@@ -142,7 +142,7 @@ class Rig : public TopicMaker {
   std::map<std::string, Pose> frames;                        ///< beside the sensors' own, as X_SF
   const RayCaster* rays = nullptr;
   optics::PictureScene* pictures = nullptr;
-  std::vector<Thing> things;
+  std::vector<LabelledObject> things;
   const TopicFinder* finder = nullptr;
   ImageEncoder encoder = nullptr;
   Time now, tick;

@@ -2,7 +2,7 @@
 /// Meshes and heightmaps as the readers of worlds and robots ask for them. The readers of those files are siblings that
 /// do not know each other; who brings them together (sim/load) fills this in.
 ///
-/// Files are found (formats/resources.h) before they are asked for. Errors carry the place of the file that has the
+/// Files are found (files/resources.h) before they are asked for. Errors carry the place of the file that has the
 /// fault, or none: the asker then adds its own.
 #include <cstdint>
 #include <functional>

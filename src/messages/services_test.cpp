@@ -13,7 +13,7 @@ std::string own_part(const MessageInfo& info) {
   return info.schema.substr(0, info.schema.find(std::string(80, '=')));
 }
 
-TEST(Services, are_found_by_name_and_the_error_names_the_nearest) {
+TEST(Services, AreFoundByNameAndTheErrorNamesTheNearest) {
   const auto console = find_service("sandlot_msgs/srv/Console");
   ASSERT_TRUE(console);
   EXPECT_EQ((*console)->request->name, "sandlot_msgs/srv/Console_Request");
@@ -29,7 +29,7 @@ TEST(Services, are_found_by_name_and_the_error_names_the_nearest) {
   }
 }
 
-TEST(Services, have_the_members_of_their_srv_files) {
+TEST(Services, HaveTheMembersOfTheirSrvFiles) {
   const struct {
     const char *name, *request, *response;
   } expected[] = {
@@ -68,7 +68,7 @@ TEST(Services, have_the_members_of_their_srv_files) {
   }
 }
 
-TEST(Services, requests_come_as_json_and_what_is_left_out_has_its_default) {
+TEST(Services, RequestsComeAsJsonAndWhatIsLeftOutHasItsDefault) {
   const ServiceInfo* const step = *find_service("simulation_interfaces/srv/StepSimulation");
   const auto request = message_from_json(*step->request, "{}");
   ASSERT_TRUE(request);
@@ -78,7 +78,7 @@ TEST(Services, requests_come_as_json_and_what_is_left_out_has_its_default) {
   EXPECT_NE(wrong.error().text().find("steps"), std::string::npos) << wrong.error().text();
 }
 
-TEST(Services, an_empty_request_is_one_byte_of_cdr) {
+TEST(Services, AnEmptyRequestIsOneByteOfCdr) {
   std::vector<std::byte> cdr;
   const auto features = find_service("simulation_interfaces/srv/GetSimulatorFeatures");
   ASSERT_TRUE(features);

@@ -216,7 +216,7 @@ struct Clock {
   Time min_step = Time::from_s(1e-4), max_step = Time::from_s(0.1);
 };
 
-/// A value that a scenario names: an expression over addresses (sim/expression.h).
+/// A value that a scenario names: an expression over addresses (sim/watch/expression.h).
 struct ValueDecl {
   std::string name;
   std::string expression;

@@ -5,7 +5,7 @@
 #include "messages/cdr.h"
 #include "record/glob.h"
 #include "record/layout.h"
-#include "sim/transforms.h"
+#include "sim/world/transforms.h"
 
 namespace sandlot {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// Turns frames of a simulation into the messages of a recording: device topics, /tf, /clock, the log and the hashes.
 ///
-/// Frames   of /tf and /tf_static: sim/transforms.h.
+/// Frames   of /tf and /tf_static: sim/world/transforms.h.
 /// Time     every message of a frame carries the frame's simulated time.
 /// Units    as the messages say.
 #include <unordered_map>
@@ -9,7 +9,7 @@
 #include "messages/sandlot_msgs.h"
 #include "messages/tf2_msgs.h"
 #include "record/mcap/writer.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/text.h"
-#include "formats/resources.h"
+#include "files/resources.h"
 #include "messages/cdr.h"
 #include "messages/messages.h"
 #include "record/recording.h"
@@ -165,7 +165,7 @@ Status resolve(Node& config, std::span<const std::string> paths, const Place& pl
   if (config.find("topic") && config.find("commands"))
     return here({"both a topic and commands are given", "leave one of them out", {}, "/commands"});
   const std::string folder = at.file ? std::filesystem::path(*at.file).parent_path().string() : "";
-  auto path = formats::find_resource(text_of("file"), folder, formats::search_path(paths), at);
+  auto path = find_resource(text_of("file"), folder, search_path(paths), at);
   if (!path) return here(std::move(path.error()));
   const std::string extension = std::filesystem::path(*path).extension().string();
   Result<Samples> samples = Samples{};

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "record/layout.h"
-#include "sim/transforms.h"
+#include "sim/world/transforms.h"
 
 namespace sandlot {
 namespace {

@@ -49,7 +49,7 @@ std::uint64_t hash_without(int ticks) {
   return simulation->state_hash();
 }
 
-TEST(Glob, stars_and_question_marks) {
+TEST(Glob, StarsAndQuestionMarks) {
   EXPECT_TRUE(glob_matches("/rover/*", "/rover/laser/ranges"));
   EXPECT_TRUE(glob_matches("*laser*", "/rover/laser/ranges"));
   EXPECT_TRUE(glob_matches("/rover?/tf", "/rover1/tf"));
@@ -59,7 +59,7 @@ TEST(Glob, stars_and_question_marks) {
   EXPECT_FALSE(glob_matches("", "x"));
 }
 
-TEST_F(RecorderTest, the_proof_is_in_the_file_and_the_run_did_not_notice) {
+TEST_F(RecorderTest, TheProofIsInTheFileAndTheRunDidNotNotice) {
   Recorder::Report report;
   Status status;
   const std::uint64_t hash = record({.file = file("r.mcap")}, 200, report, status);
@@ -104,7 +104,7 @@ TEST_F(RecorderTest, the_proof_is_in_the_file_and_the_run_did_not_notice) {
   EXPECT_EQ((*again)->state_hash(), hash);
 }
 
-TEST_F(RecorderTest, only_the_chosen_topics_and_the_proof) {
+TEST_F(RecorderTest, OnlyTheChosenTopicsAndTheProof) {
   Recorder::Report report;
   Status status;
   record({.file = file("r.mcap"), .topics = {"/rover1/laser*"}}, 50, report, status);
@@ -120,7 +120,7 @@ TEST_F(RecorderTest, only_the_chosen_topics_and_the_proof) {
   EXPECT_TRUE(laser);
 }
 
-TEST_F(RecorderTest, a_pipe_that_nobody_empties_costs_messages_and_not_the_run) {
+TEST_F(RecorderTest, APipeThatNobodyEmptiesCostsMessagesAndNotTheRun) {
   ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
   const int reader = ::open(file("pipe").c_str(), O_RDONLY | O_NONBLOCK);
   ASSERT_GE(reader, 0);
@@ -140,7 +140,7 @@ TEST_F(RecorderTest, a_pipe_that_nobody_empties_costs_messages_and_not_the_run) 
   EXPECT_GT((*recorder)->report().dropped_messages, 0u);
 }
 
-TEST_F(RecorderTest, a_place_that_cannot_be_written_is_known_at_the_start) {
+TEST_F(RecorderTest, APlaceThatCannotBeWrittenIsKnownAtTheStart) {
   const auto simulation = build(arena("planar", 1));
   EXPECT_FALSE(Recorder::start({.recording = {.file = file("no/such/folder.mcap")}}, *simulation));
   const auto full = Recorder::start({.recording = {.file = "/dev/full"}}, *simulation);
@@ -148,7 +148,7 @@ TEST_F(RecorderTest, a_place_that_cannot_be_written_is_known_at_the_start) {
   EXPECT_THAT(full.error().what, testing::HasSubstr("/dev/full"));
 }
 
-TEST_F(RecorderTest, more_topics_than_a_file_can_have_are_an_error) {
+TEST_F(RecorderTest, MoreTopicsThanAFileCanHaveAreAnError) {
   const auto simulation = build(arena("planar", 1));
   auto writer = FrameWriter::create({.recording = {.file = file("r.mcap")}, .version = "test"}, *simulation);
   ASSERT_TRUE(writer) << writer.error().text();

@@ -12,7 +12,7 @@
 #include "record/layout.h"
 #include "record/mcap/reader.h"
 #include "record/replay.h"
-#include "sim/snapshot.h"
+#include "sim/world/snapshot.h"
 
 namespace sandlot::record {
 

@@ -106,7 +106,7 @@ void copy(const std::string& from, const std::string& to, Change&& change) {
   ASSERT_TRUE(static_cast<bool>(writer->finish()));
 }
 
-TEST(Recording, replays_to_the_hash_of_the_run_both_ways) {
+TEST(Recording, ReplaysToTheHashOfTheRunBothWays) {
   const Folder folder;
   const auto simulation = record(folder.file("r.mcap"));
   for (const Programs programs : {Programs::recompute, Programs::logged}) {
@@ -119,7 +119,7 @@ TEST(Recording, replays_to_the_hash_of_the_run_both_ways) {
   }
 }
 
-TEST(Recording, a_changed_byte_of_a_command_names_its_tick_and_target) {
+TEST(Recording, AChangedByteOfACommandNamesItsTickAndTarget) {
   const Folder folder;
   record(folder.file("r.mcap"));
   std::uint64_t changed = 0;
@@ -139,7 +139,7 @@ TEST(Recording, a_changed_byte_of_a_command_names_its_tick_and_target) {
   EXPECT_THAT(verify(folder.file("changed.mcap"), Programs::logged).text, testing::StartsWith(tick));
 }
 
-TEST(Recording, torn_off_it_goes_as_far_as_its_last_whole_chunk) {
+TEST(Recording, TornOffItGoesAsFarAsItsLastWholeChunk) {
   const Folder folder;
   record(folder.file("r.mcap"));
   std::filesystem::resize_file(folder.file("r.mcap"),
@@ -151,7 +151,7 @@ TEST(Recording, torn_off_it_goes_as_far_as_its_last_whole_chunk) {
   EXPECT_LT(verdict.ticks, 150u);
 }
 
-TEST(Recording, says_what_keeps_it_from_being_replayed) {
+TEST(Recording, SaysWhatKeepsItFromBeingReplayed) {
   const Folder folder;
   const std::string file = folder.file("r.mcap"), other = folder.file("other.mcap");
   record(file);
@@ -186,7 +186,7 @@ TEST(Recording, says_what_keeps_it_from_being_replayed) {
   EXPECT_THAT(verify(other).text, HasSubstr("other.mcap"));
 }
 
-TEST(Recording, values_tell_where_two_seeds_differ) {
+TEST(Recording, ValuesTellWhereTwoSeedsDiffer) {
   const Folder folder;
   const auto a = record(folder.file("a.mcap"), 7), b = record(folder.file("b.mcap"), 8);
   EXPECT_THAT(differing_setups(*a, *b), testing::ElementsAre("seed: 7 against 8"));
@@ -215,7 +215,7 @@ TEST(Recording, values_tell_where_two_seeds_differ) {
   EXPECT_TRUE(differing_values(*a, *a, parts, 1000).first.empty());
 }
 
-TEST(Playback, orders_of_a_recorded_robot_lead_another_one_along_the_same_path) {
+TEST(Playback, OrdersOfARecordedRobotLeadAnotherOneAlongTheSamePath) {
   const Folder folder;
   const auto original = record(folder.file("r.mcap"));
   model::Setup setup = test::arena("planar", 2);

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::record {
 

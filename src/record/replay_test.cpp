@@ -101,7 +101,7 @@ Recorded eventful(const char* engine, std::uint64_t begin = 33) {
                  {begin + 51, DeleteRequest{"rover2"}}});
 }
 
-TEST(Replay, both_ways_give_every_hash_again_on_both_engines_and_from_the_middle_of_a_control_interval) {
+TEST(Replay, BothWaysGiveEveryHashAgainOnBothEnginesAndFromTheMiddleOfAControlInterval) {
   for (const char* engine : {"planar", "rigid"})
     for (const Programs programs : {Programs::recompute, Programs::logged})
       for (const int threads : {1, 3}) {
@@ -111,7 +111,7 @@ TEST(Replay, both_ways_give_every_hash_again_on_both_engines_and_from_the_middle
       }
 }
 
-TEST(Replay, lengths_that_a_clock_measured_are_taken_from_the_log) {
+TEST(Replay, LengthsThatAClockMeasuredAreTakenFromTheLog) {
   model::Setup setup = test::arena("planar", 2);
   setup.clock = {model::Clock::Mode::continuous, Time::from_s(2e-3), Time::from_s(0.02)};
   Recorded recorded = record(setup, 0, 60, {}, Time::from_s(4e-3));
@@ -122,7 +122,7 @@ TEST(Replay, lengths_that_a_clock_measured_are_taken_from_the_log) {
   EXPECT_THAT(verdict(recorded), testing::StartsWith("tick 40 ("));
 }
 
-TEST(Replay, a_changed_order_of_a_program_is_found_by_recomputing_and_a_changed_state_by_the_log) {
+TEST(Replay, AChangedOrderOfAProgramIsFoundByRecomputingAndAChangedStateByTheLog) {
   Recorded recorded = eventful("planar");
   RecordedTick* changed = nullptr;
   for (RecordedTick& tick : recorded.ticks)
@@ -140,7 +140,7 @@ TEST(Replay, a_changed_order_of_a_program_is_found_by_recomputing_and_a_changed_
               testing::AllOf(testing::StartsWith(tick), HasSubstr("state differs of"), HasSubstr("rover1")));
 }
 
-TEST(Replay, a_changed_command_of_a_client_shows_in_the_state_of_the_robot_it_was_for) {
+TEST(Replay, AChangedCommandOfAClientShowsInTheStateOfTheRobotItWasFor) {
   Recorded recorded = eventful("planar");
   LogEntry& entry = recorded.ticks[1].log.front();
   ASSERT_EQ(entry.target, "driven/drive");
@@ -157,7 +157,7 @@ TEST(Replay, a_changed_command_of_a_client_shows_in_the_state_of_the_robot_it_wa
   EXPECT_THAT(difference->parts, ElementsAre("driven", "driven/drive"));
 }
 
-TEST(Replay, names_what_is_wrong_with_a_log) {
+TEST(Replay, NamesWhatIsWrongWithALog) {
   const auto changed = [](const auto& change) {
     Recorded recorded = eventful("planar");
     change(recorded.ticks);
@@ -185,7 +185,7 @@ TEST(Replay, names_what_is_wrong_with_a_log) {
               HasSubstr("that is not in the log"));
 }
 
-TEST(Replay, parts_are_paired_by_name_when_the_models_differ) {
+TEST(Replay, PartsArePairedByNameWhenTheModelsDiffer) {
   const std::vector<std::string> a{"sim", "ball", "box"}, b{"sim", "box", "cone"};
   EXPECT_THAT(differing_parts(a, std::vector<std::uint64_t>{1, 2, 3}, b, std::vector<std::uint64_t>{1, 3, 4}),
               ElementsAre("ball", "cone"));

@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "record/recording.h"
-#include "sim/session.h"
+#include "sim/session/session.h"
 
 namespace sandlot::record {
 
 struct RecordedRun {
-  Tape tape;
+  InputLog tape;
   std::uint64_t first_tick = 0;
   /// After tick first_tick + i. Nothing: the recording does not tell.
   std::vector<std::optional<std::uint64_t>> hashes;

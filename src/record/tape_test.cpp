@@ -76,7 +76,7 @@ Played play(const Fixture& fixture, const RecordedRun& run) {
   return out;
 }
 
-TEST(Tape, holds_what_came_from_outside_at_its_tick_and_a_hash_for_every_tick) {
+TEST(InputLog, HoldsWhatCameFromOutsideAtItsTickAndAHashForEveryTick) {
   const Fixture fixture;
   const RecordedRun run = fixture.run();
   EXPECT_EQ(run.first_tick, begin_tick);
@@ -95,7 +95,7 @@ TEST(Tape, holds_what_came_from_outside_at_its_tick_and_a_hash_for_every_tick) {
   EXPECT_EQ(run.hashes.back(), fixture.original->state_hash());
 }
 
-TEST(Tape, makes_a_session_end_in_the_recorded_state_with_every_hash_as_recorded) {
+TEST(InputLog, MakesASessionEndInTheRecordedStateWithEveryHashAsRecorded) {
   const Fixture fixture;
   const Played played = play(fixture, fixture.run());
   EXPECT_EQ(played.hash, fixture.original->state_hash());
@@ -103,7 +103,7 @@ TEST(Tape, makes_a_session_end_in_the_recorded_state_with_every_hash_as_recorded
   EXPECT_EQ(played.different, 0u);
 }
 
-TEST(Tape, tells_the_first_tick_that_differs_once) {
+TEST(InputLog, TellsTheFirstTickThatDiffersOnce) {
   const Fixture fixture;
   RecordedRun run = fixture.run();
   // Without the second leap the run is another one from the tick on that carried it out: 81 to 120, forty ticks.
@@ -114,7 +114,7 @@ TEST(Tape, tells_the_first_tick_that_differs_once) {
   EXPECT_NE(played.hash, fixture.original->state_hash());
 }
 
-TEST(Tape, ends_where_a_recording_is_torn_off) {
+TEST(InputLog, EndsWhereARecordingIsTornOff) {
   const Fixture fixture;
   std::filesystem::resize_file(fixture.file(), std::filesystem::file_size(fixture.file()) / 2);
   const RecordedRun run = fixture.run();

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/text.h"
-#include "sim/values.h"
+#include "sim/watch/values.h"
 
 namespace sandlot::record {
 namespace {

@@ -1,11 +1,11 @@
 #pragma once
-/// Where two worlds differ, value by value, by the addresses of sim/values.h.
+/// Where two worlds differ, value by value, by the addresses of sim/watch/values.h.
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::record {
 

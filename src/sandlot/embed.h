@@ -19,8 +19,8 @@
 #include <string>
 
 #include "messages/messages.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 

@@ -3,7 +3,7 @@
 #include <future>
 
 #include "base/log.h"
-#include "server/hub.h"
+#include "server/clients/hub.h"
 
 namespace sandlot::server {
 namespace {

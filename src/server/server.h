@@ -16,8 +16,8 @@
 #include <string>
 
 #include "console/console.h"
-#include "server/transport.h"
-#include "sim/session.h"
+#include "server/http/transport.h"
+#include "sim/session/session.h"
 
 namespace sandlot::server {
 

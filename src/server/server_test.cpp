@@ -13,7 +13,7 @@ using sandlot::test::arena;
 /// One rover in a walled square, 10 ms a tick, a scan each 0.1 s.
 model::Setup one_rover(const char* controller = "") { return arena("rigid", 1, controller); }
 
-TEST(Server, says_who_it_is_and_what_there_is) {
+TEST(Server, SaysWhoItIsAndWhatThereIs) {
   Running run(one_rover(), {.paused = true}, {.name = "arena", .version = "1.2.3"});
   run.go();
   for (const char* subprotocol : {"foxglove.websocket.v1", "foxglove.sdk.v1"}) {
@@ -35,7 +35,7 @@ TEST(Server, says_who_it_is_and_what_there_is) {
   }
 }
 
-TEST(Server, tells_the_world_the_poses_and_the_latest_messages_also_of_a_run_that_stands_still) {
+TEST(Server, TellsTheWorldThePosesAndTheLatestMessagesAlsoOfARunThatStandsStill) {
   Running run(one_rover(), {.paused = true});
   // 30 ticks of 10 ms: the scans of 0.1 s steps are there, the latest is of 0.3 s.
   for (int i = 0; i < 30; ++i) ASSERT_TRUE(run.session.simulation().tick());
@@ -69,7 +69,7 @@ TEST(Server, tells_the_world_the_poses_and_the_latest_messages_also_of_a_run_tha
   EXPECT_EQ(status->parsed()["may_steer"], true);
 }
 
-TEST(Server, every_message_of_a_topic_comes_once_and_in_order) {
+TEST(Server, EveryMessageOfATopicComesOnceAndInOrder) {
   model::Setup setup = one_rover();
   setup.stop = Time::from_s(5);
   Running run(std::move(setup), {.paused = true, .stay = true});
@@ -90,7 +90,7 @@ TEST(Server, every_message_of_a_topic_comes_once_and_in_order) {
   for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_DOUBLE_EQ(stamps[i], 0.1 * static_cast<double>(i));
 }
 
-TEST(Server, a_step_is_one_tick_and_its_poses_come_although_the_run_stands_still_again) {
+TEST(Server, AStepIsOneTickAndItsPosesComeAlthoughTheRunStandsStillAgain) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -109,7 +109,7 @@ TEST(Server, a_step_is_one_tick_and_its_poses_come_although_the_run_stands_still
   }
 }
 
-TEST(Server, numbers_are_watched_at_every_tick_and_at_a_rate) {
+TEST(Server, NumbersAreWatchedAtEveryTickAndAtARate) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -160,7 +160,7 @@ TEST(Server, numbers_are_watched_at_every_tick_and_at_a_rate) {
   EXPECT_EQ(many["ok"], false) << "3 + 199 numbers are more than 200";
 }
 
-TEST(Server, a_watch_is_its_clients_own_and_goes_with_its_subscription) {
+TEST(Server, AWatchIsItsClientsOwnAndGoesWithItsSubscription) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer one(run.url()), other(run.url());
@@ -177,7 +177,7 @@ TEST(Server, a_watch_is_its_clients_own_and_goes_with_its_subscription) {
   EXPECT_EQ(one.unadvertised, std::vector{channel});
 }
 
-TEST(Server, a_parameter_changes_the_run_and_everybody_hears_of_it) {
+TEST(Server, AParameterChangesTheRunAndEverybodyHearsOfIt) {
   Running run(one_rover("wander"), {});
   run.go();
   Viewer viewer(run.url()), other(run.url());
@@ -222,7 +222,7 @@ TEST(Server, a_parameter_changes_the_run_and_everybody_hears_of_it) {
   EXPECT_TRUE(viewer.until([&] { return run.session.report().state == Session::State::paused; }));
 }
 
-TEST(Server, clients_publish_commands_by_three_names_in_two_encodings) {
+TEST(Server, ClientsPublishCommandsByThreeNamesInTwoEncodings) {
   Running run(one_rover(), {.pace = {1.0}});
   run.go();
   Viewer viewer(run.url());
@@ -270,7 +270,7 @@ TEST(Server, clients_publish_commands_by_three_names_in_two_encodings) {
       << viewer.statuses.back();
 }
 
-TEST(Server, spectators_see_but_cannot_steer) {
+TEST(Server, SpectatorsSeeButCannotSteer) {
   Running run(one_rover("wander"), {.pace = {1.0}});
   run.go();
   Viewer viewer(run.url(), "?role=spectator");
@@ -296,7 +296,7 @@ TEST(Server, spectators_see_but_cannot_steer) {
   EXPECT_GE(run.server->counters().refused, 4u);
 }
 
-TEST(Server, simulation_interfaces_are_answered_with_their_codes) {
+TEST(Server, SimulationInterfacesAreAnsweredWithTheirCodes) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -329,7 +329,7 @@ TEST(Server, simulation_interfaces_are_answered_with_their_codes) {
   EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 1}})["result"]["result"], 4) << "it is not paused";
 }
 
-TEST(Server, another_world_is_told_anew_and_channels_stay) {
+TEST(Server, AnotherWorldIsToldAnewAndChannelsStay) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -365,7 +365,7 @@ TEST(Server, another_world_is_told_anew_and_channels_stay) {
 }
 
 /// A jump back runs tick 1 again with the order it had then; the next one that viewers hear of is that of tick 4.
-TEST(Server, what_is_run_again_is_not_told_again) {
+TEST(Server, WhatIsRunAgainIsNotToldAgain) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -389,7 +389,7 @@ TEST(Server, what_is_run_again_is_not_told_again) {
   EXPECT_EQ(second->parsed()["commands"][0]["tick"], 4);
 }
 
-TEST(Server, warnings_of_the_program_are_log_lines) {
+TEST(Server, WarningsOfTheProgramAreLogLines) {
   Running run(one_rover(), {.paused = true});
   run.go();
   Viewer viewer(run.url());
@@ -404,7 +404,7 @@ TEST(Server, warnings_of_the_program_are_log_lines) {
   EXPECT_EQ(log.msg, "the floor is wet");
 }
 
-TEST(Server, the_graph_names_who_talks_to_whom) {
+TEST(Server, TheGraphNamesWhoTalksToWhom) {
   Running run(one_rover("wander"), {.paused = true});
   run.go();
   Viewer viewer(run.url());

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/math.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::test {
 

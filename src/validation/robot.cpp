@@ -5,7 +5,7 @@
 #include "base/bytes.h"
 #include "base/math.h"
 #include "messages/messages.h"
-#include "sim/load.h"
+#include "sim/load/load.h"
 
 namespace sandlot::validation {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 #include "validation/quasistatic.h"
 
 namespace sandlot::validation {

@@ -8,7 +8,7 @@
 namespace sandlot::validation {
 namespace {
 
-TEST(SlowValidation, everything_lies_within_its_bounds) {
+TEST(SlowValidation, EverythingLiesWithinItsBounds) {
   for (const Experiment& experiment : experiments()) {
     const Section section = experiment.run();
     EXPECT_FALSE(section.rows.empty()) << experiment.name;

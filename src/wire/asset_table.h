@@ -20,26 +20,26 @@ class AssetTable {
   Result<Assets::Body> get(std::string_view path);
 
  private:
-  template <class Thing>
+  template <class LabelledObject>
   struct Kept {
-    std::shared_ptr<const Thing> thing;
+    std::shared_ptr<const LabelledObject> thing;
     std::vector<std::uint32_t> textures;                  ///< of a mesh's parts: the number + 1, 0 for none
     std::shared_ptr<const std::vector<std::byte>> bytes;  ///< once somebody has asked
   };
-  template <class Thing>
+  template <class LabelledObject>
   struct Table {
-    std::vector<Kept<Thing>> all;
+    std::vector<Kept<LabelledObject>> all;
     std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash;
     struct Known {
-      std::weak_ptr<const Thing> thing;
+      std::weak_ptr<const LabelledObject> thing;
       std::uint32_t number = 0;
     };
-    std::unordered_map<const Thing*, Known> by_pointer;
+    std::unordered_map<const LabelledObject*, Known> by_pointer;
   };
-  template <class Thing>
-  std::uint32_t find_or_add(Table<Thing>& table, const std::shared_ptr<const Thing>& thing);
-  template <class Thing>
-  Result<Assets::Body> body(Table<Thing>& table, std::string_view path, std::uint32_t number);
+  template <class LabelledObject>
+  std::uint32_t find_or_add(Table<LabelledObject>& table, const std::shared_ptr<const LabelledObject>& thing);
+  template <class LabelledObject>
+  Result<Assets::Body> body(Table<LabelledObject>& table, std::string_view path, std::uint32_t number);
   Result<Assets::Body> texture(std::string_view path, std::uint32_t number);
   std::uint32_t texture_number(const std::string& file);  ///< the mutex is held
 

@@ -6,7 +6,7 @@
 #include "base/bytes.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "formats/text.h"
+#include "files/text.h"
 #include "wire/asset_table.h"
 
 namespace sandlot::wire {
@@ -76,8 +76,9 @@ Error no_such(std::string_view path) {
 
 }  // namespace
 
-template <class Thing>
-std::uint32_t AssetTable::find_or_add(Table<Thing>& table, const std::shared_ptr<const Thing>& thing) {
+template <class LabelledObject>
+std::uint32_t AssetTable::find_or_add(Table<LabelledObject>& table,
+                                      const std::shared_ptr<const LabelledObject>& thing) {
   if (const auto known = table.by_pointer.find(thing.get());
       known != table.by_pointer.end() && !known->second.thing.expired())
     return known->second.number;
@@ -121,9 +122,10 @@ std::uint32_t AssetTable::texture_number(const std::string& file) {
   return found->second;
 }
 
-template <class Thing>
-Result<Assets::Body> AssetTable::body(Table<Thing>& table, std::string_view path, std::uint32_t number) {
-  Kept<Thing> kept;
+template <class LabelledObject>
+Result<Assets::Body> AssetTable::body(Table<LabelledObject>& table, std::string_view path,
+                                      std::uint32_t number) {
+  Kept<LabelledObject> kept;
   {
     const std::lock_guard lock(mutex_);
     if (number >= table.all.size()) return no_such(path);
@@ -149,7 +151,7 @@ Result<Assets::Body> AssetTable::texture(std::string_view path, std::uint32_t nu
   }
   // Whoever asks may be a stranger: where the file lies is none of their business.
   const std::string name = "the texture '" + std::filesystem::path(file).filename().string() + "'";
-  const Result<std::string> read = formats::read_text_file(file, most_texture_bytes);
+  const Result<std::string> read = read_text_file(file, most_texture_bytes);
   if (!read) return Error{name + ": " + read.error().what};
   const std::string& text = *read;
   const bool png = starts_with(text, "\x89PNG\r\n\x1a\n"), jpeg = starts_with(text, "\xff\xd8\xff");

@@ -52,7 +52,7 @@ model::Setup shown(std::vector<model::Visual> visuals) {
 
 Json visuals_of(const std::string& world) { return Json::parse(world)["models"][0]["links"][0]["visuals"]; }
 
-TEST(Assets, meshes_come_as_bytes_and_equal_ones_once) {
+TEST(Assets, MeshesComeAsBytesAndEqualOnesOnce) {
   TriangleMesh mesh = square();
   mesh.texture_uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.parts = {{"a", 0, 1, {1, 0, 0, 1}, ""}, {"b", 1, 1, {0, 1, 0, 0.5f}, "no/such.png"}};
@@ -94,7 +94,7 @@ TEST(Assets, meshes_come_as_bytes_and_equal_ones_once) {
   EXPECT_FALSE(assets.get("mesh/a2"));
 }
 
-TEST(Assets, grids_come_as_bytes) {
+TEST(Assets, GridsComeAsBytes) {
   HeightGrid grid;
   grid.columns = 3;
   grid.rows = 2;
@@ -111,7 +111,7 @@ TEST(Assets, grids_come_as_bytes) {
   EXPECT_EQ(*body->bytes, bytes_of('S', 'L', 'G', '1', 3u, 2u, 4.f, 2.f, 0.f, 1.f, 2.f, 3.f, 4.f, 5.5f));
 }
 
-TEST(Assets, textures_are_files_that_a_model_names_and_nothing_else) {
+TEST(Assets, TexturesAreFilesThatAModelNamesAndNothingElse) {
   const Folder folder;
   const std::string png = "\x89PNG\r\n\x1a\nand so on", jpeg = "\xff\xd8\xff\xe0 and so on";
   model::Visual visual{"v", {}, Box{{1, 1, 1}}, {}, true, {}};
@@ -149,7 +149,7 @@ TEST(Assets, textures_are_files_that_a_model_names_and_nothing_else) {
   EXPECT_FALSE(assets.get("texture/t0"));
 }
 
-TEST(Assets, what_is_no_name_of_one_is_refused) {
+TEST(Assets, WhatIsNoNameOfOneIsRefused) {
   const Assets assets;
   for (const char* path :
        {"", "mesh", "mesh/", "mesh/a", "mesh/a0", "mesh/a-1", "mesh/a0x", "mesh/a99999999999", "mesh/b0",
@@ -160,7 +160,7 @@ TEST(Assets, what_is_no_name_of_one_is_refused) {
   EXPECT_LT(error.error().text().size(), 200u);
 }
 
-TEST(Assets, may_be_asked_from_any_thread_while_the_world_grows) {
+TEST(Assets, MayBeAskedFromAnyThreadWhileTheWorldGrows) {
   const Assets assets;
   WorldTeller teller(assets);
   std::atomic<bool> stop = false;

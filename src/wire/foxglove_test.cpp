@@ -35,7 +35,7 @@ std::string error_of(std::string_view text) {
   return message ? "no error" : message.error().text();
 }
 
-TEST(Foxglove, clients_subscribe_and_advertise) {
+TEST(Foxglove, ClientsSubscribeAndAdvertise) {
   const auto subscribe = read_as<Subscribe>(
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":4294967295},{"id":7,"channelId":5,"extra":1}]})");
   ASSERT_EQ(subscribe.subscriptions.size(), 2u);
@@ -59,7 +59,7 @@ TEST(Foxglove, clients_subscribe_and_advertise) {
             std::vector<std::uint32_t>{2});
 }
 
-TEST(Foxglove, clients_ask_for_parameters_graph_and_assets) {
+TEST(Foxglove, ClientsAskForParametersGraphAndAssets) {
   const auto get = read_as<GetParameters>(R"({"op":"getParameters","parameterNames":["a","b"],"id":"q"})");
   EXPECT_EQ(get.names, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(get.id, "q");
@@ -93,7 +93,7 @@ TEST(Foxglove, clients_ask_for_parameters_graph_and_assets) {
   EXPECT_EQ(fetch.request, 9u);
 }
 
-TEST(Foxglove, clients_send_bytes) {
+TEST(Foxglove, ClientsSendBytes) {
   const auto sent = bytes({1, 0x78, 0x56, 0x34, 0x12}, "payload");
   const auto data = read_binary(sent);
   ASSERT_TRUE(data);
@@ -120,7 +120,7 @@ TEST(Foxglove, clients_send_bytes) {
   EXPECT_EQ(std::get<PlaybackControl>(*on).seek_ns, std::nullopt);
 }
 
-TEST(Foxglove, truncated_and_unknown_bytes_are_refused) {
+TEST(Foxglove, TruncatedAndUnknownBytesAreRefused) {
   const std::vector<std::vector<std::byte>> whole{
       bytes({1, 0, 0, 0, 0}), bytes({2, 5, 0, 0, 0, 9, 1, 0, 0, 4, 0, 0, 0}, "json"),
       bytes({3, 1, 0, 0, 0, 0x3F, 1, 2, 1, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0}, "ab")};
@@ -145,7 +145,7 @@ TEST(Foxglove, truncated_and_unknown_bytes_are_refused) {
   EXPECT_FALSE(read_binary(std::vector<std::byte>(most_binary_bytes + 1, std::byte{1})));
 }
 
-TEST(Foxglove, what_is_wrong_with_a_text_is_said_in_one_sentence) {
+TEST(Foxglove, WhatIsWrongWithATextIsSaidInOneSentence) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "a message that is not JSON"},
       {"{", "a message that is not JSON"},
@@ -191,7 +191,7 @@ TEST(Foxglove, what_is_wrong_with_a_text_is_said_in_one_sentence) {
   for (const auto& [text, expected] : cases) EXPECT_EQ(error_of(text), expected) << text;
 }
 
-TEST(Foxglove, limits_hold_before_anything_is_made) {
+TEST(Foxglove, LimitsHoldBeforeAnythingIsMade) {
   const auto nested = [](int depth) {
     return R"({"op":"subscribeConnectionGraph","x":)" + std::string(static_cast<std::size_t>(depth), '[') +
            std::string(static_cast<std::size_t>(depth), ']') + "}";
@@ -222,7 +222,7 @@ TEST(Foxglove, limits_hold_before_anything_is_made) {
             std::string::npos);
 }
 
-TEST(Foxglove, the_server_says_it_as_the_specification_has_it) {
+TEST(Foxglove, TheServerSaysItAsTheSpecificationHasIt) {
   EXPECT_EQ(
       Json::parse(server_info({"arena", {"time"}, {"cdr", "json"}, {{"ROS_DISTRO", "humble"}}, "s1"})),
       Json::parse(
@@ -261,7 +261,7 @@ TEST(Foxglove, the_server_says_it_as_the_specification_has_it) {
                 "removedTopics":["/a","/b"],"removedServices":["/t"]})"));
 }
 
-TEST(Foxglove, parameters_keep_their_types) {
+TEST(Foxglove, ParametersKeepTheirTypes) {
   const std::vector<Parameter> all{{"f", 2.0, "float64"},
                                    {"b", false, ""},
                                    {"t", std::string("word"), ""},
@@ -287,7 +287,7 @@ TEST(Foxglove, parameters_keep_their_types) {
   }
 }
 
-TEST(Foxglove, the_server_sends_bytes) {
+TEST(Foxglove, TheServerSendsBytes) {
   const auto header = message_header(0x04030201, Time{0x0807060504030201});
   EXPECT_EQ(std::vector(header.begin(), header.end()), bytes({1, 1, 2, 3, 4, 1, 2, 3, 4, 5, 6, 7, 8}));
   EXPECT_EQ(time(Time{258}), bytes({2, 2, 1, 0, 0, 0, 0, 0, 0}));
@@ -298,7 +298,7 @@ TEST(Foxglove, the_server_sends_bytes) {
   EXPECT_EQ(asset_error(7, "no"), bytes({4, 7, 0, 0, 0, 1, 2, 0, 0, 0, 'n', 'o'}));
 }
 
-TEST(Foxglove, damaged_messages_are_refused_or_read_but_nothing_worse) {
+TEST(Foxglove, DamagedMessagesAreRefusedOrReadButNothingWorse) {
   const std::string seeds[] = {
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1}]})",
       R"({"op":"setParameters","id":"s","parameters":[{"name":"f","value":[1,2],"type":"float64_array"}]})",

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "sim/frame.h"
-#include "sim/simulation.h"
+#include "sim/world/frame.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::wire {
 

@@ -166,7 +166,7 @@ void expect_same(const Viewer& viewer, const Frame& frame, double slack_m, doubl
   }
 }
 
-TEST(World, tells_what_stands_in_it) {
+TEST(World, TellsWhatStandsInIt) {
   const auto simulation = build(arena("rigid", 2));
   advance(*simulation, 3);
   WorldTeller teller{Assets()};
@@ -230,7 +230,7 @@ TEST(World, tells_what_stands_in_it) {
             Json::parse(R"({"type":"plane","normal":[0,0,1]})"));
 }
 
-TEST(World, zones_of_the_ground_are_told_where_there_are_some) {
+TEST(World, ZonesOfTheGroundAreToldWhereThereAreSome) {
   auto setup = arena("rigid", 2);
   WorldTeller teller{Assets()};
   EXPECT_FALSE(Json::parse(teller.tell(*build(setup), 1)).contains("zones"));
@@ -249,7 +249,7 @@ TEST(World, zones_of_the_ground_are_told_where_there_are_some) {
   EXPECT_EQ(zones[1]["hole"], true);
 }
 
-TEST(World, numbers_stay_when_the_world_is_built_anew) {
+TEST(World, NumbersStayWhenTheWorldIsBuiltAnew) {
   const auto simulation = build(arena("rigid", 2));
   WorldTeller teller{Assets()};
   const Json first = Json::parse(teller.tell(*simulation, 1));
@@ -274,7 +274,7 @@ TEST(World, numbers_stay_when_the_world_is_built_anew) {
   EXPECT_EQ(third["models"].size(), 5u);
 }
 
-TEST(Poses, of_a_running_world_are_where_the_engine_has_them) {
+TEST(Poses, OfARunningWorldAreWhereTheEngineHasThem) {
   for (const char* engine : {"rigid", "planar"}) {
     const auto simulation = build(arena(engine, 4));
     Camera camera(*simulation);
@@ -312,7 +312,7 @@ TEST(Poses, of_a_running_world_are_where_the_engine_has_them) {
   }
 }
 
-TEST(Poses, a_thing_that_is_put_elsewhere_is_told_even_if_it_never_moves) {
+TEST(Poses, AThingThatIsPutElsewhereIsToldEvenIfItNeverMoves) {
   const auto simulation = build(arena("rigid", 0));
   Camera camera(*simulation);
   advance(*simulation, 200);  // until the crates rest
@@ -409,7 +409,7 @@ Pose moved(const model::Model& model, std::uint32_t joint, const Pose& motion) {
   return inverse(model.links[j.parent].X_ML) * model.links[j.child].X_ML * j.X_CJ * motion * inverse(j.X_CJ);
 }
 
-TEST(Poses, joints_of_every_type_are_told_by_their_positions) {
+TEST(Poses, JointsOfEveryTypeAreToldByTheirPositions) {
   const auto model = gadget();
   Posed posed = posed_at_rest(model);
   const Vec3 axis = model->joints[0].axis_J;
@@ -440,7 +440,7 @@ TEST(Poses, joints_of_every_type_are_told_by_their_positions) {
   }
 }
 
-TEST(Poses, what_joints_do_not_tell_is_told_link_by_link) {
+TEST(Poses, WhatJointsDoNotTellIsToldLinkByLink) {
   const auto model = test::rover_model();
   Posed posed = posed_at_rest(model);
   std::vector<Pose>& X = posed.frame.instances[0].X_WL;
@@ -468,7 +468,7 @@ TEST(Poses, what_joints_do_not_tell_is_told_link_by_link) {
   }
 }
 
-TEST(Poses, orientations_of_all_sorts_keep_their_precision) {
+TEST(Poses, OrientationsOfAllSortsKeepTheirPrecision) {
   Posed posed = posed_at_rest(test::one_shape("crate", Box{{1, 1, 1}}, 1));
   Pose& X = posed.frame.instances[0].X_WL[0];
   X.p = {1e300, -1e5, 1e-3};  // a float has no room for the first
@@ -487,7 +487,7 @@ TEST(Poses, orientations_of_all_sorts_keep_their_precision) {
   }
 }
 
-TEST(Contacts, are_told_as_floats) {
+TEST(Contacts, AreToldAsFloats) {
   Frame frame;
   frame.tick = 7;
   frame.now = Time{70'000'000};
@@ -512,7 +512,7 @@ TEST(Contacts, are_told_as_floats) {
   }
 }
 
-TEST(Commands, say_what_came_from_outside) {
+TEST(Commands, SayWhatCameFromOutside) {
   const auto simulation = build(arena("rigid", 1));
   Camera camera(*simulation);
   advance(*simulation, 6);

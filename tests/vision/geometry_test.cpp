@@ -4,7 +4,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "base/random.h"
-#include "devices/camera_lens.h"
+#include "devices/cameras/camera_lens.h"
 #include "perception/camera_model.h"
 #include "studio.h"
 

@@ -3,11 +3,11 @@
 
 #include "app/calibrate.h"
 #include "base/random.h"
-#include "devices/camera_lens.h"
+#include "devices/cameras/camera_lens.h"
 #include "perception/finder.h"
 #include "perception/scan_match.h"
-#include "sim/load.h"
-#include "sim/simulation.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
 #include "studio.h"
 
 namespace sandlot::test {

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "base/read.h"
-#include "formats/text.h"
-#include "formats/yaml.h"
+#include "files/text.h"
+#include "files/yaml.h"
 
 namespace sandlot::formats {
 namespace {

@@ -1,7 +1,7 @@
 #include <set>
 
+#include "files/yaml.h"
 #include "formats/scenario/tree.h"
-#include "formats/yaml.h"
 
 namespace sandlot::formats {
 namespace {

@@ -2,8 +2,8 @@
 #include <cctype>
 
 #include "base/text.h"
+#include "files/yaml.h"
 #include "formats/scenario/tree.h"
-#include "formats/yaml.h"
 
 namespace sandlot::formats {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "base/read.h"
 #include "base/text.h"
+#include "files/yaml.h"
 #include "formats/scenario/spec.h"
 #include "formats/scenario/tree.h"
-#include "formats/yaml.h"
 
 namespace sandlot::formats {
 namespace {

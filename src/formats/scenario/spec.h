@@ -125,7 +125,7 @@ inline constexpr Field label_field{
     Field::none, 100};
 
 /// What stands about in the world beside the robots.
-struct Thing {
+struct LabelledObject {
   std::string name;
   Node model;
   int count = 1;
@@ -236,7 +236,7 @@ struct Root {
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
-  std::vector<Thing> things;
+  std::vector<LabelledObject> things;
   double errors = 1;
   Node values;
   std::vector<Event> events;

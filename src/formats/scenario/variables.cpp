@@ -1,8 +1,8 @@
 #include <map>
 
 #include "base/text.h"
+#include "files/yaml.h"
 #include "formats/scenario/tree.h"
-#include "formats/yaml.h"
 
 namespace sandlot::formats {
 namespace {

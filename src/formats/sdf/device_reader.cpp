@@ -2,8 +2,8 @@
 #include <map>
 
 #include "base/text.h"
+#include "files/yaml.h"
 #include "formats/sdf/model_reader.h"
-#include "formats/yaml.h"
 
 namespace sandlot::formats {
 namespace {

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "base/text.h"
-#include "formats/resources.h"
+#include "files/resources.h"
+#include "files/text.h"
 #include "formats/sdf/urdf.h"
-#include "formats/text.h"
 
 namespace sandlot::formats {
 namespace {

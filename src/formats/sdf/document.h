@@ -22,7 +22,7 @@ void stand_in_for_actor(Xml& actor);
 Result<std::vector<Xml>> merged(const Xml& include, const Xml& model);
 
 /// The <sdf> element of `text`, includes resolved.
-/// Search   formats/resources.h
+/// Search   files/resources.h
 Result<Xml> load_document(std::string_view text, const std::string& file, Notes& notes,
                           const SdfOptions& options);
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "formats/xml.h"
+#include "files/xml.h"
 #include "geometry/pose.h"
 
 namespace sandlot::formats {

@@ -1,7 +1,7 @@
 #include "formats/sdf/reading.h"
 
-#include "formats/resources.h"
-#include "formats/text.h"
+#include "files/resources.h"
+#include "files/text.h"
 
 namespace sandlot::formats {
 

@@ -6,9 +6,9 @@
 
 #include "base/math.h"
 #include "base/text.h"
+#include "files/text.h"
 #include "formats/sdf/document.h"
 #include "formats/sdf/model_reader.h"
-#include "formats/text.h"
 
 namespace sandlot::formats {
 namespace {

@@ -14,7 +14,7 @@
 ///          text of an element with attributes as '#text'; of a sensor of a joint also '@joint'. That of a
 ///          sandlot:device are its children as keys, lists written `[1, 2]`.
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
-/// Includes models, actors, lights and whole worlds, by everything that formats/resources.h finds; merged by the proxy
+/// Includes models, actors, lights and whole worlds, by everything that files/resources.h finds; merged by the proxy
 ///          frame rule of SDF 1.9. A path is relative to the file that says it. What a file names and nobody has is an
 ///          error, or with `skip_missing` a warning; a texture is a warning in any case.
 /// Inertia  what has no <inertial>, or auto="true", is computed from the collisions, 1000 kg/m^3 unless a <density> says
@@ -34,9 +34,9 @@
 #include <string_view>
 #include <vector>
 
+#include "files/resources.h"
+#include "files/xml.h"
 #include "formats/assets.h"
-#include "formats/resources.h"
-#include "formats/xml.h"
 #include "model/model.h"
 
 namespace sandlot::formats {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/xml.h"
 #include "formats/sdf/values.h"
-#include "formats/xml.h"
 
 namespace sandlot::formats::urdf {
 

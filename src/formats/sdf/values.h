@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "formats/xml.h"
+#include "files/xml.h"
 #include "geometry/pose.h"
 #include "model/model.h"
 

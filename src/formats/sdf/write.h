@@ -10,7 +10,7 @@
 ///            Meshes are named by their file; the scale of one is not known any more and written as 1, with a warning.
 #include <string>
 
-#include "formats/xml.h"
+#include "files/xml.h"
 #include "model/model.h"
 
 namespace sandlot::formats {

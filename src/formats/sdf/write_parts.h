@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "formats/xml.h"
+#include "files/xml.h"
 #include "model/model.h"
 
 namespace sandlot::formats::writing {

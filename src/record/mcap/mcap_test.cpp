@@ -85,7 +85,7 @@ void write_sample(const std::string& path, Compression compression, std::uint64_
   ASSERT_TRUE(finished) << finished.error().text();
 }
 
-TEST(Crc, is_that_of_the_polynomial_for_any_length_and_in_pieces) {
+TEST(Crc, IsThatOfThePolynomialForAnyLengthAndInPieces) {
   std::vector<std::byte> bytes(700);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(mix64(i));
   std::uint32_t bit_by_bit = ~0u;
@@ -98,7 +98,7 @@ TEST(Crc, is_that_of_the_polynomial_for_any_length_and_in_pieces) {
   }
 }
 
-TEST_F(Mcap, a_tiny_file_has_the_bytes_of_the_specification) {
+TEST_F(Mcap, ATinyFileHasTheBytesOfTheSpecification) {
   auto writer = Writer::create(file("t.mcap"), {.compression = Compression::none, .header = {"ros2", "me"}});
   ASSERT_TRUE(writer);
   const auto schema = writer->add_schema("S", "ros2msg", "x");
@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Each, McapCompressed,
                          testing::Values(Compression::none, Compression::lz4, Compression::zstd),
                          [](const auto& p) { return *file_name(p.param) ? file_name(p.param) : "none"; });
 
-TEST_P(McapCompressed, what_was_written_is_read_by_time_and_topic) {
+TEST_P(McapCompressed, WhatWasWrittenIsReadByTimeAndTopic) {
   write_sample(file("s.mcap"), GetParam());
   const auto all = listing(file("s.mcap"));
   ASSERT_TRUE(all) << all.error().text();
@@ -193,7 +193,7 @@ TEST_P(McapCompressed, what_was_written_is_read_by_time_and_topic) {
   EXPECT_EQ(examined->found.statistics, s);
 }
 
-TEST_P(McapCompressed, cut_anywhere_it_reads_up_to_there_and_repairs) {
+TEST_P(McapCompressed, CutAnywhereItReadsUpToThereAndRepairs) {
   write_sample(file("s.mcap"), GetParam());
   const std::string whole = bytes_of(file("s.mcap"));
   const auto all = listing(file("s.mcap"));
@@ -228,7 +228,7 @@ TEST_P(McapCompressed, cut_anywhere_it_reads_up_to_there_and_repairs) {
   }
 }
 
-TEST_P(McapCompressed, every_flipped_bit_is_noticed_and_costs_one_chunk_at_most) {
+TEST_P(McapCompressed, EveryFlippedBitIsNoticedAndCostsOneChunkAtMost) {
   write_sample(file("s.mcap"), GetParam());
   const std::string whole = bytes_of(file("s.mcap"));
   const auto all = listing(file("s.mcap"));
@@ -255,7 +255,7 @@ TEST_P(McapCompressed, every_flipped_bit_is_noticed_and_costs_one_chunk_at_most)
   }
 }
 
-TEST_F(Mcap, chunks_that_overlap_in_time_are_merged_in_order) {
+TEST_F(Mcap, ChunksThatOverlapInTimeAreMergedInOrder) {
   auto writer = Writer::create(file("o.mcap"), {.chunk_bytes = 1, .chunk_span_ns = UINT64_MAX});
   ASSERT_TRUE(writer);
   const auto channel = writer->add_channel(0, "/t", "json");
@@ -286,7 +286,7 @@ TEST_F(Mcap, chunks_that_overlap_in_time_are_merged_in_order) {
   EXPECT_THAT(refused.error().what, HasSubstr("overlap"));
 }
 
-TEST_F(Mcap, a_chunk_closes_after_its_span_of_time) {
+TEST_F(Mcap, AChunkClosesAfterItsSpanOfTime) {
   auto writer = Writer::create(file("t.mcap"), {.chunk_bytes = 1 << 20, .chunk_span_ns = 100});
   ASSERT_TRUE(writer);
   const auto channel = writer->add_channel(0, "/t", "json");
@@ -318,7 +318,7 @@ std::string loose_file() {
   return text(w.bytes());
 }
 
-TEST_F(Mcap, a_foreign_file_without_chunks_or_summary_is_read_and_gets_them_by_repair) {
+TEST_F(Mcap, AForeignFileWithoutChunksOrSummaryIsReadAndGetsThemByRepair) {
   const std::string path = leave("l.mcap", loose_file());
   const std::vector<std::string> expected{"/loose 10 4 {}", "/loose 20 3 {}", "/loose 30 2 {}",
                                           "/loose 40 1 {}", "/loose 50 0 {}"};
@@ -339,7 +339,7 @@ TEST_F(Mcap, a_foreign_file_without_chunks_or_summary_is_read_and_gets_them_by_r
   EXPECT_EQ(*listing(path), expected);
 }
 
-TEST_F(Mcap, other_files_and_versions_are_named) {
+TEST_F(Mcap, OtherFilesAndVersionsAreNamed) {
   const auto error_of = [&](const std::string& content) {
     const auto reader = Reader::open(leave("x.mcap", content));
     return reader ? std::string("read") : reader.error().text();
@@ -360,7 +360,7 @@ TEST_F(Mcap, other_files_and_versions_are_named) {
               HasSubstr("'brotli' is not known"));
 }
 
-TEST_F(Mcap, a_chunk_that_promises_too_much_costs_no_memory) {
+TEST_F(Mcap, AChunkThatPromisesTooMuchCostsNoMemory) {
   write_sample(file("s.mcap"), Compression::zstd);
   const auto refused = listing(file("s.mcap"), {}, {.max_chunk = 100});
   ASSERT_FALSE(refused);
@@ -388,7 +388,7 @@ TEST_F(Mcap, a_chunk_that_promises_too_much_costs_no_memory) {
   }
 }
 
-TEST_F(Mcap, a_file_that_is_being_written_is_left_alone) {
+TEST_F(Mcap, AFileThatIsBeingWrittenIsLeftAlone) {
   auto writer = Writer::create(file("w.mcap"), {});
   ASSERT_TRUE(writer);
   const auto examined = examine(file("w.mcap"));
@@ -399,7 +399,7 @@ TEST_F(Mcap, a_file_that_is_being_written_is_left_alone) {
   EXPECT_TRUE(examine(file("w.mcap"))->whole());
 }
 
-TEST_F(Mcap, places_that_cannot_be_written_say_why) {
+TEST_F(Mcap, PlacesThatCannotBeWrittenSayWhy) {
   EXPECT_THAT(Writer::create(file("no/such/folder.mcap"), {}).error().what, HasSubstr("No such file"));
   EXPECT_THAT(Writer::create(folder_.string(), {}).error().what, HasSubstr("s a directory"));
   // The kernel's own full disk.
@@ -410,7 +410,7 @@ TEST_F(Mcap, places_that_cannot_be_written_say_why) {
   EXPECT_THAT(Writer::create(file("pipe"), {}).error().text(), HasSubstr("nobody reads"));
 }
 
-TEST_F(Mcap, when_the_disk_is_full_what_was_written_stays_readable) {
+TEST_F(Mcap, WhenTheDiskIsFullWhatWasWrittenStaysReadable) {
   // A limit on the size of files stands for the full disk: 8 kB, where the sample would take more.
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -13,7 +13,7 @@ extern "C" {
 }
 
 #include "base/check.h"
-#include "formats/text.h"
+#include "files/text.h"
 
 namespace sandlot {
 namespace {
@@ -51,7 +51,7 @@ struct VideoWriter::Impl {
 
   Error failed(int code) const {
     return Error{"the film cannot be written: " + what_av_says(code),
-                 "check the folder and the space on the disk", formats::place_in(options.file)};
+                 "check the folder and the space on the disk", place_in(options.file)};
   }
   Status open_encoder();
   Status write_packets();

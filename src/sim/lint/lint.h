@@ -12,7 +12,7 @@
 
 #include "base/result.h"
 #include "formats/scenario/scenario.h"
-#include "sim/simulation.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 

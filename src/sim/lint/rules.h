@@ -7,7 +7,7 @@
 
 #include "geometry/bounds.h"
 #include "sim/lint/lint.h"
-#include "sim/settings.h"
+#include "sim/load/device_settings.h"
 
 namespace sandlot::lint_rules {
 

@@ -1,0 +1,118 @@
+#pragma once
+/// From the picture scene to sensor_msgs/Image: what all devices with eyes share.
+#include <vector>
+
+#include "devices/cameras/camera_lens.h"
+#include "noise/image_noise.h"
+#include "optics/picture.h"
+
+namespace sandlot::eye {
+
+/// How pictures are taken. A Spec derives from it.
+struct ExposureKeys {
+  double near_m = 0.01, far_m = 1000;
+  int samples = 1;
+  bool shadows = true;
+  double exposure = 1, gamma = 1;
+  bool srgb = false;
+  double aperture_m = 0, focus_distance_m = 1;
+  double shutter_s = 0, readout_s = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    constexpr unsigned tunable = Field::tunable;
+    visit(Field{"near", "m", "Nearer surfaces are not seen.", 0, 1e4}, s.near_m);
+    visit(Field{"far", "m", "Nor farther ones.", 1e-3, 1e6}, s.far_m);
+    visit(Field{"samples", "1", "Rays per pixel: anti-aliasing, and smoothness of blur.", 1, 256, tunable},
+          s.samples);
+    visit(Field{"shadows", "", "False: lights shine through everything.", 0, 1, tunable}, s.shadows);
+    visit(Field{"exposure", "1", "Factor on all light.", 0, 1e3, tunable}, s.exposure);
+    visit(Field{"gamma", "1", "Of the picture: value^(1/gamma) is shown.", 0.1, 10, tunable}, s.gamma);
+    visit(Field{"srgb", "", "Add up light linearly and show it in sRGB.", 0, 1, tunable}, s.srgb);
+    visit(
+        Field{"aperture", "m",
+              "Diameter of the lens: depth of field (pinhole, samples > 1). 0: all is sharp.", 0, 1, tunable},
+        s.aperture_m);
+    visit(Field{"focus_distance", "m", "What is sharp.", 1e-3, 1e6, tunable}, s.focus_distance_m);
+    visit(Field{"shutter", "s", "Time of exposure: motion blur.", 0, 10, tunable}, s.shutter_s);
+    visit(Field{"readout", "s", "From the first row to the last: rolling shutter.", 0, 10, tunable},
+          s.readout_s);
+  }
+};
+/// Rules between those keys.
+Status check_exposure(const ExposureKeys& keys, const DeviceBuild& build);
+
+enum class Format : std::uint8_t { rgb8, bgr8, mono8 };
+inline constexpr EnumName<Format> format_names[] = {
+    {"rgb8", Format::rgb8}, {"bgr8", Format::bgr8}, {"mono8", Format::mono8}};
+constexpr std::span<const EnumName<Format>> enum_names(Format) { return format_names; }
+
+enum class Compression : std::uint8_t { none, jpeg, png };
+inline constexpr EnumName<Compression> compression_names[] = {
+    {"none", Compression::none}, {"jpeg", Compression::jpeg}, {"png", Compression::png}};
+constexpr std::span<const EnumName<Compression>> enum_names(Compression) { return compression_names; }
+
+/// Where an eye is and through which lens it looks.
+struct CameraMount {
+  std::uint64_t key = 0;
+  std::uint32_t body = 0;  ///< index of the link that carries it
+  Pose X_LS;
+  std::shared_ptr<const optics::LensTable> table;
+
+  CameraMount() = default;
+  CameraMount(const DeviceBuild& build, const optics::Lens& lens);
+  const optics::Lens& lens() const { return table->lens(); }
+  Pose X_WS(const Context& context) const { return context.engine.states()[body].X_WB * X_LS; }
+  /// A job without planes.
+  optics::PictureJob job(const ExposureKeys& keys, const Context& context) const;
+};
+
+/// One colour or grey image: rendered into `rgb()`, corrupted, and published.
+class ColorImage {
+ public:
+  ColorImage() = default;
+  /// @param use  which of the images of one device this is: each has errors of its own
+  ColorImage(const DeviceBuild& build, Topic<msg::Image>* topic, const optics::Lens& lens, Format format,
+             const ImageNoiseSpec& noise, const std::string& frame_id, std::uint64_t use = 0);
+  /// From now on the picture goes out as a file's bytes, too.
+  void compress(Topic<msg::CompressedImage>* topic, Compression compression, int quality,
+                ImageEncoder encode);
+  std::span<std::uint8_t> rgb();
+  void finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, double errors, std::uint64_t sample,
+              const Context& context);
+
+ private:
+  Topic<msg::Image>* topic_ = nullptr;
+  Topic<msg::CompressedImage>* compressed_ = nullptr;
+  ImageEncoder encode_ = nullptr;
+  int quality_ = 0;  ///< as ImageEncoder has it
+  Format format_ = Format::rgb8;
+  int width_ = 0, height_ = 0;
+  std::uint64_t key_ = 0, use_ = 0;
+  ImageNoise noise_;
+  std::vector<std::uint8_t> rgb_;  ///< of mono8 and for compressing bgr8: others are drawn in place
+};
+
+/// Sizes and encoding; all pixels 0.
+void shape_image(msg::Image& image, const optics::Lens& lens, const char* encoding, std::uint32_t pixel_bytes,
+                 const std::string& frame_id);
+
+/// Draws a batch without a list of its own on the heap: jobs are handed over sixteen at a time.
+class JobBatch {
+ public:
+  explicit JobBatch(const Context& context) : scene_(context.pictures) { SL_CHECK(scene_ != nullptr); }
+  void add(optics::PictureJob job) {
+    jobs_[count_++] = std::move(job);
+    if (count_ == jobs_.size()) flush();
+  }
+  void flush() {
+    if (count_ > 0) scene_->render({jobs_.data(), count_});
+    count_ = 0;
+  }
+
+ private:
+  optics::PictureScene* scene_;
+  std::array<optics::PictureJob, 16> jobs_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace sandlot::eye

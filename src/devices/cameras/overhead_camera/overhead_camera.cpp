@@ -1,0 +1,72 @@
+#include "devices/cameras/overhead_camera/overhead_camera.h"
+
+#include <algorithm>
+
+#include "base/math.h"
+
+namespace sandlot::overhead_camera {
+namespace {
+
+bool tells(const Spec& spec, const LabelledObject& thing) {
+  return (thing.moves || spec.fixed) &&
+         (spec.labels.empty() ||
+          std::find(spec.labels.begin(), spec.labels.end(), thing.label) != spec.labels.end());
+}
+
+void look(OverheadCamera& camera, std::uint64_t sample, const Context& context) {
+  const Spec& spec = camera.spec;
+  const double position_std_m = spec.errors * spec.position_std_m;
+  const double yaw_std_rad = spec.errors * spec.yaw_std_rad, miss = std::min(1.0, spec.errors * spec.miss);
+  const Stream stream(context.seed, camera.key, Purpose::noise, sample);
+  const auto states = context.engine.states();
+  std::vector<msg::ObjectPose>& told = camera.world->message.objects;
+  std::size_t count = 0;
+  for (const LabelledObject& thing : context.labelled_objects) {
+    if (!tells(spec, thing)) continue;
+    Stream random = stream.fork(entity_key(thing.name));
+    if (random.uniform() < miss) continue;
+    if (count == told.size()) told.emplace_back();  // else: the place of an earlier sample and its memory
+    msg::ObjectPose& object = told[count++];
+    object.label = thing.label;
+    object.name = spec.names ? thing.name : std::string();
+    object.color = {thing.color.r, thing.color.g, thing.color.b, thing.color.a};
+    object.pose = states[thing.bodies.front()].X_WB;
+    object.pose.p.x += position_std_m * random.normal();
+    object.pose.p.y += position_std_m * random.normal();
+    const double turn_rad = yaw_std_rad * random.normal();
+    if (turn_rad != 0) object.pose.q = normalised(quat_from_axis_angle({0, 0, 1}, turn_rad) * object.pose.q);
+    object.position_std = position_std_m;
+    object.confidence = 1;
+  }
+  told.resize(count);
+  camera.world->publish(context.now);
+}
+
+}  // namespace
+
+Result<OverheadCamera> OverheadCamera::create(const DeviceBuild& build, Spec spec) {
+  OverheadCamera camera{std::move(spec)};
+  camera.key = build.key;
+  camera.world = build.publish<msg::ObjectPoseArray>(0, "world");
+  camera.world->message.header.frame_id = "world";
+  return camera;
+}
+
+void OverheadCamera::sense(PoolView<OverheadCamera> pool, const Context& context) {
+  for (const std::uint32_t index : pool.due) look(pool.all[index], pool.sample[index], context);
+}
+
+namespace {
+constexpr LevelInfo levels[] = {
+    {"world", msg::ObjectPoseArray::ros_type, "", "Where everything is."},
+};
+}  // namespace
+
+constinit const Kind kind = make_kind<OverheadCamera>({
+    .name = "overhead_camera",
+    .help = "Camera above the field that tells where everything is.",
+    .levels = levels,
+    .needs_render_scene = true,
+});
+
+}  // namespace sandlot::overhead_camera

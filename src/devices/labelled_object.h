@@ -1,0 +1,27 @@
+#pragma once
+/// What detectors tell apart: the instances of the world, as Context shows them to devices.
+///
+/// Frame    B: the body of the canonical link. Sizes are those of the declared pose of all joints.
+/// Limits   what has no bounds (a ground plane) is no thing. One colour per thing: that of its largest visual.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/bounds.h"
+#include "geometry/color.h"
+
+namespace sandlot {
+
+struct LabelledObject {
+  std::string name;   ///< address: "ball1"
+  std::string label;  ///< its class, such as ball: the scenario's, else the model's name
+  std::string team;   ///< "" for none
+  bool is_robot = false;
+  bool moves = false;  ///< false: it stands as it was placed until the world's next revision
+  Color color;
+  std::uint32_t instance = 0;         ///< as images name it; > 0, never given twice in a run
+  std::vector<std::uint32_t> bodies;  ///< one per link; [0] is B
+  Bounds bounds_B;                    ///< of its visuals, or where it has none of its collisions
+};
+
+}  // namespace sandlot

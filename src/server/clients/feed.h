@@ -1,0 +1,107 @@
+#pragma once
+/// The server's part on the simulation's thread: takes out of each tick what somebody has subscribed to, and mails it.
+///
+/// Threads   everything belongs to the simulation's thread (Session::post brings calls there), but stale().
+/// Cost      without clients it watches nothing. Frames with links are asked for `poses_hz` times a second of the wall
+///           clock; messages are written once, only those with subscribers. Pictures: server/clients/preview.h.
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "server/clients/inventory.h"
+#include "server/clients/mailbox.h"
+#include "sim/session/session.h"
+#include "sim/watch/values.h"
+#include "wire/scene.h"
+
+namespace sandlot::server {
+
+/// What all clients together want to see.
+struct Interest {
+  bool clients = false;  ///< there are any
+  bool frames = false, contacts = false, commands = false, parameters = false, world = false,
+       transforms_static = false;
+  std::vector<std::pair<std::uint32_t, std::string>> topics;  ///< channels of devices
+};
+
+/// What a new subscriber is told at once, whether it has changed or not.
+struct Demand {
+  bool frame = false, world = false, transforms_static = false;
+  std::vector<std::uint32_t> latest;  ///< channels of device topics and watches
+};
+
+/// The world as it is now; what nobody asked for or has not changed is null.
+struct Told {
+  std::shared_ptr<const Inventory> inventory;
+  Payload world, transforms_static;
+  Time now;
+};
+
+class Feed final : public Observer {
+ public:
+  Feed(Session& session, std::shared_ptr<Mailbox> mailbox, wire::Assets assets, double poses_hz);
+
+  void attend(std::shared_ptr<const Interest> interest);
+  void look(const Demand& demand);
+  /// Ends it: it watches nothing any more.
+  void leave();
+  /// Viewers do not know the latest tick yet, and no frame is coming. From any thread.
+  bool stale() const { return stale_; }
+
+  /// @param channel  that the numbers go to. An error names the nearest address
+  Status watch(std::uint32_t channel, const std::vector<std::string>& values, double rate_hz);
+  void unwatch(std::uint32_t channel);
+
+  Wants wants() const override;
+  void on_frame(const std::shared_ptr<const Frame>& frame) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Shown {
+    std::uint32_t channel = 0;
+    const TopicBase* topic = nullptr;  ///< null: it is not there now
+    std::uint64_t count = 0;           ///< of the message that was sent last
+    bool preview = false;              ///< a small JPEG of the topic's image
+    Clock::time_point next;            ///< previews: none before
+  };
+  struct Watch {
+    std::uint32_t channel = 0;
+    double rate_hz = 0;
+    Time begin;
+    std::int64_t sample = 0;
+    std::optional<Time> told;  ///< of its last sample in this world
+    std::vector<std::string> texts;
+    std::vector<std::vector<std::string>> addresses;
+    std::vector<std::optional<ValueExpression>> values;
+  };
+  /// Follows the Session to another revision or world.
+  void follow();
+  void find_topics();
+  void tell(bool again_world, bool again_static);
+  ChannelMessage message(Shown& shown) const;
+  ChannelMessage sample(Watch& watch);
+  void add_samples(Batch& batch);
+  void tell_parameters(const Frame& frame);
+
+  Session& session_;
+  const std::shared_ptr<Mailbox> mailbox_;
+  wire::WorldTeller teller_;
+  const Clock::duration period_;
+  bool watching_ = false;  ///< it is an observer
+  std::shared_ptr<const Interest> interest_ = std::make_shared<Interest>();
+  std::uint64_t epoch_ = 0, revision_ = 0;  ///< that it follows
+  std::vector<Shown> topics_;
+  std::size_t previews_ = 0;  ///< of them
+  std::vector<Watch> watches_;
+  std::vector<std::byte> scratch_;
+
+  bool told_inventory_ = false, told_world_ = false, told_static_ = false;  ///< as they are now
+  Payload world_, transforms_static_;                                       ///< as told last
+  Clock::time_point next_tell_, next_frame_;
+  mutable bool due_ = false;
+  std::atomic<bool> stale_ = false;
+};
+
+}  // namespace sandlot::server

@@ -1,0 +1,255 @@
+/// What the hub tells: worlds, poses, messages, how the run goes.
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "messages/rcl_interfaces.h"
+#include "messages/tf2_msgs.h"
+#include "server/clients/hub.h"
+#include "sim/world/transforms.h"
+
+namespace sandlot::server {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* name_of(Session::State state) {
+  switch (state) {
+    case Session::State::playing: return "playing";
+    case Session::State::paused: return "paused";
+    case Session::State::seeking: return "seeking";
+    case Session::State::ended: return "ended";
+    case Session::State::failed: break;
+  }
+  return "failed";
+}
+
+Payload payload_of(std::string_view text) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+  return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
+}
+
+template <class M>
+Payload cdr_of(const M& message) {
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  write_cdr(message_info<M>(), &message, *bytes);
+  return bytes;
+}
+
+}  // namespace
+
+bool Hub::send(Subscriber& to, Time stamp, const Payload& bytes, bool droppable) {
+  const auto head = foxglove::message_header(to.id, stamp);
+  return transport_->send(to.client, head, bytes, false, droppable);
+}
+
+void Hub::send_to_all(Channel& channel, Time stamp, const Payload& bytes, bool droppable) {
+  for (Subscriber& each : channel.subscribers)
+    if (each.primed) send(each, stamp, bytes, droppable);
+}
+
+void Hub::send_time(Time now) {
+  time_sent_ = Clock::now();
+  const auto bytes = std::make_shared<const std::vector<std::byte>>(foxglove::time(now));
+  for (const auto& [id, client] : clients_)
+    if (!client.subscriptions.empty()) transport_->send(id, {}, bytes, false, true);
+}
+
+void Hub::tell(const Told& told) {
+  if (told.inventory) adopt(*told.inventory);
+  if (told.inventory) inventory_ = told.inventory;
+  const auto latch = [&](What what, const Payload& payload, Payload& last) {
+    if (!payload) return;
+    for (Subscriber& each : channel(what).subscribers)
+      if (!each.primed || payload != last) each.primed = send(each, told.now, payload, false);
+    last = payload;
+  };
+  latch(What::world, told.world, world_);
+  latch(What::transforms_static, told.transforms_static, transforms_static_);
+}
+
+/// Channels come and go with the devices; those whose name and type stay keep their number.
+void Hub::adopt(const Inventory& inventory) {
+  std::map<std::pair<std::string, std::string>, std::uint32_t> now;
+  for (const Inventory::Topic& topic : inventory.topics) {
+    const auto key = std::pair(topic.name, topic.info->name);
+    const auto known = devices_.find(key);
+    if (known != devices_.end()) {
+      now[key] = known->second;
+      devices_.erase(known);
+    } else {
+      now[key] = add_channel(What::device, topic.name.c_str(), "cdr", topic.info->name.c_str());
+    }
+  }
+  if (!devices_.empty()) {
+    std::vector<std::uint32_t> gone;
+    for (const auto& [key, id] : devices_) gone.push_back(id);
+    for (const std::uint32_t id : gone) remove_channel(id);
+    for (const auto& [id, client] : clients_) {
+      std::vector<std::uint32_t> known;
+      for (const std::uint32_t each : gone)
+        if (each < client.told_channels) known.push_back(each);
+      if (!known.empty()) transport_->send_text(id, foxglove::unadvertise(known));
+    }
+  }
+  devices_ = std::move(now);
+  for (auto& [id, client] : clients_) advertise_waiting(id, client);
+  graph_changed_ = true;
+}
+
+void Hub::tell_latest(std::span<const ChannelMessage> latest, std::span<const std::uint32_t> channels) {
+  looking_ = false;
+  for (const ChannelMessage& message : latest) {
+    const auto found = channels_.find(message.channel);
+    if (found == channels_.end()) continue;
+    for (Subscriber& each : found->second.subscribers)
+      if (!each.primed) send(each, message.stamp, message.bytes, true);
+  }
+  for (const std::uint32_t id : channels) {
+    const auto found = channels_.find(id);
+    if (found == channels_.end()) continue;
+    for (Subscriber& each : found->second.subscribers) each.primed = true;
+  }
+}
+
+void Hub::send_batch(Batch& batch) {
+  now_ = batch.now;
+  send_time(batch.now);
+  for (const ChannelMessage& message : batch.messages) {
+    const auto found = channels_.find(message.channel);
+    if (found != channels_.end()) send_to_all(found->second, message.stamp, message.bytes);
+  }
+  if (batch.commands) send_to_all(channel(What::commands), batch.now, batch.commands, false);
+  if (!batch.frame) return;
+  framed_ = Clock::now();
+  send_poses(batch);
+  if (subscribed(What::transforms)) {
+    transforms_of(*batch.frame, transforms_);
+    send_to_all(channel(What::transforms), batch.now, cdr_of(transforms_));
+  }
+  if (subscribed(What::clock)) {
+    msg::Clock clock;
+    clock.clock = batch.now;
+    send_to_all(channel(What::clock), batch.now, cdr_of(clock));
+  }
+  if (batch.contacts && subscribed(What::contacts)) {
+    auto bytes = std::make_shared<std::vector<std::byte>>();
+    wire::write_contacts(*batch.frame, *bytes);
+    send_to_all(channel(What::contacts), batch.now, bytes);
+  }
+  mailbox_->give_back(std::move(batch.frame));
+}
+
+void Hub::send_poses(const Batch& batch) {
+  std::vector<Subscriber>& subscribers = channel(What::poses).subscribers;
+  if (subscribers.empty()) return;
+  if (batch.epoch != poses_epoch_) {
+    poses_ = {};
+    poses_epoch_ = batch.epoch;
+    for (Subscriber& each : subscribers) each.primed = false;
+  }
+  const auto is_primed = [](const Subscriber& each) { return each.primed; };
+  if (std::any_of(subscribers.begin(), subscribers.end(), is_primed)) {
+    auto bytes = std::make_shared<std::vector<std::byte>>();
+    if (poses_.write(*batch.frame, batch.epoch, false, *bytes))
+      for (Subscriber& each : subscribers)
+        if (each.primed) each.primed = send(each, batch.now, bytes, true);
+  }
+  if (std::all_of(subscribers.begin(), subscribers.end(), is_primed)) return;
+  // Who has missed something needs all; but not before there is room for it.
+  constexpr std::size_t room_bytes = 4u << 20;
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  for (Subscriber& each : subscribers) {
+    if (each.primed || transport_->waiting_bytes(each.client) > room_bytes) continue;
+    if (bytes->empty()) poses_.write(*batch.frame, batch.epoch, true, *bytes);
+    each.primed = send(each, batch.now, bytes, true);
+  }
+}
+
+void Hub::state_changed() {
+  const Session::Report before = std::exchange(report_, session_.report());
+  end_waiting();
+  if (report_.state == before.state && report_.epoch == before.epoch && report_.speed == before.speed &&
+      report_.reason == before.reason && report_.takes_no_input == before.takes_no_input &&
+      report_.target == before.target &&
+      (report_.state == Session::State::playing || report_.tick == before.tick))
+    return;
+  if (report_.epoch != before.epoch || report_.state != Session::State::playing) demand_.frame = true;
+  if (report_.state != before.state && !report_.reason.empty())
+    send_log(report_.state == Session::State::failed ? 40 : 20, report_.reason);
+  if (report_.speed != before.speed ||
+      (report_.state == Session::State::paused) != (before.state == Session::State::paused))
+    tell_own_parameters();
+  send_status();
+  flush();
+}
+
+void Hub::send_status() {
+  status_sent_ = Clock::now();
+  std::vector<Subscriber>& subscribers = channel(What::status).subscribers;
+  if (subscribers.empty()) return;
+  ordered_json out;
+  const auto seconds = [](const std::optional<Time>& time) {
+    return time ? ordered_json(time->s()) : ordered_json();
+  };
+  out["state"] = name_of(report_.state);
+  out["time_s"] = report_.now.s();
+  out["tick"] = report_.tick;
+  out["step_s"] = report_.step.s();
+  out["speed"] = report_.speed ? ordered_json(*report_.speed) : ordered_json();
+  out["real_time_factor"] = report_.real_time_factor;
+  out["late_ticks"] = report_.late_ticks;
+  out["reason"] = report_.reason;
+  out["begin_s"] = report_.begin.s();
+  out["end_s"] = seconds(report_.end);
+  out["history_s"] = ordered_json::array();
+  for (const Time time : report_.history) out["history_s"].push_back(time.s());
+  out["target_s"] = seconds(report_.target);
+  out["may_steer"] = true;
+  out["may_rewind"] = report_.may_not_rewind.empty();
+  out["why_not"] = "";
+  out["replay"] = report_.replay;
+  out["recording"] = nullptr;
+  if (options_.recording)
+    if (const auto recording = options_.recording())
+      out["recording"] = {
+          {"file", recording->file}, {"messages", recording->messages}, {"bytes", recording->bytes}};
+  out["viewers"] = clients_.size();
+  out["epoch"] = report_.epoch;
+  out["dropped_frames"] = mailbox_->dropped();
+  const auto write = [&](bool admin) {
+    const std::string& why_not = !report_.takes_no_input.empty() ? report_.takes_no_input
+                                                                 : report_.may_not_rewind;
+    out["may_steer"] = admin && report_.takes_no_input.empty();
+    out["may_rewind"] = admin && report_.may_not_rewind.empty();
+    out["why_not"] = admin ? why_not : "you are a spectator";
+    return payload_of(out.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+  };
+  const Payload admins = write(true), spectators = write(false);
+  for (Subscriber& each : subscribers) {
+    const Client* const client = find(each.client);
+    const bool sent = send(each, report_.now, client && client->may_steer ? admins : spectators, true);
+    each.primed = each.primed || sent;
+  }
+}
+
+void Hub::send_log(std::uint8_t level, const std::string& text) {
+  if (!subscribed(What::log)) return;
+  msg::Log log;
+  log.stamp = report_.now;
+  log.level = level;
+  log.name = "sandlot";
+  log.msg = text;
+  send_to_all(channel(What::log), report_.now, cdr_of(log), true);
+}
+
+void Hub::answer(ClientId id, const Payload& response, bool text) {
+  Client* const client = find(id);
+  if (!client) return;
+  if (client->calls > 0) --client->calls;
+  transport_->send(id, {}, response, text, false);
+}
+
+void Hub::complain(ClientId client, const std::string& why) { refuse(client, why); }
+
+}  // namespace sandlot::server

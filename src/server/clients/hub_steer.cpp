@@ -1,0 +1,252 @@
+/// What viewers set and send: parameters, commands; and the graph of who talks to whom.
+#include <algorithm>
+
+#include "base/text.h"
+#include "server/clients/hub.h"
+#include "server/clients/parameters.h"
+
+namespace sandlot::server {
+namespace {
+
+using foxglove::Parameter;
+
+constexpr const char* speed_name = "sandlot.speed";
+constexpr const char* paused_name = "sandlot.paused";
+bool is_own(const std::string& name) { return name == speed_name || name == paused_name; }
+
+/// Answers of several parameters that come at different times; the last one who lets go of it sends them.
+struct Setting {
+  std::shared_ptr<Mailbox> mailbox;
+  ClientId client = 0;
+  std::string id;
+  std::vector<Parameter> values;
+  std::vector<std::string> complaints;  ///< one per value; "": it was set
+
+  ~Setting() {
+    mailbox->put([client = client, id = id, values = std::move(values), complaints = std::move(complaints)](
+                     Hub& hub) { hub.answer_parameters(client, id, values, complaints); });
+  }
+};
+
+}  // namespace
+
+Parameter Hub::own_parameter(const std::string& name) const {
+  const Session::Report report = session_.report();
+  Parameter out;
+  out.name = name;
+  if (name == paused_name) {
+    out.value = report.state == Session::State::paused;
+  } else {
+    out.value = report.speed.value_or(0);
+    out.type = "float64";
+  }
+  return out;
+}
+
+void Hub::tell_own_parameters() {
+  const Parameter own[] = {own_parameter(speed_name), own_parameter(paused_name)};
+  tell_parameters(own);
+}
+
+void Hub::tell_parameters(std::span<const Parameter> changed) {
+  for (const auto& [id, client] : clients_) {
+    std::vector<Parameter> told;
+    for (const Parameter& each : changed)
+      if (client.all_parameters || client.parameters.count(each.name) > 0) told.push_back(each);
+    if (!told.empty()) transport_->send_text(id, foxglove::parameter_values(told));
+  }
+}
+
+void Hub::answer_parameters(ClientId id, const std::string& about, std::span<const Parameter> values,
+                            std::span<const std::string> complaints) {
+  Client* const client = find(id);
+  if (!client) return;
+  if (client->calls > 0) --client->calls;
+  for (const std::string& each : complaints)
+    if (!each.empty()) refuse(id, each, about);
+  transport_->send_text(id, foxglove::parameter_values(values, about));
+}
+
+void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParameters& request) {
+  if (client.calls >= most_calls)
+    return void(refuse(id, "too many requests wait for their answers", request.id));
+  // Each is looked up on the simulation's thread.
+  if (request.names.size() > most_named_parameters)
+    return void(
+        refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are asked for by name",
+               request.id));
+  ++client.calls;
+  const auto setting = std::make_shared<Setting>();
+  setting->mailbox = mailbox_;
+  setting->client = id;
+  setting->id = request.id;
+  if (request.names.empty()) setting->values = {own_parameter(speed_name), own_parameter(paused_name)};
+  for (const std::string& name : request.names)
+    if (is_own(name)) setting->values.push_back(own_parameter(name));
+  post([setting, names = request.names](Session& session) {
+    const Simulation& simulation = session.simulation();
+    if (names.empty() && !list_parameters(simulation, setting->values))
+      setting->complaints.push_back("there are more than " + std::to_string(most_parameters) +
+                                    " parameters; ask for the others by name");
+    // The session's own have no such address.
+    for (Parameter& found : read_parameters(simulation, names))
+      if (found.value.index() != 0 && !is_own(found.name)) setting->values.push_back(std::move(found));
+  });
+}
+
+void Hub::set_parameters(ClientId id, Client& client, const foxglove::SetParameters& request) {
+  if (!client.may_steer) return void(refuse(id, "a spectator may not set parameters", request.id));
+  if (client.calls >= most_calls)
+    return void(refuse(id, "too many requests wait for their answers", request.id));
+  ++client.calls;
+  const auto setting = std::make_shared<Setting>();
+  setting->mailbox = mailbox_;
+  setting->client = id;
+  setting->id = request.id;
+  setting->values.resize(request.parameters.size());
+  setting->complaints.resize(request.parameters.size());
+  for (std::size_t i = 0; i < request.parameters.size(); ++i) {
+    const Parameter& parameter = request.parameters[i];
+    setting->values[i].name = parameter.name;
+    std::string& complaint = setting->complaints[i];
+    if (is_own(parameter.name)) {
+      const auto* const number = std::get_if<double>(&parameter.value);
+      const auto* const flag = std::get_if<bool>(&parameter.value);
+      if (parameter.name == speed_name && number) {
+        const Status status = session_.set_speed(*number == 0 ? std::nullopt : std::optional(*number));
+        if (!status) complaint = status.error().text();
+      } else if (parameter.name == paused_name && flag) {
+        if (*flag) session_.pause();
+        else session_.play();
+      } else {
+        complaint = parameter.name + (parameter.name == speed_name ? " is a number" : " is true or false");
+      }
+      setting->values[i] = own_parameter(parameter.name);
+      if (complaint.empty()) setting->values[i].value = parameter.value;  // it acts before the next tick
+      continue;
+    }
+    auto made = parameter_request(parameter);
+    if (!made) {
+      complaint = made.error().text();
+      continue;
+    }
+    // Until it is answered the entry says that the run is over: it is if nobody answers.
+    complaint = "the run is over";
+    const auto queued = session_.submit(
+        std::move(*made), {Source::Kind::admin, id}, [setting, i, &session = session_](const Status& status) {
+          setting->complaints[i] = status ? "" : setting->values[i].name + ": " + status.error().text();
+          setting->values[i] = read_parameter(session.simulation(), setting->values[i].name);
+        });
+    if (!queued) complaint = queued.error().text();
+  }
+}
+
+void Hub::advertise(ClientId id, Client& client, const foxglove::Advertise& request) {
+  if (!client.may_steer) return void(refuse(id, "a spectator may not publish"));
+  for (const foxglove::Advertise::Each& each : request.channels) {
+    if (client.publications.count(each.id) > 0) {
+      refuse(id, "channel " + std::to_string(each.id) + " is advertised already");
+      continue;
+    }
+    if (client.publications.size() >= most_publications) {
+      refuse(id, "more than " + std::to_string(most_publications) + " channels are advertised");
+      return;
+    }
+    if (each.encoding != "cdr" && each.encoding != "json") {
+      refuse(id, "'" + each.encoding.substr(0, 60) + "' is no encoding of messages; cdr and json are");
+      continue;
+    }
+    Publication made;
+    made.topic = each.topic;
+    made.type = each.schema_name;
+    made.json = each.encoding == "json";
+    if (const auto target = inventory_->target(made.topic, made.type);
+        !target && !inventory_->topics.empty()) {
+      refuse(id, target.error().text());
+      continue;
+    }
+    client.publications.emplace(each.id, std::move(made));
+    graph_changed_ = true;
+  }
+}
+
+void Hub::publish(ClientId id, Client& client, const foxglove::ClientData& data) {
+  if (!client.may_steer) return void(refuse(id, "a spectator may not publish"));
+  const auto found = client.publications.find(data.channel);
+  if (found == client.publications.end())
+    return void(refuse(id, "channel " + std::to_string(data.channel) + " was not advertised"));
+  Publication& publication = found->second;
+  if (publication.world != inventory_) {  // levels may have changed, and with them who takes it
+    const auto target = inventory_->target(publication.topic, publication.type);
+    if (!target) return void(refuse(id, target.error().text()));
+    publication.world = inventory_;
+    publication.target = *target;
+  }
+  const Inventory::Slot& slot = *publication.target.slot;
+  auto bytes = command_bytes(*slot.blank, publication.json, data.bytes);
+  if (!bytes) return void(refuse(id, publication.topic + ": " + bytes.error().text()));
+  const auto queued = session_.submit(
+      CommandRequest{publication.target.address, slot.info->name, std::move(*bytes)},
+      {Source::Kind::robot, id}, [mailbox = mailbox_, id](const Status& status) {
+        if (!status) mailbox->put([id, why = status.error().text()](Hub& hub) { hub.complain(id, why); });
+      });
+  if (!queued) refuse(id, queued.error().text());
+}
+
+foxglove::Graph Hub::graph() const {
+  using Named = foxglove::Graph::Named;
+  std::map<std::string, std::vector<std::string>> published, subscribed;
+  for (const Inventory::Topic& topic : inventory_->topics) published[topic.name].push_back(topic.device);
+  for (const auto& [id, each] : channels_)
+    if (each.what != What::device && each.owner == 0) published[each.said.topic].emplace_back("sandlot");
+  for (const Inventory::Slot& slot : inventory_->slots) subscribed[slot.name].push_back(slot.device);
+  for (const Inventory::Program& program : inventory_->programs) {
+    for (const std::string& topic : program.reads) subscribed[topic].push_back(program.path);
+    for (const std::string& topic : program.orders) published[topic].push_back(program.path);
+  }
+  for (const auto& [id, each] : channels_)
+    if (each.owner == 0)
+      for (const Subscriber& subscriber : each.subscribers)
+        subscribed[each.said.topic].push_back("viewer " + std::to_string(subscriber.client));
+  for (const auto& [id, client] : clients_)
+    for (const auto& [channel, publication] : client.publications) {
+      const auto target = inventory_->target(publication.topic, publication.type);
+      published[target ? target->slot->name : publication.topic].push_back("viewer " + std::to_string(id));
+    }
+  foxglove::Graph out;
+  for (auto& [name, ids] : published) out.published.push_back(Named{name, std::move(ids)});
+  for (auto& [name, ids] : subscribed) out.subscribed.push_back(Named{name, std::move(ids)});
+  for (const Service& service : services_) out.services.push_back(Named{service.name, {"sandlot"}});
+  return out;
+}
+
+/// Nothing is written as long as nobody looks.
+void Hub::send_graph(bool to_everybody) {
+  graph_changed_ = false;
+  graph_sent_ = Clock::now();
+  std::vector<ClientId> lookers;
+  for (const auto& [id, client] : clients_)
+    if (client.graph) lookers.push_back(id);
+  if (lookers.empty()) return;
+  foxglove::Graph now = graph();
+  const auto gone = [](const auto& before, const auto& after) {
+    std::vector<foxglove::Graph::Named> out;
+    for (const auto& each : before)
+      if (std::none_of(after.begin(), after.end(), [&](const auto& a) { return a.name == each.name; }))
+        out.push_back({each.name, {}});
+    return out;
+  };
+  const foxglove::Graph removed{gone(graph_.published, now.published),
+                                gone(graph_.subscribed, now.subscribed), gone(graph_.services, now.services)};
+  const auto same = [](const auto& a, const auto& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& x, const auto& y) { return x.name == y.name && x.ids == y.ids; });
+  };
+  const bool changed = !same(graph_.published, now.published) || !same(graph_.subscribed, now.subscribed);
+  graph_ = std::move(now);
+  if (!changed && !to_everybody) return;
+  const std::string text = foxglove::graph_update(graph_, removed);
+  for (const ClientId id : lookers) transport_->send_text(id, text);
+}
+
+}  // namespace sandlot::server

@@ -1,0 +1,137 @@
+#include "server/clients/inventory.h"
+
+#include <map>
+
+#include "base/text.h"
+#include "messages/sensor_images.h"
+#include "server/clients/preview.h"
+
+namespace sandlot::server {
+namespace {
+
+bool is_twist(const MessageInfo& info) {
+  return info.name == "geometry_msgs/msg/Twist" || info.name == "geometry_msgs/msg/TwistStamped";
+}
+
+std::string kind_name(const Simulation& simulation, const Simulation::Device& device, std::uint32_t level) {
+  const auto levels = simulation.kind(device).levels;
+  return level < levels.size() ? levels[level].name : "";
+}
+
+/// What a device has for an entry of a program's description: at its active level where the entry names none.
+template <class Slots>
+void add_name(const Simulation& simulation, const Simulation::Entity& entity, const Description::Entry& entry,
+              Slots slots, std::vector<std::string>& out) {
+  if (!entry.level.empty()) return;  // the description lists each level too
+  for (const auto& device : entity.devices) {
+    if (device->decl.name != entry.device) continue;
+    for (const Simulation::Slot& slot : slots(*device)) {
+      const bool always = slot.level >= simulation.kind(*device).levels.size();
+      if (entry.type == slot.topic->type() && (always || (device->levels >> slot.level & 1)))
+        return out.push_back(slot.topic->name());
+    }
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, std::uint64_t epoch) {
+  auto out = std::make_shared<Inventory>();
+  out->epoch = epoch;
+  out->revision = simulation.revision();
+  std::map<std::string_view, std::shared_ptr<const TopicBase>> blanks;
+  for (const auto& entity : simulation.entities()) {
+    if (entity->instance.is_robot) out->robots.push_back(entity->instance.name);
+    for (const auto& device : entity->devices) {
+      for (const Simulation::Slot& slot : device->topics)
+        out->topics.push_back({slot.topic->name(), &slot.topic->info(), device->path});
+      for (const Simulation::Slot& slot : device->topics)
+        if (topic_cast<msg::Image>(slot.topic.get()) &&
+            !simulation.find_topic(preview_name(slot.topic->name())))
+          out->topics.push_back(
+              {preview_name(slot.topic->name()), &message_info<msg::CompressedImage>(), device->path});
+      for (const Simulation::Slot& slot : device->commands) {
+        auto& blank = blanks[slot.topic->type()];
+        if (!blank) blank = slot.topic->clone();
+        const std::string level = kind_name(simulation, *device, slot.level);
+        const bool active = level.empty() || (device->levels >> slot.level & 1);
+        out->slots.push_back({slot.topic->name(), device->path, level, active, &slot.topic->info(), blank});
+      }
+    }
+    for (const auto& program : entity->programs) {
+      Inventory::Program& made = out->programs.emplace_back();
+      made.path = program->path;
+      for (const Description::Entry& entry : program->description->readings)
+        add_name(
+            simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.topics; },
+            made.reads);
+      for (const Description::Entry& entry : program->description->actuators)
+        add_name(
+            simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
+            made.orders);
+    }
+  }
+  return out;
+}
+
+Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_view type) const {
+  const std::string wanted = type.empty() ? "" : long_name(type);
+  if (topic.substr(0, 1) == "/") topic.remove_prefix(1);
+  const Slot* of_other_type = nullptr;
+  const auto fits = [&](const Slot& slot) {
+    if (wanted.empty() || wanted == slot.info->name) return true;
+    of_other_type = &slot;
+    return false;
+  };
+  for (const Slot& slot : slots)
+    if (std::string_view(slot.name).substr(1) == topic && fits(slot))
+      return Target{slot.level.empty() ? slot.device : slot.device + "/" + slot.level, &slot};
+  for (const Slot& slot : slots)
+    if (slot.device == topic && slot.active && fits(slot)) return Target{slot.device, &slot};
+  constexpr std::string_view alias = "/cmd_vel";
+  if (topic.size() > alias.size() && topic.substr(topic.size() - alias.size()) == alias) {
+    const std::string prefix = std::string(topic.substr(0, topic.size() - alias.size() + 1));
+    for (const Slot& slot : slots)
+      if (slot.active && is_twist(*slot.info) && starts_with(slot.device, prefix) && fits(slot))
+        return Target{slot.device, &slot};
+  }
+  if (of_other_type)
+    return Error{"'" + std::string(topic) + "' takes " + of_other_type->info->name + ", not " + wanted};
+  std::vector<std::string> known;
+  bool drives = false;
+  for (const Slot& slot : slots) {
+    known.push_back(slot.name.substr(1));
+    if (known.empty() || known.back() != slot.device) known.push_back(slot.device);
+    if (slot.active && is_twist(*slot.info)) {
+      known.push_back(slot.device.substr(0, slot.device.find('/')) + "/cmd_vel");
+      drives = true;
+    }
+  }
+  const std::string near = nearest(topic, known);
+  return Error{"nothing takes messages on '/" + std::string(topic.substr(0, 200)) + "'",
+               !near.empty() ? "did you mean '/" + near + "'?"
+               : drives      ? "robots take them as /ROBOT/cmd_vel and /ROBOT/DEVICE"
+                             : "nothing in this world takes commands"};
+}
+
+Result<std::vector<std::byte>> command_bytes(const TopicBase& blank, bool json,
+                                             std::span<const std::byte> bytes) {
+  const std::unique_ptr<TopicBase> message = blank.clone();
+  if (json) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    SL_ASSIGN(const AnyMessage any, message_from_json(blank.info(), text));
+    std::vector<std::byte> cdr;
+    any.to_cdr(cdr);
+    SL_TRY(message->from_cdr(cdr));
+  } else {
+    SL_TRY(message->from_cdr(bytes));
+  }
+  ByteWriter before, all;
+  write(before, message->stamp);
+  write(before, message->count);
+  message->save(all);
+  const auto content = all.bytes().subspan(before.size());
+  return std::vector<std::byte>(content.begin(), content.end());
+}
+
+}  // namespace sandlot::server

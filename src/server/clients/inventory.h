@@ -1,0 +1,56 @@
+#pragma once
+/// What a world has to offer, copied once per revision so that the transport's thread can look things up by itself.
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/result.h"
+#include "messages/registry.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot::server {
+
+struct Inventory {
+  struct Topic {
+    std::string name;  ///< "/rover/laser/ranges"
+    const MessageInfo* info = nullptr;
+    std::string device;  ///< "rover/laser"
+  };
+  struct Slot {
+    std::string name;    ///< "/rover/drive/ideal/command"
+    std::string device;  ///< "rover/drive"
+    std::string level;   ///< "ideal"; "": whatever the level
+    bool active = false;
+    const MessageInfo* info = nullptr;
+    std::shared_ptr<const TopicBase> blank;  ///< an empty one of its type
+  };
+  struct Program {
+    std::string path;  ///< "rover/controller"
+    /// Topics and slots of its robot at their active levels: what it may read and order; which of them it does is its own affair.
+    std::vector<std::string> reads, orders;
+  };
+  std::uint64_t epoch = 1, revision = 0;
+  std::vector<Topic> topics;
+  std::vector<Slot> slots;
+  std::vector<Program> programs;
+  std::vector<std::string> robots;
+
+  /// Where a message that a client calls so goes: "/rover/drive/ideal/command", "/rover/drive" (its active level),
+  /// "/rover/cmd_vel" (the active drive that takes a Twist or TwistStamped). Errors name the nearest.
+  /// @param type  of the messages as the client calls it; "": whatever is expected there
+  struct Target {
+    std::string address;  ///< as CommandRequest has it
+    const Slot* slot = nullptr;
+  };
+  Result<Target> target(std::string_view topic, std::string_view type) const;
+};
+
+/// @pre on the simulation's thread
+std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, std::uint64_t epoch);
+
+/// A command's bytes as base/bytes.h writes them, from what a client sent.
+Result<std::vector<std::byte>> command_bytes(const TopicBase& blank, bool json,
+                                             std::span<const std::byte> bytes);
+
+}  // namespace sandlot::server

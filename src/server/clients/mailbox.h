@@ -1,0 +1,86 @@
+#pragma once
+/// What goes from the simulation's thread to the transport's: what happened in ticks, and errands.
+///
+/// Batches   one per tick with something to tell. They wait in a queue of `limit_bytes`; when it is full the oldest ones lose
+///           what viewers can do without (frames, messages), which is counted. What came from outside stays.
+/// Errands   calls of the Hub, in order with the batches; those that ask for them bound how many there are.
+/// Frames    are given back, so that the thread that made them lets go of them and fills them again.
+/// Threads   put() and release() as said; take(), give_back() and close() belong to the transport's.
+/// Cost      a lock per batch that is never held while something is encoded or sent.
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "server/http/transport.h"
+#include "sim/world/frame.h"
+
+namespace sandlot::server {
+
+class Hub;
+
+/// A message for the subscribers of a channel.
+struct ChannelMessage {
+  std::uint32_t channel = 0;
+  Time stamp;
+  Payload bytes;
+};
+
+struct Batch {
+  Time now;
+  std::uint64_t epoch = 1;
+  std::shared_ptr<const Frame> frame;  ///< with poses; null: none is due
+  bool contacts = false;               ///< the frame has them
+  std::vector<ChannelMessage> messages;
+  Payload commands;  ///< JSON of what came from outside
+  std::size_t bytes() const;
+};
+
+using Errand = std::function<void(Hub&)>;
+
+struct Mail {
+  Batch batch;
+  Errand errand;  ///< empty: it is a batch
+};
+
+class Mailbox {
+ public:
+  explicit Mailbox(std::size_t limit_bytes = 32u << 20) : limit_(limit_bytes) {}
+  /// @param wake  brings the transport's thread to take(); called with a lock of its own, also by other threads
+  void open(std::function<void()> wake);
+  /// No wake() comes after it, and errands are thrown away.
+  void close();
+
+  /// Simulation's thread.
+  void put(Batch batch);
+  /// Any thread.
+  void put(Errand errand);
+  /// Simulation's thread: lets go of the frames that were given back.
+  void release();
+
+  void take(std::deque<Mail>& out);
+  void give_back(std::shared_ptr<const Frame> frame);
+
+  std::uint64_t dropped() const;
+
+ private:
+  void wake(bool now);
+  const std::size_t limit_;
+  mutable std::mutex mutex_;
+  std::deque<Mail> mail_;
+  std::size_t bytes_ = 0;
+  std::size_t thinned_ = 0;  ///< so many at the front have nothing left to lose
+  std::uint64_t dropped_ = 0;
+  std::vector<std::shared_ptr<const Frame>> done_;
+  std::vector<std::shared_ptr<const Frame>> returned_;  ///< of the simulation's thread
+  bool closed_ = false;
+
+  std::mutex wake_mutex_;
+  std::function<void()> wake_;
+  bool woken_ = false;
+  std::chrono::steady_clock::time_point last_wake_;
+};
+
+}  // namespace sandlot::server

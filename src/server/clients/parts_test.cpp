@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include "assets/image/visible.h"
+#include "messages/messages.h"
+#include "server/clients/inventory.h"
+#include "server/clients/mailbox.h"
+#include "server/clients/name_filter.h"
+#include "server/clients/parameters.h"
+#include "server/clients/preview.h"
+#include "sim/test_world.h"
+
+namespace sandlot::server::test {
+namespace {
+
+TEST(Mailbox, LosesTheOldestMessagesWhenItIsFullButNotWhatCameFromOutside) {
+  Mailbox mailbox(10'000);
+  const auto bytes = [](std::size_t n) { return std::make_shared<const std::vector<std::byte>>(n); };
+  for (int i = 0; i < 10; ++i) {
+    Batch batch;
+    batch.now = Time::from_ns(i);
+    batch.messages.push_back({1, batch.now, bytes(3000)});
+    batch.commands = bytes(1);
+    mailbox.put(std::move(batch));
+  }
+  std::deque<Mail> taken;
+  mailbox.take(taken);
+  ASSERT_EQ(taken.size(), 10u);
+  std::size_t whole = 0;
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_TRUE(taken[i].batch.commands);
+    if (!taken[i].batch.messages.empty()) ++whole;
+    else EXPECT_EQ(whole, 0u) << "the oldest go first";
+  }
+  // A batch is 3 kB and what it is made of: three of them fit into 10 kB beside the ten empty ones, or two.
+  EXPECT_GE(whole, 2u);
+  EXPECT_LE(whole, 3u);
+  EXPECT_EQ(mailbox.dropped(), 10 - whole);
+}
+
+TEST(Mailbox, WakesOnceUntilSomebodyHasLooked) {
+  Mailbox mailbox;
+  int woken = 0;
+  mailbox.open([&] { ++woken; });
+  mailbox.put([](Hub&) {});
+  mailbox.put([](Hub&) {});
+  EXPECT_EQ(woken, 1);
+  std::deque<Mail> taken;
+  mailbox.take(taken);
+  EXPECT_EQ(taken.size(), 2u);
+  mailbox.put([](Hub&) {});
+  EXPECT_EQ(woken, 2);
+  mailbox.close();
+  mailbox.put([](Hub&) {});
+  EXPECT_EQ(woken, 2);
+}
+
+TEST(NameFilter, FindsWhatARegularExpressionFinds) {
+  const auto matches = [](const char* filter, const char* name) {
+    const auto made = NameFilter::compile(filter);
+    EXPECT_TRUE(made) << filter;
+    return made && made->matches(name);
+  };
+  EXPECT_TRUE(matches("", "robot"));
+  EXPECT_TRUE(matches("bo", "robot"));
+  EXPECT_FALSE(matches("^bo", "robot"));
+  EXPECT_TRUE(matches("ot$", "robot"));
+  EXPECT_FALSE(matches("ro$", "robot"));
+  EXPECT_TRUE(matches("^r.*t$", "robot"));
+  EXPECT_TRUE(matches("^robot[0-9]+$", "robot12"));
+  EXPECT_FALSE(matches("^robot[0-9]+$", "robot"));
+  EXPECT_TRUE(matches("^robots?$", "robot"));
+  EXPECT_TRUE(matches("^[^x-z]*$", "robot"));
+  EXPECT_FALSE(matches("^[^a-z]*$", "robot"));
+  EXPECT_TRUE(matches("a\\.b", "a.b"));
+  EXPECT_FALSE(matches("a\\.b", "aXb"));
+  EXPECT_FALSE(matches("a+$", "b"));
+  for (const char* bad : {"(a)", "a|b", "a{3}", "*", "[a", "\\"})
+    EXPECT_FALSE(NameFilter::compile(bad)) << bad;
+  // What takes a backtracking matcher for ever.
+  std::string evil;
+  for (int i = 0; i < 100; ++i) evil += "a*";
+  EXPECT_FALSE(matches(("^" + evil + "b$").c_str(), std::string(200, 'a').c_str()));
+}
+
+TEST(Parameters, AreListedReadAndSetByTheSameNames) {
+  const auto simulation = sandlot::test::build(sandlot::test::arena("rigid", 1));
+  std::vector<foxglove::Parameter> all;
+  EXPECT_TRUE(list_parameters(*simulation, all));
+  bool found = false;
+  for (const auto& each : all) {
+    EXPECT_EQ(read_parameter(*simulation, each.name).value, each.value) << each.name;
+    const auto request = parameter_request(each);
+    ASSERT_TRUE(request) << each.name;
+    simulation->submit(*request);
+    found = found || each.name == "rover1/laser.noise.white";
+  }
+  EXPECT_TRUE(found);
+  ASSERT_TRUE(simulation->tick());
+  for (const Outcome& outcome : simulation->outcomes())
+    EXPECT_TRUE(outcome.status) << outcome.status.error().text();
+  EXPECT_EQ(simulation->outcomes().size(), all.size());
+  for (const char* unknown :
+       {"rover1", "rover1.x", "rover1/laser.noise", "rover1/laser.", "nobody/x.y", ".", ""})
+    EXPECT_EQ(read_parameter(*simulation, unknown).value.index(), 0u) << unknown;
+}
+
+TEST(Preview, IsASmallJpegOfTheImage) {
+  // 960 x 720, the left half green and the right half red.
+  msg::Image image;
+  image.header.frame_id = "eye";
+  image.width = 960;
+  image.height = 720;
+  image.encoding = "rgb8";
+  image.step = 3 * image.width;
+  for (std::uint32_t i = 0; i < image.width * image.height; ++i)
+    for (const int c : {i % image.width < 480 ? 0 : 255, i % image.width < 480 ? 255 : 0, 0})
+      image.data.push_back(static_cast<std::uint8_t>(c));
+  msg::CompressedImage got;
+  ASSERT_TRUE(read_cdr(message_info<msg::CompressedImage>(), preview_of(image), &got));
+  EXPECT_EQ(got.header.frame_id, "eye");
+  EXPECT_EQ(got.format, "jpeg");
+  EXPECT_LT(got.data.size(), 10'000u);
+  const auto picture = assets::visible(got);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->width, 480);
+  EXPECT_EQ(picture->height, 360);
+  const auto channel = [&](std::size_t x, std::size_t k) {
+    return static_cast<int>(picture->rgb[3 * (180 * 480 + x) + k]);
+  };
+  EXPECT_NEAR(channel(120, 0), 0, 4);
+  EXPECT_NEAR(channel(120, 1), 255, 4);
+  EXPECT_NEAR(channel(360, 0), 255, 4);
+  EXPECT_NEAR(channel(360, 1), 0, 4);
+  image.data.resize(100);
+  ASSERT_TRUE(read_cdr(message_info<msg::CompressedImage>(), preview_of(image), &got));
+  EXPECT_TRUE(got.data.empty()) << "what cannot be shown";
+}
+
+TEST(Inventory, KnowsWhereAMessageGoes) {
+  const auto simulation = sandlot::test::build(sandlot::test::arena("rigid", 2));
+  const auto inventory = take_inventory(*simulation, 1);
+  const auto address = [&](const char* topic, const char* type) {
+    const auto target = inventory->target(topic, type);
+    return target ? target->address : "error: " + target.error().text();
+  };
+  EXPECT_EQ(address("/rover2/cmd_vel", ""), "rover2/drive");
+  EXPECT_EQ(address("/rover2/cmd_vel", "geometry_msgs/Twist"), "rover2/drive");
+  EXPECT_EQ(address("/rover2/drive", "geometry_msgs/msg/Twist"), "rover2/drive");
+  EXPECT_EQ(address("/rover1/drive/contact/command", ""), "rover1/drive/contact");
+  EXPECT_NE(address("/rover1/drive", "std_msgs/String").find("takes geometry_msgs/msg/Twist"),
+            std::string::npos);
+  EXPECT_NE(address("/rover1/drove", "").find("did you mean '/rover1/drive'"), std::string::npos);
+}
+
+TEST(Inventory, TurnsMessagesIntoTheBytesThatCommandsHave) {
+  const Topic<msg::Twist> blank("/x");
+  msg::Twist twist;
+  twist.linear.x = 1.5;
+  twist.angular.z = -2;
+  ByteWriter expected;
+  write(expected, twist);
+  std::vector<std::byte> cdr;
+  write_cdr(message_info<msg::Twist>(), &twist, cdr);
+  const std::string json = R"({"linear": {"x": 1.5}, "angular": {"z": -2}})";
+  const auto from_cdr = command_bytes(blank, false, cdr);
+  const auto from_json = command_bytes(blank, true, std::as_bytes(std::span(json)));
+  ASSERT_TRUE(from_cdr);
+  ASSERT_TRUE(from_json);
+  EXPECT_EQ(*from_cdr, expected.buffer());
+  EXPECT_EQ(*from_json, expected.buffer());
+  EXPECT_FALSE(command_bytes(blank, false, std::span(cdr).first(20)));
+  EXPECT_FALSE(command_bytes(blank, true, {}));
+}
+
+}  // namespace
+}  // namespace sandlot::server::test

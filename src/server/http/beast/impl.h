@@ -1,0 +1,102 @@
+#pragma once
+/// What transport.cpp (the port, the interface) and peer.cpp (a connection, all that needs Beast) share. Not for others to include.
+///
+/// Everything here belongs to the one thread that runs `io`, but for the atomic counters and what Impl::mutex guards.
+#ifdef __SANITIZE_THREAD__
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
+#endif
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "server/http/transport.h"
+
+namespace sandlot::server {
+
+namespace net = boost::asio;
+using tcp = net::ip::tcp;
+using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+
+/// How long clients have for good-byes.
+constexpr auto goodbye = std::chrono::milliseconds(1500);
+
+struct Message {
+  std::string head;  // 13 bytes in general: no allocation
+  Payload payload;
+  bool text = false;
+  std::size_t body() const { return payload ? payload->size() : 0; }
+  std::size_t size() const { return head.size() + body(); }
+  /// What it counts in a queue: a million empty ones take memory too.
+  std::size_t weight() const { return size() + 128; }
+};
+
+/// What waits for one client. Guarded by Impl::mutex.
+struct Queue {
+  std::deque<Message> messages;
+  std::size_t bytes = 0;   // with that being written
+  bool scheduled = false;  // flush() is on its way
+  bool full = false;       // something that must arrive did not fit
+};
+
+/// A connection, from accept to end. Every function may end it; whoever calls holds a PeerPtr meanwhile.
+struct Peer {
+  virtual ~Peer() = default;
+  virtual void begin() = 0;
+  /// Looks at the deadlines.
+  virtual void on_beat(Clock::time_point now) = 0;
+  /// Sends what has been queued.
+  virtual void flush() = 0;
+  /// Sends what is queued, then the reason, then ends.
+  virtual void close_for(std::string_view reason) = 0;
+  /// The server stops: ends at once, or very soon.
+  virtual void stop() = 0;
+  virtual void end() = 0;
+  /// Whether nothing has been asked since the last answer.
+  virtual bool idle() const = 0;
+};
+using PeerPtr = std::shared_ptr<Peer>;
+
+struct Transport::Impl {
+  TransportOptions options;
+  Handler handler;
+  // Destroyed last: what is under way in it holds the peers.
+  net::io_context io{1};
+  tcp::acceptor acceptor{io};
+  tcp::endpoint bound;
+  net::steady_timer timer{io};
+  std::map<std::uint64_t, PeerPtr> peers;
+  std::uint64_t next_id = 1;
+  std::size_t clients = 0;  // peers that have been let in, or are about to
+  bool accept_again = false, stopping = false;
+  Clock::time_point next_beat, last_moment;
+
+  mutable std::mutex mutex;
+  std::map<ClientId, std::shared_ptr<Queue>> queues;
+  std::mutex stop_mutex;
+  std::atomic<std::uint64_t> open_clients{0}, accepted{0}, refused{0}, dropped{0}, bytes_out{0}, bytes_in{0};
+  std::thread thread;
+
+  Status listen();
+  bool on_loopback() const;
+  void run();
+  void accept();
+  void admit_socket(tcp::socket socket);
+  void on_beat();
+  void begin_stop();
+  void call(const std::function<void()>& f) noexcept;
+  void for_one(std::uint64_t id, const std::function<void(Peer&)>& f);
+  void for_all(const std::function<void(Peer&)>& f);
+  void schedule(ClientId client, Queue& queue);
+};
+
+/// Defined in peer.cpp.
+PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket);
+
+}  // namespace sandlot::server

@@ -1,0 +1,55 @@
+#include "sim/load/device_settings.h"
+
+#include <map>
+
+#include "base/text.h"
+#include "base/units.h"
+#include "devices/kind.h"
+
+namespace sandlot {
+
+namespace {
+
+/// The fields of each kind, listed once: a world may have ten thousand devices.
+const std::vector<FieldInfo>* fields_of(std::string_view kind) {
+  static const auto all = [] {
+    std::map<std::string, std::vector<FieldInfo>, std::less<>> fields;
+    for (const Kind* const one : device_kinds()) fields.emplace(one->name, one->describe());
+    return fields;
+  }();
+  const auto found = all.find(kind);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+std::optional<double> setting(const model::DeviceDecl& device, std::string_view path) {
+  const std::vector<FieldInfo>* const fields = fields_of(device.kind);
+  if (!fields) return std::nullopt;
+  for (const FieldInfo& field : *fields) {
+    if (field.path != path) continue;
+    const Node* node = &device.config;
+    for (const std::string_view key : split(path, '/')) node = node ? node->find(key) : nullptr;
+    const std::string& text = node ? node->text() : field.default_value;
+    if (text.empty()) return std::nullopt;
+    const auto value = parse_quantity(text, field.unit);
+    return value ? std::optional(*value) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model) {
+  std::vector<std::uint32_t> joints;
+  const auto take = [&](const Node& name) {
+    if (const auto joint = model.find_joint(name.text())) joints.push_back(*joint);
+  };
+  for (const Node::Entry& entry : device.config.entries()) {
+    const std::string& key = entry.key;
+    if (!key.ends_with("joint") && !key.ends_with("joints")) continue;
+    if (entry.value.is_scalar()) take(entry.value);
+    for (const Node& item : entry.value.items()) take(item);
+  }
+  return joints;
+}
+
+}  // namespace sandlot

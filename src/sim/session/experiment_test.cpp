@@ -1,0 +1,198 @@
+#include "sim/session/experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "sim/test_world.h"
+
+namespace sandlot::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A ball of 0.1 m whose lower edge is 50 mm above the ground.
+model::Setup falling_ball() {
+  model::Setup setup;
+  setup.step = Time::from_s(0.01);
+  setup.instances.push_back(placed("ground", one_shape("ground", Plane{{0, 0, 1}}, 0), {}));
+  setup.instances.push_back(placed("ball", one_shape("ball", Sphere{0.1}, 1), {{0.3, 0.2, 0.15}, {}}));
+  return setup;
+}
+
+void advance(Experiment& experiment, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
+    const Status status = experiment.tick();
+    ASSERT_TRUE(status) << status.error().text();
+  }
+}
+
+TEST(Experiment, HooksAreCalledInTheOrderThatIsPromised) {
+  const auto sim = build(falling_ball());
+  std::vector<std::string> called;
+  const auto note = [&](const char* what) {
+    return [&called, what](Experiment& e) -> Status {
+      called.push_back(what + std::to_string(e.simulation().tick_index()));
+      return {};
+    };
+  };
+  Hooks hooks{.on_start = note("start"),
+              .before_tick = note("before"),
+              .after_tick = note("after"),
+              .on_end = note("end")};
+  hooks.on_event = [&](Experiment& e, const std::string& name) -> Status {
+    called.push_back(name + std::to_string(e.simulation().tick_index()));
+    if (name == "first") e.emit("second");
+    return {};
+  };
+  Experiment experiment(*sim, hooks);
+  ASSERT_TRUE(experiment.start());
+  experiment.emit("first");
+  advance(experiment, 2);
+  ASSERT_TRUE(experiment.finish());
+  EXPECT_THAT(called,
+              ElementsAre("start0", "before0", "first1", "after1", "before1", "second2", "after2", "end2"));
+}
+
+TEST(Experiment, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
+  const auto sim = build(falling_ball());
+  std::vector<std::uint64_t> ticks;
+  int began = 0;
+  Hooks hooks;
+  hooks.on_contact = [&](Experiment& e, const Touch& touch) -> Status {
+    ticks.push_back(e.simulation().tick_index());
+    began += touch.began;
+    EXPECT_EQ(touch.a, "ground");
+    EXPECT_EQ(touch.b, "ball");
+    EXPECT_NEAR(touch.normal_W.z, 1, 1e-12) << "from the ground towards the ball";
+    EXPECT_NEAR(touch.point_W.x, 0.3, 1e-6);
+    EXPECT_NEAR(touch.point_W.y, 0.2, 1e-6);
+    // It arrives at 1 m/s: one tick of 10 ms carries it in by no more than 10 mm.
+    EXPECT_GE(touch.depth_m, 0);
+    EXPECT_LE(touch.depth_m, 0.01);
+    return {};
+  };
+  Experiment experiment(*sim, hooks);
+  advance(experiment, 40);
+  // 50 mm take sqrt(2 * 0.05 / 9.81) = 101 ms; contacts are those that the last step began with.
+  ASSERT_FALSE(ticks.empty());
+  EXPECT_GE(ticks.front(), 10u);
+  EXPECT_LE(ticks.front(), 12u);
+  EXPECT_EQ(began, 1);
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_EQ(ticks[i], ticks[i - 1] + 1) << "one call per tick";
+}
+
+/// Keeps the log of every tick.
+struct Log : Observer {
+  Wants wants() const override { return {.log = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override { ticks.push_back(frame->log); }
+  std::vector<std::vector<LogEntry>> ticks;
+};
+
+TEST(Experiment, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
+  const auto with_hooks = build(falling_ball());
+  Log log;
+  with_hooks->add_observer(&log);
+  Hooks hooks;
+  hooks.after_tick = [](Experiment& e) -> Status {
+    if (e.simulation().tick_index() == 7) e.emit("serve");
+    return {};
+  };
+  hooks.on_event = [](Experiment& e, const std::string&) -> Status {
+    e.simulation().submit(
+        SpawnRequest{placed("ball2", one_shape("ball", Sphere{0.1}, 1), {{0.31, 0.2, 0.6}, {}})});
+    return {};
+  };
+  Experiment experiment(*with_hooks, hooks);
+  advance(experiment, 60);
+  ASSERT_TRUE(with_hooks->find_instance("ball2"));
+
+  const auto without = build(falling_ball());
+  for (const auto& entries : log.ticks) {
+    for (const LogEntry& entry : entries) {
+      ByteReader r(entry.bytes);
+      Request request;
+      ASSERT_TRUE(read_request(r, request));
+      without->submit(std::move(request), entry.source);
+    }
+    ASSERT_TRUE(without->tick());
+  }
+  EXPECT_EQ(without->state_hash(), with_hooks->state_hash());
+}
+
+TEST(Experiment, AHookThatFailsOrThrowsEndsTheTickWithItsName) {
+  const auto sim = build(falling_ball());
+  Hooks hooks;
+  hooks.before_tick = [](Experiment& e) -> Status {
+    if (e.simulation().tick_index() == 1) return Error{"no power"};
+    return {};
+  };
+  hooks.after_tick = [](Experiment& e) -> Status {
+    if (e.simulation().tick_index() == 1) throw std::runtime_error("no luck");
+    return {};
+  };
+  Experiment experiment(*sim, hooks);
+  const Status thrown = experiment.tick();
+  ASSERT_FALSE(thrown);
+  EXPECT_EQ(thrown.error().what, "after_tick: threw: no luck");
+  const Status failed = experiment.tick();
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().what, "before_tick: no power");
+  EXPECT_EQ(sim->tick_index(), 1u);
+}
+
+struct Console {
+  std::unique_ptr<Simulation> sim = build(falling_ball());
+  std::vector<std::string> said;
+  Hooks hooks;
+  std::unique_ptr<Experiment> experiment;
+  Console() {
+    hooks.commands.push_back(
+        {"kick", "kick WORDS: says them",
+         [this](Experiment& e, std::span<const std::string> words) -> Result<std::string> {
+           std::string all = std::to_string(e.simulation().now().ns / 1'000'000);
+           for (const std::string& word : words) all += "|" + word;
+           said.push_back(all);
+           if (!words.empty() && words[0] == "hard") throw std::runtime_error("ouch");
+           return all;
+         }});
+    experiment = std::make_unique<Experiment>(*sim, hooks);
+  }
+};
+
+TEST(Experiment, ALineIsACommandAndItsWords) {
+  Console console;
+  EXPECT_EQ(console.experiment->execute("  kick  ball \"far away\" ").value(), "0|ball|far away");
+  EXPECT_THAT(console.experiment->execute("help").value(), HasSubstr("kick WORDS: says them"));
+  const auto complaint = [&](const char* line) {
+    const auto result = console.experiment->execute(line);
+    return result ? std::string() : result.error().text();
+  };
+  EXPECT_THAT(complaint("kik ball"), HasSubstr("did you mean 'kick'?"));
+  EXPECT_THAT(complaint(""), HasSubstr("says nothing"));
+  EXPECT_THAT(complaint("kick \"ball"), HasSubstr("not closed"));
+  EXPECT_THAT(complaint("kick hard"), HasSubstr("ouch"));
+}
+
+TEST(Experiment, ScheduledLinesAreSaidBeforeTheFirstTickAtTheirTimeOrLater) {
+  Console console;
+  Experiment& experiment = *console.experiment;
+  for (const char* line : {"at 45ms kick late", "kick now", "at 0.02 kick b", "at 0.02 kick c"})
+    ASSERT_TRUE(experiment.schedule(line)) << line;
+  advance(experiment, 6);
+  EXPECT_THAT(console.said, ElementsAre("0|now", "20|b", "20|c", "50|late"));
+  EXPECT_THAT(experiment.take_answers(),
+              ElementsAre("at 0 s: 0|now", "at 0.02 s: 20|b", "at 0.02 s: 20|c", "at 0.05 s: 50|late"));
+  EXPECT_TRUE(experiment.take_answers().empty());
+  for (const char* line : {"at", "at 2s", "at noon kick", "at -1s kick", "fly", "at 2s fly", ""})
+    EXPECT_FALSE(experiment.schedule(line)) << line;
+  ASSERT_TRUE(experiment.schedule("kick hard"));
+  const Status failed = experiment.tick();
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error().what, HasSubstr("at 0.06 s"));
+}
+
+}  // namespace
+}  // namespace sandlot::test

@@ -1,0 +1,38 @@
+#pragma once
+/// What there is to see: the visuals and lights of a world as cameras draw them, and its things as detectors name them.
+///
+/// Made when the first device that sees is built, or when somebody outside asks for a picture; nothing here is State.
+/// Groups of the picture scene are the engine's bodies, and one more that stands still: the world's own lights hang on it.
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "optics/picture.h"
+#include "sim/visuals/labelled_objects.h"
+
+namespace sandlot {
+
+class RenderScene {
+ public:
+  optics::PictureScene pictures;
+  std::vector<LabelledObject> labelled_objects;
+
+  /// Takes over what stands in the world now. A texture that cannot be read is a warning and a checker.
+  void rebuild(std::span<const std::unique_ptr<SimulationParts::Entity>> entities, const Engine& engine,
+               const model::Setup& setup, Diagnostics& diagnostics);
+  /// The poses and velocities of this tick.
+  void update(const Engine& engine, std::uint64_t tick, std::uint64_t revision);
+
+ private:
+  using TexturePointer = std::shared_ptr<const optics::Texture>;
+  TexturePointer texture(const std::string& file, const Place& place, Diagnostics& diagnostics);
+  optics::Look look_of(const model::Visual& visual, Diagnostics& diagnostics);
+
+  std::map<std::string, TexturePointer> textures_;  ///< by file: kept while the world is, read once
+  SceneFrame frame_;
+  std::vector<Velocity> velocities_;
+};
+
+}  // namespace sandlot

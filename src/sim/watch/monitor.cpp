@@ -1,0 +1,100 @@
+#include "sim/watch/monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace sandlot {
+
+Status Monitor::add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
+                    std::vector<std::string>& known) {
+  const std::vector<std::string> before = known;
+  const auto note = [&](const ValueExpression& expression) {
+    for (const std::string& address : expression.addresses())
+      if (std::find(known.begin(), known.end(), address) == known.end()) known.push_back(address);
+  };
+  for (const model::ValueDecl& decl : values) {
+    if (Expression::is_reserved(decl.name))
+      return Error{"'" + decl.name + "' cannot be the name of a value: it means something in expressions",
+                   "give it another name", decl.place};
+    SL_ASSIGN(ValueExpression expression,
+              ValueExpression::compile(simulation_, decl.expression, decl.place, before));
+    note(expression);
+    names_.push_back(decl.name);
+    values_.push_back(std::move(expression));
+    computed_.emplace_back();
+  }
+  for (const model::EventDecl& decl : events) {
+    SL_TRY(add_event(decl, true, before));
+    note(events_.back().condition);
+  }
+  return {};
+}
+
+Status Monitor::add_event(model::EventDecl decl, bool declared, std::span<const std::string> known) {
+  SL_ASSIGN(ValueExpression condition, ValueExpression::compile(simulation_, decl.when, decl.place, known));
+  happened_.reserve(events_.size() + 1);
+  events_.push_back({std::move(decl), declared, std::move(condition)});
+  return {};
+}
+
+std::optional<std::uint32_t> Monitor::find_value(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - names_.begin());
+}
+
+std::optional<double> Monitor::value(std::uint32_t index) const {
+  // An expression that is being computed asks for those before it: they are ready.
+  if (index < computing_) return computed_[index];
+  SL_CHECK(computing_ == 0);
+  for (; computing_ <= index; ++computing_) {
+    const auto result = values_[computing_].evaluate();
+    computed_[computing_] = result ? std::optional(result->value) : std::nullopt;
+  }
+  computing_ = 0;
+  return computed_[index];
+}
+
+void Monitor::save(ByteWriter& w) const {
+  for (const Event& event : events_)
+    if (event.declared) Event::state(event, [&](const auto& value) { write(w, value); });
+}
+
+void Monitor::load(ByteReader& r) {
+  for (Event& event : events_)
+    if (event.declared) Event::state(event, [&](auto& value) { read(r, value); });
+}
+
+Result<std::optional<std::string>> Monitor::judge(Time now) {
+  happened_.clear();
+  std::optional<std::string> reason;
+  for (Event& event : events_) {
+    const auto condition = event.condition.evaluate();
+    if (condition && !condition->finite)
+      return Error{"event '" + event.decl.name + "': " +
+                       // A comparison with infinity is a finite 0 or 1.
+                       (std::isfinite(condition->value) ? "a part of '" : "'") + event.decl.when +
+                       "' is no finite number at " + number_text(now.s()) + " s",
+                   "guard it, as in if(x == 0, 0, 1 / x)", event.decl.place};
+    if (!condition || condition->value == 0) {
+      event.holds = event.happened = false;
+      continue;
+    }
+    if (!event.holds) event.since = now;
+    event.holds = true;
+    if (!event.happened && now - event.since >= event.decl.hold && !(event.decl.once && event.count > 0)) {
+      event.happened = true;
+      if (event.count++ == 0) event.first = now;
+      event.last = now;
+    }
+    // Asked again at the same time, after a restore, it answers the same.
+    if (!event.happened || event.last != now) continue;
+    happened_.push_back(event.decl.name);
+    if (event.decl.stop && !reason) reason = "event '" + event.decl.name + "': " + event.decl.when;
+  }
+  return reason;
+}
+
+}  // namespace sandlot

@@ -1,0 +1,74 @@
+#pragma once
+/// What a scenario watches: the values it names, and events that happen when a condition has held for a while.
+///
+/// Named values are computed when they are asked for, in the order of their declaration; each may use those before it.
+/// Events are judged once per tick, in phase 7. An event happens when its condition has held (was other than 0) for
+/// `hold` without a break, and once per such stretch. No value (nothing measured yet) counts as "does not hold"; a
+/// value that is no finite number fails the run.
+///
+/// State   of the scenario's events: since when they hold, how often they happened. Events added later (from the
+///         command line) are a matter of the observer, like the stop time, and no part of State.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/watch/values.h"
+
+namespace sandlot {
+
+class Monitor {
+ public:
+  struct Event {
+    model::EventDecl decl;
+    bool declared = true;  ///< by the scenario
+    ValueExpression condition;
+    // State:
+    bool holds = false;
+    Time since;             ///< holds without a break since then
+    bool happened = false;  ///< in this stretch
+    std::uint64_t count = 0;
+    Time first, last;  ///< when it happened, if count > 0
+
+    static void state(auto& e, auto&& visit) {
+      visit(e.holds);
+      visit(e.since);
+      visit(e.happened);
+      visit(e.count);
+      visit(e.first);
+      visit(e.last);
+    }
+  };
+
+  explicit Monitor(const Simulation& simulation) : simulation_(simulation) {}
+  /// Compiles values and then events. The addresses they use are appended to `known`, which also makes addresses
+  /// acceptable that name nothing now.
+  Status add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
+             std::vector<std::string>& known);
+  Status add_event(model::EventDecl decl, bool declared, std::span<const std::string> known);
+
+  std::optional<std::uint32_t> find_value(std::string_view name) const;
+  const std::vector<std::string>& value_names() const { return names_; }
+  /// The present value of a named value.
+  std::optional<double> value(std::uint32_t index) const;
+
+  const std::vector<Event>& events() const { return events_; }
+  std::vector<Event>& events() { return events_; }
+  /// Names of the events that happened in the latest tick.
+  std::span<const std::string> happened() const { return happened_; }
+  /// Judges all events at `now`. @return the reason to stop, if one stops the run
+  Result<std::optional<std::string>> judge(Time now);
+  /// The State of the scenario's events; nothing when it has none.
+  void save(ByteWriter& w) const;
+  void load(ByteReader& r);
+
+ private:
+  const Simulation& simulation_;
+  std::vector<std::string> names_;
+  mutable std::vector<ValueExpression> values_;
+  mutable std::vector<std::optional<double>> computed_;
+  mutable std::uint32_t computing_ = 0;  ///< values below this index are those of now
+  std::vector<Event> events_;
+  std::vector<std::string> happened_;
+};
+
+}  // namespace sandlot

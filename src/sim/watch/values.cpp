@@ -1,0 +1,454 @@
+#include "sim/watch/values.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "base/text.h"
+#include "sim/watch/monitor.h"
+
+namespace sandlot {
+namespace {
+
+using Is = ValueFound::Is;
+
+ValueFound number(double value, const char* unit) { return {Is::value, value, unit}; }
+
+/// "rover/laser" and "ranges[3]" of "rover/laser.ranges[3]".
+std::pair<std::string_view, std::string_view> cut(std::string_view address) {
+  const std::size_t dot = address.find('.');
+  if (dot == std::string_view::npos) return {address, {}};
+  return {address.substr(0, dot), address.substr(dot + 1)};
+}
+
+std::string_view robot_of(std::string_view path) { return path.substr(0, path.find('/')); }
+
+const char* joint_unit(model::JointType type, std::string_view what) {
+  const bool slides = type == model::JointType::prismatic;
+  if (what == "position") return slides ? "m" : "rad";
+  if (what == "velocity") return slides ? "m/s" : "rad/s";
+  return slides ? "N" : "Nm";
+}
+
+bool has_joints(const Simulation& simulation) { return simulation.engine().capabilities().joints; }
+
+}  // namespace
+
+bool NamedValue::take(What what, std::size_t skip, const ValueFound& found) {
+  if (found.is != Is::value && found.is != Is::absent) return false;
+  what_ = what;
+  skip_ = skip;
+  unit_ = found.unit;
+  return true;
+}
+
+bool NamedValue::resolve() {
+  what_ = What::nothing;
+  revision_ = simulation_->revision();
+  const auto [thing, rest] = cut(address_);
+  if (rest.empty()) {
+    const auto named = simulation_->monitor().find_value(address_);
+    if (!named) return false;
+    index_ = *named;
+    return take(What::named, 0, number(0, ""));
+  }
+  auto path = parse_value_path(rest);
+  if (!path) return false;
+  path_ = std::move(*path);
+  const std::string& first = path_.front().key;
+  if (thing == "sim") {
+    if (path_.size() != 1) return false;
+    if (first == "time") return take(What::time, 1, number(0, "s"));
+    if (first == "tick") return take(What::tick, 1, number(0, "1"));
+    if (first == "errors") return take(What::all_errors, 1, number(0, "1"));
+    return first == "revision" && take(What::revision, 1, number(0, "1"));
+  }
+  if (thing == "values") {
+    const auto named = simulation_->monitor().find_value(first);
+    if (!named || path_.size() != 1) return false;
+    index_ = *named;
+    return take(What::named, 1, number(0, ""));
+  }
+  const Simulation::Entity* const entity = simulation_->find_entity(robot_of(thing));
+  if (!entity) return false;
+  entity_ = entity;
+  if (entity->instance.name == thing) return resolve_thing(*entity);
+  for (const auto& device : entity->devices) {
+    if (device->path == thing) return resolve_device(*device);
+    for (const auto* slots : {&device->topics, &device->commands})
+      for (const Simulation::Slot& slot : *slots) {
+        if (std::string_view(slot.topic->name()).substr(1) != thing) continue;
+        topic_ = slot.topic.get();
+        if (take(What::topic, 0, topic_->value(path_))) return true;
+        if (path_.size() != 1) return false;
+        if (first == "count") return take(What::topic_count, 1, number(0, "1"));
+        return first == "stamp" && take(What::topic_stamp, 1, number(0, "s"));
+      }
+  }
+  for (const auto& program : entity->programs)
+    if (program->path == thing) return resolve_program(*program);
+  return false;
+}
+
+bool NamedValue::resolve_thing(const Simulation::Entity& entity) {
+  const auto pose_or_twist = [&](std::size_t at, What pose, What twist) {
+    if (path_.size() <= at) return false;
+    const auto rest = std::span(path_).subspan(at + 1);
+    if (path_[at].key == "pose") return take(pose, at + 1, value_at(Pose(), rest));
+    return path_[at].key == "twist" && take(twist, at + 1, value_at(Velocity(), rest));
+  };
+  const Engine& engine = simulation_->engine();
+  const model::Model& model = *entity.instance.model;
+  const std::string& first = path_.front().key;
+  if (first == "errors" && path_.size() == 1) return take(What::errors, 1, number(0, "1"));
+  if (first == "links" && path_.size() > 2) {
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      if (sanitised(model.links[i].name) != path_[1].key) continue;
+      index_ = engine.bodies(entity.id)[i].index;
+      return pose_or_twist(2, What::body_pose, What::body_twist);
+    }
+    return false;
+  }
+  if (first == "joints" && path_.size() == 3 && has_joints(*simulation_)) {
+    const std::string& what = path_[2].key;
+    if (what != "position" && what != "velocity" && what != "effort") return false;
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      if (sanitised(model.joints[i].name) != path_[1].key) continue;
+      index_ = engine.joints(entity.id)[i].index;
+      return take(What::joint, 2, number(0, joint_unit(model.joints[i].type, what)));
+    }
+    return false;
+  }
+  index_ = engine.bodies(entity.id).front().index;
+  return pose_or_twist(0, What::model_pose, What::body_twist);
+}
+
+bool NamedValue::resolve_device(const Simulation::Device& device) {
+  device_ = &device;
+  topic_ = device.topics.empty() ? nullptr : device.topics.front().topic.get();
+  const PoolBase& pool = simulation_->pool(device);
+  const std::string& first = path_.front().key;
+  const auto rest = std::span<const ValueStep>(path_).subspan(1);
+  // What is spelt out goes first: a field called `state` is found behind `reading.`.
+  if (!rest.empty()) {
+    if (first == "reading" && topic_ && take(What::topic, 1, topic_->value(rest))) return true;
+    if (first == "parameter" &&
+        take(What::parameter, 1, pool.value(device.index, ValuePart::parameter, rest)))
+      return true;
+    if (first == "state" && take(What::state, 1, pool.value(device.index, ValuePart::state, rest)))
+      return true;
+  }
+  if (topic_ && take(What::topic, 0, topic_->value(path_))) return true;
+  if (take(What::parameter, 0, pool.value(device.index, ValuePart::parameter, path_))) return true;
+  if (take(What::state, 0, pool.value(device.index, ValuePart::state, path_))) return true;
+  if (path_.size() != 1) return false;
+  if (first == "sample") return take(What::sample, 1, number(0, "1"));
+  if (!topic_) return false;
+  if (first == "count") return take(What::topic_count, 1, number(0, "1"));
+  return first == "stamp" && take(What::topic_stamp, 1, number(0, "s"));
+}
+
+bool NamedValue::resolve_program(const Simulation::ProgramEntry& entry) {
+  program_ = &entry;
+  const Program& program = *entry.program;
+  const auto rest = std::span<const ValueStep>(path_).subspan(1);
+  const std::string& first = path_.front().key;
+  if (first == "parameter" && !rest.empty() &&
+      take(What::program_parameter, 1, program.value(ValuePart::parameter, rest)))
+    return true;
+  if (first == "state" && !rest.empty() &&
+      take(What::program_state, 1, program.value(ValuePart::state, rest)))
+    return true;
+  if (take(What::program_parameter, 0, program.value(ValuePart::parameter, path_))) return true;
+  if (take(What::program_state, 0, program.value(ValuePart::state, path_))) return true;
+  return first == "steps" && rest.empty() && take(What::steps, 1, number(0, "1"));
+}
+
+ValueFound NamedValue::look() const {
+  const auto rest = std::span<const ValueStep>(path_).subspan(skip_);
+  const Engine& engine = simulation_->engine();
+  switch (what_) {
+    case What::nothing: break;
+    case What::time: return number(simulation_->now().s(), "");
+    case What::tick: return number(static_cast<double>(simulation_->tick_index()), "");
+    case What::revision: return number(static_cast<double>(simulation_->revision()), "");
+    case What::all_errors: return number(simulation_->setup().errors, "");
+    case What::errors: return number(entity_->instance.errors, "");
+    case What::named: {
+      const auto value = simulation_->monitor().value(index_);
+      return value ? number(*value, "") : ValueFound{Is::absent};
+    }
+    case What::model_pose: return value_at(engine.pose(entity_->id), rest);
+    case What::body_pose: return value_at(engine.states()[index_].X_WB, rest);
+    case What::body_twist: return value_at(engine.states()[index_].V_WB, rest);
+    case What::joint: {
+      const JointState& joint = engine.joint_states()[index_];
+      const char what = rest.front().key.front();
+      return number(what == 'p' ? joint.position : what == 'v' ? joint.velocity : joint.effort, "");
+    }
+    case What::topic: return topic_->count > 0 ? topic_->value(rest) : ValueFound{Is::absent};
+    case What::topic_count: return number(static_cast<double>(topic_->count), "");
+    case What::topic_stamp: return topic_->count > 0 ? number(topic_->stamp.s(), "") : ValueFound{Is::absent};
+    case What::parameter:
+      return simulation_->pool(*device_).value(device_->index, ValuePart::parameter, rest);
+    case What::state: return simulation_->pool(*device_).value(device_->index, ValuePart::state, rest);
+    case What::sample: return number(static_cast<double>(simulation_->timing(*device_).sample), "");
+    case What::program_parameter: return program_->program->value(ValuePart::parameter, rest);
+    case What::program_state: return program_->program->value(ValuePart::state, rest);
+    case What::steps: return number(static_cast<double>(program_->steps), "");
+  }
+  return {Is::absent};
+}
+
+std::optional<double> NamedValue::read() {
+  if (revision_ != simulation_->revision()) {
+    std::string unit = std::move(unit_);  // it stays known when the thing goes
+    resolve();
+    if (what_ == What::nothing) unit_ = std::move(unit);
+  }
+  const ValueFound found = look();
+  return found.is == Is::value ? std::optional(found.value) : std::nullopt;
+}
+
+namespace {
+
+/// Puts `path` behind "rover/laser", with `part.` between them where the bare address means something else.
+class Lister {
+ public:
+  explicit Lister(const ValueVisit& visit) : visit_(visit) {}
+  ValueVisit under(const std::string& thing, const char* part) {
+    return [this, thing, part](ValueEntry entry) {
+      std::string address = thing + "." + entry.path;
+      if (!seen_.insert(address).second) address = thing + "." + part + "." + entry.path;
+      entry.path = std::move(address);
+      visit_(entry);
+    };
+  }
+  void one(const std::string& address, const char* unit, const char* help, double value) {
+    visit_({address, unit, help, Is::value, value});
+  }
+  bool fresh(const std::string& address) { return seen_.insert(address).second; }
+
+ private:
+  const ValueVisit& visit_;
+  std::set<std::string> seen_;
+};
+
+void list_topic(const TopicBase& topic, const ValueVisit& visit) {
+  topic.list_values([&](ValueEntry entry) {
+    if (topic.count == 0) entry.is = Is::absent;
+    visit(std::move(entry));
+  });
+}
+
+void list_thing(const Simulation& simulation, const Simulation::Entity& entity, const ValueVisit& visit) {
+  const Engine& engine = simulation.engine();
+  const model::Model& model = *entity.instance.model;
+  const std::string& name = entity.instance.name;
+  const auto bodies = engine.bodies(entity.id);
+  const auto prefixed = [&](const std::string& prefix) {
+    return [&visit, prefix](ValueEntry entry) {
+      entry.path = prefix + "." + entry.path;
+      visit(std::move(entry));
+    };
+  };
+  list_values(engine.pose(entity.id), "", "Pose of the model frame in the world.", "",
+              prefixed(name + ".pose"));
+  if (!model.is_static || entity.instance.motion)
+    list_values(engine.states()[bodies.front().index].V_WB, "", "", "", prefixed(name + ".twist"));
+  if (!entity.devices.empty())
+    visit({name + ".errors", "1", "Factor on the errors of all its devices.", Is::value,
+           entity.instance.errors});
+  if (model.links.size() > 1)
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      const std::string link = name + ".links." + sanitised(model.links[i].name);
+      const BodyState& state = engine.states()[bodies[i].index];
+      list_values(state.X_WB, "", "Pose of the link in the world.", "", prefixed(link + ".pose"));
+      list_values(state.V_WB, "", "", "", prefixed(link + ".twist"));
+    }
+  if (!has_joints(simulation)) return;
+  const auto joints = engine.joints(entity.id);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (model.joints[i].type == model::JointType::fixed) continue;
+    const JointState& state = engine.joint_states()[joints[i].index];
+    const std::string joint = name + ".joints." + sanitised(model.joints[i].name);
+    const auto type = model.joints[i].type;
+    visit({joint + ".position", joint_unit(type, "position"), "", Is::value, state.position});
+    visit({joint + ".velocity", joint_unit(type, "velocity"), "", Is::value, state.velocity});
+    visit({joint + ".effort", joint_unit(type, "effort"), "What the motor put in.", Is::value, state.effort});
+  }
+}
+
+/// Parameters that have a value: not the keys of all the stages that a stage of noise is none of.
+ValueVisit given(ValueVisit visit) {
+  return [visit = std::move(visit)](ValueEntry entry) {
+    if (entry.is != Is::absent || entry.list) visit(std::move(entry));
+  };
+}
+
+void list_entity(const Simulation& simulation, const Simulation::Entity& entity, const ValueVisit& visit) {
+  list_thing(simulation, entity, visit);
+  Lister lister(visit);
+  for (const auto& device : entity.devices) {
+    const PoolBase& pool = simulation.pool(*device);
+    if (!device->topics.empty())
+      list_topic(*device->topics.front().topic, lister.under(device->path, "reading"));
+    pool.list_values(device->index, ValuePart::parameter, given(lister.under(device->path, "parameter")));
+    pool.list_values(device->index, ValuePart::state, lister.under(device->path, "state"));
+    if (lister.fresh(device->path + ".sample"))
+      lister.one(device->path + ".sample", "1", "Index of the next sample.",
+                 static_cast<double>(simulation.timing(*device).sample));
+    for (const auto* slots : {&device->topics, &device->commands})
+      for (const Simulation::Slot& slot : *slots) {
+        const std::string topic = slot.topic->name().substr(1);
+        if (&slot != device->topics.data()) list_topic(*slot.topic, lister.under(topic, "reading"));
+        if (lister.fresh(topic + ".count"))
+          lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(slot.topic->count));
+      }
+  }
+  for (const auto& program : entity.programs) {
+    program->program->list_values(ValuePart::parameter, given(lister.under(program->path, "parameter")));
+    program->program->list_values(ValuePart::state, lister.under(program->path, "state"));
+    if (lister.fresh(program->path + ".steps"))
+      lister.one(program->path + ".steps", "1", "Control steps so far.", static_cast<double>(program->steps));
+  }
+}
+
+/// What an unknown address was meant to be.
+Error no_such(const Simulation& simulation, std::string_view address) {
+  const std::string shown(address.substr(0, 100));
+  const auto [thing, rest] = cut(address);
+  const Simulation::Entity* const entity = simulation.find_entity(robot_of(thing));
+  std::vector<std::string> things{"sim"};
+  if (!simulation.monitor().value_names().empty()) things.emplace_back("values");
+  for (const std::string& name : simulation.monitor().value_names()) things.push_back(name);
+  bool known = thing == "sim" || thing == "values" || (entity && entity->instance.name == thing);
+  if (entity) {
+    things.push_back(entity->instance.name);
+    for (const auto& device : entity->devices) {
+      things.push_back(device->path);
+      for (const auto* slots : {&device->topics, &device->commands})
+        for (const Simulation::Slot& slot : *slots) things.push_back(slot.topic->name().substr(1));
+    }
+    for (const auto& program : entity->programs) things.push_back(program->path);
+    for (const std::string& each : things) known = known || each == thing;
+  } else {
+    for (const auto& each : simulation.entities()) things.push_back(each->instance.name);
+  }
+  if (!known) return {"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, things)};
+  std::vector<std::string> addresses;
+  if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision", "sim.errors"};
+  if (thing == "values")
+    for (const std::string& name : simulation.monitor().value_names()) addresses.push_back("values." + name);
+  if (entity)
+    list_entity(simulation, *entity, [&, wanted = std::string_view(thing)](const ValueEntry& entry) {
+      if (cut(entry.path).first == wanted) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
+    });
+  if (rest.empty()) {
+    std::string example;
+    if (!addresses.empty()) example = "name one of its values, such as " + addresses.front();
+    return {"'" + shown + "' is no number", example};
+  }
+  // The parts of a group: everything that begins with it.
+  std::vector<std::string> parts;
+  for (const std::string& each : addresses)
+    if (starts_with(each, std::string(address) + ".") || starts_with(each, std::string(address) + "["))
+      parts.push_back(each);
+  if (!parts.empty()) return {"'" + shown + "' is no number but a group of them", suggestion("", parts)};
+  return {"'" + std::string(thing) + "' has no value '" + std::string(rest.substr(0, 100)) + "'",
+          suggestion(address, addresses)};
+}
+
+std::string_view without_slash(std::string_view address) {
+  return starts_with(address, "/") ? address.substr(1) : address;
+}
+
+}  // namespace
+
+/// The words of expressions: addresses, as far as they reach.
+class SimulationNames final : public Names {
+ public:
+  SimulationNames(const Simulation& simulation, std::span<const std::string> known)
+      : simulation_(simulation), known_(known) {}
+
+  std::size_t match(std::string_view text) const override {
+    const auto in_address = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) ||
+             std::string_view("_./-[]").find(c) != std::string_view::npos;
+    };
+    std::size_t end = 0;
+    while (end < text.size() && end < longest_address && in_address(text[end])) ++end;
+    // A '/' or '-' may belong to the name or be an operator: the longest that names something wins.
+    for (std::size_t n = end; n > 0; --n) {
+      if (n < end && text[n] != '/' && text[n] != '-') continue;
+      const std::string_view candidate = text.substr(0, n);
+      if (std::find(known_.begin(), known_.end(), candidate) != known_.end()) return n;
+      if (NamedValue(simulation_, std::string(candidate)).resolve()) return n;
+    }
+    return 0;
+  }
+  Error unknown(std::string_view word) const override { return no_such(simulation_, word); }
+
+ private:
+  static constexpr std::size_t longest_address = 300;
+  const Simulation& simulation_;
+  std::span<const std::string> known_;
+};
+
+Result<NamedValue> NamedValue::find(const Simulation& simulation, std::string_view address) {
+  address = without_slash(trim(address));
+  NamedValue value(simulation, std::string(address));
+  if (!value.resolve()) return no_such(simulation, address);
+  return value;
+}
+
+NamedValue NamedValue::find_or_wait(const Simulation& simulation, std::string_view address) {
+  NamedValue value(simulation, std::string(without_slash(trim(address))));
+  value.resolve();
+  return value;
+}
+
+void list_values(const Simulation& simulation, std::string_view entity, const ValueVisit& visit) {
+  if (entity.empty()) {
+    visit({"sim.time", "s", "Simulated time.", Is::value, simulation.now().s()});
+    visit({"sim.tick", "1", "Ticks so far.", Is::value, static_cast<double>(simulation.tick_index())});
+    visit({"sim.revision", "1", "Counts spawns, deletions and level changes.", Is::value,
+           static_cast<double>(simulation.revision())});
+    visit({"sim.errors", "1", "Factor on the errors of all devices.", Is::value, simulation.setup().errors});
+    const Monitor& watch = simulation.monitor();
+    for (std::uint32_t i = 0; i < watch.value_names().size(); ++i) {
+      const auto value = watch.value(i);
+      visit({"values." + watch.value_names()[i], "", "Named by the scenario.", value ? Is::value : Is::absent,
+             value.value_or(0)});
+    }
+  }
+  for (const auto& each : simulation.entities()) {
+    const bool is_static = each->instance.model->is_static && !each->instance.motion && each->devices.empty();
+    if (entity.empty() ? !is_static : each->instance.name == entity) list_entity(simulation, *each, visit);
+  }
+}
+
+Result<ValueExpression> ValueExpression::compile(const Simulation& simulation, std::string_view text,
+                                                 const Place& place, std::span<const std::string> known) {
+  SL_ASSIGN(Expression expression,
+            Expression::compile(without_slash(trim(text)), SimulationNames(simulation, known), place));
+  std::vector<NamedValue> inputs;
+  for (const std::string& address : expression.inputs())
+    inputs.push_back(NamedValue::find_or_wait(simulation, address));
+  return ValueExpression(std::move(expression), std::move(inputs));
+}
+
+std::string ValueExpression::unit() const {
+  return inputs_.size() == 1 && inputs_.front().address() == text() ? inputs_.front().unit() : "";
+}
+
+std::optional<Expression::Evaluated> ValueExpression::evaluate() {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const auto value = inputs_[i].read();
+    if (!value) return std::nullopt;
+    numbers_[i] = *value;
+  }
+  return expression_.evaluate(numbers_);
+}
+
+}  // namespace sandlot

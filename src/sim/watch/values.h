@@ -1,0 +1,116 @@
+#pragma once
+/// Every number of a running simulation by its address: `rover.pose.x`, `rover/laser.ranges[3]`.
+///
+///   sim.time|tick|revision|errors                   simulated time [s], tick, revision of the Model, factor on all errors
+///   values.NAME or NAME                             a value that the scenario names
+///   rover.pose.x|y|z|roll|pitch|yaw                 of the model frame in the world [m, rad]
+///   rover.twist.linear.x, .angular.z                of the first link, in the world [m/s, rad/s]
+///   rover.errors                                    factor on the errors of all its devices
+///   rover.links.NAME.pose.x, .twist.linear.x        of a link, in the world
+///   rover.joints.NAME.position|velocity|effort      [rad or m, ... per s, Nm or N]
+///   rover/laser.PATH                                a device: its reading, else a parameter, else its state, else
+///                                                   sample (index of the next one) or count (messages so far)
+///   rover/laser.reading.PATH, .parameter.PATH, .state.PATH      where one hides another
+///   rover/laser/ranges.PATH                         the message of one level, by the topic's name; also commands
+///   rover/controller.PATH                           a program: a parameter, else its state, else steps
+///
+/// Reading changes nothing. An address once found follows its thing through spawns, deletions and level changes; what
+/// is gone, has not been measured yet or lies beyond the end of a list has no value.
+/// Threads   read() belongs to the thread that calls tick(), between ticks or in observers and rules.
+/// Cost      read() compares names along the path, and allocates only after the Model has changed.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/values.h"
+#include "sim/watch/expression.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot {
+
+class NamedValue {
+ public:
+  /// An error names the nearest address.
+  static Result<NamedValue> find(const Simulation& simulation, std::string_view address);
+  /// As find(), but what is not there (any more) has no value instead: after a restore.
+  static NamedValue find_or_wait(const Simulation& simulation, std::string_view address);
+
+  const std::string& address() const { return address_; }
+  const std::string& unit() const { return unit_; }
+  /// The value now, or nothing.
+  std::optional<double> read();
+
+ private:
+  friend class SimulationNames;
+  enum class What : std::uint8_t {
+    nothing,
+    time,
+    tick,
+    revision,
+    all_errors,
+    errors,
+    named,
+    model_pose,
+    body_pose,
+    body_twist,
+    joint,
+    topic,
+    topic_count,
+    topic_stamp,
+    parameter,
+    state,
+    sample,
+    program_parameter,
+    program_state,
+    steps,
+  };
+  NamedValue(const Simulation& simulation, std::string address)
+      : simulation_(&simulation), address_(std::move(address)) {}
+  /// Finds what the address means now; false: nothing.
+  bool resolve();
+  bool resolve_thing(const Simulation::Entity& entity);
+  bool resolve_device(const Simulation::Device& device);
+  bool resolve_program(const Simulation::ProgramEntry& program);
+  bool take(What what, std::size_t skip, const ValueFound& found);
+  ValueFound look() const;
+
+  const Simulation* simulation_;
+  std::string address_, unit_;
+  ValuePath path_;
+  std::size_t skip_ = 0;  ///< steps of the path that chose `what_`
+  What what_ = What::nothing;
+  std::uint64_t revision_ = 0;
+  const Simulation::Entity* entity_ = nullptr;
+  const Simulation::Device* device_ = nullptr;
+  const Simulation::ProgramEntry* program_ = nullptr;
+  const TopicBase* topic_ = nullptr;
+  std::uint32_t index_ = 0;  ///< of a body, joint or named value
+};
+
+/// Calls `visit` for every address of one entity (a robot or object with all its devices), or of the whole simulation
+/// when `entity` is "". Lists of numbers are one entry. Static things are left out of the whole.
+void list_values(const Simulation& simulation, std::string_view entity, const ValueVisit& visit);
+
+/// An expression over a simulation's values.
+class ValueExpression {
+ public:
+  /// @param known  further addresses that may be written, although they may name nothing now
+  static Result<ValueExpression> compile(const Simulation& simulation, std::string_view text,
+                                         const Place& place = {}, std::span<const std::string> known = {});
+  const std::string& text() const { return expression_.text(); }
+  std::span<const std::string> addresses() const { return expression_.inputs(); }
+  /// The unit when the expression is nothing but an address; "" else.
+  std::string unit() const;
+  /// Nothing when one of the addresses has no value now.
+  std::optional<Expression::Evaluated> evaluate();
+
+ private:
+  ValueExpression(Expression expression, std::vector<NamedValue> inputs)
+      : expression_(std::move(expression)), inputs_(std::move(inputs)), numbers_(inputs_.size()) {}
+  Expression expression_;
+  std::vector<NamedValue> inputs_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace sandlot

@@ -1,0 +1,79 @@
+#pragma once
+/// The parts that a Simulation consists of, for the files of sim/ and those who read it by address.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/kind.h"
+#include "sim/world/program.h"
+
+namespace sandlot {
+
+struct Faults;  // sim/world/faults.h
+
+struct SimulationParts {
+  struct Slot {
+    std::unique_ptr<TopicBase> topic;
+    std::uint32_t level = 0;
+  };
+  struct Device {
+    explicit Device(std::shared_ptr<const model::DeviceDecl> declared)
+        : shared_decl(std::move(declared)), decl(*shared_decl) {}
+    std::shared_ptr<const model::DeviceDecl> shared_decl;  ///< by devices alike
+    const model::DeviceDecl& decl;
+    std::string path;
+    std::uint64_t key = 0;
+    std::uint32_t kind = 0;   ///< index into pools_
+    std::uint32_t index = 0;  ///< in its pool
+    std::uint32_t levels = 1;
+    std::vector<Slot> topics, commands;
+    std::vector<std::pair<std::string, Pose>> frames;  ///< beside its own, as X_SF
+    double errors = 1;                                 ///< the world's factor on errors times the robot's
+    std::shared_ptr<Faults> faults;                    ///< null: it has none
+  };
+  /// When a device takes its samples: looked at in every tick, so those of a pool lie side by side.
+  struct Timing {
+    Time start;                ///< due times count from here
+    std::uint64_t sample = 0;  ///< index of the next sample
+    Time last;                 ///< time of the previous sample
+    Time due;                  ///< of the next one; follows from start, sample and the rate
+    double rate_hz = 0;        ///< 0: every tick
+    bool requested = false;
+  };
+  /// Where an order of a program goes at the active levels.
+  struct Route {
+    Device* device = nullptr;
+    Slot* slot = nullptr;  ///< null: nothing takes it
+  };
+  struct ProgramEntry {
+    explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
+        : shared_decl(std::move(declared)), decl(*shared_decl) {}
+    std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< by robots alike
+    const model::ControllerDecl& decl;
+    std::string path;
+    std::uint64_t key = 0;
+    const ControllerKind* kind = nullptr;
+    std::unique_ptr<Program> program;
+    Controller* controller = nullptr;  ///< the program's, where that is all there is to it
+    std::shared_ptr<const Description>
+        description;                       ///< shared by robots alike: its `robot` is the first of them
+    std::vector<Route> routes;             ///< per actuator of the description
+    std::vector<const TopicBase*> topics;  ///< what its readings point to at the active levels
+    std::vector<std::uint64_t> seen;       ///< message counts at its previous step
+    Command command;
+    std::uint64_t steps = 0;
+    bool ended = false;
+    std::optional<std::string> failure;  ///< in its last step; ends the run
+  };
+  struct Entity {
+    model::Instance instance;
+    InstanceId id;
+    std::uint64_t key = 0;
+    std::uint64_t serial = 0;  ///< creation order over the whole run
+    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<ProgramEntry>> programs;
+  };
+};
+
+}  // namespace sandlot

@@ -1,0 +1,228 @@
+/// The last phase of a tick: the frame for the observers.
+///
+/// Recording wants a copy of all messages and a hash of all State at every tick, so both are made as cheap as they can
+/// be: memory goes round between here and those who hold frames, and what did not change is not hashed again.
+#include <algorithm>
+
+#include "base/hash_each.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot {
+namespace {
+
+/// Objects that are handed out and filled again once nobody else holds them. They are asked for in the order in which
+/// they were made, which is that in which a queue gives them back.
+template <class T>
+class Ring {
+ public:
+  /// @return one that nobody else holds
+  template <class Make>
+  std::shared_ptr<T> take(Make&& make) {
+    if (!items_.empty() && items_[next_].use_count() == 1) {
+      const std::size_t taken = next_;
+      next_ = (next_ + 1) % items_.size();
+      return items_[taken];
+    }
+    std::shared_ptr<T> made = make();
+    // Of a queue that grew while a disk stood still no more than this stays for good.
+    constexpr std::size_t most = 64;
+    if (items_.size() < most) {
+      items_.insert(items_.begin() + static_cast<std::ptrdiff_t>(next_), made);
+      next_ = (next_ + 1) % items_.size();
+    }
+    return made;
+  }
+
+ private:
+  std::vector<std::shared_ptr<T>> items_;
+  std::size_t next_ = 0;  ///< the one that was handed out first
+};
+
+/// Resizes without giving the memory of elements back: those cut off are kept in `spare` and used again.
+template <class T>
+void resize_keeping(std::vector<T>& items, std::size_t size, std::vector<T>& spare) {
+  while (items.size() > size) {
+    spare.push_back(std::move(items.back()));
+    items.pop_back();
+  }
+  while (items.size() < size) {
+    if (spare.empty()) spare.emplace_back();
+    items.push_back(std::move(spare.back()));
+    spare.pop_back();
+  }
+}
+
+}  // namespace
+
+struct Simulation::Publishing {
+  Ring<Frame> frames;
+  std::vector<LogEntry> spare_log;
+
+  /// Copies of the topics' messages, by their place in creation order.
+  std::vector<Ring<TopicBase>> copies;
+
+  struct Part {
+    std::uint64_t version = 0;  ///< see fill_hashes
+    std::uint64_t hash = 0;
+  };
+  std::vector<Part> parts;
+  std::uint64_t hashed_tick = ~std::uint64_t{0};  ///< what `parts` tells of
+  std::uint64_t hashed_revision = 0;
+  std::shared_ptr<const std::vector<std::string>> part_names;
+  std::uint64_t part_names_revision = 0;
+
+  struct Waiting {
+    std::size_t part, begin, end;  ///< its bytes in `bytes`
+    std::uint64_t key;
+  };
+  ByteWriter bytes;
+  std::vector<Waiting> waiting;
+  std::vector<HashJob> jobs;
+
+  void hash_waiting() {
+    jobs.clear();
+    for (const Waiting& each : waiting)
+      jobs.push_back(
+          {bytes.bytes().subspan(each.begin, each.end - each.begin), each.key, &parts[each.part].hash});
+    hash64_each(jobs);
+    waiting.clear();
+    bytes.clear();
+  }
+};
+
+void Simulation::publish() {
+  const PhaseTimer timer(phase_times_, Phase::publish);
+  if (observers_.empty()) return;
+  if (!publishing_) publishing_ = std::make_shared<Publishing>();
+  const std::shared_ptr<Frame> frame = publishing_->frames.take([] { return std::make_shared<Frame>(); });
+  frame->tick = tick_;
+  frame->now = now_;
+  frame->step = step_;
+  frame->revision = revision_;
+  if (wants_.instances) fill_instances(*frame, wants_.links);
+  else frame->instances.clear();
+  fill_topics(*frame);
+  resize_keeping(frame->log, log_.size(), publishing_->spare_log);
+  std::copy(log_.begin(), log_.end(), frame->log.begin());
+  fill_hashes(*frame);
+  frame->contacts.clear();
+  if (wants_.contacts) fill_contacts(*frame);
+  const std::shared_ptr<const Frame> shown = frame;
+  for (Observer* observer : observers_) observer->on_frame(shown);
+}
+
+std::shared_ptr<const Frame> Simulation::look(const Observer::Wants& wants) const {
+  auto frame = std::make_shared<Frame>();
+  frame->tick = tick_;
+  frame->now = now_;
+  frame->step = step_;
+  frame->revision = revision_;
+  fill_instances(*frame, wants.links);
+  if (wants.contacts) fill_contacts(*frame);
+  return frame;
+}
+
+void Simulation::fill_contacts(Frame& frame) const {
+  const std::span<const Contact> contacts = engine_->contacts();
+  frame.contacts.assign(contacts.begin(), contacts.end());
+}
+
+void Simulation::fill_instances(Frame& frame, bool links) const {
+  frame.instances.resize(entities_.size());
+  const auto states = engine_->states();
+  for (std::size_t i = 0; i < entities_.size(); ++i) {
+    const Entity& entity = *entities_[i];
+    FrameInstance& out = frame.instances[i];
+    out.name = entity.instance.name;
+    out.id = entity.id;
+    out.serial = entity.serial;
+    out.is_robot = entity.instance.is_robot;
+    out.X_WM = engine_->pose(entity.id);
+    const std::span<const BodyId> bodies = engine_->bodies(entity.id);
+    out.V_WB = states[bodies.front().index].V_WB;
+    out.model = entity.instance.model;
+    out.X_WL.clear();
+    if (links)
+      for (const BodyId body : bodies) out.X_WL.push_back(states[body.index].X_WB);
+  }
+}
+
+void Simulation::fill_topics(Frame& frame) {
+  frame.topics.clear();  // before copies are asked for: those that this frame held are free now
+  if (!wants_.messages) return;
+  std::size_t place = 0;
+  for (const auto& entity : entities_)
+    for (const auto& device : entity->devices)
+      for (const Slot& slot : device->topics) {
+        const std::size_t own = place++;
+        if (slot.topic->count == 0 || slot.topic->stamp != now_) continue;
+        if (publishing_->copies.size() <= own) publishing_->copies.resize(own + 1);
+        Ring<TopicBase>& ring = publishing_->copies[own];
+        const auto clone = [&] { return std::shared_ptr<TopicBase>(slot.topic->clone()); };
+        std::shared_ptr<TopicBase> copy = ring.take(clone);
+        // Devices come and go, and with them the places.
+        if (copy->name() != slot.topic->name() || std::string_view(copy->type()) != slot.topic->type()) {
+          ring = {};
+          copy = ring.take(clone);
+        }
+        copy->copy_from(*slot.topic);
+        frame.topics.push_back(std::move(copy));
+      }
+}
+
+/// A device that only senses changes when it takes a sample, a program when it runs and when its orders are carried
+/// out; both also by requests. Between those their hashes stay.
+void Simulation::fill_hashes(Frame& frame) {
+  frame.hash = 0;
+  frame.parts.clear();
+  if (!wants_.hash) return;
+  Publishing& p = *publishing_;
+  const bool goes_on = p.hashed_tick + 1 == tick_ && p.hashed_revision == revision_ && outcomes_.empty() &&
+                       !p.parts.empty();
+  std::size_t count = 0;
+  constexpr std::uint64_t always = ~std::uint64_t{0};
+  const auto add = [&](std::uint64_t key, std::uint64_t version, auto&& fill) {
+    const std::size_t part = count++;
+    if (part == p.parts.size()) p.parts.emplace_back();
+    if (goes_on && version != always && p.parts[part].version == version) return;
+    p.parts[part].version = version;
+    const std::size_t begin = p.bytes.size();
+    fill(p.bytes);
+    p.waiting.push_back({part, begin, p.bytes.size(), key});
+    // Not all at once: what was written should still be in the cache when it is read.
+    constexpr std::size_t enough = 64 * 1024;
+    if (p.bytes.size() > enough) p.hash_waiting();
+  };
+  add(0, always, [&](ByteWriter& w) { save_run(w); });
+  for (const auto& entity : entities_) {
+    add(entity->key, always, [&](ByteWriter& w) { engine_->save(entity->id, w); });
+    for (const auto& device : entity->devices) {
+      const bool only_senses = pools_[device->kind].kind->phases == phase_sense;
+      // Samples and commands only become more, and so does their sum.
+      std::uint64_t version = timing(*device).sample;
+      for (const Slot& slot : device->commands) version += slot.topic->count;
+      add(device->key, only_senses ? version : always, [&](ByteWriter& w) { save_device(*device, w); });
+    }
+    for (const auto& program : entity->programs)
+      add(program->key, 2 * program->steps + (program->command.orders().empty() ? 0 : 1),
+          [&](ByteWriter& w) { save_program(*program, w); });
+  }
+  p.hash_waiting();
+  p.parts.resize(count);
+  p.hashed_tick = tick_;
+  p.hashed_revision = revision_;
+  frame.hash = p.parts.front().hash;
+  frame.parts.push_back(frame.hash);
+  for (std::size_t i = 1; i < count; ++i) {
+    frame.parts.push_back(p.parts[i].hash);
+    frame.hash = hash_combine(frame.hash, p.parts[i].hash);
+  }
+  // Which parts there are changes with the Model alone.
+  if (!p.part_names || p.part_names_revision != revision_) {
+    p.part_names = name_parts();
+    p.part_names_revision = revision_;
+  }
+  frame.part_names = p.part_names;
+}
+
+}  // namespace sandlot

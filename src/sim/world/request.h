@@ -1,0 +1,96 @@
+#pragma once
+/// Everything that may reach into a running simulation from outside, as one variant.
+///
+/// Requests take effect at the beginning of the next tick, in a fixed order (administrators first, then robots by
+/// creation, then sequence), and are logged: the log plus the seed is the replay.
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/node.h"
+#include "geometry/pose.h"
+#include "model/model.h"
+
+namespace sandlot {
+
+/// Who asks.
+struct Source {
+  enum class Kind : std::uint8_t {
+    admin,
+    robot,    ///< a client that drives a robot
+    program,  ///< a controller in this process; its orders are carried out after all others
+  } kind = Kind::admin;
+  std::uint64_t id = 0;  ///< a client's own number; of a program, its robot's creation order
+};
+
+/// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".
+struct CommandRequest {
+  std::string target;
+  std::string type;              ///< ROS type
+  std::vector<std::byte> bytes;  ///< the message, as base/bytes.h writes it
+};
+/// A tunable field: "robot1/laser.noise/white" or "robot1/wander.speed".
+struct ParameterRequest {
+  std::string target;
+  std::string field;
+  Node value;
+};
+/// Which levels of a device are active from now on.
+struct LevelRequest {
+  std::string device;
+  std::vector<std::string> levels;
+};
+struct SpawnRequest {
+  model::Instance instance;
+};
+struct DeleteRequest {
+  std::string name;
+};
+struct PoseRequest {
+  std::string name;
+  Pose X_WM;
+};
+/// A new device for a robot that is there. Its programs go on as they are; those that look devices up find it.
+struct LoadDeviceRequest {
+  std::string robot;
+  model::DeviceDecl device;
+};
+/// Takes a device from its robot; what it held is released. Refused while a program of the robot needs it.
+struct UnloadDeviceRequest {
+  std::string device;
+};
+/// Pulls at a thing with a spring for a while (sim/world/pull.h); `hold` 0 lets go.
+struct PullRequest {
+  std::string name;
+  std::string link;        ///< "": the first
+  Vec3 point_L, target_W;  ///< [m]
+  Time hold = Time::from_s(0.25);
+};
+/// Take a sample at the end of the next tick although none is due.
+struct SampleRequest {
+  std::string device;
+};
+
+using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
+                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest>;
+
+/// "command", "parameter", ...: of the alternatives of Request in their order.
+const char* request_kind(std::size_t index);
+/// What a request is about: "rover/drive".
+const std::string& request_target(const Request& request);
+
+/// A request as bytes, for the log. Places (file:line) are not kept.
+void write_request(ByteWriter& w, const Request& request);
+/// Reads what write_request wrote; false when the bytes are not that.
+bool read_request(ByteReader& r, Request& request);
+
+/// What became of a request, in the order they were carried out.
+struct Outcome {
+  Source source;
+  std::uint64_t sequence = 0;
+  Status status;
+};
+
+}  // namespace sandlot

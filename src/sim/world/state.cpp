@@ -1,0 +1,385 @@
+/// State as bytes: the hash of a tick, and snapshots.
+///
+/// A snapshot holds the Model (setup and instances in creation order) and the State of each entity. Restoring
+/// always builds a new world from the Model and then loads the State, so the same process and a new one take the
+/// same path.
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "sim/load/plugin.h"
+#include "sim/watch/monitor.h"
+#include "sim/world/faults.h"
+#include "sim/world/model_bytes.h"
+#include "sim/world/simulation.h"
+#include "sim/world/snapshot.h"
+
+namespace sandlot {
+namespace {
+
+/// Keeps each part of a snapshot readable on its own: a part that reads too much or too little is noticed there.
+template <class Fill>
+void write_block(ByteWriter& w, Fill&& fill) {
+  const std::size_t at = w.size();
+  write(w, std::uint64_t{0});
+  fill(w);
+  const std::uint64_t size = w.size() - at - 8;
+  std::memcpy(w.buffer().data() + at, &size, 8);
+}
+
+ByteReader read_block(ByteReader& r) {
+  std::uint64_t size = 0;
+  read(r, size);
+  return ByteReader(r.take(size));
+}
+
+Error damaged(const std::string& what) { return {"the snapshot is damaged: " + what, "take it again"}; }
+
+/// A snapshot that is whole, read up to the State.
+struct Opened {
+  std::string profile;
+  model::Setup setup;
+  std::vector<std::uint64_t> serials;
+  ByteReader states{std::span<const std::byte>()};  ///< the blocks of State
+};
+
+Result<Opened> open(std::span<const std::byte> snapshot) {
+  ByteReader r(snapshot);
+  std::array<char, 8> magic{};
+  std::uint32_t version = 0;
+  read(r, magic);
+  if (!r.ok() || magic != snapshot_magic) return Error{"this is no Sandlot snapshot"};
+  read(r, version);
+  if (!r.ok()) return damaged("it is cut short");
+  if (version != snapshot_version)
+    return Error{"the snapshot has version " + std::to_string(version),
+                 "this Sandlot reads version " + std::to_string(snapshot_version)};
+  Opened out;
+  read(r, out.profile);
+  if (!r.ok() || r.remaining() < 8) return damaged("it is cut short");
+  std::uint64_t checksum = 0;
+  ByteReader tail(snapshot.last(8));
+  read(tail, checksum);
+  if (checksum != hash64(snapshot.first(snapshot.size() - 8))) return damaged("its checksum does not fit");
+  r = ByteReader(r.take(r.remaining() - 8));
+  ByteReader block = read_block(r);
+  if (!r.ok() || !read_setup(block, out.setup)) return damaged("the model cannot be read");
+  out.serials.resize(out.setup.instances.size());
+  for (std::uint64_t& serial : out.serials) read(block, serial);
+  if (!block.ok() || block.remaining() != 0) return damaged("the model cannot be read");
+  out.states = r;
+  return out;
+}
+
+}  // namespace
+
+bool is_snapshot(std::span<const std::byte> bytes) {
+  return bytes.size() >= snapshot_magic.size() &&
+         std::memcmp(bytes.data(), snapshot_magic.data(), snapshot_magic.size()) == 0;
+}
+
+Result<SnapshotInfo> examine_snapshot(std::span<const std::byte> bytes) {
+  SL_ASSIGN(Opened opened, open(bytes));
+  SnapshotInfo info{snapshot_version, std::move(opened.profile), std::move(opened.setup), {}, 0, 0};
+  // These begin the run's own State, see Simulation::save_run.
+  ByteReader run = read_block(opened.states);
+  read(run, info.now);
+  read(run, info.tick);
+  read(run, info.revision);
+  if (!run.ok()) return damaged("the run's own state cannot be read");
+  return info;
+}
+
+void Simulation::save_device(const Device& device, ByteWriter& w) const {
+  const Timing& when = timing(device);
+  write(w, device.levels);
+  write(w, when.start);
+  write(w, when.sample);
+  write(w, when.last);
+  write(w, when.requested);
+  for (const Slot& slot : device.topics) slot.topic->save(w);
+  for (const Slot& slot : device.commands) slot.topic->save(w);
+  pools_[device.kind].pool->save(device.index, w);
+}
+
+void Simulation::load_device(Device& device, ByteReader& r) {
+  Timing& when = pools_[device.kind].timing[device.index];
+  std::uint32_t levels = 0;
+  read(r, levels);
+  // Kinds look for their active levels without asking whether there are any.
+  const std::size_t known = std::max<std::size_t>(pools_[device.kind].kind->levels.size(), 1);
+  if (levels == 0 || (known < 32 && levels >> known != 0)) return r.fail();
+  set_active_levels(device, levels);
+  read(r, when.start);
+  read(r, when.sample);
+  read(r, when.last);
+  read(r, when.requested);
+  // Due times are computed from these: what cannot be would overflow.
+  constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
+  if (when.start < Time{} || when.start > now_ || when.last < Time{} || when.last > now_ ||
+      when.sample > most_samples)
+    return r.fail();
+  for (Slot& slot : device.topics) slot.topic->load(r);
+  for (Slot& slot : device.commands) slot.topic->load(r);
+  pools_[device.kind].pool->load(device.index, r);
+  if (r.ok()) plan_next_sample(device);
+}
+
+void Simulation::save_program(const ProgramEntry& program, ByteWriter& w) {
+  write(w, program.steps);
+  write(w, program.ended);
+  write(w, program.seen);
+  write(w, static_cast<std::uint32_t>(program.command.orders().size()));
+  for (const Command::Order& order : program.command.orders()) {
+    const auto bytes = program.command.bytes(order);
+    write(w, order.slot);
+    write(w, static_cast<std::uint32_t>(bytes.size()));
+    w.raw(bytes.data(), bytes.size());
+  }
+  program.program->save(w);
+}
+
+bool Simulation::load_program(ProgramEntry& program, ByteReader& r) {
+  const std::size_t readings = program.seen.size();
+  read(r, program.steps);
+  read(r, program.ended);
+  read(r, program.seen);
+  std::uint32_t orders = 0;
+  read(r, orders);
+  program.command.clear();
+  for (std::uint32_t i = 0; i < orders && r.ok(); ++i) {
+    std::uint32_t slot = 0, size = 0;
+    read(r, slot);
+    read(r, size);
+    const auto bytes = r.take(size);
+    if (slot >= program.description->actuators.size()) return false;
+    program.command.set_bytes(slot, bytes);
+  }
+  program.program->load(r);
+  return r.ok() && program.seen.size() == readings;
+}
+
+void Simulation::save_run(ByteWriter& w) const {
+  write(w, now_);
+  write(w, tick_);
+  write(w, revision_);
+  write(w, next_serial_);
+  write(w, refused_commands_);
+  for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
+  for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
+  monitor_->save(w);
+  // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
+  const bool scaled = errors_scaled();
+  // Orders of failures; few devices have any faults.
+  const bool ordered = std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) {
+    return pool.faulty > 0 && std::any_of(pool.devices.begin(), pool.devices.end(),
+                                          [](const Device* device) { return is_ordered(*device); });
+  });
+  if (!pulls_.empty() || !holds_.empty() || scaled || ordered)
+    write_block(w, [&](ByteWriter& block) { save_pulls(block); });
+  if (!holds_.empty() || scaled || ordered) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
+  if (scaled || ordered) write_block(w, [&](ByteWriter& block) { save_errors(block); });
+  if (!ordered) return;
+  write_block(w, [&](ByteWriter& block) {
+    for (const auto& entity : entities_)
+      for (const auto& device : entity->devices) {
+        if (!is_ordered(*device)) continue;
+        write(block, device->path);
+        write(block, device->faults->order.kind);
+        write(block, device->faults->order.factor);
+      }
+  });
+}
+
+void Simulation::save_pulls(ByteWriter& w) const {
+  for (const Pull& pull : pulls_) Pull::state(pull, [&](const auto& member) { write(w, member); });
+}
+
+bool Simulation::load_pulls(ByteReader& r) {
+  while (r.ok() && r.remaining() > 0) {
+    Pull pull;
+    Pull::state(pull, [&](auto& member) { read(r, member); });
+    const auto entity = std::find_if(entities_.begin(), entities_.end(),
+                                     [&](const auto& each) { return each->serial == pull.serial; });
+    if (!r.ok() || entity == entities_.end() || pull.link >= (*entity)->instance.model->links.size() ||
+        !is_finite(pull.point_L) || !is_finite(pull.target_W))
+      return false;
+    pulls_.push_back(pull);
+  }
+  return r.ok();
+}
+
+bool Simulation::load_run(ByteReader& r) {
+  read(r, now_);
+  read(r, tick_);
+  read(r, revision_);
+  read(r, next_serial_);
+  read(r, refused_commands_);
+  constexpr std::int64_t most_ns = std::int64_t{1} << 61;  // 73 years, and far from an overflow
+  if (now_.ns < 0 || now_.ns > most_ns) return false;
+  for (const auto& rule : rules_) {
+    ByteReader block = read_block(r);
+    rule->load(block);
+  }
+  for (const auto& medium : media_) {
+    ByteReader block = read_block(r);
+    medium->load(block);
+  }
+  monitor_->load(r);
+  if (!r.ok() || r.remaining() == 0) return r.ok();
+  ByteReader pulls = read_block(r);
+  if (!r.ok() || !load_pulls(pulls)) return false;
+  if (r.remaining() == 0) return true;
+  ByteReader holds = read_block(r);
+  read(holds, holds_);
+  if (!r.ok() || !holds.ok() || holds.remaining() != 0) return false;
+  if (r.remaining() == 0) return true;
+  read_block(r);  // factors on errors: for the hash; the Model has brought them
+  if (!r.ok() || r.remaining() == 0) return r.ok();
+  ByteReader failures = read_block(r);
+  while (failures.ok() && failures.remaining() > 0) {
+    std::string path;
+    FailureOrder order;
+    read(failures, path);
+    read(failures, order.kind);
+    read(failures, order.factor);
+    Device* const device = failures.ok() ? find_device(path) : nullptr;
+    if (!device || order.kind > FailureOrder::Kind::noisy || !(order.factor >= 0 && order.factor <= 1000))
+      return false;
+    Pool& pool = pools_[device->kind];
+    if (!order_failure(*device, *pool.pool, pool.faulty, order)) return false;
+  }
+  return r.ok() && failures.ok();
+}
+
+/// Calls visit(path, key, fill) for each entity's part of the State, in creation order.
+template <class Visit>
+void Simulation::for_each_state(Visit&& visit) const {
+  for (const auto& entity : entities_) {
+    visit(entity->instance.name, entity->key, [&](ByteWriter& w) { engine_->save(entity->id, w); });
+    for (const auto& device : entity->devices)
+      visit(device->path, device->key, [&](ByteWriter& w) { save_device(*device, w); });
+    for (const auto& program : entity->programs)
+      visit(program->path, program->key, [&](ByteWriter& w) { save_program(*program, w); });
+  }
+}
+
+/// Fills the hash of each part, the run's own first. @return the hash of all
+std::uint64_t Simulation::hash_parts(std::vector<std::uint64_t>& parts) const {
+  parts.clear();
+  scratch_.clear();
+  save_run(scratch_);
+  std::uint64_t hash = hash64(scratch_.bytes());
+  parts.push_back(hash);
+  for_each_state([&](const std::string&, std::uint64_t key, auto&& fill) {
+    scratch_.clear();
+    fill(scratch_);
+    parts.push_back(hash64(scratch_.bytes(), key));
+    hash = hash_combine(hash, parts.back());
+  });
+  return hash;
+}
+
+std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
+  auto names = std::make_shared<std::vector<std::string>>(1, "sim");
+  for (const auto& entity : entities_) {
+    names->push_back(entity->instance.name);
+    for (const auto& device : entity->devices) names->push_back(device->path);
+    for (const auto& program : entity->programs) names->push_back(program->path);
+  }
+  return names;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::vector<std::uint64_t> parts;
+  return hash_parts(parts);
+}
+
+std::vector<SubHash> Simulation::sub_hashes() const {
+  std::vector<std::uint64_t> parts;
+  hash_parts(parts);
+  const auto names = name_parts();
+  std::vector<SubHash> out;
+  for (std::size_t i = 0; i < parts.size(); ++i) out.push_back({(*names)[i], parts[i]});
+  return out;
+}
+
+const std::string& Simulation::profile() {
+  static const std::string text = [] {
+    // The ray scene says what Embree was pinned to; the rest is fixed at build time.
+    const RayScene scene;
+#if defined(__AVX2__)
+    const char* const march = "x86-64-v3";
+#else
+    const char* const march = "baseline";
+#endif
+    return std::string("sandlot-1 ") + march + " fp-contract-off sleef-cinz ode-double embree-" + scene.isa();
+  }();
+  return text;
+}
+
+std::vector<std::byte> Simulation::snapshot() const {
+  ByteWriter w;
+  write(w, snapshot_magic);
+  write(w, snapshot_version);
+  write(w, profile());
+  write_block(w, [&](ByteWriter& block) {
+    std::vector<const model::Instance*> instances;
+    for (const auto& entity : entities_) instances.push_back(&entity->instance);
+    write_setup(block, setup_, instances);
+    for (const auto& entity : entities_) write(block, entity->serial);
+  });
+  write_block(w, [&](ByteWriter& block) { save_run(block); });
+  for_each_state([&](const std::string&, std::uint64_t, auto&& fill) { write_block(w, fill); });
+  const std::uint64_t checksum = hash64(w.bytes());
+  write(w, checksum);
+  return std::move(w.buffer());
+}
+
+Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byte> snapshot,
+                                                        const SimulationOptions& options,
+                                                        Diagnostics& diagnostics) {
+  SL_ASSIGN(Opened opened, open(snapshot));
+  if (opened.profile != profile())
+    diagnostics.warn({"the snapshot was taken with another numeric profile (" + opened.profile + ")",
+                      "this one is " + profile() + "; the run will go on, but with other last bits"});
+  ByteReader& r = opened.states;
+  const auto whole = [](const ByteReader& block) { return block.ok() && block.remaining() == 0; };
+
+  for (model::PluginDecl& decl : opened.setup.plugins) {
+    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
+    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
+  }
+  std::unique_ptr<Simulation> sim(new Simulation(std::move(opened.setup), options));
+  Diagnostics said_before;  // these warnings were given when the run began
+  SL_TRY(sim->build(said_before));
+  for (std::size_t i = 0; i < sim->entities_.size(); ++i) sim->entities_[i]->serial = opened.serials[i];
+  ByteReader run = read_block(r);
+  if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
+  for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
+    Entity& entity = *sim->entities_[i];
+    ByteReader bodies = read_block(r);
+    if (!sim->engine_->load(entity.id, bodies) || !whole(bodies))
+      return damaged("the bodies of '" + entity.instance.name + "' cannot be read");
+    for (const auto& device : entity.devices) {
+      ByteReader state = read_block(r);
+      sim->load_device(*device, state);
+      if (!whole(state)) return damaged("the device '" + device->path + "' cannot be read");
+    }
+    for (const auto& program : entity.programs) {
+      ByteReader state = read_block(r);
+      if (!load_program(*program, state) || !whole(state))
+        return damaged("the program '" + program->path + "' cannot be read");
+    }
+    sim->point_programs_at_active_levels(entity);
+  }
+  sim->programs_changed_ = true;
+  if (!whole(r)) return damaged("there is more in it than belongs there");
+  sim->arena_->execute([&] {
+    sim->update_scene();
+    sim->judge();
+  });
+  return sim;
+}
+
+}  // namespace sandlot
