@@ -134,7 +134,7 @@ struct Job {
     if (!version || !starts_with(*version, "1.") || !parse_number(version->substr(2), minor) || minor < 9)
       root.set_attribute("version", "1.9");
     Mover{folder_of(options.out), search}(root);
-    return xml_text(root, comment());
+    return formats::xml_text(root, comment());
   }
 
   Result<std::string> scenario_to_sdf() const {
@@ -142,7 +142,7 @@ struct Job {
     for (model::Instance& instance : setup.instances) give_terrain_a_file(instance);
     SL_ASSIGN(Xml root, formats::sdf_of(setup, diagnostics));
     Mover{folder_of(options.out), search}(root);
-    return xml_text(root, comment());
+    return formats::xml_text(root, comment());
   }
 
   /// A model with parameters as the one model of a file.
@@ -154,7 +154,7 @@ struct Job {
     give_terrain_a_file(named);
     SL_ASSIGN(Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
                                            : formats::sdf_of(named, diagnostics));
-    return xml_text(root, comment());
+    return formats::xml_text(root, comment());
   }
 
   Result<std::string> model_to_urdf() const {
@@ -165,7 +165,7 @@ struct Job {
                    "name a file with one <model>"};
     SL_ASSIGN(Xml root, formats::urdf_of(content.instances.front(), diagnostics));
     Mover{folder_of(options.out), search}(root);
-    return xml_text(root, comment());
+    return formats::xml_text(root, comment());
   }
 
   /// A scenario that runs the file: ticks of 10 ms or as fine as the sensors need, physics at the file's own step.

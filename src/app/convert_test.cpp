@@ -196,7 +196,7 @@ TEST(Convert, AModelWrittenFromItsFieldsReadsBackEqual) {
     auto root = formats::sdf_of(setup, diagnostics);
     ASSERT_TRUE(root) << root.error().text();
     const Folder folder;
-    const model::Setup back = loaded(folder.write("back.sdf", xml_text(*root)));
+    const model::Setup back = loaded(folder.write("back.sdf", formats::xml_text(*root)));
     ASSERT_EQ(back.instances.size(), setup.instances.size());
     for (std::size_t i = 0; i < setup.instances.size(); ++i) {
       model::Model was = *setup.instances[i].model, is = *back.instances[i].model;
@@ -327,13 +327,13 @@ TEST(Convert, RandomModelsReadBackEqualToTheLastBit) {
     Diagnostics diagnostics;
     auto root = formats::sdf_of(instance, diagnostics);
     ASSERT_TRUE(root) << root.error().text();
-    auto back = formats::parse_sdf(xml_text(*root), "back.sdf", diagnostics);
-    ASSERT_TRUE(back) << back.error().text() << xml_text(*root);
+    auto back = formats::parse_sdf(formats::xml_text(*root), "back.sdf", diagnostics);
+    ASSERT_TRUE(back) << back.error().text() << formats::xml_text(*root);
     EXPECT_TRUE(diagnostics.warnings.empty()) << diagnostics.warnings.front().text();
     EXPECT_EQ(back->instances.at(0).X_WM, instance.X_WM);
     const auto is = bytes_of(*back->instances[0].model), was = bytes_of(*instance.model);
     const auto at = std::mismatch(is.begin(), is.end(), was.begin(), was.end()).first - is.begin();
-    ASSERT_TRUE(is == was) << "from byte " << at << " of " << was.size() << "\n" << xml_text(*root);
+    ASSERT_TRUE(is == was) << "from byte " << at << " of " << was.size() << "\n" << formats::xml_text(*root);
   }
 }
 
@@ -533,7 +533,7 @@ TEST(Convert, TextOfAnyKindSurvivesWriting) {
   child.name = "a";
   child.text = "x < y && \"z\" > 'w' \xc3\xa9";
   root.children.push_back(child);
-  const auto back = parse_xml(xml_text(root, "two -- hyphens -"), "f", {});
+  const auto back = parse_xml(formats::xml_text(root, "two -- hyphens -"), "f", {});
   ASSERT_TRUE(back) << back.error().text();
   EXPECT_EQ(*back->attribute("version"), *root.attribute("version"));
   EXPECT_EQ(back->children.at(0).text, child.text);

@@ -134,7 +134,7 @@ TEST_P(EachBuilder, IsTheSameWhenItComesFromAFile) {
   auto xml = formats::sdf_of(*direct, diagnostics);
   ASSERT_TRUE(xml) << xml.error().text();
   const std::string file = testing::TempDir() + "builder_" + GetParam() + ".sdf";
-  std::ofstream(file) << xml_text(*xml);
+  std::ofstream(file) << formats::xml_text(*xml);
   const auto again = load_instance(file, GetParam(), {}, diagnostics);
   std::filesystem::remove(file);
   ASSERT_TRUE(again) << again.error().text();
