@@ -1,8 +1,9 @@
 # What `cmake --install` leaves: bin/sandlot, lib/libsandlot.so, the headers for users' own controllers and programs, the CMake
 # package and pkg-config file, and the models, worlds and scenarios. Everything finds everything relative to itself.
 include(CMakePackageConfigHelpers)
-set_target_properties(sandlot PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
+set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
+install(TARGETS sandlot_bench_command RUNTIME DESTINATION bin OPTIONAL)  # `./dev bench` builds it
 install(TARGETS sandlot_library LIBRARY DESTINATION lib)
 set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}

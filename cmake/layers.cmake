@@ -17,6 +17,7 @@ function(sandlot_layer)
     target_include_directories(${target} PUBLIC src)
     target_link_libraries(${target} PUBLIC ${libraries})
     sandlot_precompile(${target})
+    sandlot_unity(${target})
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE src)
@@ -51,6 +52,37 @@ function(sandlot_precompile target)
   endif()
   target_link_libraries(${target} PRIVATE fmt::fmt)
   target_precompile_headers(${target} REUSE_FROM ${pch})
+endfunction()
+
+# With SANDLOT_UNITY, batches of sources that the compiler sees as one file: what they all include is read once, and
+# what they all instantiate is made once. tools/unity_groups.py says which files go together: none that define the same name.
+# Sources with options of their own stay alone.
+function(sandlot_unity target)
+  if(NOT SANDLOT_UNITY)
+    return()
+  endif()
+  find_package(Python3 COMPONENTS Interpreter QUIET)
+  if(NOT Python3_FOUND)
+    message(WARNING "SANDLOT_UNITY needs python3: every source is compiled alone")
+    set(SANDLOT_UNITY OFF PARENT_SCOPE)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  list(JOIN sources "\n" lines)
+  file(WRITE ${CMAKE_BINARY_DIR}/unity/${target}.txt "${lines}\n")
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/unity_groups.py
+    INPUT_FILE ${CMAKE_BINARY_DIR}/unity/${target}.txt WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+    OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[^\n]+" groups "${groups}")
+  foreach(line IN LISTS groups)
+    string(REGEX REPLACE "\t.*" "" source "${line}")
+    string(REGEX REPLACE ".*\t" "" group "${line}")
+    set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # A batch includes its sources as if they were headers, and a local name may be another source's global one.
+  target_compile_options(${target} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
 # Reads src/layers.txt (its format is explained there) and makes the libraries. Leaves their names, bottom to top,

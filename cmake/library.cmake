@@ -2,6 +2,9 @@
 # there is one of everything in a process. Tests link the layers themselves.
 set(objects "")
 foreach(layer IN LISTS sandlot_layers)
+  if(layer STREQUAL "bench")
+    continue()  # a program of its own
+  endif()
   get_target_property(type sandlot_${layer} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
     list(APPEND objects $<TARGET_OBJECTS:sandlot_${layer}>)
@@ -20,3 +23,11 @@ target_include_directories(sandlot_library INTERFACE src ${SANDLOT_GENERATED})
 # Calls within the library go straight to their functions, whatever a program or plugin calls its own. ODE's calls of
 # dRandInt are bound by the loader, to ours: see physics/rigid/library.h.
 target_link_options(sandlot_library PRIVATE LINKER:-Bsymbolic-functions)
+
+# sandlot-bench, which `sandlot bench` runs: it carries the engines that ours are measured against.
+add_executable(sandlot_bench_command src/bench/entry.cpp $<TARGET_OBJECTS:sandlot_bench>)
+set_target_properties(sandlot_bench_command PROPERTIES OUTPUT_NAME sandlot-bench)
+target_link_libraries(sandlot_bench_command PRIVATE sandlot_library sandlot_sdformat)
+foreach(name IN LISTS names)
+  target_link_libraries(sandlot_bench_command PRIVATE ${${name}})
+endforeach()

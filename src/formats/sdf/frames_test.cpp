@@ -1,4 +1,5 @@
 /// Our frames against libsdformat's, on random models: nested models, frames on frames, everything relative to anything.
+#ifdef SANDLOT_HAS_SDFORMAT
 #include "formats/sdf/frames.h"
 
 #include <filesystem>
@@ -200,3 +201,4 @@ TEST(Frames, LongChainsAreFollowedWithoutRecursion) {
 
 }  // namespace
 }  // namespace sandlot::formats
+#endif

@@ -1,7 +1,9 @@
 #include "formats/sdf/urdf.h"
 
 #include <gtest/gtest.h>
+#ifdef SANDLOT_HAS_SDFORMAT
 #include <sdf/sdf.hh>
+#endif
 
 #include "base/math.h"
 #include "base/text.h"
@@ -303,6 +305,7 @@ TEST(Urdf, WhatIsUnknownIsNamedOnceWithItsLine) {
   EXPECT_EQ(r.warnings.size(), 6u);
 }
 
+#ifdef SANDLOT_HAS_SDFORMAT
 /// Poses of links against libsdformat's own URDF reader, for chains of movable joints, which it keeps.
 TEST(Urdf, AgreesWithLibsdformatOnWhereLinksAre) {
   std::uint32_t state = 12345;
@@ -349,6 +352,7 @@ TEST(Urdf, AgreesWithLibsdformatOnWhereLinksAre) {
     }
   }
 }
+#endif
 
 }  // namespace
 }  // namespace sandlot::formats
