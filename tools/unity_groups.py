@@ -70,8 +70,10 @@ class File:
         elif match := ALIAS.match(line):
             self.hidden.add((space, match[1] or match[2] or match[3]))
         elif match := VALUE.match(line):
-            private = unnamed or line.startswith("static ")
-            (self.hidden if private else self.shown).add((space, match[1]))
+            names = self.hidden if unnamed or line.startswith("static ") else self.shown
+            names.add((space, match[1]))
+            if match[0][-1] in "={":  # constexpr double g = 9.81, h = 0.001;
+                names.update((space, word) for word in re.findall(r",\s*(\w+)\s*=(?!=)", line))
 
     @classmethod
     def of(cls, path):
