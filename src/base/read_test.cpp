@@ -5,7 +5,6 @@
 #include <array>
 
 #include "base/describe.h"
-#include "geometry/pose.h"
 
 namespace sandlot {
 namespace {
@@ -13,6 +12,14 @@ namespace {
 enum class Colour : std::uint8_t { red, green };
 constexpr EnumName<Colour> colour_names[] = {{"red", Colour::red}, {"green", Colour::green}};
 std::span<const EnumName<Colour>> enum_names(Colour) { return colour_names; }
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+  static constexpr std::size_t extent = 3;
+  double& operator[](std::size_t i) { return i == 0 ? x : i == 1 ? y : z; }
+  const double& operator[](std::size_t i) const { return i == 0 ? x : i == 1 ? y : z; }
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
 
 struct Inner {
   double white = 0.5;

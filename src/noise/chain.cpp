@@ -6,9 +6,7 @@
 #include "base/check.h"
 
 namespace sandlot {
-template Status read_value(const Node&, const Field&, std::vector<StageSpec>&, const std::string&);
-template Status set_part(std::vector<StageSpec>&, const Field&, std::string_view, const Node&,
-                         const std::string&);
+SL_COMPILE_FIELDS(StageSpec);
 template void write_tunables(ByteWriter&, const StageSpec&);
 template void read_tunables(ByteReader&, StageSpec&);
 template void write(ByteWriter&, const ChannelChain&);

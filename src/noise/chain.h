@@ -60,7 +60,7 @@ std::vector<StageSort> sorts_of(const char* unit) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     const auto one = [&]<class Sort>(const Sort& sort) {
       out.push_back({Sort::name, Sort::help, {}});
-      describe_struct(sort, "", unit, out.back().fields, false);
+      describe_struct(type_info<Sort>, &sort, "", unit, out.back().fields, false);
     };
     (one(std::variant_alternative_t<i + 1, typename StageType::Sorts>()), ...);
   }
@@ -100,9 +100,7 @@ struct ChannelChain {
 };
 
 // What the field lists of all stages make is compiled once, not with every kind of device.
-extern template Status read_value(const Node&, const Field&, std::vector<StageSpec>&, const std::string&);
-extern template Status set_part(std::vector<StageSpec>&, const Field&, std::string_view, const Node&,
-                                const std::string&);
+SL_EXTERN_FIELDS(StageSpec);
 extern template void write_tunables(ByteWriter&, const StageSpec&);
 extern template void read_tunables(ByteReader&, StageSpec&);
 extern template void write(ByteWriter&, const ChannelChain&);

@@ -9,9 +9,7 @@
 #include "noise/deviates.h"
 
 namespace sandlot {
-template Status read_value(const Node&, const Field&, std::vector<DepthStageSpec>&, const std::string&);
-template Status set_part(std::vector<DepthStageSpec>&, const Field&, std::string_view, const Node&,
-                         const std::string&);
+SL_COMPILE_FIELDS(DepthStageSpec);
 template void write_tunables(ByteWriter&, const DepthStageSpec&);
 template void read_tunables(ByteReader&, DepthStageSpec&);
 

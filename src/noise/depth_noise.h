@@ -127,10 +127,7 @@ void corrupt_depth(const DepthNoiseSpec& spec, std::span<float> depth_m, int wid
 
 std::vector<StageSort> depth_stage_sorts();
 
-extern template Status read_value(const Node&, const Field&, std::vector<DepthStageSpec>&,
-                                  const std::string&);
-extern template Status set_part(std::vector<DepthStageSpec>&, const Field&, std::string_view, const Node&,
-                                const std::string&);
+SL_EXTERN_FIELDS(DepthStageSpec);
 extern template void write_tunables(ByteWriter&, const DepthStageSpec&);
 extern template void read_tunables(ByteReader&, DepthStageSpec&);
 

@@ -8,9 +8,7 @@
 #include "noise/deviates.h"
 
 namespace sandlot {
-template Status read_value(const Node&, const Field&, std::vector<ImageStageSpec>&, const std::string&);
-template Status set_part(std::vector<ImageStageSpec>&, const Field&, std::string_view, const Node&,
-                         const std::string&);
+SL_COMPILE_FIELDS(ImageStageSpec);
 template void write_tunables(ByteWriter&, const ImageStageSpec&);
 template void read_tunables(ByteReader&, ImageStageSpec&);
 

@@ -65,10 +65,7 @@ struct ImageNoise {
 /// All sorts of stages, for lists and the schema.
 std::vector<StageSort> image_stage_sorts();
 
-extern template Status read_value(const Node&, const Field&, std::vector<ImageStageSpec>&,
-                                  const std::string&);
-extern template Status set_part(std::vector<ImageStageSpec>&, const Field&, std::string_view, const Node&,
-                                const std::string&);
+SL_EXTERN_FIELDS(ImageStageSpec);
 extern template void write_tunables(ByteWriter&, const ImageStageSpec&);
 extern template void read_tunables(ByteReader&, ImageStageSpec&);
 
