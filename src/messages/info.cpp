@@ -35,7 +35,10 @@ MessageInfo time_info(const char* name) {
   info.is_time = true;
   info.fields.push_back(
       {.name = "sec", .unit = "s", .help = "Whole seconds, rounded down.", .type = Wire::int32});
-  info.fields.push_back({.name = "nanosec", .unit = "ns", .help = "The rest.", .type = Wire::uint32});
+  info.fields.push_back({.name = "nanosec",
+                         .unit = "ns",
+                         .help = "Nanoseconds in addition to the whole seconds.",
+                         .type = Wire::uint32});
   set_least(info);
   return info;
 }
@@ -134,13 +137,13 @@ const MessageInfo& message_info<Pose>() {
     made.name = "geometry_msgs/msg/Pose";
     made.fields.push_back({.name = "position",
                            .unit = "m",
-                           .help = "Of the origin.",
+                           .help = "Position of the origin.",
                            .message = &message_info<msg::Point>(),
                            .offset = offsetof(Pose, p),
                            .stride = sizeof(Vec3)});
     made.fields.push_back({.name = "orientation",
                            .unit = "1",
-                           .help = "Quaternion.",
+                           .help = "Orientation as a quaternion.",
                            .message = &message_info<Quat>(),
                            .offset = offsetof(Pose, q),
                            .stride = sizeof(Quat)});
