@@ -89,6 +89,14 @@ void add_descriptions(const nlohmann::json& schema, const std::string& path, std
     for (const auto& [key, value] : schema.items()) add_descriptions(value, path + "/" + key, out);
 }
 
+struct Planted {
+  double range_m = 1, quality = 90;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"range", "m", "Farthest visible distance."}, s.range_m);
+    visit(Field{"quality", "1", "Of jpeg."}, s.quality);
+  }
+};
+
 TEST(HelpTexts, PlantedFaultsAreFound) {
   EXPECT_EQ(fault_of("JPEG quality."), "");
   EXPECT_EQ(fault_of("Offset of the clock."), "");  // not "Of"
@@ -100,13 +108,6 @@ TEST(HelpTexts, PlantedFaultsAreFound) {
   EXPECT_EQ(fault_of("Errors of the picture"), "does not end with a full stop");
   EXPECT_EQ(fault_of(""), "is empty");
 
-  struct Planted {
-    double range_m = 1, quality = 90;
-    static void fields(auto& s, auto&& visit) {
-      visit(Field{"range", "m", "Farthest visible distance."}, s.range_m);
-      visit(Field{"quality", "1", "Of jpeg."}, s.quality);
-    }
-  };
   std::vector<HelpText> texts;
   add_fields("planted", describe_fields<Planted>(), texts);
   EXPECT_EQ(faults_of(texts), "planted/quality: begins with 'Of': \"Of jpeg.\"\n");
