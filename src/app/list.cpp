@@ -74,11 +74,11 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   Section faults{
       "faults",
       "Faults",
-      "Keys of every device beside its kind's: `failures: [{kind: stuck, from: 3 s, until: 5 s}]`, "
+      "Keys of every device in addition to its kind's: `failures: [{kind: stuck, from: 3 s, until: 5 s}]`, "
       "`clock: {drift: 20e-6}`.",
       {}};
   faults.items.push_back({"failures",
-                          "Each entry of the list: a time in which the device is stuck, dead or noisy.",
+                          "Times in which the device is stuck, dead or noisy, one per entry of the list.",
                           describe_fields<FailureSpec>(),
                           {},
                           {},
@@ -345,7 +345,8 @@ int list(const ListOptions& options) {
     for (const Kind* kind : device_kinds()) {
       devices.emplace_back(kind->name, kind->describe());
       if (kind->presets.empty()) continue;
-      FieldInfo preset{"preset", "choice", "", "Ready-made keys; those beside it go before."};
+      FieldInfo preset{"preset", "choice", "",
+                       "Name of ready-made keys; keys given in addition take precedence."};
       for (const Preset& each : kind->presets) preset.choices.emplace_back(each.name);
       devices.back().second.push_back(std::move(preset));
     }

@@ -45,7 +45,7 @@ struct ServeFlags {
     verb.add_option("--address", options.address,
                     "Address to listen at; elsewhere than on this machine a token is needed to steer")
         ->capture_default_str();
-    verb.add_option("--token", options.token, "Who brings it may steer; one is made where none is given");
+    verb.add_option("--token", options.token, "Token that allows to steer; one is made where none is given");
     verb.add_option(
             "--allow-origin", options.origins,
             "Another site whose pages may connect: https://app.example.org; may be given several times")
@@ -138,7 +138,8 @@ struct RunFlags {
     verb.add_option("--record-topics", options.record_topics,
                     "Record these topics only, such as '/rover/*'; may be given several times")
         ->allow_extra_args(false);
-    verb.add_option("--record-compression", options.record_compression, "Of the recording's chunks")
+    verb.add_option("--record-compression", options.record_compression,
+                    "Compression of the recording's chunks")
         ->check(CLI::IsMember({"none", "lz4", "zstd"}));
     verb.add_option("--video", options.film.file, "Film the run: an .mp4, .mov or .mkv file");
     verb.add_option(

@@ -20,22 +20,25 @@ struct MotorSpec {
   double gear_ratio = 1.0, gear_efficiency = 1.0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"supply_voltage", "V", "Of the battery without load.", 0, 1e5, Field::tunable},
+    visit(Field{"supply_voltage", "V", "Voltage of the battery without load.", 0, 1e5, Field::tunable},
           s.supply_voltage_V);
-    visit(Field{"supply_resistance", "Ohm", "Of battery and power stage.", 0, 1e6}, s.supply_resistance_Ohm);
-    visit(Field{"resistance", "Ohm", "Of the winding.", 1e-6, 1e6}, s.resistance_Ohm);
-    visit(Field{"inductance", "H", "Of the winding; 0: the current follows at once.", 0, 1e3},
+    visit(Field{"supply_resistance", "Ohm", "Resistance of battery and power stage.", 0, 1e6},
+          s.supply_resistance_Ohm);
+    visit(Field{"resistance", "Ohm", "Resistance of the winding.", 1e-6, 1e6}, s.resistance_Ohm);
+    visit(Field{"inductance", "H", "Inductance of the winding; 0: the current follows at once.", 0, 1e3},
           s.inductance_H);
     visit(Field{"torque_constant", "Nm/A", "Torque per current; the back-EMF [V s/rad] is the same number.",
                 1e-9, 1e4},
           s.torque_constant);
-    visit(Field{"max_current", "A", "More is chopped by the power stage.", 0, 1e6, Field::tunable},
+    visit(Field{"max_current", "A", "Largest current, limited by the power stage.", 0, 1e6, Field::tunable},
           s.max_current_A);
-    visit(Field{"rotor_inertia", "kg m^2", "Of the rotor, before the gear.", 0, 1e3}, s.rotor_inertia_kgm2);
-    visit(Field{"friction", "Nm", "Coulomb friction, before the gear.", 0, 1e4}, s.friction_Nm);
-    visit(Field{"viscous_friction", "Nm s/rad", "Before the gear.", 0, 1e4}, s.viscous_friction);
+    visit(Field{"rotor_inertia", "kg m^2", "Moment of inertia of the rotor, before the gear.", 0, 1e3},
+          s.rotor_inertia_kgm2);
+    visit(Field{"friction", "Nm", "Coulomb friction before the gear.", 0, 1e4}, s.friction_Nm);
+    visit(Field{"viscous_friction", "Nm s/rad", "Viscous friction before the gear.", 0, 1e4},
+          s.viscous_friction);
     visit(Field{"gear_ratio", "1", "Turns of the motor per turn of the joint.", 1e-3, 1e5}, s.gear_ratio);
-    visit(Field{"gear_efficiency", "1", "Of the gear.", 0.01, 1}, s.gear_efficiency);
+    visit(Field{"gear_efficiency", "1", "Efficiency of the gear.", 0.01, 1}, s.gear_efficiency);
   }
 };
 

@@ -17,7 +17,7 @@ struct Pose {
   friend constexpr Vec3 operator*(const Pose& a, Vec3 point) { return a.p + rotate(a.q, point); }
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"position", "m", "x y z."}, s.p);
+    visit(Field{"position", "m", "Position x y z."}, s.p);
     visit(Field{"orientation", "1", "Quaternion w x y z."}, s.q);
   }
 };

@@ -46,8 +46,8 @@ struct PlanarPose {
   double theta_rad = 0;  ///< unwrapped
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Position."}, s.x_m);
-    visit(Field{"y", "m", "Position."}, s.y_m);
+    visit(Field{"x", "m", "Position along x."}, s.x_m);
+    visit(Field{"y", "m", "Position along y."}, s.y_m);
     visit(Field{"theta", "rad", "Heading, unwrapped."}, s.theta_rad);
   }
 };

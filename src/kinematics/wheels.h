@@ -38,9 +38,9 @@ struct PlanarMotion {
 
   friend constexpr bool operator==(const PlanarMotion&, const PlanarMotion&) = default;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m/s", "Forward."}, s.x);
-    visit(Field{"y", "m/s", "To the left."}, s.y);
-    visit(Field{"turn", "rad/s", "Counter-clockwise."}, s.turn);
+    visit(Field{"x", "m/s", "Displacement forward."}, s.x);
+    visit(Field{"y", "m/s", "Displacement to the left."}, s.y);
+    visit(Field{"turn", "rad/s", "Counter-clockwise turn."}, s.turn);
   }
 };
 

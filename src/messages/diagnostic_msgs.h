@@ -14,8 +14,8 @@ struct KeyValue {
   std::string key;
   std::string value;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"key", "", "The name."}, s.key);
-    visit(Field{"value", "", "The text."}, s.value);
+    visit(Field{"key", "", "Name of the value."}, s.key);
+    visit(Field{"value", "", "Value as text."}, s.value);
   }
 };
 
@@ -38,11 +38,11 @@ struct DiagnosticStatus {
     visit("STALE", stale);
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"level", "1", "0: well, 1: warning, 2: error, 3: no news."}, s.level);
-    visit(Field{"name", "", "The part."}, s.name);
-    visit(Field{"message", "", "In words."}, s.message);
-    visit(Field{"hardware_id", "", "Its number."}, s.hardware_id);
-    visit(Field{"values", "", "What else is known."}, s.values);
+    visit(Field{"level", "1", "Severity of the status. 0: well, 1: warning, 2: error, 3: no news."}, s.level);
+    visit(Field{"name", "", "Name of the part."}, s.name);
+    visit(Field{"message", "", "Description of the status."}, s.message);
+    visit(Field{"hardware_id", "", "Identifier of the hardware."}, s.hardware_id);
+    visit(Field{"values", "", "Additional values."}, s.values);
   }
 };
 
@@ -53,7 +53,7 @@ struct DiagnosticArray {
   std::vector<DiagnosticStatus> status;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"status", "", "The parts."}, s.status);
+    visit(Field{"status", "", "Statuses of the parts."}, s.status);
   }
 };
 

@@ -26,9 +26,9 @@ struct Pose2D {
   double y = 0;
   double theta = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Along x."}, s.x);
-    visit(Field{"y", "m", "Along y."}, s.y);
-    visit(Field{"theta", "rad", "Heading."}, s.theta);
+    visit(Field{"x", "m", "Component along x."}, s.x);
+    visit(Field{"y", "m", "Component along y."}, s.y);
+    visit(Field{"theta", "rad", "Heading of the pose."}, s.theta);
   }
 };
 
@@ -117,7 +117,7 @@ struct TransformStamped {
   Transform transform;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"child_frame_id", "", "The child."}, s.child_frame_id);
+    visit(Field{"child_frame_id", "", "Name of the child frame."}, s.child_frame_id);
     visit(Field{"transform", "", "Pose of the child in its parent."}, s.transform);
   }
 };
@@ -216,8 +216,8 @@ struct Wrench {
   Vec3 force;
   Vec3 torque;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"force", "N", "Force."}, s.force);
-    visit(Field{"torque", "Nm", "Torque."}, s.torque);
+    visit(Field{"force", "N", "Force vector."}, s.force);
+    visit(Field{"torque", "Nm", "Torque vector."}, s.torque);
   }
 };
 
@@ -228,7 +228,7 @@ struct WrenchStamped {
   Wrench wrench;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"wrench", "", "Acts at the origin of header.frame_id."}, s.wrench);
+    visit(Field{"wrench", "", "Wrench that acts at the origin of header.frame_id."}, s.wrench);
   }
 };
 

@@ -14,9 +14,9 @@ struct Point32 {
   float y = 0;
   float z = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Along x."}, s.x);
-    visit(Field{"y", "m", "Along y."}, s.y);
-    visit(Field{"z", "m", "Along z."}, s.z);
+    visit(Field{"x", "m", "Coordinate along x."}, s.x);
+    visit(Field{"y", "m", "Coordinate along y."}, s.y);
+    visit(Field{"z", "m", "Coordinate along z."}, s.z);
   }
 };
 
@@ -24,7 +24,9 @@ struct Point32 {
 struct Polygon {
   static constexpr const char* ros_type = "geometry_msgs/msg/Polygon";
   std::vector<Point32> points;
-  static void fields(auto& s, auto&& visit) { visit(Field{"points", "m", "The corners."}, s.points); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"points", "m", "Corners of the polygon."}, s.points);
+  }
 };
 
 /// A polygon in a frame.
@@ -50,14 +52,14 @@ struct Inertia {
   double iyz = 0;
   double izz = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"m", "kg", "Mass."}, s.m);
-    visit(Field{"com", "m", "Centre of mass."}, s.com);
-    visit(Field{"ixx", "kg m^2", "About x."}, s.ixx);
-    visit(Field{"ixy", "kg m^2", "Product xy."}, s.ixy);
-    visit(Field{"ixz", "kg m^2", "Product xz."}, s.ixz);
-    visit(Field{"iyy", "kg m^2", "About y."}, s.iyy);
-    visit(Field{"iyz", "kg m^2", "Product yz."}, s.iyz);
-    visit(Field{"izz", "kg m^2", "About z."}, s.izz);
+    visit(Field{"m", "kg", "Mass of the body."}, s.m);
+    visit(Field{"com", "m", "Centre of mass of the body."}, s.com);
+    visit(Field{"ixx", "kg m^2", "Moment of inertia about x."}, s.ixx);
+    visit(Field{"ixy", "kg m^2", "Product of inertia xy."}, s.ixy);
+    visit(Field{"ixz", "kg m^2", "Product of inertia xz."}, s.ixz);
+    visit(Field{"iyy", "kg m^2", "Moment of inertia about y."}, s.iyy);
+    visit(Field{"iyz", "kg m^2", "Product of inertia yz."}, s.iyz);
+    visit(Field{"izz", "kg m^2", "Moment of inertia about z."}, s.izz);
   }
 };
 

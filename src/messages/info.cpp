@@ -35,19 +35,25 @@ MessageInfo time_info(const char* name) {
   info.is_time = true;
   info.fields.push_back(
       {.name = "sec", .unit = "s", .help = "Whole seconds, rounded down.", .type = Wire::int32});
-  info.fields.push_back({.name = "nanosec", .unit = "ns", .help = "The rest.", .type = Wire::uint32});
+  info.fields.push_back({.name = "nanosec",
+                         .unit = "ns",
+                         .help = "Nanoseconds in addition to the whole seconds.",
+                         .type = Wire::uint32});
   set_least(info);
   return info;
 }
 
 /// A message of doubles that C++ keeps in another order or under other names.
-MessageInfo doubles_info(const char* name,
+MessageInfo doubles_info(const char* name, const std::string& noun,
                          std::initializer_list<std::pair<const char*, std::size_t>> members) {
   MessageInfo info;
   info.name = name;
   for (const auto& [member, offset] : members)
-    info.fields.push_back(
-        {.name = member, .type = Wire::float64, .offset = offset, .stride = sizeof(double)});
+    info.fields.push_back({.name = member,
+                           .help = "Component " + std::string(member) + " of the " + noun + ".",
+                           .type = Wire::float64,
+                           .offset = offset,
+                           .stride = sizeof(double)});
   set_least(info);
   return info;
 }
@@ -107,24 +113,24 @@ const MessageInfo& message_info<msg::Duration>() {
 template <>
 const MessageInfo& message_info<Vec3>() {
   static const MessageInfo info = with_memory<Vec3>(
-      doubles_info("geometry_msgs/msg/Vector3",
+      doubles_info("geometry_msgs/msg/Vector3", "vector",
                    {{"x", offsetof(Vec3, x)}, {"y", offsetof(Vec3, y)}, {"z", offsetof(Vec3, z)}}));
   return info;
 }
 template <>
 const MessageInfo& message_info<msg::Point>() {
   static const MessageInfo info = with_memory<msg::Point>(
-      doubles_info("geometry_msgs/msg/Point",
+      doubles_info("geometry_msgs/msg/Point", "point",
                    {{"x", offsetof(Vec3, x)}, {"y", offsetof(Vec3, y)}, {"z", offsetof(Vec3, z)}}));
   return info;
 }
 template <>
 const MessageInfo& message_info<Quat>() {
-  static const MessageInfo info = with_memory<Quat>(
-      doubles_info("geometry_msgs/msg/Quaternion", {{"x", offsetof(Quat, x)},
-                                                    {"y", offsetof(Quat, y)},
-                                                    {"z", offsetof(Quat, z)},
-                                                    {"w", offsetof(Quat, w)}}));
+  static const MessageInfo info = with_memory<Quat>(doubles_info("geometry_msgs/msg/Quaternion", "quaternion",
+                                                                 {{"x", offsetof(Quat, x)},
+                                                                  {"y", offsetof(Quat, y)},
+                                                                  {"z", offsetof(Quat, z)},
+                                                                  {"w", offsetof(Quat, w)}}));
   return info;
 }
 template <>
@@ -134,13 +140,13 @@ const MessageInfo& message_info<Pose>() {
     made.name = "geometry_msgs/msg/Pose";
     made.fields.push_back({.name = "position",
                            .unit = "m",
-                           .help = "Of the origin.",
+                           .help = "Position of the origin.",
                            .message = &message_info<msg::Point>(),
                            .offset = offsetof(Pose, p),
                            .stride = sizeof(Vec3)});
     made.fields.push_back({.name = "orientation",
                            .unit = "1",
-                           .help = "Quaternion.",
+                           .help = "Orientation as a quaternion.",
                            .message = &message_info<Quat>(),
                            .offset = offsetof(Pose, q),
                            .stride = sizeof(Quat)});

@@ -12,8 +12,8 @@ struct LineSegment {
   Point start;
   Point end;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"start", "m", "Its right end, as the scanner sees it."}, s.start);
-    visit(Field{"end", "m", "Its left end."}, s.end);
+    visit(Field{"start", "m", "Right end of the segment, as the scanner sees it."}, s.start);
+    visit(Field{"end", "m", "Left end of the segment, as the scanner sees it."}, s.end);
   }
 };
 
@@ -24,7 +24,7 @@ struct LineSegmentArray {
   std::vector<LineSegment> segments;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"segments", "m", "From the right to the left."}, s.segments);
+    visit(Field{"segments", "m", "Segments in order from right to left."}, s.segments);
   }
 };
 

@@ -30,7 +30,7 @@ struct Path {
   std::vector<PoseStamped> poses;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"poses", "", "In order."}, s.poses);
+    visit(Field{"poses", "", "Poses in order."}, s.poses);
   }
 };
 
@@ -43,11 +43,11 @@ struct MapMetaData {
   std::uint32_t height = 0;
   Pose origin;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"map_load_time", "s", "When it was loaded."}, s.map_load_time);
+    visit(Field{"map_load_time", "s", "Time at which the map was loaded."}, s.map_load_time);
     visit(Field{"resolution", "m", "Side of a cell."}, s.resolution);
-    visit(Field{"width", "1", "Cells along x."}, s.width);
-    visit(Field{"height", "1", "Cells along y."}, s.height);
-    visit(Field{"origin", "", "Of the corner of cell (0, 0)."}, s.origin);
+    visit(Field{"width", "1", "Number of cells along x."}, s.width);
+    visit(Field{"height", "1", "Number of cells along y."}, s.height);
+    visit(Field{"origin", "", "Pose of the corner of cell (0, 0)."}, s.origin);
   }
 };
 
@@ -59,8 +59,8 @@ struct OccupancyGrid {
   std::vector<std::int8_t> data;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"info", "", "What it covers."}, s.info);
-    visit(Field{"data", "%", "0: free, 100: occupied, -1: unknown."}, s.data);
+    visit(Field{"info", "", "Size and place of the map."}, s.info);
+    visit(Field{"data", "%", "Occupancy of the cells. 0: free, 100: occupied, -1: unknown."}, s.data);
   }
 };
 
@@ -73,9 +73,9 @@ struct GridCells {
   std::vector<Point> cells;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"cell_width", "m", "Along x."}, s.cell_width);
-    visit(Field{"cell_height", "m", "Along y."}, s.cell_height);
-    visit(Field{"cells", "m", "Their centres."}, s.cells);
+    visit(Field{"cell_width", "m", "Extent of a cell along x."}, s.cell_width);
+    visit(Field{"cell_height", "m", "Extent of a cell along y."}, s.cell_height);
+    visit(Field{"cells", "m", "Centres of the cells."}, s.cells);
   }
 };
 

@@ -32,13 +32,13 @@ struct Log {
     visit("FATAL", fatal);
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"stamp", "s", "When."}, s.stamp);
-    visit(Field{"level", "1", "10: debug, 20: info, 30: warning, 40: error, 50: fatal."}, s.level);
-    visit(Field{"name", "", "Who says it."}, s.name);
-    visit(Field{"msg", "", "What."}, s.msg);
-    visit(Field{"file", "", "Source file."}, s.file);
-    visit(Field{"function", "", "Function in it."}, s.function);
-    visit(Field{"line", "1", "Line of it."}, s.line);
+    visit(Field{"stamp", "s", "Time of the message."}, s.stamp);
+    visit(Field{"level", "1", "Severity. 10: debug, 20: info, 30: warning, 40: error, 50: fatal."}, s.level);
+    visit(Field{"name", "", "Name of the source."}, s.name);
+    visit(Field{"msg", "", "Text of the message."}, s.msg);
+    visit(Field{"file", "", "Name of the source file."}, s.file);
+    visit(Field{"function", "", "Name of the function in the source file."}, s.function);
+    visit(Field{"line", "1", "Line in the source file."}, s.line);
   }
 };
 
@@ -74,16 +74,16 @@ struct ParameterValue {
   std::vector<double> double_array_value;
   std::vector<std::string> string_array_value;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"type", "1", "See ParameterType."}, s.type);
-    visit(Field{"bool_value", "", "For 1."}, s.bool_value);
-    visit(Field{"integer_value", "", "For 2."}, s.integer_value);
-    visit(Field{"double_value", "", "For 3."}, s.double_value);
-    visit(Field{"string_value", "", "For 4."}, s.string_value);
-    visit(Field{"byte_array_value", "", "For 5."}, s.byte_array_value);
-    visit(Field{"bool_array_value", "", "For 6."}, s.bool_array_value);
-    visit(Field{"integer_array_value", "", "For 7."}, s.integer_array_value);
-    visit(Field{"double_array_value", "", "For 8."}, s.double_array_value);
-    visit(Field{"string_array_value", "", "For 9."}, s.string_array_value);
+    visit(Field{"type", "1", "Type of the value, a constant of ParameterType."}, s.type);
+    visit(Field{"bool_value", "", "Value of type 1."}, s.bool_value);
+    visit(Field{"integer_value", "", "Value of type 2."}, s.integer_value);
+    visit(Field{"double_value", "", "Value of type 3."}, s.double_value);
+    visit(Field{"string_value", "", "Value of type 4."}, s.string_value);
+    visit(Field{"byte_array_value", "", "Value of type 5."}, s.byte_array_value);
+    visit(Field{"bool_array_value", "", "Value of type 6."}, s.bool_array_value);
+    visit(Field{"integer_array_value", "", "Value of type 7."}, s.integer_array_value);
+    visit(Field{"double_array_value", "", "Value of type 8."}, s.double_array_value);
+    visit(Field{"string_array_value", "", "Value of type 9."}, s.string_array_value);
   }
 };
 
@@ -93,8 +93,8 @@ struct Parameter {
   std::string name;
   ParameterValue value;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Its name."}, s.name);
-    visit(Field{"value", "", "Its value."}, s.value);
+    visit(Field{"name", "", "Name of the parameter."}, s.name);
+    visit(Field{"value", "", "Value of the parameter."}, s.value);
   }
 };
 
@@ -107,11 +107,11 @@ struct ParameterEvent {
   std::vector<Parameter> changed_parameters;
   std::vector<Parameter> deleted_parameters;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"stamp", "s", "When."}, s.stamp);
+    visit(Field{"stamp", "s", "Time of the message."}, s.stamp);
     visit(Field{"node", "", "Name of the node."}, s.node);
-    visit(Field{"new_parameters", "", "New ones."}, s.new_parameters);
-    visit(Field{"changed_parameters", "", "Changed ones."}, s.changed_parameters);
-    visit(Field{"deleted_parameters", "", "Deleted ones."}, s.deleted_parameters);
+    visit(Field{"new_parameters", "", "Parameters that are new."}, s.new_parameters);
+    visit(Field{"changed_parameters", "", "Parameters that have changed."}, s.changed_parameters);
+    visit(Field{"deleted_parameters", "", "Parameters that were deleted."}, s.deleted_parameters);
   }
 };
 
@@ -121,8 +121,8 @@ struct SetParametersResult {
   bool successful = false;
   std::string reason;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"successful", "", "They could."}, s.successful);
-    visit(Field{"reason", "", "Why not."}, s.reason);
+    visit(Field{"successful", "", "Whether the parameters were set."}, s.successful);
+    visit(Field{"reason", "", "Reason of a failure."}, s.reason);
   }
 };
 
@@ -132,8 +132,8 @@ struct ListParametersResult {
   std::vector<std::string> names;
   std::vector<std::string> prefixes;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"names", "", "The names."}, s.names);
-    visit(Field{"prefixes", "", "The groups they are in."}, s.prefixes);
+    visit(Field{"names", "", "Names of the parameters."}, s.names);
+    visit(Field{"prefixes", "", "Groups that the parameters are in."}, s.prefixes);
   }
 };
 

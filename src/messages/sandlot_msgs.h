@@ -30,13 +30,14 @@ struct ContactState {
   std::vector<Vec3> contact_normals;
   std::vector<double> depths;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"collision1_name", "", "The shape of the one who measures."}, s.collision1_name);
-    visit(Field{"collision2_name", "", "The other shape."}, s.collision2_name);
-    visit(Field{"wrenches", "", "On shape 1, for each point."}, s.wrenches);
-    visit(Field{"total_wrench", "", "Their sum."}, s.total_wrench);
-    visit(Field{"contact_positions", "m", "The points."}, s.contact_positions);
-    visit(Field{"contact_normals", "1", "At each point, towards shape 1."}, s.contact_normals);
-    visit(Field{"depths", "m", "At each point, how deep."}, s.depths);
+    visit(Field{"collision1_name", "", "Name of the shape that measures."}, s.collision1_name);
+    visit(Field{"collision2_name", "", "Name of the other shape."}, s.collision2_name);
+    visit(Field{"wrenches", "", "Wrenches on shape 1, one per contact point."}, s.wrenches);
+    visit(Field{"total_wrench", "", "Sum of the wrenches."}, s.total_wrench);
+    visit(Field{"contact_positions", "m", "Positions of the contact points."}, s.contact_positions);
+    visit(Field{"contact_normals", "1", "Normals at the contact points, towards shape 1."},
+          s.contact_normals);
+    visit(Field{"depths", "m", "Penetration depths at the contact points."}, s.depths);
   }
 };
 
@@ -47,7 +48,7 @@ struct ContactsState {
   std::vector<ContactState> states;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"states", "", "One for each pair of shapes."}, s.states);
+    visit(Field{"states", "", "Contacts, one per pair of shapes."}, s.states);
   }
 };
 
@@ -60,8 +61,8 @@ struct Altimeter {
   double vertical_reference = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"vertical_position", "m", "Above the reference."}, s.vertical_position);
-    visit(Field{"vertical_velocity", "m/s", "Up positive."}, s.vertical_velocity);
+    visit(Field{"vertical_position", "m", "Height above the reference."}, s.vertical_position);
+    visit(Field{"vertical_velocity", "m/s", "Vertical velocity, up positive."}, s.vertical_velocity);
     visit(Field{"vertical_reference", "m", "Height of the reference in the world."}, s.vertical_reference);
   }
 };
@@ -75,9 +76,9 @@ struct GripperState {
   Vec3 force;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"closed", "", "It was told to close."}, s.closed);
-    visit(Field{"held", "", "Instance and link, \"can::body\"; empty: nothing."}, s.held);
-    visit(Field{"force", "N", "What holds it there, on what is held, in the gripper's frame."}, s.force);
+    visit(Field{"closed", "", "Whether the gripper is commanded to close."}, s.closed);
+    visit(Field{"held", "", "Instance and link that is held, \"can::body\"; empty: nothing."}, s.held);
+    visit(Field{"force", "N", "Force of the gripper on the held object, in the gripper's frame."}, s.force);
   }
 };
 
@@ -92,11 +93,11 @@ struct MotorState {
   double current = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"target", "rad/s", "Velocity that its controller follows."}, s.target);
+    visit(Field{"target", "rad/s", "Target velocity of the controller."}, s.target);
     visit(Field{"velocity", "rad/s", "Velocity of the output shaft."}, s.velocity);
     visit(Field{"torque", "Nm", "Torque on the output shaft."}, s.torque);
-    visit(Field{"voltage", "V", "Voltage at its terminals."}, s.voltage);
-    visit(Field{"current", "A", "Current through its winding."}, s.current);
+    visit(Field{"voltage", "V", "Voltage at the motor's terminals."}, s.voltage);
+    visit(Field{"current", "A", "Current through the motor's winding."}, s.current);
   }
 };
 
@@ -115,15 +116,15 @@ struct LogEntry {
   bool refused = false;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
-    visit(Field{"tick", "1", "Its number."}, s.tick);
-    visit(Field{"source_kind", "1", "Who asked."}, s.source_kind);
-    visit(Field{"source_id", "1", "Which of them."}, s.source_id);
-    visit(Field{"sequence", "1", "Number of the request of that source."}, s.sequence);
-    visit(Field{"kind", "1", "What was asked."}, s.kind);
-    visit(Field{"target", "", "Address it is for."}, s.target);
-    visit(Field{"type", "", "Type of the bytes."}, s.type);
-    visit(Field{"bytes", "", "The request."}, s.bytes);
-    visit(Field{"refused", "", "It was not carried out."}, s.refused);
+    visit(Field{"tick", "1", "Number of the tick."}, s.tick);
+    visit(Field{"source_kind", "1", "Kind of the source."}, s.source_kind);
+    visit(Field{"source_id", "1", "Identifier of the source among its kind."}, s.source_id);
+    visit(Field{"sequence", "1", "Number of the request among those of its source."}, s.sequence);
+    visit(Field{"kind", "1", "Kind of the request."}, s.kind);
+    visit(Field{"target", "", "Target velocity of the controller."}, s.target);
+    visit(Field{"type", "", "Type of the request's bytes."}, s.type);
+    visit(Field{"bytes", "", "Bytes of the request."}, s.bytes);
+    visit(Field{"refused", "", "Whether the request was refused."}, s.refused);
   }
 };
 
@@ -137,10 +138,10 @@ struct StateHash {
   std::vector<std::uint64_t> parts;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
-    visit(Field{"tick", "1", "Its number."}, s.tick);
+    visit(Field{"tick", "1", "Number of the tick."}, s.tick);
     visit(Field{"revision", "1", "Revision of the model."}, s.revision);
-    visit(Field{"hash", "1", "Of the whole state."}, s.hash);
-    visit(Field{"parts", "1", "Of each entity, in the order of the latest StateParts."}, s.parts);
+    visit(Field{"hash", "1", "Hash of the whole state."}, s.hash);
+    visit(Field{"parts", "1", "Hashes of the entities, in the order of the latest StateParts."}, s.parts);
   }
 };
 
@@ -153,7 +154,7 @@ struct StateParts {
   std::vector<std::string> paths;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
-    visit(Field{"tick", "1", "Its number."}, s.tick);
+    visit(Field{"tick", "1", "Number of the tick."}, s.tick);
     visit(Field{"revision", "1", "Revision of the model."}, s.revision);
     visit(Field{"paths", "", "Addresses of the entities."}, s.paths);
   }
@@ -172,15 +173,16 @@ struct Object {
   double visible = 0;
   double confidence = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"label", "", "Its class, such as ball."}, s.label);
-    visit(Field{"name", "", "Which one; empty where the detector does not tell."}, s.name);
-    visit(Field{"color", "", "Of its largest part."}, s.color);
-    visit(Field{"bearing", "rad", "To its middle: from x to y of the frame."}, s.bearing);
-    visit(Field{"elevation", "rad", "To its middle: up from the xy plane."}, s.elevation);
-    visit(Field{"range", "m", "To its middle."}, s.range);
-    visit(Field{"position", "m", "Of its middle: the three above as a point."}, s.position);
-    visit(Field{"visible", "1", "The part of it that is seen, from 0 to 1."}, s.visible);
-    visit(Field{"confidence", "1", "How sure the detector is, from 0 to 1."}, s.confidence);
+    visit(Field{"label", "", "Label of the object, such as ball."}, s.label);
+    visit(Field{"name", "", "Name of the object; empty where the detector does not report names."}, s.name);
+    visit(Field{"color", "", "Colour of the object's largest part."}, s.color);
+    visit(Field{"bearing", "rad", "Angle to the object's middle: from x to y of the frame."}, s.bearing);
+    visit(Field{"elevation", "rad", "Angle to the object's middle: up from the xy plane."}, s.elevation);
+    visit(Field{"range", "m", "Distance to the object's middle."}, s.range);
+    visit(Field{"position", "m", "Position of the object's middle: bearing, elevation and range as a point."},
+          s.position);
+    visit(Field{"visible", "1", "Visible part of the object, from 0 to 1."}, s.visible);
+    visit(Field{"confidence", "1", "Confidence of the detector, from 0 to 1."}, s.confidence);
   }
 };
 
@@ -191,7 +193,7 @@ struct ObjectArray {
   std::vector<Object> objects;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"objects", "", "In no particular order."}, s.objects);
+    visit(Field{"objects", "", "Detected objects, in no particular order."}, s.objects);
   }
 };
 
@@ -205,12 +207,12 @@ struct ObjectPose {
   double position_std = 0;
   double confidence = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"label", "", "Its class, such as ball."}, s.label);
-    visit(Field{"name", "", "Which one; empty where the detector does not tell."}, s.name);
-    visit(Field{"color", "", "Of its largest part."}, s.color);
-    visit(Field{"pose", "", "Of its body in header.frame_id."}, s.pose);
+    visit(Field{"label", "", "Label of the object, such as ball."}, s.label);
+    visit(Field{"name", "", "Name of the object; empty where the detector does not report names."}, s.name);
+    visit(Field{"color", "", "Colour of the object's largest part."}, s.color);
+    visit(Field{"pose", "", "Pose of the object's body in header.frame_id."}, s.pose);
     visit(Field{"position_std", "m", "Standard deviation of x and y."}, s.position_std);
-    visit(Field{"confidence", "1", "How sure the detector is, from 0 to 1."}, s.confidence);
+    visit(Field{"confidence", "1", "Confidence of the detector, from 0 to 1."}, s.confidence);
   }
 };
 
@@ -221,7 +223,7 @@ struct ObjectPoseArray {
   std::vector<ObjectPose> objects;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"objects", "", "In no particular order."}, s.objects);
+    visit(Field{"objects", "", "Detected objects, in no particular order."}, s.objects);
   }
 };
 
@@ -250,15 +252,16 @@ struct PanTiltState {
   }
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"status", "1", "IDLE, MOVING ..."}, s.status);
-    visit(Field{"label", "", "What it searches or tracks."}, s.label);
+    visit(Field{"status", "1", "Status of the device: IDLE, MOVING ..."}, s.status);
+    visit(Field{"label", "", "Label of the object, such as ball."}, s.label);
     visit(Field{"pan", "rad", "Angle of the pan joint."}, s.pan);
     visit(Field{"tilt", "rad", "Angle of the tilt joint."}, s.tilt);
-    visit(Field{"pan_target", "rad", "Where it shall turn."}, s.pan_target);
-    visit(Field{"tilt_target", "rad", "Where it shall turn."}, s.tilt_target);
-    visit(Field{"zoom", "1", "Focal length of the camera, in its shortest ones; 1 without a zoom lens."},
+    visit(Field{"pan_target", "rad", "Target angle of the pan joint."}, s.pan_target);
+    visit(Field{"tilt_target", "rad", "Target angle of the tilt joint."}, s.tilt_target);
+    visit(Field{"zoom", "1",
+                "Focal length of the camera, as a multiple of its shortest; 1 without a zoom lens."},
           s.zoom);
-    visit(Field{"zoom_target", "1", "What it shall become."}, s.zoom_target);
+    visit(Field{"zoom_target", "1", "Target of the zoom."}, s.zoom_target);
   }
 };
 
@@ -269,7 +272,7 @@ struct Samples {
   std::vector<double> values;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"stamp", "s", "Simulated time of the tick."}, s.stamp);
-    visit(Field{"values", "", "In the order they were asked for; NaN where one has no value."}, s.values);
+    visit(Field{"values", "", "Values in the order of the request; NaN where one has no value."}, s.values);
   }
 };
 

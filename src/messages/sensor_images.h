@@ -21,12 +21,12 @@ struct Image {
   std::vector<std::uint8_t> data;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"height", "1", "Rows."}, s.height);
-    visit(Field{"width", "1", "Columns."}, s.width);
-    visit(Field{"encoding", "", "Such as rgb8, mono8, 32FC1."}, s.encoding);
+    visit(Field{"height", "1", "Number of rows."}, s.height);
+    visit(Field{"width", "1", "Number of columns."}, s.width);
+    visit(Field{"encoding", "", "Encoding of the pixels, such as rgb8, mono8, 32FC1."}, s.encoding);
     visit(Field{"is_bigendian", "1", "Order of bytes within a channel."}, s.is_bigendian);
-    visit(Field{"step", "1", "Bytes per row."}, s.step);
-    visit(Field{"data", "", "The pixels."}, s.data);
+    visit(Field{"step", "1", "Number of bytes per row."}, s.step);
+    visit(Field{"data", "", "Bytes of the pixels."}, s.data);
   }
 };
 
@@ -38,8 +38,8 @@ struct CompressedImage {
   std::vector<std::uint8_t> data;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"format", "", "Such as jpeg, png."}, s.format);
-    visit(Field{"data", "", "The file's bytes."}, s.data);
+    visit(Field{"format", "", "File format, such as jpeg, png."}, s.format);
+    visit(Field{"data", "", "Bytes of the file."}, s.data);
   }
 };
 
@@ -52,11 +52,11 @@ struct RegionOfInterest {
   std::uint32_t width = 0;
   bool do_rectify = false;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x_offset", "1", "First column."}, s.x_offset);
-    visit(Field{"y_offset", "1", "First row."}, s.y_offset);
-    visit(Field{"height", "1", "Rows."}, s.height);
-    visit(Field{"width", "1", "Columns."}, s.width);
-    visit(Field{"do_rectify", "", "The part is of the rectified image."}, s.do_rectify);
+    visit(Field{"x_offset", "1", "Index of the first column."}, s.x_offset);
+    visit(Field{"y_offset", "1", "Index of the first row."}, s.y_offset);
+    visit(Field{"height", "1", "Number of rows."}, s.height);
+    visit(Field{"width", "1", "Number of columns."}, s.width);
+    visit(Field{"do_rectify", "", "Whether the part is of the rectified image."}, s.do_rectify);
   }
 };
 
@@ -76,16 +76,17 @@ struct CameraInfo {
   RegionOfInterest roi;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"height", "1", "Rows."}, s.height);
-    visit(Field{"width", "1", "Columns."}, s.width);
-    visit(Field{"distortion_model", "", "Such as plumb_bob."}, s.distortion_model);
+    visit(Field{"height", "1", "Number of rows."}, s.height);
+    visit(Field{"width", "1", "Number of columns."}, s.width);
+    visit(Field{"distortion_model", "", "Name of the distortion model, such as plumb_bob."},
+          s.distortion_model);
     visit(Field{"d", "", "Parameters of the distortion."}, s.d);
-    visit(Field{"k", "", "Row-major 3x3, intrinsic."}, s.k);
-    visit(Field{"r", "", "Row-major 3x3, rectification."}, s.r);
-    visit(Field{"p", "", "Row-major 3x4, projection."}, s.p);
-    visit(Field{"binning_x", "1", "Pixels per column; 0 is 1."}, s.binning_x);
-    visit(Field{"binning_y", "1", "Pixels per row; 0 is 1."}, s.binning_y);
-    visit(Field{"roi", "", "The part that is sent."}, s.roi);
+    visit(Field{"k", "", "Intrinsic matrix, row-major 3x3."}, s.k);
+    visit(Field{"r", "", "Rectification matrix, row-major 3x3."}, s.r);
+    visit(Field{"p", "", "Projection matrix, row-major 3x4."}, s.p);
+    visit(Field{"binning_x", "1", "Number of pixels per column; 0 is 1."}, s.binning_x);
+    visit(Field{"binning_y", "1", "Number of pixels per row; 0 is 1."}, s.binning_y);
+    visit(Field{"roi", "", "Part of the image that is sent."}, s.roi);
   }
 };
 
@@ -97,8 +98,8 @@ struct Joy {
   std::vector<std::int32_t> buttons;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"axes", "1", "From -1 to 1."}, s.axes);
-    visit(Field{"buttons", "1", "1: pressed."}, s.buttons);
+    visit(Field{"axes", "1", "Positions of the axes, from -1 to 1."}, s.axes);
+    visit(Field{"buttons", "1", "States of the buttons; 1: pressed."}, s.buttons);
   }
 };
 
@@ -114,9 +115,9 @@ struct JoyFeedback {
     visit("TYPE_BUZZER", std::uint8_t{2});
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"type", "1", "TYPE_..."}, s.type);
-    visit(Field{"id", "1", "Which one."}, s.id);
-    visit(Field{"intensity", "1", "From 0 to 1."}, s.intensity);
+    visit(Field{"type", "1", "Type of the output, TYPE_..."}, s.type);
+    visit(Field{"id", "1", "Index of the output among its type."}, s.id);
+    visit(Field{"intensity", "1", "Strength of the output, from 0 to 1."}, s.intensity);
   }
 };
 
@@ -124,7 +125,7 @@ struct JoyFeedback {
 struct JoyFeedbackArray {
   static constexpr const char* ros_type = "sensor_msgs/msg/JoyFeedbackArray";
   std::vector<JoyFeedback> array;
-  static void fields(auto& s, auto&& visit) { visit(Field{"array", "", "The orders."}, s.array); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"array", "", "Outputs to set."}, s.array); }
 };
 
 }  // namespace sandlot::msg

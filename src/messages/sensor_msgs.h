@@ -22,13 +22,16 @@ struct Imu {
   std::array<double, 9> linear_acceleration_covariance{};
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"orientation", "1", "Of the sensor in its reference frame."}, s.orientation);
-    visit(Field{"orientation_covariance", "", "Row-major 3x3."}, s.orientation_covariance);
+    visit(Field{"orientation", "1", "Orientation of the sensor in its reference frame."}, s.orientation);
+    visit(Field{"orientation_covariance", "", "Covariance of the orientation, row-major 3x3."},
+          s.orientation_covariance);
     visit(Field{"angular_velocity", "rad/s", "Rate of turn in header.frame_id."}, s.angular_velocity);
-    visit(Field{"angular_velocity_covariance", "", "Row-major 3x3."}, s.angular_velocity_covariance);
+    visit(Field{"angular_velocity_covariance", "", "Covariance of the angular velocity, row-major 3x3."},
+          s.angular_velocity_covariance);
     visit(Field{"linear_acceleration", "m/s^2", "Specific force in header.frame_id: (0, 0, 9.81) at rest."},
           s.linear_acceleration);
-    visit(Field{"linear_acceleration_covariance", "", "Row-major 3x3."}, s.linear_acceleration_covariance);
+    visit(Field{"linear_acceleration_covariance", "", "Covariance of the specific force, row-major 3x3."},
+          s.linear_acceleration_covariance);
   }
 };
 
@@ -42,7 +45,7 @@ struct JointState {
   std::vector<double> effort;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"name", "", "Joint names."}, s.name);
+    visit(Field{"name", "", "Names of the joints."}, s.name);
     visit(Field{"position", "rad", "Positions; m where the joint slides."}, s.position);
     visit(Field{"velocity", "rad/s", "Velocities; m/s where the joint slides."}, s.velocity);
     visit(Field{"effort", "Nm", "Torques; N where the joint slides."}, s.effort);
@@ -59,7 +62,7 @@ struct MultiDOFJointState {
   std::vector<Wrench> wrench;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"joint_names", "", "Joint names."}, s.joint_names);
+    visit(Field{"joint_names", "", "Names of the joints."}, s.joint_names);
     visit(Field{"transforms", "", "Poses of the joints."}, s.transforms);
     visit(Field{"twist", "", "Velocities of the joints."}, s.twist);
     visit(Field{"wrench", "", "Forces and torques of the joints."}, s.wrench);
@@ -88,7 +91,8 @@ struct NavSatStatus {
   }
   static void fields(auto& s, auto&& visit) {
     visit(Field{"status", "1",
-                "-1: no fix, 0: fix, 1: with satellite based, 2: with ground based augmentation."},
+                "Type of the fix. -1: no fix, 0: fix, 1: with satellite based, 2: with ground based "
+                "augmentation."},
           s.status);
     visit(Field{"service", "1", "Satellites used, a sum of bits."}, s.service);
   }
@@ -116,12 +120,14 @@ struct NavSatFix {
   }
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"status", "", "The fix."}, s.status);
-    visit(Field{"latitude", "deg", "North positive."}, s.latitude);
-    visit(Field{"longitude", "deg", "East positive."}, s.longitude);
-    visit(Field{"altitude", "m", "Above the ellipsoid; NaN: not known."}, s.altitude);
-    visit(Field{"position_covariance", "m^2", "Row-major 3x3: east, north, up."}, s.position_covariance);
-    visit(Field{"position_covariance_type", "1", "0: unknown, 1: approximated, 2: diagonal known, 3: known."},
+    visit(Field{"status", "", "Status of the fix."}, s.status);
+    visit(Field{"latitude", "deg", "Latitude, north positive."}, s.latitude);
+    visit(Field{"longitude", "deg", "Longitude, east positive."}, s.longitude);
+    visit(Field{"altitude", "m", "Altitude above the ellipsoid; NaN: not known."}, s.altitude);
+    visit(Field{"position_covariance", "m^2", "Covariance of the position, row-major 3x3: east, north, up."},
+          s.position_covariance);
+    visit(Field{"position_covariance_type", "1",
+                "Type of the covariance. 0: unknown, 1: approximated, 2: diagonal known, 3: known."},
           s.position_covariance_type);
   }
 };
@@ -134,8 +140,9 @@ struct MagneticField {
   std::array<double, 9> magnetic_field_covariance{};
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"magnetic_field", "T", "In header.frame_id."}, s.magnetic_field);
-    visit(Field{"magnetic_field_covariance", "", "Row-major 3x3."}, s.magnetic_field_covariance);
+    visit(Field{"magnetic_field", "T", "Magnetic field in header.frame_id."}, s.magnetic_field);
+    visit(Field{"magnetic_field_covariance", "", "Covariance of the magnetic field, row-major 3x3."},
+          s.magnetic_field_covariance);
   }
 };
 
@@ -147,8 +154,8 @@ struct FluidPressure {
   double variance = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"fluid_pressure", "Pa", "Absolute pressure."}, s.fluid_pressure);
-    visit(Field{"variance", "Pa^2", "0: not known."}, s.variance);
+    visit(Field{"fluid_pressure", "Pa", "Absolute pressure of the fluid."}, s.fluid_pressure);
+    visit(Field{"variance", "Pa^2", "Variance of the value; 0: not known."}, s.variance);
   }
 };
 
@@ -160,8 +167,8 @@ struct Temperature {
   double variance = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"temperature", "degC", "Temperature."}, s.temperature);
-    visit(Field{"variance", "", "0: not known."}, s.variance);
+    visit(Field{"temperature", "degC", "Measured temperature."}, s.temperature);
+    visit(Field{"variance", "", "Variance of the value; 0: not known."}, s.variance);
   }
 };
 
@@ -173,8 +180,8 @@ struct Illuminance {
   double variance = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"illuminance", "lx", "Illuminance."}, s.illuminance);
-    visit(Field{"variance", "", "0: not known."}, s.variance);
+    visit(Field{"illuminance", "lx", "Measured illuminance."}, s.illuminance);
+    visit(Field{"variance", "", "Variance of the value; 0: not known."}, s.variance);
   }
 };
 
@@ -186,8 +193,8 @@ struct RelativeHumidity {
   double variance = 0;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"relative_humidity", "1", "From 0 to 1."}, s.relative_humidity);
-    visit(Field{"variance", "", "0: not known."}, s.variance);
+    visit(Field{"relative_humidity", "1", "Relative humidity, from 0 to 1."}, s.relative_humidity);
+    visit(Field{"variance", "", "Variance of the value; 0: not known."}, s.variance);
   }
 };
 
@@ -248,21 +255,23 @@ struct BatteryState {
   }
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"voltage", "V", "Voltage."}, s.voltage);
-    visit(Field{"temperature", "degC", "Temperature."}, s.temperature);
-    visit(Field{"current", "A", "Negative when discharging."}, s.current);
-    visit(Field{"charge", "Ah", "Charge left."}, s.charge);
-    visit(Field{"capacity", "Ah", "Charge when full."}, s.capacity);
+    visit(Field{"voltage", "V", "Voltage of the battery."}, s.voltage);
+    visit(Field{"temperature", "degC", "Temperature of the battery."}, s.temperature);
+    visit(Field{"current", "A", "Current of the battery, negative when discharging."}, s.current);
+    visit(Field{"charge", "Ah", "Charge that is left."}, s.charge);
+    visit(Field{"capacity", "Ah", "Charge of the full battery."}, s.capacity);
     visit(Field{"design_capacity", "Ah", "Charge when new and full."}, s.design_capacity);
-    visit(Field{"percentage", "1", "From 0 to 1."}, s.percentage);
-    visit(Field{"power_supply_status", "1", "POWER_SUPPLY_STATUS_..."}, s.power_supply_status);
-    visit(Field{"power_supply_health", "1", "POWER_SUPPLY_HEALTH_..."}, s.power_supply_health);
-    visit(Field{"power_supply_technology", "1", "POWER_SUPPLY_TECHNOLOGY_..."}, s.power_supply_technology);
-    visit(Field{"present", "", "A battery is there."}, s.present);
-    visit(Field{"cell_voltage", "V", "Of each cell; empty: not known."}, s.cell_voltage);
-    visit(Field{"cell_temperature", "degC", "Of each cell; empty: not known."}, s.cell_temperature);
-    visit(Field{"location", "", "Where it is mounted."}, s.location);
-    visit(Field{"serial_number", "", "Its number."}, s.serial_number);
+    visit(Field{"percentage", "1", "Charge as a share of the capacity, from 0 to 1."}, s.percentage);
+    visit(Field{"power_supply_status", "1", "Status, one of POWER_SUPPLY_STATUS_..."}, s.power_supply_status);
+    visit(Field{"power_supply_health", "1", "Health, one of POWER_SUPPLY_HEALTH_..."}, s.power_supply_health);
+    visit(Field{"power_supply_technology", "1", "Technology, one of POWER_SUPPLY_TECHNOLOGY_..."},
+          s.power_supply_technology);
+    visit(Field{"present", "", "Whether a battery is present."}, s.present);
+    visit(Field{"cell_voltage", "V", "Voltage of each cell; empty: not known."}, s.cell_voltage);
+    visit(Field{"cell_temperature", "degC", "Temperature of each cell; empty: not known."},
+          s.cell_temperature);
+    visit(Field{"location", "", "Place where the battery is mounted."}, s.location);
+    visit(Field{"serial_number", "", "Serial number of the battery."}, s.serial_number);
   }
 };
 

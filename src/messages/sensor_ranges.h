@@ -31,7 +31,7 @@ struct LaserScan {
     visit(Field{"scan_time", "s", "Time between scans."}, s.scan_time);
     visit(Field{"range_min", "m", "Shortest distance measured."}, s.range_min);
     visit(Field{"range_max", "m", "Longest distance measured."}, s.range_max);
-    visit(Field{"ranges", "m", "Distances."}, s.ranges);
+    visit(Field{"ranges", "m", "Distances of the beams."}, s.ranges);
     visit(Field{"intensities", "1", "Intensities; empty when not modelled."}, s.intensities);
   }
 };
@@ -41,7 +41,7 @@ struct LaserEcho {
   static constexpr const char* ros_type = "sensor_msgs/msg/LaserEcho";
   std::vector<float> echoes;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"echoes", "m", "Distances, or intensities."}, s.echoes);
+    visit(Field{"echoes", "m", "Distances or intensities of one beam."}, s.echoes);
   }
 };
 
@@ -67,7 +67,7 @@ struct MultiEchoLaserScan {
     visit(Field{"scan_time", "s", "Time between scans."}, s.scan_time);
     visit(Field{"range_min", "m", "Shortest distance measured."}, s.range_min);
     visit(Field{"range_max", "m", "Longest distance measured."}, s.range_max);
-    visit(Field{"ranges", "m", "Distances per beam."}, s.ranges);
+    visit(Field{"ranges", "m", "Distances of the echoes, per beam."}, s.ranges);
     visit(Field{"intensities", "1", "Intensities per beam; empty when not modelled."}, s.intensities);
   }
 };
@@ -89,11 +89,11 @@ struct Range {
   }
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"radiation_type", "1", "0: ultrasound, 1: infra-red."}, s.radiation_type);
+    visit(Field{"radiation_type", "1", "Type of radiation. 0: ultrasound, 1: infra-red."}, s.radiation_type);
     visit(Field{"field_of_view", "rad", "Opening angle of the cone, from edge to edge."}, s.field_of_view);
     visit(Field{"min_range", "m", "Shortest distance measured."}, s.min_range);
     visit(Field{"max_range", "m", "Longest distance measured."}, s.max_range);
-    visit(Field{"range", "m", "Distance."}, s.range);
+    visit(Field{"range", "m", "Measured distance."}, s.range);
   }
 };
 
@@ -118,9 +118,9 @@ struct PointField {
   }
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the value."}, s.name);
-    visit(Field{"offset", "1", "Bytes from the beginning of the point."}, s.offset);
-    visit(Field{"datatype", "1", "4: uint16, 7: float32 ..."}, s.datatype);
-    visit(Field{"count", "1", "How many of them."}, s.count);
+    visit(Field{"offset", "1", "Number of bytes from the beginning of the point."}, s.offset);
+    visit(Field{"datatype", "1", "Type of the value. 4: uint16, 7: float32 ..."}, s.datatype);
+    visit(Field{"count", "1", "Number of elements."}, s.count);
   }
 };
 
@@ -138,14 +138,15 @@ struct PointCloud2 {
   bool is_dense = false;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"height", "1", "Rows; 1: the points are in no order."}, s.height);
-    visit(Field{"width", "1", "Points per row."}, s.width);
-    visit(Field{"fields", "", "What a point is made of."}, s.point_fields);
-    visit(Field{"is_bigendian", "", "Order of bytes."}, s.is_bigendian);
-    visit(Field{"point_step", "1", "Bytes per point."}, s.point_step);
-    visit(Field{"row_step", "1", "Bytes per row."}, s.row_step);
-    visit(Field{"data", "", "The points."}, s.data);
-    visit(Field{"is_dense", "", "False: points without a hit are in it, as NaN."}, s.is_dense);
+    visit(Field{"height", "1", "Number of rows; 1: the points are in no order."}, s.height);
+    visit(Field{"width", "1", "Number of points per row."}, s.width);
+    visit(Field{"fields", "", "Values of each point."}, s.point_fields);
+    visit(Field{"is_bigendian", "", "Whether the most significant byte comes first."}, s.is_bigendian);
+    visit(Field{"point_step", "1", "Number of bytes per point."}, s.point_step);
+    visit(Field{"row_step", "1", "Number of bytes per row."}, s.row_step);
+    visit(Field{"data", "", "Bytes of the points."}, s.data);
+    visit(Field{"is_dense", "", "Whether all points are valid; false: points without a hit are NaN."},
+          s.is_dense);
   }
 };
 
@@ -168,8 +169,8 @@ struct PointCloud {
   std::vector<ChannelFloat32> channels;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"points", "m", "The points."}, s.points);
-    visit(Field{"channels", "", "What else is known of them."}, s.channels);
+    visit(Field{"points", "m", "Positions of the points."}, s.points);
+    visit(Field{"channels", "", "Additional values of the points."}, s.channels);
   }
 };
 

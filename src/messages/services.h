@@ -26,8 +26,8 @@ struct Console {
     bool ok = false;
     std::string text;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"ok", "", "It was done."}, s.ok);
-      visit(Field{"text", "", "The answer, or why it was not done."}, s.text);
+      visit(Field{"ok", "", "Whether the command succeeded."}, s.ok);
+      visit(Field{"text", "", "Answer, or the reason of a failure."}, s.text);
     }
   };
 };
@@ -46,7 +46,7 @@ struct Complete {
     static constexpr const char* ros_type = "sandlot_msgs/srv/Complete_Response";
     std::vector<std::string> candidates;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"candidates", "", "Whole words that may stand in place of the last one."}, s.candidates);
+      visit(Field{"candidates", "", "Words that may stand in place of the last one."}, s.candidates);
     }
   };
 };
@@ -60,7 +60,7 @@ struct WatchValues {
     double rate_hz = 0;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"values", "", "Addresses of values, or expressions."}, s.values);
-      visit(Field{"rate_hz", "Hz", "How often; 0: every tick."}, s.rate_hz);
+      visit(Field{"rate_hz", "Hz", "Messages per second; 0: one in every tick."}, s.rate_hz);
     }
   };
   struct Response {
@@ -69,9 +69,9 @@ struct WatchValues {
     std::string text;
     std::string topic;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"ok", "", "The channel is there."}, s.ok);
-      visit(Field{"text", "", "Why not."}, s.text);
-      visit(Field{"topic", "", "Of the channel; its messages are sandlot_msgs/msg/Samples."}, s.topic);
+      visit(Field{"ok", "", "Whether the channel exists."}, s.ok);
+      visit(Field{"text", "", "Reason of a failure."}, s.text);
+      visit(Field{"topic", "", "Topic of the channel; its messages are sandlot_msgs/msg/Samples."}, s.topic);
     }
   };
 };
@@ -91,7 +91,7 @@ struct GetSimulatorFeatures {
     static constexpr const char* ros_type = "simulation_interfaces/srv/GetSimulatorFeatures_Response";
     SimulatorFeatures features;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"features", "", "All that it can do."}, s.features);
+      visit(Field{"features", "", "Features of the simulator."}, s.features);
     }
   };
 };
@@ -108,8 +108,8 @@ struct GetSimulationState {
     SimulationState state;
     Result result;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"state", "", "Now."}, s.state);
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"state", "", "Present state of the simulation."}, s.state);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };
@@ -120,7 +120,9 @@ struct SetSimulationState {
   struct Request {
     static constexpr const char* ros_type = "simulation_interfaces/srv/SetSimulationState_Request";
     SimulationState state;
-    static void fields(auto& s, auto&& visit) { visit(Field{"state", "", "That it shall have."}, s.state); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"state", "", "Requested state of the simulation."}, s.state);
+    }
   };
   struct Response {
     static constexpr const char* ros_type = "simulation_interfaces/srv/SetSimulationState_Response";
@@ -134,7 +136,7 @@ struct SetSimulationState {
       visit("INCORRECT_TRANSITION", incorrect_transition);
     }
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };
@@ -145,13 +147,13 @@ struct StepSimulation {
   struct Request {
     static constexpr const char* ros_type = "simulation_interfaces/srv/StepSimulation_Request";
     std::uint64_t steps = 1;
-    static void fields(auto& s, auto&& visit) { visit(Field{"steps", "1", "How many."}, s.steps); }
+    static void fields(auto& s, auto&& visit) { visit(Field{"steps", "1", "Number of steps."}, s.steps); }
   };
   struct Response {
     static constexpr const char* ros_type = "simulation_interfaces/srv/StepSimulation_Response";
     Result result;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };
@@ -174,13 +176,15 @@ struct ResetSimulation {
       visit("SCOPE_SPAWNED", scope_spawned);
       visit("SCOPE_ALL", scope_all);
     }
-    static void fields(auto& s, auto&& visit) { visit(Field{"scope", "1", "SCOPE_..., added up."}, s.scope); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"scope", "1", "Sum of constants SCOPE_..."}, s.scope);
+    }
   };
   struct Response {
     static constexpr const char* ros_type = "simulation_interfaces/srv/ResetSimulation_Response";
     Result result;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };
@@ -192,7 +196,7 @@ struct GetEntities {
     static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntities_Request";
     EntityFilters filters;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"filters", "", "Which; empty ones let all through."}, s.filters);
+      visit(Field{"filters", "", "Filters of the entities; empty ones let all through."}, s.filters);
     }
   };
   struct Response {
@@ -200,8 +204,8 @@ struct GetEntities {
     Result result;
     std::vector<std::string> entities;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
-      visit(Field{"entities", "", "Their names."}, s.entities);
+      visit(Field{"result", "", "Result of the request."}, s.result);
+      visit(Field{"entities", "", "Names of the entities."}, s.entities);
     }
   };
 };
@@ -212,15 +216,15 @@ struct GetEntityState {
   struct Request {
     static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntityState_Request";
     std::string entity;
-    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Its name."}, s.entity); }
+    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Name of the entity."}, s.entity); }
   };
   struct Response {
     static constexpr const char* ros_type = "simulation_interfaces/srv/GetEntityState_Response";
     Result result;
     EntityState state;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
-      visit(Field{"state", "", "Of the entity."}, s.state);
+      visit(Field{"result", "", "Result of the request."}, s.result);
+      visit(Field{"state", "", "State of the entity."}, s.state);
     }
   };
 };
@@ -234,11 +238,11 @@ struct SetEntityState {
     EntityState state;
     bool set_pose = false, set_twist = false, set_acceleration = false;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"entity", "", "Its name."}, s.entity);
-      visit(Field{"state", "", "That it shall have."}, s.state);
-      visit(Field{"set_pose", "", "The pose counts."}, s.set_pose);
-      visit(Field{"set_twist", "", "The twist counts."}, s.set_twist);
-      visit(Field{"set_acceleration", "", "The acceleration counts."}, s.set_acceleration);
+      visit(Field{"entity", "", "Name of the entity."}, s.entity);
+      visit(Field{"state", "", "Requested state of the entity."}, s.state);
+      visit(Field{"set_pose", "", "Whether the pose is set."}, s.set_pose);
+      visit(Field{"set_twist", "", "Whether the twist is set."}, s.set_twist);
+      visit(Field{"set_acceleration", "", "Whether the acceleration is set."}, s.set_acceleration);
     }
   };
   struct Response {
@@ -247,7 +251,7 @@ struct SetEntityState {
     Result result;
     static void constants(auto&& visit) { visit("INVALID_POSE", invalid_pose); }
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };
@@ -258,13 +262,13 @@ struct DeleteEntity {
   struct Request {
     static constexpr const char* ros_type = "simulation_interfaces/srv/DeleteEntity_Request";
     std::string entity;
-    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Its name."}, s.entity); }
+    static void fields(auto& s, auto&& visit) { visit(Field{"entity", "", "Name of the entity."}, s.entity); }
   };
   struct Response {
     static constexpr const char* ros_type = "simulation_interfaces/srv/DeleteEntity_Response";
     Result result;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"result", "", "How the request ended."}, s.result);
+      visit(Field{"result", "", "Result of the request."}, s.result);
     }
   };
 };

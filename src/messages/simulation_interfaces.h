@@ -26,8 +26,9 @@ struct Result {
     visit("RESULT_OPERATION_FAILED", operation_failed);
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"result", "1", "RESULT_..., or above 100 a number of the service."}, s.result);
-    visit(Field{"error_message", "", "Why not."}, s.error_message);
+    visit(Field{"result", "1", "Code of the result: RESULT_..., or above 100 a number of the service."},
+          s.result);
+    visit(Field{"error_message", "", "Description of the failure."}, s.error_message);
   }
 };
 
@@ -47,7 +48,7 @@ struct Bounds {
     visit("TYPE_SPHERE", sphere);
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"type", "1", "What `points` mean."}, s.type);
+    visit(Field{"type", "1", "Meaning of `points`."}, s.type);
     visit(Field{"points", "m", "Two corners of a box, points of a hull, or centre and (radius, 0, 0)."},
           s.points);
   }
@@ -69,7 +70,9 @@ struct EntityCategory {
     visit("CATEGORY_DYNAMIC_OBJECT", dynamic_object);
     visit("CATEGORY_STATIC_OBJECT", static_object);
   }
-  static void fields(auto& s, auto&& visit) { visit(Field{"category", "1", "CATEGORY_..."}, s.category); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"category", "1", "Category of the entity, CATEGORY_..."}, s.category);
+  }
 };
 
 /// Chooses by tags.
@@ -84,8 +87,10 @@ struct TagsFilter {
     visit("FILTER_MODE_ALL", all);
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"tags", "", "The tags; none: everything fits."}, s.tags);
-    visit(Field{"filter_mode", "1", "0: one of the tags is enough, 1: all of them."}, s.filter_mode);
+    visit(Field{"tags", "", "Tags to look for; none: everything fits."}, s.tags);
+    visit(
+        Field{"filter_mode", "1", "Way the tags are combined. 0: one of them is enough, 1: all are needed."},
+        s.filter_mode);
   }
 };
 
@@ -99,9 +104,9 @@ struct EntityFilters {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"filter", "", "POSIX extended regular expression on the name; empty: every name fits."},
           s.filter);
-    visit(Field{"categories", "", "One of them; none: every category fits."}, s.categories);
-    visit(Field{"tags", "", "By tags."}, s.tags);
-    visit(Field{"bounds", "", "Those that overlap it; empty: wherever they are."}, s.bounds);
+    visit(Field{"categories", "", "Categories of the entities; none: every category fits."}, s.categories);
+    visit(Field{"tags", "", "Filter on the tags."}, s.tags);
+    visit(Field{"bounds", "", "Bounds that the entities overlap; empty: no limit."}, s.bounds);
   }
 };
 
@@ -112,9 +117,9 @@ struct EntityInfo {
   std::string description;
   std::vector<std::string> tags;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"category", "", "What it is."}, s.category);
-    visit(Field{"description", "", "In words."}, s.description);
-    visit(Field{"tags", "", "Its tags."}, s.tags);
+    visit(Field{"category", "", "Category of the entity."}, s.category);
+    visit(Field{"description", "", "Description of the entity."}, s.description);
+    visit(Field{"tags", "", "Tags of the entity."}, s.tags);
   }
 };
 
@@ -127,9 +132,9 @@ struct EntityState {
   Accel acceleration;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"pose", "", "In header.frame_id."}, s.pose);
-    visit(Field{"twist", "", "In header.frame_id."}, s.twist);
-    visit(Field{"acceleration", "", "In header.frame_id."}, s.acceleration);
+    visit(Field{"pose", "", "Pose in header.frame_id."}, s.pose);
+    visit(Field{"twist", "", "Velocity in header.frame_id."}, s.twist);
+    visit(Field{"acceleration", "", "Acceleration in header.frame_id."}, s.acceleration);
   }
 };
 
@@ -141,10 +146,10 @@ struct NamedPose {
   std::vector<std::string> tags;
   Pose pose;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Its name."}, s.name);
-    visit(Field{"description", "", "In words."}, s.description);
-    visit(Field{"tags", "", "Its tags."}, s.tags);
-    visit(Field{"pose", "", "In the world."}, s.pose);
+    visit(Field{"name", "", "Name of the pose."}, s.name);
+    visit(Field{"description", "", "Description of the pose."}, s.description);
+    visit(Field{"tags", "", "Tags of the pose."}, s.tags);
+    visit(Field{"pose", "", "Pose in the world."}, s.pose);
   }
 };
 
@@ -154,8 +159,8 @@ struct Resource {
   std::string uri;
   std::string resource_string;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"uri", "", "Its name."}, s.uri);
-    visit(Field{"resource_string", "", "Or its text."}, s.resource_string);
+    visit(Field{"uri", "", "Address of the resource."}, s.uri);
+    visit(Field{"resource_string", "", "Text of the resource, instead of the address."}, s.resource_string);
   }
 };
 
@@ -177,7 +182,9 @@ struct SimulationState {
     visit("STATE_NO_WORLD", no_world);
     visit("STATE_LOADING_WORLD", loading_world);
   }
-  static void fields(auto& s, auto&& visit) { visit(Field{"state", "1", "STATE_..."}, s.state); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"state", "1", "State of the simulation, STATE_..."}, s.state);
+  }
 };
 
 /// What the simulator can do.
@@ -221,9 +228,9 @@ struct SimulatorFeatures {
     visit("SPAWNING_ENTITIES", std::uint8_t{50});
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"features", "1", "What it can do."}, s.features);
+    visit(Field{"features", "1", "Features of the simulator."}, s.features);
     visit(Field{"spawn_formats", "", "Extensions of files it can spawn."}, s.spawn_formats);
-    visit(Field{"custom_info", "", "What else is to be said."}, s.custom_info);
+    visit(Field{"custom_info", "", "Further information."}, s.custom_info);
   }
 };
 
@@ -236,11 +243,11 @@ struct SpawnEntity {
   std::string entity_namespace;
   PoseStamped initial_pose;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Its name."}, s.name);
-    visit(Field{"allow_renaming", "", "Another name will do."}, s.allow_renaming);
-    visit(Field{"entity_resource", "", "Its model."}, s.entity_resource);
-    visit(Field{"entity_namespace", "", "Put before its topics."}, s.entity_namespace);
-    visit(Field{"initial_pose", "", "Where."}, s.initial_pose);
+    visit(Field{"name", "", "Name of the new entity."}, s.name);
+    visit(Field{"allow_renaming", "", "Whether another name may be given."}, s.allow_renaming);
+    visit(Field{"entity_resource", "", "Model of the entity."}, s.entity_resource);
+    visit(Field{"entity_namespace", "", "Prefix of the entity's topics."}, s.entity_namespace);
+    visit(Field{"initial_pose", "", "Pose at the start."}, s.initial_pose);
   }
 };
 
@@ -261,8 +268,8 @@ struct SpawnResult {
     visit("INVALID_POSE", std::uint8_t{109});
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"result", "", "How it ended."}, s.result);
-    visit(Field{"entity_name", "", "Its name."}, s.entity_name);
+    visit(Field{"result", "", "Result of the request."}, s.result);
+    visit(Field{"entity_name", "", "Name of the new entity."}, s.entity_name);
   }
 };
 
@@ -273,9 +280,9 @@ struct Spawnable {
   std::string description;
   Bounds spawn_bounds;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"entity_resource", "", "Its model."}, s.entity_resource);
-    visit(Field{"description", "", "In words."}, s.description);
-    visit(Field{"spawn_bounds", "", "The space it will take."}, s.spawn_bounds);
+    visit(Field{"entity_resource", "", "Model of the entity."}, s.entity_resource);
+    visit(Field{"description", "", "Description of the model."}, s.description);
+    visit(Field{"spawn_bounds", "", "Bounds of the space that the entity takes."}, s.spawn_bounds);
   }
 };
 
@@ -287,10 +294,10 @@ struct WorldResource {
   std::string description;
   std::vector<std::string> tags;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Its name."}, s.name);
-    visit(Field{"world_resource", "", "Its file."}, s.world_resource);
-    visit(Field{"description", "", "In words."}, s.description);
-    visit(Field{"tags", "", "Its tags."}, s.tags);
+    visit(Field{"name", "", "Name of the world."}, s.name);
+    visit(Field{"world_resource", "", "File of the world."}, s.world_resource);
+    visit(Field{"description", "", "Description of the world."}, s.description);
+    visit(Field{"tags", "", "Tags of the world."}, s.tags);
   }
 };
 

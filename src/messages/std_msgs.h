@@ -28,7 +28,7 @@ struct Point : Vec3 {
 /// A bool that can stand in a list: std::vector<bool> has no elements to point at.
 struct Boolean {
   bool value = false;
-  static void fields(auto& s, auto&& visit) { visit(Field{"value", "", "The value."}, s.value); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"value", "", "Value of the message."}, s.value); }
 };
 
 /// std_msgs/Header. The frame's name is fixed when the device is built.
@@ -49,9 +49,9 @@ struct ColorRGBA {
   float r = 0, g = 0, b = 0, a = 0;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"r", "1", "Red, from 0 to 1."}, s.r);
-    visit(Field{"g", "1", "Green."}, s.g);
-    visit(Field{"b", "1", "Blue."}, s.b);
-    visit(Field{"a", "1", "Opacity."}, s.a);
+    visit(Field{"g", "1", "Green, from 0 to 1."}, s.g);
+    visit(Field{"b", "1", "Blue, from 0 to 1."}, s.b);
+    visit(Field{"a", "1", "Opacity, from 0 to 1."}, s.a);
   }
 };
 
@@ -75,7 +75,7 @@ template <class T, TypeName name>
 struct Value {
   static constexpr const char* ros_type = name.text;
   T data{};
-  static void fields(auto& s, auto&& visit) { visit(Field{"data", "1", "The value."}, s.data); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"data", "1", "Data of the message."}, s.data); }
 };
 using Bool = Value<bool, "std_msgs/msg/Bool">;
 using Byte = Value<std::byte, "std_msgs/msg/Byte">;
@@ -99,8 +99,8 @@ struct MultiArrayDimension {
   std::uint32_t size = 0, stride = 0;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"label", "", "Name of the dimension."}, s.label);
-    visit(Field{"size", "1", "Its length."}, s.size);
-    visit(Field{"stride", "1", "Elements in it and all that follow."}, s.stride);
+    visit(Field{"size", "1", "Length of the dimension."}, s.size);
+    visit(Field{"stride", "1", "Number of elements in this and all following dimensions."}, s.stride);
   }
 };
 
@@ -110,8 +110,8 @@ struct MultiArrayLayout {
   std::vector<MultiArrayDimension> dim;
   std::uint32_t data_offset = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"dim", "", "The dimensions, outermost first."}, s.dim);
-    visit(Field{"data_offset", "1", "Elements before the first one."}, s.data_offset);
+    visit(Field{"dim", "", "Dimensions, outermost first."}, s.dim);
+    visit(Field{"data_offset", "1", "Number of elements before the first one."}, s.data_offset);
   }
 };
 
@@ -122,8 +122,8 @@ struct MultiArray {
   MultiArrayLayout layout;
   std::vector<T> data;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"layout", "", "How the elements lie."}, s.layout);
-    visit(Field{"data", "1", "The elements."}, s.data);
+    visit(Field{"layout", "", "Layout of the elements."}, s.layout);
+    visit(Field{"data", "1", "Data of the message."}, s.data);
   }
 };
 using ByteMultiArray = MultiArray<std::byte, "std_msgs/msg/ByteMultiArray">;

@@ -12,7 +12,9 @@ namespace sandlot::msg {
 struct TFMessage {
   static constexpr const char* ros_type = "tf2_msgs/msg/TFMessage";
   std::vector<TransformStamped> transforms;
-  static void fields(auto& s, auto&& visit) { visit(Field{"transforms", "", "The frames."}, s.transforms); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"transforms", "", "Transforms between frames."}, s.transforms);
+  }
 };
 
 /// Why a transform could not be had.
@@ -30,8 +32,8 @@ struct TF2Error {
     visit("TRANSFORM_ERROR", std::uint8_t{6});
   }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"error", "1", "What kind of error."}, s.error);
-    visit(Field{"error_string", "", "In words."}, s.error_string);
+    visit(Field{"error", "1", "Kind of the error."}, s.error);
+    visit(Field{"error_string", "", "Description of the error."}, s.error_string);
   }
 };
 
@@ -39,7 +41,9 @@ struct TF2Error {
 struct Clock {
   static constexpr const char* ros_type = "rosgraph_msgs/msg/Clock";
   Time clock;
-  static void fields(auto& s, auto&& visit) { visit(Field{"clock", "s", "Now."}, s.clock); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"clock", "s", "Present simulated time."}, s.clock);
+  }
 };
 
 }  // namespace sandlot::msg

@@ -16,11 +16,11 @@ struct JointTrajectoryPoint {
   std::vector<double> effort;
   Duration time_from_start;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"positions", "rad", "Positions."}, s.positions);
+    visit(Field{"positions", "rad", "Positions of the joints."}, s.positions);
     visit(Field{"velocities", "rad/s", "Velocities; empty: not given."}, s.velocities);
     visit(Field{"accelerations", "rad/s^2", "Accelerations; empty: not given."}, s.accelerations);
     visit(Field{"effort", "Nm", "Efforts; empty: not given."}, s.effort);
-    visit(Field{"time_from_start", "s", "Since the start of the trajectory."}, s.time_from_start);
+    visit(Field{"time_from_start", "s", "Time since the start of the trajectory."}, s.time_from_start);
   }
 };
 
@@ -32,7 +32,7 @@ struct JointTrajectory {
   std::vector<JointTrajectoryPoint> points;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"joint_names", "", "Joint names."}, s.joint_names);
+    visit(Field{"joint_names", "", "Names of the joints."}, s.joint_names);
     visit(Field{"points", "", "Points in order of time."}, s.points);
   }
 };
@@ -45,10 +45,10 @@ struct MultiDOFJointTrajectoryPoint {
   std::vector<Twist> accelerations;
   Duration time_from_start;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"transforms", "", "Poses."}, s.transforms);
-    visit(Field{"velocities", "", "Velocities."}, s.velocities);
-    visit(Field{"accelerations", "", "Accelerations."}, s.accelerations);
-    visit(Field{"time_from_start", "s", "Since the start of the trajectory."}, s.time_from_start);
+    visit(Field{"transforms", "", "Poses of the joints."}, s.transforms);
+    visit(Field{"velocities", "", "Velocities of the joints."}, s.velocities);
+    visit(Field{"accelerations", "", "Accelerations of the joints."}, s.accelerations);
+    visit(Field{"time_from_start", "s", "Time since the start of the trajectory."}, s.time_from_start);
   }
 };
 
@@ -60,7 +60,7 @@ struct MultiDOFJointTrajectory {
   std::vector<MultiDOFJointTrajectoryPoint> points;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"joint_names", "", "Joint names."}, s.joint_names);
+    visit(Field{"joint_names", "", "Names of the joints."}, s.joint_names);
     visit(Field{"points", "", "Points in order of time."}, s.points);
   }
 };

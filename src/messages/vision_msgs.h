@@ -14,8 +14,8 @@ struct Point2D {
   double x = 0;
   double y = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "1", "Pixels to the right."}, s.x);
-    visit(Field{"y", "1", "Pixels downwards."}, s.y);
+    visit(Field{"x", "1", "Position in pixels to the right."}, s.x);
+    visit(Field{"y", "1", "Position in pixels downwards."}, s.y);
   }
 };
 
@@ -25,8 +25,8 @@ struct Pose2D {
   Point2D position;
   double theta = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"position", "", "The place."}, s.position);
-    visit(Field{"theta", "rad", "Counter-clockwise."}, s.theta);
+    visit(Field{"position", "", "Position in the image."}, s.position);
+    visit(Field{"theta", "rad", "Counter-clockwise turn."}, s.theta);
   }
 };
 
@@ -37,9 +37,9 @@ struct BoundingBox2D {
   double size_x = 0;
   double size_y = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"center", "", "Its middle."}, s.center);
-    visit(Field{"size_x", "1", "Pixels, in the box's own frame."}, s.size_x);
-    visit(Field{"size_y", "1", "Pixels."}, s.size_y);
+    visit(Field{"center", "", "Centre of the box."}, s.center);
+    visit(Field{"size_x", "1", "Width in pixels, in the box's own frame."}, s.size_x);
+    visit(Field{"size_y", "1", "Height in pixels, in the box's own frame."}, s.size_y);
   }
 };
 
@@ -49,8 +49,8 @@ struct ObjectHypothesis {
   std::string class_id;
   double score = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"class_id", "", "Its class."}, s.class_id);
-    visit(Field{"score", "1", "How sure that is, from 0 to 1."}, s.score);
+    visit(Field{"class_id", "", "Name of the class."}, s.class_id);
+    visit(Field{"score", "1", "Confidence of the hypothesis, from 0 to 1."}, s.score);
   }
 };
 
@@ -60,8 +60,8 @@ struct ObjectHypothesisWithPose {
   ObjectHypothesis hypothesis;
   PoseWithCovariance pose;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"hypothesis", "", "The class."}, s.hypothesis);
-    visit(Field{"pose", "", "In the frame of the detection."}, s.pose);
+    visit(Field{"hypothesis", "", "Class and confidence."}, s.hypothesis);
+    visit(Field{"pose", "", "Pose in the frame of the detection."}, s.pose);
   }
 };
 
@@ -74,9 +74,9 @@ struct Detection2D {
   std::string id;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"results", "", "What it may be."}, s.results);
-    visit(Field{"bbox", "", "Where it is in the image."}, s.bbox);
-    visit(Field{"id", "", "The same in all images."}, s.id);
+    visit(Field{"results", "", "Hypotheses of the detection."}, s.results);
+    visit(Field{"bbox", "", "Bounding box in the image."}, s.bbox);
+    visit(Field{"id", "", "Identifier, the same in all images."}, s.id);
   }
 };
 
@@ -87,7 +87,7 @@ struct Detection2DArray {
   std::vector<Detection2D> detections;
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"detections", "", "One for each thing."}, s.detections);
+    visit(Field{"detections", "", "Detections, one per object."}, s.detections);
   }
 };
 

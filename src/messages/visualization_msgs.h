@@ -15,8 +15,8 @@ struct UVCoordinate {
   float u = 0;
   float v = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"u", "1", "From left to right."}, s.u);
-    visit(Field{"v", "1", "From top to bottom."}, s.v);
+    visit(Field{"u", "1", "Coordinate from left to right."}, s.u);
+    visit(Field{"v", "1", "Coordinate from top to bottom."}, s.v);
   }
 };
 
@@ -26,8 +26,8 @@ struct MeshFile {
   std::string filename;
   std::vector<std::uint8_t> data;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"filename", "", "Its name; the extension tells the format."}, s.filename);
-    visit(Field{"data", "", "The file's bytes."}, s.data);
+    visit(Field{"filename", "", "Name of the file; its extension gives the format."}, s.filename);
+    visit(Field{"data", "", "Bytes of the file."}, s.data);
   }
 };
 
@@ -83,24 +83,25 @@ struct Marker {
   }
   static void fields(auto& s, auto&& visit) {
     visit(header_field, s.header);
-    visit(Field{"ns", "", "With `id` the name of the marker."}, s.ns);
-    visit(Field{"id", "1", "With `ns` the name of the marker."}, s.id);
-    visit(Field{"type", "1", "Its shape."}, s.type);
-    visit(Field{"action", "1", "0: add or change, 2: remove, 3: remove all."}, s.action);
-    visit(Field{"pose", "", "In header.frame_id."}, s.pose);
+    visit(Field{"ns", "", "Namespace; with `id` the name of the marker."}, s.ns);
+    visit(Field{"id", "1", "Identifier; with `ns` the name of the marker."}, s.id);
+    visit(Field{"type", "1", "Shape of the marker."}, s.type);
+    visit(Field{"action", "1", "Action on the marker. 0: add or change, 2: remove, 3: remove all."},
+          s.action);
+    visit(Field{"pose", "", "Pose in header.frame_id."}, s.pose);
     visit(Field{"scale", "m", "Size of the shape."}, s.scale);
-    visit(Field{"color", "1", "Its colour."}, s.color);
-    visit(Field{"lifetime", "s", "0: for ever."}, s.lifetime);
-    visit(Field{"frame_locked", "", "Moves with its frame."}, s.frame_locked);
-    visit(Field{"points", "m", "Of lists and strips."}, s.points);
-    visit(Field{"colors", "1", "One for each point, or none."}, s.colors);
+    visit(Field{"color", "1", "Colour of the marker."}, s.color);
+    visit(Field{"lifetime", "s", "Time after which the marker is removed; 0: never."}, s.lifetime);
+    visit(Field{"frame_locked", "", "Whether the marker moves with its frame."}, s.frame_locked);
+    visit(Field{"points", "m", "Points of lists and strips."}, s.points);
+    visit(Field{"colors", "1", "Colours of the points; or none."}, s.colors);
     visit(Field{"texture_resource", "", "Name of a texture."}, s.texture_resource);
-    visit(Field{"texture", "", "Or its bytes."}, s.texture);
-    visit(Field{"uv_coordinates", "", "Where each point lies on the texture."}, s.uv_coordinates);
-    visit(Field{"text", "", "Of text_view_facing."}, s.text);
+    visit(Field{"texture", "", "Bytes of the texture."}, s.texture);
+    visit(Field{"uv_coordinates", "", "Texture coordinates of the points."}, s.uv_coordinates);
+    visit(Field{"text", "", "Text of a marker text_view_facing."}, s.text);
     visit(Field{"mesh_resource", "", "Name of a mesh."}, s.mesh_resource);
-    visit(Field{"mesh_file", "", "Or its bytes."}, s.mesh_file);
-    visit(Field{"mesh_use_embedded_materials", "", "The mesh brings its own colours."},
+    visit(Field{"mesh_file", "", "Bytes of the mesh."}, s.mesh_file);
+    visit(Field{"mesh_use_embedded_materials", "", "Whether the mesh brings its own colours."},
           s.mesh_use_embedded_materials);
   }
 };
@@ -109,7 +110,7 @@ struct Marker {
 struct MarkerArray {
   static constexpr const char* ros_type = "visualization_msgs/msg/MarkerArray";
   std::vector<Marker> markers;
-  static void fields(auto& s, auto&& visit) { visit(Field{"markers", "", "The markers."}, s.markers); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"markers", "", "Markers to show."}, s.markers); }
 };
 
 }  // namespace sandlot::msg

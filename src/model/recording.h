@@ -23,24 +23,24 @@ struct Recording {
   WhenFull when_full = WhenFull::drop;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"file", "", "Where to, relative to this file: an MCAP file, replaced if it is there.", 0, 0,
-                Field::none, 4096},
+    visit(Field{"file", "", "File to write, relative to this file: an MCAP file, replaced if it exists.", 0,
+                0, Field::none, 4096},
           s.file);
-    visit(Field{"topics", "", "Topics to record, with * and ? as in file names; all if left out.", 0, 0,
+    visit(Field{"topics", "", "Topics to record, with * and ? as in file names; all by default.", 0, 0,
                 Field::none, 1000},
           s.topics);
-    visit(Field{"compression", "", "Of the chunks."}, s.compression);
+    visit(Field{"compression", "", "Compression of the chunks."}, s.compression);
     visit(Field{"chunk", "1", "Megabytes of messages after which a chunk is closed and written.", 1e-3, 256},
           s.chunk_mb);
-    visit(Field{"chunk_time", "s", "Simulated time after which it is closed at the latest.", 1e-3, 3600},
-          s.chunk_s);
-    visit(Field{"tf", "Hz", "How often /tf and /clock are recorded; 0: never.", 0, 1e5}, s.tf_hz);
+    visit(Field{"chunk_time", "s", "Longest simulated time covered by a chunk.", 1e-3, 3600}, s.chunk_s);
+    visit(Field{"tf", "Hz", "Rate at which /tf and /clock are recorded; 0: never.", 0, 1e5}, s.tf_hz);
     visit(
         Field{"hashes", "", "Record the hash of the state at every tick, for `replay --verify` and `diff`."},
         s.hashes);
     visit(Field{"queue", "1", "Megabytes that may wait for a slow disk.", 1, 1e5}, s.queue_mb);
     visit(Field{"when_full", "",
-                "drop: messages that find the queue full are left out and counted; wait: the run waits."},
+                "Behaviour when the queue is full. drop: messages are left out and counted; wait: the run "
+                "waits."},
           s.when_full);
   }
 };

@@ -24,7 +24,8 @@ inline constexpr double max_error = 1e6;  ///< [U]
 /// y = x + e (mean + std n).   Mean e mean, variance e^2 std^2, whatever the rate.
 struct GaussianSpec {
   static constexpr const char* name = "gaussian";
-  static constexpr const char* help = "Independent normal errors of one deviation per sample.";
+  static constexpr const char* help =
+      "Independent normal errors, with the same standard deviation for every sample.";
   double std = 0, mean = 0;
   using State = NoFields;
 
@@ -50,7 +51,8 @@ struct WhiteSpec {
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"density", "U/sqrt(Hz)", "Density.", 0, max_error, Field::tunable | Field::required},
+    visit(Field{"density", "U/sqrt(Hz)", "Noise density: standard deviation of the mean over one second.", 0,
+                max_error, Field::tunable | Field::required},
           s.density);
   }
   double corrupt(double x, const NoiseSample& sample, Stream& random) const {
@@ -62,13 +64,13 @@ struct WhiteSpec {
 /// y = x + e (min + (max - min) u).   Mean e (min + max) / 2, variance e^2 (max - min)^2 / 12.
 struct UniformSpec {
   static constexpr const char* name = "uniform";
-  static constexpr const char* help = "Independent errors, each between min and max alike.";
+  static constexpr const char* help = "Independent errors, uniform between min and max.";
   double min = 0, max = 0;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned flags = Field::tunable | Field::required;
-    visit(Field{"min", "", "Least error.", -max_error, max_error, flags}, s.min);
+    visit(Field{"min", "", "Smallest error.", -max_error, max_error, flags}, s.min);
     visit(Field{"max", "", "Largest error.", -max_error, max_error, flags}, s.max);
   }
   Status check(const Node& node, const std::string& path) const {
@@ -117,7 +119,7 @@ struct DriftSpec {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"std", "", "Stationary standard deviation.", 0, max_error, Field::tunable | Field::required},
           s.std);
-    visit(Field{"correlation", "s", "Time in which the error forgets itself, tau.", 1e-6, 1e9,
+    visit(Field{"correlation", "s", "Correlation time of the error, tau.", 1e-6, 1e9,
                 Field::tunable | Field::required},
           s.correlation_s);
   }
@@ -141,15 +143,17 @@ struct BiasSpec {
   struct State {
     double normal = 0, uniform = 0;  ///< the draws
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"normal", "1", "Draw that std multiplies."}, s.normal);
-      visit(Field{"uniform", "1", "Draw within +-1 that half_width multiplies."}, s.uniform);
+      visit(Field{"normal", "1", "Normal draw that std multiplies."}, s.normal);
+      visit(Field{"uniform", "1", "Uniform draw within +-1 that half_width multiplies."}, s.uniform);
     }
   };
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"mean", "", "The same for every device.", -max_error, max_error, Field::tunable}, s.mean);
-    visit(Field{"std", "", "Standard deviation of a normal part.", 0, max_error, Field::tunable}, s.std);
-    visit(Field{"half_width", "", "Bound of a uniform part.", 0, max_error, Field::tunable}, s.half_width);
+    visit(Field{"mean", "", "Constant part that is the same for every device.", -max_error, max_error,
+                Field::tunable},
+          s.mean);
+    visit(Field{"std", "", "Standard deviation of the normal part.", 0, max_error, Field::tunable}, s.std);
+    visit(Field{"half_width", "", "Bound of the uniform part.", 0, max_error, Field::tunable}, s.half_width);
   }
   void reset(State& state, Stream& random) const {
     state.normal = random.normal();
@@ -170,7 +174,7 @@ struct WalkSpec {
   using State = DriftSpec::State;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"density", "U/sqrt(s)", "Standard deviation after one second.", 0, max_error,
+    visit(Field{"density", "U/sqrt(s)", "Standard deviation of the error after one second.", 0, max_error,
                 Field::tunable | Field::required},
           s.density);
   }

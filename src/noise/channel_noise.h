@@ -37,13 +37,13 @@ struct ChannelNoiseSpec {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"white", "", "Standard deviation of each sample's own error.", 0, 1e6, Field::tunable},
           s.white);
-    visit(Field{"mean", "", "Constant error.", -1e6, 1e6, Field::tunable}, s.mean);
+    visit(Field{"mean", "", "Constant part of the error.", -1e6, 1e6, Field::tunable}, s.mean);
     visit(
         Field{"mean_std", "", "Standard deviation of a further constant error, drawn at the start.", 0, 1e6},
         s.mean_std);
-    visit(Field{"bias", "", "Error that drifts."}, s.bias);
-    visit(Field{"resolution", "", "Values are multiples of this; 0: any.", 0, 1e6}, s.resolution);
-    visit(Field{"limit", "", "Largest magnitude shown.", 0, 1e12}, s.limit);
+    visit(Field{"bias", "", "Drifting part of the error."}, s.bias);
+    visit(Field{"resolution", "", "Step of the values; 0: none.", 0, 1e6}, s.resolution);
+    visit(Field{"limit", "", "Largest magnitude of the values.", 0, 1e12}, s.limit);
     visit(stages_field, s.stages);
   }
   /// Of the error of one sample about the channel's constant error.
@@ -61,9 +61,9 @@ struct ChannelNoise {
   ChannelChain chain;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"bias", "", "Error that drifts."}, s.bias);
-    visit(Field{"drawn", "", "Constant error drawn at the start."}, s.drawn);
-    visit(Field{"stages", "", "States of the stages."}, s.chain);
+    visit(Field{"bias", "", "Drifting part of the error."}, s.bias);
+    visit(Field{"drawn", "", "Constant part of the error that was drawn at the start."}, s.drawn);
+    visit(Field{"stages", "", "States of the noise stages."}, s.chain);
   }
 
   /// @param random   stream of the device, Purpose::initial

@@ -25,10 +25,11 @@ namespace depth_stage {
 /// y = z + e std n.
 struct Gaussian {
   static constexpr const char* name = "gaussian";
-  static constexpr const char* help = "Independent normal errors of every pixel, alike at any distance.";
+  static constexpr const char* help = "Independent normal errors of every pixel, equal at any distance.";
   double std = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"std", "m", "Standard deviation.", 0, 1e3, Field::tunable | Field::required}, s.std);
+    visit(Field{"std", "m", "Standard deviation of the error.", 0, 1e3, Field::tunable | Field::required},
+          s.std);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -39,7 +40,9 @@ struct Quadratic {
   static constexpr const char* help = "Normal errors that grow with the square of the distance.";
   double std = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"std", "m", "Standard deviation at 1 m.", 0, 1e3, Field::tunable | Field::required}, s.std);
+    visit(Field{"std", "m", "Standard deviation of the error at 1 m.", 0, 1e3,
+                Field::tunable | Field::required},
+          s.std);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -69,10 +72,14 @@ struct Edges {
   double jump_m = 0.05, rate = 1;
   Shows shows = Shows::nan;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"jump", "m", "Difference between neighbours that is an edge.", 0, 1e3, Field::tunable},
+    visit(Field{"jump", "m", "Smallest difference between neighbours that counts as an edge.", 0, 1e3,
+                Field::tunable},
           s.jump_m);
-    visit(Field{"rate", "1", "Probability per pixel beside an edge.", 0, 1, Field::tunable}, s.rate);
-    visit(Field{"shows", "", "What is shown there: no number, nothing seen, or something between."}, s.shows);
+    visit(
+        Field{"rate", "1", "Probability per pixel at an edge that it shows an error.", 0, 1, Field::tunable},
+        s.rate);
+    visit(Field{"shows", "", "Value of such a pixel: no number, nothing seen, or something between."},
+          s.shows);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -91,8 +98,10 @@ struct Dropouts {
   double rate = 0;
   Shows shows = Shows::nan;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"rate", "1", "Probability per pixel.", 0, 1, Field::tunable | Field::required}, s.rate);
-    visit(Field{"shows", "", "What is shown instead: no number, or nothing seen."}, s.shows);
+    visit(
+        Field{"rate", "1", "Probability per pixel that it is lost.", 0, 1, Field::tunable | Field::required},
+        s.rate);
+    visit(Field{"shows", "", "Value of a lost pixel: no number, or nothing seen."}, s.shows);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };

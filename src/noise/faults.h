@@ -35,7 +35,7 @@ inline double odds_per_sample(double rate, double per_second, const NoiseSample&
 /// `whole` it runs over the samples and loses all values at once, and all channels of a device that has several. `hold` shows what the same beam showed before.
 struct DropoutsSpec {
   static constexpr const char* name = "dropouts";
-  static constexpr const char* help = "Values that get lost, alone or in bursts.";
+  static constexpr const char* help = "Values that are lost, alone or in bursts.";
   enum class Shows : std::uint8_t { nan, inf, hold, value };
   double rate = 0, burst = 1, per_second = 0, burst_time_s = 0;
   Shows shows = Shows::nan;
@@ -47,24 +47,27 @@ struct DropoutsSpec {
     double held = 0;
     std::vector<float> held_values;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"lost", "", "In a burst."}, s.lost);
-      visit(Field{"begun", "", "A value was shown before."}, s.begun);
-      visit(Field{"held", "", "The value shown last."}, s.held);
-      visit(Field{"held_values", "", "The values shown last."}, s.held_values);
+      visit(Field{"lost", "", "Whether the sample lies in a burst of losses."}, s.lost);
+      visit(Field{"begun", "", "Whether a value was shown before."}, s.begun);
+      visit(Field{"held", "", "Value shown last."}, s.held);
+      visit(Field{"held_values", "", "Values shown last."}, s.held_values);
     }
   };
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"rate", "1", "Probability that a sample begins to be lost.", 0, 1, Field::tunable}, s.rate);
-    visit(Field{"burst", "1", "Mean number of samples lost at once.", 1, 1e6, Field::tunable}, s.burst);
-    visit(Field{"per_second", "Hz", "Losses that begin per second, instead of rate.", 0, 1e6, Field::tunable},
+    visit(
+        Field{"rate", "1", "Probability that a burst of losses begins with a sample.", 0, 1, Field::tunable},
+        s.rate);
+    visit(Field{"burst", "1", "Mean number of samples lost in one burst.", 1, 1e6, Field::tunable}, s.burst);
+    visit(Field{"per_second", "Hz", "Number of bursts per second, instead of rate.", 0, 1e6, Field::tunable},
           s.per_second);
-    visit(Field{"burst_time", "s", "Mean time of a loss, with per_second.", 0, 1e6, Field::tunable},
+    visit(Field{"burst_time", "s", "Mean duration of a burst, with per_second.", 0, 1e6, Field::tunable},
           s.burst_time_s);
-    visit(Field{"shows", "", "What is shown instead: no number, no hit, the value before, or `value`."},
+    visit(Field{"shows", "", "Output for a lost sample: no number, no hit, the value before, or `value`."},
           s.shows);
-    visit(Field{"value", "", "What shows: value shows.", -1e12, 1e12, Field::tunable}, s.value);
-    visit(Field{"whole", "", "All values of the device's sample are lost at once."}, s.whole);
+    visit(Field{"value", "", "Output for a lost sample with `shows: value`.", -1e12, 1e12, Field::tunable},
+          s.value);
+    visit(Field{"whole", "", "Whether all values of the device's sample are lost at once."}, s.whole);
   }
   Status check(const Node& node, const std::string& path) const {
     if (rate > 0 && per_second > 0)
@@ -138,19 +141,21 @@ inline std::span<const EnumName<DropoutsSpec::Shows>> enum_names(DropoutsSpec::S
 /// Of many values at once each is drawn for anew; only `replace` touches a value that is not finite.
 struct OutliersSpec {
   static constexpr const char* name = "outliers";
-  static constexpr const char* help = "Now and then a value that is far off.";
+  static constexpr const char* help = "Outliers: occasional values that are far off.";
   double rate = 0, per_second = 0, std = 0, min = 0, max = 0;
   bool replace = false;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"rate", "1", "Probability per value.", 0, 1, Field::tunable}, s.rate);
-    visit(Field{"per_second", "Hz", "How many per second, instead of rate.", 0, 1e6, Field::tunable},
-          s.per_second);
-    visit(Field{"std", "", "Standard deviation of normal ones.", 0, max_error, Field::tunable}, s.std);
-    visit(Field{"min", "", "Least of uniform ones.", -max_error, max_error, Field::tunable}, s.min);
-    visit(Field{"max", "", "Largest of uniform ones.", -max_error, max_error, Field::tunable}, s.max);
-    visit(Field{"replace", "", "They are shown in place of the value, not added to it."}, s.replace);
+    visit(Field{"rate", "1", "Probability of an outlier per value.", 0, 1, Field::tunable}, s.rate);
+    visit(
+        Field{"per_second", "Hz", "Number of outliers per second, instead of rate.", 0, 1e6, Field::tunable},
+        s.per_second);
+    visit(Field{"std", "", "Standard deviation of normal outliers.", 0, max_error, Field::tunable}, s.std);
+    visit(Field{"min", "", "Smallest of uniform outliers.", -max_error, max_error, Field::tunable}, s.min);
+    visit(Field{"max", "", "Largest of uniform outliers.", -max_error, max_error, Field::tunable}, s.max);
+    visit(Field{"replace", "", "Whether outliers replace the value instead of being added to it."},
+          s.replace);
   }
   Status check(const Node& node, const std::string& path) const {
     if (rate > 0 && per_second > 0)

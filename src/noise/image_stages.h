@@ -35,9 +35,11 @@ struct Gaussian {
   double std = 0;
   Channels channels = Channels::apart;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"std", "1", "Standard deviation; 1 is full scale.", 0, 10, Field::tunable | Field::required},
+    visit(Field{"std", "1", "Standard deviation of the error; 1 is full scale.", 0, 10,
+                Field::tunable | Field::required},
           s.std);
-    visit(Field{"channels", "", "Each channel errs for itself, or all of a pixel alike."}, s.channels);
+    visit(Field{"channels", "", "Errors of each channel apart, or the same for all channels of a pixel."},
+          s.channels);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -83,7 +85,9 @@ struct HundredsAndThousands {
   static constexpr const char* help = "Single pixels of random colours.";
   double rate = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"rate", "1", "Probability per pixel.", 0, 1, Field::tunable | Field::required}, s.rate);
+    visit(Field{"rate", "1", "Probability per pixel that it has a random colour.", 0, 1,
+                Field::tunable | Field::required},
+          s.rate);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -91,14 +95,14 @@ struct HundredsAndThousands {
 /// y = x (1 + e gain_std n1) + e offset_std n2,   n1, n2 drawn once per pixel and channel.
 struct FixedPattern {
   static constexpr const char* name = "fixed_pattern";
-  static constexpr const char* help = "Pixels that differ from each other, in the same way in every picture.";
+  static constexpr const char* help = "Differences between pixels that are the same in every picture.";
   static constexpr bool fixed = true;
   double offset_std = 0, gain_std = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{"offset_std", "1", "Standard deviation of what they show in the dark.", 0, 10, Field::tunable},
-        s.offset_std);
-    visit(Field{"gain_std", "1", "Standard deviation of their gains.", 0, 10, Field::tunable}, s.gain_std);
+    visit(Field{"offset_std", "1", "Standard deviation of the pixels' dark values.", 0, 10, Field::tunable},
+          s.offset_std);
+    visit(Field{"gain_std", "1", "Standard deviation of the pixels' gains.", 0, 10, Field::tunable},
+          s.gain_std);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
@@ -127,7 +131,8 @@ struct Rows {
   static constexpr const char* help = "Errors that all pixels of a row share, drawn for every picture.";
   double std = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"std", "1", "Standard deviation; 1 is full scale.", 0, 10, Field::tunable | Field::required},
+    visit(Field{"std", "1", "Standard deviation of the error of a row; 1 is full scale.", 0, 10,
+                Field::tunable | Field::required},
           s.std);
   }
   void corrupt(ImagePiece& piece, const Stream& random) const;

@@ -19,7 +19,7 @@ namespace sandlot {
 
 struct LatencySpec {
   static constexpr const char* name = "latency";
-  static constexpr const char* help = "Shows what was measured a while ago.";
+  static constexpr const char* help = "Delay: shows the value of an earlier time.";
   static constexpr std::size_t max_held = 4096, max_held_values = 4'000'000;
   double delay_s = 0, jitter_s = 0;
 
@@ -30,17 +30,17 @@ struct LatencySpec {
     std::vector<float> held_values;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"now", "s", "Time since the first sample."}, s.now_s);
-      visit(Field{"time", "s", "Times of the samples kept."}, s.time_s);
-      visit(Field{"held", "", "Samples kept."}, s.held);
-      visit(Field{"held_values", "", "Scans kept."}, s.held_values);
+      visit(Field{"time", "s", "Times of the stored samples."}, s.time_s);
+      visit(Field{"held", "", "Stored samples."}, s.held);
+      visit(Field{"held_values", "", "Stored scans."}, s.held_values);
     }
   };
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"delay", "s", "Age of what is shown.", 0, 1e3, Field::tunable | Field::required}, s.delay_s);
-    visit(
-        Field{"jitter", "s", "The age varies by as much as this either way, alike.", 0, 1e3, Field::tunable},
-        s.jitter_s);
+    visit(Field{"delay", "s", "Age of the value shown.", 0, 1e3, Field::tunable | Field::required},
+          s.delay_s);
+    visit(Field{"jitter", "s", "Largest variation of the age either way, uniform.", 0, 1e3, Field::tunable},
+          s.jitter_s);
   }
 
   double corrupt(State& state, double x, const NoiseSample& sample, Stream& random) const {

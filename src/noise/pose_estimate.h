@@ -32,13 +32,12 @@ struct PoseEstimateSpec {
     visit(Field{"position_std", "m", "Standard deviation of x and of y.", 0, 1e4, tunable}, s.position_std_m);
     visit(Field{"vertical_std", "m", "Standard deviation of z.", 0, 1e4, tunable}, s.vertical_std_m);
     visit(Field{"yaw_std", "rad", "Standard deviation of the heading.", 0, 10, tunable}, s.yaw_std_rad);
-    visit(Field{"correlation", "s", "Correlation time of these errors.", 1e-6, 1e9, tunable},
-          s.correlation_s);
-    visit(Field{"lost_rate", "Hz", "How often it gets lost.", 0, 1e3, tunable}, s.lost_rate_hz);
-    visit(Field{"lost_time", "s", "How long it stays lost, on average.", 1e-6, 1e6, tunable}, s.lost_time_s);
-    visit(Field{"lost_position_std", "m", "How far off x and y are then.", 0, 1e4, tunable},
+    visit(Field{"correlation", "s", "Correlation time of the errors.", 1e-6, 1e9, tunable}, s.correlation_s);
+    visit(Field{"lost_rate", "Hz", "Rate at which the estimate gets lost.", 0, 1e3, tunable}, s.lost_rate_hz);
+    visit(Field{"lost_time", "s", "Mean duration of being lost.", 1e-6, 1e6, tunable}, s.lost_time_s);
+    visit(Field{"lost_position_std", "m", "Standard deviation of x and y while lost.", 0, 1e4, tunable},
           s.lost_position_std_m);
-    visit(Field{"lost_yaw_std", "rad", "How far off the heading is then.", 0, 10, tunable},
+    visit(Field{"lost_yaw_std", "rad", "Standard deviation of the heading while lost.", 0, 10, tunable},
           s.lost_yaw_std_rad);
   }
 };
@@ -49,14 +48,14 @@ struct PoseEstimate {
   double lost_x_m = 0, lost_y_m = 0, lost_yaw_rad = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Error."}, s.x);
-    visit(Field{"y", "m", "Error."}, s.y);
-    visit(Field{"z", "m", "Error."}, s.z);
-    visit(Field{"yaw", "rad", "Error."}, s.yaw);
-    visit(Field{"lost", "s", "For how long it will still be lost."}, s.lost_s);
-    visit(Field{"lost_x", "m", "How far off it is then."}, s.lost_x_m);
-    visit(Field{"lost_y", "m", "How far off it is then."}, s.lost_y_m);
-    visit(Field{"lost_yaw", "rad", "How far off it is then."}, s.lost_yaw_rad);
+    visit(Field{"x", "m", "Error of x."}, s.x);
+    visit(Field{"y", "m", "Error of y."}, s.y);
+    visit(Field{"z", "m", "Error of z."}, s.z);
+    visit(Field{"yaw", "rad", "Error of the heading."}, s.yaw);
+    visit(Field{"lost", "s", "Time until the estimate is found again."}, s.lost_s);
+    visit(Field{"lost_x", "m", "Error of x while lost."}, s.lost_x_m);
+    visit(Field{"lost_y", "m", "Error of y while lost."}, s.lost_y_m);
+    visit(Field{"lost_yaw", "rad", "Error of the heading while lost."}, s.lost_yaw_rad);
   }
 
   /// Draws errors from their stationary distribution: no warm-up.

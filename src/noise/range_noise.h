@@ -39,10 +39,10 @@ struct RangeNoiseSpec {
     visit(Field{"white", "m", "Standard deviation of each beam's own error.", 0, 1e6, Field::tunable},
           s.white_m);
     visit(Field{"bias", "m", "Error that all beams of a sample share."}, s.bias);
-    visit(Field{"mean", "m", "Constant error.", -1e6, 1e6}, s.mean_m);
-    visit(Field{"systematic", "m", "Further constant error, drawn at the start within +- this.", 0, 1e6},
+    visit(Field{"mean", "m", "Constant part of the error.", -1e6, 1e6}, s.mean_m);
+    visit(Field{"systematic", "m", "Bound of a further constant error, drawn at the start.", 0, 1e6},
           s.systematic_m);
-    visit(Field{"resolution", "m", "Distances are multiples of this; 0: any.", 0, 1e6}, s.resolution_m);
+    visit(Field{"resolution", "m", "Step of the distances; 0: none.", 0, 1e6}, s.resolution_m);
     visit(stages_field, s.stages);
   }
 };
@@ -81,8 +81,8 @@ struct RangeNoise {
   double constant_m = 0;  ///< c; no State: the same stream yields it again
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"bias", "", "Error that all beams share."}, s.bias);
-    visit(Field{"stages", "", "States of the stages."}, s.chain);
+    visit(Field{"bias", "", "Part of the error that all beams share."}, s.bias);
+    visit(Field{"stages", "", "States of the noise stages."}, s.chain);
   }
   /// @param random  stream of the device, Purpose::initial
   void reset(const RangeNoiseSpec& s, Stream& random) {

@@ -25,10 +25,10 @@ struct GrowingSpec {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned flags = Field::tunable | Field::required;
-    visit(Field{"std", "", "Standard deviation at the value `at`.", 0, max_error, flags}, s.std);
-    visit(Field{"at", "", "Where it has this deviation.", 1e-6, max_error, flags}, s.at);
-    visit(Field{"power", "1", "Of the value; 2 is that of distances by parallax or of an echo.", 0, 8,
-                Field::tunable},
+    visit(Field{"std", "", "Standard deviation of the error at the value `at`.", 0, max_error, flags}, s.std);
+    visit(Field{"at", "", "Value at which the standard deviation is `std`.", 1e-6, max_error, flags}, s.at);
+    visit(Field{"power", "1", "Exponent of the value; 2 is that of distances by parallax or of an echo.", 0,
+                8, Field::tunable},
           s.power);
   }
   double corrupt(double x, const NoiseSample& sample, Stream& random) const {
@@ -52,8 +52,10 @@ struct MixedSpec {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned flags = Field::tunable | Field::required;
-    visit(Field{"rate", "1", "Probability per beam at an edge.", 0, 1, flags}, s.rate);
-    visit(Field{"jump", "", "Difference between neighbours that is an edge.", 0, max_error, flags}, s.jump);
+    visit(Field{"rate", "1", "Probability of an error per beam at an edge.", 0, 1, flags}, s.rate);
+    visit(Field{"jump", "", "Smallest difference between neighbours that counts as an edge.", 0, max_error,
+                flags},
+          s.jump);
   }
   double corrupt(State&, double x, const NoiseSample&, Stream&) const { return x; }
   void corrupt(State&, std::span<float> values, const NoiseSample& sample, Stream& random) const {
@@ -77,15 +79,14 @@ struct MixedSpec {
 /// With the probability e rate something in front is met: y = mean E, given that this is below x. Also where nothing was met.
 struct ShortSpec {
   static constexpr const char* name = "short";
-  static constexpr const char* help =
-      "Now and then something in front of what is measured: dust, rain, people.";
+  static constexpr const char* help = "Occasional objects in front of what is measured: dust, rain, people.";
   double rate = 0, mean = 1;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned flags = Field::tunable | Field::required;
-    visit(Field{"rate", "1", "Probability per value.", 0, 1, flags}, s.rate);
-    visit(Field{"mean", "", "Mean distance of such things.", 1e-6, max_error, flags}, s.mean);
+    visit(Field{"rate", "1", "Probability per value that something is in front.", 0, 1, flags}, s.rate);
+    visit(Field{"mean", "", "Mean distance of what is in front.", 1e-6, max_error, flags}, s.mean);
   }
   double corrupt(double x, const NoiseSample& sample, Stream& random) const {
     if (random.uniform() >= std::min(1.0, rate * sample.errors) || !(x > 0)) return x;
@@ -98,14 +99,14 @@ struct ShortSpec {
 /// With the probability e rate the echo came by a longer way: y = x + mean E.
 struct MultipathSpec {
   static constexpr const char* name = "multipath";
-  static constexpr const char* help = "Now and then an echo by a longer way, as of sound from a smooth wall.";
+  static constexpr const char* help = "Occasional echoes by a longer way, as of sound from a smooth wall.";
   double rate = 0, mean = 1;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned flags = Field::tunable | Field::required;
-    visit(Field{"rate", "1", "Probability per value.", 0, 1, flags}, s.rate);
-    visit(Field{"mean", "", "Mean of what the way is longer by.", 0, max_error, flags}, s.mean);
+    visit(Field{"rate", "1", "Probability per value of an echo by a longer way.", 0, 1, flags}, s.rate);
+    visit(Field{"mean", "", "Mean of the additional distance.", 0, max_error, flags}, s.mean);
   }
   double corrupt(double x, const NoiseSample& sample, Stream& random) const {
     if (random.uniform() >= std::min(1.0, rate * sample.errors) || !std::isfinite(x)) return x;

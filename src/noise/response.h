@@ -20,7 +20,7 @@ struct ScaleSpec {
   struct State {
     double normal = 0;  ///< the draw
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"normal", "1", "Draw that std multiplies."}, s.normal);
+      visit(Field{"normal", "1", "Normal draw that std multiplies."}, s.normal);
     }
   };
 
@@ -40,12 +40,13 @@ struct ScaleSpec {
 /// y = s floor(x / s + 1/2),   s = e step.   Of values spread over many steps the error has mean 0, variance s^2 / 12.
 struct QuantiseSpec {
   static constexpr const char* name = "quantise";
-  static constexpr const char* help = "Values are multiples of a step.";
+  static constexpr const char* help = "Quantisation: values are multiples of a step.";
   double step = 0;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"step", "", "The step.", 0, max_error, Field::tunable | Field::required}, s.step);
+    visit(Field{"step", "", "Distance between two values.", 0, max_error, Field::tunable | Field::required},
+          s.step);
   }
   double corrupt(double x, const NoiseSample& sample, Stream&) const {
     const double s = sample.errors * step;
@@ -58,12 +59,12 @@ struct QuantiseSpec {
 /// y = min(max(x, min), max).   What the device can show, not an error: the factor `errors` leaves it alone.
 struct ClipSpec {
   static constexpr const char* name = "clip";
-  static constexpr const char* help = "Least and largest value shown.";
+  static constexpr const char* help = "Saturation: smallest and largest value shown.";
   double min = -1e12, max = 1e12;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"min", "", "Least value shown.", -1e12, 1e12, Field::tunable}, s.min);
+    visit(Field{"min", "", "Smallest value shown.", -1e12, 1e12, Field::tunable}, s.min);
     visit(Field{"max", "", "Largest value shown.", -1e12, 1e12, Field::tunable}, s.max);
   }
   Status check(const Node& node, const std::string& path) const {
@@ -78,14 +79,14 @@ struct ClipSpec {
 /// y = 0 for |x| < e width, else x.
 struct DeadZoneSpec {
   static constexpr const char* name = "dead_zone";
-  static constexpr const char* help = "Small values show as zero.";
+  static constexpr const char* help = "Dead zone: small values show as zero.";
   double width = 0;
   using State = NoFields;
 
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{"width", "", "Magnitudes below this are zero.", 0, max_error, Field::tunable | Field::required},
-        s.width);
+    visit(Field{"width", "", "Magnitude below which values are zero.", 0, max_error,
+                Field::tunable | Field::required},
+          s.width);
   }
   double corrupt(double x, const NoiseSample& sample, Stream&) const {
     return std::abs(x) < sample.errors * width ? 0 : x;

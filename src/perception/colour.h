@@ -27,13 +27,13 @@ struct ColourRange {
 
   bool holds(const Hsv& colour) const;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"hue", "rad", "Its hue: 0 red, 120 deg green, 240 deg blue.", -10, 10}, s.hue_rad);
-    visit(Field{"hue_tolerance", "rad", "How far hues may be from it; 180 deg: any.", 0, 4},
+    visit(Field{"hue", "rad", "Hue of the colour: 0 red, 120 deg green, 240 deg blue.", -10, 10}, s.hue_rad);
+    visit(Field{"hue_tolerance", "rad", "Largest difference from the hue; 180 deg: any.", 0, 4},
           s.hue_tolerance_rad);
-    visit(Field{"min_saturation", "1", "Greyer pixels are something else.", 0, 1}, s.min_saturation);
-    visit(Field{"max_saturation", "1", "More colourful ones too.", 0, 1}, s.max_saturation);
-    visit(Field{"min_value", "1", "Darker pixels are something else.", 0, 1}, s.min_value);
-    visit(Field{"max_value", "1", "Brighter ones too.", 0, 1}, s.max_value);
+    visit(Field{"min_saturation", "1", "Smallest saturation.", 0, 1}, s.min_saturation);
+    visit(Field{"max_saturation", "1", "Largest saturation.", 0, 1}, s.max_saturation);
+    visit(Field{"min_value", "1", "Smallest brightness.", 0, 1}, s.min_value);
+    visit(Field{"max_value", "1", "Largest brightness.", 0, 1}, s.max_value);
   }
 };
 

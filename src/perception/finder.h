@@ -33,13 +33,17 @@ struct Target {
   double size_m = 0.22, foot_m = 0, depth_m = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"label", "", "What it is called when it is found."}, s.label);
-    visit(Field{"colour", "", "Its colour."}, s.colour);
-    visit(Field{"form", "", "How its distance is told."}, s.form);
-    visit(Field{"size", "m", "Of a ball: its diameter; of what stands: its width.", 1e-3, 100}, s.size_m);
-    visit(Field{"foot", "m", "Of what stands: height of the colour's lower edge over the ground.", -10, 10},
+    visit(Field{"label", "", "Label of the object when it is found."}, s.label);
+    visit(Field{"colour", "", "Colour of the object."}, s.colour);
+    visit(Field{"form", "", "Shape that the distance is computed from."}, s.form);
+    visit(Field{"size", "m", "Size of the object: a ball's diameter, otherwise the width.", 1e-3, 100},
+          s.size_m);
+    visit(Field{"foot", "m", "Height of the colour's lower edge over the ground, of an object that stands.",
+                -10, 10},
           s.foot_m);
-    visit(Field{"depth", "m", "Of what stands: from its nearest point to its middle.", 0, 100}, s.depth_m);
+    visit(Field{"depth", "m", "Distance from the nearest point to the middle, of an object that stands.", 0,
+                100},
+          s.depth_m);
   }
 };
 
@@ -50,13 +54,17 @@ struct FinderSpec {
   double max_range_m = 30, min_visible = 0.15;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"targets", "", "What is looked for.", 0, 0, Field::none, 200, 1}, s.targets);
+    visit(Field{"targets", "", "Objects to search for.", 0, 0, Field::none, 200, 1}, s.targets);
     visit(Field{"base_height", "m", "Height of the robot's base frame over the ground.", -10, 10},
           s.base_height_m);
-    visit(Field{"min_pixels", "1", "Smaller patches are noise.", 1, 1e6}, s.min_pixels);
-    visit(Field{"gap", "1", "Pixels of another colour that do not part a patch.", 0, 16}, s.gap);
-    visit(Field{"max_range", "m", "Farther things are not told.", 1e-3, 1e4}, s.max_range_m);
-    visit(Field{"min_visible", "1", "Part of a thing, of the width of what stands, that must be seen.", 0, 1},
+    visit(Field{"min_pixels", "1", "Smallest number of pixels of a patch; smaller ones count as noise.", 1,
+                1e6},
+          s.min_pixels);
+    visit(Field{"gap", "1", "Number of pixels of another colour that do not separate a patch.", 0, 16},
+          s.gap);
+    visit(Field{"max_range", "m", "Farthest distance at which an object is reported.", 1e-3, 1e4},
+          s.max_range_m);
+    visit(Field{"min_visible", "1", "Smallest visible part, of the width of an object that stands.", 0, 1},
           s.min_visible);
   }
 };

@@ -14,11 +14,12 @@ struct Spec {
   double wheel_radius_m = 0.09, track_m = 0.4, wheelbase_m = 0.56, steering_rad = 0.6, mass_kg = 15;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"wheel_radius", "m", "Of the wheels.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"track", "m", "Between the left and the right wheels.", 0.01, 10}, s.track_m);
-    visit(Field{"wheelbase", "m", "Between the front and the rear wheels.", 0.01, 20}, s.wheelbase_m);
-    visit(Field{"steering", "rad", "How far the inner wheel is steered.", 0.05, 1.2}, s.steering_rad);
-    visit(Field{"mass", "kg", "Of the whole; each wheel has a twentieth of it.", 0.01, 1e5}, s.mass_kg);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"track", "m", "Distance between the left and the right wheels.", 0.01, 10}, s.track_m);
+    visit(Field{"wheelbase", "m", "Distance between the front and the rear axle.", 0.01, 20}, s.wheelbase_m);
+    visit(Field{"steering", "rad", "Largest steering angle of the inner wheel.", 0.05, 1.2}, s.steering_rad);
+    visit(Field{"mass", "kg", "Mass of the whole robot; each wheel has a twentieth of it.", 0.01, 1e5},
+          s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
     const auto wrong = [&](const char* key, const char* what, const char* fix) {

@@ -17,14 +17,14 @@ struct Spec {
   double limit_in_rad = math::pi / 4, limit_out_rad = math::pi / 4;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"segments", "1", "How many staves.", 4, 100}, s.segments);
-    visit(Field{"length", "m", "Of a stave: the band's width.", 0.01, 10}, s.length_m);
-    visit(Field{"diameter", "m", "Of a stave.", 0.005, 5}, s.diameter_m);
-    visit(Field{"mass", "kg", "Of a stave.", 1e-4, 1e4}, s.mass_kg);
+    visit(Field{"segments", "1", "Number of staves.", 4, 100}, s.segments);
+    visit(Field{"length", "m", "Length of a stave, which is the band's width.", 0.01, 10}, s.length_m);
+    visit(Field{"diameter", "m", "Diameter of a stave.", 0.005, 5}, s.diameter_m);
+    visit(Field{"mass", "kg", "Mass of a stave.", 1e-4, 1e4}, s.mass_kg);
     visit(Field{"power", "Nm", "Largest torque of a hinge.", 0, 1e6}, s.power_Nm);
     visit(Field{"speed", "rad/s", "Fastest turn of a hinge.", 0, 1e3}, s.speed_radps);
-    visit(Field{"limit_in", "rad", "How far a hinge bends inwards.", 0, 3}, s.limit_in_rad);
-    visit(Field{"limit_out", "rad", "How far a hinge bends outwards.", 0, 3}, s.limit_out_rad);
+    visit(Field{"limit_in", "rad", "Largest angle of a hinge inwards.", 0, 3}, s.limit_in_rad);
+    visit(Field{"limit_out", "rad", "Largest angle of a hinge outwards.", 0, 3}, s.limit_out_rad);
   }
   Status check(const Node& node, const std::string& path) const {
     if (length_m >= diameter_m) return {};

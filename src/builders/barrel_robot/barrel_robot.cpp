@@ -16,13 +16,15 @@ struct Spec {
          speed_mps = 2;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"diameter", "m", "Of the barrel.", 0.02, 20}, s.diameter_m);
-    visit(Field{"length", "m", "Of the barrel.", 0.02, 20}, s.length_m);
-    visit(Field{"shell_mass", "kg", "Of the barrel.", 1e-4, 1e5}, s.shell_mass_kg);
-    visit(Field{"mass", "kg", "Of each of the two inner masses.", 1e-4, 1e5}, s.mass_kg);
-    visit(Field{"range", "m", "How far a mass moves to each side of the middle.", 1e-3, 10}, s.range_m);
-    visit(Field{"power", "N", "Largest force on a mass.", 0, 1e6}, s.power_N);
-    visit(Field{"speed", "m/s", "Fastest motion of a mass.", 0, 1e3}, s.speed_mps);
+    visit(Field{"diameter", "m", "Diameter of the barrel.", 0.02, 20}, s.diameter_m);
+    visit(Field{"length", "m", "Length of the barrel.", 0.02, 20}, s.length_m);
+    visit(Field{"shell_mass", "kg", "Mass of the barrel without what is inside.", 1e-4, 1e5},
+          s.shell_mass_kg);
+    visit(Field{"mass", "kg", "Mass of each of the two inner masses.", 1e-4, 1e5}, s.mass_kg);
+    visit(Field{"range", "m", "Largest travel of an inner mass to each side of the middle.", 1e-3, 10},
+          s.range_m);
+    visit(Field{"power", "N", "Largest force on an inner mass.", 0, 1e6}, s.power_N);
+    visit(Field{"speed", "m/s", "Largest speed of an inner mass.", 0, 1e3}, s.speed_mps);
   }
   Status check(const Node& node, const std::string& path) const {
     if (range_m < diameter_m / 2) return {};

@@ -20,13 +20,13 @@ struct Spec {
   std::uint64_t seed = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"count", "1", "How many boxes.", 1, 5000}, s.count);
-    visit(Field{"length", "m", "Of the pile's place along x.", 0.01, 1e3}, s.length_m);
-    visit(Field{"width", "m", "Of the pile's place along y.", 0.01, 1e3}, s.width_m);
-    visit(Field{"smallest", "m", "Shortest edge.", 1e-3, 10}, s.smallest_m);
-    visit(Field{"largest", "m", "Longest edge.", 1e-3, 10}, s.largest_m);
-    visit(Field{"density", "kg/m^3", "Of the boxes.", 0.1, 3e4}, s.density);
-    visit(Field{"seed", "1", "Another seed, another pile.", 0, 9007199254740991.0}, s.seed);
+    visit(Field{"count", "1", "Number of boxes.", 1, 5000}, s.count);
+    visit(Field{"length", "m", "Length of the pile's place along x.", 0.01, 1e3}, s.length_m);
+    visit(Field{"width", "m", "Width of the pile's place along y.", 0.01, 1e3}, s.width_m);
+    visit(Field{"smallest", "m", "Shortest edge of a box.", 1e-3, 10}, s.smallest_m);
+    visit(Field{"largest", "m", "Longest edge of a box.", 1e-3, 10}, s.largest_m);
+    visit(Field{"density", "kg/m^3", "Density of the boxes.", 0.1, 3e4}, s.density);
+    visit(Field{"seed", "1", "Seed of sizes and places of the boxes.", 0, 9007199254740991.0}, s.seed);
   }
   Status check(const Node& node, const std::string& path) const {
     const auto wrong = [&](const char* key, const char* what, const char* fix) {

@@ -13,9 +13,10 @@ struct Spec {
   double wheel_radius_m = 0.08, track_m = 0.36, mass_kg = 6;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"wheel_radius", "m", "Of the wheels.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"track", "m", "Between the middles of the wheels.", 0.01, 10}, s.track_m);
-    visit(Field{"mass", "kg", "Of the whole; each wheel has a twentieth of it.", 0.01, 1e5}, s.mass_kg);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"track", "m", "Distance between the middles of the wheels.", 0.01, 10}, s.track_m);
+    visit(Field{"mass", "kg", "Mass of the whole robot; each wheel has a twentieth of it.", 0.01, 1e5},
+          s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
     if (track_m >= 2 * wheel_radius_m) return {};

@@ -21,12 +21,12 @@ struct Spec {
   Wheels wheels = Wheels::discs;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"size", "m", "Length of the body; all else follows.", 0.02, 20}, s.size_m);
+    visit(Field{"size", "m", "Length of the body; all other lengths follow from it.", 0.02, 20}, s.size_m);
     visit(Field{"force", "Nm", "Largest torque of a wheel's motor.", 0, 1e6}, s.force_Nm);
     visit(Field{"speed", "rad/s", "Fastest turn of a wheel.", 0, 1e3}, s.speed_radps);
-    visit(Field{"body_mass", "kg", "Of the body.", 1e-4, 1e5}, s.body_mass_kg);
-    visit(Field{"wheel_mass", "kg", "Of each wheel.", 1e-4, 1e5}, s.wheel_mass_kg);
-    visit(Field{"wheels", "", "What the wheels are."}, s.wheels);
+    visit(Field{"body_mass", "kg", "Mass of the body.", 1e-4, 1e5}, s.body_mass_kg);
+    visit(Field{"wheel_mass", "kg", "Mass of each wheel.", 1e-4, 1e5}, s.wheel_mass_kg);
+    visit(Field{"wheels", "", "Shape of the wheels."}, s.wheels);
   }
 };
 

@@ -21,14 +21,16 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the body.", 0.02, 20}, s.size_m);
-    visit(Field{"mass", "kg", "Of the whole; the legs have three tenths of it.", 1e-3, 1e4}, s.mass_kg);
-    visit(Field{"leg_length", "m", "From hip to foot.", 0.01, 10}, s.leg_length_m);
-    visit(Field{"spread", "rad", "How far the legs stand away from straight down.", 0, 1.4}, s.spread_rad);
+    visit(Field{"mass", "kg", "Mass of the whole robot; the legs have three tenths of it.", 1e-3, 1e4},
+          s.mass_kg);
+    visit(Field{"leg_length", "m", "Length of a leg from hip to foot.", 0.01, 10}, s.leg_length_m);
+    visit(Field{"spread", "rad", "Angle between the legs and straight down.", 0, 1.4}, s.spread_rad);
     visit(Field{"power", "Nm", "Largest torque at the hip.", 0, 1e6}, s.power_Nm);
     visit(Field{"speed", "rad/s", "Fastest turn of a joint.", 0, 1e3}, s.speed_radps);
-    visit(Field{"swing_limit", "rad", "How far a leg swings each way.", 0.01, 1.5}, s.swing_limit_rad);
-    visit(Field{"lift_limit", "rad", "How far a leg lifts and presses.", 0.01, 1.5}, s.lift_limit_rad);
-    visit(Field{"knees", "", "The lower half of a leg turns too."}, s.knees);
+    visit(Field{"swing_limit", "rad", "Largest swing of a leg each way.", 0.01, 1.5}, s.swing_limit_rad);
+    visit(Field{"lift_limit", "rad", "Largest angle by which a leg lifts and presses.", 0.01, 1.5},
+          s.lift_limit_rad);
+    visit(Field{"knees", "", "Whether the lower half of a leg turns, too."}, s.knees);
     visit(Field{"knee_power", "Nm", "Largest torque at a knee.", 0, 1e6}, s.knee_power_Nm);
   }
 };

@@ -17,11 +17,12 @@ struct Spec {
   double wheel_radius_m = 0.1, track_m = 0.46, wheelbase_m = 0.4, mass_kg = 15;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"rollers", "1", "How many rollers a wheel has.", 6, 40}, s.rollers);
-    visit(Field{"wheel_radius", "m", "Of the wheels, over the rollers.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"track", "m", "Between the left and the right wheels.", 0.01, 10}, s.track_m);
-    visit(Field{"wheelbase", "m", "Between the front and the rear wheels.", 0.01, 10}, s.wheelbase_m);
-    visit(Field{"mass", "kg", "Of the whole without rollers; each wheel has a fortieth of it.", 0.01, 1e5},
+    visit(Field{"rollers", "1", "Number of rollers of a wheel.", 6, 40}, s.rollers);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels over the rollers.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"track", "m", "Distance between the left and the right wheels.", 0.01, 10}, s.track_m);
+    visit(Field{"wheelbase", "m", "Distance between the front and the rear axle.", 0.01, 10}, s.wheelbase_m);
+    visit(Field{"mass", "kg", "Mass of the whole robot without rollers; each wheel has a fortieth of it.",
+                0.01, 1e5},
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {

@@ -42,16 +42,15 @@ struct Spec {
   double mass_kg = 26;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"number", "1", "Painted on its tower.", 0, 99}, s.number);
-    visit(Field{"color", "", "Of its team."}, s.color);
-    visit(Field{"wheels", "1", "How many.", 3, 4}, s.wheels);
-    visit(
-        Field{
-            "rollers", "1",
-            "How many in each of the two rows of a wheel, from 4 on; 0: wheels that slide along their axes.",
-            0, 24},
-        s.rollers);
-    visit(Field{"mass", "kg", "Of the whole without rollers; each wheel has 0.5 kg of it.", 5, 40},
+    visit(Field{"number", "1", "Number painted on the tower.", 0, 99}, s.number);
+    visit(Field{"color", "", "Colour of the team's marker."}, s.color);
+    visit(Field{"wheels", "1", "Number of wheels.", 3, 4}, s.wheels);
+    visit(Field{"rollers", "1",
+                "Number of rollers in each of the two rows of a wheel, from 4 on; 0: wheels that slide along "
+                "their axes.",
+                0, 24},
+          s.rollers);
+    visit(Field{"mass", "kg", "Mass of the whole robot without rollers; each wheel has 0.5 kg of it.", 5, 40},
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {

@@ -14,11 +14,12 @@ struct Spec {
   double length_m = 7, wall_m = 0.2, height_m = 0.5;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"corners", "1", "And walls.", 3, 200}, s.corners);
-    visit(Field{"length", "m", "Twice the distance of a wall's inside from the middle.", 0.05, 1e4},
+    visit(Field{"corners", "1", "Number of corners and of walls.", 3, 200}, s.corners);
+    visit(Field{"length", "m", "Distance between the insides of opposite walls (twice that from the middle).",
+                0.05, 1e4},
           s.length_m);
     visit(Field{"wall", "m", "Thickness of the walls.", 1e-3, 100}, s.wall_m);
-    visit(Field{"height", "m", "Of the walls.", 1e-3, 100}, s.height_m);
+    visit(Field{"height", "m", "Height of the walls.", 1e-3, 100}, s.height_m);
   }
 };
 

@@ -19,11 +19,12 @@ struct Spec {
   double wheel_radius_m = 0.06, radius_m = 0.2, mass_kg = 8;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"wheels", "1", "How many wheels.", 3, 16}, s.wheels);
-    visit(Field{"rollers", "1", "How many rollers in each of the two rows of a wheel.", 4, 40}, s.rollers);
-    visit(Field{"wheel_radius", "m", "Of the wheels, over the rollers.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"radius", "m", "Of the circle of the wheels.", 0.01, 10}, s.radius_m);
-    visit(Field{"mass", "kg", "Of the whole without rollers; each wheel has a fortieth of it.", 0.01, 1e5},
+    visit(Field{"wheels", "1", "Number of wheels.", 3, 16}, s.wheels);
+    visit(Field{"rollers", "1", "Number of rollers in each of the two rows of a wheel.", 4, 40}, s.rollers);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels over the rollers.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"radius", "m", "Radius of the circle on which the wheels stand.", 0.01, 10}, s.radius_m);
+    visit(Field{"mass", "kg", "Mass of the whole robot without rollers; each wheel has a fortieth of it.",
+                0.01, 1e5},
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {

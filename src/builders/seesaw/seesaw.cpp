@@ -13,11 +13,12 @@ struct Spec {
   double length_m = 3, width_m = 0.8, thickness_m = 0.05, height_m = 0.25, mass_kg = 8;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"length", "m", "Of the plank.", 0.05, 100}, s.length_m);
-    visit(Field{"width", "m", "Of the plank.", 0.01, 100}, s.width_m);
-    visit(Field{"thickness", "m", "Of the plank.", 1e-3, 1}, s.thickness_m);
-    visit(Field{"height", "m", "Of the pivot, which is in the middle of the plank.", 0.01, 10}, s.height_m);
-    visit(Field{"mass", "kg", "Of the plank.", 1e-3, 1e5}, s.mass_kg);
+    visit(Field{"length", "m", "Length of the plank.", 0.05, 100}, s.length_m);
+    visit(Field{"width", "m", "Width of the plank.", 0.01, 100}, s.width_m);
+    visit(Field{"thickness", "m", "Thickness of the plank.", 1e-3, 1}, s.thickness_m);
+    visit(Field{"height", "m", "Height of the pivot, which is in the middle of the plank.", 0.01, 10},
+          s.height_m);
+    visit(Field{"mass", "kg", "Mass of the plank.", 1e-3, 1e5}, s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
     const Node* const key = node.find("height");

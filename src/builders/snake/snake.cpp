@@ -30,18 +30,19 @@ struct Spec {
   Joints joints = Joints::yaw;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"segments", "1", "How many.", 2, 200}, s.segments);
-    visit(Field{"length", "m", "From joint to joint.", 0.01, 10}, s.length_m);
-    visit(Field{"diameter", "m", "Of a segment.", 0.002, 5}, s.diameter_m);
-    visit(Field{"mass", "kg", "Of a segment.", 1e-4, 1e4}, s.mass_kg);
-    visit(Field{"joints", "", "How neighbours turn: to the sides, up and down, by turns, or both at once."},
+    visit(Field{"segments", "1", "Number of segments.", 2, 200}, s.segments);
+    visit(Field{"length", "m", "Length of a segment from joint to joint.", 0.01, 10}, s.length_m);
+    visit(Field{"diameter", "m", "Diameter of a segment.", 0.002, 5}, s.diameter_m);
+    visit(Field{"mass", "kg", "Mass of a segment.", 1e-4, 1e4}, s.mass_kg);
+    visit(Field{"joints", "", "Axes of the joints: sideways, up and down, by turns, or both at once."},
           s.joints);
     visit(Field{"power", "Nm", "Largest torque of a joint's motor.", 0, 1e6}, s.power_Nm);
-    visit(Field{"limit", "rad", "How far a joint turns each way.", 0.01, 3}, s.limit_rad);
+    visit(Field{"limit", "rad", "Largest angle of a joint each way.", 0.01, 3}, s.limit_rad);
     visit(Field{"speed", "rad/s", "Fastest turn of a joint.", 0, 1e3}, s.speed_radps);
-    visit(Field{"friction_along", "1", "Coulomb coefficient of its skin along a segment.", 0, 10},
+    visit(Field{"friction_along", "1", "Coulomb coefficient of the skin along a segment.", 0, 10},
           s.friction_along);
-    visit(Field{"friction_across", "1", "Coulomb coefficient of its skin across.", 0, 10}, s.friction_across);
+    visit(Field{"friction_across", "1", "Coulomb coefficient of the skin across a segment.", 0, 10},
+          s.friction_across);
   }
   Status check(const Node& node, const std::string& path) const {
     if (length_m >= diameter_m) return {};

@@ -25,13 +25,13 @@ struct Spec {
   bool walls = false;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"width", "m", "Between the posts.", 0.1, 20}, s.width_m);
-    visit(Field{"height", "m", "From the ground to the bar.", 0.1, 10}, s.height_m);
-    visit(Field{"depth", "m", "From the goal line to the back.", 0.05, 10}, s.depth_m);
+    visit(Field{"width", "m", "Distance between the posts.", 0.1, 20}, s.width_m);
+    visit(Field{"height", "m", "Height of the bar over the ground.", 0.1, 10}, s.height_m);
+    visit(Field{"depth", "m", "Distance from the goal line to the back.", 0.05, 10}, s.depth_m);
     visit(Field{"post", "m", "Thickness of posts and bar, which are square.", 0.005, 1}, s.post_m);
-    visit(Field{"mesh", "m", "Distance of the net's cords.", 0.02, 10}, s.mesh_m);
-    visit(Field{"color", "", "Of net or walls; posts and bar are white."}, s.color);
-    visit(Field{"walls", "", "Walls in the place of the net, as in the league's early years."}, s.walls);
+    visit(Field{"mesh", "m", "Distance between the net's cords.", 0.02, 10}, s.mesh_m);
+    visit(Field{"color", "", "Colour of net or walls; posts and bar are white."}, s.color);
+    visit(Field{"walls", "", "Walls instead of the net, as in the league's early years."}, s.walls);
   }
   Status check(const Node& node, const std::string& path) const {
     if (width_m / mesh_m > 100 || height_m / mesh_m > 100 || depth_m / mesh_m > 100)

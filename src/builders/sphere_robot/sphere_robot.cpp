@@ -15,12 +15,13 @@ struct Spec {
   double diameter_m = 1, shell_mass_kg = 0.3, mass_kg = 1, range_m = 0.2, power_N = 100, speed_mps = 2;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"diameter", "m", "Of the shell.", 0.02, 20}, s.diameter_m);
-    visit(Field{"shell_mass", "kg", "Of the shell.", 1e-4, 1e5}, s.shell_mass_kg);
-    visit(Field{"mass", "kg", "Of each of the three inner masses.", 1e-4, 1e5}, s.mass_kg);
-    visit(Field{"range", "m", "How far a mass moves to each side of the middle.", 1e-3, 10}, s.range_m);
-    visit(Field{"power", "N", "Largest force on a mass.", 0, 1e6}, s.power_N);
-    visit(Field{"speed", "m/s", "Fastest motion of a mass.", 0, 1e3}, s.speed_mps);
+    visit(Field{"diameter", "m", "Diameter of the shell.", 0.02, 20}, s.diameter_m);
+    visit(Field{"shell_mass", "kg", "Mass of the shell.", 1e-4, 1e5}, s.shell_mass_kg);
+    visit(Field{"mass", "kg", "Mass of each of the three inner masses.", 1e-4, 1e5}, s.mass_kg);
+    visit(Field{"range", "m", "Largest travel of an inner mass to each side of the middle.", 1e-3, 10},
+          s.range_m);
+    visit(Field{"power", "N", "Largest force on an inner mass.", 0, 1e6}, s.power_N);
+    visit(Field{"speed", "m/s", "Largest speed of an inner mass.", 0, 1e3}, s.speed_mps);
   }
   Status check(const Node& node, const std::string& path) const {
     if (range_m < diameter_m / 2) return {};

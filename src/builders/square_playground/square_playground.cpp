@@ -11,10 +11,11 @@ struct Spec {
   double length_m = 7, wall_m = 0.2, height_m = 0.5, factor_xy = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"length", "m", "Inside, along x.", 0.05, 1e4}, s.length_m);
-    visit(Field{"factor_xy", "1", "Length along y over that along x.", 0.01, 100}, s.factor_xy);
+    visit(Field{"length", "m", "Inner length along x.", 0.05, 1e4}, s.length_m);
+    visit(Field{"factor_xy", "1", "Ratio of the inner length along y to that along x.", 0.01, 100},
+          s.factor_xy);
     visit(Field{"wall", "m", "Thickness of the walls.", 1e-3, 100}, s.wall_m);
-    visit(Field{"height", "m", "Of the walls.", 1e-3, 100}, s.height_m);
+    visit(Field{"height", "m", "Height of the walls.", 1e-3, 100}, s.height_m);
   }
 };
 

@@ -13,10 +13,10 @@ struct Spec {
   bool down = true;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"steps", "1", "How many up to the platform, its edge among them.", 1, 1000}, s.steps);
+    visit(Field{"steps", "1", "Number of steps up to the platform, its edge included.", 1, 1000}, s.steps);
     visit(Field{"rise", "m", "Height of a step.", 1e-3, 10}, s.rise_m);
     visit(Field{"tread", "m", "Depth of a step.", 1e-3, 10}, s.tread_m);
-    visit(Field{"width", "m", "Of the stairs.", 0.01, 1e3}, s.width_m);
+    visit(Field{"width", "m", "Width of the stairs.", 0.01, 1e3}, s.width_m);
     visit(Field{"platform", "m", "Depth of the platform.", 1e-3, 1e3}, s.platform_m);
     visit(Field{"down", "", "Whether steps lead down behind the platform."}, s.down);
   }

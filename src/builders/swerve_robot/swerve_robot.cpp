@@ -17,14 +17,16 @@ struct Spec {
          height_m = 0.33, mass_kg = 20;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"wheel_radius", "m", "Of the wheels.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"track", "m", "Between the left and the right wheels.", 0.01, 10}, s.track_m);
-    visit(Field{"wheelbase", "m", "Between the front and the rear wheels.", 0.01, 10}, s.wheelbase_m);
-    visit(Field{"steering", "rad",
-                "How far a wheel is steered each way; a quarter turn reaches every direction.", 0.1, 7},
-          s.steering_rad);
-    visit(Field{"height", "m", "Of the whole.", 0.02, 10}, s.height_m);
-    visit(Field{"mass", "kg", "Of the whole.", 0.01, 1e5}, s.mass_kg);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"track", "m", "Distance between the left and the right wheels.", 0.01, 10}, s.track_m);
+    visit(Field{"wheelbase", "m", "Distance between the front and the rear wheels.", 0.01, 10},
+          s.wheelbase_m);
+    visit(
+        Field{"steering", "rad",
+              "Largest steering angle of a wheel each way; a quarter turn reaches every direction.", 0.1, 7},
+        s.steering_rad);
+    visit(Field{"height", "m", "Height of the whole robot.", 0.02, 10}, s.height_m);
+    visit(Field{"mass", "kg", "Mass of the whole robot.", 0.01, 1e5}, s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
     const auto wrong = [&](const char* key, const char* what, const char* fix) {

@@ -20,12 +20,12 @@ struct Spec {
   std::uint64_t seed = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"size_x", "m", "Extent along x.", 0.1, 1e4}, s.size_x_m);
-    visit(Field{"size_y", "m", "Extent along y.", 0.1, 1e4}, s.size_y_m);
-    visit(Field{"height", "m", "The highest that it can be.", 0, 100}, s.height_m);
-    visit(Field{"hill", "m", "How wide hills are.", 0.01, 1e4}, s.hill_m);
-    visit(Field{"cell", "m", "Distance of neighbouring heights.", 1e-3, 100}, s.cell_m);
-    visit(Field{"seed", "1", "Another seed, another terrain.", 0, 9007199254740991.0}, s.seed);
+    visit(Field{"size_x", "m", "Extent of the terrain along x.", 0.1, 1e4}, s.size_x_m);
+    visit(Field{"size_y", "m", "Extent of the terrain along y.", 0.1, 1e4}, s.size_y_m);
+    visit(Field{"height", "m", "Largest possible height.", 0, 100}, s.height_m);
+    visit(Field{"hill", "m", "Width of the hills.", 0.01, 1e4}, s.hill_m);
+    visit(Field{"cell", "m", "Distance between neighbouring grid points.", 1e-3, 100}, s.cell_m);
+    visit(Field{"seed", "1", "Seed of the hills.", 0, 9007199254740991.0}, s.seed);
   }
   Status check(const Node& node, const std::string& path) const {
     constexpr double most = 1025;

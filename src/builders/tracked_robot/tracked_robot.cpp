@@ -15,11 +15,12 @@ struct Spec {
   double wheel_radius_m = 0.07, track_m = 0.42, length_m = 0.6, mass_kg = 20;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"wheels", "1", "How many on each side.", 2, 16}, s.wheels);
-    visit(Field{"wheel_radius", "m", "Of the wheels, over the belt.", 0.005, 10}, s.wheel_radius_m);
-    visit(Field{"track", "m", "Between the middles of the tracks.", 0.01, 10}, s.track_m);
-    visit(Field{"length", "m", "Of a track.", 0.02, 20}, s.length_m);
-    visit(Field{"mass", "kg", "Of the whole; the wheels have a quarter of it.", 0.01, 1e5}, s.mass_kg);
+    visit(Field{"wheels", "1", "Number of wheels on each side.", 2, 16}, s.wheels);
+    visit(Field{"wheel_radius", "m", "Radius of the wheels over the belt.", 0.005, 10}, s.wheel_radius_m);
+    visit(Field{"track", "m", "Distance between the middles of the tracks.", 0.01, 10}, s.track_m);
+    visit(Field{"length", "m", "Length of a track.", 0.02, 20}, s.length_m);
+    visit(Field{"mass", "kg", "Mass of the whole robot; the wheels have a quarter of it.", 0.01, 1e5},
+          s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
     const auto wrong = [&](const char* key, const char* what, const char* fix) {

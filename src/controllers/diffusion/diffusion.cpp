@@ -53,7 +53,7 @@ void Diffusion::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Diffusion>({
     .name = "diffusion",
-    .help = "Straight on until a proximity sensor feels something, then away from it.",
+    .help = "Straight motion until a proximity sensor detects something, then a turn away from it.",
 });
 
 }  // namespace sandlot::controllers::diffusion

@@ -25,9 +25,11 @@ struct Spec {
     visit(Field{"proximity", "", "Proximity sensors to use; empty: the only ones.", 0, 0, Field::none, 1000},
           s.proximity);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
-    visit(Field{"speed", "m/s", "Where nothing is in the way.", 0, 100, tunable}, s.speed_mps);
-    visit(Field{"turn_speed", "rad/s", "Of turning away.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"threshold", "1", "Length of the mean reading's vector that is let pass.", 0, 1, tunable},
+    visit(Field{"speed", "m/s", "Speed while nothing is in the way.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"turn_speed", "rad/s", "Turning rate of turning away.", 0.01, 100, tunable},
+          s.turn_speed_radps);
+    visit(Field{"threshold", "1", "Length of the vector of mean readings below which nothing is in the way.",
+                0, 1, tunable},
           s.threshold);
   }
 };
@@ -36,7 +38,8 @@ struct State {
   std::int8_t turning = 0;  ///< +1: to the left, -1: to the right, 0: straight on
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"turning", "1", "1: to the left, -1: to the right, 0: straight on."}, s.turning);
+    visit(Field{"turning", "1", "Direction of the turn: 1 to the left, -1 to the right, 0 straight on."},
+          s.turning);
   }
 };
 

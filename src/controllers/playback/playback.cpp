@@ -97,7 +97,7 @@ void Playback::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Playback>({
     .name = "playback",
-    .help = "Drives as a recording says that a robot drove.",
+    .help = "Replays the motion of a robot from a recording.",
 });
 
 }  // namespace sandlot::controllers::playback

@@ -38,19 +38,21 @@ struct Spec {
     constexpr std::size_t most_letters = 1'000'000'000;
     visit(Field{"file", "", "Recording (.mcap), or table (.csv) with the columns time, vx, vy, wz."}, s.file);
     visit(
-        Field{"topic", "",
-              "Topic of the recording: a Twist, TwistStamped or Odometry. Not needed when there is but one."},
+        Field{
+            "topic", "",
+            "Topic of the recording: a Twist, TwistStamped or Odometry. Not needed when there is only one."},
         s.topic);
     visit(Field{"commands", "",
-                "Instead of a topic: the recorded commands for this drive, such as rover/drive."},
+                "Drive whose recorded commands are replayed, such as rover/drive; instead of a topic."},
           s.commands);
-    visit(Field{"to", "", "Drive of this robot; not needed when it has one only."}, s.to);
+    visit(Field{"to", "", "Drive of this robot; not needed when it has only one."}, s.to);
     visit(
-        Field{"samples", "", "Instead of a file: rows of time, vx, vy, wz.", 0, 0, Field::none, most_letters},
+        Field{"samples", "", "Rows of time, vx, vy, wz; instead of a file.", 0, 0, Field::none, most_letters},
         s.samples);
     visit(Field{"start", "s", "Simulated time at which the recording begins.", 0, 1e9}, s.start_s);
-    visit(Field{"rate", "1", "2: twice as fast, at the recorded velocities.", 1e-3, 1e3}, s.rate);
-    visit(Field{"loop", "", "Begin again after the last sample.", 0, 1}, s.loop);
+    visit(Field{"rate", "1", "Playback rate; 2: twice as fast, at the recorded velocities.", 1e-3, 1e3},
+          s.rate);
+    visit(Field{"loop", "", "Whether to begin again after the last sample.", 0, 1}, s.loop);
   }
 };
 

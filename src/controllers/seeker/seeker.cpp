@@ -112,7 +112,7 @@ void Seeker::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Seeker>({
     .name = "seeker",
-    .help = "Looks for a thing, such as the ball, with a camera and drives to it.",
+    .help = "Search for an object, such as the ball, with a camera and drive to it.",
 });
 
 }  // namespace sandlot::controllers::seeker

@@ -25,14 +25,17 @@ struct Spec {
     visit(Field{"camera", "", "Camera to look through; empty: the only one.", 0, 0, Field::none, 1000},
           s.camera);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
-    visit(Field{"label", "", "What it looks for."}, s.label);
-    visit(Field{"stop", "m", "It stops so far from the thing's middle.", 0, 100, tunable}, s.stop_m);
-    visit(Field{"speed", "m/s", "Fastest drive.", 0.001, 100, tunable}, s.speed_mps);
-    visit(Field{"turn_speed", "rad/s", "Fastest turn.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"deceleration", "m/s^2", "How it slows down before the thing.", 0.01, 100, tunable},
+    visit(Field{"label", "", "Label of the object to search for."}, s.label);
+    visit(Field{"stop", "m", "Distance from the object's middle at which the robot stops.", 0, 100, tunable},
+          s.stop_m);
+    visit(Field{"speed", "m/s", "Largest speed.", 0.001, 100, tunable}, s.speed_mps);
+    visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
+    visit(Field{"deceleration", "m/s^2", "Deceleration before the object.", 0.01, 100, tunable},
           s.deceleration_mps2);
-    visit(Field{"patience", "s", "Unseen for longer it is searched.", 0.01, 1e3, tunable}, s.patience_s);
-    visit(Field{"vision", "", "How it is found in pictures."}, s.vision);
+    visit(Field{"patience", "s", "Time without a sight of the object after which the search begins.", 0.01,
+                1e3, tunable},
+          s.patience_s);
+    visit(Field{"vision", "", "Detection of the object in pictures."}, s.vision);
   }
 };
 
@@ -45,15 +48,15 @@ struct State {
   bool arrived = false;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Where it thinks the thing is: ahead of it."}, s.x_m);
-    visit(Field{"y", "m", "To its left."}, s.y_m);
-    visit(Field{"unseen", "s", "Time since it was seen."}, s.unseen_s);
-    visit(Field{"side", "1", "Where it searches: +1 left."}, s.side);
-    visit(Field{"linear", "m/s", "Ordered in the previous step."}, s.v_mps);
-    visit(Field{"angular", "rad/s", "Ordered in the previous step."}, s.omega_radps);
-    visit(Field{"in_objects", "1", "How often it was told among objects."}, s.in_objects);
-    visit(Field{"in_pictures", "1", "How often it was found in a picture."}, s.in_pictures);
-    visit(Field{"arrived", "", "It stands before the thing."}, s.arrived);
+    visit(Field{"x", "m", "Estimated position of the object, forward of the robot."}, s.x_m);
+    visit(Field{"y", "m", "Estimated position of the object, to the robot's left."}, s.y_m);
+    visit(Field{"unseen", "s", "Time since the object was last seen."}, s.unseen_s);
+    visit(Field{"side", "1", "Direction of the search; +1: left."}, s.side);
+    visit(Field{"linear", "m/s", "Speed commanded in the previous step."}, s.v_mps);
+    visit(Field{"angular", "rad/s", "Turning rate commanded in the previous step."}, s.omega_radps);
+    visit(Field{"in_objects", "1", "Number of times the object was reported by a detector."}, s.in_objects);
+    visit(Field{"in_pictures", "1", "Number of times the object was found in a picture."}, s.in_pictures);
+    visit(Field{"arrived", "", "Whether the robot stands before the object."}, s.arrived);
   }
 };
 

@@ -88,7 +88,7 @@ void Sequence::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Sequence>({
     .name = "sequence",
-    .help = "Gives orders to joints, drives and grippers at set times.",
+    .help = "Sends commands to joints, drives and grippers at set times.",
 });
 
 }  // namespace sandlot::controllers::sequence

@@ -22,9 +22,10 @@ struct Step {
   Node orders;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"at", "s", "When, from the start of a round.", 0, 1e9, Field::required}, s.at_s);
-    visit(Field{"orders", "", "Map: device -> number, true, false, or [forward, left, turn].", 0, 0,
-                Field::required},
+    visit(Field{"at", "s", "Time of the commands, from the start of a round.", 0, 1e9, Field::required},
+          s.at_s);
+    visit(Field{"orders", "", "Map of commands: device -> number, true, false, or [forward, left, turn].", 0,
+                0, Field::required},
           s.orders);
   }
 };
@@ -34,8 +35,7 @@ struct Spec {
   double repeat_s = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"steps", "", "What to order when, in order of time: a list of {at, orders}.", 0, 0,
-                Field::required},
+    visit(Field{"steps", "", "Commands in order of time: a list of {at, orders}.", 0, 0, Field::required},
           s.steps);
     visit(Field{"repeat", "s", "Length of a round; 0: one round only.", 0, 1e9}, s.repeat_s);
   }
@@ -46,8 +46,8 @@ struct State {
   std::uint64_t round = 0;  ///< rounds completed
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"next", "1", "Index of the order to give next."}, s.next);
-    visit(Field{"round", "1", "Rounds completed."}, s.round);
+    visit(Field{"next", "1", "Index of the next command."}, s.next);
+    visit(Field{"round", "1", "Number of completed rounds."}, s.round);
   }
 };
 

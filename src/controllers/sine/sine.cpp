@@ -61,7 +61,7 @@ void Sine::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Sine>({
     .name = "sine",
-    .help = "Moves motors to and fro, each a little after the one before it.",
+    .help = "Moves motors back and forth, each a little after the one before it.",
 });
 
 }  // namespace sandlot::controllers::sine

@@ -37,18 +37,18 @@ struct Spec {
     visit(Field{"motors", "", "Devices that take a number, in order; none: all of the robot.", 0, 0,
                 Field::none, 10'000},
           s.motors);
-    visit(Field{"shape", "", "How a motor moves."}, s.shape);
-    visit(Field{"period", "s", "Of the motion.", 1e-3, 1e6, tunable}, s.period_s);
-    visit(Field{"amplitude", "", "Of all motors, in what they take: rad, m, rad/s, ...", -1e6, 1e6, tunable},
+    visit(Field{"shape", "", "Shape of the motion over time."}, s.shape);
+    visit(Field{"period", "s", "Period of the motion.", 1e-3, 1e6, tunable}, s.period_s);
+    visit(Field{"amplitude", "", "Amplitude of all motors, in the unit of their commands: rad, m, rad/s, ...",
+                -1e6, 1e6, tunable},
           s.amplitude);
-    visit(Field{"phase_shift", "rad", "How much later each motor is than the one before it.", -1e4, 1e4,
-                tunable},
-          s.phase_shift_rad);
+    visit(
+        Field{"phase_shift", "rad", "Phase lag of each motor behind the one before it.", -1e4, 1e4, tunable},
+        s.phase_shift_rad);
     visit(Field{"width", "1", "Share of the period that a pulse is up.", 0, 1, tunable}, s.width);
     visit(Field{"amplitudes", "", "Factor on the amplitude, one per motor.", -1e6, 1e6}, s.amplitudes);
     visit(Field{"offsets", "", "Middle of the motion, one per motor.", -1e6, 1e6}, s.offsets);
-    visit(Field{"phases", "rad", "How much later each is, beside phase_shift: one per motor.", -1e4, 1e4},
-          s.phases_rad);
+    visit(Field{"phases", "rad", "Additional phase lag, one per motor.", -1e4, 1e4}, s.phases_rad);
   }
 };
 
@@ -60,7 +60,7 @@ struct State {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"phase", "1", "Turns of the first motor's phase."}, s.phase);
     visit(Field{"last", "ns", "Time of the previous step."}, s.last);
-    visit(Field{"started", "", "There was a previous step."}, s.started);
+    visit(Field{"started", "", "Whether there was a previous step."}, s.started);
   }
 };
 

@@ -40,11 +40,11 @@ struct Spec {
           s.radius_m);
     visit(Field{"margin", "m", "Distance kept beyond the radius where there is room.", 0, 100, tunable},
           s.margin_m);
-    visit(Field{"speed", "m/s", "Speed in the open.", 0, 100, tunable}, s.speed_mps);
-    visit(Field{"turn_speed", "rad/s", "Fastest turn.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"lookahead", "m", "Free space beyond this makes no difference.", 0.1, 100, tunable},
+    visit(Field{"speed", "m/s", "Speed in free space.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
+    visit(Field{"lookahead", "m", "Distance beyond which free space makes no difference.", 0.1, 100, tunable},
           s.lookahead_m);
-    visit(Field{"reaction", "s", "A gap in front is used up in no less than this.", 0.05, 60, tunable},
+    visit(Field{"reaction", "s", "Shortest time in which a gap in front may be used up.", 0.05, 60, tunable},
           s.reaction_s);
   }
 };
@@ -67,20 +67,20 @@ struct State {
   std::vector<float> before;            ///< sector distances to compare with
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"mode", "", "What it is doing."}, s.mode);
-    visit(Field{"mode_time", "s", "For how long."}, s.mode_s);
+    visit(Field{"mode", "", "Current behaviour."}, s.mode);
+    visit(Field{"mode_time", "s", "Time since the behaviour began."}, s.mode_s);
     visit(Field{"turn_min", "s", "Least duration of the turn."}, s.turn_min_s);
-    visit(Field{"turn_sign", "1", "Side it turns to."}, s.turn_sign);
-    visit(Field{"favourite", "rad", "Heading it likes."}, s.favourite_rad);
-    visit(Field{"favourite_left", "s", "Until it likes another."}, s.favourite_left_s);
-    visit(Field{"heading", "rad", "Heading chosen."}, s.heading_rad);
+    visit(Field{"turn_sign", "1", "Direction of the turn."}, s.turn_sign);
+    visit(Field{"favourite", "rad", "Preferred heading."}, s.favourite_rad);
+    visit(Field{"favourite_left", "s", "Time until another heading is preferred."}, s.favourite_left_s);
+    visit(Field{"heading", "rad", "Heading chosen last."}, s.heading_rad);
     visit(Field{"blind", "s", "Time since the last scan."}, s.blind_s);
-    visit(Field{"linear", "m/s", "Ordered in the previous step."}, s.v_mps);
-    visit(Field{"angular", "rad/s", "Ordered in the previous step."}, s.omega_radps);
-    visit(Field{"memory", "", "x, y, age of echoes out of view."}, s.memory);
-    visit(Field{"driven", "m", "Ordered since the scan it compares with."}, s.driven_m);
-    visit(Field{"turned", "rad", "Ordered since the scan it compares with."}, s.turned_rad);
-    visit(Field{"before", "m", "The scan it compares with."}, s.before);
+    visit(Field{"linear", "m/s", "Speed commanded in the previous step."}, s.v_mps);
+    visit(Field{"angular", "rad/s", "Turning rate commanded in the previous step."}, s.omega_radps);
+    visit(Field{"memory", "", "Echoes out of view: x, y and age of each."}, s.memory);
+    visit(Field{"driven", "m", "Distance commanded since the scan used for comparison."}, s.driven_m);
+    visit(Field{"turned", "rad", "Turn commanded since the scan used for comparison."}, s.turned_rad);
+    visit(Field{"before", "m", "Scan used for comparison."}, s.before);
   }
 };
 

@@ -35,10 +35,11 @@ struct Spec {
                 1000},
           s.odometry);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
-    visit(Field{"loop", "", "Begin again after the last point.", 0, 1, tunable}, s.loop);
-    visit(Field{"tolerance", "m", "A point this near counts as reached.", 1e-3, 100, tunable}, s.tolerance_m);
-    visit(Field{"speed", "m/s", "Speed on the straight.", 0, 100, tunable}, s.speed_mps);
-    visit(Field{"turn_speed", "rad/s", "Fastest turn.", 0.01, 100, tunable}, s.turn_speed_radps);
+    visit(Field{"loop", "", "Whether to begin again after the last point.", 0, 1, tunable}, s.loop);
+    visit(Field{"tolerance", "m", "Distance at which a point counts as reached.", 1e-3, 100, tunable},
+          s.tolerance_m);
+    visit(Field{"speed", "m/s", "Speed on straight parts.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
     visit(Field{"deceleration", "m/s^2", "Braking before the last point.", 0.01, 100, tunable},
           s.deceleration_mps2);
   }
@@ -50,9 +51,9 @@ struct State {
   std::uint8_t turning = 0;  ///< turning on the spot
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"next", "1", "Index of the point aimed at."}, s.next);
-    visit(Field{"rounds", "1", "Rounds completed."}, s.rounds);
-    visit(Field{"turning", "1", "1: turning on the spot."}, s.turning);
+    visit(Field{"next", "1", "Index of the current target point."}, s.next);
+    visit(Field{"rounds", "1", "Number of completed rounds."}, s.rounds);
+    visit(Field{"turning", "1", "Whether the robot turns on the spot (1)."}, s.turning);
   }
 };
 

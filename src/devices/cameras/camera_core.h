@@ -30,15 +30,15 @@ struct LookKeys : ExposureKeys {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"format", "", "Of pixels."}, s.format);
-    visit(Field{"compressed", "", "Publish the picture as a file's bytes, too: image/compressed."},
+    visit(Field{"format", "", "Format of the pixels."}, s.format);
+    visit(Field{"compressed", "", "File format of an additional compressed picture on image/compressed."},
           s.compressed);
-    visit(Field{"quality", "1", "Of jpeg.", 1, 100}, s.quality);
-    visit(Field{"zoom", "", "A zoom lens; none: it cannot zoom."}, s.zoom);
+    visit(Field{"quality", "1", "JPEG quality.", 1, 100}, s.quality);
+    visit(Field{"zoom", "", "Zoom lens; none: fixed focal length."}, s.zoom);
     ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the picture."}, s.noise);
-    visit(Field{"objects", "", "The detector of level objects and what it sees for level world."}, s.objects);
-    visit(Field{"world", "", "Level world."}, s.world);
+    visit(Field{"objects", "", "Detector of level objects, also used by level world."}, s.objects);
+    visit(Field{"world", "", "Detection of poses at level world."}, s.world);
     visit(errors_field, s.errors);
   }
 };
@@ -46,15 +46,15 @@ struct LookKeys : ExposureKeys {
 struct LookState {
   double zoom = 1;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"zoom", "1", "Focal length now, in those of the spec."}, s.zoom);
+    visit(Field{"zoom", "1", "Present focal length, as a multiple of the spec's."}, s.zoom);
   }
 };
 
 enum Level : std::uint32_t { image, objects, world };
 inline constexpr LevelInfo look_levels[] = {
-    {"image", msg::Image::ros_type, "", "Pictures."},
-    {"objects", msg::ObjectArray::ros_type, "", "Things seen: bearing, range, label."},
-    {"world", msg::ObjectPoseArray::ros_type, "", "Poses of the things seen in the world."},
+    {"image", msg::Image::ros_type, "", "Pictures of the scene."},
+    {"objects", msg::ObjectArray::ros_type, "", "Detected objects: bearing, range, label."},
+    {"world", msg::ObjectPoseArray::ros_type, "", "Poses of the detected objects in the world."},
 };
 
 /// What a camera holds beside spec and state.

@@ -35,12 +35,13 @@ struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0, k4 = 0;
   bool none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && k4 == 0; }
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"k1", "1", "Radial, order 2.", -1e3, 1e3}, s.k1);
-    visit(Field{"k2", "1", "Radial, order 4.", -1e3, 1e3}, s.k2);
-    visit(Field{"p1", "1", "Tangential; pinhole only.", -1e3, 1e3}, s.p1);
-    visit(Field{"p2", "1", "Tangential; pinhole only.", -1e3, 1e3}, s.p2);
-    visit(Field{"k3", "1", "Radial, order 6.", -1e3, 1e3}, s.k3);
-    visit(Field{"k4", "1", "Radial, order 8; kannala_brandt only.", -1e3, 1e3}, s.k4);
+    visit(Field{"k1", "1", "Radial distortion coefficient of order 2.", -1e3, 1e3}, s.k1);
+    visit(Field{"k2", "1", "Radial distortion coefficient of order 4.", -1e3, 1e3}, s.k2);
+    visit(Field{"p1", "1", "First tangential distortion coefficient; pinhole only.", -1e3, 1e3}, s.p1);
+    visit(Field{"p2", "1", "Second tangential distortion coefficient; pinhole only.", -1e3, 1e3}, s.p2);
+    visit(Field{"k3", "1", "Radial distortion coefficient of order 6.", -1e3, 1e3}, s.k3);
+    visit(Field{"k4", "1", "Radial distortion coefficient of order 8; kannala_brandt only.", -1e3, 1e3},
+          s.k4);
   }
 };
 
@@ -55,23 +56,23 @@ struct LensKeys {
   Distortion distortion;
 
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{
-            "lens", "",
-            "How angles become places in the image: pinhole, or a fisheye lens' r = f theta (equidistant), "
-            "2 f sin(theta/2) (equisolid), 2 f tan(theta/2) (stereographic), f sin(theta) (orthographic), or "
-            "OpenCV's fisheye (kannala_brandt)."},
-        s.lens);
-    visit(Field{"width", "1", "Pixels per row.", 1, max_side_px}, s.width);
-    visit(Field{"height", "1", "Rows.", 1, max_side_px}, s.height);
-    visit(Field{"horizontal_fov", "rad", "From the left edge to the right one, without distortion.", 0,
+    visit(Field{"lens", "",
+                "Projection from angles to image points: pinhole, or a fisheye lens' r = f theta "
+                "(equidistant), 2 f sin(theta/2) (equisolid), 2 f tan(theta/2) (stereographic), f sin(theta) "
+                "(orthographic), or OpenCV's fisheye (kannala_brandt)."},
+          s.lens);
+    visit(Field{"width", "1", "Number of pixels per row.", 1, max_side_px}, s.width);
+    visit(Field{"height", "1", "Number of rows.", 1, max_side_px}, s.height);
+    visit(Field{"horizontal_fov", "rad",
+                "Opening angle from the left edge to the right one, without distortion.", 0,
                 2 * std::numbers::pi + 1e-6},
           s.horizontal_fov_rad);
-    visit(Field{"fx", "1", "Focal length in pixels; goes before horizontal_fov.", 1e-3, 1e9}, s.fx);
-    visit(Field{"fy", "1", "Of columns; none: fx.", 1e-3, 1e9}, s.fy);
+    visit(Field{"fx", "1", "Focal length in pixels; takes precedence over horizontal_fov.", 1e-3, 1e9}, s.fx);
+    visit(Field{"fy", "1", "Focal length in pixels along columns; none: fx.", 1e-3, 1e9}, s.fy);
     visit(Field{"cx", "1", "Column of the optical axis, counted from 0; none: the middle.", -1e6, 1e6}, s.cx);
-    visit(Field{"cy", "1", "Its row; none: the middle.", -1e6, 1e6}, s.cy);
-    visit(Field{"distortion", "", "Of pinhole (OpenCV's plumb_bob) and kannala_brandt."}, s.distortion);
+    visit(Field{"cy", "1", "Row of the optical axis, counted from 0; none: the middle.", -1e6, 1e6}, s.cy);
+    visit(Field{"distortion", "", "Distortion of lenses pinhole (OpenCV's plumb_bob) and kannala_brandt."},
+          s.distortion);
   }
 };
 

@@ -20,22 +20,25 @@ struct ExposureKeys {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"near", "m", "Nearer surfaces are not seen.", 0, 1e4}, s.near_m);
-    visit(Field{"far", "m", "Nor farther ones.", 1e-3, 1e6}, s.far_m);
-    visit(Field{"samples", "1", "Rays per pixel: anti-aliasing, and smoothness of blur.", 1, 256, tunable},
+    visit(Field{"near", "m", "Nearest visible distance.", 0, 1e4}, s.near_m);
+    visit(Field{"far", "m", "Farthest visible distance.", 1e-3, 1e6}, s.far_m);
+    visit(Field{"samples", "1", "Number of rays per pixel, for anti-aliasing and smooth blur.", 1, 256,
+                tunable},
           s.samples);
-    visit(Field{"shadows", "", "False: lights shine through everything.", 0, 1, tunable}, s.shadows);
+    visit(Field{"shadows", "", "Whether objects throw shadows.", 0, 1, tunable}, s.shadows);
     visit(Field{"exposure", "1", "Factor on all light.", 0, 1e3, tunable}, s.exposure);
-    visit(Field{"gamma", "1", "Of the picture: value^(1/gamma) is shown.", 0.1, 10, tunable}, s.gamma);
-    visit(Field{"srgb", "", "Add up light linearly and show it in sRGB.", 0, 1, tunable}, s.srgb);
+    visit(Field{"gamma", "1", "Gamma of the picture: value^(1/gamma) is shown.", 0.1, 10, tunable}, s.gamma);
+    visit(Field{"srgb", "", "Whether light is added up linearly and shown in sRGB.", 0, 1, tunable}, s.srgb);
+    visit(Field{"aperture", "m",
+                "Diameter of the lens, for depth of field (pinhole, samples > 1); 0: all is sharp.", 0, 1,
+                tunable},
+          s.aperture_m);
+    visit(Field{"focus_distance", "m", "Distance at which the picture is sharp.", 1e-3, 1e6, tunable},
+          s.focus_distance_m);
+    visit(Field{"shutter", "s", "Exposure time, for motion blur.", 0, 10, tunable}, s.shutter_s);
     visit(
-        Field{"aperture", "m",
-              "Diameter of the lens: depth of field (pinhole, samples > 1). 0: all is sharp.", 0, 1, tunable},
-        s.aperture_m);
-    visit(Field{"focus_distance", "m", "What is sharp.", 1e-3, 1e6, tunable}, s.focus_distance_m);
-    visit(Field{"shutter", "s", "Time of exposure: motion blur.", 0, 10, tunable}, s.shutter_s);
-    visit(Field{"readout", "s", "From the first row to the last: rolling shutter.", 0, 10, tunable},
-          s.readout_s);
+        Field{"readout", "s", "Time from the first row to the last, for a rolling shutter.", 0, 10, tunable},
+        s.readout_s);
   }
 };
 /// Rules between those keys.

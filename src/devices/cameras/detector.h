@@ -32,23 +32,30 @@ struct ObjectKeys {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"labels", "", "What is looked for; none: all that has a label.", 0, 0, Field::none, 100},
+    visit(Field{"labels", "", "Labels of the objects to detect; none: all that have a label.", 0, 0,
+                Field::none, 100},
           s.labels);
-    visit(Field{"names", "", "Tell which thing it is, too.", 0, 1, tunable}, s.names);
-    visit(Field{"max_range", "m", "Farther things are not found.", 1e-3, 1e4, tunable}, s.max_range_m);
-    visit(Field{"min_visible", "1", "Part of a thing that must be seen.", 0, 1, tunable}, s.min_visible);
-    visit(Field{"miss_rate", "1", "Probability that a thing is missed.", 0, 1, tunable}, s.miss_rate);
-    visit(Field{"miss_rate_per_m", "1/m", "More of it per metre of range.", 0, 1, tunable},
+    visit(Field{"names", "", "Whether names of objects are reported, too.", 0, 1, tunable}, s.names);
+    visit(Field{"max_range", "m", "Farthest distance at which objects are detected.", 1e-3, 1e4, tunable},
+          s.max_range_m);
+    visit(Field{"min_visible", "1", "Smallest visible part of an object that is detected.", 0, 1, tunable},
+          s.min_visible);
+    visit(Field{"miss_rate", "1", "Probability that an object is missed.", 0, 1, tunable}, s.miss_rate);
+    visit(Field{"miss_rate_per_m", "1/m", "Increase of the probability of a miss per metre of range.", 0, 1,
+                tunable},
           s.miss_rate_per_m);
-    visit(Field{"miss_rate_hidden", "1", "More of it for one that is all but hidden.", 0, 1, tunable},
+    visit(Field{"miss_rate_hidden", "1",
+                "Increase of the probability of a miss for an object that is all but hidden.", 0, 1, tunable},
           s.miss_rate_hidden);
-    visit(Field{"ghost_rate", "Hz", "Things per second that are not there.", 0, 1e3, tunable},
+    visit(Field{"ghost_rate", "Hz", "Number of false detections per second.", 0, 1e3, tunable},
           s.ghost_rate_hz);
-    visit(Field{"confusion", "1", "Probability of another label.", 0, 1, tunable}, s.confusion);
+    visit(Field{"confusion", "1", "Probability of a wrong label.", 0, 1, tunable}, s.confusion);
     visit(Field{"bearing_std", "rad", "Standard deviation of bearing and elevation.", 0, 3, tunable},
           s.bearing_std_rad);
     visit(Field{"range_std", "m", "Standard deviation of the range.", 0, 1e3, tunable}, s.range_std_m);
-    visit(Field{"range_std_per_m", "1", "More of it per metre of range.", 0, 10, tunable}, s.range_std_per_m);
+    visit(Field{"range_std_per_m", "1", "Increase of the range's standard deviation per metre of range.", 0,
+                10, tunable},
+          s.range_std_per_m);
   }
 };
 
@@ -58,9 +65,10 @@ struct WorldKeys {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"everything", "", "All wanted things, seen or not.", 0, 1, tunable}, s.everything);
+    visit(Field{"everything", "", "Whether hidden objects are reported, too.", 0, 1, tunable}, s.everything);
     visit(Field{"position_std", "m", "Standard deviation of x and y.", 0, 1e3, tunable}, s.position_std_m);
-    visit(Field{"position_std_per_m", "1", "More of it per metre of range.", 0, 10, tunable},
+    visit(Field{"position_std_per_m", "1",
+                "Increase of the standard deviation of x and y per metre of range.", 0, 10, tunable},
           s.position_std_per_m);
     visit(Field{"heading_std", "rad", "Standard deviation of the heading.", 0, 10, tunable},
           s.heading_std_rad);

@@ -12,8 +12,9 @@ namespace sandlot {
 struct Zoom {
   double max = 4, rate_per_s = 4;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"max", "1", "Longest focal length, in those of the spec.", 1, 1000}, s.max);
-    visit(Field{"rate", "1/s", "Largest factor per second.", 1.001, 1e6}, s.rate_per_s);
+    visit(Field{"max", "1", "Longest focal length, as a multiple of the spec's.", 1, 1000}, s.max);
+    visit(Field{"rate", "1/s", "Largest factor per second by which the focal length changes.", 1.001, 1e6},
+          s.rate_per_s);
   }
 };
 

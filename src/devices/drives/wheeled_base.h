@@ -84,19 +84,24 @@ struct Common {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"wheel_radius", "m", "Of the wheels; not given: that of their rollers or collision shapes.",
-                1e-4, 100},
+    visit(Field{"wheel_radius", "m",
+                "Radius of the wheels; not given: that of their rollers or collision shapes.", 1e-4, 100},
           s.wheel_radius_m);
-    visit(Field{"max_linear_speed", "m/s", "Faster commands are cut.", 0, 1e9, tunable},
+    visit(Field{"max_linear_speed", "m/s", "Largest speed; faster commands are cut.", 0, 1e9, tunable},
           s.max_linear_speed_mps);
-    visit(Field{"max_angular_speed", "rad/s", "Faster commands are cut.", 0, 1e9, tunable},
+    visit(Field{"max_angular_speed", "rad/s", "Largest turning rate; faster commands are cut.", 0, 1e9,
+                tunable},
           s.max_angular_speed_radps);
-    visit(Field{"max_linear_acceleration", "m/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
+    visit(Field{"max_linear_acceleration", "m/s^2", "Largest acceleration, speeding up and braking.", 0, 1e9,
+                tunable},
           s.max_linear_acceleration_mps2);
-    visit(Field{"max_angular_acceleration", "rad/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
+    visit(Field{"max_angular_acceleration", "rad/s^2",
+                "Largest angular acceleration, speeding up and braking.", 0, 1e9, tunable},
           s.max_angular_acceleration_radps2);
-    visit(Field{"max_wheel_effort", "Nm", "Of each wheel's motor.", 0, 1e9, tunable}, s.max_wheel_effort_Nm);
-    visit(Field{"command_timeout", "s", "Stop this long after the last command; 0: never.", 0, 1e6, tunable},
+    visit(Field{"max_wheel_effort", "Nm", "Largest effort of each wheel's motor.", 0, 1e9, tunable},
+          s.max_wheel_effort_Nm);
+    visit(Field{"command_timeout", "s", "Time without a command after which the robot stops; 0: never.", 0,
+                1e6, tunable},
           s.command_timeout_s);
     visit(Field{"control", "",
                 "PI loops on v and w, as RoBIOS has them; not given: each wheel keeps its speed."},
@@ -104,17 +109,17 @@ struct Common {
     visit(Field{"motor", "",
                 "DC motor of each wheel, on one battery; not given: max_wheel_effort at any speed."},
           s.motor);
-    visit(Field{"encoder_ticks", "1", "Per turn of a wheel: what the odometry sees; 0: the exact angle.", 0,
-                1e8},
+    visit(Field{"encoder_ticks", "1",
+                "Encoder ticks of the odometry per turn of a wheel; 0: the exact angle.", 0, 1e8},
           s.encoder_ticks);
-    visit(Field{"odometry", "", "How wheels that contradict each other are reconciled."}, s.odometry);
+    visit(Field{"odometry", "", "Reconciliation of wheels that contradict each other."}, s.odometry);
     visit(Field{"rate", "Hz", "Odometry messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }
   static void steering_fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"max_steering_speed", "rad/s", "Of the steering motors.", 0, 1e4, tunable},
+    visit(Field{"max_steering_speed", "rad/s", "Largest speed of the steering motors.", 0, 1e4, tunable},
           s.max_steering_speed_radps);
-    visit(Field{"max_steering_effort", "Nm", "Of each steering motor.", 0, 1e9, tunable},
+    visit(Field{"max_steering_effort", "Nm", "Largest effort of each steering motor.", 0, 1e9, tunable},
           s.max_steering_effort_Nm);
   }
 };
@@ -127,12 +132,12 @@ struct WheelState {
   double virtual_rad = 0, virtual_radps = 0;  ///< of a wheel without a joint
   double current_A = 0;                       ///< in its motor
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"told", "", "What it was told by itself."}, s.told);
-    visit(Field{"by_effort", "1", "1: that was an effort."}, s.by_effort);
+    visit(Field{"told", "", "Command of this wheel alone."}, s.told);
+    visit(Field{"by_effort", "1", "Whether the wheel's own command is an effort (1)."}, s.by_effort);
     visit(Field{"counted", "rad", "Angle counted by the odometry."}, s.counted_rad);
-    visit(Field{"virtual_angle", "rad", "Of a wheel without a joint."}, s.virtual_rad);
-    visit(Field{"virtual_speed", "rad/s", "Of a wheel without a joint."}, s.virtual_radps);
-    visit(Field{"current", "A", "In its motor."}, s.current_A);
+    visit(Field{"virtual_angle", "rad", "Angle of a wheel without a joint."}, s.virtual_rad);
+    visit(Field{"virtual_speed", "rad/s", "Speed of a wheel without a joint."}, s.virtual_radps);
+    visit(Field{"current", "A", "Current in the wheel's motor."}, s.current_A);
   }
 };
 /// Per steering joint.
@@ -141,9 +146,9 @@ struct PivotState {
   double counted_rad = 0;     ///< angle at the odometry's last step
   std::uint8_t backward = 0;  ///< 1: its wheels turn backward to roll in the direction asked for
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"told", "rad", "Where it is to go."}, s.told_rad);
+    visit(Field{"told", "rad", "Commanded steering angle."}, s.told_rad);
     visit(Field{"counted", "rad", "Angle at the odometry's last step."}, s.counted_rad);
-    visit(Field{"backward", "1", "1: its wheels turn backward to roll forward."}, s.backward);
+    visit(Field{"backward", "1", "Whether the wheels turn backward to roll forward (1)."}, s.backward);
   }
 };
 
@@ -161,23 +166,25 @@ struct State {
   double residual_m = 0, power_W = 0, energy_J = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Velocity commands seen per level."}, s.taken);
-    visit(Field{"taken_wheels", "1", "Wheel commands seen per level."}, s.taken_wheels);
-    visit(Field{"by_wheels", "1", "1: the wheels' own commands are in force."}, s.by_wheels);
+    visit(Field{"taken", "1", "Number of velocity commands seen per level."}, s.taken);
+    visit(Field{"taken_wheels", "1", "Number of wheel commands seen per level."}, s.taken_wheels);
+    visit(Field{"by_wheels", "1", "Whether the wheels' own commands are in force (1)."}, s.by_wheels);
     visit(Field{"command", "", "Velocity command in force."}, s.command);
-    visit(Field{"setpoint", "", "Velocity asked of the wheels, on its way to the command."}, s.setpoint);
-    visit(Field{"command_time", "ns", "When the last command came."}, s.command_time);
-    visit(Field{"curvature", "1/m", "Of a car: asked for while it moved last."}, s.curvature);
-    visit(Field{"handover", "1", "What the engine is still to be told of a switch."}, s.handover);
-    visit(Field{"wheels", "", "Per wheel."}, s.wheels);
-    visit(Field{"pivots", "", "Per steering joint."}, s.pivots);
+    visit(Field{"setpoint", "", "Velocity requested from the wheels, on its way to the command."},
+          s.setpoint);
+    visit(Field{"command_time", "ns", "Time of the last command."}, s.command_time);
+    visit(Field{"curvature", "1/m", "Curvature requested while the robot last moved; cars only."},
+          s.curvature);
+    visit(Field{"handover", "1", "Pending message to the engine after a switch of levels."}, s.handover);
+    visit(Field{"wheels", "", "States of the wheels."}, s.wheels);
+    visit(Field{"pivots", "", "States of the steering joints."}, s.pivots);
     visit(Field{"loop_x", "1", "PI loop of the speed forward."}, s.loop_x);
     visit(Field{"loop_y", "1", "PI loop of the speed sideways."}, s.loop_y);
     visit(Field{"loop_turn", "1", "PI loop of the turning rate."}, s.loop_turn);
-    visit(Field{"odometry", "m", "Of D."}, s.X_OD);
-    visit(Field{"residual", "m", "What the wheels contradict each other by in the last step."}, s.residual_m);
-    visit(Field{"power", "W", "Drawn now."}, s.power_W);
-    visit(Field{"energy", "J", "Drawn so far."}, s.energy_J);
+    visit(Field{"odometry", "m", "Odometry of the drive's centre D."}, s.X_OD);
+    visit(Field{"residual", "m", "Contradiction between the wheels in the last step."}, s.residual_m);
+    visit(Field{"power", "W", "Electrical power drawn now."}, s.power_W);
+    visit(Field{"energy", "J", "Electrical energy drawn so far."}, s.energy_J);
   }
 };
 

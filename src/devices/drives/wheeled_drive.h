@@ -48,7 +48,7 @@ inline constexpr LevelInfo levels[] = {
     {"contact", msg::Odometry::ros_type, msg::Twist::ros_type,
      "Motors turn the wheels, friction moves the robot."},
     {"rollers", msg::Odometry::ros_type, msg::Twist::ros_type,
-     "As contact, with every roller a body of its own."},
+     "Motors and friction as at level contact, with every roller as a separate body."},
 };
 inline constexpr std::span<const LevelInfo> plain_levels{levels, 2}, roller_levels{levels, 3};
 

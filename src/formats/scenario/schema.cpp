@@ -101,7 +101,7 @@ Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_n
     choices.push_back({{"if", {{"properties", {{word, {{"const", name}}}}}, {"required", {word}}}},
                        {"then", {{"properties", properties}, {"additionalProperties", false}}}});
   }
-  all[word] = {{"type", "string"}, {"description", "What it is."}};
+  all[word] = {{"type", "string"}, {"description", "Kind of the entry."}};
   if (!names.empty()) all[word]["examples"] = names;
   Json out = {{"type", "object"}, {"properties", all}};
   if (kind_needed) out["required"] = {word};
@@ -172,7 +172,7 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
       {"pose", pose_schema("Pose in the link.")},
       {"level", {{"type", "string"}, {"description", "Level of abstraction."}}},
       {"levels",
-       {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Several levels at once."}}}};
+       {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", "Active levels, if several."}}}};
   mounted.update(object_of({device_keys.begin(), device_keys.end()})["properties"]);
   describe_as(robot["devices"],
               {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});

@@ -31,9 +31,9 @@ struct Time {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"clock", "",
-                "fixed: every tick has the same length; continuous: each takes the time that computing the "
-                "last one "
-                "took, so that the run keeps up with the wall clock; that time is recorded."},
+                "Kind of clock. fixed: every tick has the same length; continuous: each takes the time that "
+                "computing the last one took, so that the run keeps up with the wall clock; that time is "
+                "recorded."},
           s.clock);
     visit(Field{"step", "s", "Length of a tick; of a continuous clock the first one's.", 1e-6, 10}, s.step_s);
     visit(Field{"min_step", "s", "Shortest tick of a continuous clock.", 1e-6, 10}, s.min_step_s);
@@ -51,12 +51,12 @@ struct PoseKeys {
   double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Forward.", -max_distance_m, max_distance_m}, s.x_m);
-    visit(Field{"y", "m", "To the left.", -max_distance_m, max_distance_m}, s.y_m);
-    visit(Field{"z", "m", "Up.", -max_distance_m, max_distance_m}, s.z_m);
-    visit(Field{"roll", "rad", "About x, first.", -max_angle_rad, max_angle_rad}, s.roll_rad);
-    visit(Field{"pitch", "rad", "About y, second.", -max_angle_rad, max_angle_rad}, s.pitch_rad);
-    visit(Field{"yaw", "rad", "About z, last.", -max_angle_rad, max_angle_rad}, s.yaw_rad);
+    visit(Field{"x", "m", "Position along x, forward.", -max_distance_m, max_distance_m}, s.x_m);
+    visit(Field{"y", "m", "Position along y, to the left.", -max_distance_m, max_distance_m}, s.y_m);
+    visit(Field{"z", "m", "Position along z, up.", -max_distance_m, max_distance_m}, s.z_m);
+    visit(Field{"roll", "rad", "Rotation about x, first.", -max_angle_rad, max_angle_rad}, s.roll_rad);
+    visit(Field{"pitch", "rad", "Rotation about y, second.", -max_angle_rad, max_angle_rad}, s.pitch_rad);
+    visit(Field{"yaw", "rad", "Rotation about z, last.", -max_angle_rad, max_angle_rad}, s.yaw_rad);
   }
 };
 
@@ -65,8 +65,8 @@ struct Grid {
   double spacing_m = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"centre", "m", "Middle of the grid, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
-    visit(Field{"spacing", "m", "Distance of neighbours.", 1e-3, 1e4}, s.spacing_m);
+    visit(Field{"centre", "m", "Middle of the grid: x y z.", -max_distance_m, max_distance_m}, s.centre_m);
+    visit(Field{"spacing", "m", "Distance between neighbours.", 1e-3, 1e4}, s.spacing_m);
   }
 };
 
@@ -77,14 +77,14 @@ struct Uniform {
   double wall_height_m = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"centre", "m", "Middle of the area, x y z.", -max_distance_m, max_distance_m}, s.centre_m);
-    visit(Field{"width", "m", "Extent along x.", 1e-3, max_distance_m}, s.width_m);
-    visit(Field{"height", "m", "Extent along y.", 1e-3, max_distance_m}, s.height_m);
+    visit(Field{"centre", "m", "Middle of the area: x y z.", -max_distance_m, max_distance_m}, s.centre_m);
+    visit(Field{"width", "m", "Extent of the area along x.", 1e-3, max_distance_m}, s.width_m);
+    visit(Field{"height", "m", "Extent of the area along y.", 1e-3, max_distance_m}, s.height_m);
     visit(Field{"density", "1/m^2",
                 "In place of width and height: robots per square metre, in a square that holds them all.",
                 1e-6, 1e6},
           s.density_per_m2);
-    visit(Field{"clearance", "m", "No two origins are nearer than this.", 0, 1e4}, s.clearance_m);
+    visit(Field{"clearance", "m", "Smallest distance between two origins.", 0, 1e4}, s.clearance_m);
     visit(Field{"wall_height", "m", "Height of walls about the area; 0: none.", 0, 1e3}, s.wall_height_m);
   }
 };
@@ -94,8 +94,8 @@ struct Distribution {
   std::optional<Uniform> uniform;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"grid", "", "Rows and columns."}, s.grid);
-    visit(Field{"uniform", "", "Anywhere in a rectangle, each heading alike."}, s.uniform);
+    visit(Field{"grid", "", "Arrangement in rows and columns."}, s.grid);
+    visit(Field{"uniform", "", "Random places in a rectangle with random headings."}, s.uniform);
   }
 };
 
@@ -109,14 +109,16 @@ struct Module {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"id", "", "Name of the module in its robot; unique there.", 0, 0, Field::required, 100},
           s.id);
-    visit(Field{"model", "", "Its model file, or a name in the search path.", 0, 0, Field::required, 4096},
+    visit(Field{"model", "", "Model file of the module, or a name in the search path.", 0, 0, Field::required,
+                4096},
           s.model);
-    visit(Field{"pose", "m", "Where it sits on the link: as the pose of a robot."}, s.pose);
-    visit(Field{"link", "",
-                "Link of the robot, or id::link of a module above, that carries it; the first if left out.",
-                0, 0, Field::none, 200},
-          s.link);
-    visit(Field{"devices", "", "Changes to its devices, by name: rates, levels, noise."}, s.devices);
+    visit(Field{"pose", "m", "Pose on the link, in the same forms as that of a robot."}, s.pose);
+    visit(
+        Field{"link", "",
+              "Link of the robot, or id::link of a module above, that carries it; the first one by default.",
+              0, 0, Field::none, 200},
+        s.link);
+    visit(Field{"devices", "", "Changes to the module's devices, by name: rates, levels, noise."}, s.devices);
   }
 };
 
@@ -137,10 +139,12 @@ struct LabelledObject {
     visit(Field{"name", "", "Name of the thing; with count > 1 the stem of name1, name2, ...", 0, 0,
                 Field::required, 100},
           s.name);
-    visit(Field{"model", "", "As the model of a robot.", 0, 0, Field::required}, s.model);
-    visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
-    visit(Field{"pose", "m", "Where it stands: as the pose of a robot."}, s.pose);
-    visit(Field{"distribution", "", "Where several stand."}, s.distribution);
+    visit(Field{"model", "", "Model of the thing, in the same forms as that of a robot.", 0, 0,
+                Field::required},
+          s.model);
+    visit(Field{"count", "1", "Number of things.", 1, max_robots}, s.count);
+    visit(Field{"pose", "m", "Pose of the thing, in the same forms as that of a robot."}, s.pose);
+    visit(Field{"distribution", "", "Places of several things."}, s.distribution);
     visit(label_field, s.label);
   }
 };
@@ -168,16 +172,17 @@ struct Robot {
                 "builder and its parameters.",
                 0, 0, Field::required},
           s.model);
-    visit(Field{"count", "1", "How many of them.", 1, max_robots}, s.count);
-    visit(Field{"pose", "m", "Where it starts: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
-          s.pose);
-    visit(Field{"distribution", "", "Where several start."}, s.distribution);
-    visit(Field{"team", "", "Team it plays for.", 0, 0, Field::none, 100}, s.team);
+    visit(Field{"count", "1", "Number of robots.", 1, max_robots}, s.count);
+    visit(
+        Field{"pose", "m", "Pose at the start: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
+        s.pose);
+    visit(Field{"distribution", "", "Places of several robots."}, s.distribution);
+    visit(Field{"team", "", "Team of the robot.", 0, 0, Field::none, 100}, s.team);
     visit(label_field, s.label);
-    visit(Field{"modules", "", "Models fixed to its own: scanners, camera heads, arms.", 0, 0, Field::none,
-                1000},
+    visit(Field{"modules", "", "Models attached to the robot's own: scanners, camera heads, arms.", 0, 0,
+                Field::none, 1000},
           s.modules);
-    visit(Field{"controller", "", "Kind of its controller, or a map with kind and the kind's keys."},
+    visit(Field{"controller", "", "Kind of the robot's controller, or a map with kind and the kind's keys."},
           s.controller);
     visit(
         Field{"controllers", "", "Several controllers: a list of maps with name, kind and the kind's keys."},
@@ -187,9 +192,10 @@ struct Robot {
                 Field::none, 100},
           s.joint_controllers);
     visit(Field{"devices", "",
-                "By name: a new device (kind, link, pose, ...) or changes to one of the model's."},
+                "Devices by name: a new device (kind, link, pose, ...) or changes to one of the model's."},
           s.devices);
-    visit(Field{"errors", "1", "Factor on the errors of all its devices: 0 none, 1 as configured.", 0, 1000},
+    visit(Field{"errors", "1", "Factor on the errors of all devices of the robot: 0 none, 1 as configured.",
+                0, 1000},
           s.errors);
   }
 };
@@ -202,12 +208,12 @@ struct Event {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the event; unique.", 0, 0, Field::required, 100}, s.name);
-    visit(Field{"when", "", "Expression; the event happens when it holds (is other than 0).", 0, 0,
+    visit(Field{"when", "", "Condition of the event: an expression that is other than 0.", 0, 0,
                 Field::required, 2000},
           s.when);
-    visit(Field{"for", "s", "How long it must hold without a break.", 0, 9e9}, s.hold_s);
-    visit(Field{"stop", "", "The event ends the run."}, s.stop);
-    visit(Field{"once", "", "It happens at most once."}, s.once);
+    visit(Field{"for", "s", "Time for which the condition must hold without a break.", 0, 9e9}, s.hold_s);
+    visit(Field{"stop", "", "Whether the event ends the run."}, s.stop);
+    visit(Field{"once", "", "Whether the event happens only once."}, s.once);
   }
 };
 
@@ -253,23 +259,25 @@ struct Root {
           s.world);
     visit(Field{"physics", "", "Engine: rigid or planar, or a map with engine and the engine's keys."},
           s.physics);
-    visit(Field{"time", "", "How time runs."}, s.time);
+    visit(Field{"time", "", "Clock and steps of the run."}, s.time);
     // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
     visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
-    visit(Field{"vars", "", "Values that ${name} stands for."}, s.vars);
+    visit(Field{"vars", "", "Values of the variables written ${name}."}, s.vars);
     visit(Field{"plugins", "",
                 "Shared libraries with controllers: files relative to this one, or names in the search path.",
                 0, 0, Field::none, 100},
           s.plugins);
-    visit(Field{"robots", "", "The robots.", 0, 0, Field::none, 100'000}, s.robots);
-    visit(Field{"things", "", "What stands about: walls, ramps, things to push.", 0, 0, Field::none, 100'000},
+    visit(Field{"robots", "", "Robots of the scenario.", 0, 0, Field::none, 100'000}, s.robots);
+    visit(Field{"things", "", "Models in the world that are not robots: walls, ramps, things to push.", 0, 0,
+                Field::none, 100'000},
           s.things);
     visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
           s.errors);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
-    visit(Field{"events", "", "What happens when a condition holds.", 0, 0, Field::none, 1000}, s.events);
+    visit(Field{"events", "", "Events that happen when a condition holds.", 0, 0, Field::none, 1000},
+          s.events);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
-    visit(Field{"record", "", "How the run is recorded."}, s.record);
+    visit(Field{"record", "", "Recording of the run."}, s.record);
     visit(
         Field{"ground_zones", "",
               "Parts of the ground with a surface of their own, seen from above; of several the last counts.",

@@ -45,15 +45,23 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"cell_size", "m",
-                "Edge of the grid's cells: about the spacing of bodies. No effect on results.", 0.01, 1000},
+                "Edge length of the grid's cells: about the spacing of bodies. No effect on results.", 0.01,
+                1000},
           s.cell_m);
-    visit(Field{"clearance", "m", "Bodies pass over and under what overlaps their height by less.", 0, 1000},
+    visit(Field{"clearance", "m", "Overlap in height below which bodies pass over and under one another.", 0,
+                1000},
           s.clearance_m);
-    visit(Field{"iterations", "", "Passes over the contacts of an island in each sub-step.", 1, 1000},
-          s.iterations);
-    visit(Field{"max_speed", "m/s", "A faster body has exploded: the run ends and names it.", 1e-3, 1e9},
+    visit(
+        Field{"iterations", "", "Number of passes over the contacts of an island in each sub-step.", 1, 1000},
+        s.iterations);
+    visit(Field{"max_speed", "m/s",
+                "Largest speed of a body; beyond it the run ends with an error that names the body.", 1e-3,
+                1e9},
           s.max_speed_mps);
-    visit(Field{"max_spin", "rad/s", "A body that turns faster has exploded.", 1e-3, 1e9}, s.max_spin_radps);
+    visit(Field{"max_spin", "rad/s",
+                "Largest turning rate of a body; beyond it the run ends with an error that names the body.",
+                1e-3, 1e9},
+          s.max_spin_radps);
   }
 };
 

@@ -37,23 +37,30 @@ struct Spec {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"solver", "", "Solver of an island of touching bodies."}, s.solver);
     visit(Field{"quick_iterations", "1", "Iterations of the quick solver.", 1, 10000}, s.quick_iterations);
-    visit(Field{"direct_limit", "1", "auto: contact points of an island above which it is solved quickly.", 0,
-                1e6},
+    visit(Field{"direct_limit", "1",
+                "Number of contact points of an island above which solver auto is the quick one.", 0, 1e6},
           s.direct_limit);
     visit(Field{"erp", "1", "Share of a position error that one sub-step corrects.", 0, 1}, s.erp);
     visit(Field{"cfm", "1/kg s", "Compliance of all constraints.", 1e-12, 1}, s.cfm);
     visit(Field{"contact_correction", "m/s", "Fastest correction of a penetration.", 0, 1e6},
           s.contact_correction_mps);
-    visit(Field{"max_contacts", "1", "Contact points per pair of shapes.", 1, 64}, s.max_contacts);
-    visit(Field{"sleeping", "", "Bodies of no robot that lie still are not computed."}, s.sleeping);
-    visit(Field{"sleep_speed", "m/s", "A slower body may sleep.", 0, 1e3}, s.sleep_speed_mps);
-    visit(Field{"sleep_spin", "rad/s", "A body that turns more slowly may sleep.", 0, 1e3},
+    visit(Field{"max_contacts", "1", "Largest number of contact points per pair of shapes.", 1, 64},
+          s.max_contacts);
+    visit(Field{"sleeping", "",
+                "Whether bodies at rest that belong to no robot are left out of the computation."},
+          s.sleeping);
+    visit(Field{"sleep_speed", "m/s", "Speed below which a body may sleep.", 0, 1e3}, s.sleep_speed_mps);
+    visit(Field{"sleep_spin", "rad/s", "Turning rate below which a body may sleep.", 0, 1e3},
           s.sleep_spin_radps);
-    visit(Field{"sleep_time", "s", "How long an island must lie still before it sleeps.", 0, 1e6},
-          s.sleep_time_s);
-    visit(Field{"max_speed", "m/s", "A faster body has exploded: the run ends and names it.", 1e-3, 1e9},
+    visit(Field{"sleep_time", "s", "Time at rest after which an island sleeps.", 0, 1e6}, s.sleep_time_s);
+    visit(Field{"max_speed", "m/s",
+                "Largest speed of a body; beyond it the run ends with an error that names the body.", 1e-3,
+                1e9},
           s.max_speed_mps);
-    visit(Field{"max_spin", "rad/s", "A body that turns faster has exploded.", 1e-3, 1e9}, s.max_spin_radps);
+    visit(Field{"max_spin", "rad/s",
+                "Largest turning rate of a body; beyond it the run ends with an error that names the body.",
+                1e-3, 1e9},
+          s.max_spin_radps);
   }
 };
 

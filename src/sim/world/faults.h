@@ -40,10 +40,10 @@ struct FailureSpec {
   double from_s = 0, until_s = 1e9, factor = 10;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"kind", "", "What goes wrong.", 0, 0, Field::required}, s.kind);
-    visit(Field{"from", "s", "When it begins.", 0, 1e9}, s.from_s);
-    visit(Field{"until", "s", "When it is over.", 0, 1e9}, s.until_s);
-    visit(Field{"factor", "1", "On the errors of a noisy one.", 0, 1000}, s.factor);
+    visit(Field{"kind", "", "Kind of the failure.", 0, 0, Field::required}, s.kind);
+    visit(Field{"from", "s", "Time at which the failure begins.", 0, 1e9}, s.from_s);
+    visit(Field{"until", "s", "Time at which the failure ends.", 0, 1e9}, s.until_s);
+    visit(Field{"factor", "1", "Factor on the errors of a noisy device.", 0, 1000}, s.factor);
   }
   Status check(const Node& node, const std::string& path) const;
 };
@@ -60,8 +60,8 @@ struct FailureOrder {
   double factor = 10;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"kind", "", "What goes wrong from now on.", 0, 0, Field::required}, s.kind);
-    visit(Field{"factor", "1", "On the errors of a noisy one.", 0, 1000}, s.factor);
+    visit(Field{"kind", "", "Kind of the failure.", 0, 0, Field::required}, s.kind);
+    visit(Field{"factor", "1", "Factor on the errors of a noisy device.", 0, 1000}, s.factor);
   }
 };
 inline std::span<const EnumName<FailureOrder::Kind>> enum_names(FailureOrder::Kind) {
@@ -80,8 +80,8 @@ struct ClockSpec {
   double offset_s = 0, drift = 0, jitter_s = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"offset", "s", "What it is ahead by at the start of the run.", -1e6, 1e6}, s.offset_s);
-    visit(Field{"drift", "1", "Seconds that it gains per second: 20e-6 are 20 ppm.", -0.5, 0.5}, s.drift);
+    visit(Field{"offset", "s", "Lead of the clock at the start of the run.", -1e6, 1e6}, s.offset_s);
+    visit(Field{"drift", "1", "Seconds gained per second: 20e-6 are 20 ppm.", -0.5, 0.5}, s.drift);
     visit(Field{"jitter", "s", "Standard deviation of a further error of each message.", 0, 1e3}, s.jitter_s);
   }
 };
@@ -91,8 +91,10 @@ struct FaultsSpec {
   std::optional<ClockSpec> clock;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"failures", "", "When it is stuck, dead or noisy.", 0, 0, Field::none, 1000}, s.failures);
-    visit(Field{"clock", "", "Errors of the times in its messages."}, s.clock);
+    visit(
+        Field{"failures", "", "Times in which the device is stuck, dead or noisy.", 0, 0, Field::none, 1000},
+        s.failures);
+    visit(Field{"clock", "", "Errors of the times in the device's messages."}, s.clock);
   }
 };
 

@@ -39,8 +39,8 @@ struct Hold {
   std::uint64_t device = 0;  ///< its key
   Time until;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"device", "1", "Its key."}, s.device);
-    visit(Field{"until", "s", "When programs are heard again."}, s.until);
+    visit(Field{"device", "1", "Key of the device."}, s.device);
+    visit(Field{"until", "s", "Time at which commands of programs take effect again."}, s.until);
   }
 };
 /// From each command on [s].

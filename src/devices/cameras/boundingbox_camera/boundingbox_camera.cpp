@@ -73,7 +73,7 @@ void Camera::sense(PoolView<Camera> pool, const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"boxes", msg::vision::Detection2DArray::ros_type, "", "Boxes around the things seen."}};
+    {"boxes", msg::vision::Detection2DArray::ros_type, "", "Boxes around visible objects."}};
 constexpr const char* sdf_types[] = {"sensor:boundingbox", "sensor:boundingbox_camera"};
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
@@ -87,7 +87,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 
 constinit const Kind kind = make_kind<Camera>({
     .name = "boundingbox_camera",
-    .help = "Camera that draws boxes around the things it sees.",
+    .help = "Camera that draws boxes around visible objects.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

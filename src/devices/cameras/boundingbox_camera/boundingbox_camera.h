@@ -22,11 +22,13 @@ struct Spec : eye::LensKeys {
   static void fields(auto& s, auto&& visit) {
     eye::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"near", "m", "Nearer surfaces are not seen.", 0, 1e4}, s.near_m);
-    visit(Field{"far", "m", "Nor farther ones.", 1e-3, 1e6}, s.far_m);
-    visit(Field{"labels", "", "What boxes are drawn around; none: everything.", 0, 0, Field::none, 255},
+    visit(Field{"near", "m", "Nearest visible distance.", 0, 1e4}, s.near_m);
+    visit(Field{"far", "m", "Farthest visible distance.", 1e-3, 1e6}, s.far_m);
+    visit(Field{"labels", "", "Labels of the objects that get boxes; none: all objects.", 0, 0, Field::none,
+                255},
           s.labels);
-    visit(Field{"min_pixels", "1", "Of a thing, for a box around it.", 1, 1e8}, s.min_pixels);
+    visit(Field{"min_pixels", "1", "Smallest number of visible pixels of an object that gets a box.", 1, 1e8},
+          s.min_pixels);
   }
 };
 

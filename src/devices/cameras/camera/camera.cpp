@@ -24,7 +24,7 @@ constexpr Preset presets[] = {
 
 constinit const Kind kind = make_kind<eye::LookingCamera<Spec>>({
     .name = "camera",
-    .help = "Camera with a pinhole, wide-angle or fisheye lens: pictures, things seen, or their poses.",
+    .help = "Camera with a pinhole, wide-angle or fisheye lens: pictures, detected objects, or their poses.",
     .levels = eye::look_levels,
     .sdf_types = sdf_types,
     .from_sdf =

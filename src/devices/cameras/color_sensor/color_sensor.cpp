@@ -70,13 +70,13 @@ void ColorSensor::sense(PoolView<ColorSensor> pool, const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"color", msg::ColorRGBA::ros_type, "", "Colour of the surface before it."},
+    {"color", msg::ColorRGBA::ros_type, "", "Colour of the surface before the sensor."},
 };
 }  // namespace
 
 constinit const Kind kind = make_kind<ColorSensor>({
     .name = "color_sensor",
-    .help = "Colour of the surface right before it.",
+    .help = "Sensor of the colour of the surface right before it.",
     .levels = levels,
     .needs_render_scene = true,
 });

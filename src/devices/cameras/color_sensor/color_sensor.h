@@ -28,10 +28,10 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"fov", "rad", "Opening angle.", 1e-3, 2.8}, s.fov_rad);
-    visit(Field{"range", "m", "Farther surfaces are not seen.", 1e-3, 1e3}, s.range_m);
-    visit(Field{"samples", "1", "Rays whose mean is shown.", 1, 256}, s.samples);
-    visit(Field{"lamp", "", "It lights the surface itself."}, s.lamp);
+    visit(Field{"fov", "rad", "Opening angle of the sensor.", 1e-3, 2.8}, s.fov_rad);
+    visit(Field{"range", "m", "Farthest visible distance.", 1e-3, 1e3}, s.range_m);
+    visit(Field{"samples", "1", "Number of rays that are averaged.", 1, 256}, s.samples);
+    visit(Field{"lamp", "", "Whether the sensor lights the surface itself."}, s.lamp);
     visit(Field{"noise", "1", "Errors of red, green and blue."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
@@ -40,7 +40,9 @@ struct Spec {
 
 struct State {
   ChannelChain noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"noise", "", "Errors of red, green and blue."}, s.noise);
+  }
 };
 
 struct ColorSensor {

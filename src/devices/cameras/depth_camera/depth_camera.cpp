@@ -40,7 +40,7 @@ constexpr const char* sdf_types[] = {"sensor:depth", "sensor:depth_camera"};
 
 constinit const Kind kind = make_kind<Camera>({
     .name = "depth_camera",
-    .help = "Depth camera: the distance of every pixel, and the points they are.",
+    .help = "Depth camera: the distance of every pixel and the points they belong to.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf =

@@ -20,10 +20,10 @@ struct Spec : eye::LensKeys {
   static void fields(auto& s, auto&& visit) {
     eye::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"near", "m", "Nearer surfaces read -inf.", 0, 1e4}, s.near_m);
-    visit(Field{"far", "m", "Farther ones +inf.", 1e-3, 1e6}, s.far_m);
-    visit(Field{"encoding", "", "Metres as floats, or millimetres."}, s.encoding);
-    visit(Field{"points", "", "Publish the points, too."}, s.points);
+    visit(Field{"near", "m", "Nearest measured distance; nearer surfaces read -inf.", 0, 1e4}, s.near_m);
+    visit(Field{"far", "m", "Farthest measured distance; farther surfaces read +inf.", 1e-3, 1e6}, s.far_m);
+    visit(Field{"encoding", "", "Encoding of depths: metres as floats, or millimetres."}, s.encoding);
+    visit(Field{"points", "", "Whether the points are published, too."}, s.points);
     visit(Field{"noise", "m", "Errors of the depths."}, s.noise);
     visit(errors_field, s.errors);
   }

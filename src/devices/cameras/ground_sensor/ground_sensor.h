@@ -23,8 +23,8 @@ struct Spot {
   double x_m = 0, y_m = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "m", "Forward.", -100, 100}, s.x_m);
-    visit(Field{"y", "m", "To the left.", -100, 100}, s.y_m);
+    visit(Field{"x", "m", "Position of the spot, forward.", -100, 100}, s.x_m);
+    visit(Field{"y", "m", "Position of the spot, to the left.", -100, 100}, s.y_m);
   }
 };
 
@@ -37,13 +37,13 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{"spots", "", "Where it looks at the floor: [{x: 0, y: 1 cm}, ...].", 0, 0, Field::none, 256, 1},
-        s.spots);
-    visit(Field{"fov", "rad", "Opening angle of each.", 1e-3, 2.8}, s.fov_rad);
-    visit(Field{"range", "m", "A floor farther below is not seen.", 1e-3, 1e3}, s.range_m);
-    visit(Field{"samples", "1", "Rays whose mean is shown.", 1, 256}, s.samples);
-    visit(Field{"noise", "1", "Errors."}, s.noise);
+    visit(Field{"spots", "", "Spots on the floor that are measured: [{x: 0, y: 1 cm}, ...].", 0, 0,
+                Field::none, 256, 1},
+          s.spots);
+    visit(Field{"fov", "rad", "Opening angle of each spot.", 1e-3, 2.8}, s.fov_rad);
+    visit(Field{"range", "m", "Farthest distance of the floor.", 1e-3, 1e3}, s.range_m);
+    visit(Field{"samples", "1", "Number of rays that are averaged.", 1, 256}, s.samples);
+    visit(Field{"noise", "1", "Errors of the brightness."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }
@@ -51,7 +51,9 @@ struct Spec {
 
 struct State {
   ChannelChain noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"noise", "", "Errors of the brightness."}, s.noise);
+  }
 };
 
 struct GroundSensor {

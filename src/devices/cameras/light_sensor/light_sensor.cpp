@@ -46,13 +46,13 @@ void LightSensor::sense(PoolView<LightSensor> pool, const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"illuminance", msg::Illuminance::ros_type, "", "How much light falls on it."},
+    {"illuminance", msg::Illuminance::ros_type, "", "Illuminance at the sensor."},
 };
 }  // namespace
 
 constinit const Kind kind = make_kind<LightSensor>({
     .name = "light_sensor",
-    .help = "Photo cell: how much light falls on it.",
+    .help = "Photo cell: illuminance at the sensor.",
     .levels = levels,
     .needs_render_scene = true,
 });

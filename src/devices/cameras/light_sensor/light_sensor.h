@@ -29,11 +29,11 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"lux", "lx", "What light of strength 1 is worth.", 1e-6, 1e6}, s.lux);
-    visit(
-        Field{"own_shadow", "", "The link that carries it throws shadows on it, too.", 0, 1, Field::tunable},
-        s.own_shadow);
-    visit(Field{"noise", "lx", "Errors."}, s.noise);
+    visit(Field{"lux", "lx", "Illuminance from light of strength 1.", 1e-6, 1e6}, s.lux);
+    visit(Field{"own_shadow", "", "Whether the link that carries the sensor throws shadows on it, too.", 0, 1,
+                Field::tunable},
+          s.own_shadow);
+    visit(Field{"noise", "lx", "Errors of the illuminance."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }
@@ -41,7 +41,9 @@ struct Spec {
 
 struct State {
   ChannelNoise noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "lx", "Errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"noise", "lx", "Errors of the illuminance."}, s.noise);
+  }
 };
 
 struct LightSensor {

@@ -80,7 +80,7 @@ void LineCamera::sense(PoolView<LineCamera> pool, const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"image", msg::Image::ros_type, "", "One row of pixels."},
+    {"image", msg::Image::ros_type, "", "Image with one row of pixels."},
 };
 }  // namespace
 

@@ -36,13 +36,13 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"pixels", "1", "Length of the row.", 1, 8192}, s.pixels);
+    visit(Field{"pixels", "1", "Number of pixels of the row.", 1, 8192}, s.pixels);
     visit(Field{"fov", "rad", "Opening angle across the row.", 1e-3, 3.1}, s.fov_rad);
-    visit(Field{"max_range", "m", "Farther surfaces are not seen.", 1e-3, 1e4}, s.max_range_m);
-    visit(Field{"samples", "1", "Rays per pixel.", 1, 256}, s.samples);
-    visit(Field{"format", "", "Of the image."}, s.format);
+    visit(Field{"max_range", "m", "Farthest visible distance.", 1e-3, 1e4}, s.max_range_m);
+    visit(Field{"samples", "1", "Number of rays per pixel.", 1, 256}, s.samples);
+    visit(Field{"format", "", "Format of the pixels."}, s.format);
     visit(Field{"gain", "1", "Factor on all light.", 0, 1e3, Field::tunable}, s.gain);
-    visit(Field{"noise", "", "Errors, in steps of 1/255."}, s.noise);
+    visit(Field{"noise", "", "Errors of the pixels, in steps of 1/255."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }
@@ -50,7 +50,7 @@ struct Spec {
 
 struct State {
   ChannelChain noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Errors of the pixels."}, s.noise); }
 };
 
 struct LineCamera {

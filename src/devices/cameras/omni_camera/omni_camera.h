@@ -33,21 +33,25 @@ struct MirrorKeys {
   std::optional<double> focal_length;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"mirror", "", "Its shape."}, s.mirror);
-    visit(Field{"width", "1", "Pixels per row.", 1, eye::max_side_px}, s.width);
-    visit(Field{"height", "1", "Rows.", 1, eye::max_side_px}, s.height);
+    visit(Field{"mirror", "", "Shape of the mirror."}, s.mirror);
+    visit(Field{"width", "1", "Number of pixels per row.", 1, eye::max_side_px}, s.width);
+    visit(Field{"height", "1", "Number of rows.", 1, eye::max_side_px}, s.height);
     visit(Field{"a", "m",
-                "Hyperbolic: r^2/a^2 - z^2/b^2 = -1; parabolic: radius of the horizon; spherical: radius.", 0,
-                1e3},
+                "Shape parameter of the mirror. Hyperbolic: r^2/a^2 - z^2/b^2 = -1; parabolic: radius of the "
+                "horizon; spherical: radius.",
+                0, 1e3},
           s.a_m);
-    visit(Field{"b", "m", "Hyperbolic: see a; spherical: from the centre down to the camera.", 0, 1e3},
+    visit(Field{"b", "m",
+                "Second shape parameter of the mirror. Hyperbolic: see a; spherical: distance from the "
+                "centre down to the camera.",
+                0, 1e3},
           s.b_m);
     visit(Field{"rim", "m", "Radius of the mirror's edge.", 0, 1e3}, s.rim_m);
-    visit(
-        Field{"focal_length", "1",
-              "Of the camera below, in pixels (parabolic: pixels per metre); none: the rim fills the image.",
-              0, 1e9},
-        s.focal_length);
+    visit(Field{"focal_length", "1",
+                "Focal length of the camera below, in pixels (parabolic: pixels per metre); none: the rim "
+                "fills the image.",
+                0, 1e9},
+          s.focal_length);
   }
 };
 

@@ -58,13 +58,13 @@ void OverheadCamera::sense(PoolView<OverheadCamera> pool, const Context& context
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"world", msg::ObjectPoseArray::ros_type, "", "Where everything is."},
+    {"world", msg::ObjectPoseArray::ros_type, "", "Poses of all objects."},
 };
 }  // namespace
 
 constinit const Kind kind = make_kind<OverheadCamera>({
     .name = "overhead_camera",
-    .help = "Camera above the field that tells where everything is.",
+    .help = "Camera above the field that reports the poses of all objects.",
     .levels = levels,
     .needs_render_scene = true,
 });

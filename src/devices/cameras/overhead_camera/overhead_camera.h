@@ -30,10 +30,11 @@ struct Spec {
     constexpr unsigned tunable = Field::tunable;
     visit(Field{"position_std", "m", "Error of x and of y.", 0, 1e4, tunable}, s.position_std_m);
     visit(Field{"yaw_std", "rad", "Error of the heading.", 0, 10, tunable}, s.yaw_std_rad);
-    visit(Field{"miss", "1", "How often a thing is missed.", 0, 1, tunable}, s.miss);
-    visit(Field{"labels", "", "Tell of things of these labels alone.", 0, 0, Field::none, 1000}, s.labels);
-    visit(Field{"fixed", "", "Tell of things that stand still, too."}, s.fixed);
-    visit(Field{"names", "", "Tell which thing it is."}, s.names);
+    visit(Field{"miss", "1", "Probability that an object is missed.", 0, 1, tunable}, s.miss);
+    visit(Field{"labels", "", "Labels of the objects to report; none: all.", 0, 0, Field::none, 1000},
+          s.labels);
+    visit(Field{"fixed", "", "Whether objects that cannot move are reported, too."}, s.fixed);
+    visit(Field{"names", "", "Whether names of objects are reported."}, s.names);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }

@@ -433,14 +433,14 @@ Status Unit::switch_level(std::uint32_t before, std::uint32_t after, const Conte
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"joints", "", msg::JointState::ros_type, "Turns to angles, or at speeds."},
-    {"view", "", msg::PointStamped::ros_type, "Looks at points; searches and tracks things by name."},
+    {"joints", "", msg::JointState::ros_type, "Turns to angles, or at given speeds."},
+    {"view", "", msg::PointStamped::ros_type, "Looks at points; searches and tracks objects by name."},
 };
 }  // namespace
 
 constinit const Kind kind = make_kind<Unit>({
     .name = "pan_tilt",
-    .help = "Turns a camera about two joints: to angles, to a point, or after a thing.",
+    .help = "Pan-tilt head that turns a camera about two joints: to angles, to a point, or after an object.",
     .levels = levels,
 });
 

@@ -43,26 +43,31 @@ struct Spec {
           s.tilt_joint);
     visit(Field{"camera", "", "Name of the robot's camera that is turned.", 0, 0, Field::none, 1000},
           s.camera);
-    visit(Field{"max_pan_speed", "rad/s", "The joint's own limit holds, too.", 1e-3, 1e3, tunable},
+    visit(Field{"max_pan_speed", "rad/s", "Largest speed of the pan joint, within the joint's own limit.",
+                1e-3, 1e3, tunable},
           s.max_pan_speed_radps);
-    visit(Field{"max_tilt_speed", "rad/s", "The joint's own limit holds, too.", 1e-3, 1e3, tunable},
+    visit(Field{"max_tilt_speed", "rad/s", "Largest speed of the tilt joint, within the joint's own limit.",
+                1e-3, 1e3, tunable},
           s.max_tilt_speed_radps);
-    visit(Field{"max_acceleration", "rad/s^2", "Of both.", 1e-3, 1e5, tunable}, s.max_acceleration_radps2);
-    visit(Field{"max_effort", "Nm", "Of both; the joint's own limit holds, too.", 0, 1e9, tunable},
-          s.max_effort_Nm);
-    visit(Field{"search_speed", "rad/s", "Of pan while it searches.", 1e-3, 1e3, tunable},
+    visit(Field{"max_acceleration", "rad/s^2", "Largest acceleration of both joints.", 1e-3, 1e5, tunable},
+          s.max_acceleration_radps2);
+    visit(
+        Field{"max_effort", "Nm", "Largest effort of both joints, within their own limits.", 0, 1e9, tunable},
+        s.max_effort_Nm);
+    visit(Field{"search_speed", "rad/s", "Speed of the pan joint during a search.", 1e-3, 1e3, tunable},
           s.search_speed_radps);
-    visit(Field{"search_tilts", "rad", "Angles of the tilt joint at which it searches, in turn.", -7, 7,
+    visit(Field{"search_tilts", "rad", "Angles of the tilt joint during a search, in turn.", -7, 7,
                 Field::none, 100, 1},
           s.search_tilts);
-    visit(Field{"search_zoom", "1", "Zoom while it searches; 0: left as it is.", 0, 1000, tunable},
-          s.search_zoom);
+    visit(Field{"search_zoom", "1", "Zoom during a search; 0: unchanged.", 0, 1000, tunable}, s.search_zoom);
     visit(
-        Field{"zoom_per_m", "1/m",
-              "Zoom per metre to what it looks at or tracks, so that that keeps its size; 0: left as it is.",
-              0, 1e4, tunable},
+        Field{
+            "zoom_per_m", "1/m",
+            "Zoom per metre of distance to the target, which so keeps its size in the picture; 0: unchanged.",
+            0, 1e4, tunable},
         s.zoom_per_m);
-    visit(Field{"lost_after", "s", "What is tracked counts as lost after so long.", 0, 1e6, tunable},
+    visit(Field{"lost_after", "s", "Time without a sight after which the tracked object counts as lost.", 0,
+                1e6, tunable},
           s.lost_after_s);
   }
 };
@@ -77,9 +82,9 @@ struct AxisState {
   bool turns_on = false;  ///< at `target` [rad/s], else to `target` [rad]
   double target = 0, speed = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"turns_on", "", "Goes on turning."}, s.turns_on);
-    visit(Field{"target", "", "Angle, or speed if it goes on turning."}, s.target);
-    visit(Field{"speed", "rad/s", "That the engine is told."}, s.speed);
+    visit(Field{"turns_on", "", "Whether the joint goes on turning."}, s.turns_on);
+    visit(Field{"target", "", "Target angle, or target speed of a joint that goes on turning."}, s.target);
+    visit(Field{"speed", "rad/s", "Speed commanded to the engine."}, s.speed);
   }
 };
 
@@ -97,19 +102,20 @@ struct State {
   AxisState pan, tilt;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"begun", "", "It holds its joints."}, s.begun);
-    visit(Field{"out_of_reach", "", "Joint limits keep it from the point."}, s.out_of_reach);
-    visit(Field{"task", "", "What it does."}, s.task);
-    visit(Field{"taken", "1", "Commands seen."}, s.taken);
-    visit(Field{"looked", "1", "Messages of the camera seen."}, s.looked);
-    visit(Field{"label", "", "What it searches or tracks.", 0, 0, Field::none, 100}, s.label);
-    visit(Field{"link", "1", "Whose frame the point is in; -1: the world."}, s.link);
-    visit(Field{"point", "m", "What it looks at."}, s.point);
-    visit(Field{"sighted", "", "It has seen what it searches or tracks."}, s.sighted);
-    visit(Field{"sighted_at", "ns", "When it saw it last."}, s.sighted_at);
-    visit(Field{"row", "1", "Of the search."}, s.row);
-    visit(Field{"pan", "", "Pan joint."}, s.pan);
-    visit(Field{"tilt", "", "Tilt joint."}, s.tilt);
+    visit(Field{"begun", "", "Whether the device holds its joints."}, s.begun);
+    visit(Field{"out_of_reach", "", "Whether joint limits keep the view from the point."}, s.out_of_reach);
+    visit(Field{"task", "", "Current task."}, s.task);
+    visit(Field{"taken", "1", "Number of commands seen."}, s.taken);
+    visit(Field{"looked", "1", "Number of messages of the camera seen."}, s.looked);
+    visit(Field{"label", "", "Label of the object that is searched or tracked.", 0, 0, Field::none, 100},
+          s.label);
+    visit(Field{"link", "1", "Link whose frame the point is in; -1: the world."}, s.link);
+    visit(Field{"point", "m", "Point that the camera looks at."}, s.point);
+    visit(Field{"sighted", "", "Whether the object that is searched or tracked has been seen."}, s.sighted);
+    visit(Field{"sighted_at", "ns", "Time at which the object was last seen."}, s.sighted_at);
+    visit(Field{"row", "1", "Current row of the search."}, s.row);
+    visit(Field{"pan", "", "State of the pan joint."}, s.pan);
+    visit(Field{"tilt", "", "State of the tilt joint."}, s.tilt);
   }
 };
 

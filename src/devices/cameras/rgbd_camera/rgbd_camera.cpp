@@ -84,7 +84,7 @@ constexpr Preset presets[] = {
 
 constinit const Kind kind = make_kind<Camera>({
     .name = "rgbd_camera",
-    .help = "Colour and depth of the same pixels, and the points they are.",
+    .help = "Camera of colour and depth of the same pixels, and the points they belong to.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf =

@@ -22,9 +22,9 @@ struct Spec : eye::LensKeys, eye::ExposureKeys {
   static void fields(auto& s, auto&& visit) {
     eye::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"format", "", "Of colour pixels."}, s.format);
-    visit(Field{"encoding", "", "Of depths: metres as floats, or millimetres."}, s.encoding);
-    visit(Field{"points", "", "Publish the points, too."}, s.points);
+    visit(Field{"format", "", "Format of the colour pixels."}, s.format);
+    visit(Field{"encoding", "", "Encoding of depths: metres as floats, or millimetres."}, s.encoding);
+    visit(Field{"points", "", "Whether the points are published, too."}, s.points);
     eye::ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the colours."}, s.noise);
     visit(Field{"depth_noise", "m", "Errors of the depths."}, s.depth_noise);

@@ -105,7 +105,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 
 constinit const Kind kind = make_kind<Camera>({
     .name = "segmentation_camera",
-    .help = "Camera that tells class and instance of every pixel.",
+    .help = "Camera of the class and instance of every pixel.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

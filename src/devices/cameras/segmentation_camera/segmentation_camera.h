@@ -28,15 +28,14 @@ struct Spec : eye::LensKeys {
   static void fields(auto& s, auto&& visit) {
     eye::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"near", "m", "Nearer surfaces are not seen.", 0, 1e4}, s.near_m);
-    visit(Field{"far", "m", "Nor farther ones.", 1e-3, 1e6}, s.far_m);
+    visit(Field{"near", "m", "Nearest visible distance.", 0, 1e4}, s.near_m);
+    visit(Field{"far", "m", "Farthest visible distance.", 1e-3, 1e6}, s.far_m);
     visit(Field{"labels", "",
-                "The classes, in the order of their numbers from 1 on; none: labels that are whole numbers "
-                "up to 255 "
-                "stand for themselves.",
+                "Labels of the classes, in the order of their numbers from 1 on; none: labels that are whole "
+                "numbers up to 255 stand for themselves.",
                 0, 0, Field::none, 255},
           s.labels);
-    visit(Field{"color_by", "", "What the coloured picture shows."}, s.color_by);
+    visit(Field{"color_by", "", "Meaning of the coloured picture's colours."}, s.color_by);
   }
 };
 

@@ -21,9 +21,9 @@ struct Spec : eye::LensKeys, eye::ExposureKeys {
 
   static void fields(auto& s, auto&& visit) {
     eye::LensKeys::fields(s, visit);
-    visit(Field{"baseline", "m", "From the left eye to the right one.", 1e-4, 100}, s.baseline_m);
+    visit(Field{"baseline", "m", "Distance from the left eye to the right one.", 1e-4, 100}, s.baseline_m);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"format", "", "Of pixels."}, s.format);
+    visit(Field{"format", "", "Format of the pixels."}, s.format);
     eye::ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the pictures."}, s.noise);
     visit(errors_field, s.errors);

@@ -31,13 +31,13 @@ struct Spec : wheeled::Common {
           s.left_steering_joint);
     visit(Field{"right_steering_joint", "", "Upright joint that steers on the right.", 0, 0, required, 1000},
           s.right_steering_joint);
-    visit(Field{"wheelbase", "m", "From the fixed axle to the steered one; not given: from the joints.",
-                -1000, 1000},
+    visit(Field{"wheelbase", "m",
+                "Distance from the fixed axle to the steered one; not given: from the joints.", -1000, 1000},
           s.wheelbase_m);
-    visit(Field{"track", "m", "Between the steering joints; not given: from the joints.", 0, 1000},
+    visit(Field{"track", "m", "Distance between the steering joints; not given: from the joints.", 0, 1000},
           s.track_m);
-    visit(Field{"max_steering_angle", "rad", "Of the inner wheel; the joints' own limits hold, too.", 0.01,
-                1.5},
+    visit(Field{"max_steering_angle", "rad",
+                "Largest steering angle of the inner wheel, within the joints' own limits.", 0.01, 1.5},
           s.max_steering_rad);
     steering_fields(s, visit);
     Common::fields(s, visit);

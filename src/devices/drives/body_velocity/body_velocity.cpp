@@ -73,7 +73,7 @@ void Mover::release(const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"ideal", "", msg::Twist::ros_type, "The base moves as told, within its acceleration."},
+    {"ideal", "", msg::Twist::ros_type, "The base moves as commanded, within its acceleration."},
 };
 constexpr const char* sdf_types[] = {"plugin:VelocityControl", "plugin:gz-sim-velocity-control-system",
                                      "plugin:ignition-gazebo-velocity-control-system",

@@ -27,13 +27,14 @@ struct Spec {
           s.initial_linear_mps);
     visit(Field{"initial_angular", "rad/s", "Rate of turn before the first command.", -1e4, 1e4},
           s.initial_angular_radps);
-    visit(Field{"max_acceleration", "m/s^2", "How fast the velocity may change.", 0, 1e9, Field::tunable},
+    visit(Field{"max_acceleration", "m/s^2", "Largest change of the velocity per second.", 0, 1e9,
+                Field::tunable},
           s.max_acceleration_mps2);
-    visit(Field{"max_angular_acceleration", "rad/s^2", "How fast the rate of turn may change.", 0, 1e9,
-                Field::tunable},
+    visit(Field{"max_angular_acceleration", "rad/s^2", "Largest change of the rate of turn per second.", 0,
+                1e9, Field::tunable},
           s.max_angular_acceleration_radps2);
-    visit(Field{"command_timeout", "s", "It stops when no command came for so long; 0: never.", 0, 1e6,
-                Field::tunable},
+    visit(Field{"command_timeout", "s", "Time without a command after which the base stops; 0: never.", 0,
+                1e6, Field::tunable},
           s.command_timeout_s);
   }
 };
@@ -44,11 +45,11 @@ struct State {
   double vx_mps = 0, vy_mps = 0, wz_radps = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen so far."}, s.taken);
-    visit(Field{"command_time", "ns", "When the last one came."}, s.command_time);
-    visit(Field{"vx", "m/s", "Commanded forwards."}, s.vx_mps);
-    visit(Field{"vy", "m/s", "Commanded to the left."}, s.vy_mps);
-    visit(Field{"wz", "rad/s", "Commanded turn."}, s.wz_radps);
+    visit(Field{"taken", "1", "Number of commands seen."}, s.taken);
+    visit(Field{"command_time", "ns", "Time of the last command."}, s.command_time);
+    visit(Field{"vx", "m/s", "Commanded velocity forward."}, s.vx_mps);
+    visit(Field{"vy", "m/s", "Commanded velocity to the left."}, s.vy_mps);
+    visit(Field{"wz", "rad/s", "Commanded rate of turn."}, s.wz_radps);
   }
 };
 

@@ -50,20 +50,26 @@ struct Spec {
     visit(Field{"wheel_separation", "m",
                 "Distance between left and right wheels; not given: from the joints.", 1e-3, 1000},
           s.wheel_separation_m);
-    visit(Field{"max_linear_speed", "m/s", "Faster commands are cut.", 0, 1e9, tunable},
+    visit(Field{"max_linear_speed", "m/s", "Largest speed; faster commands are cut.", 0, 1e9, tunable},
           s.max_linear_speed_mps);
-    visit(Field{"max_angular_speed", "rad/s", "Faster commands are cut.", 0, 1e9, tunable},
+    visit(Field{"max_angular_speed", "rad/s", "Largest turning rate; faster commands are cut.", 0, 1e9,
+                tunable},
           s.max_angular_speed_radps);
-    visit(Field{"max_linear_acceleration", "m/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
+    visit(Field{"max_linear_acceleration", "m/s^2", "Largest acceleration, speeding up and braking.", 0, 1e9,
+                tunable},
           s.max_linear_acceleration_mps2);
-    visit(Field{"max_angular_acceleration", "rad/s^2", "Of speeding up and braking.", 0, 1e9, tunable},
+    visit(Field{"max_angular_acceleration", "rad/s^2",
+                "Largest angular acceleration, speeding up and braking.", 0, 1e9, tunable},
           s.max_angular_acceleration_radps2);
-    visit(Field{"max_wheel_effort", "Nm", "Of each wheel's motor, level contact.", 0, 1e9, tunable},
+    visit(Field{"max_wheel_effort", "Nm", "Largest effort of each wheel's motor at level contact.", 0, 1e9,
+                tunable},
           s.max_wheel_effort_Nm);
-    visit(Field{"command_timeout", "s", "Stop this long after the last command; 0: never.", 0, 1e6, tunable},
+    visit(Field{"command_timeout", "s", "Time without a command after which the robot stops; 0: never.", 0,
+                1e6, tunable},
           s.command_timeout_s);
     visit(Field{"rate", "Hz", "Odometry messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"odometry", "", "false: it counts no wheels and tells nothing, which large swarms save."},
+    visit(Field{"odometry", "",
+                "Whether the odometry is computed and published; false saves time in large swarms."},
           s.odometry);
   }
 };
@@ -80,15 +86,15 @@ struct State {
   kinematics::PlanarPose X_OD;                  ///< odometry of the axle's centre
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen per level."}, s.taken);
-    visit(Field{"command_linear", "m/s", "Command in force."}, s.command_mps);
-    visit(Field{"command_angular", "rad/s", "Command in force."}, s.command_radps);
-    visit(Field{"command_time", "ns", "When it came."}, s.command_time);
-    visit(Field{"setpoint_linear", "m/s", "Speed asked of the wheels."}, s.setpoint_mps);
-    visit(Field{"setpoint_angular", "rad/s", "Turning rate asked of the wheels."}, s.setpoint_radps);
-    visit(Field{"release", "1", "1: the base is to be released to its wheels."}, s.release);
-    visit(Field{"left", "rad", "Left wheel angle counted."}, s.left_rad);
-    visit(Field{"right", "rad", "Right wheel angle counted."}, s.right_rad);
+    visit(Field{"taken", "1", "Number of commands seen per level."}, s.taken);
+    visit(Field{"command_linear", "m/s", "Speed of the command in force."}, s.command_mps);
+    visit(Field{"command_angular", "rad/s", "Turning rate of the command in force."}, s.command_radps);
+    visit(Field{"command_time", "ns", "Time of the last command."}, s.command_time);
+    visit(Field{"setpoint_linear", "m/s", "Speed requested from the wheels."}, s.setpoint_mps);
+    visit(Field{"setpoint_angular", "rad/s", "Turning rate requested from the wheels."}, s.setpoint_radps);
+    visit(Field{"release", "1", "Whether the base is to be released to its wheels (1)."}, s.release);
+    visit(Field{"left", "rad", "Angle counted at the left wheel."}, s.left_rad);
+    visit(Field{"right", "rad", "Angle counted at the right wheel."}, s.right_rad);
     visit(Field{"odometry", "m", "Odometry of the axle's centre."}, s.X_OD);
   }
 };

@@ -19,18 +19,23 @@ struct Spec : wheeled::Common {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned required = Field::required;
-    visit(Field{"front_left_joint", "", "Joint of the wheel.", 0, 0, required, 1000}, s.front_left_joint);
-    visit(Field{"front_right_joint", "", "Joint of the wheel.", 0, 0, required, 1000}, s.front_right_joint);
-    visit(Field{"back_left_joint", "", "Joint of the wheel.", 0, 0, required, 1000}, s.back_left_joint);
-    visit(Field{"back_right_joint", "", "Joint of the wheel.", 0, 0, required, 1000}, s.back_right_joint);
-    visit(
-        Field{"wheelbase", "m", "From the front to the back wheels; not given: from the joints.", 1e-3, 1000},
-        s.wheelbase_m);
-    visit(Field{"track", "m", "From the left to the right wheels; not given: from the joints.", 1e-3, 1000},
+    visit(Field{"front_left_joint", "", "Joint of the front left wheel.", 0, 0, required, 1000},
+          s.front_left_joint);
+    visit(Field{"front_right_joint", "", "Joint of the front right wheel.", 0, 0, required, 1000},
+          s.front_right_joint);
+    visit(Field{"back_left_joint", "", "Joint of the back left wheel.", 0, 0, required, 1000},
+          s.back_left_joint);
+    visit(Field{"back_right_joint", "", "Joint of the back right wheel.", 0, 0, required, 1000},
+          s.back_right_joint);
+    visit(Field{"wheelbase", "m", "Distance from the front to the back wheels; not given: from the joints.",
+                1e-3, 1000},
+          s.wheelbase_m);
+    visit(Field{"track", "m", "Distance from the left to the right wheels; not given: from the joints.", 1e-3,
+                1000},
           s.track_m);
     visit(Field{"roller_angle", "rad",
-                "Of the rollers of FR and BL, where the model has none; FL and BR have the opposite.", -1.5,
-                1.5},
+                "Angle of the rollers of FR and BL, where the model has none; FL and BR have the opposite.",
+                -1.5, 1.5},
           s.roller_angle_rad);
     Common::fields(s, visit);
   }

@@ -17,9 +17,10 @@ struct Spec : wheeled::Common {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"wheel_joint", "", "Joints of the wheels.", 0, 0, Field::required, 64, 3}, s.wheel_joint);
-    visit(Field{"roller_angle", "rad",
-                "Of the rollers' axes from the wheel's axis, where the model has no rollers.", -3.2, 3.2},
-          s.roller_angle_rad);
+    visit(
+        Field{"roller_angle", "rad",
+              "Angle of the rollers' axes from the wheel's axis, where the model has no rollers.", -3.2, 3.2},
+        s.roller_angle_rad);
     Common::fields(s, visit);
   }
 };

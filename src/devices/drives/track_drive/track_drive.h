@@ -24,8 +24,8 @@ struct Spec : wheeled::Common {
           s.right_joint);
     visit(Field{"track", "m", "Distance between the tracks; not given: from the joints.", 1e-3, 1000},
           s.track_m);
-    visit(Field{"track_ratio", "1", "Effective track by geometric track; not given: of isotropic friction.",
-                0.1, 100},
+    visit(Field{"track_ratio", "1",
+                "Ratio of effective to geometric track; not given: that of isotropic friction.", 0.1, 100},
           s.track_ratio);
     Common::fields(s, visit);
   }

@@ -28,7 +28,7 @@ struct Spec {
           s.joint);
     visit(Field{"ticks_per_turn", "1", "Edges counted per turn of the joint.", 1, 1e8}, s.ticks_per_turn);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "rad", "Errors of the angle that is counted."}, s.noise);
+    visit(Field{"noise", "rad", "Errors of the counted angle."}, s.noise);
     visit(errors_field, s.errors);
   }
 };

@@ -206,8 +206,8 @@ Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const C
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"odometry", msg::Odometry::ros_type, "", "Pose and velocity reckoned from the wheels."},
-    {"pose", msg::Odometry::ros_type, "", "Pose and velocity as a good odometry tells them."},
+    {"odometry", msg::Odometry::ros_type, "", "Pose and velocity estimated from the wheels."},
+    {"pose", msg::Odometry::ros_type, "", "Pose and velocity with the errors of a good odometry."},
 };
 }  // namespace
 

@@ -40,10 +40,11 @@ struct PoseSpec {
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
-    visit(Field{"distance_walk", "m/sqrt(m)", "Error of the distance.", 0, 100, tunable}, s.distance_walk);
-    visit(Field{"heading_walk", "rad/sqrt(m)", "Error of the heading by way.", 0, 100, tunable},
+    visit(Field{"distance_walk", "m/sqrt(m)", "Random walk of the distance.", 0, 100, tunable},
+          s.distance_walk);
+    visit(Field{"heading_walk", "rad/sqrt(m)", "Random walk of the heading with distance.", 0, 100, tunable},
           s.heading_walk);
-    visit(Field{"turn_walk", "rad/sqrt(rad)", "Error of the heading by turning.", 0, 100, tunable},
+    visit(Field{"turn_walk", "rad/sqrt(rad)", "Random walk of the heading with turning.", 0, 100, tunable},
           s.turn_walk);
   }
 };
@@ -63,8 +64,8 @@ struct Spec {
           s.left_joint);
     visit(Field{"right_joint", "", "Wheel joint on the right side, or a list of them.", 0, 0, required, 100},
           s.right_joint);
-    visit(Field{"wheel_radius", "m", "Of the wheels.", 1e-4, 100, required}, s.wheel_radius_m);
-    visit(Field{"wheel_separation", "m", "Between left and right wheels.", 1e-3, 1000, required},
+    visit(Field{"wheel_radius", "m", "Radius of the wheels.", 1e-4, 100, required}, s.wheel_radius_m);
+    visit(Field{"wheel_separation", "m", "Distance between left and right wheels.", 1e-3, 1000, required},
           s.wheel_separation_m);
     visit(Field{"left_error", "1", "Relative error of the left wheels' radius.", -0.5, 0.5}, s.left_error);
     visit(Field{"right_error", "1", "Relative error of the right wheels' radius.", -0.5, 0.5}, s.right_error);
@@ -86,10 +87,10 @@ struct PoseState {
   bool begun = false;                  ///< false: nothing has been seen since the level became active
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"seen", "m", "Where it was."}, s.seen_W);
-    visit(Field{"told", "m", "Where it is said to be."}, s.told_O);
-    visit(Field{"covariance", "", "Of x, y and heading."}, s.covariance);
-    visit(Field{"begun", "", "Whether it has told a pose."}, s.begun);
+    visit(Field{"seen", "m", "True pose at the last sample."}, s.seen_W);
+    visit(Field{"told", "m", "Reported pose."}, s.told_O);
+    visit(Field{"covariance", "", "Covariance of x, y and heading."}, s.covariance);
+    visit(Field{"begun", "", "Whether a pose has been reported."}, s.begun);
   }
 };
 
@@ -100,11 +101,11 @@ struct State {
   PoseState pose;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"left", "rad", "Left wheel angle counted."}, s.left_rad);
-    visit(Field{"right", "rad", "Right wheel angle counted."}, s.right_rad);
-    visit(Field{"odometry", "m", "Of the axle's centre."}, s.X_OD);
-    visit(Field{"covariance", "", "Of x, y and heading."}, s.covariance);
-    visit(Field{"pose", "", "Of the level pose."}, s.pose);
+    visit(Field{"left", "rad", "Angle counted at the left wheel."}, s.left_rad);
+    visit(Field{"right", "rad", "Angle counted at the right wheel."}, s.right_rad);
+    visit(Field{"odometry", "m", "Odometry of the axle's centre."}, s.X_OD);
+    visit(Field{"covariance", "", "Covariance of x, y and heading."}, s.covariance);
+    visit(Field{"pose", "", "State of the level pose."}, s.pose);
   }
 };
 

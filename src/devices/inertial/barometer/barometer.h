@@ -27,7 +27,7 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"noise", "Pa", "Errors."}, s.noise);
+    visit(Field{"noise", "Pa", "Errors of the pressure."}, s.noise);
     visit(Field{"reference_altitude", "m", "Height of the world's z = 0 above sea level.", -1000, 11000},
           s.reference_altitude_m);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
@@ -37,7 +37,9 @@ struct Spec {
 
 struct State {
   ChannelNoise noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "Pa", "Errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"noise", "Pa", "Errors of the pressure."}, s.noise);
+  }
 };
 
 struct Barometer {

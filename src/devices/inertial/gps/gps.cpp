@@ -126,8 +126,8 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
 namespace {
 constexpr LevelInfo levels[] = {
     {"fix", msg::NavSatFix::ros_type, "", "Latitude, longitude and altitude with their covariance."},
-    {"velocity", msg::TwistStamped::ros_type, "", "Velocity east, north, up."},
-    {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Pose in the world, as a filter tells it."},
+    {"velocity", msg::TwistStamped::ros_type, "", "Velocity to the east, north and up."},
+    {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Pose in the world, with the errors of a filter."},
 };
 constexpr const char* sdf_types[] = {"sensor:navsat", "sensor:gps", "plugin:gazebo_ros_gps_sensor",
                                      "plugin:hector_gazebo_ros_gps"};

@@ -40,9 +40,11 @@ struct Spec {
     visit(Field{"vertical", "m", "Errors of the altitude."}, s.vertical);
     visit(Field{"speed", "m/s", "Errors of each component of the velocity."}, s.speed);
     visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
-    visit(Field{"status", "1", "0: fix, 1: with satellite based, 2: with ground based augmentation (RTK).", 0,
-                2},
-          s.status);
+    visit(
+        Field{"status", "1",
+              "Status of the fix. 0: fix, 1: with satellite based, 2: with ground based augmentation (RTK).",
+              0, 2},
+        s.status);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }
@@ -53,12 +55,12 @@ struct State {
   PoseEstimate pose;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"east", "m", "Errors."}, s.east);
-    visit(Field{"north", "m", "Errors."}, s.north);
-    visit(Field{"up", "m", "Errors."}, s.up);
-    visit(Field{"v_east", "m/s", "Errors."}, s.v_east);
-    visit(Field{"v_north", "m/s", "Errors."}, s.v_north);
-    visit(Field{"v_up", "m/s", "Errors."}, s.v_up);
+    visit(Field{"east", "m", "Errors to the east."}, s.east);
+    visit(Field{"north", "m", "Errors to the north."}, s.north);
+    visit(Field{"up", "m", "Errors of the altitude."}, s.up);
+    visit(Field{"v_east", "m/s", "Errors of the velocity to the east."}, s.v_east);
+    visit(Field{"v_north", "m/s", "Errors of the velocity to the north."}, s.v_north);
+    visit(Field{"v_up", "m/s", "Errors of the vertical velocity."}, s.v_up);
     visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
   }
 };

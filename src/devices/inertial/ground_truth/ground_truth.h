@@ -21,10 +21,11 @@ struct NoiseSpec {
   ChainSpec position, orientation, velocity, angular_velocity;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"position", "m", "Of x, y and z."}, s.position);
-    visit(Field{"orientation", "rad", "Of roll, pitch and yaw."}, s.orientation);
-    visit(Field{"velocity", "m/s", "Of its three components."}, s.velocity);
-    visit(Field{"angular_velocity", "rad/s", "Of its three components."}, s.angular_velocity);
+    visit(Field{"position", "m", "Errors of x, y and z."}, s.position);
+    visit(Field{"orientation", "rad", "Errors of roll, pitch and yaw."}, s.orientation);
+    visit(Field{"velocity", "m/s", "Errors of the velocity's three components."}, s.velocity);
+    visit(Field{"angular_velocity", "rad/s", "Errors of the angular velocity's three components."},
+          s.angular_velocity);
   }
 };
 
@@ -35,7 +36,7 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "", "Errors."}, s.noise);
+    visit(Field{"noise", "", "Errors of pose and velocity."}, s.noise);
     visit(errors_field, s.errors);
   }
 };
@@ -45,9 +46,9 @@ struct Axes {
   ChannelChain x, y, z;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Or roll."}, s.x);
-    visit(Field{"y", "", "Or pitch."}, s.y);
-    visit(Field{"z", "", "Or yaw."}, s.z);
+    visit(Field{"x", "", "Error of x, or of roll."}, s.x);
+    visit(Field{"y", "", "Error of y, or of pitch."}, s.y);
+    visit(Field{"z", "", "Error of z, or of yaw."}, s.z);
   }
 };
 
@@ -55,10 +56,10 @@ struct State {
   Axes position, orientation, velocity, angular_velocity;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"position", "", "Errors."}, s.position);
-    visit(Field{"orientation", "", "Errors."}, s.orientation);
-    visit(Field{"velocity", "", "Errors."}, s.velocity);
-    visit(Field{"angular_velocity", "", "Errors."}, s.angular_velocity);
+    visit(Field{"position", "", "Errors of the position."}, s.position);
+    visit(Field{"orientation", "", "Errors of the orientation."}, s.orientation);
+    visit(Field{"velocity", "", "Errors of the velocity."}, s.velocity);
+    visit(Field{"angular_velocity", "", "Errors of the angular velocity."}, s.angular_velocity);
   }
 };
 

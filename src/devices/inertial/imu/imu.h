@@ -48,18 +48,18 @@ struct AxesSpec {
   ChannelNoiseSpec x, y, z;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "About or along x."}, s.x);
-    visit(Field{"y", "", "About or along y."}, s.y);
-    visit(Field{"z", "", "About or along z."}, s.z);
+    visit(Field{"x", "", "Errors about or along x."}, s.x);
+    visit(Field{"y", "", "Errors about or along y."}, s.y);
+    visit(Field{"z", "", "Errors about or along z."}, s.z);
   }
 };
 struct Axes {
   ChannelNoise x, y, z;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "About or along x."}, s.x);
-    visit(Field{"y", "", "About or along y."}, s.y);
-    visit(Field{"z", "", "About or along z."}, s.z);
+    visit(Field{"x", "", "Errors about or along x."}, s.x);
+    visit(Field{"y", "", "Errors about or along y."}, s.y);
+    visit(Field{"z", "", "Errors about or along z."}, s.z);
   }
 };
 
@@ -83,12 +83,12 @@ struct PoseState {
   bool begun = false;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"velocity", "m/s", "Error."}, s.velocity_mps);
-    visit(Field{"position", "m", "Error."}, s.position_m);
-    visit(Field{"yaw", "rad", "Error."}, s.yaw_rad);
-    visit(Field{"variance", "", "Of velocity, position and heading."}, s.variance);
-    visit(Field{"covariance", "m^2/s", "Of velocity and position."}, s.covariance);
-    visit(Field{"begun", "", "Whether it has told a pose."}, s.begun);
+    visit(Field{"velocity", "m/s", "Error of the velocity."}, s.velocity_mps);
+    visit(Field{"position", "m", "Error of the position."}, s.position_m);
+    visit(Field{"yaw", "rad", "Error of the heading."}, s.yaw_rad);
+    visit(Field{"variance", "", "Variances of velocity, position and heading."}, s.variance);
+    visit(Field{"covariance", "m^2/s", "Covariance between velocity and position."}, s.covariance);
+    visit(Field{"begun", "", "Whether a pose has been reported."}, s.begun);
   }
 };
 
@@ -128,15 +128,15 @@ struct State {
   PoseState pose;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"v", "m/s", "Velocity when the running sub-step began."}, s.v_W);
-    visit(Field{"q", "1", "Orientation then."}, s.q_WS);
+    visit(Field{"v", "m/s", "Velocity at the start of the current sub-step."}, s.v_W);
+    visit(Field{"q", "1", "Orientation at the start of the current sub-step."}, s.q_WS);
     visit(Field{"running", "s", "Length of the sub-step that is not counted yet."}, s.running_s);
     visit(Field{"counted", "s", "Time covered since the previous sample."}, s.counted_s);
-    visit(Field{"velocity", "m/s", "Specific force integrated since then."}, s.velocity_S);
-    visit(Field{"turn", "rad", "Rate integrated since then."}, s.turn_S);
+    visit(Field{"velocity", "m/s", "Specific force integrated since the previous sample."}, s.velocity_S);
+    visit(Field{"turn", "rad", "Rate integrated since the previous sample."}, s.turn_S);
     visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
     visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
-    visit(Field{"pose", "", "Of the level pose."}, s.pose);
+    visit(Field{"pose", "", "State of the level pose."}, s.pose);
   }
 };
 

@@ -84,7 +84,7 @@ void Magnetometer::sense(PoolView<Magnetometer> pool, const Context& context) {
 namespace {
 constexpr LevelInfo levels[] = {
     {"field", msg::MagneticField::ros_type, "", "Magnetic field in the sensor's frame."},
-    {"heading", msg::Float64::ros_type, "", "Compass: heading in the world."},
+    {"heading", msg::Float64::ros_type, "", "Heading in the world, as of a compass."},
 };
 constexpr const char* sdf_types[] = {"sensor:magnetometer"};
 constexpr Preset presets[] = {
@@ -97,7 +97,7 @@ constexpr Preset presets[] = {
 
 constinit const Kind kind = make_kind<Magnetometer>({
     .name = "magnetometer",
-    .help = "Magnetometer and compass.",
+    .help = "Magnetometer: magnetic field, or heading as a compass.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

@@ -31,9 +31,13 @@ struct Spec {
     visit(Field{"x", "T", "Errors along x."}, s.x);
     visit(Field{"y", "T", "Errors along y."}, s.y);
     visit(Field{"z", "T", "Errors along z."}, s.z);
-    visit(Field{"hard_iron", "T", "Field of magnets that move with the sensor, in S.", -1, 1}, s.hard_iron_T);
-    visit(Field{"soft_iron", "1", "Diagonal of M: xx, yy, zz.", -100, 100}, s.soft_iron);
-    visit(Field{"soft_iron_cross", "1", "The rest of M: xy, xz, yz.", -100, 100}, s.soft_iron_cross);
+    visit(
+        Field{"hard_iron", "T", "Field of magnets that move with the sensor, in the sensor's frame.", -1, 1},
+        s.hard_iron_T);
+    visit(Field{"soft_iron", "1", "Diagonal of the soft-iron matrix: xx, yy, zz.", -100, 100}, s.soft_iron);
+    visit(Field{"soft_iron_cross", "1", "Elements of the soft-iron matrix off the diagonal: xy, xz, yz.",
+                -100, 100},
+          s.soft_iron_cross);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }

@@ -24,10 +24,12 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"ambient", "degC", "Of the air where the world's z is 0.", -273.15, 1e4}, s.ambient_degC);
-    visit(Field{"gradient", "degC/m", "Of the air with the height.", -10, 10}, s.gradient_degC_per_m);
-    visit(Field{"response", "s", "Time constant; 0: at once.", 0, 1e6}, s.response_s);
-    visit(Field{"noise", "degC", "Errors."}, s.noise);
+    visit(Field{"ambient", "degC", "Temperature of the air where the world's z is 0.", -273.15, 1e4},
+          s.ambient_degC);
+    visit(Field{"gradient", "degC/m", "Change of the air's temperature with the height.", -10, 10},
+          s.gradient_degC_per_m);
+    visit(Field{"response", "s", "Time constant of the probe; 0: no delay.", 0, 1e6}, s.response_s);
+    visit(Field{"noise", "degC", "Errors of the temperature."}, s.noise);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(errors_field, s.errors);
   }
@@ -39,9 +41,9 @@ struct State {
   bool begun = false;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"noise", "degC", "Errors."}, s.noise);
-    visit(Field{"probe", "degC", "Of the probe itself."}, s.probe_degC);
-    visit(Field{"begun", "", "Whether it has taken a sample."}, s.begun);
+    visit(Field{"noise", "degC", "Errors of the temperature."}, s.noise);
+    visit(Field{"probe", "degC", "Temperature of the probe itself."}, s.probe_degC);
+    visit(Field{"begun", "", "Whether a sample has been taken."}, s.begun);
   }
 };
 

@@ -49,12 +49,13 @@ struct Spec : MotorSpec {
     visit(Field{"joint", "", "Name of the revolute or continuous joint.", 0, 0, Field::required, 1000},
           s.joint);
     MotorSpec::fields(s, visit);
-    visit(Field{"encoder_counts", "1", "Per turn of the motor; 0: the loop sees the true angle and speed.", 0,
-                1e7},
+    visit(Field{"encoder_counts", "1",
+                "Encoder counts per turn of the motor; 0: the loop sees the true angle and speed.", 0, 1e7},
           s.encoder_counts);
-    visit(Field{"loop_rate", "Hz", "Of the controller; 0: once per physics step.", 0, 1e6}, s.loop_rate_hz);
-    visit(Field{"max_acceleration", "rad/s^2", "At which the target of level velocity moves to the command.",
-                0, 1e9, Field::tunable},
+    visit(Field{"loop_rate", "Hz", "Rate of the controller; 0: once per physics step.", 0, 1e6},
+          s.loop_rate_hz);
+    visit(Field{"max_acceleration", "rad/s^2", "Acceleration of the target speed at level velocity.", 0, 1e9,
+                Field::tunable},
           s.max_acceleration);
     visit(Field{"velocity", "", "Gains of level velocity: V per rad/s."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: V per rad."}, s.position);
@@ -80,19 +81,19 @@ struct State {
   Pid pid;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen per level."}, s.taken);
-    visit(Field{"powered", "1", "1: the power stage is on."}, s.powered);
+    visit(Field{"taken", "1", "Number of commands seen per level."}, s.taken);
+    visit(Field{"powered", "1", "Whether the power stage is on (1)."}, s.powered);
     visit(Field{"command", "", "Command in force."}, s.command);
-    visit(Field{"target", "", "What is followed now."}, s.target);
-    visit(Field{"volts", "V", "What the power stage is told."}, s.volts);
-    visit(Field{"current", "A", "In the winding."}, s.current_A);
-    visit(Field{"mean_current", "A", "Over the last sub-step."}, s.mean_current_A);
-    visit(Field{"terminal_voltage", "V", "Over the last sub-step."}, s.terminal_V);
-    visit(Field{"loop_due", "s", "Until the controller runs again."}, s.loop_due_s);
-    visit(Field{"loop_since", "s", "Since the controller ran."}, s.loop_since_s);
-    visit(Field{"seen", "rad", "Angle that the controller saw last."}, s.seen_rad);
-    visit(Field{"seen_speed", "rad/s", "Speed that it saw last."}, s.seen_rad_s);
-    visit(Field{"pid", "", "The controller."}, s.pid);
+    visit(Field{"target", "", "Present target of the controller."}, s.target);
+    visit(Field{"volts", "V", "Voltage requested from the power stage."}, s.volts);
+    visit(Field{"current", "A", "Current in the winding."}, s.current_A);
+    visit(Field{"mean_current", "A", "Mean current over the last sub-step."}, s.mean_current_A);
+    visit(Field{"terminal_voltage", "V", "Mean terminal voltage over the last sub-step."}, s.terminal_V);
+    visit(Field{"loop_due", "s", "Time until the next run of the controller."}, s.loop_due_s);
+    visit(Field{"loop_since", "s", "Time since the last run of the controller."}, s.loop_since_s);
+    visit(Field{"seen", "rad", "Angle at the last run of the controller."}, s.seen_rad);
+    visit(Field{"seen_speed", "rad/s", "Speed at the last run of the controller."}, s.seen_rad_s);
+    visit(Field{"pid", "", "State of the controller."}, s.pid);
   }
 };
 

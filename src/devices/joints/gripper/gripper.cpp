@@ -153,14 +153,15 @@ void Gripper::release(const Context& context) { let_go(context); }
 namespace {
 constexpr LevelInfo levels[] = {
     {"hold", msg::GripperState::ros_type, msg::Bool::ros_type,
-     "True closes, false opens; tells what is held."},
+     "Closes on true, opens on false; reports what is held."},
 };
 constexpr const char* sdf_types[] = {"plugin:gazebo_ros_vacuum_gripper", "plugin:VacuumGripperPlugin"};
 }  // namespace
 
 constinit const Kind kind = make_kind<Gripper>({
     .name = "gripper",
-    .help = "Holds the nearest thing in its reach until told to open, or until it is torn off.",
+    .help = "Gripper that holds the nearest object in its reach until commanded to open, or until it is torn "
+            "off.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

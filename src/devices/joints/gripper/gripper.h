@@ -27,12 +27,12 @@ struct Spec {
   double rate_hz = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"reach", "m", "Farthest distance of a thing's surface from the grasping point.", 0, 1e3,
+    visit(Field{"reach", "m", "Largest distance of an object's surface from the grasping point.", 0, 1e3,
                 Field::tunable},
           s.reach_m);
-    visit(Field{"max_force", "N", "A larger force in the grip tears it open.", 0, 1e9, Field::tunable},
+    visit(Field{"max_force", "N", "Force in the grip beyond which it is torn open.", 0, 1e9, Field::tunable},
           s.max_force_N);
-    visit(Field{"closed", "", "It closes in the first tick, without a command."}, s.closed);
+    visit(Field{"closed", "", "Whether the gripper closes in the first tick, without a command."}, s.closed);
     visit(Field{"rate", "Hz", "Messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }
 };
@@ -46,13 +46,14 @@ struct State {
   Vec3 force_N;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen so far."}, s.taken);
-    visit(Field{"closed", "", "It was told to close."}, s.closed);
-    visit(Field{"tries", "", "It looks for something to hold in the next tick."}, s.tries);
-    visit(Field{"torn", "", "The force was too large: it lets go before the next physics step."}, s.torn);
-    visit(Field{"instance", "", "Whose link is held; empty: nothing."}, s.instance);
-    visit(Field{"link", "", "Which link is held."}, s.link);
-    visit(Field{"force", "N", "On what is held, in the world, in the last physics step."}, s.force_N);
+    visit(Field{"taken", "1", "Number of commands seen."}, s.taken);
+    visit(Field{"closed", "", "Whether the gripper is commanded to close."}, s.closed);
+    visit(Field{"tries", "", "Whether the gripper looks for something to hold in the next tick."}, s.tries);
+    visit(Field{"torn", "", "Whether the force was too large: the grip opens before the next physics step."},
+          s.torn);
+    visit(Field{"instance", "", "Instance whose link is held; empty: nothing."}, s.instance);
+    visit(Field{"link", "", "Link that is held."}, s.link);
+    visit(Field{"force", "N", "Force on the held object in the last physics step, in the world."}, s.force_N);
   }
 };
 

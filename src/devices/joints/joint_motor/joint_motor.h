@@ -60,21 +60,22 @@ struct Spec {
     visit(Field{"joint", "", "Name of the revolute, continuous or prismatic joint.", 0, 0, Field::required,
                 1000},
           s.joint);
-    visit(Field{"active", "", "False: stopped, the joint is free.", 0, 1, Field::tunable}, s.active);
-    visit(Field{"servo", "",
-                "How speed and position are followed: by gains, or exactly up to the largest effort."},
+    visit(Field{"active", "", "Whether the motor is on; false: the joint is free.", 0, 1, Field::tunable},
+          s.active);
+    visit(Field{"servo", "", "Control of speed and position: by gains, or exactly up to the largest effort."},
           s.servo);
     visit(Field{"commands", "",
-                "What commands are: in SI units, or -1 to 1 of the limits, with 0 at 0 or in the middle."},
+                "Unit of commands: SI units, or -1 to 1 of the limits, with 0 at 0 or in the middle."},
           s.commands);
-    visit(Field{"initial_command", "", "Command before the first one comes.", -1e9, 1e9}, s.initial_command);
+    visit(Field{"initial_command", "", "Command in force before the first one arrives.", -1e9, 1e9},
+          s.initial_command);
     visit(Field{"velocity", "", "Gains of level velocity: Nm per rad/s (prismatic: N per m/s)."}, s.velocity);
     visit(Field{"position", "", "Gains of level position: Nm per rad (prismatic: N per m)."}, s.position);
-    visit(Field{"max_effort", "", "Largest effort [Nm or N]; the joint's own limit holds too.", 0, 1e9,
+    visit(Field{"max_effort", "", "Largest effort [Nm or N], within the joint's own limit.", 0, 1e9,
                 Field::tunable},
           s.max_effort);
-    visit(Field{"max_velocity", "", "Fastest reference [rad/s or m/s]; the joint's own limit holds too.", 0,
-                1e9, Field::tunable},
+    visit(Field{"max_velocity", "", "Largest reference speed [rad/s or m/s], within the joint's own limit.",
+                0, 1e9, Field::tunable},
           s.max_velocity);
   }
 };
@@ -91,12 +92,13 @@ struct State {
   Pid pid;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen per level."}, s.taken);
-    visit(Field{"powered", "1", "0: free until a command, 1: following, 2: stopped."}, s.powered);
+    visit(Field{"taken", "1", "Number of commands seen per level."}, s.taken);
+    visit(Field{"powered", "1", "State of power. 0: free until a command, 1: following, 2: stopped."},
+          s.powered);
     visit(Field{"command", "", "Command in force."}, s.command);
-    visit(Field{"reference", "", "Where the reference is now."}, s.reference);
+    visit(Field{"reference", "", "Present position of the reference."}, s.reference);
     visit(Field{"previous_velocity", "", "Joint speed one sub-step ago."}, s.previous_velocity);
-    visit(Field{"pid", "", "Servo loop."}, s.pid);
+    visit(Field{"pid", "", "State of the servo loop."}, s.pid);
   }
 };
 

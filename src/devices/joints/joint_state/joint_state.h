@@ -23,9 +23,9 @@ struct NoiseSpec {
   ChainSpec position, velocity, effort;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"position", "1", "Of each angle [rad] or length [m]."}, s.position);
-    visit(Field{"velocity", "1", "Of each speed [rad/s] or [m/s]."}, s.velocity);
-    visit(Field{"effort", "1", "Of each effort [Nm] or [N]."}, s.effort);
+    visit(Field{"position", "1", "Errors of each angle [rad] or length [m]."}, s.position);
+    visit(Field{"velocity", "1", "Errors of each speed [rad/s] or [m/s]."}, s.velocity);
+    visit(Field{"effort", "1", "Errors of each effort [Nm] or [N]."}, s.effort);
   }
 };
 
@@ -36,11 +36,11 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{"joints", "", "Names of the joints; none: all that turn or slide.", 0, 0, Field::none, 10'000},
-        s.joints);
+    visit(Field{"joints", "", "Names of the joints; none: all joints that can move.", 0, 0, Field::none,
+                10'000},
+          s.joints);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "", "Errors."}, s.noise);
+    visit(Field{"noise", "", "Errors of angles, speeds and efforts."}, s.noise);
     visit(errors_field, s.errors);
   }
 };

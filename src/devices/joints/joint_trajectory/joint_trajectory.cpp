@@ -248,7 +248,7 @@ void Trajectory::release(const Context& context) {
 
 namespace {
 constexpr LevelInfo levels[] = {
-    {"trajectory", "", msg::JointTrajectory::ros_type, "Follows timed points."},
+    {"trajectory", "", msg::JointTrajectory::ros_type, "Follows a path of timed points."},
 };
 constexpr const char* sdf_types[] = {"plugin:JointTrajectoryController",
                                      "plugin:gz-sim-joint-trajectory-controller-system",

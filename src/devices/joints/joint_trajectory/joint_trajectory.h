@@ -40,7 +40,9 @@ struct Spec {
     visit(Field{"gains", "", "Gains of each joint, in order [Nm per rad]; none: followed exactly.", 0, 0,
                 Field::none, 1000},
           s.gains);
-    visit(Field{"active", "", "False: stopped, the joints are free.", 0, 1, Field::tunable}, s.active);
+    visit(Field{"active", "", "Whether the joints are driven; false: the joints are free.", 0, 1,
+                Field::tunable},
+          s.active);
   }
 };
 
@@ -54,13 +56,13 @@ struct State {
   std::vector<Pid> pids;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"taken", "1", "Commands seen so far."}, s.taken);
-    visit(Field{"held", "1", "0: the joints are free."}, s.held);
-    visit(Field{"elapsed", "s", "Since the start of the path."}, s.elapsed_s);
-    visit(Field{"time", "s", "Of each point."}, s.time_s);
-    visit(Field{"position", "", "Of each point and joint."}, s.position);
-    visit(Field{"velocity", "", "Of each point and joint."}, s.velocity);
-    visit(Field{"pids", "", "Servo loops."}, s.pids);
+    visit(Field{"taken", "1", "Number of commands seen."}, s.taken);
+    visit(Field{"held", "1", "Whether the joints are held; 0: the joints are free."}, s.held);
+    visit(Field{"elapsed", "s", "Time since the start of the path."}, s.elapsed_s);
+    visit(Field{"time", "s", "Time of each point."}, s.time_s);
+    visit(Field{"position", "", "Position at each point, per joint."}, s.position);
+    visit(Field{"velocity", "", "Velocity at each point, per joint."}, s.velocity);
+    visit(Field{"pids", "", "States of the servo loops."}, s.pids);
   }
 };
 

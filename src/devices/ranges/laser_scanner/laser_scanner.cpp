@@ -169,8 +169,10 @@ void Scanner::sense(PoolView<Scanner> pool, const Context& context) {
 namespace {
 constexpr LevelInfo levels[] = {
     {"ranges", msg::LaserScan::ros_type, "", "Distances of all beams."},
-    {"segments", msg::LineSegmentArray::ros_type, "", "Straight pieces of what it would see."},
-    {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Where the robot is, as a localisation tells it."},
+    {"segments", msg::LineSegmentArray::ros_type, "",
+     "Line segments along the surfaces that the scanner sees."},
+    {"pose", msg::PoseWithCovarianceStamped::ros_type, "",
+     "Pose of the robot, with the errors of a localisation."},
 };
 constexpr const char* sdf_types[] = {"sensor:lidar", "sensor:gpu_lidar", "sensor:ray", "sensor:gpu_ray"};
 constexpr Preset presets[] = {

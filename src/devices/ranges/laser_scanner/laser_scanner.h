@@ -37,11 +37,13 @@ struct SegmentsSpec {
   double end_std_m = 0, miss = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"step", "rad", "Between the rays that look for them.", 1e-3, 1}, s.step_rad);
-    visit(Field{"tolerance", "m", "How far a line may pass from what is there.", 1e-4, 10}, s.tolerance_m);
-    visit(Field{"min_length", "m", "Shorter ones are not told.", 0, 100}, s.min_length_m);
-    visit(Field{"end_std", "m", "Error of the ends, in x and in y.", 0, 100, Field::tunable}, s.end_std_m);
-    visit(Field{"miss", "1", "How often one is missed.", 0, 1, Field::tunable}, s.miss);
+    visit(Field{"step", "rad", "Angle between the rays that search for segments.", 1e-3, 1}, s.step_rad);
+    visit(Field{"tolerance", "m", "Largest distance between a segment and the surface.", 1e-4, 10},
+          s.tolerance_m);
+    visit(Field{"min_length", "m", "Shortest segment that is reported.", 0, 100}, s.min_length_m);
+    visit(Field{"end_std", "m", "Standard deviation of the ends, in x and in y.", 0, 100, Field::tunable},
+          s.end_std_m);
+    visit(Field{"miss", "1", "Probability that a segment is missed.", 0, 1, Field::tunable}, s.miss);
   }
 };
 
@@ -63,11 +65,13 @@ struct Spec {
           s.min_angle_rad);
     visit(Field{"max_angle", "rad", "Angle of the last beam.", -2 * std::numbers::pi, 2 * std::numbers::pi},
           s.max_angle_rad);
-    visit(Field{"min_range", "m", "A nearer obstacle reads -inf.", 0, 1e4}, s.min_range_m);
-    visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
+    visit(Field{"min_range", "m", "Nearest measured distance; a nearer obstacle reads -inf.", 0, 1e4},
+          s.min_range_m);
+    visit(Field{"max_range", "m", "Farthest measured distance; a farther obstacle reads +inf.", 1e-3, 1e4},
+          s.max_range_m);
     visit(Field{"rate", "Hz", "Scans per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "m", "Error of the distances."}, s.noise);
-    visit(Field{"segments", "", "Of the level segments."}, s.segments);
+    visit(Field{"noise", "m", "Errors of the distances."}, s.noise);
+    visit(Field{"segments", "", "Detection of segments at level segments."}, s.segments);
     visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
     visit(errors_field, s.errors);
   }
@@ -78,8 +82,8 @@ struct State {
   PoseEstimate pose;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"noise", "m", "Of the errors."}, s.noise);
-    visit(Field{"pose", "", "Of the errors of the level pose."}, s.pose);
+    visit(Field{"noise", "m", "State of the errors."}, s.noise);
+    visit(Field{"pose", "", "State of the errors of the level pose."}, s.pose);
   }
 };
 

@@ -41,8 +41,8 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"columns", "1", "Beams per plane.", 1, 100'000}, s.columns);
-    visit(Field{"planes", "1", "Planes.", 1, 10'000}, s.planes);
+    visit(Field{"columns", "1", "Number of beams per plane.", 1, 100'000}, s.columns);
+    visit(Field{"planes", "1", "Number of planes.", 1, 10'000}, s.planes);
     visit(Field{"min_angle", "rad", "Azimuth of the first column.", -2 * std::numbers::pi,
                 2 * std::numbers::pi},
           s.min_angle_rad);
@@ -55,12 +55,16 @@ struct Spec {
     visit(Field{"max_elevation", "rad", "Elevation of the last plane.", -std::numbers::pi / 2,
                 std::numbers::pi / 2},
           s.max_elevation_rad);
-    visit(Field{"min_range", "m", "A nearer obstacle is no point.", 0, 1e4}, s.min_range_m);
-    visit(Field{"max_range", "m", "A farther obstacle is no point.", 1e-3, 1e4}, s.max_range_m);
+    visit(Field{"min_range", "m", "Nearest measured distance; a nearer obstacle gives no point.", 0, 1e4},
+          s.min_range_m);
+    visit(
+        Field{"max_range", "m", "Farthest measured distance; a farther obstacle gives no point.", 1e-3, 1e4},
+        s.max_range_m);
     visit(Field{"rate", "Hz", "Scans per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"organised", "", "One point for every beam, NaN where nothing was hit; else hits only."},
+    visit(Field{"organised", "",
+                "Whether there is a point for every beam, NaN where nothing was hit; false: hits only."},
           s.organised);
-    visit(Field{"noise", "m", "Error of the distances."}, s.noise);
+    visit(Field{"noise", "m", "Errors of the distances."}, s.noise);
     visit(errors_field, s.errors);
   }
 };
@@ -68,7 +72,7 @@ struct Spec {
 struct State {
   RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "State of the errors."}, s.noise); }
 };
 
 struct Scanner {

@@ -45,15 +45,17 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"sensors", "1", "Number of sensors.", 1, 10'000}, s.sensors);
-    visit(Field{"radius", "m", "Of the circle they sit on.", 0, 100}, s.radius_m);
-    visit(Field{"range", "m", "Farther obstacles are not felt.", 1e-3, 100}, s.range_m);
-    visit(Field{"first_angle", "rad", "Of sensor 0.", -6.3, 6.3}, s.first_angle_rad);
-    visit(Field{"spacing", "rad", "Angle from one to the next; 0: evenly all round.", 0, 6.3}, s.spacing_rad);
-    visit(Field{"response", "", "How a distance becomes a reading."}, s.response);
-    visit(Field{"saturation", "m", "Nearer things read 1; response inverse_square.", 1e-6, 100},
+    visit(Field{"radius", "m", "Radius of the circle of sensors.", 0, 100}, s.radius_m);
+    visit(Field{"range", "m", "Farthest measured distance.", 1e-3, 100}, s.range_m);
+    visit(Field{"first_angle", "rad", "Angle of sensor 0.", -6.3, 6.3}, s.first_angle_rad);
+    visit(Field{"spacing", "rad", "Angle from one sensor to the next; 0: evenly all round.", 0, 6.3},
+          s.spacing_rad);
+    visit(Field{"response", "", "Relation between distance and reading."}, s.response);
+    visit(Field{"saturation", "m", "Distance below which the reading is 1; response inverse_square.", 1e-6,
+                100},
           s.saturation_m);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "m", "Error of the distances."}, s.noise);
+    visit(Field{"noise", "m", "Errors of the distances."}, s.noise);
     visit(errors_field, s.errors);
   }
 };
@@ -61,7 +63,7 @@ struct Spec {
 struct State {
   RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "State of the errors."}, s.noise); }
 };
 
 struct Ring {

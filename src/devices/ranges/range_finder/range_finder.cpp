@@ -149,7 +149,7 @@ constexpr Preset presets[] = {
 
 constinit const Kind kind = make_kind<Finder>({
     .name = "range_finder",
-    .help = "Measures one distance: infra-red beam or sonar cone.",
+    .help = "Range finder of one distance: infra-red beam or sonar cone.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

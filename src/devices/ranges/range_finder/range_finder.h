@@ -39,13 +39,16 @@ struct Spec {
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"radiation", "", "What it sends."}, s.radiation);
+    visit(Field{"radiation", "", "Type of radiation."}, s.radiation);
     visit(Field{"fov", "rad", "Opening angle of the cone, edge to edge.", 0, 3.14}, s.fov_rad);
-    visit(Field{"rings", "1", "Rings of rays that sample the cone; 0: a single ray.", 0, 50}, s.rings);
-    visit(Field{"min_range", "m", "A nearer obstacle reads -inf.", 0, 1e4}, s.min_range_m);
-    visit(Field{"max_range", "m", "A farther obstacle reads +inf.", 1e-3, 1e4}, s.max_range_m);
+    visit(Field{"rings", "1", "Number of rings of rays that sample the cone; 0: a single ray.", 0, 50},
+          s.rings);
+    visit(Field{"min_range", "m", "Nearest measured distance; a nearer obstacle reads -inf.", 0, 1e4},
+          s.min_range_m);
+    visit(Field{"max_range", "m", "Farthest measured distance; a farther obstacle reads +inf.", 1e-3, 1e4},
+          s.max_range_m);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
-    visit(Field{"noise", "m", "Error of the distance."}, s.noise);
+    visit(Field{"noise", "m", "Errors of the distance."}, s.noise);
     visit(errors_field, s.errors);
   }
 };
@@ -53,7 +56,7 @@ struct Spec {
 struct State {
   RangeNoise noise;
 
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "Of the errors."}, s.noise); }
+  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "m", "State of the errors."}, s.noise); }
 };
 
 struct Finder {

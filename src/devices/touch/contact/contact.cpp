@@ -156,14 +156,14 @@ void Sensor::sense(PoolView<Sensor> pool, const Context& context) {
 namespace {
 constexpr LevelInfo levels[] = {
     {"contacts", msg::ContactsState::ros_type, "", "Points, normals and forces of all contacts."},
-    {"bumper", msg::Bool::ros_type, "", "Whether it was pressed since the previous sample."},
+    {"bumper", msg::Bool::ros_type, "", "Whether the bumper was pressed since the previous sample."},
 };
 constexpr const char* sdf_types[] = {"sensor:contact", "plugin:gazebo_ros_bumper"};
 }  // namespace
 
 constinit const Kind kind = make_kind<Sensor>({
     .name = "contact",
-    .help = "Contact sensor and bumper: what touches a link, where and how hard.",
+    .help = "Contact sensor and bumper: contacts of a link, their places and forces.",
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,

@@ -25,10 +25,12 @@ struct Spec {
   double rate_hz = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"collision", "", "Names of the link's collisions that feel; not given: all.", 0, 0, 0, 1000},
+    visit(Field{"collision", "", "Names of the link's collisions that are sensitive; not given: all.", 0, 0,
+                0, 1000},
           s.collision);
-    visit(Field{"threshold", "N", "Force that closes the bumper; 0: any touch does.", 0, 1e9, Field::tunable},
-          s.threshold_N);
+    visit(
+        Field{"threshold", "N", "Force that closes the bumper; 0: any contact does.", 0, 1e9, Field::tunable},
+        s.threshold_N);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }
 };
@@ -39,7 +41,7 @@ struct State {
   bool pressed = false;  ///< since the previous sample
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"pressed", "", "The bumper was closed since the previous sample."}, s.pressed);
+    visit(Field{"pressed", "", "Whether the bumper was closed since the previous sample."}, s.pressed);
   }
 };
 

@@ -36,17 +36,17 @@ inline std::span<const EnumName<Direction>> enum_names(Direction) {
 struct AxesNoiseSpec {
   ChannelNoiseSpec x, y, z;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Along or about x."}, s.x);
-    visit(Field{"y", "", "Along or about y."}, s.y);
-    visit(Field{"z", "", "Along or about z."}, s.z);
+    visit(Field{"x", "", "Errors along or about x."}, s.x);
+    visit(Field{"y", "", "Errors along or about y."}, s.y);
+    visit(Field{"z", "", "Errors along or about z."}, s.z);
   }
 };
 struct AxesNoise {
   ChannelNoise x, y, z;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Along or about x."}, s.x);
-    visit(Field{"y", "", "Along or about y."}, s.y);
-    visit(Field{"z", "", "Along or about z."}, s.z);
+    visit(Field{"x", "", "Errors along or about x."}, s.x);
+    visit(Field{"y", "", "Errors along or about y."}, s.y);
+    visit(Field{"z", "", "Errors along or about z."}, s.z);
   }
 };
 
@@ -60,8 +60,8 @@ struct Spec {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"joint", "", "Name of the joint.", 0, 0, Field::required, 1000}, s.joint);
-    visit(Field{"frame", "", "Whose axes."}, s.frame);
-    visit(Field{"direction", "", "Who acts on whom."}, s.direction);
+    visit(Field{"frame", "", "Frame of the measured components."}, s.frame);
+    visit(Field{"direction", "", "Link that acts, and link that is acted on."}, s.direction);
     visit(Field{"force", "", "Errors of the forces [N]."}, s.force);
     visit(Field{"torque", "", "Errors of the torques [Nm]."}, s.torque);
     visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
@@ -76,8 +76,8 @@ struct State {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"impulse", "N s", "Force integrated since the previous sample."}, s.impulse);
-    visit(Field{"turning", "Nm s", "Torque integrated since then."}, s.turning);
-    visit(Field{"counted", "s", "Time covered."}, s.counted_s);
+    visit(Field{"turning", "Nm s", "Torque integrated since the previous sample."}, s.turning);
+    visit(Field{"counted", "s", "Time since the previous sample."}, s.counted_s);
     visit(Field{"force", "N", "Errors of the forces."}, s.force);
     visit(Field{"torque", "Nm", "Errors of the torques."}, s.torque);
   }
