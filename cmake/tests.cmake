@@ -85,6 +85,11 @@ foreach(source IN LISTS sources)
 endforeach()
 set_tests_properties(check_layers PROPERTIES LABELS unit)
 
+# The tutorials, followed to the letter. One of them builds a plugin against what the build installs.
+add_test(NAME tutorials COMMAND Python3::Interpreter tests/tutorials_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(tutorials PROPERTIES LABELS slow TIMEOUT 600
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # The page's own tests, and the check of its types, for which nothing has to run.
 if(SANDLOT_PAGE)
   add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit

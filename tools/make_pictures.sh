@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the pictures of docs/pictures.md and docs/cameras.md. Usage: tools/make_pictures.sh [path of sandlot]
+# Makes the pictures of docs/pictures_and_films.md and docs/cameras.md. Usage: tools/make_pictures.sh [path of sandlot]
 set -eu
 cd "$(dirname "$0")/.."
 sandlot=${1:-build/sandlot}
