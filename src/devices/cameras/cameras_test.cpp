@@ -249,7 +249,7 @@ TEST(Cameras, ObjectsAreToldWithoutAnyPicture) {
 TEST(Cameras, WhatHidesAThingAndTheEdgeOfThePictureCount) {
   Stage stage("camera");
   stage.ball("b", "ball", {4, 0, 0}, 0.2);
-  const std::uint32_t ball = stage.labelled_objects[0].bodies[0];
+  const std::uint32_t ball = stage.things[0].bodies[0];
   double edge = -0.001;  // a wall 2 m ahead reaches from the right to y = edge at the ball's distance
   const Rays rays([&](Vec3 o, Vec3 d) -> Met {
     if (d.y / d.x * 4 < edge) return {2 / d.x, 77};
@@ -547,7 +547,7 @@ TEST(Cameras, ClassesInstancesAndBoxes) {
   EXPECT_EQ(at("eye/labels", 29, 1), 0u);  // a ball, which is not in the list
   EXPECT_EQ(at("eye/labels", 49, 1), 2u);
   EXPECT_EQ(at("eye/labels", 40, 1), 0u);
-  EXPECT_EQ(at("eye/instances", 49, 4), stage.labelled_objects[1].instance);
+  EXPECT_EQ(at("eye/instances", 49, 4), stage.things[1].instance);
   EXPECT_EQ(at("eye/instances", 29, 4), 0u);
   EXPECT_NE(at("eye/colored", 49, 3), 0u);
   EXPECT_EQ(at("eye/colored", 40, 3), 0u);
