@@ -50,7 +50,7 @@ inline float horizontal_max(F x) {
 inline bool all(I mask) { return !any(~mask); }
 
 /// @pre x > 0 and no denormal
-inline F log2(F x) {
+inline F binary_log(F x) {
   // x = m 2^e with m in [sqrt(1/2), sqrt(2)); log m = 2 artanh((m - 1) / (m + 1)).
   const I shifted = I(x) - 0x3f3504f3, e = shifted >> 23;
   const F m = F(I(x) - (e << 23)), z = (m - 1) / (m + 1), q = z * z;
@@ -58,7 +58,7 @@ inline F log2(F x) {
 }
 
 /// 0 below 2^-126. @pre x < 128
-inline F exp2(F x) {
+inline F power_of_two(F x) {
   const F n = floor(x + 0.5f), f = (x - n) * 0.693147181f;
   const F p = 1 + f * (1 + f * (0.5f + f * (0.166666667f + f * (0.0416666667f +
                                                                 f * (0.00833333333f + f * 0.00138888889f)))));
@@ -67,11 +67,11 @@ inline F exp2(F x) {
 }
 
 /// x^y for x >= 0; 0^y = 0.
-inline F pow(F x, F y) {
-  return select(x < 1e-30f, broadcast(0.0f), exp2(y * log2(max(x, broadcast(1e-30f)))));
+inline F power(F x, F y) {
+  return select(x < 1e-30f, broadcast(0.0f), power_of_two(y * binary_log(max(x, broadcast(1e-30f)))));
 }
 
-inline F atan2(F y, F x) {
+inline F angle_of(F y, F x) {
   const F ax = abs(x), ay = abs(y), high = max(ax, ay), low = min(ax, ay);
   const F t = low / max(high, broadcast(1e-37f));
   const I far = t > 0.414213562f;  // beyond pi / 8: from pi / 4

@@ -100,7 +100,7 @@ F3 sample(const Texture& texture, const Footprint8& f, I valid) {
   // What is magnified needs one tap however long it is.
   const F taps = lanes::clamp(-lanes::floor(-lanes::sqrt(longer / lanes::max(shorter, broadcast(1.0f)))),
                               1.0f, float{most_taps});
-  const F detail = lanes::clamp(0.5f * lanes::log2(lanes::max(shorter, longer / (taps * taps))), 0.0f,
+  const F detail = lanes::clamp(0.5f * lanes::binary_log(lanes::max(shorter, longer / (taps * taps))), 0.0f,
                                 static_cast<float>(texture.levels().size() - 1));
   const F fine = lanes::floor(detail), between = detail - fine;
   const std::uint32_t* const texels = texture.texels();

@@ -160,7 +160,7 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
     const F cosine = -dot(to_light, lanes::broadcast3(light.shines));
     const float band = std::max(light.cos_inner - light.cos_outer, 1e-6f);
     const F inside = lanes::clamp((cosine - light.cos_outer) / band, 0, 1);
-    strength = strength * (light.falloff == 1 ? inside : lanes::pow(inside, broadcast(light.falloff)));
+    strength = strength * (light.falloff == 1 ? inside : lanes::power(inside, broadcast(light.falloff)));
   }
   const F cosine = dot(met.normal, to_light);
   I lit = hit & (cosine > 0) & (strength > 0);
@@ -175,7 +175,7 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
   F3 given = (strength * cosine) * (met.diffuse * lanes::broadcast3(light.diffuse));
   if (met.shiny) {
     const F3 half = normalised(to_light - rays.direction);
-    const F highlight = strength * lanes::pow(max(dot(met.normal, half), broadcast(0.0f)), met.shininess);
+    const F highlight = strength * lanes::power(max(dot(met.normal, half), broadcast(0.0f)), met.shininess);
     given = given + highlight * (met.specular * lanes::broadcast3(light.specular));
   }
   sum = sum + given;
@@ -185,11 +185,11 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
 
 F srgb_encoded(F x) {
   return select(x <= 0.0031308f, 12.92f * x,
-                1.055f * lanes::pow(max(x, broadcast(0.0f)), broadcast(1 / 2.4f)) - 0.055f);
+                1.055f * lanes::power(max(x, broadcast(0.0f)), broadcast(1 / 2.4f)) - 0.055f);
 }
 F srgb_decoded(F x) {
   return select(x <= 0.04045f, x / 12.92f,
-                lanes::pow((max(x, broadcast(0.0f)) + 0.055f) / 1.055f, broadcast(2.4f)));
+                lanes::power((max(x, broadcast(0.0f)) + 0.055f) / 1.055f, broadcast(2.4f)));
 }
 
 LightNow light_now(const PictureLight& given, std::span<const Pose> X_WG, const double base[3]) {

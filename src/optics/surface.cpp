@@ -27,7 +27,7 @@ void set_normal(Surface8& s, F3 n) { s.normal = s.face_normal = n; }
 /// u once around z.
 void around(Surface8& s, F x, F y) {
   const F square = lanes::max(x * x + y * y, broadcast(tiny));
-  s.u = 0.5f + lanes::atan2(y, x) / turn;
+  s.u = 0.5f + lanes::angle_of(y, x) / turn;
   s.u_gradient = {-y / (turn * square), x / (turn * square), broadcast(0.0f)};
 }
 void along_z(Surface8& s, F z, float length) {
@@ -72,7 +72,7 @@ Surface8 oval(const float* r, const F3& p, bool textured) {
   if (!textured) return s;
   around(s, q.x, q.y);
   const F across = lanes::sqrt(lanes::max(q.x * q.x + q.y * q.y, broadcast(tiny)));
-  s.v = 0.5f + lanes::atan2(q.z, across) / (turn / 2);
+  s.v = 0.5f + lanes::angle_of(q.z, across) / (turn / 2);
   const float scale = 1 / (turn / 2);
   s.v_gradient = {-q.z * q.x / across * scale, -q.z * q.y / across * scale, across * scale};
   // From the unit sphere to the ellipsoid.
