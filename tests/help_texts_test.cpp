@@ -72,10 +72,10 @@ std::vector<HelpText> device_texts() {
 
 std::vector<HelpText> stage_texts() {
   std::vector<HelpText> out;
-  for (const auto& sorts : {stage_sorts(), image_stage_sorts(), depth_stage_sorts()})
-    for (const StageSort& sort : sorts) {
-      out.push_back({sort.name, sort.help});
-      add_fields(sort.name, sort.fields, out);
+  for (const auto& types : {stage_types(), image_stage_types(), depth_stage_types()})
+    for (const StageType& type : types) {
+      out.push_back({type.name, type.help});
+      add_fields(type.name, type.fields, out);
     }
   return out;
 }

@@ -42,19 +42,19 @@ struct Section {
 /// What lists of stages of errors may hold.
 struct StageFamily {
   const char *key, *title, *intro;
-  std::vector<StageSort> sorts;
+  std::vector<StageType> types;
 };
 std::vector<StageFamily> stage_families() {
   return {{"noise", "Noise",
            "Stages of errors: `noise: [{gaussian: {std: 1 cm}}, ...]`; U is the unit of the values.",
-           stage_sorts()},
+           stage_types()},
           {"image_noise", "Noise of pictures",
            "Stages of errors of pictures: `noise: [{salt_and_pepper: {salt: 1 %, pepper: 1 %}}, ...]` of a "
            "camera; 1 is "
            "full scale.",
-           image_stage_sorts()},
+           image_stage_types()},
           {"depth_noise", "Noise of depth pictures",
-           "Stages of errors of depth pictures: `[{quadratic: {std: 1.4 mm}}, ...]`.", depth_stage_sorts()}};
+           "Stages of errors of depth pictures: `[{quadratic: {std: 1.4 mm}}, ...]`.", depth_stage_types()}};
 }
 
 std::vector<Section> sections(std::span<const ControllerKind* const> controller_table) {
@@ -88,8 +88,8 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   std::vector<Section> out{devices, controllers, engines};
   for (const StageFamily& family : stage_families()) {
     out.push_back({family.key, family.title, family.intro, {}});
-    for (const StageSort& sort : family.sorts)
-      out.back().items.push_back({sort.name, sort.help, sort.fields, {}, {}, {}});
+    for (const StageType& type : family.types)
+      out.back().items.push_back({type.name, type.help, type.fields, {}, {}, {}});
   }
   out.push_back(std::move(faults));
   Section builders{
@@ -354,8 +354,8 @@ int list(const ListOptions& options) {
     std::vector<formats::StageFields> stages;
     for (StageFamily& family : stage_families()) {
       stages.push_back({family.key, {}});
-      for (StageSort& sort : family.sorts)
-        stages.back().second.emplace_back(sort.name, std::move(sort.fields));
+      for (StageType& type : family.types)
+        stages.back().second.emplace_back(type.name, std::move(type.fields));
     }
     std::vector<formats::KindFields> builders;
     for (const Builder* const builder : builder_table())

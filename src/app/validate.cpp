@@ -68,7 +68,7 @@ Status write_figure(const Figure& figure, const std::string& folder) {
 
 int validate(const ValidateOptions& options) {
   std::vector<std::string> names;
-  for (const auto& experiment : validation::experiments()) names.emplace_back(experiment.name);
+  for (const auto& each : validation::validations()) names.emplace_back(each.name);
   if (!options.name.empty() && std::find(names.begin(), names.end(), options.name) == names.end())
     return complain(
         {"validate: there is no experiment '" + options.name + "'", suggestion(options.name, names)});
@@ -77,12 +77,12 @@ int validate(const ValidateOptions& options) {
   std::vector<Section> sections;
   auto json = nlohmann::ordered_json::array();
   bool all_ok = true;
-  for (const auto& experiment : validation::experiments()) {
-    if (!options.name.empty() && options.name != experiment.name) continue;
-    sections.push_back(experiment.run());
+  for (const auto& each : validation::validations()) {
+    if (!options.name.empty() && options.name != each.name) continue;
+    sections.push_back(each.run());
     for (const Row& row : sections.back().rows) {
       all_ok = all_ok && row.ok();
-      json.push_back({{"experiment", experiment.name},
+      json.push_back({{"experiment", each.name},
                       {"what", row.what},
                       {"engine", row.engine},
                       {"unit", row.unit},

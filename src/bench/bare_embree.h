@@ -134,8 +134,8 @@ class BareEmbree {
       const F t = optics::distance_to(solid, static_cast<const Query*>(a->context)->origin, rays);
       const F tfar = lanes::load<F>(at(8), count);
       const I take = lanes::load<I>(a->valid + first, count) & (t >= rays.near) & (t < tfar);
-      lanes::store(at(8), lanes::choose(take, t, tfar), count);
-      lanes::store(at(18), lanes::choose(take, lanes::all(0), lanes::load<I>(at(18), count)), count);
+      lanes::store(at(8), lanes::select(take, t, tfar), count);
+      lanes::store(at(18), lanes::select(take, lanes::broadcast(0), lanes::load<I>(at(18), count)), count);
     }
   }
 

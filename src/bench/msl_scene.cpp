@@ -63,7 +63,7 @@ MslScene::MslScene() {
   frame.X_WG.push_back({});
   std::uint32_t count = 0;
   const auto add = [&](std::uint32_t group, Shape shape, Pose X, Color color,
-                       std::uint16_t label) -> optics::Look& {
+                       std::uint16_t label) -> optics::SurfaceAppearance& {
     optics::PictureShape s;
     s.group = group;
     s.X_GC = X;
@@ -97,13 +97,14 @@ MslScene::MslScene() {
     robots.push_back(at(x, y, 0, r.uniform(-3, 3)));
     const std::uint32_t g = group(robots.back());
     const Color team = i % 2 ? Color{0.1f, 0.75f, 0.85f, 1} : Color{0.85f, 0.15f, 0.6f, 1};
-    optics::Look& look = add(g, Mesh{body}, at(0, 0, 0.03), {0.12f, 0.12f, 0.13f, 1}, 3);
+    optics::SurfaceAppearance& look = add(g, Mesh{body}, at(0, 0, 0.03), {0.12f, 0.12f, 0.13f, 1}, 3);
     look.specular = {0.4f, 0.4f, 0.4f, 1};
     look.shininess = 30;
     add(g, Cylinder{0.2, 0.08}, at(0, 0, 0.6), team, 3);
     add(g, Box{{0.12, 0.34, 0.08}}, at(0.22, 0, 0.1), {0.3f, 0.3f, 0.3f, 1}, 3);
   }
-  optics::Look& ball = add(group(at(0.3, 0.2, 0.11)), Sphere{0.11}, {}, {0.95f, 0.5f, 0.05f, 1}, 4);
+  optics::SurfaceAppearance& ball = add(group(at(0.3, 0.2, 0.11)), Sphere{0.11}, {}, {0.95f, 0.5f, 0.05f, 1},
+                                        4);
   ball.specular = {0.5f, 0.5f, 0.5f, 1};
   ball.shininess = 60;
   for (const double x : {-6.0, 1.0, 7.0})

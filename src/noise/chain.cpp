@@ -18,16 +18,16 @@ namespace {
 template <class Work>
 void with_stage(const StageSpec& spec, StageState& state, Work&& work) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {
-    const auto one = [&]<std::size_t sort>(std::integral_constant<std::size_t, sort>) {
-      if (spec.stage.index() != sort) return false;
-      work(std::get<sort>(spec.stage), std::get<sort>(state.state));
+    const auto one = [&]<std::size_t type>(std::integral_constant<std::size_t, type>) {
+      if (spec.stage.index() != type) return false;
+      work(std::get<type>(spec.stage), std::get<type>(state.state));
       return true;
     };
     // The first that fits ends the search.
     const bool found = (one(std::integral_constant<std::size_t, i + 1>()) || ...);
     SL_CHECK(found);
   }
-  (std::make_index_sequence<StageSpec::sorts - 1>());
+  (std::make_index_sequence<StageSpec::types - 1>());
 }
 
 template <class Spec, class State>
@@ -62,7 +62,7 @@ void corrupt_all(const Spec& spec, State& state, std::span<float> values, const 
 
 }  // namespace
 
-std::vector<StageSort> stage_sorts() { return sorts_of<StageSpec>("U"); }
+std::vector<StageType> stage_types() { return types_of<StageSpec>("U"); }
 
 double variance_of(std::span<const StageSpec> stages, double dt_s, double errors) {
   double sum = 0;
@@ -78,16 +78,16 @@ double variance_of(std::span<const StageSpec> stages, double dt_s, double errors
 void ChannelChain::reset(std::span<const StageSpec> specs, const Stream& random, std::string_view channel) {
   stages.assign(specs.size(), {});
   keys.assign(specs.size(), 0);
-  std::array<std::uint64_t, StageSpec::sorts> before{};
+  std::array<std::uint64_t, StageSpec::types> before{};
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    const std::size_t sort = specs[i].stage.index();
+    const std::size_t type = specs[i].stage.index();
     const auto* const dropouts = std::get_if<DropoutsSpec>(&specs[i].stage);
     const bool common = (dropouts && dropouts->whole) || std::holds_alternative<LatencySpec>(specs[i].stage);
-    keys[i] = hash_combine(hash64(specs[i].name(), hash64(common ? "" : channel)), before[sort]++);
+    keys[i] = hash_combine(hash64(specs[i].name(), hash64(common ? "" : channel)), before[type]++);
     [&]<std::size_t... k>(std::index_sequence<k...>) {
-      (void)((sort == k + 1 && (stages[i].state.template emplace<k + 1>(), true)) || ...);
+      (void)((type == k + 1 && (stages[i].state.template emplace<k + 1>(), true)) || ...);
     }
-    (std::make_index_sequence<StageSpec::sorts - 1>());
+    (std::make_index_sequence<StageSpec::types - 1>());
     with_stage(specs[i], stages[i], [&](const auto& spec, auto& state) {
       Stream own = random.fork(keys[i]);
       if constexpr (requires { spec.reset(state, own); }) spec.reset(state, own);

@@ -7,9 +7,9 @@
 /// Devices hold a ChannelNoiseSpec (noise/channel_noise.h) or a RangeNoiseSpec (noise/range_noise.h) in their Spec,
 /// which are read from a map of common keys or from such a list; those call what is here.
 ///
-/// Random   each stage draws from a stream of its own, keyed by the device, the channel, the sort of stage and how many of
-///          that sort come before it. Adding, changing or removing a stage moves no other stage's numbers (but those of
-///          later ones of its own sort), and what comes in does not either. The stages latency and dropouts with
+/// Random   each stage draws from a stream of its own, keyed by the device, the channel, the type of stage and how many of
+///          that type come before it. Adding, changing or removing a stage moves no other stage's numbers (but those of
+///          later ones of its own type), and what comes in does not either. The stages latency and dropouts with
 ///          `whole` leave the channel out, so that all channels of a device that have them agree.
 /// errors   one factor on all of a chain: 0 exact, 1 as configured, 2 twice. It multiplies amplitudes, steps of
 ///          quantise, widths of dead zones, delays and their jitter, and how often values are lost or far off (never
@@ -47,24 +47,24 @@ struct ChainSpec {
   static void fields(auto& s, auto&& visit) { visit(stages_field, s.stages); }
 };
 
-/// One sort of stage, for lists and the schema; the unit of the values is called U.
-struct StageSort {
+/// One type of stage, for lists and the schema; the unit of the values is called U.
+struct StageType {
   std::string name, help;
   std::vector<FieldInfo> fields;
 };
-std::vector<StageSort> stage_sorts();
+std::vector<StageType> stage_types();
 
-template <class StageType>
-std::vector<StageSort> sorts_of(const char* unit) {
-  std::vector<StageSort> out;
+template <class Stages>
+std::vector<StageType> types_of(const char* unit) {
+  std::vector<StageType> out;
   [&]<std::size_t... i>(std::index_sequence<i...>) {
-    const auto one = [&]<class Sort>(const Sort& sort) {
-      out.push_back({Sort::name, Sort::help, {}});
-      describe_struct(type_info<Sort>, &sort, "", unit, out.back().fields, false);
+    const auto one = [&]<class Stage>(const Stage& type) {
+      out.push_back({Stage::name, Stage::help, {}});
+      describe_struct(type_info<Stage>, &type, "", unit, out.back().fields, false);
     };
-    (one(std::variant_alternative_t<i + 1, typename StageType::Sorts>()), ...);
+    (one(std::variant_alternative_t<i + 1, typename Stages::StageTypes>()), ...);
   }
-  (std::make_index_sequence<StageType::sorts - 1>());
+  (std::make_index_sequence<Stages::types - 1>());
   return out;
 }
 
@@ -91,7 +91,7 @@ struct ChannelChain {
   /// @param truth   [U]
   /// @param dt_s    [s] since the previous sample, > 0
   /// @param random  stream of the device for this sample, Purpose::noise; its position does not matter
-  /// @pre reset() was called with as many stages of the same sorts
+  /// @pre reset() was called with as many stages of the same types
   double corrupt(std::span<const StageSpec> specs, double truth, double dt_s, const Stream& random,
                  double errors = 1);
   /// All values of one sample, in place.

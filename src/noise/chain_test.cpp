@@ -259,11 +259,11 @@ TEST(Chain, ADamagedStateDoesNoHarm) {
 }
 
 TEST(Chain, SortsAreDescribed) {
-  const auto sorts = stage_sorts();
-  ASSERT_EQ(sorts.size(), StageSpec::sorts - 1);
-  EXPECT_EQ(sorts[0].name, "gaussian");
-  EXPECT_EQ(sorts[0].fields[0].unit, "U");
-  EXPECT_EQ(sorts[1].fields[0].unit, "U/sqrt(Hz)");
+  const auto types = stage_types();
+  ASSERT_EQ(types.size(), StageSpec::types - 1);
+  EXPECT_EQ(types[0].name, "gaussian");
+  EXPECT_EQ(types[0].fields[0].unit, "U");
+  EXPECT_EQ(types[1].fields[0].unit, "U/sqrt(Hz)");
   const auto fields = describe_fields<Holder>();
   ASSERT_EQ(fields.back().path, "noise/stages");
   EXPECT_EQ(fields.back().elements, "noise");

@@ -98,14 +98,14 @@ void Dropouts::corrupt(ImagePiece& row, const Stream& random) const {
 
 }  // namespace depth_stage
 
-std::vector<StageSort> depth_stage_sorts() { return sorts_of<DepthStageSpec>("m"); }
+std::vector<StageType> depth_stage_types() { return types_of<DepthStageSpec>("m"); }
 
 void corrupt_depth(const DepthNoiseSpec& spec, std::span<float> depth_m, int width, int height,
                    const Stream& random, double errors, int first_row) {
   if (spec.stages.empty() || errors == 0 || depth_m.empty()) return;
   SL_CHECK(width > 0 && depth_m.size() % static_cast<std::size_t>(width) == 0);
   SL_CHECK(spec.stages.size() <= max_stages);
-  std::array<std::uint64_t, DepthStageSpec::sorts> before{};
+  std::array<std::uint64_t, DepthStageSpec::types> before{};
   std::array<std::uint64_t, max_stages> keys{};
   for (std::size_t i = 0; i < spec.stages.size(); ++i)
     keys[i] = hash_combine(hash64(spec.stages[i].name()), before[spec.stages[i].stage.index()]++);
@@ -120,8 +120,8 @@ void corrupt_depth(const DepthNoiseSpec& spec, std::span<float> depth_m, int wid
                      errors};
     for (std::size_t i = 0; i < spec.stages.size(); ++i)
       std::visit(
-          [&]<class Sort>(const Sort& stage) {
-            if constexpr (!std::is_same_v<Sort, std::monostate>) stage.corrupt(piece, random.fork(keys[i]));
+          [&]<class Stage>(const Stage& stage) {
+            if constexpr (!std::is_same_v<Stage, std::monostate>) stage.corrupt(piece, random.fork(keys[i]));
           },
           spec.stages[i].stage);
     for (float& z : piece.values)

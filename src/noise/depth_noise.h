@@ -134,7 +134,7 @@ struct DepthNoiseSpec {
 void corrupt_depth(const DepthNoiseSpec& spec, std::span<float> depth_m, int width, int height,
                    const Stream& random, double errors = 1, int first_row = 0);
 
-std::vector<StageSort> depth_stage_sorts();
+std::vector<StageType> depth_stage_types();
 
 SL_EXTERN_FIELDS(DepthStageSpec);
 extern template void write_tunables(ByteWriter&, const DepthStageSpec&);

@@ -153,12 +153,12 @@ void Vignetting::corrupt(ImagePiece& piece, const Stream&) const {
 
 }  // namespace image_stage
 
-std::vector<StageSort> image_stage_sorts() { return sorts_of<ImageStageSpec>("1"); }
+std::vector<StageType> image_stage_types() { return types_of<ImageStageSpec>("1"); }
 
 void ImageNoise::reset(const ImageNoiseSpec& spec, const Stream& device) {
   device_ = device;
   keys_.clear();
-  std::array<std::uint64_t, ImageStageSpec::sorts> before{};
+  std::array<std::uint64_t, ImageStageSpec::types> before{};
   for (const ImageStageSpec& each : spec.stages)
     keys_.push_back(hash_combine(hash64(each.name()), before[each.stage.index()]++));
 }
@@ -174,8 +174,8 @@ void ImageNoise::corrupt(const ImageNoiseSpec& spec, std::span<std::uint8_t> pix
   std::array<std::optional<Stream>, max_stages> own;
   for (std::size_t i = 0; i < keys_.size(); ++i)
     std::visit(
-        [&]<class Sort>(const Sort&) {
-          if constexpr (requires { Sort::fixed; }) own[i] = device_->fork(keys_[i]);
+        [&]<class Stage>(const Stage&) {
+          if constexpr (requires { Stage::fixed; }) own[i] = device_->fork(keys_[i]);
           else own[i] = random.fork(keys_[i]);
         },
         spec.stages[i].stage);
@@ -191,8 +191,8 @@ void ImageNoise::corrupt(const ImageNoiseSpec& spec, std::span<std::uint8_t> pix
       ImagePiece piece{{values.data(), count}, channels, x, first_row + row, width, height, errors};
       for (std::size_t i = 0; i < keys_.size(); ++i)
         std::visit(
-            [&]<class Sort>(const Sort& stage) {
-              if constexpr (!std::is_same_v<Sort, std::monostate>) stage.corrupt(piece, *own[i]);
+            [&]<class Stage>(const Stage& stage) {
+              if constexpr (!std::is_same_v<Stage, std::monostate>) stage.corrupt(piece, *own[i]);
             },
             spec.stages[i].stage);
       for (std::size_t i = 0; i < count; ++i) {

@@ -9,7 +9,7 @@
 /// Pixels   8 bits per channel, 1 to 4 channels, rows without gaps, top row first; 0 is black and 255 full scale. Between
 ///          the stages values are not rounded nor cut; at the end they are.
 /// Time     pictures are independent of each other; only stages that are fixed stay as they are. Nothing is State.
-/// Random   each stage has a stream of its own, keyed by the device, the sort of stage and how many of that sort come
+/// Random   each stage has a stream of its own, keyed by the device, the type of stage and how many of that type come
 ///          before it; each row begins at a place of its own in it. So the result is the same for any split into
 ///          rows over threads, and adding a stage moves no other's numbers.
 /// errors   0 leaves every byte as it is.
@@ -53,7 +53,7 @@ struct ImageNoise {
   /// @param pixels  whole rows: a multiple of width * channels
   /// @param random  stream of the device for this picture, Purpose::noise; its position does not matter
   /// @param errors  factor on all of it
-  /// @pre reset() was called with stages of the same sorts
+  /// @pre reset() was called with stages of the same types
   void corrupt(const ImageNoiseSpec& spec, std::span<std::uint8_t> pixels, int width, int height,
                int channels, const Stream& random, double errors = 1, int first_row = 0) const;
 
@@ -62,8 +62,8 @@ struct ImageNoise {
   std::optional<Stream> device_;
 };
 
-/// All sorts of stages, for lists and the schema.
-std::vector<StageSort> image_stage_sorts();
+/// All types of stages, for lists and the schema.
+std::vector<StageType> image_stage_types();
 
 SL_EXTERN_FIELDS(ImageStageSpec);
 extern template void write_tunables(ByteWriter&, const ImageStageSpec&);

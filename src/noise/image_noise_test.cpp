@@ -196,7 +196,7 @@ TEST(ImageNoise, VignettingTakesItsShareInTheCorners) {
   EXPECT_EQ(seen.at(40, 0), 164);
 }
 
-const std::vector<ImageStageSpec> all_sorts{Vignetting{.strength = 0.3},
+const std::vector<ImageStageSpec> all_types{Vignetting{.strength = 0.3},
                                             Shot{.full_well = 3000},
                                             FixedPattern{0.01, 0.02},
                                             Gaussian{.std = 0.02},
@@ -207,9 +207,9 @@ const std::vector<ImageStageSpec> all_sorts{Vignetting{.strength = 0.3},
 
 TEST(ImageNoise, PartsOfAPictureAreThoseOfTheWhole) {
   for (const int channels : {1, 3, 4}) {
-    const Picture whole = corrupted(all_sorts, Picture(90, channels));
+    const Picture whole = corrupted(all_types, Picture(90, channels));
     Picture parts(90, channels);
-    const ImageNoiseSpec spec{all_sorts};
+    const ImageNoiseSpec spec{all_types};
     ImageNoise noise;
     noise.reset(spec, device());
     Stream drawn = sample(0);
@@ -228,7 +228,7 @@ TEST(ImageNoise, AStageMovesNoOthersNumbersAndWithoutErrorsNothingMoves) {
   const Picture behind = corrupted({Gaussian{.std = 0.01}, SaltAndPepper{.salt = 0.01}});
   for (std::size_t i = 0; i < alone.pixels.size(); ++i)
     ASSERT_EQ(alone.pixels[i] == 255, behind.pixels[i] == 255);
-  EXPECT_THAT(corrupted(all_sorts, {}, 0, 0).pixels, Each(128));
+  EXPECT_THAT(corrupted(all_types, {}, 0, 0).pixels, Each(128));
 }
 
 std::vector<float> corrupted(const std::vector<DepthStageSpec>& stages, std::vector<float> depth_m, int width,

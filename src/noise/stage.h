@@ -1,9 +1,9 @@
 #pragma once
-/// One stage of a chain of errors, of whatever sort: in files a map with one key, its name.
+/// Stage of a chain of errors: in files a map with one key, the name of its type.
 ///
 ///   {gaussian: {std: 1 cm}}
 ///
-/// A sort of stage is a struct with `name`, `help`, a field list, a State and one of three forms of work:
+/// A type of stage is a struct with `name`, `help`, a field list, a State and one of three forms of work:
 ///   double corrupt(x, sample, random) const                  each value by itself, no state
 ///   void advance(state, sample, random) const, double show(state, x, sample) const     once per sample, shared
 ///   corrupt(state, x, sample, random), corrupt(state, span, sample, random)            both written out
@@ -21,19 +21,19 @@
 
 namespace sandlot {
 
-/// A stage of one of the sorts of a family, which says under what name they are described (`described_as`) and has them
+/// Stage of one of the types of a family. The family has the name for descriptions (`described_as`) and the types
 /// as a std::variant<std::monostate, ...> `Spec`.
 template <class Family>
 struct StageOf {
-  using Sorts = typename Family::Spec;
+  using StageTypes = typename Family::Spec;
   static constexpr const char* described_as = Family::described_as;
-  static constexpr std::size_t sorts = std::variant_size_v<Sorts>;
-  Sorts stage;
+  static constexpr std::size_t types = std::variant_size_v<StageTypes>;
+  StageTypes stage;
 
   StageOf() = default;
   template <class Stage>
-  requires std::constructible_from<Sorts, Stage> StageOf(Stage s)
-      : stage(std::move(s)) {}  // NOLINT: a stage of a sort is a stage
+  requires std::constructible_from<StageTypes, Stage> StageOf(Stage s)
+      : stage(std::move(s)) {}  // NOLINT: a stage of a type is a stage
 
   /// "gaussian"; "" before it was read.
   const char* name() const {
@@ -44,10 +44,10 @@ struct StageOf {
         },
         stage);
   }
-  /// The key of each sort is a field; the one that is there is the stage.
+  /// The key of each type is a field; the one that is there is the stage.
   static void fields(auto& s, auto&& visit) {
     [&]<std::size_t... i>(std::index_sequence<i...>) { (field<i + 1>(s, visit), ...); }
-    (std::make_index_sequence<sorts - 1>());
+    (std::make_index_sequence<types - 1>());
   }
   Status check(const Node& node, const std::string& path) const {
     if (std::holds_alternative<std::monostate>(stage))
@@ -61,10 +61,10 @@ struct StageOf {
  private:
   template <std::size_t i>
   static void field(auto& s, auto&& visit) {
-    using Sort = std::variant_alternative_t<i, Sorts>;
-    std::optional<Sort> here;
+    using Stage = std::variant_alternative_t<i, StageTypes>;
+    std::optional<Stage> here;
     if (s.stage.index() == i) here = std::get<i>(s.stage);
-    visit(Field{Sort::name, "", Sort::help}, here);
+    visit(Field{Stage::name, "", Stage::help}, here);
     if constexpr (!std::is_const_v<std::remove_reference_t<decltype(s)>>)
       if (here) s.stage = std::move(*here);
   }
@@ -72,32 +72,32 @@ struct StageOf {
 
 namespace noise_detail {
 template <class... Stages>
-struct Sorts {
+struct StageTypes {
   static constexpr const char* described_as = "noise";
   using Spec = std::variant<std::monostate, Stages...>;
   using State = std::variant<std::monostate, typename Stages::State...>;
 };
-using All = Sorts<GaussianSpec, WhiteSpec, UniformSpec, ProportionalSpec, DriftSpec, BiasSpec, WalkSpec,
-                  ScaleSpec, QuantiseSpec, ClipSpec, DeadZoneSpec, DropoutsSpec, OutliersSpec, LatencySpec,
-                  GrowingSpec, MixedSpec, ShortSpec, MultipathSpec>;
+using All = StageTypes<GaussianSpec, WhiteSpec, UniformSpec, ProportionalSpec, DriftSpec, BiasSpec, WalkSpec,
+                       ScaleSpec, QuantiseSpec, ClipSpec, DeadZoneSpec, DropoutsSpec, OutliersSpec,
+                       LatencySpec, GrowingSpec, MixedSpec, ShortSpec, MultipathSpec>;
 }  // namespace noise_detail
 
 /// A stage for values: a reading, an axis, the beams of a scan.
 using StageSpec = StageOf<noise_detail::All>;
 
 struct StageState {
-  noise_detail::All::State state;  ///< of the sort of its StageSpec
+  noise_detail::All::State state;  ///< of the type of its StageSpec
 
   static void fields(auto& s, auto&& visit) {
     [&]<std::size_t... i>(std::index_sequence<i...>) { (field<i + 1>(s, visit), ...); }
-    (std::make_index_sequence<StageSpec::sorts - 1>());
+    (std::make_index_sequence<StageSpec::types - 1>());
   }
 
  private:
   template <std::size_t i>
   static void field(auto& s, auto&& visit) {
-    using Sort = std::variant_alternative_t<i, noise_detail::All::Spec>;
-    if (s.state.index() == i) visit(Field{Sort::name, "", Sort::help}, std::get<i>(s.state));
+    using Stage = std::variant_alternative_t<i, noise_detail::All::Spec>;
+    if (s.state.index() == i) visit(Field{Stage::name, "", Stage::help}, std::get<i>(s.state));
   }
 };
 

@@ -11,7 +11,7 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
@@ -136,13 +136,13 @@ Block CameraRays::block(int u0, int v0) const {
 }
 
 Aim CameraRays::centre(const Block& block) const {
-  const F zero = all(0.0f);
+  const F zero = broadcast(0.0f);
   return look(block, zero, zero, moving_ ? view(row_time(block)) : still_, -1);
 }
 
 Aim CameraRays::aim(const Block& block, int sample) const {
   const auto i = static_cast<std::size_t>(sample);
-  return look(block, all(on_pixel_[i][0]), all(on_pixel_[i][1]),
+  return look(block, broadcast(on_pixel_[i][0]), broadcast(on_pixel_[i][1]),
               moving_ ? view(row_time(block) + when_s_[i]) : still_, aperture_ ? sample : -1);
 }
 
@@ -154,16 +154,16 @@ Aim CameraRays::look(const Block& block, F du, F dv, const View& view, int lens_
   F3 d;      // in S
   F length;  // of it for each metre along the optical axis
   if (plain_) {
-    const F x = (lanes::whole(block.u) + du - cx_) * per_fx_,
-            y = (lanes::whole(block.v) + dv - cy_) * per_fy_;
-    length = lanes::root(1 + x * x + y * y);
+    const F x = (lanes::to_float(block.u) + du - cx_) * per_fx_,
+            y = (lanes::to_float(block.v) + dv - cy_) * per_fy_;
+    length = lanes::sqrt(1 + x * x + y * y);
     const F forward = 1 / length;
     d = {forward, -x * forward, -y * forward};
     // The pixel's solid angle is forward^3 / (fx fy).
-    aim.cone = std::sqrt(per_fx_ * per_fy_) * (forward * lanes::root(forward));
+    aim.cone = std::sqrt(per_fx_ * per_fy_) * (forward * lanes::sqrt(forward));
   } else {
     d = from_table(block, du, dv, rays.valid, aim.cone);
-    length = pinhole_ ? 1 / d.x : all(1.0f);
+    length = pinhole_ ? 1 / d.x : broadcast(1.0f);
   }
   aim.cone = cone_scale_ * aim.cone;
   F3 from{};
@@ -194,14 +194,14 @@ Aim CameraRays::look(const Block& block, F du, F dv, const View& view, int lens_
     rays.from_base = false;
   }
   rays.direction = turned(view.axes, d);
-  rays.from = rays.from_base ? from : turned(view.axes, from) + lanes::all3(view.offset);
+  rays.from = rays.from_base ? from : turned(view.axes, from) + lanes::broadcast3(view.offset);
   return aim;
 }
 
 F3 CameraRays::from_table(const Block& block, F du, F dv, I& valid, F& cone) const {
   const auto& table = job_.lens->directions();
-  F3 out{all(1.0f), all(0.0f), all(0.0f)};
-  cone = all(1e-3f);
+  F3 out{broadcast(1.0f), broadcast(0.0f), broadcast(0.0f)};
+  cone = broadcast(1e-3f);
   for (int i = 0; i < lanes::width; ++i) {
     if (!valid[i]) continue;
     const std::size_t at = block.index(i);
@@ -235,8 +235,8 @@ F3 CameraRays::from_table(const Block& block, F du, F dv, I& valid, F& cone) con
 
 F CameraRays::depth(const Block& block, const Rays& rays, F t) const {
   if (plain_) {
-    const F x = (lanes::whole(block.u) - cx_) * per_fx_, y = (lanes::whole(block.v) - cy_) * per_fy_;
-    return t / lanes::root(1 + x * x + y * y);
+    const F x = (lanes::to_float(block.u) - cx_) * per_fx_, y = (lanes::to_float(block.v) - cy_) * per_fy_;
+    return t / lanes::sqrt(1 + x * x + y * y);
   }
   F out = t;
   if (pinhole_) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Eight floats that are computed together: one per ray of a packet.
+/// SIMD lanes: eight floats, one per ray of a packet.
 ///
 /// Vector types of the compiler instead of loops that it may or may not vectorise: every lane gets the same IEEE
 /// operations in the same order at every optimisation level, so the bits are the same in all builds.
@@ -17,23 +17,23 @@ inline constexpr int width = 8;
 typedef float F __attribute__((vector_size(32)));
 typedef int I __attribute__((vector_size(32)));  ///< masks: -1 true, 0 false
 
-inline F all(float x) { return F{x, x, x, x, x, x, x, x}; }
-inline I all(int x) { return I{x, x, x, x, x, x, x, x}; }
-// The instructions are asked for by name where the compiler does not find them: it takes two or three for each.
+inline F broadcast(float x) { return F{x, x, x, x, x, x, x, x}; }
+inline I broadcast(int x) { return I{x, x, x, x, x, x, x, x}; }
+// Intrinsics, where the compiler does not find the instruction: it takes two or three for each.
 #if defined(__AVX__)
-inline F choose(I mask, F yes, F no) { return F(_mm256_blendv_ps(__m256(no), __m256(yes), __m256(F(mask)))); }
-inline I choose(I mask, I yes, I no) { return I(choose(mask, F(yes), F(no))); }
+inline F select(I mask, F yes, F no) { return F(_mm256_blendv_ps(__m256(no), __m256(yes), __m256(F(mask)))); }
+inline I select(I mask, I yes, I no) { return I(select(mask, F(yes), F(no))); }
 /// `b` where the comparison with NaN decides, as in (a < b ? a : b).
-inline F lesser(F a, F b) { return F(_mm256_min_ps(__m256(a), __m256(b))); }
-inline F greater(F a, F b) { return F(_mm256_max_ps(__m256(a), __m256(b))); }
+inline F min(F a, F b) { return F(_mm256_min_ps(__m256(a), __m256(b))); }
+inline F max(F a, F b) { return F(_mm256_max_ps(__m256(a), __m256(b))); }
 #else
-inline F choose(I mask, F yes, F no) { return mask ? yes : no; }
-inline I choose(I mask, I yes, I no) { return mask ? yes : no; }
-inline F lesser(F a, F b) { return choose(a < b, a, b); }
-inline F greater(F a, F b) { return choose(a > b, a, b); }
+inline F select(I mask, F yes, F no) { return mask ? yes : no; }
+inline I select(I mask, I yes, I no) { return mask ? yes : no; }
+inline F min(F a, F b) { return select(a < b, a, b); }
+inline F max(F a, F b) { return select(a > b, a, b); }
 #endif
 
-inline F root(F x) {
+inline F sqrt(F x) {
 #if defined(__AVX__)
   return F(_mm256_sqrt_ps(__m256(x)));
 #else

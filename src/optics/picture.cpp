@@ -15,11 +15,11 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
-using lanes::choose;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
+using lanes::select;
 
 constexpr int tile = 16;
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -87,7 +87,7 @@ void Shot::write_rgb(const Block& block, const F3& sum) {
   const auto byte = [&](F x) {
     x = lanes::clamp(gain * x, 0, 1);
     if (job->exposure.srgb) x = srgb_encoded(x);
-    return lanes::truncated(255 * x + 0.5f);
+    return lanes::truncate(255 * x + 0.5f);
   };
   const I colors = byte(sum.x) | byte(sum.y) << 8 | byte(sum.z) << 16;
   alignas(32) std::uint8_t packed[32];  // the bytes of each half beside each other: 12, then 4 unused
@@ -122,7 +122,7 @@ void Shot::draw_packet(int u0, int v0) {
     write_planes(block, aim.rays, scenery.tree->trace(aim.rays, ignored));
   }
   if (job->rgb.empty()) return;
-  const F zero = all(0.0f);
+  const F zero = broadcast(0.0f);
   F3 sum{zero, zero, zero};
   bool any_sample = false;
   for (int i = 0; i < camera.samples(); ++i) {
@@ -133,7 +133,7 @@ void Shot::draw_packet(int u0, int v0) {
     if (centre && shared) write_planes(block, aim.rays, hits);
     const F3 light = shade(scenery, aim.rays, hits, aim.cone);
     // Beyond the rim of a mirror or the circle of a fisheye no light comes through.
-    sum = sum + choose(aim.rays.valid, light, F3{zero, zero, zero});
+    sum = sum + select(aim.rays.valid, light, F3{zero, zero, zero});
   }
   if (sums.empty()) return write_rgb(block, sum);
   if (!any_sample) return;
@@ -295,10 +295,10 @@ void PictureScene::illuminate(std::span<LightProbe> probes) {
     scenery.shadowless_body = probe.ignore_body;
     const float normal[] = {static_cast<float>(probe.normal_W.x), static_cast<float>(probe.normal_W.y),
                             static_cast<float>(probe.normal_W.z)};
-    const F zero = all(0.0f);
+    const F zero = broadcast(0.0f);
     I one{};
     one[0] = -1;
-    const F3 light = light_at(scenery, base, F3{zero, zero, zero}, lanes::all3(normal), one);
+    const F3 light = light_at(scenery, base, F3{zero, zero, zero}, lanes::broadcast3(normal), one);
     probe.light = {light.x[0], light.y[0], light.z[0], 1};
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The picture scene: what cameras look at, drawn by rays (Embree) without a graphics card.
+/// Picture scene: visuals and lights for cameras, drawn by rays (Embree) without a graphics card.
 ///
 /// It shows the visuals of a world; range sensors have a scene of their own with the collisions (ray_scene.h). Geometry is
 /// given once per Model revision, poses once per tick, questions in batches of PictureJobs.
@@ -27,8 +27,8 @@
 
 namespace sandlot::optics {
 
-/// How a surface looks: model::Material with its files read.
-struct Look {
+/// Appearance of a surface: model::Material with its files read.
+struct SurfaceAppearance {
   Color diffuse;  ///< times the texture, if there is one; also what ambient light shows
   Color specular{0, 0, 0, 1}, emissive{0, 0, 0, 1};
   float shininess = 0;                     ///< exponent of the highlight; 0: matt
@@ -46,7 +46,7 @@ struct PictureShape {
   Shape shape;
   std::uint32_t body = no_body;  ///< compared with PictureJob::ignore_body
   bool moves = true;             ///< false: the group's pose never changes between revisions
-  Look look;
+  SurfaceAppearance look;
   bool cast_shadows = true;
   std::uint32_t instance = 0;  ///< for the instance plane; 0 is "nothing"
   std::uint16_t label = 0;     ///< for the label plane; 0 is "nothing"
@@ -88,8 +88,8 @@ struct PictureJob {
   Exposure exposure;
   std::uint64_t key = 0;  ///< of the places of samples on pixel and lens, such as entity_key() of the camera
   std::uint32_t ignore_body = no_body;  ///< not seen by this camera; its shadow is
-  double near_m = 0;                    ///< nearer surfaces are not seen
-  double far_m = 1e5;                   ///< nor farther ones
+  double near_m = 0;                    ///< nearest visible distance
+  double far_m = 1e5;                   ///< farthest visible distance
   // Out, each optional (empty) or one value per pixel (rgb: three bytes), rows from the top.
   std::span<std::uint8_t> rgb;
   std::span<float>

@@ -12,12 +12,12 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
 using lanes::any;
-using lanes::choose;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
+using lanes::select;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
@@ -49,8 +49,8 @@ void keep_nearest(I valid, F t, const Rays& rays, int visual, Hits& hits) {
   const F band = same_distance * hits.t;
   const I nearer = t < hits.t - band, tie = (t <= hits.t + band) & (hits.visual < visual);
   const I take = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest) & (nearer | tie);
-  hits.t = choose(take, t, hits.t);
-  hits.visual = choose(take, all(visual), hits.visual);
+  hits.t = select(take, t, hits.t);
+  hits.visual = select(take, broadcast(visual), hits.visual);
 }
 
 const char* choose_isa() {
@@ -68,7 +68,8 @@ LocalSpread8 spread_over(const Solid& solid, const Rays& rays) {
 }
 
 F3 to_floats(Vec3 a) {
-  return {all(static_cast<float>(a.x)), all(static_cast<float>(a.y)), all(static_cast<float>(a.z))};
+  return {broadcast(static_cast<float>(a.x)), broadcast(static_cast<float>(a.y)),
+          broadcast(static_cast<float>(a.z))};
 }
 
 F plane_distance(const Visual& plane, const Rays& rays) {
@@ -88,10 +89,10 @@ void fill(RTCRay8& ray, const Rays& rays) {
   lanes::store(ray.dir_y, rays.direction.y);
   lanes::store(ray.dir_z, rays.direction.z);
   lanes::store(ray.tnear, rays.near);
-  lanes::store(ray.time, all(0.0f));
-  lanes::store(ray.mask, all(-1));
+  lanes::store(ray.time, broadcast(0.0f));
+  lanes::store(ray.mask, broadcast(-1));
   lanes::store(ray.id, I{0, 1, 2, 3, 4, 5, 6, 7});
-  lanes::store(ray.flags, all(0));
+  lanes::store(ray.flags, broadcast(0));
 }
 
 }  // namespace
@@ -240,10 +241,10 @@ void PictureTree::intersect(const RTCIntersectFunctionNArguments* arguments) {
     const I was = hits.visual;
     keep_nearest(valid, found.t, rays, static_cast<int>(index), hits);
     const I taken = (hits.visual != was) | (hits.t != before);
-    triangle = F(choose(taken, found.triangle, I(triangle)));
+    triangle = F(select(taken, found.triangle, I(triangle)));
     F &u = *field(packet, u_field), &v = *field(packet, v_field);
-    u = choose(taken, found.b1, u);
-    v = choose(taken, found.b2, v);
+    u = select(taken, found.b1, u);
+    v = select(taken, found.b2, v);
   } else {
     const F t = rays.from_base
                     ? distance_to(visual.solid, rays.base,
@@ -275,11 +276,11 @@ void PictureTree::occluded(const RTCOccludedFunctionNArguments* arguments) {
     hit = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest);
   }
   F& tfar = *field(arguments->ray, tfar_field);
-  tfar = choose(hit, all(-infinity), tfar);
+  tfar = select(hit, broadcast(-infinity), tfar);
 }
 
 Hits PictureTree::trace(const Rays& rays, std::uint32_t ignore_body) const {
-  Hits hits{rays.far, all(-1), all(-1), all(0.0f), all(0.0f)};
+  Hits hits{rays.far, broadcast(-1), broadcast(-1), broadcast(0.0f), broadcast(0.0f)};
   for (const std::uint32_t i : planes_) {
     const Visual& plane = visuals_[i];
     if (plane.given.body == ignore_body && ignore_body != no_body) continue;

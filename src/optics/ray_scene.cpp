@@ -48,12 +48,12 @@ constexpr float largest = std::numeric_limits<float>::max();
 /// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the smaller
 /// body index stays, so that the answer does not depend on the order of traversal.
 void keep_nearest(I valid, F t, F tnear, std::uint32_t body, F& tfar, I& bodies, I& found) {
-  const I other = lanes::all(static_cast<int>(body));
+  const I other = lanes::broadcast(static_cast<int>(body));
   const I tie_won = (found == nothing) | (other < bodies);
   const I take = valid & (t >= tnear) & (t <= largest) & ((t < tfar) | ((t == tfar) & tie_won));
-  tfar = lanes::choose(take, t, tfar);
-  bodies = lanes::choose(take, other, bodies);
-  found = lanes::choose(take, lanes::all(0), found);
+  tfar = lanes::select(take, t, tfar);
+  bodies = lanes::select(take, other, bodies);
+  found = lanes::select(take, lanes::broadcast(0), found);
 }
 
 /// Solids that are built together, and Embree's tree over them.
@@ -143,7 +143,7 @@ F distance_to(const TriangleTree& tree, const Solid& solid, const double* origin
   alignas(32) int lanes_in[lanes::width];
   lanes::store(lanes_in, valid);
   return tree.distance_to(optics::to_local(solid, origin, rays), rays.near,
-                          lanes::choose((far > 0) & (far < largest), F(I(far) + 1), far), lanes_in);
+                          lanes::select((far > 0) & (far < largest), F(I(far) + 1), far), lanes_in);
 }
 
 void Layer::intersect(const RTCIntersectFunctionNArguments* arguments) {
@@ -311,18 +311,19 @@ void RayScene::Impl::cast(const RayJob& job) const {
   query.ignore_body = job.ignore_body;
 
   alignas(64) RTCRayHit8 packet{};
-  const F tnear = lanes::all(static_cast<float>(job.min_m)), tmax = lanes::all(static_cast<float>(job.max_m));
-  lanes::store(packet.ray.org_x, lanes::all(static_cast<float>(job.X_WS.p.x)));
-  lanes::store(packet.ray.org_y, lanes::all(static_cast<float>(job.X_WS.p.y)));
-  lanes::store(packet.ray.org_z, lanes::all(static_cast<float>(job.X_WS.p.z)));
+  const F tnear = lanes::broadcast(static_cast<float>(job.min_m)),
+          tmax = lanes::broadcast(static_cast<float>(job.max_m));
+  lanes::store(packet.ray.org_x, lanes::broadcast(static_cast<float>(job.X_WS.p.x)));
+  lanes::store(packet.ray.org_y, lanes::broadcast(static_cast<float>(job.X_WS.p.y)));
+  lanes::store(packet.ray.org_z, lanes::broadcast(static_cast<float>(job.X_WS.p.z)));
   lanes::store(packet.ray.tnear, tnear);
-  lanes::store(packet.ray.mask, lanes::all(-1));
+  lanes::store(packet.ray.mask, lanes::broadcast(-1));
 
   // A packet never holds rays of two jobs: the answer depends on the job alone.
   for (std::size_t first = 0; first < job.directions.size(); first += lanes::width) {
     const std::size_t count = std::min(job.directions.size() - first, std::size_t{lanes::width});
     alignas(32) int valid[lanes::width];
-    lanes::store(valid, I{0, 1, 2, 3, 4, 5, 6, 7} < lanes::all(static_cast<int>(count)));
+    lanes::store(valid, I{0, 1, 2, 3, 4, 5, 6, 7} < lanes::broadcast(static_cast<int>(count)));
     // Lanes beyond the last ray repeat the first.
     const auto in = [&](std::size_t i) -> const Vec3& { return job.directions[first + (i < count ? i : 0)]; };
     const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)),
@@ -332,22 +333,22 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(packet.ray.dir_y, dy);
     lanes::store(packet.ray.dir_z, dz);
     F tfar = tmax;
-    I bodies = lanes::all(static_cast<int>(no_body)), found = lanes::all(nothing);
+    I bodies = lanes::broadcast(static_cast<int>(no_body)), found = lanes::broadcast(nothing);
     for (const WorldPlane& plane : planes) {
       if (plane.body == job.ignore_body && plane.body != no_body) continue;
       const Vec3 n = plane.normal_W;
       const F towards = static_cast<float>(n.x) * dx + static_cast<float>(n.y) * dy +
                         static_cast<float>(n.z) * dz;
       const F t = static_cast<float>(dot(n, plane.point_W - job.X_WS.p)) / towards;
-      keep_nearest(lanes::all(-1), t, tnear, plane.body, tfar, bodies, found);
+      keep_nearest(lanes::broadcast(-1), t, tnear, plane.body, tfar, bodies, found);
     }
     lanes::store(packet.ray.tfar, tfar);
     lanes::store(packet.hit.primID, bodies);
     lanes::store(packet.hit.geomID, found);
-    lanes::store(packet.hit.instID[0], lanes::all(nothing));
+    lanes::store(packet.hit.instID[0], lanes::broadcast(nothing));
     for (const Layer* layer : {&fixed, &moving})
       if (layer->scene) embree::intersect8(valid, layer->scene, query, packet);
-    tfar = lanes::choose(lanes::load<I>(packet.hit.geomID) == nothing, lanes::all(infinity),
+    tfar = lanes::select(lanes::load<I>(packet.hit.geomID) == nothing, lanes::broadcast(infinity),
                          lanes::load<F>(packet.ray.tfar));
     lanes::store(job.distance_m.data() + first, tfar, static_cast<unsigned>(count));
     if (!job.body.empty())

@@ -1,5 +1,5 @@
 #pragma once
-/// The ray scene: what every exteroceptive sensor of a 3D world looks at (Embree).
+/// Ray scene: collision shapes for the range sensors of a 3D world (Embree).
 ///
 /// Geometry is given once per Model revision, poses once per tick (SceneFrame), questions in batches of RayJobs.
 /// All three are plain, serialisable data: threads answer now, other processes may later.

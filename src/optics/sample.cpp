@@ -5,11 +5,11 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
-using lanes::choose;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
+using lanes::select;
 
 typedef float F4 __attribute__((vector_size(16)));
 
@@ -57,23 +57,23 @@ Levels levels_of(const Texture& texture, I level) {
 /// Asked of a level where the longest footprint is at most half a texel long: with the texels that filtering would
 /// touch it stays within the eight neighbours.
 I plain(const Texture& texture, const Footprint8& f, F longer, I usable, F3& out) {
-  const float longest = lanes::largest(choose(usable, longer, all(0.0f)));
+  const float longest = lanes::horizontal_max(select(usable, longer, broadcast(0.0f)));
   std::size_t level = 1;
   for (float reach = 1; reach < longest && level < texture.levels().size(); reach *= 4) ++level;
-  out = {all(0.0f), all(0.0f), all(0.0f)};
+  out = {broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
   if (level >= texture.levels().size()) return I{};
   const Texture::Level& l = texture.levels()[level];
-  const F u = choose(usable, f.u - lanes::floor(f.u), all(0.0f)),
-          v = choose(usable, 1 - (f.v - lanes::floor(f.v)), all(0.0f));
-  const I column = lanes::truncated(u * static_cast<float>(l.width)),
-          row = lanes::truncated(v * static_cast<float>(l.height));
+  const F u = select(usable, f.u - lanes::floor(f.u), broadcast(0.0f)),
+          v = select(usable, 1 - (f.v - lanes::floor(f.v)), broadcast(0.0f));
+  const I column = lanes::truncate(u * static_cast<float>(l.width)),
+          row = lanes::truncate(v * static_cast<float>(l.height));
   alignas(32) std::uint32_t at[lanes::width];
   lanes::store(at, row * static_cast<int>(l.width + 1) + column);
   for (std::uint32_t& i : at) i = texture.texels()[l.first + i];
   const I texel = lanes::load<I>(at);
   const I is = usable & ((texel & (1 << 24)) != 0);
   const auto channel = [&](int shift) {
-    return choose(is, lanes::whole((texel >> shift) & 255) * (1 / 255.0f), all(0.0f));
+    return select(is, lanes::to_float((texel >> shift) & 255) * (1 / 255.0f), broadcast(0.0f));
   };
   out = {channel(0), channel(8), channel(16)};
   return is;
@@ -89,19 +89,19 @@ F3 sample(const Texture& texture, const Footprint8& f, I valid) {
     square[k] = x * x + y * y;
   }
   const I turned = square[0] < square[1];
-  const F du = choose(turned, f.du[1], f.du[0]), dv = choose(turned, f.dv[1], f.dv[0]);
-  const F longer = lanes::clamp(choose(turned, square[1], square[0]), 1e-12f, 1e20f),
-          shorter = lanes::clamp(choose(turned, square[0], square[1]), 1e-12f, 1e20f);
+  const F du = select(turned, f.du[1], f.du[0]), dv = select(turned, f.dv[1], f.dv[0]);
+  const F longer = lanes::clamp(select(turned, square[1], square[0]), 1e-12f, 1e20f),
+          shorter = lanes::clamp(select(turned, square[0], square[1]), 1e-12f, 1e20f);
   // Also false of NaN.
-  I usable = valid & (lanes::magnitude(f.u) < 1e6f) & (lanes::magnitude(f.v) < 1e6f);
+  I usable = valid & (lanes::abs(f.u) < 1e6f) & (lanes::abs(f.v) < 1e6f);
   F3 out;
   usable &= ~plain(texture, f, longer, usable, out);
   if (!lanes::any(usable)) return out;
   // What is magnified needs one tap however long it is.
-  const F taps = lanes::clamp(-lanes::floor(-lanes::root(longer / lanes::greater(shorter, all(1.0f)))), 1.0f,
-                              float{most_taps});
-  const F detail = lanes::clamp(0.5f * lanes::binary_log(lanes::greater(shorter, longer / (taps * taps))),
-                                0.0f, static_cast<float>(texture.levels().size() - 1));
+  const F taps = lanes::clamp(-lanes::floor(-lanes::sqrt(longer / lanes::max(shorter, broadcast(1.0f)))),
+                              1.0f, float{most_taps});
+  const F detail = lanes::clamp(0.5f * lanes::binary_log(lanes::max(shorter, longer / (taps * taps))), 0.0f,
+                                static_cast<float>(texture.levels().size() - 1));
   const F fine = lanes::floor(detail), between = detail - fine;
   const std::uint32_t* const texels = texture.texels();
   F4 sum[lanes::width] = {};
@@ -109,9 +109,9 @@ F3 sample(const Texture& texture, const Footprint8& f, I valid) {
     const F weight = (pass == 0 ? 1 - between : between) / (taps * 256);
     const I wanted = usable & (weight > 0);
     if (!lanes::any(wanted)) continue;
-    const I last = all(static_cast<int>(texture.levels().size() - 1));
-    const I level = lanes::truncated(fine) + pass;
-    const Levels at = levels_of(texture, choose(level < last, level, last));
+    const I last = broadcast(static_cast<int>(texture.levels().size() - 1));
+    const I level = lanes::truncate(fine) + pass;
+    const Levels at = levels_of(texture, select(level < last, level, last));
     alignas(32) float share[lanes::width];
     alignas(32) int stride[lanes::width];
     lanes::store(share, weight);
@@ -120,12 +120,13 @@ F3 sample(const Texture& texture, const Footprint8& f, I valid) {
       const I here = wanted & (taps > static_cast<float>(tap));
       if (!lanes::any(here)) break;
       const F off = (static_cast<float>(tap) + 0.5f) / taps - 0.5f;
-      const F u = choose(here, f.u + off * du, all(0.0f)), v = choose(here, f.v + off * dv, all(0.0f));
+      const F u = select(here, f.u + off * du, broadcast(0.0f)),
+              v = select(here, f.v + off * dv, broadcast(0.0f));
       const F x = (u - lanes::floor(u)) * at.width - 0.5f, y = (1 - (v - lanes::floor(v))) * at.height - 0.5f;
       const F left = lanes::floor(x), top = lanes::floor(y);
-      const I column = lanes::truncated(choose(left < 0, left + at.width, left)),
-              row = lanes::truncated(choose(top < 0, top + at.height, top));
-      const I index = at.first + row * at.stride + column, right = lanes::truncated((x - left) * 256 + 0.5f);
+      const I column = lanes::truncate(select(left < 0, left + at.width, left)),
+              row = lanes::truncate(select(top < 0, top + at.height, top));
+      const I index = at.first + row * at.stride + column, right = lanes::truncate((x - left) * 256 + 0.5f);
       const F down = y - top;
       alignas(32) int place[lanes::width], shift[lanes::width];
       alignas(32) float below[lanes::width];

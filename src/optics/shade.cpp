@@ -10,13 +10,13 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
 using lanes::any;
-using lanes::choose;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
-using lanes::greater;
 using lanes::I;
+using lanes::max;
+using lanes::select;
 
 /// What the packet's rays met, gathered visual by visual.
 struct Met {
@@ -24,7 +24,7 @@ struct Met {
   F3 diffuse, specular, emissive;
   F shininess;
   bool shiny = false;
-  I convex = all(-1);  ///< the visual of those that see the outside of a convex solid
+  I convex = broadcast(-1);  ///< the visual of those that see the outside of a convex solid
 };
 
 int first_lane(I mask) {
@@ -33,7 +33,7 @@ int first_lane(I mask) {
   return 0;
 }
 
-F3 even(const Color& c) { return {all(c.r), all(c.g), all(c.b)}; }
+F3 broadcast(const Color& c) { return {broadcast(c.r), broadcast(c.g), broadcast(c.b)}; }
 bool is_black(const Color& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
 F3 decoded(const F3& c, bool srgb) {
@@ -50,22 +50,23 @@ F3 to_world(const Solid& s, const F3& a) {
   return {m[0] * a.x + m[3] * a.y + m[6] * a.z, m[1] * a.x + m[4] * a.y + m[7] * a.z,
           m[2] * a.x + m[5] * a.y + m[8] * a.z};
 }
-F3 even(Vec3 a) {
+F3 broadcast(Vec3 a) {
   const float f[] = {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-  return lanes::all3(f);
+  return lanes::broadcast3(f);
 }
 
 /// The pixel's cone cut by the surface: across it as wide as the cone, along it longer by 1 / cos.
 Footprint8 footprint(const Surface8& s, const F3& direction, F width) {
   const F3& n = s.face_normal;
-  const F3 nudge{all(0.3f), all(0.5f), all(0.7f)};  // looked at from straight above, any axis will do
+  const F3 nudge{broadcast(0.3f), broadcast(0.5f),
+                 broadcast(0.7f)};  // looked at from straight above, any axis will do
   F cosine = dot(n, direction);
   F3 along = direction - cosine * n;
-  along = choose(dot(along, along) < 1e-6f, nudge - dot(nudge, n) * n, along);
-  along = (1 / lanes::root(greater(dot(along, along), all(1e-20f)))) * along;
+  along = select(dot(along, along) < 1e-6f, nudge - dot(nudge, n) * n, along);
+  along = (1 / lanes::sqrt(max(dot(along, along), broadcast(1e-20f)))) * along;
   const F3 across{n.y * along.z - n.z * along.y, n.z * along.x - n.x * along.z,
                   n.x * along.y - n.y * along.x};
-  const F length = width / greater(lanes::magnitude(cosine), all(1e-4f));
+  const F length = width / max(lanes::abs(cosine), broadcast(1e-4f));
   return {s.u,
           s.v,
           {length * dot(s.u_gradient, along), width * dot(s.u_gradient, across)},
@@ -75,13 +76,13 @@ Footprint8 footprint(const Surface8& s, const F3& direction, F width) {
 /// Of the plane, relative to the base of the rays; texture coordinates modulo 1, found in double precision.
 Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative, bool textured) {
   Surface8 s;
-  s.normal = s.face_normal = even(plane.normal_W);
+  s.normal = s.face_normal = broadcast(plane.normal_W);
   if (!textured) return s;
   const double per_m = 1 / plane.given.look.tile_m;
   const Vec3 base = Vec3{rays.base[0], rays.base[1], rays.base[2]} - plane.point_W;
   const auto place = [&](Vec3 axis, F& value, F3& gradient) {
     const double at = dot(axis, base) * per_m;
-    gradient = even(axis * per_m);
+    gradient = broadcast(axis * per_m);
     value = static_cast<float>(at - std::floor(at)) + dot(gradient, relative);
   };
   place(plane.u_W, s.u, s.u_gradient);
@@ -93,7 +94,7 @@ Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative
 I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I todo, Met& met) {
   const int lane = first_lane(todo);
   const Visual& visual = scenery.tree->visual(static_cast<std::size_t>(hits.visual[lane]));
-  const Look& look = visual.given.look;
+  const SurfaceAppearance& look = visual.given.look;
   I mask = todo & (hits.visual == hits.visual[lane]);
   Color diffuse = look.diffuse;
   const Texture* texture = look.texture.get();
@@ -115,7 +116,7 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
     if (visual.is_plane) return plane_surface(visual, rays, rays.from + hits.t * rays.direction, textured);
     float origin[3];
     origin_in(visual.solid, rays.base, origin);
-    F3 p = hits.t * direction + lanes::all3(origin);
+    F3 p = hits.t * direction + lanes::broadcast3(origin);
     if (!rays.from_base) p = p + to_shape(visual.solid, rays.from);
     if (!visual.skin) return surface_of(visual.solid, p, textured);
     return visual.skin->surface(mask, hits.triangle, hits.b1, hits.b2, p, textured);
@@ -123,20 +124,20 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
   const auto in_world = [&](const F3& n) { return visual.is_plane ? n : to_world(visual.solid, n); };
   // Mostly a packet sees one thing.
   const bool alone = lanes::bits(mask) == lanes::bits(rays.valid & (hits.visual >= 0));
-  const auto take = [&](const F3& from, F3& to) { to = alone ? from : choose(mask, from, to); };
-  if (!visual.is_plane && !visual.skin) met.convex = lanes::choose(mask, hits.visual, met.convex);
+  const auto take = [&](const F3& from, F3& to) { to = alone ? from : select(mask, from, to); };
+  if (!visual.is_plane && !visual.skin) met.convex = lanes::select(mask, hits.visual, met.convex);
   take(in_world(s.normal), met.normal);
   if (visual.skin) take(in_world(s.face_normal), met.face_normal);
   else take(met.normal, met.face_normal);
-  F3 color = even(diffuse);
+  F3 color = broadcast(diffuse);
   if (textured) color = color * sample(*texture, footprint(s, direction, cone * hits.t), mask);
   take(decoded(color, scenery.srgb), met.diffuse);
   if (!is_black(look.emissive))
-    met.emissive = choose(mask, decoded(even(look.emissive), scenery.srgb), met.emissive);
+    met.emissive = select(mask, decoded(broadcast(look.emissive), scenery.srgb), met.emissive);
   if (!is_black(look.specular) && look.shininess > 0) {
     met.shiny = true;
-    met.specular = choose(mask, decoded(even(look.specular), scenery.srgb), met.specular);
-    met.shininess = choose(mask, all(look.shininess), met.shininess);
+    met.specular = select(mask, decoded(broadcast(look.specular), scenery.srgb), met.specular);
+    met.shininess = select(mask, broadcast(look.shininess), met.shininess);
   }
   return mask;
 }
@@ -145,37 +146,37 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
 void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, const Met& met, const F3& at,
                F lift, I hit, F3& sum) {
   F3 to_light;
-  F far = all(1e30f), strength = all(1.0f);
+  F far = broadcast(1e30f), strength = broadcast(1.0f);
   if (light.type == model::Light::Type::directional) {
-    to_light = F3{all(-light.shines[0]), all(-light.shines[1]), all(-light.shines[2])};
+    to_light = F3{broadcast(-light.shines[0]), broadcast(-light.shines[1]), broadcast(-light.shines[2])};
   } else {
-    const F3 away = lanes::all3(light.position) - at;
-    far = lanes::root(greater(dot(away, away), all(1e-12f)));
+    const F3 away = lanes::broadcast3(light.position) - at;
+    far = lanes::sqrt(max(dot(away, away), broadcast(1e-12f)));
     to_light = (1 / far) * away;
-    strength = 1 / greater(light.constant + far * (light.linear + far * light.quadratic), all(1e-6f));
-    strength = choose(far <= light.range, strength, all(0.0f));
+    strength = 1 / max(light.constant + far * (light.linear + far * light.quadratic), broadcast(1e-6f));
+    strength = select(far <= light.range, strength, broadcast(0.0f));
   }
   if (light.type == model::Light::Type::spot) {
-    const F cosine = -dot(to_light, lanes::all3(light.shines));
+    const F cosine = -dot(to_light, lanes::broadcast3(light.shines));
     const float band = std::max(light.cos_inner - light.cos_outer, 1e-6f);
     const F inside = lanes::clamp((cosine - light.cos_outer) / band, 0, 1);
-    strength = strength * (light.falloff == 1 ? inside : lanes::power(inside, all(light.falloff)));
+    strength = strength * (light.falloff == 1 ? inside : lanes::power(inside, broadcast(light.falloff)));
   }
   const F cosine = dot(met.normal, to_light);
   I lit = hit & (cosine > 0) & (strength > 0);
   if (!any(lit)) return;
   if (light.shadows && scenery.shadows) {
-    Rays shadow{rays.base, at + lift * met.face_normal, false, to_light, all(0.0f), far - lift, lit};
+    Rays shadow{rays.base, at + lift * met.face_normal, false, to_light, broadcast(0.0f), far - lift, lit};
     const I doubtful = light.grid.grid ? ShadowGrid::doubtful(light.grid, shadow.from, lit, met.convex) : lit;
     lit = lit & ~scenery.tree->shadowed(shadow, doubtful, scenery.shadowless_body);
     if (!any(lit)) return;
   }
-  strength = choose(lit, strength, all(0.0f));
-  F3 given = (strength * cosine) * (met.diffuse * lanes::all3(light.diffuse));
+  strength = select(lit, strength, broadcast(0.0f));
+  F3 given = (strength * cosine) * (met.diffuse * lanes::broadcast3(light.diffuse));
   if (met.shiny) {
     const F3 half = normalised(to_light - rays.direction);
-    const F highlight = strength * lanes::power(greater(dot(met.normal, half), all(0.0f)), met.shininess);
-    given = given + highlight * (met.specular * lanes::all3(light.specular));
+    const F highlight = strength * lanes::power(max(dot(met.normal, half), broadcast(0.0f)), met.shininess);
+    given = given + highlight * (met.specular * lanes::broadcast3(light.specular));
   }
   sum = sum + given;
 }
@@ -183,12 +184,12 @@ void add_light(const Scenery& scenery, const LightNow& light, const Rays& rays, 
 }  // namespace
 
 F srgb_encoded(F x) {
-  return choose(x <= 0.0031308f, 12.92f * x,
-                1.055f * lanes::power(greater(x, all(0.0f)), all(1 / 2.4f)) - 0.055f);
+  return select(x <= 0.0031308f, 12.92f * x,
+                1.055f * lanes::power(max(x, broadcast(0.0f)), broadcast(1 / 2.4f)) - 0.055f);
 }
 F srgb_decoded(F x) {
-  return choose(x <= 0.04045f, x / 12.92f,
-                lanes::power((greater(x, all(0.0f)) + 0.055f) / 1.055f, all(2.4f)));
+  return select(x <= 0.04045f, x / 12.92f,
+                lanes::power((max(x, broadcast(0.0f)) + 0.055f) / 1.055f, broadcast(2.4f)));
 }
 
 LightNow light_now(const PictureLight& given, std::span<const Pose> X_WG, const double base[3]) {
@@ -216,38 +217,38 @@ LightNow light_now(const PictureLight& given, std::span<const Pose> X_WG, const 
 }
 
 F3 light_at(const Scenery& scenery, const double* base, const F3& at, const F3& normal, I valid) {
-  const F zero = all(0.0f), one = all(1.0f);
+  const F zero = broadcast(0.0f), one = broadcast(1.0f);
   const F3 black{zero, zero, zero}, away{-normal.x, -normal.y, -normal.z};
   const Met white{normal, normal, {one, one, one}, black, black, zero};
-  const Rays rays{base, at, false, away, zero, all(1e30f), valid};
-  F3 sum = even(scenery.surroundings.ambient);
+  const Rays rays{base, at, false, away, zero, broadcast(1e30f), valid};
+  F3 sum = broadcast(scenery.surroundings.ambient);
   for (const LightNow& light : scenery.lights)
-    add_light(scenery, light, rays, white, at, all(2e-4f), valid, sum);
+    add_light(scenery, light, rays, white, at, broadcast(2e-4f), valid, sum);
   return sum;
 }
 
 F3 shade(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone) {
   const I hit = rays.valid & (hits.visual >= 0);
-  const F zero = all(0.0f);
+  const F zero = broadcast(0.0f);
   const F3 black{zero, zero, zero};
-  const F3 background = decoded(even(scenery.surroundings.background), scenery.srgb);
+  const F3 background = decoded(broadcast(scenery.surroundings.background), scenery.srgb);
   if (!any(hit)) return background;
   Met met{black, black, black, black, black, zero};
   for (I todo = hit; any(todo);) todo &= ~gather(scenery, rays, hits, cone, todo, met);
-  if (!scenery.lit) return choose(hit, met.emissive + met.diffuse, background);
+  if (!scenery.lit) return select(hit, met.emissive + met.diffuse, background);
   // Both sides of a surface look alike.
   const I behind = dot(met.face_normal, rays.direction) > 0;
   met.convex |= behind;
-  met.normal = choose(behind, F3{-met.normal.x, -met.normal.y, -met.normal.z}, met.normal);
-  met.face_normal = choose(behind, F3{-met.face_normal.x, -met.face_normal.y, -met.face_normal.z},
+  met.normal = select(behind, F3{-met.normal.x, -met.normal.y, -met.normal.z}, met.normal);
+  met.face_normal = select(behind, F3{-met.face_normal.x, -met.face_normal.y, -met.face_normal.z},
                            met.face_normal);
-  F3 sum = met.emissive + met.diffuse * even(scenery.surroundings.ambient);
+  F3 sum = met.emissive + met.diffuse * broadcast(scenery.surroundings.ambient);
   F3 at = hits.t * rays.direction;
   if (!rays.from_base) at = at + rays.from;
   // Shadow rays leave a little above the surface, by more than rounding has moved the point.
   const F lift = 2e-4f + 1e-5f * hits.t;
   for (const LightNow& light : scenery.lights) add_light(scenery, light, rays, met, at, lift, hit, sum);
-  return choose(hit, sum, background);
+  return select(hit, sum, background);
 }
 
 }  // namespace sandlot::optics

@@ -135,17 +135,17 @@ I ShadowGrid::doubtful(const View& view, const F3& at, I valid, I self) {
     return zero + (axis[0] * at.x + axis[1] * at.y + axis[2] * at.z);
   };
   const auto cell = [&](F place) {
-    return lanes::truncated(lanes::clamp(place, 0, static_cast<float>(grid.side_ - 1)));
+    return lanes::truncate(lanes::clamp(place, 0, static_cast<float>(grid.side_ - 1)));
   };
   const I index = cell(along(view.row_0, view.row)) * grid.side_ + cell(along(view.column_0, view.column));
   alignas(32) int cells[lanes::width];
   alignas(32) float reach[lanes::width] = {};
-  lanes::store(cells, lanes::choose(valid, index, I{}));
+  lanes::store(cells, lanes::select(valid, index, I{}));
   for (int i = 0; i < lanes::width; ++i) {
     const Cell& c = grid.cells_[static_cast<std::size_t>(cells[i])];
     reach[i] = c.highest == self[i] ? c.others : c.first;
   }
-  const F away = lanes::magnitude(at.x) + lanes::magnitude(at.y) + lanes::magnitude(at.z);
+  const F away = lanes::abs(at.x) + lanes::abs(at.y) + lanes::abs(at.z);
   return valid & ((along(view.height_0, view.height) <= lanes::load<F>(reach)) | (away > grid.far_m_));
 }
 

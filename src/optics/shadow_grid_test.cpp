@@ -12,15 +12,15 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
 
 Rays towards(Vec3 light, const double* base, const F3& at) {
-  const F3 direction{all(static_cast<float>(light.x)), all(static_cast<float>(light.y)),
-                     all(static_cast<float>(light.z))};
-  return {base, at, false, direction, all(0.0f), all(1e30f), all(-1)};
+  const F3 direction{broadcast(static_cast<float>(light.x)), broadcast(static_cast<float>(light.y)),
+                     broadcast(static_cast<float>(light.z))};
+  return {base, at, false, direction, broadcast(0.0f), broadcast(1e30f), broadcast(-1)};
 }
 
 TEST(ShadowGrid, NoShadowIsMissed) {
@@ -54,12 +54,12 @@ TEST(ShadowGrid, NoShadowIsMissed) {
         at.y[i] = static_cast<float>(r.uniform(-9, 9));
         at.z[i] = static_cast<float>(packet % 2 ? r.uniform(-1, 2) : -0.999);
       }
-      const I shaded = tree.shadowed(towards(light, base, at), all(-1), no_body);
-      const I doubtful = ShadowGrid::doubtful(view, at, all(-1), all(-1));
+      const I shaded = tree.shadowed(towards(light, base, at), broadcast(-1), no_body);
+      const I doubtful = ShadowGrid::doubtful(view, at, broadcast(-1), broadcast(-1));
       EXPECT_FALSE(lanes::any(shaded & ~doubtful)) << scene;
       // On the carpet the carpet itself does not count.
       if (packet % 2 == 0) {
-        const I others = ShadowGrid::doubtful(view, at, all(-1), I{});
+        const I others = ShadowGrid::doubtful(view, at, broadcast(-1), I{});
         EXPECT_FALSE(lanes::any(shaded & ~others)) << scene;
         spared += std::popcount(lanes::bits(~others));
         points += lanes::width;
@@ -85,7 +85,7 @@ TEST(ShadowGrid, OnlyWhatIsBeforeTheSunIsDoubtful) {
   // The sphere's shadow lies around x = 3 - 2 = 1; below the one without a shadow, behind both, above, and beyond the field.
   const F3 at{F{1, 1, -5, 6, 1, 4.5f, 30, -40}, F{0, 3, 0, 0, 0, 0, 0, 0},
               F{0.01f, 0.01f, 0.01f, 0.01f, 4, 3.5f, 40, 60}};
-  EXPECT_EQ(lanes::bits(ShadowGrid::doubtful(grid.from(base), at, all(-1), I{})), 1u);
+  EXPECT_EQ(lanes::bits(ShadowGrid::doubtful(grid.from(base), at, broadcast(-1), I{})), 1u);
   const I two{-1, 0, 0, 0, 0, 0, -1, 0};
   EXPECT_EQ(lanes::bits(ShadowGrid::doubtful(grid.from(base), at, two, I{})), 1u);
 }
@@ -102,7 +102,8 @@ TEST(ShadowGrid, ABoardSeenFromItsEdgeHasNoWidth) {
   grid.make(tree, {0, 0, 1});
   const double base[] = {0, 0, 0};
   const F3 at{F{0, 1, 0, 0, 0, 0, 0, 0}, F{}, F{1, 1, 3, 1, 1, 1, 1, 1}};
-  const unsigned doubtful = lanes::bits(ShadowGrid::doubtful(grid.from(base), at, all(-1), all(-1)));
+  const unsigned doubtful = lanes::bits(
+      ShadowGrid::doubtful(grid.from(base), at, broadcast(-1), broadcast(-1)));
   EXPECT_EQ(doubtful & 7u, 1u);  // in the board, beside it, above it
 }
 

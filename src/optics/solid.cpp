@@ -10,12 +10,12 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
-using lanes::choose;
+using lanes::broadcast;
 using lanes::F;
-using lanes::greater;
 using lanes::I;
-using lanes::lesser;
+using lanes::max;
+using lanes::min;
+using lanes::select;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
@@ -26,21 +26,21 @@ struct Interval {
 
 /// Intersection. A NaN in `b` (a ray that runs exactly in a face) leaves the bound of `a`; in `a` it means "missed"
 /// and stays.
-Interval meet(Interval a, Interval b) { return {greater(b.first, a.first), lesser(b.last, a.last)}; }
+Interval meet(Interval a, Interval b) { return {max(b.first, a.first), min(b.last, a.last)}; }
 
 /// Union of intervals that overlap or of which one is empty (`first` = inf, `last` = -inf).
-Interval join(Interval a, Interval b) { return {lesser(b.first, a.first), greater(b.last, a.last)}; }
+Interval join(Interval a, Interval b) { return {min(b.first, a.first), max(b.last, a.last)}; }
 
 Interval unless_empty(Interval a) {
   const I valid = a.first <= a.last;
-  return {choose(valid, a.first, all(inf)), choose(valid, a.last, all(-inf))};
+  return {select(valid, a.first, broadcast(inf)), select(valid, a.last, broadcast(-inf))};
 }
 
 /// Between the planes -half and +half. A ray parallel to them divides by zero: +-inf puts it inside or outside.
 template <class O>
 Interval slab(O o, F d, float half) {
-  const F towards = choose(I(d) < 0, all(-half),
-                           all(half));  // by sign bit, so that -0 and +0 stay consistent
+  const F towards = select(I(d) < 0, broadcast(-half),
+                           broadcast(half));  // by sign bit, so that -0 and +0 stay consistent
   return {(-towards - o) / d, (towards - o) / d};
 }
 
@@ -48,12 +48,12 @@ template <class O>
 Interval ball(O ox, O oy, O oz, const LocalRaysOf<O>& ray, float radius) {
   const F along = -(ox * ray.dx + oy * ray.dy + oz * ray.dz);
   const F px = ox + along * ray.dx, py = oy + along * ray.dy, pz = oz + along * ray.dz;
-  const F half = lanes::root(radius * radius - (px * px + py * py + pz * pz));  // NaN: missed
+  const F half = lanes::sqrt(radius * radius - (px * px + py * py + pz * pz));  // NaN: missed
   return {along - half, along + half};
 }
 
-F which(bool yes, float a, float b) { return all(yes ? a : b); }
-F which(I yes, float a, float b) { return choose(yes, all(a), all(b)); }
+F which(bool yes, float a, float b) { return broadcast(yes ? a : b); }
+F which(I yes, float a, float b) { return select(yes, broadcast(a), broadcast(b)); }
 
 /// Inside the infinite cylinder about z.
 template <class O>
@@ -61,12 +61,12 @@ Interval tube(const LocalRaysOf<O>& ray, float radius) {
   const F a = ray.dx * ray.dx + ray.dy * ray.dy;
   const F b = ray.ox * ray.dx + ray.oy * ray.dy;
   const F side = ray.ox * ray.dy - ray.oy * ray.dx;  // |side| / sqrt(a): distance between axis and ray
-  const F half = lanes::root(a * (radius * radius) - side * side);
+  const F half = lanes::sqrt(a * (radius * radius) - side * side);
   const auto inside = ray.ox * ray.ox + ray.oy * ray.oy <= radius * radius;
   // Within 1e-10 rad of the axis the ray never leaves a tube that it is in, and squares would underflow.
   const I parallel = a < 1e-20f;
-  return {choose(parallel, which(inside, -inf, inf), (-b - half) / a),
-          choose(parallel, which(inside, inf, -inf), (-b + half) / a)};
+  return {select(parallel, which(inside, -inf, inf), (-b - half) / a),
+          select(parallel, which(inside, inf, -inf), (-b + half) / a)};
 }
 
 template <class O>
@@ -86,7 +86,7 @@ Interval oval(const LocalRaysOf<O>& ray, const float* r) {
   const F length2 = dx * dx + dy * dy + dz * dz;
   const F more = -(px * dx + py * dy + pz * dz) / length2;
   px = px + more * dx, py = py + more * dy, pz = pz + more * dz;
-  const F half = lanes::root((1 - (px * px + py * py + pz * pz)) / length2);  // NaN: missed
+  const F half = lanes::sqrt((1 - (px * px + py * py + pz * pz)) / length2);  // NaN: missed
   return {along + more - half, along + more + half};
 }
 
@@ -107,13 +107,13 @@ Interval pointed(const LocalRaysOf<O>& ray, float radius, float half) {
   const F xy = x * ray.dy - y * ray.dx, xz = z * ray.dx - x * ray.dz, yz = z * ray.dy - y * ray.dz;
   const F square = k2 * (xz * xz + yz * yz) - xy * xy;
   const I steep = a < 0;
-  const F s = lanes::root(choose(steep, greater(square, all(0.0f)), square));  // NaN: missed
-  const F q = choose(b < 0, s - b, -(b + s));
-  const F one = q / a, other = choose(q == 0, one, c / q);
-  const F low = lesser(one, other), high = greater(one, other);
+  const F s = lanes::sqrt(select(steep, max(square, broadcast(0.0f)), square));  // NaN: missed
+  const F q = select(b < 0, s - b, -(b + s));
+  const F one = q / a, other = select(q == 0, one, c / q);
+  const F low = min(one, other), high = max(one, other);
   const I rises = ray.dz > 0;
-  return {along + choose(steep, choose(rises, all(-inf), high), low),
-          along + choose(steep, choose(rises, low, all(inf)), high)};
+  return {along + select(steep, select(rises, broadcast(-inf), high), low),
+          along + select(steep, select(rises, low, broadcast(inf)), high)};
 }
 
 template <class O>
@@ -121,7 +121,7 @@ Interval inside(const Solid& solid, const LocalRaysOf<O>& ray) {
   const float* s = solid.size;
   switch (solid.type) {
     case Solid::Type::box: {
-      const Interval everywhere{all(-inf), all(inf)};
+      const Interval everywhere{broadcast(-inf), broadcast(inf)};
       return meet(meet(meet(everywhere, slab(ray.ox, ray.dx, s[0])), slab(ray.oy, ray.dy, s[1])),
                   slab(ray.oz, ray.dz, s[2]));
     }
@@ -258,8 +258,8 @@ LocalSpread8 to_local(const Solid& solid, const double origin[3], const Spread8&
 
 namespace {
 F first_behind(F near, Interval part) {
-  const F seen = choose(part.first >= near, part.first, part.last);
-  return choose(part.first <= part.last, seen, all(inf));
+  const F seen = select(part.first >= near, part.first, part.last);
+  return select(part.first <= part.last, seen, broadcast(inf));
 }
 }  // namespace
 

@@ -12,12 +12,12 @@
 namespace sandlot::optics {
 namespace {
 
-using lanes::all;
-using lanes::choose;
+using lanes::abs;
+using lanes::broadcast;
 using lanes::F;
 using lanes::F3;
 using lanes::I;
-using lanes::magnitude;
+using lanes::select;
 
 constexpr float turn = 2 * std::numbers::pi_v<float>;
 constexpr float tiny = 1e-20f;
@@ -26,39 +26,40 @@ void set_normal(Surface8& s, F3 n) { s.normal = s.face_normal = n; }
 
 /// u once around z.
 void around(Surface8& s, F x, F y) {
-  const F square = lanes::greater(x * x + y * y, all(tiny));
+  const F square = lanes::max(x * x + y * y, broadcast(tiny));
   s.u = 0.5f + lanes::angle_of(y, x) / turn;
-  s.u_gradient = {-y / (turn * square), x / (turn * square), all(0.0f)};
+  s.u_gradient = {-y / (turn * square), x / (turn * square), broadcast(0.0f)};
 }
 void along_z(Surface8& s, F z, float length) {
   s.v = 0.5f + z / length;
-  s.v_gradient = {all(0.0f), all(0.0f), all(1 / length)};
+  s.v_gradient = {broadcast(0.0f), broadcast(0.0f), broadcast(1 / length)};
 }
 /// A flat end, where `end`: the square around the disc once.
 void flat_end(Surface8& s, I end, const F3& p, float radius) {
   const float per_m = 0.5f / radius;
-  s.u = choose(end, 0.5f + per_m * p.x, s.u);
-  s.v = choose(end, 0.5f + per_m * p.y, s.v);
-  s.u_gradient = choose(end, {all(per_m), all(0.0f), all(0.0f)}, s.u_gradient);
-  s.v_gradient = choose(end, {all(0.0f), all(per_m), all(0.0f)}, s.v_gradient);
+  s.u = select(end, 0.5f + per_m * p.x, s.u);
+  s.v = select(end, 0.5f + per_m * p.y, s.v);
+  s.u_gradient = select(end, {broadcast(per_m), broadcast(0.0f), broadcast(0.0f)}, s.u_gradient);
+  s.v_gradient = select(end, {broadcast(0.0f), broadcast(per_m), broadcast(0.0f)}, s.v_gradient);
 }
-F3 upright(F z) { return {all(0.0f), all(0.0f), choose(z < 0, all(-1.0f), all(1.0f))}; }
+F3 upright(F z) {
+  return {broadcast(0.0f), broadcast(0.0f), select(z < 0, broadcast(-1.0f), broadcast(1.0f))};
+}
 
 Surface8 box(const float* half, const F3& p, bool textured) {
   Surface8 s;
   // The face is the one whose plane is nearest.
-  const F dx = magnitude(magnitude(p.x) - half[0]), dy = magnitude(magnitude(p.y) - half[1]),
-          dz = magnitude(magnitude(p.z) - half[2]);
+  const F dx = abs(abs(p.x) - half[0]), dy = abs(abs(p.y) - half[1]), dz = abs(abs(p.z) - half[2]);
   const I on_x = (dx <= dy) & (dx <= dz), on_y = ~on_x & (dy <= dz);
-  const auto sign = [](F a) { return choose(a < 0, all(-1.0f), all(1.0f)); };
-  const F zero = all(0.0f);
-  set_normal(s, choose(on_x, {sign(p.x), zero, zero},
-                       choose(on_y, {zero, sign(p.y), zero}, F3{zero, zero, sign(p.z)})));
+  const auto sign = [](F a) { return select(a < 0, broadcast(-1.0f), broadcast(1.0f)); };
+  const F zero = broadcast(0.0f);
+  set_normal(s, select(on_x, {sign(p.x), zero, zero},
+                       select(on_y, {zero, sign(p.y), zero}, F3{zero, zero, sign(p.z)})));
   if (!textured) return s;
   const float px = 0.5f / half[0], py = 0.5f / half[1], pz = 0.5f / half[2];
-  s.u_gradient = choose(on_x, {zero, py * sign(p.x), zero},
-                        choose(on_y, {-px * sign(p.y), zero, zero}, F3{all(px), zero, zero}));
-  s.v_gradient = choose(on_x | on_y, {zero, zero, all(pz)}, F3{zero, py * sign(p.z), zero});
+  s.u_gradient = select(on_x, {zero, py * sign(p.x), zero},
+                        select(on_y, {-px * sign(p.y), zero, zero}, F3{broadcast(px), zero, zero}));
+  s.v_gradient = select(on_x | on_y, {zero, zero, broadcast(pz)}, F3{zero, py * sign(p.z), zero});
   s.u = 0.5f + dot(s.u_gradient, p);
   s.v = 0.5f + dot(s.v_gradient, p);
   return s;
@@ -70,7 +71,7 @@ Surface8 oval(const float* r, const F3& p, bool textured) {
   set_normal(s, normalised(F3{q.x / r[0], q.y / r[1], q.z / r[2]}));
   if (!textured) return s;
   around(s, q.x, q.y);
-  const F across = lanes::root(lanes::greater(q.x * q.x + q.y * q.y, all(tiny)));
+  const F across = lanes::sqrt(lanes::max(q.x * q.x + q.y * q.y, broadcast(tiny)));
   s.v = 0.5f + lanes::angle_of(q.z, across) / (turn / 2);
   const float scale = 1 / (turn / 2);
   s.v_gradient = {-q.z * q.x / across * scale, -q.z * q.y / across * scale, across * scale};
@@ -97,20 +98,20 @@ Surface8 surface_of(const Solid& solid, const F3& p, bool textured) {
     case Solid::Type::cylinder:
     case Solid::Type::cone:
     case Solid::Type::barrel: {
-      const F out = lanes::root(p.x * p.x + p.y * p.y), safe = lanes::greater(out, all(tiny));
-      F wide = all(radius), slope = all(0.0f);  // of the side at this height; d z / d r of its normal
+      const F out = lanes::sqrt(p.x * p.x + p.y * p.y), safe = lanes::max(out, broadcast(tiny));
+      F wide = broadcast(radius),
+        slope = broadcast(0.0f);  // of the side at this height; d z / d r of its normal
       if (solid.type == Solid::Type::cone) {
         wide = radius * (half - p.z) / (2 * half);
-        slope = all(radius / (2 * half));
+        slope = broadcast(radius / (2 * half));
       }
       if (solid.type == Solid::Type::barrel) {
         const float flat = radius / size[2];  // x x + y y + (flat z)^2 = r^2
-        wide = lanes::root(lanes::greater(radius * radius - flat * flat * p.z * p.z, all(tiny)));
+        wide = lanes::sqrt(lanes::max(radius * radius - flat * flat * p.z * p.z, broadcast(tiny)));
         slope = flat * flat * p.z / wide;
       }
-      const I end = (solid.type == Solid::Type::cone ? half + p.z : magnitude(half - magnitude(p.z))) <
-                    magnitude(wide - out);
-      set_normal(s, choose(end, upright(p.z), normalised(F3{p.x / safe, p.y / safe, slope})));
+      const I end = (solid.type == Solid::Type::cone ? half + p.z : abs(half - abs(p.z))) < abs(wide - out);
+      set_normal(s, select(end, upright(p.z), normalised(F3{p.x / safe, p.y / safe, slope})));
       if (!textured) return s;
       around(s, p.x, p.y);
       along_z(s, p.z, 2 * half);
@@ -208,7 +209,7 @@ bool Skin::has_texture_coordinates() const { return !mesh_ || !mesh_->texture_uv
 
 Surface8 Skin::surface(I valid, I triangle, F b1, F b2, const F3& p, bool textured) const {
   Surface8 out;
-  const F zero = all(0.0f);
+  const F zero = broadcast(0.0f);
   out.normal = out.face_normal = out.u_gradient = out.v_gradient = F3{zero, zero, zero};
   out.u = out.v = zero;
   const auto put = [](F3& to, int i, Vec3 a) {

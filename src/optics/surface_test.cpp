@@ -42,23 +42,23 @@ TEST(Texture, PlainRegionsAreWhatFilteringWouldGive) {
       const double angle = math::tau * k / 32, away = (0.5 * length + 1.2) / side;
       const auto [s, c] = math::sincos(angle);
       Footprint8 f{};
-      const auto all = [](double x) { return lanes::all(static_cast<float>(x)); };
+      const auto broadcast = [](double x) { return lanes::broadcast(static_cast<float>(x)); };
       // The footprint points at the dot and ends 1.2 texels before it: level 0 would not see it across.
-      f.u = all(u0 + away * c), f.v = all(v0 + away * s);
-      f.du[0] = all(length / side * c), f.dv[0] = all(length / side * s);
-      f.du[1] = all(-0.5 / side * s), f.dv[1] = all(0.5 / side * c);
-      const auto near = sample(*texture, f, lanes::all(-1));
+      f.u = broadcast(u0 + away * c), f.v = broadcast(v0 + away * s);
+      f.du[0] = broadcast(length / side * c), f.dv[0] = broadcast(length / side * s);
+      f.du[1] = broadcast(-0.5 / side * s), f.dv[1] = broadcast(0.5 / side * c);
+      const auto near = sample(*texture, f, lanes::broadcast(-1));
       EXPECT_GE(near.x[0], 90 / 255.0f - 1e-6f);
       // On the dot it must be felt.
-      f.u = all(u0), f.v = all(v0);
-      EXPECT_GT(sample(*texture, f, lanes::all(-1)).x[3], 90.4f / 255) << length << " " << k;
+      f.u = broadcast(u0), f.v = broadcast(v0);
+      EXPECT_GT(sample(*texture, f, lanes::broadcast(-1)).x[3], 90.4f / 255) << length << " " << k;
     }
 }
 
 TEST(Surface, NormalsAndGradientsOfSolids) {
   const auto f3 = [](Vec3 a) {
-    return lanes::F3{lanes::all(static_cast<float>(a.x)), lanes::all(static_cast<float>(a.y)),
-                     lanes::all(static_cast<float>(a.z))};
+    return lanes::F3{lanes::broadcast(static_cast<float>(a.x)), lanes::broadcast(static_cast<float>(a.y)),
+                     lanes::broadcast(static_cast<float>(a.z))};
   };
   const double k = std::sqrt(0.5);
   struct Case {
@@ -108,8 +108,8 @@ TEST(Surface, NormalsAndGradientsOfSolids) {
 TEST(Surface, MeshesAreSmoothButForTheirCreases) {
   const auto at = [](const TriangleMesh& mesh, bool smooth, std::size_t triangle) {
     const Skin skin(Mesh{std::make_shared<TriangleMesh>(mesh)}, smooth);
-    const Surface8 s = skin.surface(lanes::all(-1), lanes::all(static_cast<int>(triangle)), lanes::all(0.0f),
-                                    lanes::all(0.0f), lanes::F3{}, false);
+    const Surface8 s = skin.surface(lanes::broadcast(-1), lanes::broadcast(static_cast<int>(triangle)),
+                                    lanes::broadcast(0.0f), lanes::broadcast(0.0f), lanes::F3{}, false);
     return Vec3{static_cast<double>(s.normal.x[0]), static_cast<double>(s.normal.y[0]),
                 static_cast<double>(s.normal.z[0])};
   };

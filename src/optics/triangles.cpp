@@ -115,7 +115,7 @@ namespace {
 
 template <class Origin>
 F each(Origin x) {
-  if constexpr (std::is_same_v<Origin, float>) return lanes::all(x);
+  if constexpr (std::is_same_v<Origin, float>) return lanes::broadcast(x);
   else return x;
 }
 
@@ -129,16 +129,16 @@ void fill(RTCRay8& ray, const Rays& rays, F near, F far) {
   lanes::store(ray.dir_z, rays.dz);
   lanes::store(ray.tnear, near);
   lanes::store(ray.tfar, far);
-  lanes::store(ray.time, lanes::all(0.0f));
-  lanes::store(ray.mask, lanes::all(-1));
-  lanes::store(ray.flags, lanes::all(0));
+  lanes::store(ray.time, lanes::broadcast(0.0f));
+  lanes::store(ray.mask, lanes::broadcast(-1));
+  lanes::store(ray.flags, lanes::broadcast(0));
 }
 
 template <class Rays>
 void trace(RTCScene scene, RTCRayHit8& packet, const Rays& rays, F near, F far, const int* valid) {
   fill(packet.ray, rays, near, far);
-  lanes::store(packet.hit.geomID, lanes::all(nothing));
-  lanes::store(packet.hit.instID[0], lanes::all(nothing));
+  lanes::store(packet.hit.geomID, lanes::broadcast(nothing));
+  lanes::store(packet.hit.instID[0], lanes::broadcast(nothing));
   embree::QueryContext context;
   embree::init_context(context);
   embree::intersect8(valid, scene, context, packet);
@@ -176,10 +176,10 @@ void TriangleTree::place_on_mesh(const Rays& rays, Hits& hits) const {
   const F3 normal = cross(opposite_b, opposite_c);
   const F across = dot(normal, direction), t = dot(normal, a) / across;
   // What is too thin for this (t may be no number) stays as it is.
-  hits.t = lanes::choose(found & (across != 0) & (lanes::magnitude(t) < largest), t, hits.t);
-  const auto weight = [&](F w) { return lanes::lesser(lanes::greater(w / all, F{}), lanes::all(1.0f)); };
-  hits.b1 = lanes::choose(found & (all != 0), weight(w_b), hits.b1);
-  hits.b2 = lanes::choose(found & (all != 0), weight(w_c), hits.b2);
+  hits.t = lanes::select(found & (across != 0) & (lanes::abs(t) < largest), t, hits.t);
+  const auto weight = [&](F w) { return lanes::min(lanes::max(w / all, F{}), lanes::broadcast(1.0f)); };
+  hits.b1 = lanes::select(found & (all != 0), weight(w_b), hits.b1);
+  hits.b2 = lanes::select(found & (all != 0), weight(w_c), hits.b2);
 }
 
 /// Embree tells of a whole grid only where in it the hit is, so the triangle is looked for there: first of all that
@@ -232,10 +232,10 @@ template <class Rays>
 TriangleTree::Hits TriangleTree::hit(const Rays& rays, F near, F far, const int* valid) const {
   alignas(64) RTCRayHit8 packet;
   trace(scene_, packet, rays, near, far, valid);
-  Hits hits{
-      lanes::choose(lanes::load<I>(packet.hit.geomID) == nothing,
-                    lanes::all(std::numeric_limits<float>::infinity()), lanes::load<F>(packet.ray.tfar)),
-      lanes::load<I>(packet.hit.primID), lanes::load<F>(packet.hit.u), lanes::load<F>(packet.hit.v)};
+  Hits hits{lanes::select(lanes::load<I>(packet.hit.geomID) == nothing,
+                          lanes::broadcast(std::numeric_limits<float>::infinity()),
+                          lanes::load<F>(packet.ray.tfar)),
+            lanes::load<I>(packet.hit.primID), lanes::load<F>(packet.hit.u), lanes::load<F>(packet.hit.v)};
   if (indices_) place_on_mesh(rays, hits);
   else place_on_grid(rays, hits);
   return hits;

@@ -1,7 +1,7 @@
 #pragma once
 /// The border to physics: batched, one call for all bodies, the same for the 3D and the planar engine.
 ///
-/// A "body" here is a link of an instance: an engine may lump links that are joined rigidly, but every link has a
+/// A "body" here is a link of an instance: an engine may join links that are fixed to each other, but every link has a
 /// BodyId and a BodyState. Ids are index + generation: an index is used again after a removal, an id never.
 /// A call takes effect in the next step(); apply() and the targets it was given are consumed as described there.
 ///

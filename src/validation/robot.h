@@ -1,5 +1,5 @@
 #pragma once
-/// One robot on flat ground, driven by commands, for the experiments with drives.
+/// One robot on flat ground, driven by commands, for the validations of drives.
 #include <memory>
 #include <string>
 

@@ -9,8 +9,8 @@ double Row::deviation() const {
   return relative ? difference / std::abs(expected) : difference;
 }
 
-const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all = {
+const std::vector<Validation>& validations() {
+  static const std::vector<Validation> all = {
       {"impacts", "Collisions of two bodies, a bouncing ball, Newton's cradle.", impacts},
       {"surfaces", "Substances, belts, skins, resistance to rolling, zones.", surfaces},
       {"drives", "Every drive at every level on every engine, driven along straight, side, arc and spin.",

@@ -1,5 +1,5 @@
 #pragma once
-/// Experiments of which theory knows the result: `sandlot validate` runs them and writes the page.
+/// Validations: simulations whose result theory predicts. `sandlot validate` runs them and writes the page.
 ///
 /// Each measures through the engines' public border, with the settings a scenario has by default, and puts beside the
 /// measured number the one that follows from a formula, and the bound within which it has to lie. Bounds that are no
@@ -47,12 +47,12 @@ struct Section {
 };
 
 /// One line per section in validation.cpp.
-struct Experiment {
+struct Validation {
   const char* name;
   const char* help;
   Section (*run)();
 };
-const std::vector<Experiment>& experiments();
+const std::vector<Validation>& validations();
 
 // The sections.
 Section impacts();    ///< two bodies, a bouncing ball, Newton's cradle

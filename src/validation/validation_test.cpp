@@ -9,9 +9,9 @@ namespace sandlot::validation {
 namespace {
 
 TEST(SlowValidation, EverythingLiesWithinItsBounds) {
-  for (const Experiment& experiment : experiments()) {
-    const Section section = experiment.run();
-    EXPECT_FALSE(section.rows.empty()) << experiment.name;
+  for (const Validation& validation : validations()) {
+    const Section section = validation.run();
+    EXPECT_FALSE(section.rows.empty()) << validation.name;
     for (const Row& row : section.rows)
       EXPECT_TRUE(row.ok()) << row.what << ", " << row.engine << ": " << row.measured << ' ' << row.unit
                             << " instead of " << row.expected;

@@ -1,5 +1,5 @@
 #pragma once
-/// The small worlds of the experiments, one line each.
+/// The small worlds of the validations, one line each.
 #include <cmath>
 #include <string>
 

@@ -112,7 +112,7 @@ Result<Pose> read_pose(const Node& node, const std::string& path);
 /// A kind's name and its fields, for the schema.
 using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 
-/// "noise" and the sorts of stages that such a list may hold.
+/// "noise" and the types of stages that such a list may hold.
 using StageFields = std::pair<std::string, std::vector<KindFields>>;
 
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.

@@ -20,7 +20,7 @@ const model::Surface default_floor;
 
 /// The highest floor at or below a body at this place; null: there is none.
 const PlanarEngine::Floor* PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W) const {
-  const double bottom = instances_[lumps_[k].slot].plan->bottom_m + spec_.clearance_m;
+  const double bottom = instances_[groups_[k].slot].plan->bottom_m + spec_.clearance_m;
   const Floor* best = nullptr;
   for (const Floor& floor : floors_) {
     if (floor.z_m > bottom || (best && floor.z_m < best->z_m)) continue;
@@ -31,16 +31,16 @@ const PlanarEngine::Floor* PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W)
   return best;
 }
 
-/// What a foot and the ground make together at a place of the lump's frame; the belt is that of the ground as the foot
+/// What a foot and the ground make together at a place of the group's frame; the belt is that of the ground as the foot
 /// sees it.
-PairSurface PlanarEngine::on_ground(std::uint32_t k, Face foot, Vec2 at) const {
-  const Lump& lump = lumps_[k];
-  const Instance& instance = instances_[lump.slot];
-  foot.slot = lump.slot;
-  foot.lump = &lump;
-  const Vec2 p = lump.p + rotate(lump.heading, at);
-  const Floor* const floor = floor_under(k, ground_varies_ ? p : lump.p);
-  const Face ground = floor ? floor->face : Face{.surface = &default_floor};
+PairSurface PlanarEngine::on_ground(std::uint32_t k, ContactFace foot, Vec2 at) const {
+  const RigidGroup& group = groups_[k];
+  const Instance& instance = instances_[group.slot];
+  foot.slot = group.slot;
+  foot.group = &group;
+  const Vec2 p = group.p + rotate(group.heading, at);
+  const Floor* const floor = floor_under(k, ground_varies_ ? p : group.p);
+  const ContactFace ground = floor ? floor->face : ContactFace{.surface = &default_floor};
   const Vec3 point{p.x, p.y, floor ? floor->z_m : instance.plan->bottom_m};
   if (floor && instances_[floor->face.slot].created > instance.created)
     return surfaces_at(foot, ground, point, {0, 0, -1});
@@ -50,22 +50,22 @@ PairSurface PlanarEngine::on_ground(std::uint32_t k, Face foot, Vec2 at) const {
 }
 
 void PlanarEngine::find_ground(std::uint32_t k) {
-  const Lump& lump = lumps_[k];
-  Instance& instance = instances_[lump.slot];
-  const LumpPlan& plan = instance.plan->lumps[lump.index];
+  const RigidGroup& group = groups_[k];
+  Instance& instance = instances_[group.slot];
+  const RigidGroupPlan& plan = instance.plan->groups[group.index];
   constexpr Vec3 up{0, 0, 1};
   bool wheeled = false;
   std::size_t caster = 0;
   for (Wheel& wheel : instance.wheels) {
-    if (wheel.lump != k) continue;
+    if (wheel.group != k) continue;
     wheeled = true;
     double weight_N;
-    Face foot;
+    ContactFace foot;
     Vec2 ahead{1, 0};
     if (wheel.plan) {
       const WheelPlan& w = *wheel.plan;
       weight_N = w.weight_kg * gravity_mps2_;
-      foot = {w.surface, w.collision, lump.slot, instance.model->joints[w.joint].child};
+      foot = {w.surface, w.collision, group.slot, instance.model->joints[w.joint].child};
       ahead = w.rollers ? w.grip : Vec2{w.axle.y, -w.axle.x};
       if (wheel.steering != none && ground_varies_)
         ahead = rotate(turn_of(w.steering_sign * joint_states_[wheel.steering].position), ahead);
@@ -73,56 +73,57 @@ void PlanarEngine::find_ground(std::uint32_t k) {
       while (!(plan.supports[caster].surface->mu > 0)) ++caster;
       const Support& s = plan.supports[caster++];
       weight_N = s.weight_kg * gravity_mps2_;
-      foot = {s.surface, s.collision, lump.slot, s.link};
+      foot = {s.surface, s.collision, group.slot, s.link};
     }
     const PairSurface pair = on_ground(k, foot, wheel.at);
-    const Vec2 ahead_W = rotate(lump.heading, ahead);
+    const Vec2 ahead_W = rotate(group.heading, ahead);
     wheel.limit_N = pair.touches ? weight_N * friction_along(pair, up, {ahead_W.x, ahead_W.y, 0}) : 0;
     wheel.rolling_Nm = pair.touches ? weight_N * pair.rolling_resistance_m : 0;
     wheel.belt_mps = {pair.belt_velocity_W_mps.x, pair.belt_velocity_W_mps.y};
   }
-  Rubbing& rubbing = rubbing_[k];
-  rubbing = {.impulse = rubbing.impulse, .twist = rubbing.twist};
+  GroundFriction& friction = ground_friction_[k];
+  friction = {.impulse = friction.impulse, .twist = friction.twist};
   if (wheeled) return;
   Vec2 pull;  // of the belts
   for (const Support& s : plan.supports) {
-    const PairSurface pair = on_ground(k, {s.surface, s.collision, lump.slot, s.link}, s.at);
+    const PairSurface pair = on_ground(k, {s.surface, s.collision, group.slot, s.link}, s.at);
     if (!pair.touches) continue;
     const double weight_N = s.weight_kg * gravity_mps2_;
     const Vec2 belt{pair.belt_velocity_W_mps.x, pair.belt_velocity_W_mps.y};
     if (plan.rolls) {
       // The torque of rolling resistance slows a homogeneous ball, of which 2/7 of the energy is in its spin.
-      rubbing.force_N = rubbing.side_N = pair.rolling_resistance_m * weight_N / (1.4 * s.ball_radius_m);
-      rubbing.belt_mps = belt;
+      friction.force_N = friction.side_N = pair.rolling_resistance_m * weight_N / (1.4 * s.ball_radius_m);
+      friction.belt_mps = belt;
       return;
     }
     double along = pair.mu, across = pair.mu;
     if (const Vec2 f{pair.fdir1_W.x, pair.fdir1_W.y}; dot(f, f) > 1e-12) {
-      rubbing.along = (1 / std::sqrt(dot(f, f))) * f;
+      friction.along = (1 / std::sqrt(dot(f, f))) * f;
       across = pair.mu2;
     }
-    rubbing.force_N += along * weight_N;
-    rubbing.side_N += across * weight_N;
+    friction.force_N += along * weight_N;
+    friction.side_N += across * weight_N;
     const double mean_N = 0.5 * (along + across) * weight_N;
-    rubbing.torque_Nm += mean_N * s.mean_distance_m;
+    friction.torque_Nm += mean_N * s.mean_distance_m;
     pull = pull + mean_N * belt;
   }
-  if (const double sum = 0.5 * (rubbing.force_N + rubbing.side_N); sum > 0)
-    rubbing.belt_mps = (1 / sum) * pull;
+  if (const double sum = 0.5 * (friction.force_N + friction.side_N); sum > 0)
+    friction.belt_mps = (1 / sum) * pull;
 }
 
 void PlanarEngine::rub(std::uint32_t k, double h_s) {
-  Rubbing& r = rubbing_[k];
-  Lump& lump = lumps_[k];
-  if (!(r.force_N > 0 || r.side_N > 0) || (drives_[lump.slot].active && lump.index == 0)) return;
+  GroundFriction& r = ground_friction_[k];
+  RigidGroup& group = groups_[k];
+  if (!(r.force_N > 0 || r.side_N > 0) || (drives_[group.slot].active && group.index == 0)) return;
   // Against the ground, without what friction has given so far in this step.
-  const Vec2 before = lump.v - lump.inverse_kg * r.impulse, v = before - r.belt_mps, side = left_of(r.along);
-  const double w = lump.w_radps - lump.inverse_kgm2 * r.twist;
+  const Vec2 before = group.v - group.inverse_kg * r.impulse, v = before - r.belt_mps,
+             side = left_of(r.along);
+  const double w = group.w_radps - group.inverse_kgm2 * r.twist;
   struct Way {
     double speed, limit, inverse_mass;
-  } ways[] = {{dot(v, r.along), h_s * r.force_N, lump.inverse_kg},
-              {dot(v, side), h_s * r.side_N, lump.inverse_kg},
-              {w, h_s * r.torque_Nm, lump.inverse_kgm2}};
+  } ways[] = {{dot(v, r.along), h_s * r.force_N, group.inverse_kg},
+              {dot(v, side), h_s * r.side_N, group.inverse_kg},
+              {w, h_s * r.torque_Nm, group.inverse_kgm2}};
   double needed = 0;
   for (const Way& way : ways)
     if (way.limit > 0) {
@@ -150,10 +151,10 @@ void PlanarEngine::rub(std::uint32_t k, double h_s) {
     }
     for (Way& way : ways) way.speed /= 1 + x * way.limit * way.limit * way.inverse_mass;
   }
-  lump.v = r.belt_mps + ways[0].speed * r.along + ways[1].speed * side;
-  lump.w_radps = ways[2].speed;
-  r.impulse = lump.inverse_kg > 0 ? (1 / lump.inverse_kg) * (lump.v - before) : Vec2{};
-  r.twist = lump.inverse_kgm2 > 0 && r.torque_Nm > 0 ? (lump.w_radps - w) / lump.inverse_kgm2 : 0;
+  group.v = r.belt_mps + ways[0].speed * r.along + ways[1].speed * side;
+  group.w_radps = ways[2].speed;
+  r.impulse = group.inverse_kg > 0 ? (1 / group.inverse_kg) * (group.v - before) : Vec2{};
+  r.twist = group.inverse_kgm2 > 0 && r.torque_Nm > 0 ? (group.w_radps - w) / group.inverse_kgm2 : 0;
 }
 
 }  // namespace sandlot::planar

@@ -59,12 +59,12 @@ void Map::set_walls(std::span<const Wall> walls, std::span<const Edge> edges) {
   const double many = 0.25 * wall_cells_.columns() * wall_cells_.rows();
   wall_cells_.build(static_cast<std::uint32_t>(walls_.size()), [&](std::uint32_t k) {
     const Area area = area_of(walls_[k], edges_);
-    const Cells::Range range = wall_cells_.cover(area);
+    const HashGrid::Range range = wall_cells_.cover(area);
     const auto cells = static_cast<double>(range.x1 - range.x0 + 1) *
                        static_cast<double>(range.y1 - range.y0 + 1);
     if (cells > std::max(many, 64.0)) {
       everywhere_.push_back(k);
-      return Cells::Range{};
+      return HashGrid::Range{};
     }
     if (!range.empty()) grow(wall_area_, area);
     return range;
@@ -84,9 +84,9 @@ void Map::file_discs() {
   area_ = wall_area_;
   disc_cells_.build(count, [&](std::uint32_t k) {
     const Disc& disc = discs_[k];
-    if (!(disc.radius_m > 0)) return Cells::Range{};
+    if (!(disc.radius_m > 0)) return HashGrid::Range{};
     const Area area = around(disc.centre, disc.radius_m);
-    const Cells::Range range = disc_cells_.cover(area);
+    const HashGrid::Range range = disc_cells_.cover(area);
     if (!range.empty()) grow(area_, area);
     return range;
   });
@@ -94,7 +94,7 @@ void Map::file_discs() {
 
 void Map::walls_near(Area area, std::vector<std::uint32_t>& out) const {
   out.assign(everywhere_.begin(), everywhere_.end());
-  const Cells::Range range = wall_cells_.cover(area);
+  const HashGrid::Range range = wall_cells_.cover(area);
   for (std::int64_t j = range.y0; j <= range.y1; ++j)
     for (std::int64_t i = range.x0; i <= range.x1; ++i) {
       const auto walls = wall_cells_.in_slot(wall_cells_.slot(i, j));
@@ -114,21 +114,21 @@ void Map::overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const 
     const double dz = gap(ball.centre_W.z, h);
     return dz <= ball.radius_m ? std::sqrt(ball.radius_m * ball.radius_m - dz * dz) : -1;
   };
-  const Cells::Range discs = disc_cells_.cover(area);
+  const HashGrid::Range discs = disc_cells_.cover(area);
   for (std::int64_t j = discs.y0; j <= discs.y1; ++j)
     for (std::int64_t i = discs.x0; i <= discs.x1; ++i)
       for (const std::uint32_t k : disc_cells_.in_slot(disc_cells_.slot(i, j))) {
         const double radius = radius_at(discs_[k].heights);
         if (!(radius >= 0 && touches(centre, radius, discs_[k]))) continue;
-        if (discs_[k].figure == ~0u) {
+        if (discs_[k].silhouette == ~0u) {
           bodies.push_back(discs_[k].body);
           continue;
         }
-        const Silhouette& figure = figures_[discs_[k].figure];
-        for (std::size_t part = 0; part < figure.parts.size(); ++part) {
-          const double across = radius_at(figure.parts[part].heights);
-          if (across >= 0 && nearest(figure.parts[part], figure.edges, centre).distance_m <= across)
-            bodies.push_back(figure.bodies[part]);
+        const Silhouette& silhouette = silhouettes_[discs_[k].silhouette];
+        for (std::size_t part = 0; part < silhouette.parts.size(); ++part) {
+          const double across = radius_at(silhouette.parts[part].heights);
+          if (across >= 0 && nearest(silhouette.parts[part], silhouette.edges, centre).distance_m <= across)
+            bodies.push_back(silhouette.bodies[part]);
         }
       }
   const auto meet_wall = [&](std::uint32_t k) {
@@ -137,7 +137,7 @@ void Map::overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const 
       bodies.push_back(walls_[k].body);
   };
   for (const std::uint32_t k : everywhere_) meet_wall(k);
-  const Cells::Range walls = wall_cells_.cover(area);
+  const HashGrid::Range walls = wall_cells_.cover(area);
   for (std::int64_t j = walls.y0; j <= walls.y1; ++j)
     for (std::int64_t i = walls.x0; i <= walls.x1; ++i)
       for (const std::uint32_t k : wall_cells_.in_slot(wall_cells_.slot(i, j))) meet_wall(k);
@@ -196,13 +196,13 @@ void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& 
   }
 }
 
-void Map::meet_figure(const Ray& ray, std::uint32_t index, Hit& hit) const {
-  const Silhouette& figure = figures_[index];
-  for (std::size_t i = 0; i < figure.parts.size(); ++i) {
-    const Outline& part = figure.parts[i];
+void Map::meet_silhouette(const Ray& ray, std::uint32_t index, Hit& hit) const {
+  const Silhouette& silhouette = silhouettes_[index];
+  for (std::size_t i = 0; i < silhouette.parts.size(); ++i) {
+    const Outline& part = silhouette.parts[i];
     if (ray.dz == 0 && (ray.z < part.heights.min_m || ray.z > part.heights.max_m)) continue;
-    const Chord c = chord(part, figure.edges, ray.origin, ray.direction);
-    if (c.first <= c.last) hit.meet(ray, c, part.heights, figure.bodies[i]);
+    const Chord c = chord(part, silhouette.edges, ray.origin, ray.direction);
+    if (c.first <= c.last) hit.meet(ray, c, part.heights, silhouette.bodies[i]);
   }
 }
 
@@ -260,8 +260,8 @@ template <bool with_walls>
   double t_x = d.x != 0 ? (d.x < 0 ? start.low.x : start.high.x) * per.x : inf;
   double t_y = d.y != 0 ? (d.y < 0 ? start.low.y : start.high.y) * per.y : inf;
   const double delta_x = cell_m_ * std::abs(per.x), delta_y = cell_m_ * std::abs(per.y);
-  Cells::Walk discs = disc_cells_.walk_from(start.i, start.j),
-              walls = wall_cells_.walk_from(start.i, start.j);
+  HashGrid::Walk discs = disc_cells_.walk_from(start.i, start.j),
+                 walls = wall_cells_.walk_from(start.i, start.j);
   const std::uint32_t step_i = d.x < 0 ? ~0u : 1u;
   const std::uint32_t disc_row = d.y < 0 ? 0u - discs.columns : discs.columns;
   [[maybe_unused]] const std::uint32_t wall_row = d.y < 0 ? 0u - walls.columns : walls.columns;
@@ -270,13 +270,13 @@ template <bool with_walls>
     const std::uint32_t slot = discs.slot();
     for (std::uint32_t k = discs.start[slot]; k < discs.start[slot + 1]; ++k)
       if (const Disc& met_disc = disc[discs.things[k]]; met_disc.instance != ray.ignored) {
-        if (met_disc.figure == ~0u) {
+        if (met_disc.silhouette == ~0u) {
           hit.meet(ray, met_disc);
         } else [[unlikely]] {
           // Copies, so that the others may stay in registers.
           const Ray same = ray;
           Hit met = hit;
-          meet_figure(same, met_disc.figure, met);
+          meet_silhouette(same, met_disc.silhouette, met);
           hit = met;
         }
       }
@@ -307,7 +307,7 @@ struct Map::Reach {
 bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
   const Vec2 o{job.X_WS.p.x, job.X_WS.p.y};
   const Area area = around(o, job.max_m);
-  const Cells::Range range = disc_cells_.cover(area);
+  const HashGrid::Range range = disc_cells_.cover(area);
   if (range.empty() || (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1) > Reach::most_cells)
     return false;
   for (std::int64_t j = range.y0; j <= range.y1; ++j)
@@ -347,8 +347,8 @@ void Map::cast(const RayJob& job, std::uint32_t ignored) const {
       if (!everywhere_.empty()) meet_walls(ray, everywhere_, hit);
       if (near)
         for (std::uint32_t k = 0; k < reach.count; ++k) {
-          if (reach.discs[k]->figure == ~0u) hit.meet(ray, *reach.discs[k]);
-          else meet_figure(ray, reach.discs[k]->figure, hit);
+          if (reach.discs[k]->silhouette == ~0u) hit.meet(ray, *reach.discs[k]);
+          else meet_silhouette(ray, reach.discs[k]->silhouette, hit);
         }
       else if (anything) walls_.empty() ? walk<false>(ray, shared, hit) : walk<true>(ray, shared, hit);
     }

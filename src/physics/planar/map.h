@@ -1,6 +1,6 @@
 #pragma once
-/// Everything that stands in the plane, filed in cells: the discs and figures of moving bodies and the outlines of
-/// unmoving ones. Rays and overlaps ask here.
+/// Map of the plane for rays and overlap queries: discs and silhouettes of moving bodies and outlines of static ones,
+/// in grids of cells.
 ///
 /// A thing here is an upright prism: its outline over its heights, with a lid and a bottom. Answers do not depend on
 /// the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
@@ -13,22 +13,22 @@
 
 #include "geometry/rays.h"
 #include "physics/engine.h"
-#include "physics/planar/cells.h"
+#include "physics/planar/hash_grid.h"
 #include "physics/planar/outline.h"
 
 namespace sandlot::planar {
 
-/// The footprint of one moving lump, or a circle around its figure; `body` is what rays and contacts call it.
+/// The footprint of one moving group, or a circle around its silhouette; `body` is what rays and contacts call it.
 struct alignas(64) Disc {
   Vec2 centre;
   double radius_m = 0;  ///< 0: nothing to meet
   Heights heights;
   std::uint32_t body = no_body;
-  std::uint32_t instance = ~0u;  ///< slot
-  std::uint32_t figure = ~0u;    ///< ~0u: the disc is all
+  std::uint32_t instance = ~0u;    ///< slot
+  std::uint32_t silhouette = ~0u;  ///< ~0u: the disc is all
 };
 
-/// A moving lump that is more than a disc, where it is now.
+/// A moving group that is more than a disc, where it is now.
 struct Silhouette {
   std::vector<Outline> parts;
   std::vector<Edge> edges;
@@ -51,9 +51,9 @@ class Map {
 
   /// Replaces the walls. Their order decides which of two counts first, so it has to be that of creation.
   void set_walls(std::span<const Wall> walls, std::span<const Edge> edges);
-  /// By lump. Whoever changes them calls file_discs() before the next question.
+  /// By group. Whoever changes them calls file_discs() before the next question.
   std::vector<Disc>& discs() { return discs_; }
-  std::vector<Silhouette>& figures() { return figures_; }
+  std::vector<Silhouette>& silhouettes() { return silhouettes_; }
   /// Files the discs under the cells where they are now.
   void file_discs();
 
@@ -79,14 +79,14 @@ class Map {
   void walk(const Ray& ray, const Start* shared, Hit& hit) const;
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
-  void meet_figure(const Ray& ray, std::uint32_t figure, Hit& hit) const;
+  void meet_silhouette(const Ray& ray, std::uint32_t silhouette, Hit& hit) const;
 
   double cell_m_;
   std::vector<Wall> walls_;
   std::vector<Edge> edges_;
   std::vector<Disc> discs_;
-  std::vector<Silhouette> figures_;
-  Cells wall_cells_, disc_cells_;
+  std::vector<Silhouette> silhouettes_;
+  HashGrid wall_cells_, disc_cells_;
   /// By slot of wall_cells_: whether there is any. A hundredth of its size: rays of a swarm mostly are where none is.
   std::vector<bool> walled_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them

@@ -133,14 +133,14 @@ struct Builder {
   }
 
   void sort_joints() {
-    plan.lump_of_link.assign(model.links.size(), 0);
+    plan.group_of_link.assign(model.links.size(), 0);
     below_wheel.assign(model.links.size(), false);
-    plan.lumps.emplace_back();
+    plan.groups.emplace_back();
     std::vector<std::uint32_t> steering(model.links.size(), model::Joint::no_joint);
     for (std::size_t b = 1; b < branches.size(); ++b) {
       const Branch& branch = branches[b];
-      std::uint32_t& lump = plan.lump_of_link[branch.link];
-      lump = branch.parent == none ? 0 : plan.lump_of_link[branch.parent];
+      std::uint32_t& group = plan.group_of_link[branch.link];
+      group = branch.parent == none ? 0 : plan.group_of_link[branch.parent];
       if (branch.parent != none) {
         steering[branch.link] = steering[branch.parent];
         below_wheel[branch.link] = below_wheel[branch.parent];
@@ -155,7 +155,7 @@ struct Builder {
         const model::Collision* collision = nullptr;
         if (const double radius = tyre(j, surface, &collision); radius > 0) {
           below_wheel[branch.link] = true;
-          add_wheel(branch.joint, lump, steering[branch.link], radius, surface);
+          add_wheel(branch.joint, group, steering[branch.link], radius, surface);
           plan.wheels.back().collision = collision;
           plan.plain = plan.plain && is_plain(*surface);
           continue;
@@ -165,31 +165,31 @@ struct Builder {
         const double up = axis.z > 0 ? 1 : -1;
         if (branch.outwards && carries_a_wheel(b)) {
           steering[branch.link] = branch.joint;
-          plan.linkages.push_back(
-              {LinkagePlan::Kind::steering, branch.joint, lump, lump, flat(origin_H(j)), {}, up, 0});
+          plan.constraints.push_back(
+              {JointPlan::Kind::steering, branch.joint, group, group, flat(origin_H(j)), {}, up, 0});
           continue;
         }
-        part(b, LinkagePlan::Kind::pivot, lump, {}, sign * up);
+        part(b, JointPlan::Kind::pivot, group, {}, sign * up);
       } else if (j.type == JointType::prismatic && std::abs(axis.z) < 0.05) {
         const Vec2 a = flat(axis);
-        part(b, LinkagePlan::Kind::slider, lump, (sign / length(a)) * a, 1);
+        part(b, JointPlan::Kind::slider, group, (sign / length(a)) * a, 1);
       }
     }
   }
 
-  void part(std::size_t b, LinkagePlan::Kind kind, std::uint32_t& lump, Vec2 axis, double sign) {
-    if (plan.lumps.size() >= 255) return;
-    const auto child = static_cast<std::uint32_t>(plan.lumps.size());
-    plan.linkages.push_back({kind, branches[b].joint, lump, child,
-                             flat(origin_H(model.joints[branches[b].joint])), axis, sign, 0});
-    plan.lumps.emplace_back().root = branches[b].link;
-    lump = child;
+  void part(std::size_t b, JointPlan::Kind kind, std::uint32_t& group, Vec2 axis, double sign) {
+    if (plan.groups.size() >= 255) return;
+    const auto child = static_cast<std::uint32_t>(plan.groups.size());
+    plan.constraints.push_back({kind, branches[b].joint, group, child,
+                                flat(origin_H(model.joints[branches[b].joint])), axis, sign, 0});
+    plan.groups.emplace_back().root = branches[b].link;
+    group = child;
   }
 
-  void add_wheel(std::uint32_t joint, std::uint32_t lump, std::uint32_t steering, double radius,
+  void add_wheel(std::uint32_t joint, std::uint32_t group, std::uint32_t steering, double radius,
                  const model::Surface* surface) {
     const model::Joint& j = model.joints[joint];
-    WheelPlan wheel{.joint = joint, .lump = lump, .steering = steering};
+    WheelPlan wheel{.joint = joint, .group = group, .steering = steering};
     const Vec3 axis = axis_H(j);
     wheel.axle = (1 / length(flat(axis))) * flat(axis);
     wheel.at = flat(origin_H(j));
@@ -215,74 +215,75 @@ struct Builder {
 
   void weigh() {
     for (std::size_t l = 0; l < model.links.size(); ++l) {
-      LumpPlan& lump = plan.lumps[plan.lump_of_link[l]];
+      RigidGroupPlan& group = plan.groups[plan.group_of_link[l]];
       const model::Inertial& i = model.links[l].inertial;
-      const double before = lump.mass_kg;
+      const double before = group.mass_kg;
       const Vec2 com = flat(plan.X_HL[l] * i.X_LCo.p);
       const double own = inertia_about(i, rotate_inverse(plan.X_HL[l].q, {0, 0, 1}));
       if (!(i.mass_kg > 0)) continue;
-      lump.mass_kg += i.mass_kg;
-      const Vec2 apart = com - lump.com_H;
-      lump.inertia_kgm2 += own + before * i.mass_kg / lump.mass_kg * dot(apart, apart);
-      lump.com_H = lump.com_H + (i.mass_kg / lump.mass_kg) * apart;
+      group.mass_kg += i.mass_kg;
+      const Vec2 apart = com - group.com_H;
+      group.inertia_kgm2 += own + before * i.mass_kg / group.mass_kg * dot(apart, apart);
+      group.com_H = group.com_H + (i.mass_kg / group.mass_kg) * apart;
     }
-    for (LumpPlan& lump : plan.lumps) {
-      if (!(lump.mass_kg > 0)) lump.mass_kg = 1e-9, lump.com_H = flat(plan.X_HL[lump.root].p);
-      if (!(lump.inertia_kgm2 > 1e-12 * lump.mass_kg)) lump.inertia_kgm2 = 1e-12 * lump.mass_kg;
+    for (RigidGroupPlan& group : plan.groups) {
+      if (!(group.mass_kg > 0)) group.mass_kg = 1e-9, group.com_H = flat(plan.X_HL[group.root].p);
+      if (!(group.inertia_kgm2 > 1e-12 * group.mass_kg)) group.inertia_kgm2 = 1e-12 * group.mass_kg;
     }
-    for (LinkagePlan& linkage : plan.linkages) {
-      if (linkage.kind != LinkagePlan::Kind::steering) continue;
+    for (JointPlan& constraint : plan.constraints) {
+      if (constraint.kind != JointPlan::Kind::steering) continue;
       for (std::size_t b = 1; b < branches.size(); ++b) {
         bool beyond = false;
         for (std::size_t at = b; branches[at].parent != none && !beyond; at = branch_of[branches[at].parent])
-          beyond = branches[at].joint == linkage.joint;
+          beyond = branches[at].joint == constraint.joint;
         if (!beyond) continue;
         const model::Inertial& i = model.links[branches[b].link].inertial;
-        const Vec2 arm = flat(plan.X_HL[branches[b].link] * i.X_LCo.p) - linkage.at_H;
-        linkage.inertia_kgm2 += inertia_about(i, rotate_inverse(plan.X_HL[branches[b].link].q, {0, 0, 1})) +
-                                i.mass_kg * dot(arm, arm);
+        const Vec2 arm = flat(plan.X_HL[branches[b].link] * i.X_LCo.p) - constraint.at_H;
+        constraint.inertia_kgm2 += inertia_about(i,
+                                                 rotate_inverse(plan.X_HL[branches[b].link].q, {0, 0, 1})) +
+                                   i.mass_kg * dot(arm, arm);
       }
-      linkage.inertia_kgm2 = std::max(linkage.inertia_kgm2, 1e-9);
+      constraint.inertia_kgm2 = std::max(constraint.inertia_kgm2, 1e-9);
     }
   }
 
   void outline(std::uint32_t index) {
-    LumpPlan& lump = plan.lumps[index];
+    RigidGroupPlan& group = plan.groups[index];
     std::vector<Outline> outlines;
     std::vector<Vec3> corners;
     for (std::uint32_t l = 0; l < model.links.size(); ++l) {
-      if (plan.lump_of_link[l] != index) continue;
+      if (plan.group_of_link[l] != index) continue;
       const model::Link& link = model.links[l];
       for (std::uint32_t c = 0; c < link.collisions.size(); ++c) {
         const model::Collision& collision = link.collisions[c];
         Pose X = plan.X_HL[l] * collision.X_LC;
-        X.p -= Vec3{lump.com_H.x, lump.com_H.y, 0};
+        X.p -= Vec3{group.com_H.x, group.com_H.y, 0};
         outlines.clear();
         Shape shape = collision.shape;
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-          add_hull(*mesh->mesh, X, outlines, lump.edges);
+          add_hull(*mesh->mesh, X, outlines, group.edges);
         } else {
-          add_outlines(shape, X, outlines, lump.edges);
+          add_outlines(shape, X, outlines, group.edges);
         }
-        for (const Outline& o : outlines) lump.parts.push_back({o, l, c, &collision.surface});
-        stand(lump, collision, X, l);
+        for (const Outline& o : outlines) group.parts.push_back({o, l, c, &collision.surface});
+        stand(group, collision, X, l);
       }
     }
     for (const WheelPlan& wheel : plan.wheels) {
       const model::Joint& j = model.joints[wheel.joint];
-      if (wheel.lump != index || !j.rollers) continue;
+      if (wheel.group != index || !j.rollers) continue;
       // The rollers as the cylinder around them.
       const double width = (j.rollers->rows - 1) * j.rollers->row_spacing_m + 2 * j.rollers->roller_radius_m;
-      const Vec2 ahead{wheel.axle.y, -wheel.axle.x}, at = wheel.at - lump.com_H;
+      const Vec2 ahead{wheel.axle.y, -wheel.axle.x}, at = wheel.at - group.com_H;
       const double z = origin_H(j).z;
       const Quat q = quat_from_rpy(0, 0, math::atan2(ahead.y, ahead.x));
       outlines.clear();
       add_outlines(Box{{2 * wheel.radius_m, width, 2 * wheel.radius_m}}, {{at.x, at.y, z}, q}, outlines,
-                   lump.edges);
-      for (const Outline& o : outlines) lump.parts.push_back({o, j.child, ~0u, wheel.surface});
+                   group.edges);
+      for (const Outline& o : outlines) group.parts.push_back({o, j.child, ~0u, wheel.surface});
     }
-    merge(lump);
-    enclose(lump);
+    merge(group);
+    enclose(group);
   }
 
   static void add_hull(const TriangleMesh& mesh, const Pose& X, std::vector<Outline>& outlines,
@@ -298,7 +299,7 @@ struct Builder {
   }
 
   /// Notes what a shape stands on, unless it is part of a wheel.
-  void stand(LumpPlan& lump, const model::Collision& collision, const Pose& X, std::uint32_t link) {
+  void stand(RigidGroupPlan& group, const model::Collision& collision, const Pose& X, std::uint32_t link) {
     if (below_wheel[link] || !collision.surface.touches) return;
     const Heights h = heights_of(collision.shape, X);
     if (h.empty() || h.min_m > plan.bottom_m + ground_tolerance_m) return;
@@ -310,7 +311,7 @@ struct Builder {
     } else if (const auto* can = std::get_if<Cylinder>(&collision.shape); can && std::abs(axis.z) > 0.999) {
       s.mean_radius_m = 2.0 / 3 * can->radius_m;
       s.mean_distance_m = mean_distance(s.at, can->radius_m);
-      lump.supports.push_back(s);
+      group.supports.push_back(s);
       return;
     } else {
       // The corners that reach the ground, or the whole shadow where none does.
@@ -323,12 +324,12 @@ struct Builder {
         s.at = centre;
         s.mean_radius_m = about_centre;
         s.mean_distance_m = about_com;
-        lump.supports.push_back(s);
+        group.supports.push_back(s);
         return;
       }
     }
     s.mean_distance_m = length(s.at);
-    lump.supports.push_back(s);
+    group.supports.push_back(s);
   }
 
   /// Mean distance of a disc's points from the origin: rings of equal area and width.
@@ -390,79 +391,80 @@ struct Builder {
     return true;
   }
 
-  static void merge(LumpPlan& lump) {
+  static void merge(RigidGroupPlan& group) {
     std::uint32_t widest = none;
-    for (std::uint32_t i = 0; i < lump.parts.size(); ++i) {
-      const Outline& o = lump.parts[i].outline;
-      if (o.edge_count == 0 && (widest == none || o.radius_m > lump.parts[widest].outline.radius_m))
+    for (std::uint32_t i = 0; i < group.parts.size(); ++i) {
+      const Outline& o = group.parts[i].outline;
+      if (o.edge_count == 0 && (widest == none || o.radius_m > group.parts[widest].outline.radius_m))
         widest = i;
     }
     if (widest == none) return;
-    Part main = lump.parts[widest];
+    Part main = group.parts[widest];
     const Heights own = main.outline.heights;
     const double thick = own.max_m - own.min_m;
     std::vector<Part> rest;
     std::vector<Edge> edges;
-    for (std::uint32_t i = 0; i < lump.parts.size(); ++i) {
-      Part part = lump.parts[i];
+    for (std::uint32_t i = 0; i < group.parts.size(); ++i) {
+      Part part = group.parts[i];
       if (i == widest) continue;
       const Heights h = part.outline.heights;
       if (part.surface->touches == main.surface->touches && h.min_m >= own.min_m - thick &&
-          h.max_m <= own.max_m + 2 * thick && hides(main.outline, part.outline, lump.edges)) {
+          h.max_m <= own.max_m + 2 * thick && hides(main.outline, part.outline, group.edges)) {
         main.outline.heights.add(h);
         main.collision = ~0u;
         continue;
       }
-      const auto from = lump.edges.begin() + part.outline.first_edge;
+      const auto from = group.edges.begin() + part.outline.first_edge;
       part.outline.first_edge = static_cast<std::uint32_t>(edges.size());
       edges.insert(edges.end(), from, from + part.outline.edge_count);
       rest.push_back(part);
     }
     rest.insert(rest.begin(), main);
-    lump.parts = std::move(rest);
-    lump.edges = std::move(edges);
+    group.parts = std::move(rest);
+    group.edges = std::move(edges);
   }
 
-  static void enclose(LumpPlan& lump) {
-    std::erase_if(lump.parts, [](const Part& p) { return !p.surface->touches; });
-    if (lump.parts.empty()) return;
-    Vec2 low = lump.parts[0].outline.centre, high = low;
-    lump.core_m = std::numeric_limits<double>::infinity();
+  static void enclose(RigidGroupPlan& group) {
+    std::erase_if(group.parts, [](const Part& p) { return !p.surface->touches; });
+    if (group.parts.empty()) return;
+    Vec2 low = group.parts[0].outline.centre, high = low;
+    group.core_m = std::numeric_limits<double>::infinity();
     const auto each = [&](auto&& visit) {
-      for (const Part& part : lump.parts) {
+      for (const Part& part : group.parts) {
         if (part.outline.edge_count == 0) visit(part.outline.centre, part.outline.radius_m);
         for (std::uint32_t i = 0; i < part.outline.edge_count; ++i)
-          visit(lump.edges[part.outline.first_edge + i].from, 0.0);
+          visit(group.edges[part.outline.first_edge + i].from, 0.0);
       }
     };
     each([&](Vec2 p, double r) {
       low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r)};
       high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r)};
     });
-    lump.centre = 0.5 * (low + high);
-    if (lump.parts.size() == 1 && lump.parts[0].outline.edge_count == 0)
-      lump.centre = lump.parts[0].outline.centre;
-    each([&](Vec2 p, double r) { lump.radius_m = std::max(lump.radius_m, length(p - lump.centre) + r); });
-    for (const Part& part : lump.parts) {
-      lump.heights.add(part.outline.heights);
+    group.centre = 0.5 * (low + high);
+    if (group.parts.size() == 1 && group.parts[0].outline.edge_count == 0)
+      group.centre = group.parts[0].outline.centre;
+    each([&](Vec2 p, double r) { group.radius_m = std::max(group.radius_m, length(p - group.centre) + r); });
+    for (const Part& part : group.parts) {
+      group.heights.add(part.outline.heights);
       double inscribed = part.outline.radius_m;
       if (part.outline.edge_count > 0)
-        inscribed = -nearest(part.outline, lump.edges, part.outline.centre).distance_m;
-      lump.core_m = std::min(lump.core_m, std::max(inscribed, 1e-4));
+        inscribed = -nearest(part.outline, group.edges, part.outline.centre).distance_m;
+      group.core_m = std::min(group.core_m, std::max(inscribed, 1e-4));
     }
-    lump.disc = lump.parts.size() == 1 && lump.parts[0].outline.edge_count == 0;
-    if (lump.radius_m > 0) lump.reach_share_m = std::min(0.1 * lump.radius_m, 0.5 * lump.core_m) + 1e-4;
+    group.disc = group.parts.size() == 1 && group.parts[0].outline.edge_count == 0;
+    if (group.radius_m > 0) group.reach_share_m = std::min(0.1 * group.radius_m, 0.5 * group.core_m) + 1e-4;
   }
 
-  /// Every lump carries itself; one without supports is carried by its parent.
+  /// Every group carries itself; one without supports is carried by its parent.
   void share() {
-    std::vector<double> mass(plan.lumps.size());
-    std::vector<Vec2> com(plan.lumps.size());
+    std::vector<double> mass(plan.groups.size());
+    std::vector<Vec2> com(plan.groups.size());
     for (std::size_t i = 0; i < mass.size(); ++i)
-      mass[i] = plan.lumps[i].mass_kg, com[i] = plan.lumps[i].com_H;
+      mass[i] = plan.groups[i].mass_kg, com[i] = plan.groups[i].com_H;
     const auto stands = [&](std::uint32_t i) {
-      return !plan.lumps[i].supports.empty() || std::any_of(plan.wheels.begin(), plan.wheels.end(),
-                                                            [&](const WheelPlan& w) { return w.lump == i; });
+      return !plan.groups[i].supports.empty() ||
+             std::any_of(plan.wheels.begin(), plan.wheels.end(),
+                         [&](const WheelPlan& w) { return w.group == i; });
     };
     const auto carry = [&](std::uint32_t from, std::uint32_t to) {
       const double sum = mass[from] + mass[to];
@@ -470,31 +472,31 @@ struct Builder {
       mass[to] = sum;
       mass[from] = 0;
     };
-    for (std::size_t k = plan.linkages.size(); k-- > 0;) {
-      const LinkagePlan& l = plan.linkages[k];
-      if (l.kind != LinkagePlan::Kind::steering && !stands(l.child)) carry(l.child, l.parent);
+    for (std::size_t k = plan.constraints.size(); k-- > 0;) {
+      const JointPlan& l = plan.constraints[k];
+      if (l.kind != JointPlan::Kind::steering && !stands(l.child)) carry(l.child, l.parent);
     }
-    for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
-      LumpPlan& lump = plan.lumps[i];
+    for (std::uint32_t i = 0; i < plan.groups.size(); ++i) {
+      RigidGroupPlan& group = plan.groups[i];
       std::vector<Vec2> points;
-      for (const Support& s : lump.supports) points.push_back(s.at + lump.com_H - com[i]);
+      for (const Support& s : group.supports) points.push_back(s.at + group.com_H - com[i]);
       for (const WheelPlan& w : plan.wheels)
-        if (w.lump == i) points.push_back(w.at - com[i]);
+        if (w.group == i) points.push_back(w.at - com[i]);
       std::vector<double> shares(points.size());
       share_weight(mass[i], points, shares);
       std::size_t next = 0;
-      for (Support& s : lump.supports) s.weight_kg = shares[next++];
+      for (Support& s : group.supports) s.weight_kg = shares[next++];
       for (WheelPlan& w : plan.wheels)
-        if (w.lump == i) {
+        if (w.group == i) {
           w.weight_kg = shares[next++];
-          w.at = w.at - lump.com_H;
+          w.at = w.at - group.com_H;
         }
-      lump.rolls = lump.supports.size() == 1 && points.size() == 1 && lump.supports[0].ball_radius_m > 0;
+      group.rolls = group.supports.size() == 1 && points.size() == 1 && group.supports[0].ball_radius_m > 0;
     }
     for (WheelPlan& w : plan.wheels)
-      for (const LinkagePlan& l : plan.linkages)
+      for (const JointPlan& l : plan.constraints)
         if (w.steering == l.joint) {
-          w.steering_at = l.at_H - plan.lumps[w.lump].com_H;
+          w.steering_at = l.at_H - plan.groups[w.group].com_H;
           w.steering_sign = l.sign;
           w.steering_kgm2 = l.inertia_kgm2;
         }
@@ -543,7 +545,7 @@ Plan make_plan(const model::Model& model, Quat tilt, double z_m) {
   b.find_bottom();
   b.sort_joints();
   b.weigh();
-  for (std::uint32_t i = 0; i < b.plan.lumps.size(); ++i) b.outline(i);
+  for (std::uint32_t i = 0; i < b.plan.groups.size(); ++i) b.outline(i);
   b.share();
   return std::move(b.plan);
 }

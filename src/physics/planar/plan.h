@@ -1,9 +1,9 @@
 #pragma once
-/// What the planar engine makes of a model at a height and tilt: bodies with outlines, and what they stand on.
+/// Plan of a model for the planar engine, at a height and tilt: rigid groups with outlines, wheels, joints and supports.
 ///
 /// Frame H   heading frame: origin on the canonical link's x and y, z of the world, turned by the instance's heading.
-///           All joints are at 0. The frame of a lump has its origin in the lump's centre of mass and the axes of H.
-/// Lumps     links that move as one in the plane. Joints that part them: vertical revolute and continuous ones
+///           All joints are at 0. The frame of a group has its origin in the group's centre of mass and the axes of H.
+/// Groups     links that move as one in the plane. Joints that separate them: vertical revolute and continuous ones
 ///           (pivots) and horizontal prismatic ones (sliders). Whatever hangs on another joint belongs to its parent.
 /// Outlines  those of outline.h; of a mesh its convex hull. A shape above and below a circle that hides it from above
 ///           is merged into the circle when it begins no lower below it than the circle's shape is thick, and ends no
@@ -26,7 +26,7 @@ inline bool is_plain(const model::Surface& s) {
   return s.fdir1 == Vec3{} && !s.skin && s.belt_velocity_mps == Vec3{};
 }
 
-/// A part of a lump's outline, in the lump's frame.
+/// A part of a group's outline, in the group's frame.
 struct Part {
   Outline outline;
   std::uint32_t link = 0;
@@ -36,20 +36,20 @@ struct Part {
 
 /// A point or patch that carries weight.
 struct Support {
-  Vec2 at;                     ///< in the lump's frame
+  Vec2 at;                     ///< in the group's frame
   double weight_kg = 0;        ///< that it carries
   double mean_radius_m = 0;    ///< of the patch, about its middle
   double ball_radius_m = 0;    ///< > 0: a sphere
-  double mean_distance_m = 0;  ///< of the patch from the lump's centre of mass
+  double mean_distance_m = 0;  ///< of the patch from the group's centre of mass
   const model::Surface* surface = nullptr;
   const model::Collision* collision = nullptr;
   std::uint32_t link = 0;
 };
 
-struct LumpPlan {
+struct RigidGroupPlan {
   std::vector<Part> parts;
   std::vector<Edge> edges;
-  Vec2 centre;          ///< of the circle around all parts, in the lump's frame
+  Vec2 centre;          ///< of the circle around all parts, in the group's frame
   double radius_m = 0;  ///< its radius; 0: nothing to meet
   double core_m =
       0;  ///< radius of the smallest part's inscribed circle: what must not be passed over in a step
@@ -65,9 +65,9 @@ struct LumpPlan {
 };
 
 struct WheelPlan {
-  std::uint32_t joint = 0, lump = 0;
+  std::uint32_t joint = 0, group = 0;
   std::uint32_t steering = model::Joint::no_joint;
-  Vec2 at;           ///< of the contact with the ground, in the lump's frame; steered: at steering angle 0
+  Vec2 at;           ///< of the contact with the ground, in the group's frame; steered: at steering angle 0
   Vec2 steering_at;  ///< where the steering axis stands
   Vec2 axle;         ///< unit, the axis about which positive turns are counted
   double steering_sign = 1;  ///< of the steering joint's axis along z
@@ -80,11 +80,11 @@ struct WheelPlan {
   double bearing_Nm = 0;                        ///< of the rollers
 };
 
-/// A joint between lumps, or one that steers.
-struct LinkagePlan {
+/// A joint between groups, or one that steers.
+struct JointPlan {
   enum class Kind : std::uint8_t { pivot, slider, steering } kind = Kind::pivot;
   std::uint32_t joint = 0;
-  std::uint32_t parent = 0, child = 0;  ///< lumps
+  std::uint32_t parent = 0, child = 0;  ///< groups
   Vec2 at_H;                            ///< a point of the axis
   Vec2 axis;                            ///< of a slider, unit
   double sign = 1;          ///< of the joint's position in the plane: child counter-clockwise, or along axis
@@ -92,10 +92,10 @@ struct LinkagePlan {
 };
 
 struct Plan {
-  std::vector<LumpPlan> lumps;  ///< [0] holds the canonical link
-  std::vector<std::uint32_t> lump_of_link;
+  std::vector<RigidGroupPlan> groups;  ///< [0] holds the canonical link
+  std::vector<std::uint32_t> group_of_link;
   std::vector<WheelPlan> wheels;
-  std::vector<LinkagePlan> linkages;
+  std::vector<JointPlan> constraints;
   std::vector<Pose> X_HL;  ///< of the links at joint positions 0
   double bottom_m = 0;     ///< lowest point of all shapes
   bool plain = true;       ///< all that stands on the ground is so

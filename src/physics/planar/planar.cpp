@@ -93,12 +93,12 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   const model::Model& model = *declared.model;
   if (last_model_ != declared.model) {
     last_model_ = declared.model;
-    last_tree_ = std::make_shared<const Tree>(model);
+    last_tree_ = std::make_shared<const KinematicTree>(model);
     last_plan_ = nullptr;
   }
   const std::uint32_t slot = take_index(free_instances_, instances_);
   drives_.resize(instances_.size());
-  briefs_.resize(instances_.size());
+  summaries_.resize(instances_.size());
   means_.resize(instances_.size());
   Instance& instance = instances_[slot];
   instance.alive = true;
@@ -153,15 +153,15 @@ void PlanarEngine::remove(InstanceId id) {
   // Backwards, so that the next model of the same kind gets its indices in order.
   for (std::size_t i = instance.bodies.size(); i-- > 0;) free_bodies_.push_back(instance.bodies[i].index);
   for (std::size_t i = instance.joints.size(); i-- > 0;) free_joints_.push_back(instance.joints[i].index);
-  free_lumps(instance);
+  free_groups(instance);
   walls_fresh_ = walls_fresh_ && instance.moves;
-  std::erase_if(touches_, [&](const Touch& t) {
+  std::erase_if(contact_points_, [&](const ContactPoint& t) {
     return t.key.pair >> 32 == instance.created || (t.key.pair & 0xffffffffu) == instance.created;
   });
   const std::uint32_t generation = instance.generation + 1;
   instance = {};
   instance.generation = generation;
-  briefs_[id.index] = {};
+  summaries_[id.index] = {};
   order_.erase(std::find(order_.begin(), order_.end(), id.index));
   free_instances_.push_back(id.index);
   filed_ = ground_fresh_ = false;
@@ -192,7 +192,7 @@ void PlanarEngine::aim(std::uint32_t slot, std::uint32_t link) {
   const Vec3 arm = rotate(instance.tilt, X_BL.p), x = rotate(instance.tilt, rotate(X_BL.q, {1, 0, 0}));
   Drive& drive = drives_[slot];
   drive.link = link;
-  const Vec2 com = instance.plan->lumps[0].com_H;
+  const Vec2 com = instance.plan->groups[0].com_H;
   drive.arm = Vec2{arm.x, arm.y} - com;
   const double n = std::sqrt(x.x * x.x + x.y * x.y);
   drive.frame = n > 1e-6 ? Turn{x.x / n, x.y / n} : Turn{};
@@ -209,9 +209,10 @@ void PlanarEngine::set_drive_targets(std::span<const DriveTarget> targets) {
         if (instance.bodies[link] == t.base) aim(slot, link);
     if (t.active && !drive.active) {
       // It goes on at the velocity that it has.
-      const Lump& lump = lumps_[instance.lumps[0]];
-      drive.now = {rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
-                   lump.w_radps};
+      const RigidGroup& group = groups_[instance.groups[0]];
+      drive.now = {
+          rotate_back(group.heading * drive.frame, group.velocity_at(rotate(group.heading, drive.arm))),
+          group.w_radps};
       for (const Wheel& wheel : instance.wheels)
         for (const std::uint32_t joint : {wheel.joint, wheel.steering})
           if (joint != none && !motors_[joint].listed)
@@ -233,7 +234,8 @@ void PlanarEngine::set_targets(std::span<const JointTarget> targets) {
     SL_CHECK_MSG(t.joint.generation == motor.generation, "no such joint");
     end_roll(t.joint.index);
     motor.target = t;
-    if (motor.listed || t.mode != JointTarget::Mode::velocity || motor.role == Motor::Role::linkage) continue;
+    if (motor.listed || t.mode != JointTarget::Mode::velocity || motor.role == Motor::Role::constraint)
+      continue;
     motor.listed = true;
     turning_.push_back(t.joint.index);
   }
@@ -245,13 +247,13 @@ void PlanarEngine::apply(std::span<const Wrench> wrenches) {
     if (!instance.moves || instance.guided) continue;
     for (std::uint32_t link = 0; link < instance.bodies.size(); ++link) {
       if (instance.bodies[link] != w.body) continue;
-      // The force acts at the link's centre of mass, which need not be the lump's.
-      Lump& lump = lumps_[instance.lumps[instance.plan->lump_of_link[link]]];
+      // The force acts at the link's centre of mass, which need not be the group's.
+      RigidGroup& group = groups_[instance.groups[instance.plan->group_of_link[link]]];
       const Vec3 at = instance.plan->X_HL[link] * instance.model->links[link].inertial.X_LCo.p;
-      const Vec2 arm = rotate(lump.heading, Vec2{at.x, at.y} - instance.plan->lumps[lump.index].com_H);
+      const Vec2 arm = rotate(group.heading, Vec2{at.x, at.y} - instance.plan->groups[group.index].com_H);
       const Vec2 force{w.force_N.x, w.force_N.y};
-      lump.force_N = lump.force_N + force;
-      lump.torque_Nm += w.torque_Nm.z + cross(arm, force);
+      group.force_N = group.force_N + force;
+      group.torque_Nm += w.torque_Nm.z + cross(arm, force);
     }
   }
 }
@@ -294,7 +296,7 @@ void PlanarEngine::refresh_walls() const {
         const Pose X_WC = X_WM * link.X_ML * collision.X_LC;
         add_outlines(collision.shape, X_WC, outlines, edges);
         const bool upright = std::abs(rotate(X_WC.q, {0, 0, 1}).z) > 0.999;
-        const Face face{&collision.surface, &collision, slot, static_cast<std::uint32_t>(i)};
+        const ContactFace face{&collision.surface, &collision, slot, static_cast<std::uint32_t>(i)};
         if (std::holds_alternative<Plane>(collision.shape)) floors_.push_back({X_WC.p.z, face});
         else if (upright && outlines.size() == 1 &&
                  (std::holds_alternative<Box>(collision.shape) ||
@@ -338,9 +340,9 @@ BodyState PlanarEngine::canonical_state(std::uint32_t slot) const {
   BodyState base{canonical_pose(slot), {}};
   const Instance& instance = instances_[slot];
   if (!instance.moves) return base;
-  const Lump& lump = lumps_[instance.lumps[0]];
-  const Vec2 v = lump.velocity_at(rotate(lump.heading, -1.0 * instance.plan->lumps[0].com_H));
-  base.V_WB = {{v.x, v.y, 0}, {0, 0, lump.w_radps}};
+  const RigidGroup& group = groups_[instance.groups[0]];
+  const Vec2 v = group.velocity_at(rotate(group.heading, -1.0 * instance.plan->groups[0].com_H));
+  base.V_WB = {{v.x, v.y, 0}, {0, 0, group.w_radps}};
   return base;
 }
 

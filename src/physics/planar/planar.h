@@ -2,7 +2,7 @@
 /// The planar engine: bodies with three degrees of freedom on a ground, among walls.
 ///
 /// Frame    a moving instance has three degrees of freedom: x, y and heading. Height, roll and pitch stay as placed.
-/// Bodies   lumps of links, circles or convex polygons over heights (plan.h). A static instance, or one with a joint to
+/// Bodies   rigid groups of links, circles or convex polygons over heights (plan.h). A static instance, or one with a joint to
 ///          the world, is its shapes' outlines (outline.h). Horizontal planes and flat tops are the ground.
 /// Paths    an instance with a motion pushes and is not pushed, not even by walls.
 /// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's cradle
@@ -22,7 +22,7 @@
 /// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of at most
 ///          what brings the robot to its velocity within the step at the acceleration it may have. Their wheels turn by
 ///          the way that the base went, when asked for (rolls.cpp).
-/// Joints   pivots and sliders between lumps of an instance, with motor, limits, friction and spring; steering. All
+/// Joints   pivots and sliders between groups of an instance, with motor, limits, friction and spring; steering. All
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
 /// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does
 ///          accelerating shift weight.
@@ -33,7 +33,7 @@
 #include <mutex>
 
 #include "physics/pair_surface.h"
-#include "physics/planar/lump.h"
+#include "physics/planar/bodies.h"
 
 namespace sandlot::planar {
 
@@ -92,7 +92,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_rolls(std::span<const RollTarget> targets) override;
   void set_grips(std::span<const GripTarget> targets) override;
-  std::span<const Grip> grips() const override { return told_grips_; }
+  std::span<const Grip> grips() const override { return published_grips_; }
   void set_zones(std::span<const model::SurfaceZone> zones) override;
   void set_contact_rule(ContactRule rule) override;
   void step(double h_s, std::uint64_t stream_key) override;
@@ -103,14 +103,14 @@ class PlanarEngine final : public Engine, private RayCaster {
 
  private:
   struct Island {
-    std::uint32_t first_lump = 0, lumps = 0, first_candidate = 0, candidates = 0, first_linkage = 0,
-                  linkages = 0;
-    std::vector<Touch> touches, turned;  ///< kept from step to step so that they need no heap
+    std::uint32_t first_group = 0, groups = 0, first_candidate = 0, candidates = 0, first_constraint = 0,
+                  constraints = 0;
+    std::vector<ContactPoint> contact_points, turned;  ///< kept from step to step so that they need no heap
   };
   /// A flat place to stand on.
   struct Floor {
     double z_m = 0;
-    Face face;
+    ContactFace face;
     std::uint32_t wall = none;  ///< whose top it is; none: it has no end
   };
 
@@ -121,13 +121,13 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::uint32_t slot_of(BodyId id) const;
   bool alive(BodyId id) const;
 
-  // planar.cpp, placing.cpp
+  // planar.cpp, placement.cpp
   void add_joints(Instance& instance);
   void settle(std::uint32_t slot, const Pose& X_WM);
   void shape(std::uint32_t slot);
-  void place_lumps(std::uint32_t slot, const Pose& X_WB);
-  void place_disc(std::uint32_t lump);
-  void free_lumps(Instance& instance);
+  void place_groups(std::uint32_t slot, const Pose& X_WB);
+  void place_disc(std::uint32_t group);
+  void free_groups(Instance& instance);
   void aim(std::uint32_t slot, std::uint32_t link);
   void lead(std::uint32_t slot, double h_s);
   void arrive(std::uint32_t slot);
@@ -139,16 +139,16 @@ class PlanarEngine final : public Engine, private RayCaster {
   void stale() { map_fresh_ = links_fresh_ = rolls_fresh_ = false; }
 
   // surfaces.cpp
-  PairSurface surfaces_at(const Face& a, const Face& b, Vec3 point_W, Vec3 normal_W) const;
-  Pose pose_of(const Face& face) const;
-  void explode(std::uint32_t lump, Vec2 v, double w_radps);
+  PairSurface surfaces_at(const ContactFace& a, const ContactFace& b, Vec3 point_W, Vec3 normal_W) const;
+  Pose pose_of(const ContactFace& face) const;
+  void explode(std::uint32_t group, Vec2 v, double w_radps);
   double excess(Vec2 v, double w_radps) const;
   /// excess() is at most 1.
   bool is_sound(Vec2 v, double w_radps) const {
     return dot(v, v) <= spec_.max_speed_mps * spec_.max_speed_mps &&
            w_radps * w_radps <= spec_.max_spin_radps * spec_.max_spin_radps;
   }
-  Error exploded(std::uint32_t lump, Vec2 v, double w_radps) const;
+  Error exploded(std::uint32_t group, Vec2 v, double w_radps) const;
 
   // rolls.cpp
   void refresh_rolls() const;
@@ -158,7 +158,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   void end_roll(std::uint32_t joint);
 
   // grips.cpp
-  Linkage make_grip(BodyId a, BodyId b) const;
+  JointConstraint make_grip(BodyId a, BodyId b) const;
   void let_go(std::uint32_t slot);
   void list_grips();
   void measure_grips(double h_s);
@@ -166,68 +166,68 @@ class PlanarEngine final : public Engine, private RayCaster {
 
   // step.cpp
   void begin(std::uint32_t slot, double h_s);
-  void plan_drive(std::uint32_t slot, Lump& lump, double h_s);
-  double reach(const Lump& lump, double h_s) const;
+  void plan_drive(std::uint32_t slot, RigidGroup& group, double h_s);
+  double reach(const RigidGroup& group, double h_s) const;
   void file(double h_s);
-  void find_touches(double h_s);
+  void find_contact_points(double h_s);
   void find_islands(double h_s);
-  std::uint32_t root(std::uint32_t lump);
+  std::uint32_t root(std::uint32_t group);
   void unite(std::uint32_t a, std::uint32_t b);
-  void finish_drive(std::uint32_t slot, Lump& lump, double h_s);
-  void finish_hindered(std::uint32_t slot, Lump& lump, const Planned& planned);
+  void finish_drive(std::uint32_t slot, RigidGroup& group, double h_s);
+  void finish_hindered(std::uint32_t slot, RigidGroup& group, const Planned& planned);
   void refresh_linked();
   void turn_joints(double h_s);
   void list_contacts(double h_s);
 
   // collide.cpp
   bool near(const Candidate& c, double h_s) const;
-  void collide(const Candidate& c, double h_s, std::vector<Touch>& out) const;
-  void remember(std::span<Touch> touches) const;
+  void collide(const Candidate& c, double h_s, std::vector<ContactPoint>& out) const;
+  void remember(std::span<ContactPoint> contact_points) const;
   double impact(const Candidate& c, double h_s) const;
-  void move_figure(std::uint32_t lump);
+  void move_silhouette(std::uint32_t group);
 
   // solve.cpp
   void solve(Island& island, double h_s);
-  void bounce(std::span<Touch> touches);
-  void prepare(Touch& t, double h_s, bool warm);
-  double hold_apart(std::span<Touch> touches);
+  void bounce(std::span<ContactPoint> contact_points);
+  void prepare(ContactPoint& t, double h_s, bool warm);
+  double hold_apart(std::span<ContactPoint> contact_points);
   double advance_island(const Island& island, double h_s);
   void take_back(Island& island, double h_s);
-  void move(std::uint32_t lump, double h_s, double& left_m);
-  void move_alone(std::uint32_t lump, double h_s);
+  void move(std::uint32_t group, double h_s, double& left_m);
+  void move_alone(std::uint32_t group, double h_s);
 
-  // ground.cpp, wheels.cpp, linkages.cpp
-  void find_ground(std::uint32_t lump);
-  const Floor* floor_under(std::uint32_t lump, Vec2 at_W) const;
-  PairSurface on_ground(std::uint32_t lump, Face foot, Vec2 at) const;
-  void rub(std::uint32_t lump, double h_s);
+  // ground.cpp, wheels.cpp, joint_constraints.cpp
+  void find_ground(std::uint32_t group);
+  const Floor* floor_under(std::uint32_t group, Vec2 at_W) const;
+  PairSurface on_ground(std::uint32_t group, ContactFace foot, Vec2 at) const;
+  void rub(std::uint32_t group, double h_s);
   void prepare_wheels(std::uint32_t slot, double h_s);
   double turn_wheels(std::uint32_t slot, double h_s);
   void finish_wheels(std::uint32_t slot, double h_s);
   void steer(std::uint32_t slot, double h_s);
-  void prepare_linkage(Linkage& l, double h_s);
-  void hold_linkage(Linkage& l, double h_s);
-  void take_back(Linkage& l);
-  void finish_linkage(Linkage& l, double h_s);
+  void prepare_constraint(JointConstraint& l, double h_s);
+  void hold_constraint(JointConstraint& l, double h_s);
+  void take_back(JointConstraint& l);
+  void finish_constraint(JointConstraint& l, double h_s);
 
   // state.cpp
-  void save_touches(std::uint32_t slot, ByteWriter& w) const;
-  bool load_touches(std::uint32_t slot, ByteReader& r);
+  void save_contact_points(std::uint32_t slot, ByteWriter& w) const;
+  bool load_contact_points(std::uint32_t slot, ByteReader& r);
 
   Spec spec_;
   double gravity_mps2_;
   std::vector<Instance> instances_;
-  std::vector<Drive> drives_;  ///< by slot
-  std::vector<Brief> briefs_;  ///< by slot
-  std::vector<Twist> means_;   ///< by slot: of a drive's step, in the lump's frame
-  std::vector<Lump> lumps_;
-  std::vector<Rubbing> rubbing_;  ///< by lump
-  std::vector<std::uint32_t> free_instances_, free_bodies_, free_joints_, free_lumps_, free_figures_;
+  std::vector<Drive> drives_;               ///< by slot
+  std::vector<InstanceSummary> summaries_;  ///< by slot
+  std::vector<Twist> means_;                ///< by slot: of a drive's step, in the group's frame
+  std::vector<RigidGroup> groups_;
+  std::vector<GroundFriction> ground_friction_;  ///< by group
+  std::vector<std::uint32_t> free_instances_, free_bodies_, free_joints_, free_groups_, free_silhouettes_;
   std::vector<std::uint32_t> order_;  ///< slots by creation
   std::uint64_t created_ = 0;
   std::shared_ptr<const Plan> last_plan_;  ///< robots come in series
   std::shared_ptr<const model::Model> last_model_;
-  std::shared_ptr<const Tree> last_tree_;
+  std::shared_ptr<const KinematicTree> last_tree_;
   Quat last_tilt_;
   double last_z_m_ = 0;
 
@@ -235,8 +235,8 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::vector<Motor> motors_;
   std::vector<std::uint32_t> turning_;  ///< kinematic joints with a velocity target, and those that had one
   std::vector<Roll> rolls_;
-  std::vector<Linkage> grips_;
-  std::vector<Grip> told_grips_;  ///< the same, as others see them
+  std::vector<JointConstraint> grips_;
+  std::vector<Grip> published_grips_;  ///< the same, as others see them
 
   // Made when asked for, in const functions that several threads may call at once.
   mutable std::mutex refreshing_;
@@ -253,29 +253,29 @@ class PlanarEngine final : public Engine, private RayCaster {
   ContactRule rule_;
   struct Explosion {
     double excess = 0;
-    std::uint32_t lump = none;
+    std::uint32_t group = none;
     Vec2 v;
     double w_radps = 0;
   } explosion_;  ///< the worst of a step that is not made
   std::optional<Error> failure_;
 
   // Broad phase: superset of what can touch until somebody has come far.
-  Cells cells_;
+  HashGrid cells_;
   std::vector<Vec2> filed_at_;
   std::vector<double> slack_m_;
   std::vector<Candidate> candidates_;
   std::vector<std::uint32_t> near_walls_;
 
-  std::vector<Touch> touches_;  ///< of the last step, by key: their impulses are State
-  std::vector<Touch> found_;
-  std::vector<std::uint32_t> parent_, island_of_, island_lumps_, island_slots_;
-  std::vector<std::uint32_t> marked_;  ///< lumps that are in an island
-  std::vector<std::uint32_t> linked_;  ///< slots with linkages
+  std::vector<ContactPoint> contact_points_;  ///< of the last step, by key: their impulses are State
+  std::vector<ContactPoint> found_;
+  std::vector<std::uint32_t> parent_, island_of_, island_groups_, island_slots_;
+  std::vector<std::uint32_t> marked_;  ///< groups that are in an island
+  std::vector<std::uint32_t> linked_;  ///< slots with constraints
   bool linked_fresh_ = false;
-  std::vector<Planned> planned_;  ///< of those on rails, as island_lumps_
-  std::vector<double> left_m_;    ///< how far they may still come in this step, as island_lumps_
+  std::vector<Planned> planned_;  ///< of those on rails, as island_groups_
+  std::vector<double> left_m_;    ///< how far they may still come in this step, as island_groups_
   std::vector<Candidate> island_candidates_;
-  std::vector<Linkage*> island_linkages_, sorted_linkages_;
+  std::vector<JointConstraint*> island_constraints_, sorted_constraints_;
   std::vector<double> fastest_;
   std::vector<Island> islands_;
   std::size_t island_count_ = 0;

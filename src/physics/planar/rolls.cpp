@@ -20,7 +20,7 @@ void PlanarEngine::set_rolls(std::span<const RollTarget> targets) {
     SL_CHECK_MSG(t.wheel.generation == motor.generation, "no such joint");
     // Drives repeat themselves.
     if (motor.roll != none && same(rolls_[motor.roll].target, t)) continue;
-    if (!drives_[motor.slot].active || motor.role == Motor::Role::linkage) continue;
+    if (!drives_[motor.slot].active || motor.role == Motor::Role::constraint) continue;
     if (motor.roll != none) show(rolls_[motor.roll]);
     motor.target = {};
     set_roll(t.wheel.index, t, joint_states_[t.wheel.index].position);
@@ -28,7 +28,7 @@ void PlanarEngine::set_rolls(std::span<const RollTarget> targets) {
   }
 }
 
-/// From the velocity of the base's origin in its frame to that of the centre of mass in the lump's.
+/// From the velocity of the base's origin in its frame to that of the centre of mass in the group's.
 void PlanarEngine::relate(Roll& roll) const {
   const Instance& instance = instances_[roll.slot];
   const auto link = static_cast<std::size_t>(
@@ -36,7 +36,7 @@ void PlanarEngine::relate(Roll& roll) const {
   SL_CHECK_MSG(link < instance.bodies.size(), "the base is no body of the wheel's robot");
   const Pose& X_HB = instance.plan->X_HL[link];
   const Vec3 x = rotate(X_HB.q, {1, 0, 0}), y = rotate(X_HB.q, {0, 1, 0});
-  const Vec2 arm = Vec2{X_HB.p.x, X_HB.p.y} - instance.plan->lumps[0].com_H;
+  const Vec2 arm = Vec2{X_HB.p.x, X_HB.p.y} - instance.plan->groups[0].com_H;
   roll.per_way = roll.target.per_vx * Vec2{x.x, x.y} + roll.target.per_vy * Vec2{y.x, y.y};
   roll.per_turn = roll.target.per_wz + dot(roll.per_way, left_of(arm));
 }
@@ -71,10 +71,10 @@ void PlanarEngine::end_roll(std::uint32_t joint) {
 
 void PlanarEngine::show(const Roll& roll) const {
   const Drive& drive = drives_[roll.slot];
-  const Lump& lump = lumps_[instances_[roll.slot].lumps[0]];
+  const RigidGroup& group = groups_[instances_[roll.slot].groups[0]];
   JointState& joint = joint_states_[roll.target.wheel.index];
   joint.position = roll.offset + dot(roll.per_way, drive.way_m) + roll.per_turn * drive.turned_rad;
-  joint.velocity = dot(roll.per_way, rotate_back(lump.heading, lump.v)) + roll.per_turn * lump.w_radps;
+  joint.velocity = dot(roll.per_way, rotate_back(group.heading, group.v)) + roll.per_turn * group.w_radps;
   joint.effort = 0;
 }
 

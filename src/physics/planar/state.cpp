@@ -8,7 +8,7 @@ namespace {
 
 /// The fields of a saved part, visited alike by writing and reading.
 template <class Visit>
-void visit_lump(auto& l, Visit&& visit) {
+void visit_group(auto& l, Visit&& visit) {
   visit(l.p.x), visit(l.p.y), visit(l.heading.c), visit(l.heading.s), visit(l.v.x), visit(l.v.y),
       visit(l.w_radps);
   visit(l.force_N.x), visit(l.force_N.y), visit(l.torque_Nm);
@@ -31,13 +31,13 @@ void visit_roll(auto& r, Visit&& visit) {
   visit(r.target.per_vx), visit(r.target.per_vy), visit(r.target.per_wz), visit(r.offset);
 }
 template <class Visit>
-void visit_linkage(auto& l, Visit&& visit) {
+void visit_constraint(auto& l, Visit&& visit) {
   visit(l.hold.x), visit(l.hold.y), visit(l.turn);
 }
 template <class Visit>
 void visit_grip(auto& l, Visit&& visit) {
   visit(l.at_a.x), visit(l.at_a.y), visit(l.at_b.x), visit(l.at_b.y), visit(l.apart.c), visit(l.apart.s);
-  visit_linkage(l, visit);
+  visit_constraint(l, visit);
 }
 
 std::uint32_t link_of(const Instance& i, BodyId body) {
@@ -45,7 +45,7 @@ std::uint32_t link_of(const Instance& i, BodyId body) {
 }
 
 constexpr std::uint32_t rolling_mode = 3;  ///< in place of a motor's
-constexpr std::uint32_t most_touches = 1u << 24;
+constexpr std::uint32_t most_contact_points = 1u << 24;
 
 }  // namespace
 
@@ -53,13 +53,13 @@ void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
   const Instance& instance = get(id);
   const auto put = [&](const auto& x) { write(w, x); };
   refresh_rolls();
-  write(w, canonical_pose(id.index).q);  // of one that stands still; others have it in their lumps
+  write(w, canonical_pose(id.index).q);  // of one that stands still; others have it in their groups
   write(w, instance.tilt);
   put(instance.z_m);
   const Vec2 still_at = instance.still ? instance.still->at : Vec2{};
   put(still_at.x), put(still_at.y);
   visit_drive(drives_[id.index], put);
-  for (const std::uint32_t k : instance.lumps) visit_lump(lumps_[k], put);
+  for (const std::uint32_t k : instance.groups) visit_group(groups_[k], put);
   for (const JointId joint : instance.joints) {
     const JointState& state = joint_states_[joint.index];
     put(state.position), put(state.velocity), put(state.effort);
@@ -75,8 +75,8 @@ void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
     visit_target(motor.target, put);
   }
   for (const Wheel& wheel : instance.wheels) put(wheel.impulse.x), put(wheel.impulse.y);
-  for (const Linkage& l : instance.linkages) visit_linkage(l, put);
-  save_touches(id.index, w);
+  for (const JointConstraint& l : instance.constraints) visit_constraint(l, put);
+  save_contact_points(id.index, w);
 }
 
 bool PlanarEngine::load(InstanceId id, ByteReader& r) {
@@ -92,8 +92,8 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   take(z_m), take(still_at.x), take(still_at.y);
   visit_drive(drive, take);
   if (!r.ok() || drive.link >= instance.bodies.size()) return false;
-  std::vector<Lump> lumps(instance.lumps.size());
-  for (Lump& l : lumps) visit_lump(l, take);
+  std::vector<RigidGroup> groups(instance.groups.size());
+  for (RigidGroup& l : groups) visit_group(l, take);
   struct SavedJoint {
     JointState state;
     JointTarget target;
@@ -119,8 +119,8 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   }
   std::vector<Vec2> wheels(instance.wheels.size());
   for (Vec2& v : wheels) take(v.x), take(v.y);
-  std::vector<Linkage> linkages(instance.linkages.size());
-  for (Linkage& l : linkages) visit_linkage(l, take);
+  std::vector<JointConstraint> constraints(instance.constraints.size());
+  for (JointConstraint& l : constraints) visit_constraint(l, take);
   if (!r.ok()) return false;
 
   instance.tilt = tilt;
@@ -132,9 +132,9 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
     instance.still = std::make_unique<Instance::Still>(Instance::Still{.at = still_at, .q = q});
     walls_fresh_ = false;
   }
-  for (std::size_t i = 0; i < lumps.size(); ++i) {
-    Lump& to = lumps_[instance.lumps[i]];
-    const Lump& from = lumps[i];
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    RigidGroup& to = groups_[instance.groups[i]];
+    const RigidGroup& from = groups[i];
     to.p = from.p, to.heading = from.heading, to.v = from.v, to.w_radps = from.w_radps;
     to.force_N = from.force_N, to.torque_Nm = from.torque_Nm;
   }
@@ -155,39 +155,39 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
     turning_.push_back(joint.index);
   }
   for (std::size_t i = 0; i < wheels.size(); ++i) instance.wheels[i].impulse = wheels[i];
-  for (std::size_t i = 0; i < linkages.size(); ++i)
-    instance.linkages[i].hold = linkages[i].hold, instance.linkages[i].turn = linkages[i].turn;
-  for (const std::uint32_t k : instance.lumps) { place_disc(k); }
+  for (std::size_t i = 0; i < constraints.size(); ++i)
+    instance.constraints[i].hold = constraints[i].hold, instance.constraints[i].turn = constraints[i].turn;
+  for (const std::uint32_t k : instance.groups) { place_disc(k); }
   filed_ = ground_fresh_ = false;
   failure_.reset();
   explosion_ = {};
   stale();
-  return load_touches(id.index, r);
+  return load_contact_points(id.index, r);
 }
 
 /// Contacts and grips with instances that are older: each is saved once. Others are named by their place in the order of
 /// creation, which a new engine with the same instances has too.
-void PlanarEngine::save_touches(std::uint32_t slot, ByteWriter& w) const {
+void PlanarEngine::save_contact_points(std::uint32_t slot, ByteWriter& w) const {
   const Instance& instance = instances_[slot];
   const auto rank = [&](std::uint64_t created) {
     const auto at = std::partition_point(order_.begin(), order_.end(),
                                          [&](std::uint32_t s) { return instances_[s].created < created; });
     return static_cast<std::uint32_t>(at - order_.begin());
   };
-  const auto mine = [&](const Touch& t) {
+  const auto mine = [&](const ContactPoint& t) {
     return (t.key.pair & 0xffffffffu) == instance.created && (t.normal_Ns != 0 || t.tangent_Ns != 0);
   };
-  write(w, static_cast<std::uint32_t>(std::count_if(touches_.begin(), touches_.end(), mine)));
-  for (const Touch& t : touches_) {
+  write(w, static_cast<std::uint32_t>(std::count_if(contact_points_.begin(), contact_points_.end(), mine)));
+  for (const ContactPoint& t : contact_points_) {
     if (!mine(t)) continue;
     write(w, rank(t.key.pair >> 32));
-    for (const std::uint32_t x : {t.key.lumps, t.key.part_a, t.key.part_b, t.key.feature}) write(w, x);
+    for (const std::uint32_t x : {t.key.groups, t.key.part_a, t.key.part_b, t.key.feature}) write(w, x);
     write(w, t.normal_Ns);
     write(w, t.tangent_Ns);
   }
-  const auto held = [&](const Linkage& l) { return body_slot_[l.body_b.index] == slot; };
+  const auto held = [&](const JointConstraint& l) { return body_slot_[l.body_b.index] == slot; };
   write(w, static_cast<std::uint32_t>(std::count_if(grips_.begin(), grips_.end(), held)));
-  for (const Linkage& l : grips_) {
+  for (const JointConstraint& l : grips_) {
     if (!held(l)) continue;
     const Instance& other = instances_[body_slot_[l.body_a.index]];
     write(w, rank(other.created));
@@ -197,28 +197,30 @@ void PlanarEngine::save_touches(std::uint32_t slot, ByteWriter& w) const {
   }
 }
 
-bool PlanarEngine::load_touches(std::uint32_t slot, ByteReader& r) {
+bool PlanarEngine::load_contact_points(std::uint32_t slot, ByteReader& r) {
   const Instance& instance = instances_[slot];
-  std::erase_if(touches_, [&](const Touch& t) { return (t.key.pair & 0xffffffffu) == instance.created; });
-  std::erase_if(grips_, [&](const Linkage& l) { return body_slot_[l.body_b.index] == slot; });
+  std::erase_if(contact_points_,
+                [&](const ContactPoint& t) { return (t.key.pair & 0xffffffffu) == instance.created; });
+  std::erase_if(grips_, [&](const JointConstraint& l) { return body_slot_[l.body_b.index] == slot; });
   list_grips();
   std::uint32_t count = 0;
   read(r, count);
-  if (!r.ok() || count > most_touches) return false;
+  if (!r.ok() || count > most_contact_points) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
-    Touch t;
+    ContactPoint t;
     std::uint32_t rank = 0;
     read(r, rank);
-    for (std::uint32_t* x : {&t.key.lumps, &t.key.part_a, &t.key.part_b, &t.key.feature}) read(r, *x);
+    for (std::uint32_t* x : {&t.key.groups, &t.key.part_a, &t.key.part_b, &t.key.feature}) read(r, *x);
     read(r, t.normal_Ns);
     read(r, t.tangent_Ns);
     if (!r.ok() || rank >= order_.size()) return false;
     t.key.pair = instances_[order_[rank]].created << 32 | (instance.created & 0xffffffffu);
-    touches_.push_back(t);
+    contact_points_.push_back(t);
   }
-  std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) { return x.key < y.key; });
+  std::sort(contact_points_.begin(), contact_points_.end(),
+            [](const ContactPoint& x, const ContactPoint& y) { return x.key < y.key; });
   read(r, count);
-  if (!r.ok() || count > most_touches) return false;
+  if (!r.ok() || count > most_contact_points) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t rank = 0, link_a = 0, link_b = 0;
     read(r, rank);
@@ -229,7 +231,7 @@ bool PlanarEngine::load_touches(std::uint32_t slot, ByteReader& r) {
     if (link_a >= other.bodies.size() || link_b >= instance.bodies.size()) return false;
     const GripTarget grip{other.bodies[link_a], instance.bodies[link_b]};
     set_grips({&grip, 1});
-    for (Linkage& l : grips_)
+    for (JointConstraint& l : grips_)
       if (l.body_a == grip.a && l.body_b == grip.b) visit_grip(l, [&](double& x) { read(r, x); });
     if (!r.ok()) return false;
   }

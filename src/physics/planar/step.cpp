@@ -23,8 +23,8 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
   if (!(h_s > 0) || failure_) return;
   refresh_walls();
   for_each(order_.size(), 512, [&](std::size_t i) { begin(order_[i], h_s); });
-  if (explosion_.lump != none) {
-    failure_ = exploded(explosion_.lump, explosion_.v, explosion_.w_radps);
+  if (explosion_.group != none) {
+    failure_ = exploded(explosion_.group, explosion_.v, explosion_.w_radps);
     return;
   }
   if (!ground_fresh_ || ground_varies_) {
@@ -42,24 +42,26 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
                                 f.z_m <= highest + spec_.clearance_m;
                        });
     }
-    for_each(lumps_.size(), 512, [&](std::size_t k) {
-      if (lumps_[k].slot != none) find_ground(static_cast<std::uint32_t>(k));
+    for_each(groups_.size(), 512, [&](std::size_t k) {
+      if (groups_[k].slot != none) find_ground(static_cast<std::uint32_t>(k));
     });
     ground_fresh_ = true;
   }
   if (!filed_) file(h_s);
-  find_touches(h_s);
+  find_contact_points(h_s);
   find_islands(h_s);
   for_each(island_count_, 8, [&](std::size_t i) { solve(islands_[i], h_s); });
-  for_each(lumps_.size(), 512, [&](std::size_t k) {
-    if (lumps_[k].slot != none && island_of_[k] == none) move_alone(static_cast<std::uint32_t>(k), h_s);
+  for_each(groups_.size(), 512, [&](std::size_t k) {
+    if (groups_[k].slot != none && island_of_[k] == none) move_alone(static_cast<std::uint32_t>(k), h_s);
   });
   for (const std::uint32_t slot : order_)
-    if (briefs_[slot].guided) arrive(slot);
-  touches_.clear();
+    if (summaries_[slot].guided) arrive(slot);
+  contact_points_.clear();
   for (std::size_t i = 0; i < island_count_; ++i)
-    touches_.insert(touches_.end(), islands_[i].touches.begin(), islands_[i].touches.end());
-  std::sort(touches_.begin(), touches_.end(), [](const Touch& x, const Touch& y) { return x.key < y.key; });
+    contact_points_.insert(contact_points_.end(), islands_[i].contact_points.begin(),
+                           islands_[i].contact_points.end());
+  std::sort(contact_points_.begin(), contact_points_.end(),
+            [](const ContactPoint& x, const ContactPoint& y) { return x.key < y.key; });
   turn_joints(h_s);
   list_contacts(h_s);
   measure_grips(h_s);
@@ -68,65 +70,65 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
 
 /// Velocities before contacts: wrenches, drives, paths.
 void PlanarEngine::begin(std::uint32_t slot, double h_s) {
-  const Brief& brief = briefs_[slot];
-  if (!brief.moves) return;
-  const std::span<const std::uint32_t> lumps = brief.lump != none ? std::span(&brief.lump, 1)
-                                                                  : std::span(instances_[slot].lumps);
+  const InstanceSummary& summary = summaries_[slot];
+  if (!summary.moves) return;
+  const std::span<const std::uint32_t> groups = summary.group != none ? std::span(&summary.group, 1)
+                                                                      : std::span(instances_[slot].groups);
   Drive& drive = drives_[slot];
-  if (brief.guided) {
+  if (summary.guided) {
     lead(slot, h_s);
   } else {
     bool pushed = false;
-    for (const std::uint32_t k : lumps) {
-      Lump& lump = lumps_[k];
-      if (lump.force_N == Vec2{} && lump.torque_Nm == 0) continue;
-      const Vec2 v = lump.v + (h_s * lump.inverse_kg) * lump.force_N;
-      const double w = lump.w_radps + h_s * lump.inverse_kgm2 * lump.torque_Nm;
+    for (const std::uint32_t k : groups) {
+      RigidGroup& group = groups_[k];
+      if (group.force_N == Vec2{} && group.torque_Nm == 0) continue;
+      const Vec2 v = group.v + (h_s * group.inverse_kg) * group.force_N;
+      const double w = group.w_radps + h_s * group.inverse_kgm2 * group.torque_Nm;
       if (!is_sound(v, w)) {
         explode(k, v, w);
         continue;
       }
-      lump.v = v;
-      lump.w_radps = w;
-      lump.force_N = {};
-      lump.torque_Nm = 0;
+      group.v = v;
+      group.w_radps = w;
+      group.force_N = {};
+      group.torque_Nm = 0;
       pushed = true;
     }
     if (drive.active) {
-      Lump& lump = lumps_[lumps[0]];
+      RigidGroup& group = groups_[groups[0]];
       if (pushed) {
         drive.now = {
-            rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
-            lump.w_radps};
+            rotate_back(group.heading * drive.frame, group.velocity_at(rotate(group.heading, drive.arm))),
+            group.w_radps};
       }
       const Twist had = drive.now;
-      const Vec2 v = lump.v;
-      const double w = lump.w_radps;
-      plan_drive(slot, lump, h_s);
-      if (!is_sound(lump.v, lump.w_radps)) {
-        explode(lumps[0], lump.v, lump.w_radps);
-        drive.now = had, lump.v = v, lump.w_radps = w;
+      const Vec2 v = group.v;
+      const double w = group.w_radps;
+      plan_drive(slot, group, h_s);
+      if (!is_sound(group.v, group.w_radps)) {
+        explode(groups[0], group.v, group.w_radps);
+        drive.now = had, group.v = v, group.w_radps = w;
       }
     }
   }
   const bool filed = filed_.load(std::memory_order_relaxed);
-  for (const std::uint32_t k : lumps) {
-    Lump& lump = lumps_[k];
-    if (!is_sound(lump.v, lump.w_radps)) explode(k, lump.v, lump.w_radps);
-    lump.reach_m = reach(lump, h_s);
-    if (!(drive.active && lump.index == 0)) {  // else nothing rubs
-      rubbing_[k].impulse = {};
-      rubbing_[k].twist = 0;
+  for (const std::uint32_t k : groups) {
+    RigidGroup& group = groups_[k];
+    if (!is_sound(group.v, group.w_radps)) explode(k, group.v, group.w_radps);
+    group.reach_m = reach(group, h_s);
+    if (!(drive.active && group.index == 0)) {  // else nothing rubs
+      ground_friction_[k].impulse = {};
+      ground_friction_[k].twist = 0;
     }
     // The candidates must hold all that may touch in this step.
     if (!filed) continue;
     const Vec2 d = map_.discs()[k].centre - filed_at_[k];
-    const double left = slack_m_[k] - lump.reach_m;
+    const double left = slack_m_[k] - group.reach_m;
     if (!(left >= 0 && dot(d, d) <= left * left)) filed_.store(false, std::memory_order_relaxed);
   }
 }
 
-void PlanarEngine::plan_drive(std::uint32_t slot, Lump& lump, double h_s) {
+void PlanarEngine::plan_drive(std::uint32_t slot, RigidGroup& group, double h_s) {
   Drive& drive = drives_[slot];
   Vec2 turning{drive.now.w_radps, 0};
   Twist mean;
@@ -138,48 +140,48 @@ void PlanarEngine::plan_drive(std::uint32_t slot, Lump& lump, double h_s) {
   means_[slot] = {v_mps, mean.w_radps};
   // The chord of the arc, so that a step along it ends on the arc.
   const double half = 0.5 * mean.w_radps * h_s;
-  Turn middle = lump.heading;
+  Turn middle = group.heading;
   double sinc = 1;
   if (half != 0) {
     const Turn turn = turn_of(half);
     sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn.s / half;
-    middle = lump.heading * turn;
+    middle = group.heading * turn;
   }
-  lump.v = sinc * rotate(middle, v_mps);
-  lump.w_radps = mean.w_radps;
+  group.v = sinc * rotate(middle, v_mps);
+  group.w_radps = mean.w_radps;
 }
 
-/// What a drive has reached, after its lump has moved as planned.
-void PlanarEngine::finish_drive(std::uint32_t slot, Lump& lump, double h_s) {
+/// What a drive has reached, after its group has moved as planned.
+void PlanarEngine::finish_drive(std::uint32_t slot, RigidGroup& group, double h_s) {
   Drive& drive = drives_[slot];
   const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
-  lump.v = rotate(lump.heading, v);
-  lump.w_radps = drive.now.w_radps;
+  group.v = rotate(group.heading, v);
+  group.w_radps = drive.now.w_radps;
   drive.way_m = drive.way_m + h_s * means_[slot].v_mps;
   drive.turned_rad += h_s * means_[slot].w_radps;
 }
 
 /// The same of one that was hindered: the arc from where it was to where it has come.
-void PlanarEngine::finish_hindered(std::uint32_t slot, Lump& lump, const Planned& planned) {
+void PlanarEngine::finish_hindered(std::uint32_t slot, RigidGroup& group, const Planned& planned) {
   Drive& drive = drives_[slot];
-  const Turn turn = Turn{planned.heading.c, -planned.heading.s} * lump.heading;
+  const Turn turn = Turn{planned.heading.c, -planned.heading.s} * group.heading;
   const double half = 0.5 * math::atan2(turn.s, turn.c);
   const double sinc = std::abs(half) <= math::pi / 4 ? small_sinc(half) : turn_of(half).s / half;
-  drive.way_m = drive.way_m + (1 / sinc) * rotate_back(planned.heading * turn_of(half), lump.p - planned.p);
+  drive.way_m = drive.way_m + (1 / sinc) * rotate_back(planned.heading * turn_of(half), group.p - planned.p);
   drive.turned_rad += 2 * half;
-  drive.now = {rotate_back(lump.heading * drive.frame, lump.velocity_at(rotate(lump.heading, drive.arm))),
-               lump.w_radps};
+  drive.now = {rotate_back(group.heading * drive.frame, group.velocity_at(rotate(group.heading, drive.arm))),
+               group.w_radps};
 }
 
-/// How far a lump can come in a step at most: what comes of a collision has to wait for the next.
-double PlanarEngine::reach(const Lump& lump, double h_s) const {
-  return lump.plan->reach_share_m + 2 * h_s * std::sqrt(dot(lump.v, lump.v));
+/// How far a group can come in a step at most: what comes of a collision has to wait for the next.
+double PlanarEngine::reach(const RigidGroup& group, double h_s) const {
+  return group.plan->reach_share_m + 2 * h_s * std::sqrt(dot(group.v, group.v));
 }
 
 // --- broad phase ----------------------------------------------------------------------------------------------------
 
 void PlanarEngine::file(double) {
-  const auto count = static_cast<std::uint32_t>(lumps_.size());
+  const auto count = static_cast<std::uint32_t>(groups_.size());
   filed_at_.resize(count);
   slack_m_.resize(count);
   candidates_.clear();
@@ -194,8 +196,8 @@ void PlanarEngine::file(double) {
   cells_.build(count, [&](std::uint32_t k) {
     const Disc& disc = map_.discs()[k];
     filed_at_[k] = disc.centre;
-    slack_m_[k] = lumps_[k].reach_m + std::min(0.5 * disc.radius_m, 0.05);
-    if (lumps_[k].slot == none || !(disc.radius_m > 0)) return Cells::Range{};
+    slack_m_[k] = groups_[k].reach_m + std::min(0.5 * disc.radius_m, 0.05);
+    if (groups_[k].slot == none || !(disc.radius_m > 0)) return HashGrid::Range{};
     return cells_.cover(area(k));
   });
   const auto meets = [&](std::uint32_t a, std::uint32_t b) {
@@ -203,13 +205,13 @@ void PlanarEngine::file(double) {
     const double far = x.radius_m + y.radius_m + slack_m_[a] + slack_m_[b];
     const Vec2 d = y.centre - x.centre;
     if (!(dot(d, d) < far * far) || !meet(x.heights, y.heights, spec_.clearance_m)) return;
-    const Lump *first = &lumps_[a], *second = &lumps_[b];
+    const RigidGroup *first = &groups_[a], *second = &groups_[b];
     if (first->inverse_kg == 0 && second->inverse_kg == 0) return;
     if (first->slot == second->slot) {
       if (first->index > second->index) std::swap(a, b), std::swap(first, second);
       const Instance& instance = instances_[first->slot];
       if (!instance.model->self_collide) return;
-      for (const Linkage& l : instance.linkages)
+      for (const JointConstraint& l : instance.constraints)
         if ((l.a == a && l.b == b) || (l.a == b && l.b == a)) return;
     } else if (instances_[first->slot].created > instances_[second->slot].created) {
       std::swap(a, b), std::swap(first, second);
@@ -228,8 +230,8 @@ void PlanarEngine::file(double) {
   if (!map_.walls().empty())
     for (std::uint32_t k = 0; k < count; ++k) {
       const Disc& disc = map_.discs()[k];
-      const Lump& lump = lumps_[k];
-      if (lump.slot == none || !(disc.radius_m > 0) || lump.inverse_kg == 0) continue;
+      const RigidGroup& group = groups_[k];
+      if (group.slot == none || !(disc.radius_m > 0) || group.inverse_kg == 0) continue;
       map_.walls_near(area(k), near_walls_);
       for (const std::uint32_t w : near_walls_) {
         const Wall& wall = map_.walls()[w];
@@ -239,13 +241,13 @@ void PlanarEngine::file(double) {
         if (!(dot(d, d) < far * far)) continue;
         if (!(nearest(wall.outline, map_.edges(), disc.centre).distance_m < disc.radius_m + slack_m_[k]))
           continue;
-        const std::uint64_t mine = instances_[lump.slot].created, its = instances_[wall.instance].created;
+        const std::uint64_t mine = instances_[group.slot].created, its = instances_[wall.instance].created;
         Candidate c{.key = {}, .wall = w};
         if (mine < its) {
-          c.key = {mine << 32 | (its & 0xffffffffu), lump.index << 16, 0, wall.ordinal};
+          c.key = {mine << 32 | (its & 0xffffffffu), group.index << 16, 0, wall.ordinal};
           c.a = k;
         } else {
-          c.key = {its << 32 | (mine & 0xffffffffu), lump.index, wall.ordinal};
+          c.key = {its << 32 | (mine & 0xffffffffu), group.index, wall.ordinal};
           c.b = k;
         }
         candidates_.push_back(c);
@@ -261,10 +263,10 @@ void PlanarEngine::file(double) {
 
 // --- islands --------------------------------------------------------------------------------------------------------
 
-void PlanarEngine::find_touches(double h_s) {
+void PlanarEngine::find_contact_points(double h_s) {
   found_.clear();
   for (const Candidate& c : candidates_) collide(c, h_s, found_);
-  const auto before = [](const Touch& x, const Touch& y) { return x.key < y.key; };
+  const auto before = [](const ContactPoint& x, const ContactPoint& y) { return x.key < y.key; };
   if (!std::is_sorted(found_.begin(), found_.end(), before)) std::sort(found_.begin(), found_.end(), before);
   remember(found_);
 }
@@ -273,7 +275,7 @@ void PlanarEngine::refresh_linked() {
   if (std::exchange(linked_fresh_, true)) return;
   linked_.clear();
   for (const std::uint32_t slot : order_)
-    if (!instances_[slot].linkages.empty()) linked_.push_back(slot);
+    if (!instances_[slot].constraints.empty()) linked_.push_back(slot);
 }
 
 std::uint32_t PlanarEngine::root(std::uint32_t k) {
@@ -282,7 +284,7 @@ std::uint32_t PlanarEngine::root(std::uint32_t k) {
 }
 
 void PlanarEngine::unite(std::uint32_t a, std::uint32_t b) {
-  const auto join = [&](std::uint32_t k) { return k == none || lumps_[k].inverse_kg == 0 ? none : k; };
+  const auto join = [&](std::uint32_t k) { return k == none || groups_[k].inverse_kg == 0 ? none : k; };
   a = join(a), b = join(b);
   for (const std::uint32_t k : {a, b})
     if (k != none && island_of_[k] == none) island_of_[k] = 0, marked_.push_back(k);
@@ -293,29 +295,30 @@ void PlanarEngine::unite(std::uint32_t a, std::uint32_t b) {
 }
 
 void PlanarEngine::find_islands(double h_s) {
-  const std::size_t count = lumps_.size();
+  const std::size_t count = groups_.size();
   parent_.resize(count);
   island_of_.assign(count, none);
   marked_.clear();
   for (std::uint32_t k = 0; k < count; ++k) parent_[k] = k;
-  for (const Touch& t : found_) unite(t.a, t.b);
-  island_linkages_.clear();
+  for (const ContactPoint& t : found_) unite(t.a, t.b);
+  island_constraints_.clear();
   refresh_linked();
   for (const std::uint32_t slot : linked_)
-    for (Linkage& l : instances_[slot].linkages) island_linkages_.push_back(&l);
-  for (Linkage& l : grips_)
-    if (l.a != none || l.b != none) island_linkages_.push_back(&l);
-  for (const Linkage* l : island_linkages_) unite(l->a, l->b);
+    for (JointConstraint& l : instances_[slot].constraints) island_constraints_.push_back(&l);
+  for (JointConstraint& l : grips_)
+    if (l.a != none || l.b != none) island_constraints_.push_back(&l);
+  for (const JointConstraint* l : island_constraints_) unite(l->a, l->b);
   // Whoever is fast goes from impact to impact together with all that it may hit on the way.
   const double fast = 0.25;
   const auto core = [&](std::uint32_t k) {
-    return k == none ? std::numeric_limits<double>::infinity() : lumps_[k].plan->core_m;
+    return k == none ? std::numeric_limits<double>::infinity() : groups_[k].plan->core_m;
   };
   const auto way = [&](std::uint32_t k) {
     if (k == none) return 0.0;
-    const Lump& lump = lumps_[k];
-    const double turned = lump.figure == none ? 0 : h_s * std::abs(lump.w_radps) * map_.discs()[k].radius_m;
-    return lump.reach_m - lump.plan->reach_share_m + turned;
+    const RigidGroup& group = groups_[k];
+    const double turned = group.silhouette == none ? 0
+                                                   : h_s * std::abs(group.w_radps) * map_.discs()[k].radius_m;
+    return group.reach_m - group.plan->reach_share_m + turned;
   };
   for (int pass = 0; pass < 2; ++pass) {
     fastest_.resize(count);  // 0 but for those in islands
@@ -332,9 +335,9 @@ void PlanarEngine::find_islands(double h_s) {
   }
   for (const std::uint32_t k : marked_) fastest_[k] = 0;
   island_count_ = 0;
-  // Islands in the order of their first lumps' creation.
+  // Islands in the order of their first groups' creation.
   std::sort(marked_.begin(), marked_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const Lump &x = lumps_[a], &y = lumps_[b];
+    const RigidGroup &x = groups_[a], &y = groups_[b];
     return x.slot == y.slot ? x.index < y.index : instances_[x.slot].created < instances_[y.slot].created;
   });
   island_slots_.resize(count);  // by root: its island
@@ -345,11 +348,11 @@ void PlanarEngine::find_islands(double h_s) {
       island = static_cast<std::uint32_t>(island_count_++);
       if (islands_.size() < island_count_) islands_.emplace_back();
       Island& fresh = islands_[island];
-      fresh.lumps = fresh.candidates = fresh.linkages = 0;
-      fresh.touches.clear();
+      fresh.groups = fresh.candidates = fresh.constraints = 0;
+      fresh.contact_points.clear();
     }
     island_of_[k] = island;
-    ++islands_[island].lumps;
+    ++islands_[island].groups;
   }
   const auto island_at = [&](std::uint32_t a, std::uint32_t b) {
     if (a != none && island_of_[a] != none) return island_of_[a];
@@ -363,32 +366,32 @@ void PlanarEngine::find_islands(double h_s) {
   };
   for (const Candidate& c : candidates_)
     if (const std::uint32_t i = island_of_pair(c); i != none) ++islands_[i].candidates;
-  for (const Linkage* l : island_linkages_)
-    if (const std::uint32_t i = island_at(l->a, l->b); i != none) ++islands_[i].linkages;
-  std::uint32_t lump = 0, candidate = 0, linkage = 0;
+  for (const JointConstraint* l : island_constraints_)
+    if (const std::uint32_t i = island_at(l->a, l->b); i != none) ++islands_[i].constraints;
+  std::uint32_t group = 0, candidate = 0, constraint = 0;
   for (std::size_t i = 0; i < island_count_; ++i) {
     Island& island = islands_[i];
-    island.first_lump = lump, island.first_candidate = candidate, island.first_linkage = linkage;
-    lump += island.lumps, candidate += island.candidates, linkage += island.linkages;
-    island.lumps = island.candidates = island.linkages = 0;
+    island.first_group = group, island.first_candidate = candidate, island.first_constraint = constraint;
+    group += island.groups, candidate += island.candidates, constraint += island.constraints;
+    island.groups = island.candidates = island.constraints = 0;
   }
-  island_lumps_.resize(lump);
+  island_groups_.resize(group);
   island_candidates_.resize(candidate);
-  sorted_linkages_.resize(linkage);
+  sorted_constraints_.resize(constraint);
   for (const std::uint32_t k : marked_) {
     Island& island = islands_[island_of_[k]];
-    island_lumps_[island.first_lump + island.lumps++] = k;
+    island_groups_[island.first_group + island.groups++] = k;
   }
-  planned_.resize(lump);
-  left_m_.resize(lump);
+  planned_.resize(group);
+  left_m_.resize(group);
   for (const Candidate& c : candidates_)
     if (const std::uint32_t i = island_of_pair(c); i != none)
       island_candidates_[islands_[i].first_candidate + islands_[i].candidates++] = c;
-  for (Linkage* l : island_linkages_)
+  for (JointConstraint* l : island_constraints_)
     if (const std::uint32_t i = island_at(l->a, l->b); i != none)
-      sorted_linkages_[islands_[i].first_linkage + islands_[i].linkages++] = l;
-  for (const Touch& t : found_)
-    if (const std::uint32_t i = island_at(t.a, t.b); i != none) islands_[i].touches.push_back(t);
+      sorted_constraints_[islands_[i].first_constraint + islands_[i].constraints++] = l;
+  for (const ContactPoint& t : found_)
+    if (const std::uint32_t i = island_at(t.a, t.b); i != none) islands_[i].contact_points.push_back(t);
 }
 
 // --- afterwards -----------------------------------------------------------------------------------------------------
@@ -419,7 +422,7 @@ void PlanarEngine::turn_joints(double h_s) {
 
 void PlanarEngine::list_contacts(double h_s) {
   contacts_.clear();
-  for (const Touch& t : touches_) {
+  for (const ContactPoint& t : contact_points_) {
     const double normal_Ns = t.normal_Ns + t.bounce_Ns;
     if (!(normal_Ns > 0) && t.gap_m > 0) continue;
     const Vec2 force = (1 / h_s) *

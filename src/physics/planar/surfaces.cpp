@@ -17,29 +17,30 @@ double friction_along(const PairSurface& pair, Vec3 normal, Vec3 way) {
   return size > 0 ? pair.mu * pair.mu2 / size : 0;
 }
 
-/// Of the shape in W; a lump's joints at 0.
-Pose PlanarEngine::pose_of(const Face& face) const {
+/// Of the shape in W; a group's joints at 0.
+Pose PlanarEngine::pose_of(const ContactFace& face) const {
   const Instance& instance = instances_[face.slot];
   const model::Link& link = instance.model->links[face.link];
-  if (!face.lump)
+  if (!face.group)
     return canonical_pose(face.slot) * inverse(instance.model->links[0].X_ML) * link.X_ML *
            face.collision->X_LC;
-  const Lump& lump = *face.lump;
-  const Vec2 p = lump.p - rotate(lump.heading, instance.plan->lumps[lump.index].com_H);
-  const Pose X_WL = Pose{{p.x, p.y, 0}, about_z(lump.heading)} * instance.plan->X_HL[face.link];
+  const RigidGroup& group = *face.group;
+  const Vec2 p = group.p - rotate(group.heading, instance.plan->groups[group.index].com_H);
+  const Pose X_WL = Pose{{p.x, p.y, 0}, about_z(group.heading)} * instance.plan->X_HL[face.link];
   return face.collision ? X_WL * face.collision->X_LC : X_WL;
 }
 
 /// @param a  the older
-PairSurface PlanarEngine::surfaces_at(const Face& a, const Face& b, Vec3 point, Vec3 normal) const {
-  const auto side = [&](const Face& f) -> SurfaceSide {
-    if (!f.lump)
+PairSurface PlanarEngine::surfaces_at(const ContactFace& a, const ContactFace& b, Vec3 point,
+                                      Vec3 normal) const {
+  const auto side = [&](const ContactFace& f) -> SurfaceSide {
+    if (!f.group)
       if (const model::SurfaceZone* const zone = zones_.find(point)) return {zone->surface, {}};
     return {*f.surface, is_plain(*f.surface) ? Quat{} : pose_of(f).q};
   };
   PairSurface pair = combine(side(a), side(b), normal);
   if (rule_ && a.collision && b.collision) {
-    const auto told = [&](const Face& f) -> ContactSide {
+    const auto told = [&](const ContactFace& f) -> ContactSide {
       const Instance& instance = instances_[f.slot];
       return {instance.name, instance.model->links[f.link], *f.collision, pose_of(f)};
     };
@@ -74,15 +75,15 @@ double PlanarEngine::excess(Vec2 v, double w) const {
 void PlanarEngine::explode(std::uint32_t k, Vec2 v, double w) {
   const std::lock_guard lock(refreshing_);
   const double mine = excess(v, w);
-  if (mine > explosion_.excess || (mine == explosion_.excess && k < explosion_.lump))
+  if (mine > explosion_.excess || (mine == explosion_.excess && k < explosion_.group))
     explosion_ = {mine, k, v, w};
 }
 
 Error PlanarEngine::exploded(std::uint32_t k, Vec2 v, double w) const {
-  const Lump& lump = lumps_[k];
-  const Instance& instance = instances_[lump.slot];
+  const RigidGroup& group = groups_[k];
+  const Instance& instance = instances_[group.slot];
   const std::string name = instance.name + "/" +
-                           instance.model->links[instance.plan->lumps[lump.index].root].name;
+                           instance.model->links[instance.plan->groups[group.index].root].name;
   if (!std::isfinite(excess(v, w))) return not_finite(name);
   return sandlot::exploded(name, {std::sqrt(dot(v, v)), spec_.max_speed_mps},
                            {std::abs(w), spec_.max_spin_radps});
@@ -95,8 +96,8 @@ Status PlanarEngine::check_finite() const {
   for (const std::uint32_t slot : order_) {
     const Instance& instance = instances_[slot];
     double sum = instance.z_m;
-    for (const std::uint32_t k : instance.lumps) {
-      const Lump& b = lumps_[k];
+    for (const std::uint32_t k : instance.groups) {
+      const RigidGroup& b = groups_[k];
       sum += b.p.x + b.p.y + b.heading.c + b.heading.s;
       if (is_sound(b.v, b.w_radps)) continue;
       if (const double mine = excess(b.v, b.w_radps); mine > worst) worst = mine, exploding = k;
@@ -105,7 +106,7 @@ Status PlanarEngine::check_finite() const {
       sum += joint_states_[joint.index].position + joint_states_[joint.index].velocity;
     if (!std::isfinite(sum)) return not_finite(instance.name + "/" + instance.model->links[0].name);
   }
-  if (exploding != none) return exploded(exploding, lumps_[exploding].v, lumps_[exploding].w_radps);
+  if (exploding != none) return exploded(exploding, groups_[exploding].v, groups_[exploding].w_radps);
   return {};
 }
 

@@ -138,7 +138,7 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
   if (instance.wheels.empty() || drives_[slot].active) return;
   steer(slot, h_s);
   for (Wheel& wheel : instance.wheels) {
-    Lump& lump = lumps_[wheel.lump];
+    RigidGroup& group = groups_[wheel.group];
     Vec2 at = wheel.at, ahead{1, 0}, across{0, 1};
     if (!wheel.now) wheel.now = std::make_unique<Wheel::Now>();
     wheel.now->roll_m = 0;
@@ -159,27 +159,27 @@ void PlanarEngine::prepare_wheels(std::uint32_t slot, double h_s) {
     if (wheel.plan && wheel.plan->rollers) wheel.impulse.y = 0;
     const double size = std::sqrt(dot(wheel.impulse, wheel.impulse)), most = h_s * wheel.limit_N;
     if (size > most) wheel.impulse = (most / size) * wheel.impulse;
-    wheel.now->ahead = rotate(lump.heading, ahead);
-    wheel.now->across = rotate(lump.heading, across);
-    wheel.now->arm = rotate(lump.heading, at);
+    wheel.now->ahead = rotate(group.heading, ahead);
+    wheel.now->across = rotate(group.heading, across);
+    wheel.now->arm = rotate(group.heading, at);
   }
   const bool one = std::all_of(instance.wheels.begin(), instance.wheels.end(),
-                               [&](const Wheel& w) { return w.lump == instance.wheels[0].lump; });
+                               [&](const Wheel& w) { return w.group == instance.wheels[0].group; });
   if (one) ease(instance.wheels);
   Turn half;
   std::uint32_t of = none;
   for (Wheel& wheel : instance.wheels) {
-    Lump& lump = lumps_[wheel.lump];
-    // The turn of half a step, by the rate before any of this lump's wheels have pushed.
-    if (wheel.lump != of) half = turn_of(0.5 * h_s * lump.w_radps), of = wheel.lump;
-    lump.push(wheel.impulse.x * wheel.now->ahead + wheel.impulse.y * wheel.now->across, wheel.now->arm);
+    RigidGroup& group = groups_[wheel.group];
+    // The turn of half a step, by the rate before any of this group's wheels have pushed.
+    if (wheel.group != of) half = turn_of(0.5 * h_s * group.w_radps), of = wheel.group;
+    group.push(wheel.impulse.x * wheel.now->ahead + wheel.impulse.y * wheel.now->across, wheel.now->arm);
     wheel.now->ahead = rotate(half, wheel.now->ahead);
     wheel.now->across = rotate(half, wheel.now->across);
     wheel.now->arm = rotate(half, wheel.now->arm);
     const double a = cross(wheel.now->arm, wheel.now->ahead), c = cross(wheel.now->arm, wheel.now->across);
-    wheel.now->k_aa = lump.inverse_kg + lump.inverse_kgm2 * a * a;
-    wheel.now->k_ac = wheel.plan && wheel.plan->rollers ? 0 : lump.inverse_kgm2 * a * c;
-    wheel.now->k_cc = lump.inverse_kg + lump.inverse_kgm2 * c * c;
+    wheel.now->k_aa = group.inverse_kg + group.inverse_kgm2 * a * a;
+    wheel.now->k_ac = wheel.plan && wheel.plan->rollers ? 0 : group.inverse_kgm2 * a * c;
+    wheel.now->k_cc = group.inverse_kg + group.inverse_kgm2 * c * c;
   }
 }
 
@@ -191,9 +191,9 @@ double PlanarEngine::turn_wheels(std::uint32_t slot, double h_s) {
   for (Wheel& wheel : instance.wheels) {
     const double most = h_s * wheel.limit_N;
     if (!(most > 0)) continue;
-    Lump& lump = lumps_[wheel.lump];
+    RigidGroup& group = groups_[wheel.group];
     const bool one_way = wheel.plan && wheel.plan->rollers;
-    const Vec2 v = lump.velocity_at(wheel.now->arm) - wheel.belt_mps, before = wheel.impulse;
+    const Vec2 v = group.velocity_at(wheel.now->arm) - wheel.belt_mps, before = wheel.impulse;
     const double va = dot(v, wheel.now->ahead), vc = one_way ? 0 : dot(v, wheel.now->across);
     Vec2 j = before;
     double held = -1;
@@ -224,7 +224,7 @@ double PlanarEngine::turn_wheels(std::uint32_t slot, double h_s) {
     }
     const Vec2 d = j - before;
     wheel.impulse = j;
-    lump.push(d.x * wheel.now->ahead + d.y * wheel.now->across, wheel.now->arm);
+    group.push(d.x * wheel.now->ahead + d.y * wheel.now->across, wheel.now->arm);
     change = std::max({change, std::abs(d.x) * wheel.now->k_aa, std::abs(d.y) * wheel.now->k_cc});
   }
   return change;

@@ -168,12 +168,12 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   library::prepare_thread();
   SL_TRY(check(declared));
   const model::Model& model = *declared.model;
-  SL_ASSIGN(Lumps lumps, lump_links(model, declared.motion.has_value()));
-  lock_rollers(model, lumps);
-  for (const Lump& lump : lumps.lumps)
-    for (const std::uint32_t l : lump.links)
+  SL_ASSIGN(RigidGroups groups, group_links(model, declared.motion.has_value()));
+  lock_rollers(model, groups);
+  for (const RigidGroup& group : groups.groups)
+    for (const std::uint32_t l : group.links)
       for (const model::Collision& c : model.links[l].collisions)
-        if (!lump.fixed &&
+        if (!group.fixed &&
             (std::holds_alternative<Plane>(c.shape) || std::holds_alternative<Heightfield>(c.shape)))
           return Error{"collision '" + c.name + "' is a " + shape_name(c.shape) + " on a body that moves",
                        "make the model static, or use a box", c.place};
@@ -187,7 +187,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   instance.model = declared.model;
   instance.is_robot = declared.is_robot;
   instance.guided = declared.motion.has_value();
-  make_bodies(instance, lumps);
+  make_bodies(instance, groups);
   give_ids(instance);
   make_geoms(instance);
   order_.push_back(&instance);
@@ -196,23 +196,23 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   return instance.id;
 }
 
-void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
+void RigidEngine::make_bodies(Instance& instance, const RigidGroups& groups) {
   const model::Model& model = *instance.model;
-  std::vector<Body*> of_lump(lumps.lumps.size(), nullptr);
-  instance.bodies.reserve(lumps.lumps.size());
-  for (std::size_t i = 0; i < lumps.lumps.size(); ++i) {
-    const Lump& lump = lumps.lumps[i];
-    if (lump.fixed) continue;
+  std::vector<Body*> of_group(groups.groups.size(), nullptr);
+  instance.bodies.reserve(groups.groups.size());
+  for (std::size_t i = 0; i < groups.groups.size(); ++i) {
+    const RigidGroup& group = groups.groups[i];
+    if (group.fixed) continue;
     Body& body = instance.bodies.emplace_back();
-    of_lump[i] = &body;
+    of_group[i] = &body;
     body.instance = &instance;
-    body.mass_kg = lump.mass_kg;
-    instance.mass_kg += lump.mass_kg;
-    body.inertia_B = lump.inertia_B;
-    body.X_MB = lump.X_MB;
-    body.gravity_mass_kg = lump.gravity_mass_kg;
-    body.gravity_point_B = lump.gravity_point_B;
-    body.weighs_partly = lump.gravity_mass_kg < lump.mass_kg * (1 - 1e-12);
+    body.mass_kg = group.mass_kg;
+    instance.mass_kg += group.mass_kg;
+    body.inertia_B = group.inertia_B;
+    body.X_MB = group.X_MB;
+    body.gravity_mass_kg = group.gravity_mass_kg;
+    body.gravity_point_B = group.gravity_point_B;
+    body.weighs_partly = group.gravity_mass_kg < group.mass_kg * (1 - 1e-12);
     body.ode = dBodyCreate(world_);
     dMass mass;
     const Symmetric3& t = body.inertia_B;
@@ -228,13 +228,13 @@ void RigidEngine::make_bodies(Instance& instance, const Lumps& lumps) {
   instance.links.resize(model.links.size());
   for (std::uint32_t l = 0; l < model.links.size(); ++l) {
     Link& link = instance.links[l];
-    link.body = of_lump[lumps.of_link[l]];
-    const Lump& lump = lumps.lumps[lumps.of_link[l]];
+    link.body = of_group[groups.of_link[l]];
+    const RigidGroup& group = groups.groups[groups.of_link[l]];
     link.X_BL = model.links[l].X_ML;
     if (!link.body) continue;
     link.X_BL = inverse(link.body->X_MB) * model.links[l].X_ML;
-    if (l == lump.links.front()) link.X_BL.q = {};  // exactly: B takes its axes from this link
-    if (lump.links.size() == 1 && !lump.has_rollers) link.X_BL.p = -model.links[l].inertial.X_LCo.p;
+    if (l == group.links.front()) link.X_BL.q = {};  // exactly: B takes its axes from this link
+    if (group.links.size() == 1 && !group.has_rollers) link.X_BL.p = -model.links[l].inertial.X_LCo.p;
   }
 
   instance.joints.resize(model.joints.size());

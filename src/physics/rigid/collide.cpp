@@ -3,8 +3,9 @@
 #include <tuple>
 
 #include "physics/rigid/barrel_contacts.h"
+#include "physics/rigid/cylinder_contacts.h"
+#include "physics/rigid/ode_vector.h"
 #include "physics/rigid/rigid_engine.h"
-#include "physics/rigid/round.h"
 #include "physics/rigid/surface.h"
 #include "physics/rigid/wheels.h"
 
@@ -19,8 +20,6 @@ double load_on(const Geom& g) {
 bool is_awake(const Geom& g) { return g.body ? g.body->awake : g.instance->is_moving(); }
 
 constexpr std::size_t most_points = 512;  ///< of one pair, before they are thinned out
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 /// Across the axis of a roller that is no body of its own friction is that of its bearing, a force [N].
 void give_way(dSurfaceParameters& surface, const model::RollerWheel& wheel) {
@@ -409,7 +408,7 @@ void RigidEngine::attach_contacts(double h) {
   for (const Hit& hit : hits()) {
     const dJointID joint = dJointCreateContact(world_, contact_joints_, &hit.contact);
     dJointAttach(joint, hit.a->body ? hit.a->body->ode : nullptr, hit.b->body ? hit.b->body->ode : nullptr);
-    if (watching) tell_contact(*hit.a, *hit.b, joint);
+    if (watching) watch_contact(*hit.a, *hit.b, joint);
   }
   counters_.contacts = contacts_.size();
 }

@@ -4,12 +4,11 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "physics/rigid/ode_vector.h"
 #include "physics/rigid/rigid_engine.h"
 
 namespace sandlot::rigid {
 namespace {
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 Pose pose_of(const Body* body) { return body ? body->pose() : Pose{}; }
 
@@ -93,11 +92,11 @@ void RigidEngine::let_go(const Instance& instance) {
 /// What grips() shows; forces are those of the last sub-step where there was one.
 void RigidEngine::list_grips() {
   std::vector<Grip> before;
-  swap(before, told_grips_);
+  swap(before, published_grips_);
   for (const Held& held : grips_) {
     const auto same = std::find_if(before.begin(), before.end(),
                                    [&](const Grip& g) { return g.a == held.link_a && g.b == held.link_b; });
-    told_grips_.push_back(same != before.end() ? *same : Grip{held.link_a, held.link_b, {}});
+    published_grips_.push_back(same != before.end() ? *same : Grip{held.link_a, held.link_b, {}});
   }
 }
 
@@ -137,7 +136,7 @@ void RigidEngine::measure_grips() {
     // The first body that was attached has f1; that of two is A.
     const Vec3 f1 = vec(grip.load.f1), t1 = vec(grip.load.t1), f2 = vec(grip.load.f2), t2 = vec(grip.load.t2);
     const bool both = grip.a && grip.b;
-    told_grips_[i].force_N = both ? f2 : grip.b ? f1 : -f1;
+    published_grips_[i].force_N = both ? f2 : grip.b ? f1 : -f1;
     if (watched_joints_.empty()) continue;
     const auto push = [&](const Instance* instance, BodyId link, const Body* body, Vec3 force, Vec3 torque) {
       if (body) pushes_.push_back({instance, link_slots_[link.index].link, body->p, force, torque});

@@ -188,7 +188,7 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
 /// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's normal force,
 /// is an equation between velocities at a point: with the point at radius c = pitch / (2 pi) from the axis and the
 /// direction half along the axis, half round it, it says slide - c turn = 0.
-void couple_thread(dWorldID world, dJointGroupID group, Joint& j, double erp, double h) {
+void add_thread_row(dWorldID world, dJointGroupID group, Joint& j, double erp, double h) {
   const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
   const Vec3 axis = axis_W(j), radial = rotate(on_parent.q, second_to(j.decl->axis_J));
   const double per_rad = j.decl->thread_pitch_m / math::tau;
@@ -210,25 +210,25 @@ void couple_thread(dWorldID world, dJointGroupID group, Joint& j, double erp, do
     contact.fdir1[k] = direction[k];
   }
   Body* const second = second_body(j);
-  j.thread = dJointCreateContact(world, group, &contact);
-  dJointAttach(j.thread, first_body(j).ode, second ? second->ode : nullptr);
+  j.thread_row = dJointCreateContact(world, group, &contact);
+  dJointAttach(j.thread_row, first_body(j).ode, second ? second->ode : nullptr);
 }
 
-void rub(dWorldID world, dJointGroupID group, Joint& j) {
+void add_friction_row(dWorldID world, dJointGroupID group, Joint& j) {
   Body* const second = second_body(j);
   const Vec3 axis = reversed(j) ? -axis_W(j) : axis_W(j);
   const bool turns = j.turns();
-  j.rubbing = turns ? dJointCreateAMotor(world, group) : dJointCreateLMotor(world, group);
-  dJointAttach(j.rubbing, first_body(j).ode, second ? second->ode : nullptr);
+  j.friction_row = turns ? dJointCreateAMotor(world, group) : dJointCreateLMotor(world, group);
+  dJointAttach(j.friction_row, first_body(j).ode, second ? second->ode : nullptr);
   if (turns) {
-    dJointSetAMotorMode(j.rubbing, dAMotorUser);
-    dJointSetAMotorNumAxes(j.rubbing, 1);
-    dJointSetAMotorAxis(j.rubbing, 0, 0, axis.x, axis.y, axis.z);
+    dJointSetAMotorMode(j.friction_row, dAMotorUser);
+    dJointSetAMotorNumAxes(j.friction_row, 1);
+    dJointSetAMotorAxis(j.friction_row, 0, 0, axis.x, axis.y, axis.z);
   } else {
-    dJointSetLMotorNumAxes(j.rubbing, 1);
-    dJointSetLMotorAxis(j.rubbing, 0, 0, axis.x, axis.y, axis.z);
+    dJointSetLMotorNumAxes(j.friction_row, 1);
+    dJointSetLMotorAxis(j.friction_row, 0, 0, axis.x, axis.y, axis.z);
   }
-  set_row_motor(j.rubbing, turns, 0, 0, j.target.friction, -1);
+  set_row_motor(j.friction_row, turns, 0, 0, j.target.friction, -1);
 }
 
 void destroy_joint(Joint& j) {
@@ -277,7 +277,7 @@ void set_motor(Joint& j) {
 
 void prepare_joint(Joint& j, double erp, double h) {
   j.pushed = 0;
-  j.thread = j.rubbing = nullptr;
+  j.thread_row = j.friction_row = nullptr;
   if (!j.main || j.decl->type == model::JointType::ball) return;
   const bool turns = j.turns();
   if (turns && j.limited) dJointSetAMotorAngle(j.extra, limit_row, j.position);
@@ -342,7 +342,7 @@ void tell(Joint& j) {
   auto& rows = *j.watched_rows;
   rows.fill({});
   std::size_t next = 0;
-  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread, j.rubbing}) {
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread_row, j.friction_row}) {
     dJointFeedback& row = rows[next++];
     if (ode && !dJointGetFeedback(ode)) dJointSetFeedback(ode, &row);
   }
@@ -360,7 +360,7 @@ void silence(Joint& j) {
 
 Transmitted transmitted(const Joint& j) {
   Vec3 force, torque;  // on the first body, about its centre
-  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread, j.rubbing}) {
+  for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread_row, j.friction_row}) {
     if (!ode) continue;
     const dJointFeedback* const told = dJointGetFeedback(ode);
     if (!told) continue;

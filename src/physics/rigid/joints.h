@@ -33,9 +33,9 @@ void anchor_joint(Joint& joint, const Pose& X_WM);
 void destroy_joint(Joint& joint);
 
 /// The row of a screw's thread for this sub-step, in a group that is emptied after it.
-void couple_thread(dWorldID world, dJointGroupID group, Joint& joint, double erp, double h_s);
+void add_thread_row(dWorldID world, dJointGroupID group, Joint& joint, double erp, double h_s);
 /// The row of the motor's own friction, likewise.
-void rub(dWorldID world, dJointGroupID group, Joint& joint);
+void add_friction_row(dWorldID world, dJointGroupID group, Joint& joint);
 
 /// Tells ODE about joint.target.
 void set_motor(Joint& joint);

@@ -12,12 +12,11 @@
 /// behind the joint. What ends on the world at both sides, without motion, is statics by the same sums.
 #include "base/check.h"
 #include "physics/rigid/joints.h"
+#include "physics/rigid/ode_vector.h"
 #include "physics/rigid/rigid_engine.h"
 
 namespace sandlot::rigid {
 namespace {
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 /// J as the child carries it now.
 Pose joint_frame(const Instance& instance, const Joint& j) {
@@ -49,7 +48,7 @@ void RigidEngine::watch(const Watch& watch) {
     watched_joints_.push_back(id.index);
     Instance& instance = *slot.instance;
     Joint& joint = instance.joints[slot.joint];
-    joint.told = true;
+    joint.load_watched = true;
     if (joint.main) continue;
     find_behind(instance, joint);
     for (std::size_t l = 0; l < instance.links.size(); ++l)
@@ -57,7 +56,7 @@ void RigidEngine::watch(const Watch& watch) {
     for (Joint& other : instance.joints)
       if (other.main && (behind_[other.decl->child] ||
                          (other.decl->parent != model::world_link && behind_[other.decl->parent])))
-        other.told = true;
+        other.load_watched = true;
   }
 }
 
@@ -83,29 +82,29 @@ void RigidEngine::find_behind(const Instance& instance, const Joint& joint) {
 
 /// @return whether any contact of this sub-step may be watched
 bool RigidEngine::begin_contacts(std::size_t count) {
-  told_contacts_.clear();
+  watched_contacts_.clear();
   if (watched_links_.empty()) return false;
   // ODE keeps pointers to these until it has solved.
   if (contact_feedback_.size() < count) contact_feedback_.resize(2 * count);
   return true;
 }
 
-void RigidEngine::tell_contact(const Geom& a, const Geom& b, dJointID joint) {
+void RigidEngine::watch_contact(const Geom& a, const Geom& b, dJointID joint) {
   const bool watched = link_slots_[a.link.index].watched || link_slots_[b.link.index].watched;
   if (watched) {
-    dJointFeedback& feedback = contact_feedback_[told_contacts_.size()];
+    dJointFeedback& feedback = contact_feedback_[watched_contacts_.size()];
     feedback = {};
     dJointSetFeedback(joint, &feedback);
   }
   // ODE's first body is b where a is fixed to the world.
-  told_contacts_.push_back(!watched ? 0 : a.body ? 2 : 1);
+  watched_contacts_.push_back(!watched ? 0 : a.body ? 2 : 1);
 }
 
 void RigidEngine::measure_contacts() {
-  for (std::size_t i = 0; i < told_contacts_.size(); ++i) {
-    if (!told_contacts_[i]) continue;
+  for (std::size_t i = 0; i < watched_contacts_.size(); ++i) {
+    if (!watched_contacts_[i]) continue;
     const Vec3 force = vec(contact_feedback_[i].f1);
-    contacts_[i].force_W = told_contacts_[i] == 1 ? force : -force;
+    contacts_[i].force_W = watched_contacts_[i] == 1 ? force : -force;
   }
 }
 
@@ -168,7 +167,7 @@ JointLoad RigidEngine::load_within_body(const Instance& instance, const Joint& j
     if (acts_on(contact.a)) less(contact.point_W, -contact.force_W, {});
   }
   for (const Joint& other : instance.joints) {
-    if (!other.main || !other.told) continue;
+    if (!other.main || !other.load_watched) continue;
     const bool child = behind_[other.decl->child] != 0;
     const bool parent = other.decl->parent != model::world_link && behind_[other.decl->parent];
     if (child == parent) continue;
@@ -187,8 +186,8 @@ void RigidEngine::forget_watch() {
   for (const std::uint32_t index : watched_joints_) {
     Instance& instance = *joint_slots_[index].instance;
     for (Joint& joint : instance.joints) {
-      if (joint.told && joint.main) silence(joint);
-      joint.told = false;
+      if (joint.load_watched && joint.main) silence(joint);
+      joint.load_watched = false;
     }
   }
   watched_links_.clear();

@@ -54,7 +54,7 @@ TEST(RigidMotion, LinksWithoutGravityWeighNothing) {
   EXPECT_NEAR(world.state(id).V_WB.linear.z, -g / 4, 1e-12);  // 1 kg of weight moves 4 kg
 }
 
-TEST(RigidMotion, PartialWeightTurnsALump) {
+TEST(RigidMotion, PartialWeightTurnsARigidGroup) {
   Rigid world;
   model::Model m;
   m.links.push_back(link_of("heavy", Box{{0.2, 0.2, 0.2}}, 1));
@@ -71,7 +71,7 @@ TEST(RigidMotion, PartialWeightTurnsALump) {
   EXPECT_NEAR(world.state(id).V_WB.angular.y, -0.3 * g / inertia * 0.001, 1e-9);
 }
 
-TEST(RigidMotion, AForceOnALumpedLinkActsThere) {
+TEST(RigidMotion, AForceOnALinkOfARigidGroupActsThere) {
   Rigid world({}, {});
   model::Model m;
   m.links.push_back(link_of("a", Box{{0.2, 0.2, 0.2}}, 1));

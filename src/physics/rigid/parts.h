@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "physics/engine.h"
-#include "physics/rigid/lump.h"
+#include "physics/rigid/rigid_group.h"
 #include "physics/rigid/triangles.h"
 
 namespace sandlot::rigid {
@@ -20,7 +20,7 @@ namespace sandlot::rigid {
 struct Instance;
 struct Wheel;
 
-/// One ODE body: a link, or several that fixed joints lump together.
+/// One ODE body: a link, or several that fixed joints make one.
 struct Body {
   Instance* instance = nullptr;
   dBodyID ode = nullptr;
@@ -98,9 +98,9 @@ struct Joint {
   double effort = 0;  ///< that the target put in
 
   // Scratch of one sub-step.
-  bool told = false;                             ///< its load, or one that depends on it, is watched
-  dJointID thread = nullptr, rubbing = nullptr;  ///< rows of the contacts' group
-  double pushed = 0;                             ///< effort that went in as a force, not as a row
+  bool load_watched = false;                              ///< its load, or one that depends on it, is watched
+  dJointID thread_row = nullptr, friction_row = nullptr;  ///< rows of the contacts' group
+  double pushed = 0;                                      ///< effort that went in as a force, not as a row
 
   bool is(model::JointType type) const { return decl->type == type; }
   bool is_hinge() const { return is(model::JointType::revolute) || is(model::JointType::continuous); }

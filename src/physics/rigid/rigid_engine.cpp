@@ -84,7 +84,7 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
             remedy});
       return;
     }
-    // At the link's own centre of mass, which is not the body's where fixed joints lump several links.
+    // At the link's own centre of mass, which is not the body's where fixed joints make several links one body.
     const Vec3 com_L = slot.instance->model->links[slot.link].inertial.X_LCo.p;
     const Vec3 arm = rotate(body->q, slot.instance->links[slot.link].X_BL * com_L);
     body->force_N += wrench.force_N;

@@ -4,7 +4,7 @@
 /// Frame    W: z up where gravity points down; everything in SI.
 /// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
 ///          exact rotation of the new angular velocity, spin about the own joint axis first.
-/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see round.h; meshes,
+/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see cylinder_contacts.h; meshes,
 ///          terrain, cones and ellipsoids: see triangles.h; barrels: see barrel_contacts.h.
 /// Wheels   with rollers: see wheels.h.
 /// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
@@ -58,7 +58,7 @@ class RigidEngine final : public Engine {
   void set_drive_targets(std::span<const DriveTarget> targets) override;
   void set_wheels(std::span<const WheelTarget> targets) override;
   void set_grips(std::span<const GripTarget> targets) override;
-  std::span<const Grip> grips() const override { return told_grips_; }
+  std::span<const Grip> grips() const override { return published_grips_; }
   void set_zones(std::span<const model::SurfaceZone> zones) override { zones_ = ZoneMap(zones); }
   void set_contact_rule(ContactRule rule) override { rule_ = std::move(rule); }
   void watch(const Watch& watch) override;
@@ -100,14 +100,14 @@ class RigidEngine final : public Engine {
   // build.cpp
   Instance& alive(InstanceId id) const;
   Status check(const model::Instance& instance) const;
-  void make_bodies(Instance& instance, const Lumps& lumps);
+  void make_bodies(Instance& instance, const RigidGroups& groups);
   void make_geoms(Instance& instance);
   Geom& make_geom(Instance& instance, std::uint32_t link, const model::Collision& collision,
                   Wheel* wheel = nullptr);
   void give_ids(Instance& instance);
   void destroy(Instance& instance);
 
-  // placing.cpp
+  // placement.cpp
   void place(Instance& instance, const Pose& X_WM);
   void place_static_geoms(Instance& instance);
   void put(Body& body);
@@ -150,7 +150,7 @@ class RigidEngine final : public Engine {
 
   // loads.cpp
   bool begin_contacts(std::size_t count);
-  void tell_contact(const Geom& a, const Geom& b, dJointID joint);
+  void watch_contact(const Geom& a, const Geom& b, dJointID joint);
   void measure_contacts();
   void measure_loads(double h_s);
   JointLoad load_of(const Instance& instance, const Joint& joint, double h_s);
@@ -193,7 +193,7 @@ class RigidEngine final : public Engine {
   std::uint64_t next_serial_ = 1;
 
   std::vector<Held> grips_;
-  std::vector<Grip> told_grips_;  ///< the same, as others see them
+  std::vector<Grip> published_grips_;  ///< the same, as others see them
   ZoneMap zones_;
   ContactRule rule_;
   TriangleStore triangles_;
@@ -226,8 +226,9 @@ class RigidEngine final : public Engine {
   std::vector<std::uint32_t> watched_links_, watched_joints_;  ///< indices of slots
   std::vector<Push> pushes_;                                   ///< wrenches on links, while loads are watched
   std::vector<dJointFeedback> contact_feedback_;
-  std::vector<std::uint8_t> told_contacts_;  ///< per contact: 0 not watched, 1 the force told is on b, 2 on a
-  std::vector<std::uint8_t> behind_;         ///< per link: beyond the fixed joint in question
+  std::vector<std::uint8_t>
+      watched_contacts_;              ///< per contact: 0 not watched, 1 the force told is on b, 2 on a
+  std::vector<std::uint8_t> behind_;  ///< per link: beyond the fixed joint in question
   std::vector<std::uint32_t> frontier_;
 };
 

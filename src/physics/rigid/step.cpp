@@ -16,13 +16,12 @@
 #include "physics/rigid/drive.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
+#include "physics/rigid/ode_vector.h"
 #include "physics/rigid/rigid_engine.h"
 #include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
 namespace {
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 /// Rotation by the vector `turn` [rad].
 inline Quat rotation(Vec3 turn) {
@@ -100,11 +99,11 @@ void RigidEngine::push_forces(double h) {
       const Body* const mover = joint.child ? joint.child : joint.parent;
       if (!mover || !mover->frozen) prepare_joint(joint, spec_.erp, h);
       if (joint.main && joint.is(model::JointType::screw) && mover->awake)
-        couple_thread(world_, contact_joints_, joint, spec_.erp, h);
+        add_thread_row(world_, contact_joints_, joint, spec_.erp, h);
       if (joint.main && joint.target.friction > 0 && !joint.leader && !joint.is(model::JointType::ball) &&
           joint.target.mode == JointTarget::Mode::effort && mover->active())
-        rub(world_, contact_joints_, joint);
-      if (joint.told && joint.main) tell(joint);
+        add_friction_row(world_, contact_joints_, joint);
+      if (joint.load_watched && joint.main) tell(joint);
     }
     if (instance->drive.active) drive(*instance, h);
     for (Body& b : instance->bodies) {

@@ -1,10 +1,12 @@
 #include "physics/rigid/triangles.h"
+#include "physics/rigid/ode_vector.h"
 
 #include <algorithm>
 #include <array>
 
 #include "base/check.h"
 #include "geometry/height_grid.h"
+#include "physics/rigid/ode_vector.h"
 
 namespace sandlot::rigid {
 namespace {
@@ -12,8 +14,6 @@ namespace {
 static_assert(sizeof(dTriIndex) == sizeof(std::uint32_t) && sizeof(Vec3) == 3 * sizeof(double));
 
 constexpr int cone_segments = 64, ellipsoid_segments = 48;
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 

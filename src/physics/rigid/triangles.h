@@ -8,7 +8,7 @@
 /// Contacts   ODE's points, of which duplicates are dropped and, where there are more than `max_contacts`, the deepest
 ///            is kept and then those farthest from the ones kept (in place and normal), in ODE's order.
 /// Limits     triangles are a skin: what sinks deeper than its own half, or is thinner than its path in a sub-step,
-///            comes out on either side. Triangles against triangles: see samples.h. ODE searches trees in single
+///            comes out on either side. Triangles against triangles: see mesh_contacts.h. ODE searches trees in single
 ///            precision: keep a mesh and its place within some kilometres.
 /// Cost       building: 1 us per triangle, once per mesh and engine.
 #include <ode/ode.h>
@@ -20,7 +20,7 @@
 
 #include "geometry/mesh.h"
 #include "model/model.h"
-#include "physics/rigid/samples.h"
+#include "physics/rigid/mesh_contacts.h"
 #include "physics/rigid/triangle_tree.h"
 
 namespace sandlot::rigid {

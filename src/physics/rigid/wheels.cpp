@@ -47,11 +47,11 @@ bool is_wheel(const model::RollerWheel& w) {
          w.bearing_friction_Nm < 1e9;
 }
 
-void lock_rollers(const model::Model& model, Lumps& lumps) {
+void lock_rollers(const model::Model& model, RigidGroups& groups) {
   for (const model::Joint& joint : model.joints) {
     if (joint.roller_of == model::Joint::no_joint) continue;
-    Lump& roller = lumps.lumps[lumps.of_link[joint.child]];
-    Lump& wheel = lumps.lumps[lumps.of_link[model.joints[joint.roller_of].child]];
+    RigidGroup& roller = groups.groups[groups.of_link[joint.child]];
+    RigidGroup& wheel = groups.groups[groups.of_link[model.joints[joint.roller_of].child]];
     if (roller.fixed || wheel.fixed || &roller == &wheel || roller.links.size() > 1) continue;
     const model::Link& link = model.links[joint.child];
     const double mass = wheel.mass_kg + roller.mass_kg;

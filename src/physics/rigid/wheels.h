@@ -29,8 +29,8 @@ inline constexpr double awake_share = 0.2;
 /// Whether a wheel can be made of it at all; model/rollers.h says more.
 bool is_wheel(const model::RollerWheel& wheel);
 
-/// Takes the rollers' masses and inertias into their wheels' lumps.
-void lock_rollers(const model::Model& model, Lumps& lumps);
+/// Takes the rollers' masses and inertias into their wheels' groups.
+void lock_rollers(const model::Model& model, RigidGroups& groups);
 
 /// The wheels of an instance whose bodies and joints are made; all rollers frozen. Without shapes yet.
 void make_wheels(Instance& instance);

@@ -32,9 +32,9 @@ RenderScene::TexturePointer RenderScene::texture(const std::string& file, const 
   return known->second;
 }
 
-optics::Look RenderScene::look_of(const model::Visual& visual, Diagnostics& diagnostics) {
+optics::SurfaceAppearance RenderScene::look_of(const model::Visual& visual, Diagnostics& diagnostics) {
   const model::Material& material = visual.material;
-  optics::Look look;
+  optics::SurfaceAppearance look;
   look.diffuse = material.diffuse;
   look.specular = material.specular;
   look.emissive = material.emissive;

@@ -28,7 +28,7 @@ class RenderScene {
  private:
   using TexturePointer = std::shared_ptr<const optics::Texture>;
   TexturePointer texture(const std::string& file, const Place& place, Diagnostics& diagnostics);
-  optics::Look look_of(const model::Visual& visual, Diagnostics& diagnostics);
+  optics::SurfaceAppearance look_of(const model::Visual& visual, Diagnostics& diagnostics);
 
   std::map<std::string, TexturePointer> textures_;  ///< by file: kept while the world is, read once
   SceneFrame frame_;

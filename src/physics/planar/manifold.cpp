@@ -1,4 +1,4 @@
-#include "physics/planar/touch.h"
+#include "physics/planar/manifold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,18 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::span<const Edge> edges_of(Figure f) {
+std::span<const Edge> edges_of(ConvexOutline f) {
   return f.edges.subspan(f.outline.first_edge, f.outline.edge_count);
 }
 
-struct Face {
+struct ContactFace {
   double gap_m = -infinity;
   std::uint32_t edge = 0;
 };
 
 /// The edge of `a` that keeps `b` farthest off.
-Face face_between(std::span<const Edge> a, std::span<const Edge> b, Vec2 shift_b) {
-  Face best;
+ContactFace face_between(std::span<const Edge> a, std::span<const Edge> b, Vec2 shift_b) {
+  ContactFace best;
   for (std::uint32_t i = 0; i < a.size(); ++i) {
     const Vec2 out = a[i].outward();
     double least = infinity;
@@ -30,7 +30,7 @@ Face face_between(std::span<const Edge> a, std::span<const Edge> b, Vec2 shift_b
   return best;
 }
 
-bool touch_circles(const Outline& a, const Outline& b, double margin_m, Touching& out) {
+bool meet_circles(const Outline& a, const Outline& b, double margin_m, Manifold& out) {
   const Vec2 d = b.centre - a.centre;
   const double reach = a.radius_m + b.radius_m + margin_m, square = dot(d, d);
   if (!(square < reach * reach)) return false;
@@ -43,7 +43,7 @@ bool touch_circles(const Outline& a, const Outline& b, double margin_m, Touching
 }
 
 /// @param sign  1: the polygon is a
-bool touch_circle(Figure polygon, const Outline& circle, double sign, double margin_m, Touching& out) {
+bool meet_circle(ConvexOutline polygon, const Outline& circle, double sign, double margin_m, Manifold& out) {
   const Vec2 apart = circle.centre - polygon.outline.centre;
   const double reach = polygon.outline.radius_m + circle.radius_m + margin_m;
   if (!(dot(apart, apart) < reach * reach)) return false;
@@ -56,11 +56,11 @@ bool touch_circle(Figure polygon, const Outline& circle, double sign, double mar
   return true;
 }
 
-bool touch_polygons(Figure a, Figure b, double margin_m, Touching& out) {
+bool meet_polygons(ConvexOutline a, ConvexOutline b, double margin_m, Manifold& out) {
   const auto edges_a = edges_of(a), edges_b = edges_of(b);
-  const Face of_a = face_between(edges_a, edges_b, {});
+  const ContactFace of_a = face_between(edges_a, edges_b, {});
   if (!(of_a.gap_m < margin_m)) return false;
-  const Face of_b = face_between(edges_b, edges_a, {});
+  const ContactFace of_b = face_between(edges_b, edges_a, {});
   if (!(of_b.gap_m < margin_m)) return false;
   // Rounding shall not change the face from step to step.
   const bool swapped = of_b.gap_m > of_a.gap_m + 1e-6;
@@ -97,15 +97,15 @@ bool touch_polygons(Figure a, Figure b, double margin_m, Touching& out) {
 
 }  // namespace
 
-bool touching(Figure a, Figure b, double margin_m, Touching& out) {
+bool find_manifold(ConvexOutline a, ConvexOutline b, double margin_m, Manifold& out) {
   const bool round_a = a.outline.edge_count == 0, round_b = b.outline.edge_count == 0;
-  if (round_a && round_b) return touch_circles(a.outline, b.outline, margin_m, out);
-  if (round_b) return touch_circle(a, b.outline, 1, margin_m, out);
-  if (round_a) return touch_circle(b, a.outline, -1, margin_m, out);
-  return touch_polygons(a, b, margin_m, out);
+  if (round_a && round_b) return meet_circles(a.outline, b.outline, margin_m, out);
+  if (round_b) return meet_circle(a, b.outline, 1, margin_m, out);
+  if (round_a) return meet_circle(b, a.outline, -1, margin_m, out);
+  return meet_polygons(a, b, margin_m, out);
 }
 
-Axis separation(Figure a, Figure b, Vec2 shift) {
+Axis separation(ConvexOutline a, ConvexOutline b, Vec2 shift) {
   const bool round_a = a.outline.edge_count == 0, round_b = b.outline.edge_count == 0;
   if (round_b) {
     const Nearest near = nearest(a.outline, a.edges, b.outline.centre + shift);
@@ -116,13 +116,13 @@ Axis separation(Figure a, Figure b, Vec2 shift) {
     return {near.distance_m - a.outline.radius_m, -1.0 * near.normal};
   }
   const auto edges_a = edges_of(a), edges_b = edges_of(b);
-  const Face of_a = face_between(edges_a, edges_b, shift),
-             of_b = face_between(edges_b, edges_a, -1.0 * shift);
+  const ContactFace of_a = face_between(edges_a, edges_b, shift),
+                    of_b = face_between(edges_b, edges_a, -1.0 * shift);
   if (of_a.gap_m >= of_b.gap_m) return {of_a.gap_m, edges_a[of_a.edge].outward()};
   return {of_b.gap_m, -1.0 * edges_b[of_b.edge].outward()};
 }
 
-double time_of_impact(Figure a, Figure b, Vec2 path, double target_m) {
+double time_of_impact(ConvexOutline a, ConvexOutline b, Vec2 path, double target_m) {
   // They lie on both sides of an axis, so they cannot meet before the path along it has used up the gap.
   double t = 0;
   for (int i = 0; i < 40; ++i) {

@@ -1,4 +1,4 @@
-/// Joints between lumps, and grips.
+/// Joints between groups, and grips.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "physics/rigid/lump.h"
+#include "physics/rigid/rigid_group.h"
 
 #include <limits>
 #include <numeric>
@@ -40,36 +40,36 @@ Symmetric3 tensor(const model::Inertial& i) {
   return {i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z};
 }
 
-void add_masses(const model::Model& model, Lump& lump) {
+void add_masses(const model::Model& model, RigidGroup& group) {
   Vec3 moment_M, gravity_moment_M;
-  for (const std::uint32_t l : lump.links) {
+  for (const std::uint32_t l : group.links) {
     const model::Link& link = model.links[l];
     const Vec3 com_M = link.X_ML * link.inertial.X_LCo.p;
-    lump.mass_kg += link.inertial.mass_kg;
+    group.mass_kg += link.inertial.mass_kg;
     moment_M += link.inertial.mass_kg * com_M;
     if (link.gravity) {
-      lump.gravity_mass_kg += link.inertial.mass_kg;
+      group.gravity_mass_kg += link.inertial.mass_kg;
       gravity_moment_M += link.inertial.mass_kg * com_M;
     }
   }
-  const model::Link& first = model.links[lump.links.front()];
-  lump.X_MB.q = normalised(first.X_ML.q);
-  lump.X_MB.p = moment_M / lump.mass_kg;
-  if (lump.links.size() == 1) lump.X_MB.p = first.X_ML * first.inertial.X_LCo.p;
-  const Pose X_BM = inverse(lump.X_MB);
-  for (const std::uint32_t l : lump.links) {
+  const model::Link& first = model.links[group.links.front()];
+  group.X_MB.q = normalised(first.X_ML.q);
+  group.X_MB.p = moment_M / group.mass_kg;
+  if (group.links.size() == 1) group.X_MB.p = first.X_ML * first.inertial.X_LCo.p;
+  const Pose X_BM = inverse(group.X_MB);
+  for (const std::uint32_t l : group.links) {
     const Pose X_BCo = X_BM * model.links[l].X_ML * model.links[l].inertial.X_LCo;
-    lump.inertia_B += rotated(normalised(X_BCo.q), tensor(model.links[l].inertial));
-    lump.inertia_B += steiner(model.links[l].inertial.mass_kg, X_BCo.p);
+    group.inertia_B += rotated(normalised(X_BCo.q), tensor(model.links[l].inertial));
+    group.inertia_B += steiner(model.links[l].inertial.mass_kg, X_BCo.p);
   }
-  if (lump.links.size() == 1)  // exactly what the file says, without the rounding of the sums
-    lump.inertia_B = rotated(normalised(first.inertial.X_LCo.q), tensor(first.inertial));
-  if (lump.gravity_mass_kg > 0) lump.gravity_point_B = X_BM * (gravity_moment_M / lump.gravity_mass_kg);
+  if (group.links.size() == 1)  // exactly what the file says, without the rounding of the sums
+    group.inertia_B = rotated(normalised(first.inertial.X_LCo.q), tensor(first.inertial));
+  if (group.gravity_mass_kg > 0) group.gravity_point_B = X_BM * (gravity_moment_M / group.gravity_mass_kg);
 }
 
 }  // namespace
 
-Result<Lumps> lump_links(const model::Model& model, bool held) {
+Result<RigidGroups> group_links(const model::Model& model, bool held) {
   // Union-find over links; index n stands for the world. The smallest link is the root, the world above all.
   const auto n = static_cast<std::uint32_t>(model.links.size());
   std::vector<std::uint32_t> parent(n + 1);
@@ -89,29 +89,29 @@ Result<Lumps> lump_links(const model::Model& model, bool held) {
   if (model.is_static || held)
     for (std::uint32_t l = 0; l < n; ++l) join(n, l);
 
-  Lumps result;
+  RigidGroups result;
   result.of_link.assign(n, 0);
-  std::vector<std::uint32_t> lump_of_root(n + 1, ~0u);
+  std::vector<std::uint32_t> group_of_root(n + 1, ~0u);
   for (std::uint32_t l = 0; l < n; ++l) {
-    std::uint32_t& lump = lump_of_root[root(l)];
-    if (lump == ~0u) {
-      lump = static_cast<std::uint32_t>(result.lumps.size());
-      result.lumps.emplace_back().fixed = root(l) == n;
+    std::uint32_t& group = group_of_root[root(l)];
+    if (group == ~0u) {
+      group = static_cast<std::uint32_t>(result.groups.size());
+      result.groups.emplace_back().fixed = root(l) == n;
     }
-    result.lumps[lump].links.push_back(l);
-    result.of_link[l] = lump;
+    result.groups[group].links.push_back(l);
+    result.of_link[l] = group;
   }
-  for (Lump& lump : result.lumps) {
-    const model::Link& first = model.links[lump.links.front()];
-    if (lump.fixed) {
-      lump.X_MB = first.X_ML;
+  for (RigidGroup& group : result.groups) {
+    const model::Link& first = model.links[group.links.front()];
+    if (group.fixed) {
+      group.X_MB = first.X_ML;
       continue;
     }
-    add_masses(model, lump);
-    if (!(lump.mass_kg > 0) || !std::isfinite(lump.mass_kg))
+    add_masses(model, group);
+    if (!(group.mass_kg > 0) || !std::isfinite(group.mass_kg))
       return Error{"the mass of link '" + first.name + "' is not positive",
                    "give it a mass, or make the model static", first.place};
-    if (!is_positive_definite(lump.inertia_B))
+    if (!is_positive_definite(group.inertia_B))
       return Error{"the inertia of link '" + first.name + "' is not positive definite",
                    "ixx, iyy, izz must be positive and the products small against them", first.place};
   }

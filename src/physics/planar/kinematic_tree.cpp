@@ -1,4 +1,4 @@
-#include "physics/planar/tree.h"
+#include "physics/planar/kinematic_tree.h"
 
 #include "physics/planar/turn.h"
 
@@ -15,7 +15,7 @@ Pose displacement(Vec3 axis, Vec3 point, bool slides, double position) {
 
 }  // namespace
 
-Tree::Tree(const model::Model& model) {
+KinematicTree::KinematicTree(const model::Model& model) {
   const std::size_t count = model.links.size();
   std::vector<bool> placed(count, false);
   placed[0] = true;
@@ -50,8 +50,8 @@ Tree::Tree(const model::Model& model) {
     if (!placed[link]) add(link, 0);
 }
 
-void Tree::place(std::span<const BodyId> bodies, std::span<const JointId> joints,
-                 std::span<const JointState> joint_states, std::span<BodyState> states) const {
+void KinematicTree::place(std::span<const BodyId> bodies, std::span<const JointId> joints,
+                          std::span<const JointState> joint_states, std::span<BodyState> states) const {
   for (const Branch& branch : branches_) {
     const BodyState& parent = states[bodies[branch.parent].index];
     BodyState& link = states[bodies[branch.link].index];

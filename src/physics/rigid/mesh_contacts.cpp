@@ -1,4 +1,4 @@
-#include "physics/rigid/samples.h"
+#include "physics/rigid/mesh_contacts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,10 @@
 #include <map>
 
 #include "geometry/height_grid.h"
+#include "physics/rigid/ode_vector.h"
 
 namespace sandlot::rigid {
 namespace {
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 using Cell = std::array<int, 3>;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The state of the planar engine's bodies and of what holds and drives them, as its files share it.
+/// Bodies of the planar engine, their constraints and drives: state and scratch shared by the engine's sources.
 #include <limits>
 #include <memory>
 #include <string>
@@ -9,9 +9,9 @@
 
 #include "physics/engine.h"
 #include "physics/planar/drive.h"
+#include "physics/planar/kinematic_tree.h"
 #include "physics/planar/map.h"
 #include "physics/planar/plan.h"
-#include "physics/planar/tree.h"
 
 namespace sandlot::planar {
 
@@ -20,17 +20,17 @@ constexpr std::uint32_t none = ~0u;
 constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 constexpr Vec2 left_of(Vec2 a) { return {-a.y, a.x}; }
 
-/// Links that move as one, about their centre of mass.
-struct alignas(64) Lump {
+/// Rigid group: links that move as one, about their centre of mass.
+struct alignas(64) RigidGroup {
   Vec2 p;  ///< centre of mass
   Turn heading;
   Vec2 v;  ///< of p
   double w_radps = 0;
   double inverse_kg = 0, inverse_kgm2 = 0;  ///< 0: on a path of its own
-  const LumpPlan* plan = nullptr;           ///< the instance's
-  std::uint32_t slot = none;                ///< of its instance; none: there is no such lump
+  const RigidGroupPlan* plan = nullptr;     ///< the instance's
+  std::uint32_t slot = none;                ///< of its instance; none: there is no such group
   std::uint32_t index = 0;                  ///< in the instance's plan
-  std::uint32_t figure = none;              ///< none: a circle
+  std::uint32_t silhouette = none;          ///< none: a circle
   double reach_m = 0;                       ///< how far it may come in this step
   Vec2 force_N;                             ///< of wrenches, consumed by the next step
   double torque_Nm = 0;
@@ -42,8 +42,8 @@ struct alignas(64) Lump {
   }
 };
 
-/// What the ground does to what slides or rolls on it; fixed until it stands elsewhere.
-struct Rubbing {
+/// Friction of the ground on a group that slides or rolls; fixed until the group stands elsewhere.
+struct GroundFriction {
   double force_N = 0;    ///< largest, of a patch that slides along `along` without turning
   double side_N = 0;     ///< and across
   double torque_Nm = 0;  ///< largest, of one that turns about the centre of mass
@@ -56,8 +56,8 @@ struct Rubbing {
 /// A wheel on the ground, or a caster: a wheel that is locked and has no axle.
 struct Wheel {
   const WheelPlan* plan = nullptr;  ///< null: a caster
-  std::uint32_t lump = none, joint = none, steering = none;
-  Vec2 at;                ///< in the lump's frame
+  std::uint32_t group = none, joint = none, steering = none;
+  Vec2 at;                ///< in the group's frame
   double limit_N = 0;     ///< largest friction
   double rolling_Nm = 0;  ///< resistance against rolling
   Vec2 belt_mps;          ///< velocity of the ground below
@@ -72,15 +72,15 @@ struct Wheel {
   struct Now {
     Vec2 ahead, across, arm;  ///< the directions it holds, and where; with rollers the first alone
     double roll_m = 0;        ///< velocity along `ahead` that a spin of 1 rad/s makes up for
-    double k_aa = 0, k_ac = 0, k_cc = 0;  ///< what the lump's velocity there gains per impulse
+    double k_aa = 0, k_ac = 0, k_cc = 0;  ///< what the group's velocity there gains per impulse
     Axle axle;
   };
   std::unique_ptr<Now> now;  ///< made when it first drives: in a swarm on rails nobody's
 };
 
-/// A pivot or slider between two lumps of an instance, or a grip between two instances.
-struct Linkage {
-  const LinkagePlan* plan = nullptr;  ///< null: a grip
+/// Joint constraint: a pivot or slider between two groups of an instance, or a grip between two instances.
+struct JointConstraint {
+  const JointPlan* plan = nullptr;  ///< null: a grip
   std::uint32_t a = none, b = none, joint = none;
   Vec2 at_a, at_b;  ///< the anchor in both frames
   Vec2 axis_a;      ///< of a slider, in the frame of a
@@ -97,37 +97,38 @@ struct Linkage {
 /// Largest friction per normal force along a unit vector across the normal: the radius of an ellipse.
 double friction_along(const PairSurface& pair, Vec3 normal, Vec3 way);
 
-/// One side of a contact, as the law of surfaces and the user's rule see it.
-struct Face {
+/// One side of a contact, as needed by the law of surfaces and the user's rule.
+struct ContactFace {
   const model::Surface* surface = nullptr;
   const model::Collision* collision = nullptr;  ///< null: the rule is not asked
   std::uint32_t slot = none, link = 0;
-  const Lump* lump = nullptr;  ///< null: it stands still
+  const RigidGroup* group = nullptr;  ///< null: it stands still
 };
 
-/// Orders contacts, and finds them again in the next step.
-struct TouchKey {
+/// Contact key: the order of contacts, and their identity from step to step.
+struct ContactKey {
   std::uint64_t pair = 0;                ///< creation of both instances, the older first
-  std::uint32_t lumps = 0;               ///< of the older << 16 | of the younger
+  std::uint32_t groups = 0;              ///< of the older << 16 | of the younger
   std::uint32_t part_a = 0, part_b = 0;  ///< of a wall: which of its instance's
   std::uint32_t feature = 0;
-  friend constexpr bool operator==(const TouchKey&, const TouchKey&) = default;
-  friend constexpr bool operator<(const TouchKey& a, const TouchKey& b) {
-    return std::tie(a.pair, a.lumps, a.part_a, a.part_b, a.feature) <
-           std::tie(b.pair, b.lumps, b.part_a, b.part_b, b.feature);
+  friend constexpr bool operator==(const ContactKey&, const ContactKey&) = default;
+  friend constexpr bool operator<(const ContactKey& a, const ContactKey& b) {
+    return std::tie(a.pair, a.groups, a.part_a, a.part_b, a.feature) <
+           std::tie(b.pair, b.groups, b.part_a, b.part_b, b.feature);
   }
 };
 
-/// What may come to touch: two lumps, or a lump and a wall.
+/// Candidate of the narrow phase: two groups, or a group and a wall.
 struct Candidate {
-  TouchKey key;
-  std::uint32_t a = none, b = none;  ///< lumps, of the older and the younger; none: the wall
+  ContactKey key;
+  std::uint32_t a = none, b = none;  ///< groups, of the older and the younger; none: the wall
   std::uint32_t wall = none;
 };
 
-struct Touch {
-  TouchKey key;
-  std::uint32_t a = none, b = none;  ///< lumps; none: a wall
+/// Point of a contact manifold, with the impulses of its constraint.
+struct ContactPoint {
+  ContactKey key;
+  std::uint32_t a = none, b = none;  ///< groups; none: a wall
   Vec2 normal;                       ///< from a to b
   Vec2 at;
   Vec2 arm_a, arm_b;
@@ -141,7 +142,7 @@ struct Touch {
   double z_m = 0;
 };
 
-/// What a lump that goes where it is driven to would do without contacts.
+/// What a group that goes where it is driven to would do without contacts.
 struct Planned {
   Vec2 v;  ///< mean over the step, of the centre of mass
   double w_radps = 0;
@@ -156,7 +157,7 @@ struct alignas(64) Drive {
   double accel = 0, angular_accel = 0;
   Vec2 arm;    ///< of that link's origin from the centre of mass, in its frame
   Turn frame;  ///< of its x axis there
-  /// Integrals of the true velocity of the centre of mass and of the turning rate, in the lump's frame, over all steps
+  /// Integrals of the true velocity of the centre of mass and of the turning rate, in the group's frame, over all steps
   /// in which the drive was active.
   Vec2 way_m;
   double turned_rad = 0;
@@ -167,7 +168,7 @@ struct alignas(64) Drive {
 struct Roll {
   RollTarget target;
   std::uint32_t slot = none;
-  Vec2 per_way;  ///< the target's factors for the centre of mass in the lump's frame
+  Vec2 per_way;  ///< the target's factors for the centre of mass in the group's frame
   double per_turn = 0;
   double offset = 0;
 };
@@ -177,7 +178,7 @@ struct Motor {
   JointTarget target;
   const model::Joint* joint = nullptr;  ///< null: there is none
   /// Kinematic joints, and the wheels of a robot that runs on rails, are moved as their targets say.
-  enum class Role : std::uint8_t { kinematic, wheel, linkage } role = Role::kinematic;
+  enum class Role : std::uint8_t { kinematic, wheel, constraint } role = Role::kinematic;
   bool listed = false;  ///< among those that are moved so
   std::uint32_t slot = none;
   std::uint32_t roll = none;  ///< among those that turn as their base moves
@@ -194,13 +195,13 @@ struct Motor {
   }
 };
 
-/// Of an instance, what every step looks at.
-struct Brief {
-  std::uint32_t lump = none;  ///< its only one; none: it has several, or none at all
+/// Summary of an instance for the loops that every step runs over all of them.
+struct InstanceSummary {
+  std::uint32_t group = none;  ///< its only one; none: it has several, or none at all
   bool moves = false, guided = false;
 };
 
-/// What changes rarely, or is looked at rarely.
+/// Instance: data that changes rarely or is read rarely.
 struct Instance {
   bool alive = false, moves = false;
   bool guided = false;  ///< moves along a path
@@ -208,13 +209,13 @@ struct Instance {
   std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
   std::string name;
   std::shared_ptr<const model::Model> model;
-  std::shared_ptr<const Tree> tree;
+  std::shared_ptr<const KinematicTree> tree;
   std::shared_ptr<const Plan> plan;
   std::vector<BodyId> bodies;
   std::vector<JointId> joints;
-  std::vector<std::uint32_t> lumps;
+  std::vector<std::uint32_t> groups;
   std::vector<Wheel> wheels;
-  std::vector<Linkage> linkages;
+  std::vector<JointConstraint> constraints;
   Quat tilt;       ///< attitude of the canonical link at heading 0
   double z_m = 0;  ///< its height
   /// Of one that stands still: its canonical link.

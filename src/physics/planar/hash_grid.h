@@ -20,7 +20,7 @@ struct Area {
   Vec2 low, high;
 };
 
-class Cells {
+class HashGrid {
  public:
   /// Cells from (x0, y0) to (x1, y1) inclusive.
   struct Range {

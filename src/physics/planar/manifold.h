@@ -1,5 +1,5 @@
 #pragma once
-/// Where two outlines touch, or come close to it.
+/// Contact manifolds of two convex outlines that touch or nearly touch.
 ///
 /// Circles have one point, polygons on a face up to two. The gap is negative where they overlap. Between polygons the
 /// normal is that of the face with the largest gap (separating axes; clipping after E. Catto, Contact Manifolds, 2007).
@@ -10,12 +10,13 @@
 
 namespace sandlot::planar {
 
-struct Figure {
+/// Circle or convex polygon: an outline with the array that holds its edges.
+struct ConvexOutline {
   const Outline& outline;
   std::span<const Edge> edges;
 };
 
-struct Touching {
+struct Manifold {
   Vec2 normal;  ///< unit, from a towards b
   int count = 0;
   struct Point {
@@ -25,8 +26,8 @@ struct Touching {
   } points[2];
 };
 
-/// Points with a gap below `margin_m`; false: none.
-bool touching(Figure a, Figure b, double margin_m, Touching& out);
+/// Fills the points whose gap is below `margin_m`; false: there are none.
+bool find_manifold(ConvexOutline a, ConvexOutline b, double margin_m, Manifold& out);
 
 /// A gap that is at most the distance of a and b, b shifted by `shift`, and the axis on which it was found (unit, from a
 /// towards b).
@@ -34,11 +35,10 @@ struct Axis {
   double gap_m;
   Vec2 normal;
 };
-Axis separation(Figure a, Figure b, Vec2 shift = {});
+Axis separation(ConvexOutline a, ConvexOutline b, Vec2 shift = {});
 
-/// The part of `path` (how b moves, seen from a) after which only `target_m` is left between them; 1: they do not come so
-/// near. Neither turns. 1 also when
-/// they begin so near: then it is for the contact to hold them.
-double time_of_impact(Figure a, Figure b, Vec2 path, double target_m);
+/// The part of `path` (motion of b relative to a, without turning) after which only `target_m` is left between them.
+/// 1: they stay farther apart, or begin closer (then the contact holds them).
+double time_of_impact(ConvexOutline a, ConvexOutline b, Vec2 path, double target_m);
 
 }  // namespace sandlot::planar

@@ -26,7 +26,7 @@ Symmetric3 steiner(double mass_kg, Vec3 r_m);
 bool is_positive_definite(const Symmetric3& m);
 
 /// Links joined rigidly. Frame B: origin in the common centre of mass, axes of the first link.
-struct Lump {
+struct RigidGroup {
   std::vector<std::uint32_t> links;  ///< ascending
   bool fixed = false;                ///< to the world: no mass, no motion
   double mass_kg = 0;
@@ -37,13 +37,13 @@ struct Lump {
   bool has_rollers = false;    ///< their masses are in it: see wheels.h
 };
 
-struct Lumps {
-  std::vector<Lump> lumps;             ///< in the order of their first links
-  std::vector<std::uint32_t> of_link;  ///< index into lumps
+struct RigidGroups {
+  std::vector<RigidGroup> groups;      ///< in the order of their first links
+  std::vector<std::uint32_t> of_link;  ///< index into groups
 };
 
-/// Errors   a movable lump whose mass or inertia is not positive, with the place of its first link.
+/// Errors   a movable group whose mass or inertia is not positive, with the place of its first link.
 /// @param held  all links stand as if the model were static
-Result<Lumps> lump_links(const model::Model& model, bool held = false);
+Result<RigidGroups> group_links(const model::Model& model, bool held = false);
 
 }  // namespace sandlot::rigid

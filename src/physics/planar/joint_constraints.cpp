@@ -1,4 +1,4 @@
-// Pivots and sliders between the lumps of an instance, and grips between instances.
+// Pivots and sliders between the groups of an instance, and grips between instances.
 //
 // Rows of sequential impulses with warm start: two that hold the anchor (a slider: across its axis and the angle), one along
 // the joint's own freedom for each of spring with damping (implicit), motor, friction and limits. What is left of the
@@ -11,30 +11,30 @@
 namespace sandlot::planar {
 namespace {
 
-using Kind = LinkagePlan::Kind;
+using Kind = JointPlan::Kind;
 
-bool is_slider(const Linkage& l) { return l.plan && l.plan->kind == Kind::slider; }
-bool is_pivot(const Linkage& l) { return l.plan && l.plan->kind == Kind::pivot; }
+bool is_slider(const JointConstraint& l) { return l.plan && l.plan->kind == Kind::slider; }
+bool is_pivot(const JointConstraint& l) { return l.plan && l.plan->kind == Kind::pivot; }
 
 /// The turn from a's heading to b's beyond that of joint position 0, within half a turn [rad].
-double turned(const Lump* a, const Lump* b, Turn apart) {
+double turned(const RigidGroup* a, const RigidGroup* b, Turn apart) {
   const Turn ha = a ? a->heading : Turn{}, hb = b ? b->heading : Turn{};
   const Turn t = Turn{apart.c, -apart.s} * Turn{ha.c, -ha.s} * hb;
   return math::atan2(t.s, t.c);
 }
 
 struct Two {
-  Lump *a, *b;
+  RigidGroup *a, *b;
   double inverse_kg() const { return (a ? a->inverse_kg : 0) + (b ? b->inverse_kg : 0); }
   double inverse_kgm2() const { return (a ? a->inverse_kgm2 : 0) + (b ? b->inverse_kgm2 : 0); }
-  Vec2 apart(const Linkage& l) const {
+  Vec2 apart(const JointConstraint& l) const {
     Vec2 v;
     if (b) v = v + b->velocity_at(l.arm_b);
     if (a) v = v - a->velocity_at(l.arm_a);
     return v;
   }
   double turning() const { return (b ? b->w_radps : 0) - (a ? a->w_radps : 0); }
-  void push(const Linkage& l, Vec2 impulse) const {
+  void push(const JointConstraint& l, Vec2 impulse) const {
     if (a) a->push(-1.0 * impulse, l.arm_a);
     if (b) b->push(impulse, l.arm_b);
   }
@@ -42,7 +42,7 @@ struct Two {
     if (a) a->w_radps -= a->inverse_kgm2 * impulse;
     if (b) b->w_radps += b->inverse_kgm2 * impulse;
   }
-  double response(const Linkage& l, Vec2 along) const {
+  double response(const JointConstraint& l, Vec2 along) const {
     double k = inverse_kg();
     if (a) k += a->inverse_kgm2 * cross(l.arm_a, along) * cross(l.arm_a, along);
     if (b) k += b->inverse_kgm2 * cross(l.arm_b, along) * cross(l.arm_b, along);
@@ -50,26 +50,26 @@ struct Two {
   }
 };
 
-Two two(std::vector<Lump>& lumps, const Linkage& l) {
-  return {l.a == none ? nullptr : &lumps[l.a], l.b == none ? nullptr : &lumps[l.b]};
+Two two(std::vector<RigidGroup>& groups, const JointConstraint& l) {
+  return {l.a == none ? nullptr : &groups[l.a], l.b == none ? nullptr : &groups[l.b]};
 }
 
 /// Impulse at the anchor that changes its velocity by `dv`.
-Vec2 solve_point(const Two& t, const Linkage& l, Vec2 dv) {
+Vec2 solve_point(const Two& t, const JointConstraint& l, Vec2 dv) {
   const double m = t.inverse_kg();
   double xx = m, xy = 0, yy = m;
-  for (const auto& [lump, arm] : {std::pair{t.a, l.arm_a}, std::pair{t.b, l.arm_b}}) {
-    if (!lump) continue;
-    xx += lump->inverse_kgm2 * arm.y * arm.y;
-    xy -= lump->inverse_kgm2 * arm.x * arm.y;
-    yy += lump->inverse_kgm2 * arm.x * arm.x;
+  for (const auto& [group, arm] : {std::pair{t.a, l.arm_a}, std::pair{t.b, l.arm_b}}) {
+    if (!group) continue;
+    xx += group->inverse_kgm2 * arm.y * arm.y;
+    xy -= group->inverse_kgm2 * arm.x * arm.y;
+    yy += group->inverse_kgm2 * arm.x * arm.x;
   }
   const double det = xx * yy - xy * xy;
   if (!(det > 0)) return {};
   return {(yy * dv.x - xy * dv.y) / det, (xx * dv.y - xy * dv.x) / det};
 }
 
-void place_arms(const Two& t, Linkage& l) {
+void place_arms(const Two& t, JointConstraint& l) {
   l.arm_a = t.a ? rotate(t.a->heading, l.at_a) : Vec2{};
   l.arm_b = t.b ? rotate(t.b->heading, l.at_b) : Vec2{};
   if (!is_slider(l)) return;
@@ -78,21 +78,21 @@ void place_arms(const Two& t, Linkage& l) {
   l.arm_a = t.b->p + l.arm_b - t.a->p;
 }
 
-double rate(const Two& t, const Linkage& l) {
+double rate(const Two& t, const JointConstraint& l) {
   return is_slider(l) ? dot(t.apart(l), l.axis) : l.plan->sign * t.turning();
 }
-double rate_response(const Two& t, const Linkage& l) {
+double rate_response(const Two& t, const JointConstraint& l) {
   return is_slider(l) ? t.response(l, l.axis) : t.inverse_kgm2();
 }
-void push_rate(const Two& t, const Linkage& l, double impulse) {
+void push_rate(const Two& t, const JointConstraint& l, double impulse) {
   if (is_slider(l)) t.push(l, impulse * l.axis);
   else t.twist(l.plan->sign * impulse);
 }
 
 }  // namespace
 
-void PlanarEngine::prepare_linkage(Linkage& l, double h_s) {
-  const Two t = two(lumps_, l);
+void PlanarEngine::prepare_constraint(JointConstraint& l, double h_s) {
+  const Two t = two(groups_, l);
   place_arms(t, l);
   if (is_slider(l)) {
     t.push(l, l.hold.x * left_of(l.axis));
@@ -109,8 +109,8 @@ void PlanarEngine::prepare_linkage(Linkage& l, double h_s) {
     push_rate(t, l, h_s * std::clamp(motor.target.effort, -motor.joint->max_effort, motor.joint->max_effort));
 }
 
-void PlanarEngine::hold_linkage(Linkage& l, double h_s) {
-  const Two t = two(lumps_, l);
+void PlanarEngine::hold_constraint(JointConstraint& l, double h_s) {
+  const Two t = two(groups_, l);
   if (l.plan) {
     const Motor& motor = motors_[l.joint];
     const JointState& joint = joint_states_[l.joint];
@@ -174,14 +174,14 @@ void PlanarEngine::hold_linkage(Linkage& l, double h_s) {
 }
 
 /// Moves both so that the anchor's error shrinks.
-void PlanarEngine::take_back(Linkage& l) {
-  const Two t = two(lumps_, l);
+void PlanarEngine::take_back(JointConstraint& l) {
+  const Two t = two(groups_, l);
   place_arms(t, l);
-  const auto shift = [](Lump* lump, Vec2 impulse, Vec2 arm, double twist) {
-    if (!lump) return;
-    lump->p = lump->p + lump->inverse_kg * impulse;
-    const double turn = lump->inverse_kgm2 * (cross(arm, impulse) + twist);
-    if (turn != 0) lump->heading = tidied(lump->heading * turn_of(turn));
+  const auto shift = [](RigidGroup* group, Vec2 impulse, Vec2 arm, double twist) {
+    if (!group) return;
+    group->p = group->p + group->inverse_kg * impulse;
+    const double turn = group->inverse_kgm2 * (cross(arm, impulse) + twist);
+    if (turn != 0) group->heading = tidied(group->heading * turn_of(turn));
   };
   if (!is_pivot(l)) {
     const double twist = -turned(t.a, t.b, l.apart) / t.inverse_kgm2();
@@ -202,9 +202,9 @@ void PlanarEngine::take_back(Linkage& l) {
   shift(t.b, impulse, l.arm_b, 0);
 }
 
-void PlanarEngine::finish_linkage(Linkage& l, double h_s) {
+void PlanarEngine::finish_constraint(JointConstraint& l, double h_s) {
   if (!l.plan) return;
-  const Two t = two(lumps_, l);
+  const Two t = two(groups_, l);
   place_arms(t, l);
   const Motor& motor = motors_[l.joint];
   JointState& joint = joint_states_[l.joint];

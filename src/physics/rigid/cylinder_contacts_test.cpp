@@ -1,4 +1,4 @@
-#include "physics/rigid/round.h"
+#include "physics/rigid/cylinder_contacts.h"
 
 #include <gtest/gtest.h>
 

@@ -13,9 +13,9 @@
 
 namespace sandlot::planar {
 
-class Tree {
+class KinematicTree {
  public:
-  explicit Tree(const model::Model& model);
+  explicit KinematicTree(const model::Model& model);
 
   /// Fills the states of all links but the first from that of the first. Indices of spans are the model's.
   /// @param joints  ids of the model's joints, into `joint_states`

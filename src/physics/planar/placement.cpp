@@ -1,4 +1,4 @@
-// Where instances of the planar engine are put: from poses of models to lumps, and back.
+// Where instances of the planar engine are put: from poses of models to groups, and back.
 #include <algorithm>
 #include <cmath>
 
@@ -44,42 +44,42 @@ void PlanarEngine::settle(std::uint32_t slot, const Pose& X_WM) {
   heading_of(X_WB.q, instance.tilt);
   instance.z_m = X_WB.p.z;
   if (!instance.plan || !same(tilt_before, instance.tilt) || z_before != instance.z_m) shape(slot);
-  place_lumps(slot, X_WB);
-  for (const std::uint32_t k : instance.lumps) {
-    lumps_[k].v = {};
-    lumps_[k].w_radps = 0;
+  place_groups(slot, X_WB);
+  for (const std::uint32_t k : instance.groups) {
+    groups_[k].v = {};
+    groups_[k].w_radps = 0;
   }
   for (Wheel& wheel : instance.wheels) {
     wheel.impulse = {};
     if (wheel.joint != none) joint_states_[wheel.joint].velocity = 0;
   }
-  for (Linkage& l : instance.linkages) {
+  for (JointConstraint& l : instance.constraints) {
     l.hold = {};
     l.turn = 0;
     joint_states_[l.joint].velocity = 0;
   }
   drives_[slot].now = {};
-  std::erase_if(touches_, [&](const Touch& t) {
+  std::erase_if(contact_points_, [&](const ContactPoint& t) {
     return t.key.pair >> 32 == instance.created || (t.key.pair & 0xffffffffu) == instance.created;
   });
 }
 
-void PlanarEngine::free_lumps(Instance& instance) {
-  for (std::size_t i = instance.lumps.size(); i-- > 0;) {
-    const std::uint32_t k = instance.lumps[i];
-    if (lumps_[k].figure != none) {
-      map_.figures()[lumps_[k].figure] = {};
-      free_figures_.push_back(lumps_[k].figure);
+void PlanarEngine::free_groups(Instance& instance) {
+  for (std::size_t i = instance.groups.size(); i-- > 0;) {
+    const std::uint32_t k = instance.groups[i];
+    if (groups_[k].silhouette != none) {
+      map_.silhouettes()[groups_[k].silhouette] = {};
+      free_silhouettes_.push_back(groups_[k].silhouette);
     }
-    lumps_[k] = {};
+    groups_[k] = {};
     map_.discs()[k] = {};
-    free_lumps_.push_back(k);
+    free_groups_.push_back(k);
   }
-  instance.lumps.clear();
+  instance.groups.clear();
   linked_fresh_ = false;
 }
 
-/// What follows from attitude and height: lumps, outlines and wheels.
+/// What follows from attitude and height: groups, outlines and wheels.
 void PlanarEngine::shape(std::uint32_t slot) {
   Instance& instance = instances_[slot];
   if (!last_plan_ || last_model_ != instance.model || !same(last_tilt_, instance.tilt) ||
@@ -94,30 +94,30 @@ void PlanarEngine::shape(std::uint32_t slot) {
   }
   instance.plan = last_plan_;
   const Plan& plan = *instance.plan;
-  std::vector<Lump> before;
-  for (const std::uint32_t k : instance.lumps) before.push_back(lumps_[k]);
-  free_lumps(instance);
-  for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
-    const LumpPlan& p = plan.lumps[i];
+  std::vector<RigidGroup> before;
+  for (const std::uint32_t k : instance.groups) before.push_back(groups_[k]);
+  free_groups(instance);
+  for (std::uint32_t i = 0; i < plan.groups.size(); ++i) {
+    const RigidGroupPlan& p = plan.groups[i];
     std::uint32_t k;
-    if (free_lumps_.empty()) {
-      k = static_cast<std::uint32_t>(lumps_.size());
-      lumps_.emplace_back();
-      rubbing_.emplace_back();
+    if (free_groups_.empty()) {
+      k = static_cast<std::uint32_t>(groups_.size());
+      groups_.emplace_back();
+      ground_friction_.emplace_back();
       map_.discs().emplace_back();
     } else {
-      k = free_lumps_.back();
-      free_lumps_.pop_back();
+      k = free_groups_.back();
+      free_groups_.pop_back();
     }
-    Lump& lump = lumps_[k];
-    lump = i < before.size() ? before[i] : Lump{};
-    lump.plan = &p;
-    lump.slot = slot;
-    lump.index = i;
-    lump.figure = none;
-    lump.inverse_kg = instance.guided ? 0 : 1 / p.mass_kg;
-    lump.inverse_kgm2 = instance.guided ? 0 : 1 / p.inertia_kgm2;
-    instance.lumps.push_back(k);
+    RigidGroup& group = groups_[k];
+    group = i < before.size() ? before[i] : RigidGroup{};
+    group.plan = &p;
+    group.slot = slot;
+    group.index = i;
+    group.silhouette = none;
+    group.inverse_kg = instance.guided ? 0 : 1 / p.mass_kg;
+    group.inverse_kgm2 = instance.guided ? 0 : 1 / p.inertia_kgm2;
+    instance.groups.push_back(k);
     Disc& disc = map_.discs()[k];
     disc = {.centre = {},
             .radius_m = p.radius_m,
@@ -126,23 +126,24 @@ void PlanarEngine::shape(std::uint32_t slot) {
             .instance = slot};
     if (!p.parts.empty()) disc.body = instance.bodies[p.parts[0].link].index;
     if (!p.disc && !p.parts.empty()) {
-      if (free_figures_.empty()) {
-        lump.figure = static_cast<std::uint32_t>(map_.figures().size());
-        map_.figures().emplace_back();
+      if (free_silhouettes_.empty()) {
+        group.silhouette = static_cast<std::uint32_t>(map_.silhouettes().size());
+        map_.silhouettes().emplace_back();
       } else {
-        lump.figure = free_figures_.back();
-        free_figures_.pop_back();
+        group.silhouette = free_silhouettes_.back();
+        free_silhouettes_.pop_back();
       }
-      Silhouette& figure = map_.figures()[lump.figure];
+      Silhouette& silhouette = map_.silhouettes()[group.silhouette];
       for (const Part& part : p.parts) {
-        figure.parts.push_back(part.outline);
-        figure.bodies.push_back(instance.bodies[part.link].index);
+        silhouette.parts.push_back(part.outline);
+        silhouette.bodies.push_back(instance.bodies[part.link].index);
       }
-      figure.edges = p.edges;
-      disc.figure = lump.figure;
+      silhouette.edges = p.edges;
+      disc.silhouette = group.silhouette;
     }
   }
-  briefs_[slot] = {instance.lumps.size() == 1 ? instance.lumps[0] : none, instance.moves, instance.guided};
+  summaries_[slot] = {instance.groups.size() == 1 ? instance.groups[0] : none, instance.moves,
+                      instance.guided};
   add_joints(instance);
   aim(slot, drives_[slot].link);
   for (const JointId joint : instance.joints)
@@ -155,13 +156,13 @@ void PlanarEngine::shape(std::uint32_t slot) {
   stale();
 }
 
-/// Wheels, casters and linkages, as the plan has them.
+/// Wheels, casters and constraints, as the plan has them.
 void PlanarEngine::add_joints(Instance& instance) {
   const Plan& plan = *instance.plan;
-  const bool same_kind = instance.linkages.size() + instance.wheels.size() > 0;
-  std::vector<Linkage> linkages = std::move(instance.linkages);
+  const bool same_kind = instance.constraints.size() + instance.wheels.size() > 0;
+  std::vector<JointConstraint> constraints = std::move(instance.constraints);
   std::vector<Wheel> wheels = std::move(instance.wheels);
-  instance.linkages.clear();
+  instance.constraints.clear();
   instance.wheels.clear();
   const auto global = [&](std::uint32_t joint) {
     return joint == model::Joint::no_joint ? none : instance.joints[joint].index;
@@ -169,7 +170,7 @@ void PlanarEngine::add_joints(Instance& instance) {
   for (const WheelPlan& w : plan.wheels) {
     Wheel wheel;
     wheel.plan = &w;
-    wheel.lump = instance.lumps[w.lump];
+    wheel.group = instance.groups[w.group];
     wheel.joint = global(w.joint);
     wheel.steering = global(w.steering);
     wheel.at = w.at;
@@ -177,80 +178,80 @@ void PlanarEngine::add_joints(Instance& instance) {
     if (wheel.steering != none) motors_[wheel.steering].role = Motor::Role::wheel;
     instance.wheels.push_back(std::move(wheel));
   }
-  for (std::uint32_t i = 0; i < plan.lumps.size(); ++i) {
+  for (std::uint32_t i = 0; i < plan.groups.size(); ++i) {
     const bool wheeled = std::any_of(plan.wheels.begin(), plan.wheels.end(),
-                                     [&](const WheelPlan& w) { return w.lump == i; });
+                                     [&](const WheelPlan& w) { return w.group == i; });
     if (!wheeled) continue;
-    for (const Support& s : plan.lumps[i].supports)
+    for (const Support& s : plan.groups[i].supports)
       if (s.surface->mu > 0) {
         Wheel caster;
-        caster.lump = instance.lumps[i];
+        caster.group = instance.groups[i];
         caster.at = s.at;
         instance.wheels.push_back(std::move(caster));
       }
   }
-  for (const LinkagePlan& l : plan.linkages) {
-    if (l.kind == LinkagePlan::Kind::steering) continue;
-    Linkage linkage{
-        .plan = &l, .a = instance.lumps[l.parent], .b = instance.lumps[l.child], .joint = global(l.joint)};
-    linkage.at_a = l.at_H - plan.lumps[l.parent].com_H;
-    linkage.at_b = l.at_H - plan.lumps[l.child].com_H;
-    linkage.axis_a = l.axis;
-    motors_[linkage.joint].role = Motor::Role::linkage;
-    instance.linkages.push_back(linkage);
+  for (const JointPlan& l : plan.constraints) {
+    if (l.kind == JointPlan::Kind::steering) continue;
+    JointConstraint constraint{
+        .plan = &l, .a = instance.groups[l.parent], .b = instance.groups[l.child], .joint = global(l.joint)};
+    constraint.at_a = l.at_H - plan.groups[l.parent].com_H;
+    constraint.at_b = l.at_H - plan.groups[l.child].com_H;
+    constraint.axis_a = l.axis;
+    motors_[constraint.joint].role = Motor::Role::constraint;
+    instance.constraints.push_back(constraint);
   }
   if (!same_kind) return;
   for (std::size_t i = 0; i < std::min(wheels.size(), instance.wheels.size()); ++i)
     instance.wheels[i].impulse = wheels[i].impulse;
-  for (std::size_t i = 0; i < std::min(linkages.size(), instance.linkages.size()); ++i) {
-    instance.linkages[i].hold = linkages[i].hold;
-    instance.linkages[i].turn = linkages[i].turn;
+  for (std::size_t i = 0; i < std::min(constraints.size(), instance.constraints.size()); ++i) {
+    instance.constraints[i].hold = constraints[i].hold;
+    instance.constraints[i].turn = constraints[i].turn;
   }
 }
 
 /// From the canonical link's pose and the positions of joints.
-void PlanarEngine::place_lumps(std::uint32_t slot, const Pose& X_WB) {
+void PlanarEngine::place_groups(std::uint32_t slot, const Pose& X_WB) {
   Instance& instance = instances_[slot];
   const Plan& plan = *instance.plan;
-  if (plan.lumps.size() > 1) {
+  if (plan.groups.size() > 1) {
     refresh_rolls();
     states_.resize(body_slot_.size());
     states_[instance.bodies[0].index] = {X_WB, {}};
     instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
   }
-  for (const std::uint32_t k : instance.lumps) {
-    Lump& lump = lumps_[k];
-    const LumpPlan& p = plan.lumps[lump.index];
+  for (const std::uint32_t k : instance.groups) {
+    RigidGroup& group = groups_[k];
+    const RigidGroupPlan& p = plan.groups[group.index];
     Quat tilt;
-    if (lump.index == 0) {
-      lump.heading = heading_of(X_WB.q, tilt);
-      lump.p = Vec2{X_WB.p.x, X_WB.p.y} + rotate(lump.heading, p.com_H);
+    if (group.index == 0) {
+      group.heading = heading_of(X_WB.q, tilt);
+      group.p = Vec2{X_WB.p.x, X_WB.p.y} + rotate(group.heading, p.com_H);
     } else {
       const Pose moved = states_[instance.bodies[p.root].index].X_WB * inverse(plan.X_HL[p.root]);
-      lump.heading = heading_of(moved.q, tilt);
-      lump.p = Vec2{moved.p.x, moved.p.y} + rotate(lump.heading, p.com_H);
+      group.heading = heading_of(moved.q, tilt);
+      group.p = Vec2{moved.p.x, moved.p.y} + rotate(group.heading, p.com_H);
     }
     place_disc(k);
   }
   stale();
 }
 
-/// Brings what others see of a lump to where it is.
+/// Brings what others see of a group to where it is.
 void PlanarEngine::place_disc(std::uint32_t k) {
-  const Lump& lump = lumps_[k];
-  map_.discs()[k].centre = lump.p + rotate(lump.heading, lump.plan->centre);
-  if (lump.figure != none) move_figure(k);
+  const RigidGroup& group = groups_[k];
+  map_.discs()[k].centre = group.p + rotate(group.heading, group.plan->centre);
+  if (group.silhouette != none) move_silhouette(k);
 }
 
-void PlanarEngine::move_figure(std::uint32_t k) {
-  const Lump& lump = lumps_[k];
-  const LumpPlan& plan = *lump.plan;
-  Silhouette& figure = map_.figures()[lump.figure];
+void PlanarEngine::move_silhouette(std::uint32_t k) {
+  const RigidGroup& group = groups_[k];
+  const RigidGroupPlan& plan = *group.plan;
+  Silhouette& silhouette = map_.silhouettes()[group.silhouette];
   for (std::size_t i = 0; i < plan.parts.size(); ++i)
-    figure.parts[i].centre = lump.p + rotate(lump.heading, plan.parts[i].outline.centre);
+    silhouette.parts[i].centre = group.p + rotate(group.heading, plan.parts[i].outline.centre);
   for (std::size_t i = 0; i < plan.edges.size(); ++i) {
-    figure.edges[i].from = lump.p + rotate(lump.heading, plan.edges[i].from);
-    figure.edges[i].along = rotate(lump.heading, plan.edges[i].along);
+    silhouette.edges[i].from = group.p + rotate(group.heading, plan.edges[i].from);
+    silhouette.edges[i].along = rotate(group.heading, plan.edges[i].along);
   }
 }
 
@@ -268,19 +269,19 @@ void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) 
 /// The velocity of a guided instance in this step.
 void PlanarEngine::lead(std::uint32_t slot, double) {
   Instance& instance = instances_[slot];
-  for (const std::uint32_t k : instance.lumps) {
-    Lump& lump = lumps_[k];
-    lump.v = {};
-    lump.w_radps = 0;
+  for (const std::uint32_t k : instance.groups) {
+    RigidGroup& group = groups_[k];
+    group.v = {};
+    group.w_radps = 0;
     if (!instance.destination) continue;
     const auto& [X_WM, V] = *instance.destination;
     // At its destination, where the velocity is meant.
     const Pose X_WB = X_WM * instance.model->links[0].X_ML;
     Quat tilt;
-    const Vec2 com = rotate(heading_of(X_WB.q, tilt), instance.plan->lumps[0].com_H);
+    const Vec2 com = rotate(heading_of(X_WB.q, tilt), instance.plan->groups[0].com_H);
     const Vec3 arm = X_WB.p + Vec3{com.x, com.y, 0} - X_WM.p, v = V.linear + sandlot::cross(V.angular, arm);
-    lump.v = {v.x, v.y};
-    lump.w_radps = V.angular.z;
+    group.v = {v.x, v.y};
+    group.w_radps = V.angular.z;
   }
 }
 
@@ -299,15 +300,15 @@ void PlanarEngine::arrive(std::uint32_t slot) {
     instance.z_m = X_WB.p.z;
     shape(slot);
   }
-  place_lumps(slot, X_WB);
+  place_groups(slot, X_WB);
 }
 
 Pose PlanarEngine::canonical_pose(std::uint32_t slot) const {
   const Instance& instance = instances_[slot];
   if (!instance.moves) return {{instance.still->at.x, instance.still->at.y, instance.z_m}, instance.still->q};
-  const Lump& lump = lumps_[instance.lumps[0]];
-  const Vec2 p = lump.p - rotate(lump.heading, instance.plan->lumps[0].com_H);
-  return {{p.x, p.y, instance.z_m}, about_z(lump.heading) * instance.tilt};
+  const RigidGroup& group = groups_[instance.groups[0]];
+  const Vec2 p = group.p - rotate(group.heading, instance.plan->groups[0].com_H);
+  return {{p.x, p.y, instance.z_m}, about_z(group.heading) * instance.tilt};
 }
 
 Pose PlanarEngine::pose(InstanceId id) const {

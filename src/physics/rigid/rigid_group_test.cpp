@@ -1,4 +1,4 @@
-#include "physics/rigid/lump.h"
+#include "physics/rigid/rigid_group.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ model::Joint fixed(std::uint32_t parent, std::uint32_t child) {
   return joint;
 }
 
-TEST(Lump, TwoHalvesMakeTheWhole) {
+TEST(RigidGroup, TwoHalvesMakeTheWhole) {
   // A bar of 2 kg cut in the middle; the second half is turned and carries its frame elsewhere.
   model::Model m;
   m.links.push_back(link_of("left", Box{{0.5, 0.1, 0.2}}, 1, {{-0.25, 0, 0}, {}}));
@@ -27,24 +27,24 @@ TEST(Lump, TwoHalvesMakeTheWhole) {
   const Pose X_MCo{{0.25, 0, 0}, m.links[1].X_ML.q};
   m.links[1].inertial.X_LCo = inverse(m.links[1].X_ML) * X_MCo;
   m.joints.push_back(fixed(0, 1));
-  const auto lumps = lump_links(m);
-  ASSERT_TRUE(lumps);
-  ASSERT_EQ(lumps->lumps.size(), 1u);
-  const Lump& lump = lumps->lumps[0];
-  EXPECT_DOUBLE_EQ(lump.mass_kg, 2);
-  EXPECT_NEAR(norm(lump.X_MB.p), 0, 1e-15);
+  const auto groups = group_links(m);
+  ASSERT_TRUE(groups);
+  ASSERT_EQ(groups->groups.size(), 1u);
+  const RigidGroup& group = groups->groups[0];
+  EXPECT_DOUBLE_EQ(group.mass_kg, 2);
+  EXPECT_NEAR(norm(group.X_MB.p), 0, 1e-15);
   // Which way round the half lies decides between y and z extents; take them from the rotated shape.
   const Vec3 size_M = rotate(m.links[1].X_ML.q, {0.1, 0.2, 0.5});
   ASSERT_NEAR(std::abs(size_M.x), 0.5, 1e-12);
   const double y = std::abs(size_M.y), z = std::abs(size_M.z);
   const Vec3 left = inertia_kg_m2(Box{{0.5, 0.1, 0.2}}, 1), right = inertia_kg_m2(Box{{0.5, y, z}}, 1);
-  EXPECT_NEAR(lump.inertia_B.xx, left.x + right.x, 1e-12);
-  EXPECT_NEAR(lump.inertia_B.yy, left.y + right.y + 2 * 0.0625, 1e-12);  // Steiner: 1 kg at 0.25 m, twice
-  EXPECT_NEAR(lump.inertia_B.zz, left.z + right.z + 2 * 0.0625, 1e-12);
-  EXPECT_NEAR(lump.inertia_B.xy, 0, 1e-12);
+  EXPECT_NEAR(group.inertia_B.xx, left.x + right.x, 1e-12);
+  EXPECT_NEAR(group.inertia_B.yy, left.y + right.y + 2 * 0.0625, 1e-12);  // Steiner: 1 kg at 0.25 m, twice
+  EXPECT_NEAR(group.inertia_B.zz, left.z + right.z + 2 * 0.0625, 1e-12);
+  EXPECT_NEAR(group.inertia_B.xy, 0, 1e-12);
 }
 
-TEST(Lump, ProductsOfInertiaTurnWithTheirFrame) {
+TEST(RigidGroup, ProductsOfInertiaTurnWithTheirFrame) {
   const Symmetric3 m{1, 2, 3, 0.1, 0.2, 0.3};
   const Quat q = quat_from_rpy(0.3, -0.5, 1.1);
   const Symmetric3 r = rotated(q, m);
@@ -58,7 +58,7 @@ TEST(Lump, ProductsOfInertiaTurnWithTheirFrame) {
   EXPECT_FALSE(is_positive_definite({1, 1, -1, 0, 0, 0}));
 }
 
-TEST(Lump, FixedJointsJoinAndTheWorldHolds) {
+TEST(RigidGroup, FixedJointsJoinAndTheWorldHolds) {
   model::Model m;
   for (int i = 0; i < 6; ++i) m.links.push_back(link_of("l", Sphere{0.1}, 1, {{1.0 * i, 0, 0}, {}}));
   m.joints.push_back(fixed(4, 2));
@@ -66,19 +66,19 @@ TEST(Lump, FixedJointsJoinAndTheWorldHolds) {
   m.joints.push_back(fixed(0, 4));  // a loop of fixed joints
   m.joints.push_back(fixed(model::world_link, 5));
   m.joints.push_back(fixed(5, 3));
-  const auto lumps = lump_links(m);
-  ASSERT_TRUE(lumps);
-  EXPECT_EQ(lumps->of_link, (std::vector<std::uint32_t>{0, 1, 0, 2, 0, 2}));
-  ASSERT_EQ(lumps->lumps.size(), 3u);
-  EXPECT_EQ(lumps->lumps[0].links, (std::vector<std::uint32_t>{0, 2, 4}));
-  EXPECT_NEAR(lumps->lumps[0].X_MB.p.x, 2, 1e-15);
-  EXPECT_FALSE(lumps->lumps[0].fixed);
-  EXPECT_TRUE(lumps->lumps[2].fixed);
+  const auto groups = group_links(m);
+  ASSERT_TRUE(groups);
+  EXPECT_EQ(groups->of_link, (std::vector<std::uint32_t>{0, 1, 0, 2, 0, 2}));
+  ASSERT_EQ(groups->groups.size(), 3u);
+  EXPECT_EQ(groups->groups[0].links, (std::vector<std::uint32_t>{0, 2, 4}));
+  EXPECT_NEAR(groups->groups[0].X_MB.p.x, 2, 1e-15);
+  EXPECT_FALSE(groups->groups[0].fixed);
+  EXPECT_TRUE(groups->groups[2].fixed);
   m.is_static = true;
-  const auto standing = lump_links(m);
+  const auto standing = group_links(m);
   ASSERT_TRUE(standing);
-  ASSERT_EQ(standing->lumps.size(), 1u);
-  EXPECT_TRUE(standing->lumps[0].fixed);
+  ASSERT_EQ(standing->groups.size(), 1u);
+  EXPECT_TRUE(standing->groups[0].fixed);
 }
 
 }  // namespace
