@@ -16,7 +16,6 @@
 #include "geometry/bounds.h"
 #include "noise/chain.h"
 #include "physics/engine.h"
-#include "sim/load/assets.h"
 #include "sim/load/attach.h"
 #include "sim/load/joint_controllers.h"
 #include "sim/load/placement.h"
@@ -247,7 +246,6 @@ formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_mi
   formats::SdfOptions out;
   out.path = search_path(paths);
   out.skip_missing = skip_missing;
-  out.assets = asset_reader();
   return out;
 }
 
