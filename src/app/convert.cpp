@@ -15,7 +15,6 @@
 #include "formats/sdf/write.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
-#include "sim/load/assets.h"
 #include "sim/load/load.h"
 
 namespace sandlot::app {
@@ -121,7 +120,7 @@ struct Job {
 
   /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
   Result<std::string> tree_to_sdf() const {
-    const formats::SdfOptions sdf{.path = search, .assets = asset_reader()};
+    const formats::SdfOptions sdf{.path = search};
     SL_ASSIGN(const std::string text, read_text_file(options.in, sdf.limits.max_bytes));
     SL_ASSIGN([[maybe_unused]] const formats::SdfContent content,
               formats::parse_sdf(text, options.in, diagnostics, sdf));
@@ -159,7 +158,7 @@ struct Job {
 
   Result<std::string> model_to_urdf() const {
     SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, diagnostics, {.path = search, .assets = asset_reader()}));
+              formats::read_sdf(options.in, diagnostics, {.path = search}));
     if (!content.world_name.empty())
       return Error{"'" + options.in + "' is a world, and a URDF file holds one robot",
                    "name a file with one <model>"};
@@ -173,7 +172,7 @@ struct Job {
     SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
     Diagnostics said_already;
     SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, said_already, {.path = search, .assets = asset_reader()}));
+              formats::read_sdf(options.in, said_already, {.path = search}));
     double fastest_hz = 0;
     for (const model::Instance& instance : setup.instances)
       for (const model::DeviceDecl& device : instance.devices)
@@ -245,8 +244,7 @@ Status check_result(const Job& job, const std::string& text) {
     if (back) return {};
     error = back.error();
   } else {
-    const auto back = formats::parse_sdf(text, job.options.out, unheard,
-                                         {.path = job.search, .assets = asset_reader()});
+    const auto back = formats::parse_sdf(text, job.options.out, unheard, {.path = job.search});
     if (back) return {};
     error = back.error();
   }

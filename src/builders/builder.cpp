@@ -40,10 +40,10 @@ Result<Built> build_model(const Node& map, const std::string& path) {
                      suggestion(name->text(), names), path + "/builder");
 }
 
-std::optional<Result<Node>> builder_words(std::string_view text) {
+std::optional<Result<Node>> builder_words(std::string_view text, const Place& written) {
   constexpr std::string_view scheme = "builder:";
   if (!starts_with(text, scheme)) return std::nullopt;
-  const Place place{std::make_shared<const std::string>(text)};
+  const Place place = written.file ? written : Place{std::make_shared<const std::string>(text)};
   text.remove_prefix(scheme.size());
   const std::size_t mark = text.find('?');
   Node map = Node::map(place);
@@ -53,7 +53,7 @@ std::optional<Result<Node>> builder_words(std::string_view text) {
     const std::size_t equals = word.find('=');
     const std::string key(word.substr(0, equals));
     if (equals == std::string_view::npos || key.empty() || key == "builder")
-      return map.error("'" + std::string(word.substr(0, 60)) + "' is no parameter",
+      return map.error("'" + std::string(word.substr(0, 60)) + "' is not a parameter",
                        "write key=value, with & between them");
     if (map.find(key)) return map.error("'" + key.substr(0, 60) + "' is given twice");
     map.set(key, Node::scalar(std::string(word.substr(equals + 1)), place));

@@ -7,7 +7,7 @@
 ///   Result<Built> build(const Spec& spec);         // from parameters that are in range to a model
 ///   constinit const Builder builder = make_builder<Spec, build>({.name = "snake", .help = "..."});
 ///
-/// Scenario files ask for it by `model: {builder: snake, segments: 12}`, the command line by `builder:snake?segments=12`.
+/// Scenario files name it as `model: {builder: snake, segments: 12}`; they and the command line as `builder:snake?segments=12`.
 #include <span>
 #include <string_view>
 #include <vector>
@@ -54,7 +54,8 @@ std::span<const Builder* const> builder_table();
 Result<Built> build_model(const Node& map, const std::string& path = "");
 
 /// "builder:snake?segments=12&length=40 cm" as such a map; nothing when the text does not begin with "builder:".
-/// Errors   something after the ? that is no key=value.
-std::optional<Result<Node>> builder_words(std::string_view text);
+/// @param place  of the text in a file; without one, errors name the text itself
+/// Errors   a part after the ? that is not key=value.
+std::optional<Result<Node>> builder_words(std::string_view text, const Place& place = {});
 
 }  // namespace sandlot

@@ -1,8 +1,18 @@
 #include "control/controller.h"
 
+#include <atomic>
+
 #include "base/text.h"
+#include "control/kinds_with.h"
 
 namespace sandlot {
+namespace {
+
+std::atomic<KindsWith> kinds_with = nullptr;
+
+}  // namespace
+
+void set_kinds_with(KindsWith function) { kinds_with = function; }
 
 Result<const Description::Entry*> Description::find(const std::vector<Entry>& entries,
                                                     std::string_view device, const char* type,
@@ -22,8 +32,11 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
   const std::string wanted = device.empty()
                                  ? std::string(what) + " of type " + type
                                  : std::string(what) + " '" + std::string(device) + "' of type " + type;
+  if (!names.empty()) return Error{"robot '" + robot + "' has no " + wanted, suggestion(device, names)};
+  const KindsWith lookup = kinds_with;
+  const std::string kinds = lookup ? lookup(type, &entries == &actuators) : "";
   return Error{"robot '" + robot + "' has no " + wanted,
-               names.empty() ? std::string("add a device that offers one") : suggestion(device, names)};
+               "add a device that offers one" + (kinds.empty() ? "" : ", of kind " + kinds)};
 }
 
 }  // namespace sandlot

@@ -254,7 +254,7 @@ TEST(Json, ErrorsNamePathAndRemedy) {
             "/position/1: must be float64, is boolean");
   EXPECT_EQ(json_error("geometry_msgs/PoseWithCovariance", R"({"covariance":[1]})"),
             "/covariance: must have 36 elements, has 1");
-  EXPECT_EQ(json_error("std_msgs/UInt8MultiArray", R"({"data":"a*bc"})"), "/data: is no base64");
+  EXPECT_EQ(json_error("std_msgs/UInt8MultiArray", R"({"data":"a*bc"})"), "/data: is not base64");
   EXPECT_EQ(json_error("sensor_msgs/JointState", R"({"name":"x"})"),
             "/name: must be a list of string, is string");
   EXPECT_EQ(json_error("std_msgs/Bool", "{").substr(0, 11), "is no JSON:");

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/base64.h"
 #include "base/text.h"
 #include "base/time.h"
 #include "messages/cdr.h"
@@ -19,37 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 using Count = MessageField::Count;
-
-constexpr std::string_view base64_letters =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-void add_base64(std::span<const std::byte> bytes, std::string& out) {
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) {
-      return i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0;
-    };
-    const unsigned three = at(0) << 16 | at(1) << 8 | at(2);
-    out += base64_letters[three >> 18];
-    out += base64_letters[three >> 12 & 63];
-    out += i + 1 < bytes.size() ? base64_letters[three >> 6 & 63] : '=';
-    out += i + 2 < bytes.size() ? base64_letters[three & 63] : '=';
-  }
-}
-
-/// False when `text` is not base64.
-bool parse_base64(std::string_view text, std::vector<std::byte>& out) {
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  if (text.size() % 4 == 1) return false;
-  unsigned bits = 0;
-  int have = 0;
-  for (const char c : text) {
-    const auto value = base64_letters.find(c);
-    if (value == std::string_view::npos) return false;
-    bits = bits << 6 | static_cast<unsigned>(value);
-    if ((have += 6) >= 8) out.push_back(static_cast<std::byte>(bits >> (have -= 8) & 0xFF));
-  }
-  return true;
-}
 
 template <class T>
 void add_as(const std::byte* value, std::string& out) {
@@ -239,9 +209,9 @@ Status set_bytes(const MessageField& field, Wire type, std::span<const std::byte
 Status set_field(const MessageField& field, const Json& value, std::byte* place) {
   if (field.count == Count::one) return set_one(field, value, place);
   if (value.is_string() && is_octet(field.type)) {
-    std::vector<std::byte> bytes;
-    if (!parse_base64(value.get_ref<const std::string&>(), bytes)) return Error{"is no base64"};
-    return set_bytes(field, field.type, bytes, place);
+    const auto bytes = from_base64(value.get_ref<const std::string&>());
+    if (!bytes) return Error{"is not base64"};
+    return set_bytes(field, field.type, std::as_bytes(std::span(*bytes)), place);
   }
   if (value.is_binary() && size_of(field.type) && field.type != Wire::boolean) {
     const auto& binary = value.get_binary();

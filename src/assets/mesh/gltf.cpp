@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/mesh/reader.h"
+#include "base/base64.h"
 
 namespace sandlot::assets::mesh {
 namespace {
@@ -10,27 +11,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t max_json_bytes = std::size_t{64} << 20;
-
-/// The bytes of a data: URI, "" when it is damaged.
-std::string from_base64(std::string_view text) {
-  std::string out;
-  std::uint32_t bits = 0;
-  int have = 0;
-  for (const char c : text) {
-    std::uint32_t digit = 0;
-    if (c >= 'A' && c <= 'Z') digit = static_cast<std::uint32_t>(c - 'A');
-    else if (c >= 'a' && c <= 'z') digit = static_cast<std::uint32_t>(c - 'a' + 26);
-    else if (c >= '0' && c <= '9') digit = static_cast<std::uint32_t>(c - '0' + 52);
-    else if (c == '+') digit = 62;
-    else if (c == '/') digit = 63;
-    else if (c == '=') break;
-    else return {};
-    bits = bits << 6 | digit;
-    have += 6;
-    if (have >= 8) out += static_cast<char>(bits >> (have -= 8) & 0xFFu);
-  }
-  return out;
-}
 
 /// Members that are not there, or of another type, read as nothing: each use says what it needs.
 const Json* member(const Json& from, const char* key) {
@@ -135,7 +115,8 @@ class Reader {
         bytes = std::string(binary_);
       } else if (uri.substr(0, 5) == "data:") {
         const std::size_t comma = uri.find(";base64,");
-        if (comma != std::string::npos) bytes = from_base64(std::string_view(uri).substr(comma + 8));
+        if (comma != std::string::npos)
+          bytes = from_base64(std::string_view(uri).substr(comma + 8)).value_or("");
       } else {
         SL_ASSIGN(bytes, out_.read_beside(percent_decoded(uri)));
       }

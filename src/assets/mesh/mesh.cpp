@@ -224,19 +224,19 @@ Cache& cache() {
 
 using Meshes = std::vector<std::shared_ptr<const TriangleMesh>>;
 
-/// Hulls that somebody holds, by the mesh they were made from.
+/// Hulls in use, by the mesh they were made from.
 class HullCache {
  public:
   /// Empty when there are none.
-  Meshes find(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how) {
+  Meshes find(const std::shared_ptr<const TriangleMesh>& mesh, Simplification how) {
     const std::lock_guard lock(mutex_);
     return find_locked(mesh, how);
   }
-  Meshes add(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how, Meshes hulls) {
+  Meshes add(const std::shared_ptr<const TriangleMesh>& mesh, Simplification how, Meshes hulls) {
     const std::lock_guard lock(mutex_);
     std::erase_if(entries_, [](const auto& each) { return each.second.mesh.expired(); });
     if (Meshes present = find_locked(mesh, how); !present.empty()) return present;
-    entries_[{mesh.get(), std::string(how)}] = {mesh, {hulls.begin(), hulls.end()}};
+    entries_[{mesh.get(), how}] = {mesh, {hulls.begin(), hulls.end()}};
     return hulls;
   }
 
@@ -245,9 +245,9 @@ class HullCache {
     std::weak_ptr<const TriangleMesh> mesh;
     std::vector<std::weak_ptr<const TriangleMesh>> hulls;
   };
-  Meshes find_locked(const std::shared_ptr<const TriangleMesh>& mesh, std::string_view how) const {
-    const auto found = entries_.find({mesh.get(), std::string(how)});
-    // An address may have been given out anew.
+  Meshes find_locked(const std::shared_ptr<const TriangleMesh>& mesh, Simplification how) const {
+    const auto found = entries_.find({mesh.get(), how});
+    // An address may have been given out again.
     if (found == entries_.end() || found->second.mesh.lock() != mesh) return {};
     Meshes out;
     for (const auto& each : found->second.hulls) {
@@ -257,7 +257,7 @@ class HullCache {
     return out;
   }
   std::mutex mutex_;
-  std::map<std::pair<const TriangleMesh*, std::string>, Entry>
+  std::map<std::pair<const TriangleMesh*, Simplification>, Entry>
       entries_;  // found by address, never walked in order
 };
 
@@ -325,12 +325,9 @@ Result<std::shared_ptr<const TriangleMesh>> read_mesh(const std::string& path, c
 }
 
 Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
-    std::shared_ptr<const TriangleMesh> mesh, std::string_view optimization) {
-  if (optimization.empty() || optimization == "none") return Meshes{std::move(mesh)};
-  if (optimization != "convex_hull" && optimization != "convex_decomposition")
-    return Error{"'" + std::string(optimization.substr(0, 40)) + "' is no way to simplify a mesh",
-                 "known are convex_hull and convex_decomposition", place_in(mesh->source)};
-  Meshes out = hull_cache().find(mesh, optimization);
+    std::shared_ptr<const TriangleMesh> mesh, Simplification how) {
+  if (how == Simplification::none) return Meshes{std::move(mesh)};
+  Meshes out = hull_cache().find(mesh, how);
   if (out.empty()) {
     const auto add_hull = [&](const TriangleMesh& of) {
       TriangleMesh hull = convex_hull(of.vertices);
@@ -338,11 +335,11 @@ Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
       hull.is_hull = true;
       if (!hull.triangles.empty()) out.push_back(std::make_shared<const TriangleMesh>(std::move(hull)));
     };
-    if (optimization == "convex_hull") add_hull(*mesh);
+    if (how == Simplification::convex_hull) add_hull(*mesh);
     else
       for (const TriangleMesh& part : connected_parts(*mesh)) add_hull(part);
     if (out.empty()) return Error{"is flat: there is no solid around it", "", place_in(mesh->source)};
-    out = hull_cache().add(mesh, optimization, std::move(out));
+    out = hull_cache().add(mesh, how, std::move(out));
   }
   return out;
 }

@@ -21,6 +21,7 @@
 ///          messages and takes what it does not understand for something else.
 /// Source   COLLADA 1.4.1 (Khronos), glTF 2.0 (Khronos), Wavefront OBJ/MTL, 3D Systems STL, MilkShape 1.8.5 file format,
 ///          PLY (G. Turk, 1994).
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -58,12 +59,16 @@ Result<std::shared_ptr<const TriangleMesh>> read_mesh(const std::string& path, c
 Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& path, const MeshOptions& options,
                                 Diagnostics& diagnostics);
 
-/// What SDF's <mesh optimization="..."> makes of a mesh for collisions.
-/// @param optimization  "": the mesh itself; "convex_hull"; "convex_decomposition": the hull of each connected part,
-///                      parts without volume left out. Asked again for the same mesh, the same hulls as long as
-///                      somebody holds them
-/// Errors   another word; no part has a volume
+/// SDF's <mesh optimization="...">: how a mesh is simplified for collisions.
+enum class Simplification : std::uint8_t {
+  none,
+  convex_hull,
+  convex_decomposition,  ///< the hull of each connected part; parts without volume are left out
+};
+
+/// The meshes that stand for a mesh in collisions. Hulls of a mesh are shared with earlier calls as long as they are in use.
+/// Errors   no part has a volume
 Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
-    std::shared_ptr<const TriangleMesh> mesh, std::string_view optimization);
+    std::shared_ptr<const TriangleMesh> mesh, Simplification how);
 
 }  // namespace sandlot::assets

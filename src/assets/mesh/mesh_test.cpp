@@ -482,25 +482,25 @@ TEST(CollisionMeshes, HullsOfTheWholeOrOfItsParts) {
   for (const Vec3& v : one.vertices) two.vertices.push_back(v + Vec3{2, 0, 0});
   for (const auto& [a, b, c] : one.triangles) two.triangles.push_back({a + 8, b + 8, c + 8});
   const auto mesh = std::make_shared<const TriangleMesh>(two);
-  const auto volumes = [&](const char* how) {
+  const auto volumes = [&](Simplification how) {
     std::vector<double> out;
     const auto meshes = collision_meshes(mesh, how);
     for (const auto& m : *meshes) out.push_back(mass_properties(*m).volume_m3);
     return out;
   };
-  EXPECT_EQ(collision_meshes(mesh, "")->front(), mesh);
-  ASSERT_EQ(volumes("convex_hull").size(), 1u);
-  EXPECT_NEAR(volumes("convex_hull")[0], 3, 1e-8);
-  const auto hull = collision_meshes(mesh, "convex_hull"), again = collision_meshes(mesh, "convex_hull");
+  EXPECT_EQ(collision_meshes(mesh, Simplification::none)->front(), mesh);
+  ASSERT_EQ(volumes(Simplification::convex_hull).size(), 1u);
+  EXPECT_NEAR(volumes(Simplification::convex_hull)[0], 3, 1e-8);
+  const auto hull = collision_meshes(mesh, Simplification::convex_hull),
+             again = collision_meshes(mesh, Simplification::convex_hull);
   EXPECT_EQ(hull->front(), again->front());
   const auto copy = std::make_shared<const TriangleMesh>(two);
-  EXPECT_NE(collision_meshes(copy, "convex_hull")->front(), hull->front());
-  ASSERT_EQ(volumes("convex_decomposition").size(), 2u);
-  EXPECT_NEAR(volumes("convex_decomposition")[0], 1, 1e-8);
-  expect_says(collision_meshes(mesh, "hull").error().text(), "known are convex_hull");
+  EXPECT_NE(collision_meshes(copy, Simplification::convex_hull)->front(), hull->front());
+  ASSERT_EQ(volumes(Simplification::convex_decomposition).size(), 2u);
+  EXPECT_NEAR(volumes(Simplification::convex_decomposition)[0], 1, 1e-8);
   const auto flat = std::make_shared<const TriangleMesh>(
       TriangleMesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}});
-  expect_says(collision_meshes(flat, "convex_hull").error().text(), "is flat");
+  expect_says(collision_meshes(flat, Simplification::convex_hull).error().text(), "is flat");
 }
 
 }  // namespace

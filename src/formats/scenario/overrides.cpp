@@ -50,16 +50,41 @@ void put_at(Node& node, const Place& place) {
   }
 }
 
-/// Steps into a list: by the index given, or into its only element.
-Result<Node*> element(Node* list, const std::size_t* index, const std::string& key, const Place& place) {
-  const std::size_t size = list->items().size();
-  const std::string has = "'" + key + "' has " + std::to_string(size) +
-                          (size == 1 ? " element" : " elements");
-  if (index && *index >= size)
-    return Error{has, size == 0 ? "" : "the last one is " + key + "[" + std::to_string(size - 1) + "]",
-                 place};
-  if (!index && size != 1) return Error{has, "say which one, as " + key + "[0]", place};
-  return &list->items()[index ? *index : 0];
+/// `name` of a robot, thing, event or zone, `id` of a module; "" where there is none.
+std::string name_of(const Node& item) {
+  for (const char* const key : {"name", "id"})
+    if (const Node* const name = item.is_map() ? item.find(key) : nullptr) return name->text();
+  return "";
+}
+
+Node* element_named(Node& list, const std::string& name) {
+  for (Node& item : list.items())
+    if (name_of(item) == name) return &item;
+  return nullptr;
+}
+
+/// Into the only element of a list, which `word` does not name.
+Result<Node*> only_element(Node& list, const std::string& key, const std::string& word, const Place& place) {
+  if (list.items().size() == 1) return &list.items().front();
+  std::vector<std::string> names;
+  for (const Node& item : list.items())
+    if (std::string name = name_of(item); !name.empty()) names.push_back(std::move(name));
+  const std::string near = nearest(word, names);
+  return Error{"'" + key + "' has " + std::to_string(list.items().size()) + " elements" +
+                   (names.empty() ? "" : ", none named '" + word + "'"),
+               !near.empty()          ? "did you mean '" + key + "." + near + "'?"
+               : list.items().empty() ? ""
+                                      : "name one of them, as " + key + "[0]" +
+                                            (names.empty() ? "" : " or " + key + "." + names.front()),
+               place};
+}
+
+/// The element of a list at an index.
+Result<Node*> element(Node& list, std::size_t index, const std::string& key, const Place& place) {
+  const std::size_t size = list.items().size();
+  if (index < size) return &list.items()[index];
+  return Error{"'" + key + "' has " + std::to_string(size) + (size == 1 ? " element" : " elements"),
+               size == 0 ? "" : "the last one is " + key + "[" + std::to_string(size - 1) + "]", place};
 }
 
 /// The short form of a key becomes the long one when a path leads into it: `controller: wander`, `physics: rigid`.
@@ -95,7 +120,14 @@ Status apply(Node& root, const Override& override_) {
     const Part& part = parts[i];
     const bool last = i + 1 == parts.size();
     const std::string& outer = i == 0 ? part.key : parts[i - 1].key;
-    if (at->is_sequence()) { SL_ASSIGN(at, element(at, nullptr, outer, place)); }
+    if (at->is_sequence()) {
+      Node* const named = part.indices.empty() ? element_named(*at, part.key) : nullptr;
+      if (named) {
+        at = named;
+        continue;
+      }
+      SL_ASSIGN(at, only_element(*at, outer, part.key, place));
+    }
     lengthen(*at, outer);
     if (at->is_scalar())
       return Error{"'" + outer + "' is " + describe(*at) + " and has no '" + part.key + "' in it", "", place};
@@ -113,7 +145,7 @@ Status apply(Node& root, const Override& override_) {
     for (const std::size_t& index : part.indices) {
       if (!next->is_sequence())
         return Error{"'" + part.key + "' is " + describe(*next) + ", not a list", "", place};
-      SL_ASSIGN(next, element(next, &index, part.key, place));
+      SL_ASSIGN(next, element(*next, index, part.key, place));
     }
     if (last && i == 0 && part.key == "physics" && next->is_map() && value.is_scalar() &&
         !next->entries().empty()) {

@@ -165,7 +165,7 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
     group.model = keys.model.text();
   } else {
     return keys.model.error("the " + std::string(what) + "'s model is " + describe(keys.model),
-                            "name a model file, or write {builder: ...}", path + "/model");
+                            "name a model file, or write {builder: ...} or builder:NAME", path + "/model");
   }
   group.count = keys.count;
   group.label = keys.label;

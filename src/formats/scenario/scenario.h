@@ -45,7 +45,7 @@ struct Module {
 /// Robots of one kind, or things: those have a name, a model, a number and a place only.
 struct RobotGroup {
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
-  std::string model;  ///< file as written (see base_folder), or a name in the search path
+  std::string model;  ///< file as written (see base_folder), a name in the search path, or "builder:..."
   Node builder;       ///< in place of `model`: a map with `builder` and its parameters, else null
   int count = 1;
   Placement placement;
@@ -88,8 +88,9 @@ struct Scenario {
 };
 
 /// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,
-/// `robots[0].devices.laser.beams`; an index may be left out of a list with one element). A variable goes before a
-/// key of the same name. `physics=planar` leaves the other keys of a physics map alone. The value is YAML.
+/// `robots[0].devices.laser.beams`, `robots.bot1.devices.laser.beams`). An element of a list is chosen by its index or by
+/// its `name` or `id`; a list with one element needs neither. A variable precedes a key of the same name, and the name of
+/// an element a key of the only element. `physics=planar` leaves the other keys of a physics map alone. The value is YAML.
 struct Override {
   std::string path;
   std::string value;

@@ -154,8 +154,30 @@ TEST(Scenario, SetSaysWhatIsWrongWithItsPath) {
   EXPECT_NE(error_of(indoor, {{"seed[0]", "1"}}).find("not a list"), std::string::npos);
   EXPECT_NE(
       error_of("version: 1\nrobots: [{name: a, model: m}, {name: b, model: m}]", {{"robots.count", "1"}})
-          .find("'robots' has 2 elements; say which one, as robots[0]"),
+          .find("'robots' has 2 elements, none named 'count'; name one of them, as robots[0] or robots.a"),
       std::string::npos);
+}
+
+TEST(Scenario, SetFindsElementsOfListsByName) {
+  const std::string text =
+      "version: 1\nrobots:\n  - {name: front, model: m}\n  - {name: rear, model: m, modules: [{id: eye, "
+      "model: "
+      "e}, {id: ear, model: f}]}\nthings: [{name: ball, model: b}]\nevents: [{name: late, when: t}]\n";
+  const auto s = parse(text, {{"robots.rear.count", "3"},
+                              {"robots.rear.controller.kind", "wander"},
+                              {"robots.rear.modules.ear.model", "g"},
+                              {"things.ball.label", "round"},
+                              {"events.late.when", "t > 2"}});
+  ASSERT_TRUE(s) << s.error().text();
+  EXPECT_EQ(s->robots[0].count, 1);
+  EXPECT_EQ(s->robots[1].count, 3);
+  EXPECT_EQ(s->robots[1].controllers.at(0).kind, "wander");
+  EXPECT_EQ(s->robots[1].modules[0].model, "e");
+  EXPECT_EQ(s->robots[1].modules[1].model, "g");
+  EXPECT_EQ(s->things[0].label, "round");
+  EXPECT_EQ(error_of(text, {{"robots.raer.count", "3"}}),
+            "--set robots.raer.count=3: 'robots' has 2 elements, none named 'raer'; did you mean "
+            "'robots.rear'?");
 }
 
 TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {

@@ -169,7 +169,7 @@ struct Robot {
           s.name);
     visit(Field{"model", "",
                 "Model file (SDF or URDF), relative to this file, or a folder of models; or a map with "
-                "builder and its parameters.",
+                "builder and its parameters, or builder:NAME?key=value.",
                 0, 0, Field::required},
           s.model);
     visit(Field{"count", "1", "Number of robots.", 1, max_robots}, s.count);
@@ -254,9 +254,10 @@ struct Root {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"version", "1", "Version of the scenario format.", 1, 1, Field::required}, s.version);
     visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.name);
-    visit(Field{"world", "", "World file (SDF), relative to this file; an empty plane if left out.", 0, 0,
-                Field::none, 4096},
-          s.world);
+    visit(
+        Field{"world", "", "World file (SDF), relative to this file; an empty plane in sunlight if left out.",
+              0, 0, Field::none, 4096},
+        s.world);
     visit(Field{"physics", "", "Engine: rigid or planar, or a map with engine and the engine's keys."},
           s.physics);
     visit(Field{"time", "", "Clock and steps of the run."}, s.time);

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <array>
 
+#include "assets/image/image.h"
+#include "assets/mesh/mesh.h"
 #include "base/text.h"
 #include "formats/sdf/reading.h"
 #include "geometry/barrel.h"
+#include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
 namespace sandlot::formats {
@@ -85,8 +88,8 @@ Result<std::string> uri_of(const Xml& form) {
   return uri->text;
 }
 
-/// What a reader of assets complains about, with the line that asked if it has no place of its own.
-Error blamed(Error error, const Xml& form) {
+/// An error of a mesh or an image, with the place of the element that names it if it has no place of its own.
+Error placed_at(Error error, const Xml& form) {
   if (!error.place.file) error.place = form.place;
   return error;
 }
@@ -94,61 +97,56 @@ Error blamed(Error error, const Xml& form) {
 Result<std::vector<Shape>> read_mesh_use(const Xml& form, bool collision, const std::string& said,
                                          const Reading& in) {
   in.notes.unused(form, "uri scale submesh", "convex_decomposition");
-  MeshUse use;
+  assets::MeshOptions options;
   SL_ASSIGN(const std::string uri, uri_of(form));
-  SL_TRY(read_child(form, "scale", {-1e6, 1e6}, use.scale));
-  if (use.scale.x == 0 || use.scale.y == 0 || use.scale.z == 0)
+  SL_TRY(read_child(form, "scale", {-1e6, 1e6}, options.scale));
+  if (options.scale.x == 0 || options.scale.y == 0 || options.scale.z == 0)
     return form.child("scale")->error("a <mesh> cannot have a scale of 0", "write <scale>1 1 1</scale>");
   if (const Xml* const submesh = form.child("submesh")) {
     in.notes.unused(*submesh, "name center");
-    if (const Xml* const name = submesh->child("name")) use.submesh = name->text;
-    SL_TRY(read_child(*submesh, "center", use.centre_submesh));
+    if (const Xml* const name = submesh->child("name")) options.submesh = name->text;
+    SL_TRY(read_child(*submesh, "center", options.centre));
   }
-  use.purpose = collision ? MeshUse::Purpose::collision : MeshUse::Purpose::visual;
+  options.textures = !collision;  // a collision has no look
+  assets::Simplification simplification = assets::Simplification::none;
   if (const std::string* const wanted = form.attribute("optimization")) {
-    if (*wanted == "convex_hull") use.optimization = MeshUse::Optimization::convex_hull;
-    else if (*wanted == "convex_decomposition")
-      use.optimization = MeshUse::Optimization::convex_decomposition;
+    if (*wanted == "convex_hull") simplification = assets::Simplification::convex_hull;
+    else if (*wanted == "convex_decomposition") simplification = assets::Simplification::convex_decomposition;
     else if (!wanted->empty() && *wanted != "none")
       return form.error("optimization '" + wanted->substr(0, 40) + "' of a mesh is not known",
                         "write convex_hull or convex_decomposition");
   }
-  if (!in.options.assets.mesh) {
-    in.notes.warn(form, "geometry <mesh> is not read here", said + " is left out");
-    return std::vector<Shape>{};
-  }
   const std::string without = said + " is left out";
   SL_ASSIGN(const std::optional<std::string> file, in.find(*form.child("uri"), uri, without.c_str()));
   if (!file) return std::vector<Shape>{};
-  use.file = *file;
-  auto shapes = in.options.assets.mesh(use, in.notes.diagnostics());
-  if (!shapes) return blamed(std::move(shapes.error()), form);
-  return std::move(*shapes);
+  auto mesh = assets::read_mesh(*file, options, in.notes.diagnostics());
+  if (!mesh) return placed_at(std::move(mesh.error()), form);
+  if (!collision) return std::vector<Shape>{Mesh{std::move(*mesh)}};
+  auto parts = assets::collision_meshes(std::move(*mesh), simplification);
+  if (!parts) return placed_at(std::move(parts.error()), form);
+  std::vector<Shape> shapes;
+  for (auto& part : *parts) shapes.emplace_back(Mesh{std::move(part)});
+  return shapes;
 }
 
 Result<std::vector<Shape>> read_heightmap_use(const Xml& form, Pose& X_LG, const std::string& said,
                                               const Reading& in) {
   in.notes.unused(form, "uri size pos", "texture* blend* use_terrain_paging sampling");
-  HeightmapUse use;
+  Vec3 size_m{1, 1, 1};  // extent in x and y, height of the brightest pixel
   SL_ASSIGN(const std::string uri, uri_of(form));
-  SL_TRY(read_child(form, "size", {0, 1e6}, use.size_m));
-  if (!(use.size_m.x > 0 && use.size_m.y > 0))
+  SL_TRY(read_child(form, "size", {0, 1e6}, size_m));
+  if (!(size_m.x > 0 && size_m.y > 0))
     return form.child("size")->error("a <heightmap> needs an extent in x and y",
                                      "write <size>129 129 10</size>");
   Vec3 position;
   SL_TRY(read_child(form, "pos", position_range, position));
   X_LG = X_LG * Pose{position, {}};
-  if (!in.options.assets.heightmap) {
-    in.notes.warn(form, "geometry <heightmap> is not read here", said + " is left out");
-    return std::vector<Shape>{};
-  }
   const std::string without = said + " is left out";
   SL_ASSIGN(const std::optional<std::string> file, in.find(*form.child("uri"), uri, without.c_str()));
   if (!file) return std::vector<Shape>{};
-  use.file = *file;
-  auto shape = in.options.assets.heightmap(use, in.notes.diagnostics());
-  if (!shape) return blamed(std::move(shape.error()), form);
-  return std::vector<Shape>{std::move(*shape)};
+  auto grid = assets::read_heightmap(*file, size_m, {}, in.notes.diagnostics());
+  if (!grid) return placed_at(std::move(grid.error()), form);
+  return std::vector<Shape>{Heightfield{std::make_shared<const HeightGrid>(std::move(*grid))}};
 }
 
 /// Several <polyline>s of one <geometry> are the outline and the holes in it.

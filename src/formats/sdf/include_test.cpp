@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "assets/image/write.h"
 #include "base/math.h"
 #include "formats/sdf/sdf.h"
+#include "geometry/bounds.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 
@@ -165,10 +167,6 @@ TEST_F(SdfFiles, WhatIsMissingStopsOrIsLeftOut) {
            "<albedo_map>gone.png</albedo_map></metal></pbr></material></visual>") +
       "</model><include><uri>https://fuel.gazebosim.org/1.0/Open/models/Far</uri></include><model "
       "name='shelf'><include><uri>gone2</uri></include></model></world>";
-  options_.assets.mesh = [](const MeshUse&, Diagnostics&) -> Result<std::vector<Shape>> {
-    ADD_FAILURE() << "a missing mesh was asked for";
-    return std::vector<Shape>{};
-  };
   EXPECT_FALSE(read(text));
   EXPECT_NE(error_.find("w.sdf:1: 'model://gone' is not there"), std::string::npos) << error_;
   options_.skip_missing = true;
@@ -213,51 +211,62 @@ TEST_F(SdfFiles, AMissingTextureIsOneWarningAndNoError) {
       << said[2];
 }
 
-TEST_F(SdfFiles, MeshesAndHeightmapsComeThroughTheAssetReader) {
-  std::vector<MeshUse> meshes;
-  std::vector<HeightmapUse> heightmaps;
-  const auto triangle = std::make_shared<const TriangleMesh>(
-      TriangleMesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}});
-  options_.assets.mesh = [&](const MeshUse& use, Diagnostics&) -> Result<std::vector<Shape>> {
-    meshes.push_back(use);
-    return std::vector<Shape>(use.optimization == MeshUse::Optimization::none ? 1 : 3, Mesh{triangle});
-  };
-  options_.assets.heightmap = [&](const HeightmapUse& use, Diagnostics&) -> Result<Shape> {
-    heightmaps.push_back(use);
-    if (use.file.find("bad.png") != std::string::npos) return Error{"this is no picture", ""};
-    return Shape{Heightfield{std::make_shared<const HeightGrid>()}};
-  };
-  for (const char* const name : {"part/arm.dae", "part/hill.png", "part/bad.png", "part/skin.png"})
-    write(name, "x");
+/// Two tetrahedra apart from each other, named hand, and a third one named thumb.
+std::string tetrahedra() {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (k != 1) text += k == 0 ? "o hand\n" : "o thumb\n";
+    for (const char* const corner : {" 0 0\n", " 0 1\n", " 1 0\n"})
+      text += "v " + std::to_string(3 * k) + corner;
+    text += "v " + std::to_string(3 * k + 1) + " 0 0\n";
+    const auto face = [&](int a, int b, int c) {
+      text += "f " + std::to_string(4 * k + a) + " " + std::to_string(4 * k + b) + " " +
+              std::to_string(4 * k + c) + "\n";
+    };
+    face(1, 2, 3), face(1, 4, 2), face(1, 3, 4), face(2, 4, 3);
+  }
+  return text;
+}
+
+TEST_F(SdfFiles, MeshesAndHeightmapsAreReadFromBesideTheFile) {
+  write("part/arm.obj", tetrahedra());
+  const std::uint8_t grey[] = {0, 0, 255, 0};
+  write("part/hill.png", assets::png_of({.width = 2, .height = 2, .channels = 1, .data = grey}));
+  for (const char* const name : {"part/bad.png", "part/skin.png"}) write(name, "x");
   write_model("part/part.sdf", "name='part'", "<static>1</static>" + link("l", R"(
-    <collision name="c"><geometry><mesh optimization="convex_decomposition"><uri>arm.dae</uri><scale>2 2 -2</scale>
+    <collision name="c"><geometry><mesh optimization="convex_decomposition"><uri>arm.obj</uri><scale>2 2 -2</scale>
       <submesh><name>hand</name><center>true</center></submesh></mesh></geometry></collision>
-    <visual name="v"><geometry><mesh><uri>arm.dae</uri></mesh></geometry>
+    <visual name="v"><geometry><mesh><uri>arm.obj</uri></mesh></geometry>
       <material><pbr><metal><albedo_map>skin.png</albedo_map></metal></pbr></material></visual>
     <collision name="h"><pose>0 0 0 0 0 1.5707963267948966</pose>
       <geometry><heightmap><uri>hill.png</uri><size>10 20 3</size><pos>1 0 -1</pos></heightmap></geometry></collision>)"));
   ASSERT_TRUE(read("<world name='w'><include><uri>part/part.sdf</uri></include></world>")) << error_;
-  ASSERT_EQ(meshes.size(), 2u);
-  EXPECT_EQ(meshes[0].file, folder_ + "part/arm.dae") << "beside the file that says so";
-  EXPECT_EQ(meshes[0].scale, (Vec3{2, 2, -2}));
-  EXPECT_EQ(meshes[0].submesh, "hand");
-  EXPECT_TRUE(meshes[0].centre_submesh);
-  EXPECT_EQ(meshes[0].purpose, MeshUse::Purpose::collision);
-  EXPECT_EQ(meshes[1].purpose, MeshUse::Purpose::visual);
   const model::Link& l = model().links[0];
-  ASSERT_EQ(l.collisions.size(), 4u);
+  ASSERT_EQ(l.collisions.size(), 3u) << "two hulls and the hill";
   EXPECT_EQ(l.collisions[0].name, "c");
-  EXPECT_EQ(l.collisions[2].name, "c_3");
+  EXPECT_EQ(l.collisions[1].name, "c_2");
+  Bounds hand;
+  for (const std::size_t i : {0u, 1u}) {
+    const Mesh& hull = std::get<Mesh>(l.collisions[i].shape);
+    EXPECT_TRUE(hull.mesh->is_hull);
+    EXPECT_EQ(hull.mesh->triangles.size(), 4u);
+    hand.include(bounds_of(hull, l.collisions[i].X_LC));
+  }
+  EXPECT_NEAR(norm(hand.low - Vec3{-4, -1, -1}), 0, 1e-12) << "scaled, its middle at the origin";
+  EXPECT_NEAR(norm(hand.high - Vec3{4, 1, 1}), 0, 1e-12);
+  ASSERT_EQ(l.visuals.size(), 1u);
+  EXPECT_EQ(std::get<Mesh>(l.visuals[0].shape).mesh->triangles.size(), 12u) << "all of the file, as it is";
   EXPECT_EQ(l.visuals[0].material.texture, folder_ + "part/skin.png");
   EXPECT_EQ(l.visuals[0].material.diffuse, (Color{1, 1, 1, 1}));
-  EXPECT_EQ(heightmaps.at(0).size_m, (Vec3{10, 20, 3}));
-  expect_pose(l.collisions[3].X_LC, {0, 1, -1}, math::pi / 2);
+  expect_pose(l.collisions[2].X_LC, {0, 1, -1}, math::pi / 2);
+  const Bounds hill = bounds_of(l.collisions[2].shape, {});
+  EXPECT_NEAR(norm(hill.high - hill.low - Vec3{10, 20, 3}), 0, 1e-6);
   EXPECT_FALSE(read("<model name='m'>\n" +
                     link("l",
                          "<collision name='c'><geometry><heightmap><uri>part/bad.png</uri></heightmap>"
                          "</geometry></collision>") +
                     "</model>"));
-  EXPECT_NE(error_.find("w.sdf:2: this is no picture"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("part/bad.png: "), std::string::npos) << error_;
 }
 
 }  // namespace

@@ -36,7 +36,6 @@
 
 #include "files/resources.h"
 #include "files/xml.h"
-#include "formats/assets.h"
 #include "model/model.h"
 
 namespace sandlot::formats {
@@ -58,8 +57,7 @@ struct SdfContent {
 struct SdfOptions {
   XmlLimits limits;
   SearchPath path = search_path();
-  AssetReader assets = {};    ///< without them meshes and heightmaps are left out, with a warning
-  bool skip_missing = false;  ///< what a file names and nobody has is left out with a warning, not an error
+  bool skip_missing = false;  ///< missing files are left out with a warning, not an error
 };
 
 Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics,

@@ -321,12 +321,12 @@ TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
 TEST(Sdf, NamesWhatIsNotUsedOnce) {
   const Read r = parse(world(
       "<model name='m'>\n<link name='l'>\n<collision "
-      "name='c'><geometry>\n<mesh><uri>x</uri></mesh></geometry>"
+      "name='c'><geometry>\n<image><uri>x</uri></image></geometry>"
       "</collision><other:thing/>\n<projector/></link></model>\n<road/><plugin name='Magic' filename='f'/>"));
   ASSERT_TRUE(r.content) << r.error;
   const std::vector<std::string> expected = {
       "f.sdf:7: <road> in <world> is not used", "f.sdf:6: <projector> in <link> is not used",
-      "f.sdf:5: geometry <mesh> is not read here; <collision> 'c' is left out",
+      "f.sdf:5: geometry <image> is not supported; <collision> 'c' is left out",
       "f.sdf:3: link 'l' has no <inertial>; taken as 1 kg with moments of 1 kg m^2",
       "f.sdf:7: plugin 'Magic' of the world is not used"};
   EXPECT_EQ(r.warnings, expected);

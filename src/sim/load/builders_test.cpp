@@ -252,7 +252,7 @@ TEST(Builders, RefuseImpossibleParametersByTheirKey) {
   EXPECT_THAT(refusal("tracked_robot?wheels=9"), HasSubstr("/length: "));
   EXPECT_THAT(refusal("seesaw?height=0.01"), HasSubstr("/height: "));
   EXPECT_THAT(refusal("snake?"), HasSubstr("key=value"));
-  EXPECT_THAT(refusal("snake?segments"), HasSubstr("'segments' is no parameter"));
+  EXPECT_THAT(refusal("snake?segments"), HasSubstr("'segments' is not a parameter"));
   EXPECT_THAT(refusal("snake?segments=3&segments=4"), HasSubstr("given twice"));
   EXPECT_THAT(refusal("snaek"), HasSubstr("there is no builder 'snaek'; did you mean 'snake'"));
 }
@@ -285,6 +285,35 @@ TEST(Builders, ScenariosNameThemWithParametersThatCanBeSet) {
   const auto no_model = loaded({{"robots[0].model", "[1, 2]"}});
   EXPECT_THAT(no_model ? "" : no_model.error().text(),
               HasSubstr("name a model file, or write {builder: ...}"));
+}
+
+TEST(Builders, AScenarioNamesThemAsTheCommandLineDoes) {
+  const auto loaded = [](const std::string& robot) {
+    Diagnostics diagnostics;
+    LoadOptions options;
+    const std::string text = "version: 1\nrobots:\n  - " + robot + "\n";
+    options.text = text;
+    return load("t.yaml", options, diagnostics);
+  };
+  const auto setup = loaded(
+      "{name: s, model: 'builder:snake?segments=3&length=40 cm', modules: [{id: m, model: "
+      "builder:diff_robot}]}");
+  ASSERT_TRUE(setup) << setup.error().text();
+  const auto same = loaded("{name: s, model: {builder: snake, segments: 3, length: 40 cm}}");
+  ASSERT_TRUE(same) << same.error().text();
+  const auto& links = setup->instances.at(1).model->links;
+  const auto& links_of_snake = same->instances.at(1).model->links;
+  ASSERT_GT(links.size(), links_of_snake.size()) << "the module's follow";
+  for (std::size_t i = 0; i < links_of_snake.size(); ++i) {
+    EXPECT_EQ(links[i].name, links_of_snake[i].name);
+    EXPECT_EQ(links[i].X_ML, links_of_snake[i].X_ML);
+  }
+  const auto wrong = loaded("{name: s, model: builder:snak}");
+  EXPECT_EQ(wrong ? "" : wrong.error().text(),
+            "t.yaml:3:22: /robots/0/model/builder: there is no builder 'snak'; did you mean 'snake'?");
+  const auto not_a_parameter = loaded("{name: s, model: 'builder:snake?segments'}");
+  EXPECT_EQ(not_a_parameter ? "" : not_a_parameter.error().text(),
+            "t.yaml:3:22: 'segments' is not a parameter; write key=value, with & between them");
 }
 
 TEST(Builders, AScenarioSaysWhereAParameterIsWrong) {

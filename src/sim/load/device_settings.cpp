@@ -1,5 +1,6 @@
 #include "sim/load/device_settings.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/text.h"
@@ -50,6 +51,19 @@ std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const mode
     for (const Node& item : entry.value.items()) take(item);
   }
   return joints;
+}
+
+std::string kinds_with(std::string_view message_type, bool commands) {
+  std::vector<std::string> names;
+  for (const Kind* const kind : device_kinds())
+    if (std::any_of(kind->levels.begin(), kind->levels.end(), [&](const LevelInfo& level) {
+          return message_type == (commands ? level.command : level.message);
+        }))
+      names.emplace_back(kind->name);
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+  return text;
 }
 
 }  // namespace sandlot

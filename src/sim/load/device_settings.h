@@ -1,5 +1,5 @@
 #pragma once
-/// What a device was told, read back without knowing its kind: for checks and listings.
+/// Settings of devices, and abilities of kinds, read without knowing the kind: for checks, listings and errors.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,5 +15,8 @@ std::optional<double> setting(const model::DeviceDecl& device, std::string_view 
 
 /// Joints that a device names in keys that end in "joint" or "joints", as indices of the model, in file order.
 std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model);
+
+/// Kinds with a level that publishes messages of a type, or takes commands of it: "a, b or c"; "" for none.
+std::string kinds_with(std::string_view message_type, bool commands);
 
 }  // namespace sandlot

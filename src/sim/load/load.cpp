@@ -16,7 +16,6 @@
 #include "geometry/bounds.h"
 #include "noise/chain.h"
 #include "physics/engine.h"
-#include "sim/load/assets.h"
 #include "sim/load/attach.h"
 #include "sim/load/joint_controllers.h"
 #include "sim/load/placement.h"
@@ -28,9 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file behind what a scenario wrote. A folder stands for its model.sdf or, without one, for its only .urdf.
+/// The file that a scenario names. A folder stands for its model.sdf or, without one, for its only .urdf; "builder:..." is
+/// not a file and stays as it is.
 Result<std::string> locate(const std::string& written, const std::string& folder_of_file,
                            const SearchPath& path, const Place& place) {
+  if (builder_words(written)) return written;
   SL_ASSIGN(const std::string found, find_resource(written, folder_of_file, path, place));
   std::error_code ignored;
   if (!fs::is_directory(found, ignored)) return found;
@@ -179,7 +180,7 @@ Status take_world(formats::SdfContent content, const SearchPath& path, model::Se
   return {};
 }
 
-/// What a scenario without a world stands on.
+/// The ground of a scenario without a world, or of a model by itself.
 model::Instance bare_ground() {
   auto ground = std::make_shared<model::Model>();
   ground->name = "ground";
@@ -193,6 +194,17 @@ model::Instance bare_ground() {
   instance.name = instance.original_name = "ground";
   instance.model = std::move(ground);
   return instance;
+}
+
+/// The light of a scenario without a world, or of a model by itself: what Gazebo's empty world has.
+model::Light sun() {
+  model::Light light;
+  light.name = "sun";
+  light.X_PLight = {{0, 0, 10}, quat_between({0, 0, -1}, normalised(Vec3{-0.5, 0.1, -0.9}))};
+  light.color = {0.8f, 0.8f, 0.8f, 1};
+  light.specular = {0.2f, 0.2f, 0.2f, 1};
+  light.cast_shadows = true;
+  return light;
 }
 
 /// What a builder made, standing on the ground at the origin.
@@ -215,6 +227,7 @@ Result<model::Setup> load_built(const Node& map) {
   SL_ASSIGN(model::Instance instance, built_instance(map, map.find("builder")->text(), ""));
   setup.name = instance.name;
   setup.instances.push_back(bare_ground());
+  setup.lights.push_back(sun());
   setup.instances.push_back(std::move(instance));
   return setup;
 }
@@ -239,6 +252,7 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Sdf
     model::Instance ground = bare_ground();
     ground.X_WM.p.z = bounds.empty() ? 0 : std::min(0.0, bounds.low.z);
     setup.instances.push_back(std::move(ground));
+    if (setup.lights.empty()) setup.lights.push_back(sun());
   }
   return setup;
 }
@@ -247,7 +261,6 @@ formats::SdfOptions sdf_options(std::span<const std::string> paths, bool skip_mi
   formats::SdfOptions out;
   out.path = search_path(paths);
   out.skip_missing = skip_missing;
-  out.assets = asset_reader();
   return out;
 }
 
@@ -338,6 +351,7 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
       SL_TRY(take_world(std::move(content), search, setup, diagnostics));
     } else {
       setup.instances.push_back(bare_ground());
+      setup.lights.push_back(sun());
     }
     setup.errors = scenario.errors;
     if (auto engine = find_engine(scenario.engine); !engine) {
@@ -368,6 +382,10 @@ Result<model::Setup> load_all(const std::string& path, const LoadOptions& option
     const auto pattern_of = [&](const formats::RobotGroup& group,
                                 const std::string& where) -> Result<model::Instance> {
       if (!group.builder.is_null()) return built_instance(group.builder, group.name, where + "/model");
+      if (const auto parameters = builder_words(group.model, group.model_place)) {
+        SL_ASSIGN(const Node map, *parameters);
+        return built_instance(map, group.name, where + "/model");
+      }
       SL_ASSIGN(const std::string file, locate(group.model, formats::base_folder(scenario, group.model_place),
                                                search, group.model_place));
       if (const auto known = loaded.find(file); known != loaded.end()) return known->second;

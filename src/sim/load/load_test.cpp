@@ -206,6 +206,35 @@ TEST_F(Files, NamesAreMadeIntoAddressesAndCollisionsAreErrors) {
   EXPECT_THAT(error, HasSubstr("s.yaml:5"));
 }
 
+TEST_F(Files, WithoutAWorldThereAreAGroundAndASun) {
+  const auto bare = load_text("robots: [{name: a, model: models/bot}]\n");
+  ASSERT_TRUE(bare) << bare.error().text();
+  EXPECT_EQ(bare->instances.front().name, "ground");
+  ASSERT_EQ(bare->lights.size(), 1u);
+  EXPECT_EQ(bare->lights[0].type, model::Light::Type::directional);
+  EXPECT_TRUE(bare->lights[0].cast_shadows);
+  EXPECT_LT((bare->lights[0].X_PLight * Vec3{0, 0, -1}).z, bare->lights[0].X_PLight.p.z) << "it shines down";
+  const auto model = load((folder / "models/bot/model.sdf").string(), {}, diagnostics);
+  ASSERT_TRUE(model) << model.error().text();
+  EXPECT_EQ(model->lights.size(), 1u);
+  EXPECT_EQ(model->instances.back().name, "ground");
+  const std::string dark = write("dark.sdf", "<sdf version='1.9'><world name='w'/></sdf>");
+  const auto world = load(dark, {}, diagnostics);
+  ASSERT_TRUE(world) << world.error().text();
+  EXPECT_TRUE(world->lights.empty()) << "a world has its own lights";
+}
+
+TEST_F(Files, AMissingDeviceIsAnErrorThatNamesTheKindsThatWouldDo) {
+  auto setup = load_text("robots: [{name: a, model: models/bot, controller: wander}]\n");
+  ASSERT_TRUE(setup) << setup.error().text();
+  const auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
+  ASSERT_FALSE(simulation);
+  EXPECT_THAT(simulation.error().text(),
+              AllOf(HasSubstr("robot 'a' has no actuator of type geometry_msgs/msg/Twist; add a device that "
+                              "offers one, of kind ackermann_drive, "),
+                    HasSubstr(" or track_drive")));
+}
+
 TEST_F(Files, OptionsReplaceSeedAndStop) {
   const std::string file = write("s.yaml", "version: 1\nname: s\nseed: 5\ntime: {stop: 9 s}\n");
   const auto plain = load(file, {}, diagnostics), changed = load(file, {{}, 77, 2.5}, diagnostics);

@@ -7,8 +7,10 @@
 
 #include "assets/image/write.h"
 #include "base/text.h"
+#include "control/kinds_with.h"
 #include "controllers/controllers.h"
 #include "model/motion.h"
+#include "sim/load/device_settings.h"
 #include "sim/load/plugin.h"
 #include "sim/load/presets.h"
 #include "sim/visuals/render_scene.h"
@@ -358,6 +360,7 @@ Result<std::unique_ptr<Simulation::ProgramEntry>> Simulation::make_program(
 std::shared_ptr<const Description> Simulation::describe(const Entity& entity) {
   Description description;
   description.robot = entity.instance.name;
+  set_kinds_with(kinds_with);
   description.control_period_s = (setup_.step * setup_.control_interval).s();
   const model::Model& model = *entity.instance.model;
   for (const auto& device : entity.devices) {
