@@ -92,7 +92,8 @@ for name in libc6 libode8 libembree libavcodec; do
 done
 # Every library that is not in the package comes from a package that it depends on.
 while read -r library; do
-  package=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "${library#/usr}" 2>/dev/null || dpkg-query -S "/usr$library") || die "$library is of no package"
+  package=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "${library#/usr}" 2>/dev/null ||
+    dpkg-query -S "/usr$library") || die "$library is of no package"
   [[ ", $depends," =~ ,\ ${package%%:*}[\ ,] ]] || die "the .deb does not depend on ${package%%:*}: $depends"
 done < <(readelf -dW "$scratch"/deb/usr/lib/libsandlot.so.*.*.* | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -v ld-linux |
   while read -r name; do /sbin/ldconfig -p | awk -v name="$name" '$1 == name && /x86-64|aarch64/ {print $NF; exit}'; done)
