@@ -149,6 +149,8 @@ def add_licences(folder, carried):
 
 def install(build, prefix):
     output("cmake", "--install", build, "--prefix", prefix, "--strip", env={**os.environ, "DESTDIR": ""})
+    # Measures against other simulators, which it would bring along; only there when `./dev bench` has built it.
+    (prefix / "bin/sandlot-bench").unlink(missing_ok=True)
     library = next((prefix / "lib").glob("libsandlot.so.*.*.*"))
     output("strip", "--strip-unneeded", "--remove-section=.comment", "--remove-section=.note.gnu.gold-version", library)
     doctor = json.loads(output(prefix / "bin/sandlot", "doctor", "--json"))

@@ -87,12 +87,13 @@ check_content "$scratch/deb"
 check_path "$scratch/deb/usr/bin/sandlot" RUNPATH '$ORIGIN/../lib'
 check_path "$(echo "$scratch"/deb/usr/lib/libsandlot.so.*.*.*)" ''
 depends=$(dpkg-deb -f "${debs[0]}" Depends)
-for name in libc6 libode8 libembree libsdformat libavcodec; do
+for name in libc6 libode8 libembree libavcodec; do
   [[ $depends == *$name* ]] || die "the .deb does not depend on $name: $depends"
 done
 # Every library that is not in the package comes from a package that it depends on.
 while read -r library; do
-  package=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "${library#/usr}" 2>/dev/null || dpkg-query -S "/usr$library") || die "$library is of no package"
+  package=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "${library#/usr}" 2>/dev/null ||
+    dpkg-query -S "/usr$library") || die "$library is of no package"
   [[ ", $depends," =~ ,\ ${package%%:*}[\ ,] ]] || die "the .deb does not depend on ${package%%:*}: $depends"
 done < <(readelf -dW "$scratch"/deb/usr/lib/libsandlot.so.*.*.* | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -v ld-linux |
   while read -r name; do /sbin/ldconfig -p | awk -v name="$name" '$1 == name && /x86-64|aarch64/ {print $NF; exit}'; done)
