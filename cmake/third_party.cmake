@@ -26,7 +26,6 @@ find_package(TBB REQUIRED)
 # Asio and Beast, of which only headers are needed.
 find_package(Boost 1.74 REQUIRED)
 find_package(CLI11 2 REQUIRED)
-pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 # Line editing of `sandlot console`.
 pkg_check_modules(EDIT REQUIRED IMPORTED_TARGET libedit)
 # Only measured against: without it `sandlot bench swarm` has no reference, and there are no tests.
@@ -53,7 +52,6 @@ set(sandlot_third_party_json nlohmann_json::nlohmann_json)
 set(sandlot_third_party_png PNG::PNG)
 set(sandlot_third_party_jpeg JPEG::JPEG)
 set(sandlot_third_party_tbb TBB::tbb)
-set(sandlot_third_party_muparser PkgConfig::MUPARSER)
 set(sandlot_third_party_boost Boost::headers)
 set(sandlot_third_party_cli11 CLI11::CLI11)
 set(sandlot_third_party_edit PkgConfig::EDIT)

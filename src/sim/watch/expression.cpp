@@ -1,109 +1,19 @@
 #include "sim/watch/expression.h"
 
-#include <muParser.h>
-
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "base/math.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "sim/watch/expression_functions.h"
 
 namespace sandlot {
 namespace {
 
-constexpr std::size_t longest_text = 2000, most_parts = 400, deepest = 40;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// What stands for a number that an operation could not make of finite ones. It is a NaN of its own kind, so that it
-/// reaches the result from where it counts, and not from the branch of an if() that is not taken.
-constexpr std::uint64_t broken_bits = 0x7ff8'0000'0000'b10c;
-constexpr double broken = std::bit_cast<double>(broken_bits);
-bool is_broken(double x) {
-  return (std::bit_cast<std::uint64_t>(x) & ~(std::uint64_t{1} << 63)) == broken_bits;
-}
-
-/// Whether broken numbers are marked. Once they are found the expression is computed again without, so that a log shows
-/// the infinity that there is.
-thread_local bool judging = false;
-
-template <class... Numbers>
-bool any_nan(Numbers... x) {
-  return (std::isnan(x) || ...);
-}
-template <class... Numbers>
-double nan_of(Numbers... x) {
-  return (is_broken(x) || ...) ? broken : nan;
-}
-template <class... Numbers>
-double checked(double result, Numbers... from) {
-  if (judging && !std::isfinite(result) && (std::isfinite(from) && ...)) return broken;
-  return std::isnan(result) ? nan : result;
-}
-/// The function F with the rules of this language: NaN goes through, and a broken result is noticed.
-template <auto F>
-double one(double x) {
-  return any_nan(x) ? nan_of(x) : checked(F(x), x);
-}
-template <auto F>
-double two(double x, double y) {
-  return any_nan(x, y) ? nan_of(x, y) : checked(F(x, y), x, y);
-}
-
-double rounded(double x) { return std::round(x); }
-double floored(double x) { return std::floor(x); }
-double ceiled(double x) { return std::ceil(x); }
-double root(double x) { return std::sqrt(x); }
-double absolute(double x) { return std::abs(x); }
-double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-double degrees(double rad) { return rad * (180 / math::pi); }
-double radians(double deg) { return deg * (math::pi / 180); }
-/// Beyond what an angle can be told apart, and for infinities, there is no answer.
-double wrapped(double rad) { return std::isfinite(rad) ? math::wrap_angle(rad) : nan; }
-double negative(double x) { return -x; }
-double positive(double x) { return x; }
-double opposite(double x) { return x == 0 ? 1 : 0; }
-
-double sum(double a, double b) { return a + b; }
-double difference(double a, double b) { return a - b; }
-double product(double a, double b) { return a * b; }
-double quotient(double a, double b) { return a / b; }
-double less(double a, double b) { return a < b; }
-double less_equal(double a, double b) { return a <= b; }
-double greater(double a, double b) { return a > b; }
-double greater_equal(double a, double b) { return a >= b; }
-double equal(double a, double b) { return a == b; }
-double unequal(double a, double b) { return a != b; }
-double both(double a, double b) { return a != 0 && b != 0; }
-double either(double a, double b) { return a != 0 || b != 0; }
-double smaller(double a, double b) { return b < a ? b : a; }
-double larger(double a, double b) { return b > a ? b : a; }
-/// The remainder with the sign of b, as people expect of angles and clocks.
-double modulo(double a, double b) {
-  if (b == 0 || !std::isfinite(a)) return nan;
-  if (!std::isfinite(b)) return a;
-  const double rest = math::fmod(a, b);
-  return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
-}
-
-template <auto F>
-double fold(const double* x, int n) {
-  double result = x[0];
-  for (int i = 1; i < n; ++i) result = two<F>(result, x[i]);
-  return n == 1 && any_nan(x[0]) ? nan_of(x[0]) : result;
-}
-double clamped(double x, double low, double high) {
-  return any_nan(x, low, high) ? nan_of(x, low, high) : smaller(larger(x, low), high);
-}
-/// Only the branch that is taken counts: if(x == 0, 0, 1 / x) has a value everywhere.
-double choice(double condition, double yes, double no) {
-  if (any_nan(condition)) return nan_of(condition, yes, no);
-  return condition != 0 ? yes : no;
-}
+constexpr std::size_t longest_text = 2000, most_tokens = 400, deepest = 40;
 
 constexpr Expression::Function function_list[] = {
     {"abs(x)", "Absolute value."},
@@ -134,73 +44,6 @@ constexpr Expression::Function function_list[] = {
     {"if(condition, x, y)", "x where the condition holds, else y."},
 };
 
-/// muParser with nothing of its own: its functions are those of <cmath>, whose last bits differ between machines.
-class Language final : public mu::ParserBase {
- public:
-  Language() {
-    EnableOptimizer(false);
-    EnableBuiltInOprt(false);
-    Language::InitCharSets();
-    Language::InitFun();
-    Language::InitOprt();
-  }
-  void InitCharSets() override {
-    DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyz");
-    DefineOprtChars("+-*/^<>=!&|");
-    DefineInfixOprtChars("+-!~");
-  }
-  void InitConst() override {}
-  void InitFun() override {
-    DefineFun("abs", one<absolute>);
-    DefineFun("sign", one<sign>);
-    DefineFun("sqrt", one<root>);
-    DefineFun("pow", two<math::pow>);
-    DefineFun("exp", one<math::exp>);
-    DefineFun("log", one<math::log>);
-    DefineFun("floor", one<floored>);
-    DefineFun("ceil", one<ceiled>);
-    DefineFun("round", one<rounded>);
-    DefineFun("mod", two<modulo>);
-    DefineFun("min", fold<smaller>);
-    DefineFun("max", fold<larger>);
-    DefineFun("clamp", clamped);
-    DefineFun("hypot", fold<math::hypot>);
-    DefineFun("sin", one<math::sin>);
-    DefineFun("cos", one<math::cos>);
-    DefineFun("tan", one<math::tan>);
-    DefineFun("asin", one<math::asin>);
-    DefineFun("acos", one<math::acos>);
-    DefineFun("atan", one<math::atan>);
-    DefineFun("atan2", two<math::atan2>);
-    DefineFun("tanh", one<math::tanh>);
-    DefineFun("wrap", one<wrapped>);
-    DefineFun("degrees", one<degrees>);
-    DefineFun("radians", one<radians>);
-    DefineFun("if", choice);
-  }
-  void InitOprt() override {
-    // muParser's own numbers have signs bind as tightly as products: -a ^ 2 is -(a ^ 2), -a / b is (-a) / b.
-    DefineInfixOprt("-", negative, mu::prINFIX);
-    DefineInfixOprt("+", positive, mu::prINFIX);
-    DefineInfixOprt("!", one<opposite>, mu::prINFIX);
-    DefineInfixOprt("~", one<opposite>, mu::prLAND);  // the word `not`: not a > b is not (a > b)
-    DefineOprt("||", two<either>, mu::prLOR, mu::oaLEFT);
-    DefineOprt("&&", two<both>, mu::prLAND, mu::oaLEFT);
-    DefineOprt("==", two<equal>, mu::prLOGIC, mu::oaLEFT);
-    DefineOprt("!=", two<unequal>, mu::prLOGIC, mu::oaLEFT);
-    DefineOprt("<", two<less>, mu::prCMP, mu::oaLEFT);
-    DefineOprt("<=", two<less_equal>, mu::prCMP, mu::oaLEFT);
-    DefineOprt(">", two<greater>, mu::prCMP, mu::oaLEFT);
-    DefineOprt(">=", two<greater_equal>, mu::prCMP, mu::oaLEFT);
-    DefineOprt("+", two<sum>, mu::prADD_SUB, mu::oaLEFT);
-    DefineOprt("-", two<difference>, mu::prADD_SUB, mu::oaLEFT);
-    DefineOprt("*", two<product>, mu::prMUL_DIV, mu::oaLEFT);
-    DefineOprt("/", two<quotient>, mu::prMUL_DIV, mu::oaLEFT);
-    DefineOprt("^", two<math::pow>, mu::prPOW, mu::oaRIGHT);
-  }
-  void OnDetectVar(mu::string_type*, int&, int&) override {}
-};
-
 std::vector<std::string> function_names() {
   std::vector<std::string> names;
   for (const Expression::Function& f : function_list)
@@ -208,61 +51,55 @@ std::vector<std::string> function_names() {
   return names;
 }
 
-bool is_function(std::string_view word) {
-  static const std::vector<std::string> functions = function_names();
-  return std::find(functions.begin(), functions.end(), word) != functions.end();
-}
-
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
+bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 
-/// What muParser is given instead of what the user wrote: names become v0, v1 ..., numbers c0, c1 ...
-struct Translation {
-  std::string text;
-  std::vector<std::size_t> column;  ///< per character of `text`: where it comes from, from 0
-  std::vector<std::string> inputs;
-  std::vector<double> constants;
+struct Token {
+  enum class Kind { end, number, name, function, sign, open, close, comma } kind = Kind::end;
+  std::size_t at = 0;  ///< column in the text, from 0
+  double number = 0;
+  std::string_view text;  ///< name, function, sign: || for `or`, && for `and`
 };
 
-class Translator {
+/// Splits the text into tokens. Needs the names, because an address may contain / - and [.
+class Lexer {
  public:
-  Translator(std::string_view source, const Names& names) : source_(source), names_(names) {}
+  Lexer(std::string_view source, const Names& names) : source_(source), names_(names) {}
 
-  Result<Translation> run() {
-    if (source_.size() > longest_text) return at(0, "it is longer than 2000 characters");
-    std::size_t depth = 0, parts = 0;
-    while (true) {
-      while (at_ < source_.size() && std::isspace(static_cast<unsigned char>(source_[at_]))) ++at_;
-      if (at_ == source_.size()) break;
-      if (++parts > most_parts) return at(at_, "it has more than 400 parts");
-      const char c = source_[at_];
-      if (c == '(' && ++depth > deepest) return at(at_, "parentheses are more than 40 deep");
-      if (c == ')' && depth-- == 0) return at(at_, "this ')' closes nothing");
-      if (is_digit(c) || (c == '.' && at_ + 1 < source_.size() && is_digit(source_[at_ + 1])))
-        SL_TRY(number());
-      else if (is_letter(c)) SL_TRY(word());
-      else SL_TRY(sign());
-    }
-    if (out_.text.empty()) return at(0, "it is empty");
-    return std::move(out_);
+  const Token& token() const { return token_; }
+
+  /// Reads the next token.
+  Status advance() {
+    while (at_ < source_.size() && is_space(source_[at_])) ++at_;
+    token_ = {Token::Kind::end, at_, 0, {}};
+    if (at_ == source_.size()) return {};
+    if (++tokens_ > most_tokens) return error(at_, "it has more than 400 parts");
+    const char c = source_[at_];
+    if (c == '(' && ++depth_ > deepest) return error(at_, "parentheses are more than 40 deep");
+    if (c == ')' && depth_-- == 0) return error(at_, "this ')' closes nothing");
+    if (is_digit(c) || (c == '.' && at_ + 1 < source_.size() && is_digit(source_[at_ + 1]))) return number();
+    return is_letter(c) ? word() : sign();
   }
 
-  Error at(std::size_t column, const std::string& what, const std::string& fix = "") const {
+  Error error(std::size_t column, const std::string& what, const std::string& fix = "") const {
     return {"expression '" + std::string(source_.substr(0, 80)) + (source_.size() > 80 ? "..." : "") +
                 "', column " + std::to_string(column + 1) + ": " + what,
             fix};
   }
 
  private:
-  void put(std::string_view text) {
-    out_.text += text;
-    out_.text += ' ';
-    out_.column.resize(out_.text.size(), at_);
+  Status take(Token::Kind kind, std::size_t length) {
+    token_.kind = kind;
+    token_.text = source_.substr(at_, length);
+    at_ += length;
+    return {};
   }
-  void put_number(double x) {
-    put("c" + std::to_string(out_.constants.size()));
-    out_.constants.push_back(x);
+  Status take_number(double number, std::size_t length) {
+    token_.number = number;
+    return take(Token::Kind::number, length);
   }
+  /// Letters and digits from `begin` on.
   std::string_view word_at(std::size_t begin) const {
     std::size_t end = begin;
     while (end < source_.size() && (is_letter(source_[end]) || is_digit(source_[end]))) ++end;
@@ -283,14 +120,14 @@ class Translator {
     const std::string_view digits = source_.substr(at_, end - at_);
     double value = 0;
     if (!parse_number(digits, value) || !std::isfinite(value))
-      return at(at_, "'" + std::string(digits.substr(0, 40)) + "' is no number");
+      return error(at_, "'" + std::string(digits.substr(0, 40)) + "' is not a number");
     std::size_t unit = end;
     while (unit < source_.size() && source_[unit] == ' ') ++unit;
     std::string_view name = word_at(unit);
     if (unit < source_.size() && source_[unit] == '%') name = source_.substr(unit, 1);
     if (!name.empty() && name != "and" && name != "or") {
       bool known = false;
-      // The longest spelling first: m/s^2, m/s, m.
+      // The longest spelling wins: m/s^2, m/s, m.
       for (const std::string_view more : {"/s^2", "/s", "/h", ""}) {
         const std::string_view spelt = source_.substr(unit, name.size() + more.size());
         if (spelt.substr(name.size()) != more) continue;
@@ -305,45 +142,36 @@ class Translator {
         if (known) break;
       }
       if (!known)
-        return at(unit, "'" + std::string(name.substr(0, 40)) + "' is no unit",
-                  "an operator is missing, or a unit such as m, cm, deg, m/s is misspelt");
+        return error(unit, "'" + std::string(name.substr(0, 40)) + "' is not a unit",
+                     "an operator is missing, or a unit such as m, cm, deg, m/s is misspelt");
     }
-    put_number(value);
-    at_ = end;
-    return {};
+    return take_number(value, end - at_);
   }
 
   Status word() {
     const std::string_view rest = source_.substr(at_);
     const std::string_view plain = word_at(at_);
-    const char next = plain.size() < rest.size() ? rest[plain.size()] : ' ';
+    const bool is_operator = plain == "and" || plain == "or" || plain == "not";
     std::size_t open = at_ + plain.size();
     while (open < source_.size() && source_[open] == ' ') ++open;
-    if (open < source_.size() && source_[open] == '(' && plain != "and" && plain != "or" && plain != "not") {
-      if (!is_function(plain))
-        return at(at_, "there is no function '" + std::string(plain.substr(0, 40)) + "'",
-                  suggestion(plain, function_names()));
-      put(plain);
-      out_.text.pop_back();  // muParser knows a function by the parenthesis right behind it
-      out_.column.pop_back();
-      at_ += plain.size();
-      return {};
+    if (open < source_.size() && source_[open] == '(' && !is_operator) {
+      if (find_function(plain)) return take(Token::Kind::function, plain.size());
+      return error(at_, "there is no function '" + std::string(plain.substr(0, 40)) + "'",
+                   suggestion(plain, function_names()));
     }
+    // Before one of these a reserved word may be the beginning of an address.
+    const char next = plain.size() < rest.size() ? rest[plain.size()] : ' ';
     if (next != '.' && next != '/' && next != '-' && next != '[') {
-      if (plain == "and") put("&&");
-      else if (plain == "or") put("||");
-      else if (plain == "not") put("~");
-      else if (plain == "pi") put_number(math::pi);
-      else if (plain == "true" || plain == "false") put_number(plain == "true");
-      else return name(rest);
-      at_ += plain.size();
-      return {};
+      if (is_operator) {
+        SL_TRY(take(Token::Kind::sign, plain.size()));
+        if (plain != "not") token_.text = plain == "and" ? "&&" : "||";
+        return {};
+      }
+      if (plain == "true" || plain == "false") return take_number(plain == "true", plain.size());
+      if (plain == "pi") return take_number(math::pi, plain.size());
+      return name(rest);
     }
-    if (const std::size_t length = names_.match(rest); length == 0 && plain == "pi") {
-      put_number(math::pi);  // pi/2
-      at_ += plain.size();
-      return {};
-    }
+    if (plain == "pi" && names_.match(rest) == 0) return take_number(math::pi, plain.size());  // pi/2
     return name(rest);
   }
 
@@ -355,126 +183,199 @@ class Translator {
                                    rest[end] == '/' || rest[end] == '[' || rest[end] == ']'))
         ++end;
       const std::string_view plain = word_at(at_);
-      if (plain.size() == end && is_function(plain))
-        return at(at_, "'" + std::string(plain) + "' is a function", "its values go in parentheses");
+      if (plain.size() == end && find_function(plain))
+        return error(at_, "'" + std::string(plain) + "' is a function", "its values go in parentheses");
       const Error unknown = names_.unknown(rest.substr(0, std::min<std::size_t>(end, 200)));
-      return at(at_, unknown.what, unknown.fix);
+      return error(at_, unknown.what, unknown.fix);
     }
-    const std::string found(rest.substr(0, length));
-    const auto known = std::find(out_.inputs.begin(), out_.inputs.end(), found);
-    put("v" + std::to_string(known - out_.inputs.begin()));
-    if (known == out_.inputs.end()) out_.inputs.push_back(found);
-    at_ += length;
-    return {};
+    return take(Token::Kind::name, length);
   }
 
   Status sign() {
     const std::string_view pair = source_.substr(at_, 2);
-    for (const std::string_view known : {"<=", ">=", "==", "!=", "&&", "||"})
-      if (pair == known) {
-        put(pair);
-        at_ += 2;
-        return {};
-      }
     const char c = source_[at_];
-    if (std::string_view("+-*/^<>!(),").find(c) != std::string_view::npos) {
-      put(source_.substr(at_, 1));
-      ++at_;
-      return {};
-    }
-    if (c == '=') return at(at_, "'=' is no operator", "to compare write ==");
-    if (c == '&' || c == '|') return at(at_, std::string("'") + c + "' is no operator", "write and, or");
-    if (c == '%') return at(at_, "'%' is no operator", "write mod(a, b)");
+    if (pair.size() == 2 && find_binary(pair)) return take(Token::Kind::sign, 2);
+    if (find_binary(pair.substr(0, 1)) || find_prefix(pair.substr(0, 1))) return take(Token::Kind::sign, 1);
+    if (c == '(') return take(Token::Kind::open, 1);
+    if (c == ')') return take(Token::Kind::close, 1);
+    if (c == ',') return take(Token::Kind::comma, 1);
+    if (c == '=') return error(at_, "'=' is not an operator", "to compare write ==");
+    if (c == '&' || c == '|')
+      return error(at_, std::string("'") + c + "' is not an operator", "write and, or");
+    if (c == '%') return error(at_, "'%' is not an operator", "write mod(a, b)");
     const bool printable = c > ' ' && c < 127;
-    return at(at_, printable ? std::string("'") + c + "' has no meaning here" : "a strange character");
+    return error(at_, printable ? std::string("'") + c + "' has no meaning here" : "a strange character");
   }
 
   std::string_view source_;
   const Names& names_;
-  std::size_t at_ = 0;
-  Translation out_;
+  std::size_t at_ = 0, tokens_ = 0, depth_ = 0;
+  Token token_;
 };
-
-/// muParser's complaint in our words.
-std::string complaint(const mu::ParserError& error) {
-  switch (error.GetCode()) {
-    case mu::ecUNEXPECTED_OPERATOR: return "an operator where a value belongs";
-    case mu::ecUNASSIGNABLE_TOKEN: return "this does not belong here";
-    case mu::ecUNEXPECTED_EOF: return "it ends where a value belongs";
-    case mu::ecUNEXPECTED_ARG_SEP: return "a ',' that separates no values";
-    case mu::ecUNEXPECTED_VAL:
-    case mu::ecUNEXPECTED_VAR:
-    case mu::ecUNEXPECTED_FUN: return "an operator is missing before this";
-    case mu::ecUNEXPECTED_PARENS: return "this parenthesis does not belong here";
-    case mu::ecMISSING_PARENS: return "a ')' is missing";
-    case mu::ecTOO_MANY_PARAMS: return "too many values for the function";
-    case mu::ecTOO_FEW_PARAMS: return "too few values for the function";
-    default: return "it cannot be understood";
-  }
-}
 
 }  // namespace
 
-struct Expression::Compiled {
-  Language parser;
-  std::vector<double> slots;
+/// Pratt parser: one function per level of nesting, a table of precedences, nodes in order of evaluation. Recursion is
+/// bounded by the number of tokens.
+class Expression::Parser {
+ public:
+  Parser(std::string_view text, const Names& names) : lexer_(text, names) { out_.text_ = text; }
+
+  Result<Expression> parse() {
+    if (out_.text_.size() > longest_text) return lexer_.error(0, "it is longer than 2000 characters");
+    SL_TRY(lexer_.advance());
+    if (at(Token::Kind::end)) return lexer_.error(0, "it is empty");
+    SL_TRY(value(lowest_precedence));
+    if (at(Token::Kind::comma)) return fail("it holds several expressions", "keep one of them");
+    if (!at(Token::Kind::end)) return fail(misplaced());
+    out_.stack_.resize(most_);
+    // With every input NaN, whatever depends on one is NaN: what breaks now is made of constants alone.
+    const std::vector<double> unknown(out_.inputs_.size(), std::numeric_limits<double>::quiet_NaN());
+    if (is_broken(out_.run(unknown, true)))
+      return lexer_.error(0, "a part of it that is all constants is no finite number",
+                          "is it a division by 0?");
+    return std::move(out_);
+  }
+
+ private:
+  using Kind = Node::Kind;
+  bool at(Token::Kind kind) const { return lexer_.token().kind == kind; }
+  const OperatorRule* binary() const {
+    return at(Token::Kind::sign) ? find_binary(lexer_.token().text) : nullptr;
+  }
+  const OperatorRule* prefix() const {
+    return at(Token::Kind::sign) ? find_prefix(lexer_.token().text) : nullptr;
+  }
+  Error fail(const std::string& what, const std::string& fix = "") const {
+    return lexer_.error(lexer_.token().at, what, fix);
+  }
+  /// The error for a token behind a complete value.
+  std::string misplaced() const {
+    return at(Token::Kind::open) ? "this parenthesis does not belong here"
+                                 : "an operator is missing before this";
+  }
+
+  /// A node that takes `arguments` values from the stack and leaves one.
+  void emit(const Node& node, std::size_t arguments) {
+    out_.nodes_.push_back(node);
+    held_ += 1 - arguments;
+    most_ = std::max(most_, held_);
+  }
+  void emit_call(Apply* apply, int arguments) {
+    emit({Kind::call, arguments, 0, apply}, static_cast<std::size_t>(arguments));
+  }
+
+  /// An operand and all operators behind it of this precedence or higher.
+  Status value(int precedence) {
+    SL_TRY(operand());
+    for (const OperatorRule* rule = binary(); rule && rule->precedence >= precedence; rule = binary()) {
+      SL_TRY(lexer_.advance());
+      SL_TRY(value(rule->precedence + (rule->from_right ? 0 : 1)));
+      emit_call(rule->apply, 2);
+    }
+    return {};
+  }
+
+  Status operand() {
+    switch (lexer_.token().kind) {
+      case Token::Kind::number:
+        emit({Kind::constant, 0, lexer_.token().number, nullptr}, 0);
+        return lexer_.advance();
+      case Token::Kind::name: return input();
+      case Token::Kind::function: return call();
+      case Token::Kind::open:
+        SL_TRY(lexer_.advance());
+        SL_TRY(value(lowest_precedence));
+        if (at(Token::Kind::comma)) return fail("a ',' outside of a function's values");
+        return close();
+      case Token::Kind::sign: {
+        const OperatorRule* const rule = prefix();
+        if (!rule) break;
+        SL_TRY(lexer_.advance());
+        if (prefix()) break;  // two signs in a row are more often a slip than meant
+        SL_TRY(value(rule->precedence + 1));
+        emit_call(rule->apply, 1);
+        return {};
+      }
+      case Token::Kind::close: return fail("this parenthesis does not belong here");
+      case Token::Kind::comma: return fail("a ',' that separates no values");
+      case Token::Kind::end: return fail("it ends where a value belongs");
+    }
+    return fail("an operator where a value belongs");
+  }
+
+  Status input() {
+    const std::string name(lexer_.token().text);
+    const auto known = std::find(out_.inputs_.begin(), out_.inputs_.end(), name);
+    emit({Kind::input, static_cast<int>(known - out_.inputs_.begin()), 0, nullptr}, 0);
+    if (known == out_.inputs_.end()) out_.inputs_.push_back(name);
+    return lexer_.advance();
+  }
+
+  Status call() {
+    const std::size_t column = lexer_.token().at;
+    const FunctionRule& function = *find_function(lexer_.token().text);
+    SL_TRY(lexer_.advance());  // to the parenthesis: the lexer looked ahead
+    SL_TRY(lexer_.advance());
+    int count = 0;
+    while (count > 0 || !at(Token::Kind::close)) {
+      SL_TRY(value(lowest_precedence));
+      ++count;
+      if (!at(Token::Kind::comma)) break;
+      SL_TRY(lexer_.advance());
+    }
+    SL_TRY(close());
+    if (count < function.fewest) return lexer_.error(column, "too few values for the function");
+    if (count > function.most) return lexer_.error(column, "too many values for the function");
+    emit_call(function.apply, count);
+    return {};
+  }
+
+  Status close() {
+    if (at(Token::Kind::end)) return fail("a ')' is missing");
+    if (!at(Token::Kind::close)) return fail(misplaced());
+    return lexer_.advance();
+  }
+
+  Lexer lexer_;
+  Expression out_;
+  std::size_t held_ = 0, most_ = 0;  ///< values on the stack now, and at most
 };
 
-Expression::Expression(std::string text, std::vector<std::string> inputs, std::unique_ptr<Compiled> compiled)
-    : text_(std::move(text)), inputs_(std::move(inputs)), compiled_(std::move(compiled)) {}
-Expression::Expression(Expression&&) noexcept = default;
-Expression& Expression::operator=(Expression&&) noexcept = default;
-Expression::~Expression() = default;
-
 Result<Expression> Expression::compile(std::string_view text, const Names& names, const Place& place) {
-  const auto placed = [&](Error error) {
-    error.place = place;
-    return error;
-  };
-  Translator translator(text, names);
-  auto translation = translator.run();
-  if (!translation) return placed(std::move(translation.error()));
-  auto compiled = std::make_unique<Compiled>();
-  compiled->slots.assign(translation->inputs.size(), nan);
-  try {
-    for (std::size_t i = 0; i < translation->inputs.size(); ++i)
-      compiled->parser.DefineVar("v" + std::to_string(i), &compiled->slots[i]);
-    for (std::size_t i = 0; i < translation->constants.size(); ++i)
-      compiled->parser.DefineConst("c" + std::to_string(i), translation->constants[i]);
-    compiled->parser.SetExpr(translation->text);
-    // With every input NaN, whatever depends on one is NaN: what breaks now is made of constants alone.
-    judging = true;
-    const double judged = compiled->parser.Eval();
-    judging = false;
-    if (is_broken(judged))
-      return placed(translator.at(0, "a part of it that is all constants is no finite number",
-                                  "is it a division by 0?"));
-    if (compiled->parser.GetNumResults() != 1)
-      return placed(translator.at(0, "it holds several expressions", "keep one of them"));
-  } catch (const mu::ParserError& error) {
-    judging = false;
-    const std::size_t position = static_cast<std::size_t>(std::max(error.GetPos(), 0));
-    const std::size_t column = position < translation->column.size() ? translation->column[position]
-                                                                     : text.size();
-    return placed(translator.at(column, complaint(error)));
+  auto expression = Parser(text, names).parse();
+  if (!expression) expression.error().place = place;
+  return expression;
+}
+
+double Expression::run(std::span<const double> inputs, bool mark_broken) {
+  double* top = stack_.data();  // one behind the last value
+  for (const Node& node : nodes_) {
+    switch (node.kind) {
+      case Node::Kind::constant: *top++ = node.constant; break;
+      case Node::Kind::input: *top++ = inputs[static_cast<std::size_t>(node.index)]; break;
+      case Node::Kind::call:
+        top -= node.index;
+        *top = node.apply(top, node.index, mark_broken);
+        ++top;
+        break;
+    }
   }
-  return Expression(std::string(text), std::move(translation->inputs), std::move(compiled));
+  return stack_.front();
 }
 
 Expression::Evaluated Expression::evaluate(std::span<const double> inputs) {
-  SL_CHECK(inputs.size() == compiled_->slots.size());
-  std::copy(inputs.begin(), inputs.end(), compiled_->slots.begin());
-  judging = true;
-  const double value = compiled_->parser.Eval();
-  judging = false;
+  SL_CHECK(inputs.size() == inputs_.size());
+  const double value = run(inputs, true);
   if (std::isfinite(value)) return {value, true};
-  return {compiled_->parser.Eval(), false};
+  // Again without the marks, so that a log shows the infinity.
+  return {run(inputs, false), false};
 }
 
 std::span<const Expression::Function> Expression::functions() { return function_list; }
 
 bool Expression::is_reserved(std::string_view word) {
-  if (is_function(word)) return true;
+  if (find_function(word)) return true;
   for (const std::string_view other : {"and", "or", "not", "pi", "true", "false", "sim", "values"})
     if (word == other) return true;
   return false;

@@ -1,17 +1,17 @@
 #pragma once
-/// Arithmetic over named values, as scenarios and the command line write it: `hypot(a.pose.x, a.pose.y) > 3 m`.
+/// Expression: arithmetic over named values in scenarios and on the command line, `hypot(a.pose.x, a.pose.y) > 3 m`.
 ///
 /// Operators   by rising precedence: or ||, and &&, not, == !=, < <= > >=, + -, * / with ! and signs, ^ (from the right).
 ///             Comparisons and logic give 1 or 0. Numbers may carry a unit (90 deg, 5 cm) and are then in SI.
 /// Functions   functions() lists them. Constants: pi, true, false.
 /// Division    a `/` belongs to an address where the longest prefix with it names something; with a blank before or
 ///             after, it always divides.
-/// NaN         whatever it goes into is NaN: `nan < 1` is not "no".
-/// Errors      compile() names the column within the expression. Texts are limited to 2000 characters, 400 parts and
-///             parentheses 40 deep.
+/// NaN         makes every result that depends on it NaN: `nan < 1` is not "no".
+/// Errors      compile() names the column within the expression. Limits: 2000 characters, 400 tokens, parentheses 40
+///             deep.
 /// Cost        evaluate() calls a function per operator and allocates nothing. The same bits on every machine: all
 ///             mathematics is from base/math.h.
-#include <memory>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,36 +21,33 @@
 
 namespace sandlot {
 
-/// What the words of an expression may name.
+/// Values that an expression may name.
 class Names {
  public:
   virtual ~Names() = default;
-  /// Length of the longest beginning of `text` that names a value; 0: none.
+  /// Length of the longest prefix of `text` that names a value; 0: none.
   virtual std::size_t match(std::string_view text) const = 0;
-  /// The complaint about a word that names nothing.
+  /// The error for a word that names nothing.
   virtual Error unknown(std::string_view word) const = 0;
 };
 
 class Expression {
  public:
-  /// @param place  where the text stands; goes into errors
+  /// @param place  of the text in its file; goes into errors
   static Result<Expression> compile(std::string_view text, const Names& names, const Place& place = {});
-  Expression(Expression&&) noexcept;
-  Expression& operator=(Expression&&) noexcept;
-  ~Expression();
 
   const std::string& text() const { return text_; }
-  /// The names in it, each once, in order of appearance.
+  /// Names in the text, each once, in order of appearance.
   std::span<const std::string> inputs() const { return inputs_; }
 
   struct Evaluated {
     double value;
-    bool finite;  ///< false too when finite numbers gave an infinity or NaN on the way: 1 / 0 > 3
+    bool finite;  ///< false also when a step made an infinity or NaN of finite numbers: 1 / 0 > 3
   };
   /// @pre one number per input
   Evaluated evaluate(std::span<const double> inputs);
 
-  /// "hypot(x, y)", with what it gives.
+  /// A function as help shows it: "hypot(x, y, ...)" and its result.
   struct Function {
     const char* call;
     const char* help;
@@ -59,12 +56,25 @@ class Expression {
   /// True for words that cannot be names: functions, constants, `and`, `or`, `not`.
   static bool is_reserved(std::string_view word);
 
+  /// A function or operator of `count` arguments. `mark_broken`: see expression_functions.h.
+  using Apply = double(const double* arguments, int count, bool mark_broken);
+
  private:
-  struct Compiled;
-  Expression(std::string text, std::vector<std::string> inputs, std::unique_ptr<Compiled> compiled);
+  class Parser;
+  /// One step of the evaluation on a stack: a constant or an input is pushed; a call replaces its arguments by its result.
+  struct Node {
+    enum class Kind : std::uint8_t { constant, input, call } kind;
+    int index = 0;  ///< input: which; call: number of arguments
+    double constant = 0;
+    Apply* apply = nullptr;
+  };
+  Expression() = default;
+  double run(std::span<const double> inputs, bool mark_broken);
+
   std::string text_;
   std::vector<std::string> inputs_;
-  std::unique_ptr<Compiled> compiled_;
+  std::vector<Node> nodes_;  ///< in order of evaluation
+  std::vector<double> stack_;
 };
 
 }  // namespace sandlot
