@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/result.h"
 #include "base/text.h"
 #include "bench/bench.h"
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Suite& suite : suites) names.emplace_back(suite.name);
   if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
-    const Error error{"bench: there is no suite '" + std::string(wanted) + "'", suggestion(wanted, names)};
+    const sandlot::Error error{"bench: there is no suite '" + std::string(wanted) + "'", suggestion(wanted, names)};
     std::fprintf(stderr, "error: %s\n", error.text().c_str());
     return 2;
   }
