@@ -48,6 +48,7 @@ if(NOT sandlot_third_party_chipmunk)
 endif()
 target_link_libraries(physics_tests PRIVATE ${sandlot_third_party_chipmunk})
 target_link_libraries(formats_tests PRIVATE sandlot_sdformat)
+target_link_libraries(console_tests PRIVATE sandlot_record)  # what a script did is recorded and replayed
 # tests/plugins/x.cpp become shared libraries beside the command: some fit, each of the others is wrong in one way.
 file(GLOB sources CONFIGURE_DEPENDS tests/plugins/*.cpp)
 set(plugins "")

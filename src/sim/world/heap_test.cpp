@@ -1,3 +1,4 @@
+// unity: alone (it replaces operator new)
 /// No heap allocation of ours per tick once everything has reached its size.
 // Sanitizers bring their own operator new, which must stay in place and hides who asked: there this test is not built.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
