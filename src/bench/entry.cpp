@@ -37,7 +37,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Suite& suite : suites) names.emplace_back(suite.name);
   if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
-    const sandlot::Error error{"bench: there is no suite '" + std::string(wanted) + "'", suggestion(wanted, names)};
+    const sandlot::Error error{"bench: there is no suite '" + std::string(wanted) + "'",
+                               suggestion(wanted, names)};
     std::fprintf(stderr, "error: %s\n", error.text().c_str());
     return 2;
   }

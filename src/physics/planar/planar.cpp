@@ -369,7 +369,7 @@ Result<std::unique_ptr<Engine>> create(const Node& config, Vec3 gravity) {
 }
 
 extern const EngineKind engine;
-const EngineKind engine{"planar", "bodies, wheels and joints in two dimensions: flat and fast",
+const EngineKind engine{"planar", "Bodies, wheels and joints in two dimensions: flat and fast.",
                         [] { return describe_fields<Spec>(); }, create};
 
 }  // namespace sandlot::planar
