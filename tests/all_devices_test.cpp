@@ -39,7 +39,8 @@ TEST(AllDevices, ForgedStateIsRefusedOrHarmless) {
   ASSERT_TRUE(simulation) << simulation.error().text();
   for (int i = 0; i < 215; ++i) ASSERT_TRUE((*simulation)->tick());  // against the wall, samples held back
   const std::vector<std::byte> good = (*simulation)->snapshot();
-  constexpr double numbers[] = {-1, 1e-300, 1e300, std::numeric_limits<double>::infinity(), std::nan("")};
+  constexpr double numbers[] = {-1, 1e-300, 1e300, std::numeric_limits<double>::infinity(),
+                                std::numeric_limits<double>::quiet_NaN()};
   Stream random(1, 2, Purpose::noise, 3);
   const auto below = [&](std::size_t n) {
     return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
