@@ -33,7 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   formats::Notes notes(unheard);
   const auto root = formats::load_document(text, "/nowhere/fuzz.urdf", notes, options);
   SL_CHECK(root);
-  const auto back = formats::parse_sdf(formats::xml_text(*root, text), "/nowhere/back.sdf", unheard, {.path = {}});
+  const auto back = formats::parse_sdf(formats::xml_text(*root, text), "/nowhere/back.sdf", unheard,
+                                       {.path = {}});
   SL_CHECK_MSG(back, back.error().what.c_str());
   const model::Model &was = *result->instances[0].model, &is = *back->instances.at(0).model;
   SL_CHECK(was.links.size() == is.links.size() && was.joints.size() == is.joints.size());
@@ -41,7 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     SL_CHECK(was.links[l].name == is.links[l].name && was.links[l].X_ML == is.links[l].X_ML);
   // And what can be said in URDF can be read as URDF.
   if (const auto urdf = formats::urdf_of(result->instances[0], unheard)) {
-    const auto again = formats::parse_sdf(formats::xml_text(*urdf), "/nowhere/again.urdf", unheard, {.path = {}});
+    const auto again = formats::parse_sdf(formats::xml_text(*urdf), "/nowhere/again.urdf", unheard,
+                                          {.path = {}});
     SL_CHECK(again || !again.error().what.empty());
   }
   return 0;
