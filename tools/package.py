@@ -241,7 +241,7 @@ def carry(prefix, library):
     output("patchelf", "--force-rpath", "--set-rpath", "$ORIGIN/bundled", library)
     output("patchelf", "--force-rpath", "--set-rpath", "$ORIGIN/../lib:$ORIGIN/../lib/bundled", prefix / "bin/sandlot")
     lines = ["Libraries in lib/bundled, unchanged files of Debian packages: file, package, version, source package, version of it.",
-             "The sources are at https://snapshot.debian.org/package/SOURCE/VERSION/", ""]
+             "The sources are in Debian's archive of source packages, under the last two words of a line.", ""]
     for package, names in sorted(packages.items()):
         about = output("dpkg-query", "-W", "-f", "${Package} ${Version} ${source:Package} ${source:Version}\n", package).splitlines()[0]
         lines += [f"{name} {about}" for name in names]

@@ -10,6 +10,7 @@ those that include a header of ours with the same name in it. The reading is rou
 
 Usage: unity_groups.py < paths
 """
+import pathlib
 import re
 import sys
 
@@ -44,7 +45,7 @@ class File:
     cache = {}
 
     def __init__(self, path):
-        raw = open(path, encoding="utf-8", errors="replace").read()
+        raw = pathlib.Path(path).read_text(encoding="utf-8", errors="replace")
         head = raw.splitlines()[:15]
         self.alone = any("unity: alone" in line for line in head)
         self.lines = raw.count("\n")
