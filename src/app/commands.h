@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "app/film.h"
-#include "app/snapshots.h"
 #include "base/result.h"
+#include "draw/plot.h"
 #include "formats/scenario/scenario.h"
+#include "run/film.h"
+#include "run/snapshot_files.h"
 #include "sim/session/experiment.h"
 
 namespace sandlot::app {
@@ -116,6 +117,13 @@ struct ListOptions {
 };
 int list(const ListOptions& options);
 
+struct PlotFilesOptions {
+  std::vector<std::string> files;  ///< CSV
+  std::string out;                 ///< SVG
+  draw::PlotOptions figure;
+};
+int plot(const PlotFilesOptions& options);
+
 struct BenchOptions {
   std::string name;  ///< "" for all
   bool json = false;
@@ -160,18 +168,6 @@ int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
 /// Says so when the output did not arrive, as on a full disk. @return the exit code then, else `code`
 int finish_output(int code);
-
-/// Where a file is written until it is whole: beside it, so that a full disk leaves what was there before.
-struct Landing {
-  std::string target;   ///< the file itself, links followed
-  std::string written;  ///< equal to `target` for pipes and devices
-  bool land() const;    ///< @return false with errno when the file cannot be put in place
-  void give_up() const;
-};
-Landing landing_of(const std::string& path);
-
-/// Writes a whole file, or leaves what was there and says why.
-Status write_file(const std::string& path, std::string_view content);
 
 /// True once the user has asked to stop (SIGINT, SIGTERM).
 bool interrupted();

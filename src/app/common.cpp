@@ -47,39 +47,6 @@ void print_warnings(const Diagnostics& diagnostics) {
     std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
 }
 
-Landing landing_of(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code code;
-  // A link stays one: what it leads to is replaced.
-  const fs::path real = fs::canonical(path, code);
-  const std::string target = code ? path : real.string();
-  // Pipes and devices such as /dev/stdout cannot be replaced: a rename would put a file in their place.
-  const fs::file_type type = fs::status(target, code).type();
-  const bool beside = type == fs::file_type::not_found || type == fs::file_type::regular;
-  return {target, beside ? target + ".part" : target};
-}
-
-Status write_file(const std::string& path, std::string_view content) {
-  const Landing landing = landing_of(path);
-  std::ofstream out(landing.written, std::ios::binary | std::ios::trunc);
-  const auto failed = [&] {
-    const std::string reason = std::strerror(errno);
-    landing.give_up();
-    return Error{"cannot write '" + path + "': " + reason};
-  };
-  if (!out) return failed();
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out || !landing.land()) return failed();
-  return {};
-}
-
-bool Landing::land() const { return written == target || std::rename(written.c_str(), target.c_str()) == 0; }
-
-void Landing::give_up() const {
-  if (written != target) std::remove(written.c_str());
-}
-
 bool interrupted() { return interrupt_requested.load(std::memory_order_relaxed); }
 
 void catch_interrupts() {

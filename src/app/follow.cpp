@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/json_text.h"
+#include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "record/glob.h"

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "app/film.h"
 #include "app/prepare.h"
 #include "app/report.h"
-#include "app/svg.h"
+#include "draw/run_drawing.h"
+#include "run/film.h"
 #include "server/server.h"
 #include "sim/session/session.h"
 #include "sim/watch/csv_log.h"
@@ -72,7 +72,7 @@ class Followers {
   Session& session_;
   Progress progress_;
   TravelRecorder travel_;
-  std::optional<SvgRecorder> svg_;
+  std::optional<draw::RunDrawing> svg_;
   std::unique_ptr<CsvLog> log_;
   std::mutex recorder_mutex_;  ///< another thread asks what is being recorded
   std::unique_ptr<Recorder> recorder_;

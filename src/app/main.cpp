@@ -6,13 +6,12 @@
 #include <cstdio>
 #include <system_error>
 
-#include "app/calibrate.h"
 #include "app/commands.h"
-#include "app/console.h"
 #include "app/flags.h"
-#include "app/plot.h"
-#include "app/render.h"
-#include "app/topic_export.h"
+#include "app/verbs/calibrate.h"
+#include "app/verbs/console.h"
+#include "app/verbs/render.h"
+#include "app/verbs/topic_export.h"
 #include "base/units.h"
 
 namespace {
@@ -266,30 +265,31 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   info_verb->add_flag("--values", file_options.values,
                       "Print the address of every value instead, with unit and value at the start");
 
-  PlotOptions plot_options;
+  PlotFilesOptions plot_options;
   std::string plot_y, plot_x_range, plot_y_range;
   CLI::App* const plot_verb = app.add_subcommand("plot", "Draw columns of CSV files as lines, as an SVG");
   plot_verb->add_option("files", plot_options.files, "CSV files: a line of names, then numbers")->required();
   plot_verb->add_option("--out", plot_options.out, "SVG file to write")->required();
-  plot_verb->add_option("--x", plot_options.x, "Column of the horizontal axis")->capture_default_str();
+  plot_verb->add_option("--x", plot_options.figure.x, "Column of the horizontal axis")->capture_default_str();
   plot_verb->add_option("--y", plot_y, "Columns to draw, with commas between them; all others if left out");
-  plot_verb->add_option("--title", plot_options.title, "Title of the figure");
-  plot_verb->add_option("--x-label", plot_options.x_label, "Label of the horizontal axis");
-  plot_verb->add_option("--y-label", plot_options.y_label, "Label of the vertical axis");
+  plot_verb->add_option("--title", plot_options.figure.title, "Title of the figure");
+  plot_verb->add_option("--x-label", plot_options.figure.x_label, "Label of the horizontal axis");
+  plot_verb->add_option("--y-label", plot_options.figure.y_label, "Label of the vertical axis");
   plot_verb->add_option("--x-range", plot_x_range, "What the horizontal axis shows: 0,10");
   plot_verb->add_option("--y-range", plot_y_range, "What the vertical axis shows: -1,1");
   plot_verb
-      ->add_option("--label", plot_options.labels, "Name of a line in the legend; once per line, in order")
+      ->add_option("--label", plot_options.figure.labels,
+                   "Name of a line in the legend; once per line, in order")
       ->allow_extra_args(false);
   plot_verb
-      ->add_option("--color", plot_options.colours,
+      ->add_option("--color", plot_options.figure.colours,
                    "Colour of a line, such as red or '#1f77b4'; once per line, in order")
       ->allow_extra_args(false);
   plot_verb->footer("Example: sandlot plot run.csv --y 'rover.pose.x,rover.pose.y' --out run.svg");
   plot_verb->callback([&] {
-    plot_options.y = split_list(plot_y);
-    Status status = read_range("--x-range", plot_x_range, plot_options.x_range);
-    if (status) status = read_range("--y-range", plot_y_range, plot_options.y_range);
+    plot_options.figure.y = split_list(plot_y);
+    Status status = read_range("--x-range", plot_x_range, plot_options.figure.x_range);
+    if (status) status = read_range("--y-range", plot_y_range, plot_options.figure.y_range);
     result = status ? plot(plot_options) : complain(status.error());
   });
 

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <set>
 
-#include "app/snapshots.h"
 #include "record/playback.h"
+#include "run/snapshot_files.h"
 #include "sim/load/load.h"
 
 namespace sandlot::app {

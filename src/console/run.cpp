@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "base/atomic_file.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
@@ -129,20 +129,7 @@ Said say_store(Call& call) {
   if (fs::exists(file, failed) && !is_snapshot_file(file))
     return Error{"'" + file + "' is there and is no snapshot", "give another name"};
   const std::vector<std::byte> bytes = call.simulation().snapshot();
-  // Beside it first, so that a full disk leaves what was there.
-  const std::string part = file + ".part";
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) {
-      const std::string why = std::strerror(errno);
-      fs::remove(part, failed);
-      return Error{"cannot write '" + file + "': " + why};
-    }
-  }
-  fs::rename(part, file, failed);
-  if (failed) return Error{"cannot write '" + file + "': " + failed.message()};
+  SL_TRY(write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   return std::optional("stored in " + file + " " + at(call.simulation()));
 }
 

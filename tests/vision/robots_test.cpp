@@ -1,7 +1,7 @@
 /// Software of robots on what the simulator gives them: colours in pictures, OpenCV on the same pictures, the laser, whole programs.
 #include <opencv2/imgproc.hpp>
 
-#include "app/calibrate.h"
+#include "app/verbs/calibrate.h"
 #include "base/random.h"
 #include "devices/cameras/camera_lens.h"
 #include "perception/finder.h"

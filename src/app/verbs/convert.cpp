@@ -1,0 +1,284 @@
+/// `sandlot convert IN OUT`: URDF, SDF and scenarios into each other.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+
+#include "app/commands.h"
+#include "base/atomic_file.h"
+#include "base/text.h"
+#include "files/text.h"
+#include "formats/sdf/document.h"
+#include "formats/sdf/sdf.h"
+#include "formats/sdf/write.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+#include "sim/load/load.h"
+
+namespace sandlot::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Format { sdf, urdf, scenario, builder };
+
+Result<Format> format_of(const std::string& path) {
+  if (starts_with(path, "builder:")) return Format::builder;
+  const std::string extension = fs::path(path).extension().string();
+  if (extension == ".sdf" || extension == ".world") return Format::sdf;
+  if (extension == ".urdf" || extension == ".xacro") return Format::urdf;
+  if (extension == ".yaml" || extension == ".yml") return Format::scenario;
+  return Error{"'" + path + "' has no known extension", "convert knows .sdf, .world, .urdf and .yaml"};
+}
+
+/// A path written in `file_folder`, as one that means the same file when written in `new_folder`.
+std::string moved(const std::string& uri, const std::string& file_folder, const std::string& new_folder,
+                  const SearchPath& search) {
+  const auto there = find_resource(uri, file_folder, search, {});
+  if (!there) return uri;  // the reader has said that already
+  const auto here = find_resource(uri, new_folder, search, {});
+  if (here && canonical_path(*here) == canonical_path(*there)) return uri;
+  std::error_code failed;
+  const std::string target = canonical_path(*there);
+  const fs::path relative = fs::relative(target, fs::absolute(new_folder.empty() ? "." : new_folder), failed);
+  return failed || relative.empty() ? target : relative.string();
+}
+
+struct Mover {
+  std::string new_folder;
+  const SearchPath& search;
+
+  /// Where an element without a file of its own was written from: the working folder.
+  void operator()(Xml& element, const std::string& parent = "") const {
+    const std::string from = element.place.file ? folder_of(*element.place.file) : "";
+    const bool is_map = element.name.size() > 4 && element.name.substr(element.name.size() - 4) == "_map";
+    const bool names_file = (element.name == "uri" && (parent == "mesh" || parent == "heightmap")) ||
+                            (is_map && (parent == "metal" || parent == "specular")) ||
+                            ((element.name == "diffuse" || element.name == "normal") &&
+                             parent == "texture") ||
+                            (element.name == "parameters" && parent == "plugin");
+    if (names_file && !element.text.empty()) element.text = moved(element.text, from, new_folder, search);
+    if (element.name == "mesh" || element.name == "texture")
+      if (const std::string* const file = element.attribute("filename"))
+        element.set_attribute("filename", moved(*file, from, new_folder, search));
+    for (Xml& child : element.children) (*this)(child, element.name);
+  }
+};
+
+/// A file that the written one names.
+struct Beside {
+  std::string path, text;
+};
+
+std::string obj_text(const TriangleMesh& mesh, const std::string& comment) {
+  std::string out = "# " + comment + "\n";
+  for (const Vec3& v : mesh.vertices)
+    out += "v " + number_text(v.x) + " " + number_text(v.y) + " " + number_text(v.z) + "\n";
+  for (const auto& t : mesh.triangles) out += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  return out;
+}
+
+struct Job {
+  const ConvertOptions& options;
+  Format from, to;
+  SearchPath search;
+  Diagnostics& diagnostics;
+  std::vector<Beside>& beside;
+
+  std::string comment() const {
+    return "Made by sandlot convert from " + fs::path(options.in).filename().string() + ".";
+  }
+
+  /// Terrain that a builder made has no file that could be named: it becomes a mesh with the same triangles.
+  void give_terrain_a_file(model::Instance& instance) const {
+    const std::size_t known = beside.size();
+    const auto changed = std::make_shared<model::Model>(*instance.model);
+    for (model::Link& link : changed->links) {
+      const HeightGrid* grid =
+          nullptr;  // of the link's shapes so far: what is seen is mostly what is touched
+      std::shared_ptr<const TriangleMesh> mesh;
+      const auto give = [&](Shape& shape) {
+        const auto* const ground = std::get_if<Heightfield>(&shape);
+        if (!ground || !ground->grid->source.empty()) return;
+        if (grid != ground->grid.get()) {
+          grid = ground->grid.get();
+          TriangleMesh made = tessellate(shape);
+          const fs::path out = options.out;
+          made.source = out.stem().string() + "_" + std::to_string(beside.size() + 1) + ".obj";
+          beside.push_back({(out.parent_path() / made.source).string(), obj_text(made, comment())});
+          mesh = std::make_shared<const TriangleMesh>(std::move(made));
+        }
+        shape = Mesh{mesh};
+      };
+      for (model::Collision& collision : link.collisions) give(collision.shape);
+      for (model::Visual& visual : link.visuals) give(visual.shape);
+    }
+    if (beside.size() > known) instance.model = changed;
+  }
+
+  /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
+  Result<std::string> tree_to_sdf() const {
+    const formats::SdfOptions sdf{.path = search};
+    SL_ASSIGN(const std::string text, read_text_file(options.in, sdf.limits.max_bytes));
+    SL_ASSIGN([[maybe_unused]] const formats::SdfContent content,
+              formats::parse_sdf(text, options.in, diagnostics, sdf));
+    Diagnostics said_already;
+    formats::Notes notes(said_already);
+    SL_ASSIGN(Xml root, formats::load_document(text, options.in, notes, sdf));
+    // Older versions have been rewritten as 1.9.
+    double minor = 0;
+    const std::string* const version = root.attribute("version");
+    if (!version || !starts_with(*version, "1.") || !parse_number(version->substr(2), minor) || minor < 9)
+      root.set_attribute("version", "1.9");
+    Mover{folder_of(options.out), search}(root);
+    return formats::xml_text(root, comment());
+  }
+
+  Result<std::string> scenario_to_sdf() const {
+    SL_ASSIGN(model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
+    for (model::Instance& instance : setup.instances) give_terrain_a_file(instance);
+    SL_ASSIGN(Xml root, formats::sdf_of(setup, diagnostics));
+    Mover{folder_of(options.out), search}(root);
+    return formats::xml_text(root, comment());
+  }
+
+  /// A model with parameters as the one model of a file.
+  Result<std::string> built_to_file() const {
+    SL_ASSIGN(const model::Instance instance,
+              load_instance(options.in, "model", {}, diagnostics, options.paths));
+    model::Instance named = instance;
+    named.original_name = named.name = instance.model->name;
+    give_terrain_a_file(named);
+    SL_ASSIGN(Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
+                                           : formats::sdf_of(named, diagnostics));
+    return formats::xml_text(root, comment());
+  }
+
+  Result<std::string> model_to_urdf() const {
+    SL_ASSIGN(const formats::SdfContent content,
+              formats::read_sdf(options.in, diagnostics, {.path = search}));
+    if (!content.world_name.empty())
+      return Error{"'" + options.in + "' is a world, and a URDF file holds one robot",
+                   "name a file with one <model>"};
+    SL_ASSIGN(Xml root, formats::urdf_of(content.instances.front(), diagnostics));
+    Mover{folder_of(options.out), search}(root);
+    return formats::xml_text(root, comment());
+  }
+
+  /// A scenario that runs the file: ticks of 10 ms or as fine as the sensors need, physics at the file's own step.
+  Result<std::string> file_to_scenario() const {
+    SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
+    Diagnostics said_already;
+    SL_ASSIGN(const formats::SdfContent content,
+              formats::read_sdf(options.in, said_already, {.path = search}));
+    double fastest_hz = 0;
+    for (const model::Instance& instance : setup.instances)
+      for (const model::DeviceDecl& device : instance.devices)
+        if (double hz = 0; const Node* const rate = device.config.find("rate"))
+          if (parse_number(rate->text(), hz)) fastest_hz = std::max(fastest_hz, hz);
+    const double step_s = content.max_step_s.value_or(0.001);
+    const double longest_s = fastest_hz > 0 ? std::min(0.01, 1 / fastest_hz) : 0.01;
+    const int substeps = std::clamp(static_cast<int>(std::floor(longest_s / step_s + 1e-9)), 1, 1000);
+    const std::string stem = fs::path(options.out).stem().string();
+    std::error_code failed;
+    const fs::path folder = fs::absolute(folder_of(options.out).empty() ? "." : folder_of(options.out));
+    const fs::path relative = fs::relative(fs::absolute(options.in), folder, failed);
+    const std::string named = failed || relative.empty() ? fs::absolute(options.in).string()
+                                                         : relative.string();
+    std::string out = "# " + comment() + "\nversion: 1\nname: " + quoted(stem) + "\n";
+    if (!content.world_name.empty()) out += "world: " + quoted(named) + "\n";
+    out += fmt::format("physics: rigid\ntime: {{step: {} s, substeps: {}, stop: 60 s}}\nseed: 1\n",
+                       number_text(rounded(step_s * substeps)), substeps);
+    if (content.world_name.empty()) {
+      const model::Instance& robot = content.instances.front();
+      out += "robots:\n  - name: " + quoted(robot.original_name) + "\n    model: " + quoted(named) +
+             "\n    pose: [0, 0, 0]\n";
+    }
+    return out;
+  }
+
+ private:
+  /// Products of decimal steps have tails of binary dust.
+  static double rounded(double s) { return std::floor(s * 1e9 + 0.5) / 1e9; }
+
+  static std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
+    return out + "\"";
+  }
+};
+
+Result<std::string> converted(const Job& job) {
+  if (job.to == Format::builder)
+    return Error{"'" + job.options.out + "' is no file", "name a file to write: .sdf or .urdf"};
+  if (job.from == Format::builder) {
+    if (job.to != Format::scenario) return job.built_to_file();
+    return Error{"scenarios name builders themselves: model: {builder: ...}", "convert it to .sdf"};
+  }
+  if (job.to == Format::scenario) {
+    if (job.from == Format::scenario)
+      return Error{"'" + job.options.in + "' is a scenario already",
+                   "convert makes scenarios of worlds and robots"};
+    return job.file_to_scenario();
+  }
+  if (job.to == Format::urdf) {
+    if (job.from == Format::scenario)
+      return Error{"'" + job.options.in + "' is a scenario, and a URDF file holds one robot",
+                   "convert it to .sdf"};
+    return job.model_to_urdf();
+  }
+  return job.from == Format::scenario ? job.scenario_to_sdf() : job.tree_to_sdf();
+}
+
+/// What cannot be read back is not written.
+Status check_result(const Job& job, const std::string& text) {
+  Diagnostics unheard;
+  Error error;
+  if (job.to == Format::scenario) {
+    const auto back = formats::parse_scenario(text, job.options.out, {}, unheard);
+    if (back) return {};
+    error = back.error();
+  } else {
+    const auto back = formats::parse_sdf(text, job.options.out, unheard, {.path = job.search});
+    if (back) return {};
+    error = back.error();
+  }
+  return Error{"'" + job.options.in + "' cannot be said in the other format: " + error.what, error.fix};
+}
+
+Status run_job(const ConvertOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(const Format from, format_of(options.in));
+  SL_ASSIGN(const Format to, format_of(options.out));
+  std::error_code ignored;
+  if (fs::exists(options.out, ignored) && !options.force)
+    return Error{"'" + options.out + "' exists already", "add --force to replace it"};
+  std::vector<Beside> beside;
+  const Job job{options, from, to, search_path(options.paths), diagnostics, beside};
+  SL_ASSIGN(const std::string text, converted(job));
+  for (const Beside& file : beside)
+    if (fs::exists(file.path, ignored) && !options.force)
+      return Error{"'" + file.path + "' exists already", "add --force to replace it"};
+  for (const Beside& file : beside) SL_TRY(write_file(file.path, file.text));
+  if (Status status = check_result(job, text); !status) {
+    for (const Beside& file : beside) fs::remove(file.path, ignored);
+    return status;
+  }
+  return write_file(options.out, text);
+}
+
+}  // namespace
+
+int convert(const ConvertOptions& options) {
+  Diagnostics diagnostics;
+  const Status status = run_job(options, diagnostics);
+  print_warnings(diagnostics);
+  return status ? exit_ok : complain(status.error());
+}
+
+}  // namespace sandlot::app

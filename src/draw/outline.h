@@ -1,0 +1,30 @@
+#pragma once
+/// What a solid looks like from straight above: a circle or a convex polygon, and the heights it spans.
+#include <optional>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "geometry/shape.h"
+
+namespace sandlot::draw {
+
+/// Silhouette in the world's xy plane.
+///
+/// Limits   round parts of leaning cylinders and capsules are drawn with 32 corners per turn.
+struct Outline {
+  std::vector<Vec3> corners;  ///< counter-clockwise, z = 0; empty: a circle
+  Vec3 centre_m;              ///< of the circle or of the shape's frame, z = 0
+  double radius_m = 0;        ///< of the circle, or about centre_m around all corners
+  double bottom_m = 0, top_m = 0;
+};
+
+/// Nothing for planes, which have no edge.
+std::optional<Outline> outline_from_above(const Shape& shape, const Pose& X_WC);
+
+/// The path without those points that lie within `tolerance_m` of the line through the ones that stay; first and
+/// last stay. Heights are ignored.
+/// Source   D. Douglas, T. Peucker, Algorithms for the reduction of the number of points required to represent a
+///          digitized line or its caricature, Cartographica 10 (1973).
+std::vector<Vec3> simplified(const std::vector<Vec3>& path, double tolerance_m);
+
+}  // namespace sandlot::draw

@@ -1,0 +1,44 @@
+#pragma once
+/// A film of a run, taken while it goes on: one picture every 1 / rate of simulated time, from a draw::Viewpoint.
+///
+/// The run waits for each picture and is not changed by it. A robot's camera that has not sent a picture yet delays the
+/// beginning of the film.
+#include <optional>
+#include <string>
+
+#include "draw/viewpoint.h"
+#include "record/video/video.h"
+
+namespace sandlot {
+
+struct FilmOptions {
+  std::string file;  ///< "": none
+  draw::ViewpointOptions view;
+  int rate_hz = 25;
+};
+
+class Film {
+ public:
+  /// Takes the first picture. Errors   in the options; a file that cannot be written.
+  static Result<Film> begin(const FilmOptions& options, Simulation& simulation);
+
+  /// After each tick: the pictures that are due.
+  Status look(Simulation& simulation);
+  Status finish();
+
+  const std::string& file() const { return options_.file; }
+  std::uint64_t pictures() const { return writer_ ? writer_->pictures() : 0; }
+
+ private:
+  Film(FilmOptions options, draw::Viewpoint view, Time begin)
+      : options_(std::move(options)), view_(std::move(view)), begin_(begin) {}
+
+  FilmOptions options_;
+  draw::Viewpoint view_;
+  Time begin_;
+  std::uint64_t due_ = 0;  ///< the number of the picture that comes next
+  std::optional<VideoWriter> writer_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace sandlot
