@@ -1,5 +1,5 @@
 #pragma once
-/// The verbs of the `sandlot` command. Each takes parsed options and returns an exit code: 0 ok, 1 the run
+/// Verbs of the `sandlot` command. Each takes parsed options and returns an exit code: 0 ok, 1 the run
 /// failed, 2 the input is wrong.
 #include <cstdint>
 #include <memory>
@@ -18,47 +18,24 @@ namespace sandlot::app {
 
 inline constexpr int exit_ok = 0, exit_failed = 1, exit_bad_input = 2;
 
-/// The whole command: reads the arguments, does what they say. @return the exit code
-/// @param hooks  of an experiment in C++, for `run`; null: none
+/// The whole command, from its arguments to its exit code.
+/// @param hooks  C++ functions of an embedding program, for `run`; null: none
 int command(int argc, char** argv, const Hooks* hooks = nullptr);
 
-/// Where viewers find a run.
+/// Address of a run for viewers.
 struct ServeOptions {
   int port = 0;            ///< 0: any that is free
-  bool next_free = false;  ///< when it is taken, try those after it
+  bool next_free = false;  ///< when the port is taken, try the next ones
   std::string address = "127.0.0.1";
-  std::string token;  ///< "": one is made where it is needed
+  std::string token;  ///< "": made where one is needed
   std::vector<std::string> origins;
 };
 
 struct RunOptions {
-  std::string file;
-  std::optional<double> duration_s;
-  std::optional<double> rate;  ///< real time x factor; unset: as fast as possible
-  std::optional<std::uint64_t> seed;
-  std::optional<double> errors;
-  int threads = 1;
-  std::vector<formats::Override> overrides;
-  std::vector<std::string> paths;  ///< folders to search first
-  bool skip_missing = false;       ///< of the files that the file names
-  std::string summary_file;        ///< JSON
-  std::string svg_file;
-  std::string stop_when;                ///< an expression
-  std::string log_file;                 ///< CSV; "": the scenario's
-  std::vector<std::string> log_values;  ///< addresses and expressions; empty: the scenario's
-  std::optional<double> log_rate_hz;
-  std::string from_file;  ///< a snapshot to go on from
-  SnapshotOptions snapshots;
-  bool json = false;               ///< print the summary as JSON instead of text
-  const Hooks* hooks = nullptr;    ///< of an experiment in C++
-  std::vector<std::string> lines;  ///< for the console: "at 2s pose rover 1 2"
-  std::string script_file;         ///< of such lines
-  std::string record_file;         ///< "": as the scenario says
-  std::vector<std::string> record_topics;
-  std::string record_compression;
+  RunSpec spec;
   std::optional<ServeOptions> serve;
-  bool paused = false;  ///< begins so
-  FilmOptions film;
+  bool json = false;             ///< print the summary as JSON instead of text
+  const Hooks* hooks = nullptr;  ///< C++ functions of an embedding program
 };
 int run(const RunOptions& options);
 
@@ -78,6 +55,25 @@ struct ReplayOptions {
 int replay(const ReplayOptions& options);
 /// Shows a recording to viewers, with `serve`.
 int play(const ReplayOptions& options);
+
+struct RenderOptions {
+  std::string file, out;
+  std::vector<formats::Override> overrides;
+  std::vector<std::string> paths;  ///< folders to search first
+  bool skip_missing = false;
+  draw::ViewpointOptions view;
+  double time_s = 0;
+};
+int render(const RenderOptions& options);
+
+struct ConsoleOptions {
+  std::string url;  ///< as people write it; "": this machine's
+  std::string token;
+  std::vector<std::string> lines;  ///< to send; empty: read from standard input
+  std::string script_file;
+  bool json = false;
+};
+int console(const ConsoleOptions& options);
 
 struct DiffOptions {
   std::string a, b;  ///< recordings or snapshot files
@@ -145,31 +141,31 @@ struct RecordingOptions {
   std::optional<double> from_s, to_s;
   std::optional<std::uint64_t> count;
   bool json = false;
-  bool dry_run = false;  ///< doctor: only say what would be done
+  bool dry_run = false;  ///< doctor: only print what would be done
 };
-/// Says whether a recording is whole, and repairs it when it is not.
+/// Checks whether a recording is whole, and repairs it when it is not.
 int doctor_file(const RecordingOptions& options);
 int topic_list(const RecordingOptions& options);
 int topic_echo(const RecordingOptions& options);
 int topic_hz(const RecordingOptions& options);
 
-/// The scenario that `sandlot demo NAME` runs; found beside the program or above it.
+/// Scenario of `sandlot demo NAME`, found beside the program or above it.
 Result<std::string> demo_file(const std::string& name);
 
 /// Prints the names that demo_file() knows.
 int list_demos();
 
-/// Loads a file and builds the simulation, which finds what reading alone cannot (joints, levels, rates).
+/// Simulation of a file. Building it finds errors that reading alone does not (joints, levels, rates).
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics);
 
-/// Prints an error the way all verbs do and returns exit_bad_input.
+/// Prints an error in the form of all verbs. @return exit_bad_input
 int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
-/// Says so when the output did not arrive, as on a full disk. @return the exit code then, else `code`
+/// Prints an error when standard output could not be written, as on a full disk. @return the exit code then, else `code`
 int finish_output(int code);
 
-/// True once the user has asked to stop (SIGINT, SIGTERM).
+/// Whether the user wants the program to stop (SIGINT, SIGTERM).
 bool interrupted();
 void catch_interrupts();
 

@@ -1,4 +1,6 @@
-/// The `sandlot` command: verbs and their options. What a verb does is in the file of its name.
+/// The `sandlot` command: its verbs and their options. app/verbs has what they do, a file for each.
+///
+/// long file: CLI11 takes 3.6 s to compile, so that the options of all verbs are in one file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,10 +11,10 @@
 #include "app/commands.h"
 #include "app/flags.h"
 #include "app/verbs/calibrate.h"
-#include "app/verbs/console.h"
-#include "app/verbs/render.h"
 #include "app/verbs/topic_export.h"
+#include "base/math.h"
 #include "base/units.h"
+#include "run/snapshot_files.h"
 
 namespace {
 
@@ -27,13 +29,33 @@ Status read_range(const char* flag, const std::string& text, std::optional<std::
   if (comma == std::string::npos || !parse_number(text.substr(0, comma), low) ||
       !parse_number(text.substr(comma + 1), high) || !(low < high) || !std::isfinite(low) ||
       !std::isfinite(high))
-    return Error{std::string(flag) + ": '" + text + "' is no range",
+    return Error{std::string(flag) + ": '" + text + "' is not a range",
                  "write the lower and the upper end: -1,1"};
   out = {low, high};
   return {};
 }
 
-/// --port and what goes with it.
+// --- options of several verbs ---
+
+void add_paths(CLI::App& verb, std::vector<std::string>& paths) {
+  verb.add_option("--path", paths, "Folder to search for models and other files; may be given several times")
+      ->allow_extra_args(false);
+}
+
+void add_sets(CLI::App& verb, std::vector<std::string>& sets) {
+  verb.add_option("--set", sets, "Change the scenario before it is loaded: path=value")
+      ->allow_extra_args(false);
+}
+
+void add_skip_missing(CLI::App& verb, bool& skip) {
+  verb.add_flag("--skip-missing", skip,
+                "Leave out, with a warning, files that a world names and that are not found: models, meshes, "
+                "heightmaps");
+}
+
+void add_json(CLI::App& verb, bool& json) { verb.add_flag("--json", json, "Print as JSON"); }
+
+/// Options of a server: --port, --address, --token, --allow-origin.
 struct ServeFlags {
   std::optional<int> port;
   ServeOptions options;
@@ -88,22 +110,23 @@ struct RunFlags {
     CLI::Option* const without = verb.add_flag("--headless", headless, "Run without a page");
     serve.add_to(verb);
     verb.get_option("--port")->excludes(without);
-    verb.add_flag("--paused", options.paused, "Begin paused; with --port");
-    verb.add_option("--command", options.lines,
+    verb.add_flag("--paused", options.spec.paused, "Begin paused; with --port");
+    verb.add_option("--command", options.spec.commands,
                     "A console line for the run, such as 'at 2s pose rover 1 2'; may be given several times")
         ->allow_extra_args(false);
-    verb.add_option("--script", options.script_file, "A file of such lines");
+    verb.add_option("--script", options.spec.script_file,
+                    "File of console lines for the run, each as in --command");
     verb.add_option("--duration", duration.text,
                     "Simulated time after which the run ends, such as 30s or '2 min'");
     verb.add_option(
         "--rate", rate,
         "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time. If left "
         "out: max, with --port 1");
-    verb.add_option("--seed", options.seed, "Seed of all random numbers, instead of the scenario's");
-    verb.add_option("--errors", options.errors,
-                    "Factor on the errors of all devices, beside those in the scenario; 0: exact")
+    verb.add_option("--seed", options.spec.seed, "Seed of all random numbers, instead of the scenario's");
+    verb.add_option("--errors", options.spec.errors,
+                    "Factor on the errors of all devices, in addition to factors in the scenario; 0: exact")
         ->check(CLI::Range(0.0, 1000.0));
-    verb.add_option("--threads", options.threads,
+    verb.add_option("--threads", options.spec.threads,
                     "Threads; 0: as many as the machine has. The result does not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
@@ -111,42 +134,41 @@ struct RunFlags {
                     "Change the scenario before it is loaded: path=value, such as physics=planar or "
                     "'robots[0].pose=[1, 2, 0]'")
         ->allow_extra_args(false);
-    verb.add_option("--path", options.paths,
-                    "Folder to search for models and other files; may be given several times")
-        ->allow_extra_args(false);
-    verb.add_option("--summary", options.summary_file, "Write the summary of the run as JSON");
-    verb.add_flag("--skip-missing", options.skip_missing,
-                  "Leave out, with a warning, what a world names and nobody has: models, meshes, heightmaps");
-    verb.add_option("--stop-when", options.stop_when,
+    add_paths(verb, options.spec.paths);
+    verb.add_option("--summary", options.spec.summary_file, "Write the summary of the run as JSON");
+    add_skip_missing(verb, options.spec.skip_missing);
+    verb.add_option("--stop-when", options.spec.stop_when,
                     "End the run when this expression over addresses holds, such as 'rover.pose.x > 3'");
-    verb.add_option("--log", options.log_file, "Write values to this CSV file while it runs");
+    verb.add_option("--log", options.spec.log_file, "Write values to this CSV file while it runs");
     verb.add_option("--log-values", log_values,
-                    "What to log: addresses and expressions with commas between them (docs/values.md)");
+                    "Values to log: addresses and expressions with commas between them (docs/values.md)");
     verb.add_option("--log-rate", log_rate,
                     "Lines per simulated second, such as '10 Hz'; one per tick if left out");
-    verb.add_option("--svg", options.svg_file, "Draw the world from above with paths and last scans");
-    verb.add_option("--snapshot", options.snapshots.file,
+    verb.add_option("--svg", options.spec.drawing_file,
+                    "Draw the world from above with paths and last scans");
+    verb.add_option("--snapshot", options.spec.snapshots.file,
                     "Write a snapshot: at the end, or at --snapshot-at");
     verb.add_option("--snapshot-at", snapshot_at.text, "Simulated time of the snapshot");
     verb.add_option("--snapshot-every", snapshot_every.text,
-                    "And one each time so much was simulated, such as 10s: FILE with the time in its name");
-    verb.add_option("--snapshot-keep", options.snapshots.keep,
-                    "Of those of --snapshot-every only the last so many stay; 0: all")
+                    "Interval of simulated time at which further snapshots are written, such as 10s: the "
+                    "--snapshot file with the time in its name");
+    verb.add_option("--snapshot-keep", options.spec.snapshots.keep,
+                    "Number of the latest --snapshot-every files that are kept; 0: all")
         ->check(CLI::Range(0, 1'000'000));
-    verb.add_option("--record", options.record_file, "Record the run as an MCAP file");
-    verb.add_option("--record-topics", options.record_topics,
+    verb.add_option("--record", options.spec.record_file, "Record the run as an MCAP file");
+    verb.add_option("--record-topics", options.spec.record_topics,
                     "Record these topics only, such as '/rover/*'; may be given several times")
         ->allow_extra_args(false);
-    verb.add_option("--record-compression", options.record_compression,
+    verb.add_option("--record-compression", options.spec.record_compression,
                     "Compression of the recording's chunks")
         ->check(CLI::IsMember({"none", "lz4", "zstd"}));
-    verb.add_option("--video", options.film.file, "Film the run: an .mp4, .mov or .mkv file");
-    verb.add_option(
-        "--camera", options.film.view.camera,
-        "What films: a robot's camera (robot/device), follow:ROBOT for a view from behind it, or overhead");
+    verb.add_option("--video", options.spec.film.file, "Film the run: an .mp4, .mov or .mkv file");
+    verb.add_option("--camera", options.spec.film.view.camera,
+                    "Camera of the film: a robot's camera (robot/device), follow:ROBOT for a view from "
+                    "behind it, or overhead");
     verb.add_option("--video-size", video_size,
                     "Width and height, such as 640x480; 960x540 if left out. A robot's camera has its own");
-    verb.add_option("--video-rate", options.film.rate_hz,
+    verb.add_option("--video-rate", options.spec.film.rate_hz,
                     "Pictures per simulated second, and per second of the film")
         ->check(CLI::Range(1, 240))
         ->capture_default_str();
@@ -154,27 +176,74 @@ struct RunFlags {
   }
 
   Status finish() {
-    SL_TRY(duration.read("--duration", options.duration_s));
-    SL_TRY(snapshot_at.read("--snapshot-at", options.snapshots.at_s));
-    SL_TRY(snapshot_every.read("--snapshot-every", options.snapshots.every_s));
-    SL_TRY(check(options.snapshots));
+    SL_TRY(duration.read("--duration", options.spec.duration_s));
+    SL_TRY(snapshot_at.read("--snapshot-at", options.spec.snapshots.at_s));
+    SL_TRY(snapshot_every.read("--snapshot-every", options.spec.snapshots.every_s));
     SL_TRY(serve.finish(options.serve));
-    SL_TRY(read_size("--video-size", video_size, options.film.view));
-    if (options.film.file.empty() != options.film.view.camera.empty())
-      return Error{"--video and --camera go together: the film, and what takes it",
-                   "add --camera overhead, or --video run.mp4"};
-    if (options.paused && !options.serve)
+    SL_TRY(read_size("--video-size", video_size, options.spec.film.view));
+    if (options.spec.paused && !options.serve)
       return Error{"--paused: nobody could let the run go on", "add --port 8765"};
-    SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.rate));
-    options.log_values = split_list(log_values);
+    SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.spec.rate));
+    options.spec.log_values = split_list(log_values);
     if (!log_rate.empty()) {
       auto hz = parse_quantity(log_rate, "Hz");
       if (!hz) return Error{"--log-rate: " + hz.error().what, hz.error().fix};
       if (!(*hz >= 0 && *hz <= 1e6))
         return Error{"--log-rate: must be in [0, 1e6] Hz, is " + number_text(*hz)};
-      options.log_rate_hz = *hz;
+      options.spec.log_rate_hz = *hz;
     }
-    return read_sets(sets, options.overrides);
+    return read_sets(sets, options.spec.overrides);
+  }
+};
+
+struct RenderFlags {
+  RenderOptions options;
+  DurationOption time;
+  double fov_deg = 60;
+  std::string size, from, at;
+  std::vector<std::string> sets;
+  bool overhead = false;
+
+  void add_to(CLI::App& verb) {
+    draw::ViewpointOptions& view = options.view;
+    verb.add_option("file", options.file, "Scenario, world or robot")->required();
+    verb.add_option("--out", options.out, "The picture: .png or .jpg")->required();
+    verb.add_option("--camera", view.camera,
+                    "A robot's camera (robot/device), or follow:ROBOT for a view from behind it");
+    verb.add_option("--from", from, "Look from this point: x,y,z in metres");
+    verb.add_option("--at", at, "Look at this point, with --from");
+    verb.add_flag("--overhead", overhead, "Look from above at everything");
+    verb.add_option("--fov", fov_deg, "Field of view across the picture, in degrees")
+        ->check(CLI::Range(1.0, 170.0))
+        ->capture_default_str();
+    verb.add_option("--size", size,
+                    "Width and height, such as 640x480; 960x540 if left out. A robot's camera has its own");
+    verb.add_option("--time", time.text, "Simulated time of the picture, such as 3s; the start if left out");
+    verb.add_option("--plane", view.plane,
+                    "rgb; depth, labels or instances as colours. A robot's camera: name its topic instead")
+        ->capture_default_str();
+    verb.add_option("--samples", view.samples, "Rays per pixel: more, smoother edges")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    verb.add_flag("--shadows,!--no-shadows", view.shadows, "Lights cast shadows (the default)");
+    add_sets(verb, sets);
+    add_paths(verb, options.paths);
+    add_skip_missing(verb, options.skip_missing);
+  }
+
+  Status finish() {
+    std::optional<double> time_s;
+    SL_TRY(time.read("--time", time_s));
+    options.time_s = time_s.value_or(0);
+    SL_TRY(read_sets(sets, options.overrides));
+    options.view.fov_rad = fov_deg * math::pi / 180;
+    SL_TRY(read_size("--size", size, options.view));
+    SL_TRY(read_point("--from", from, options.view.from));
+    SL_TRY(read_point("--at", at, options.view.at));
+    if (overhead && !options.view.camera.empty())
+      return Error{"--overhead and --camera are two views", "give one of them"};
+    if (overhead) options.view.camera = "overhead";
+    return {};
   }
 };
 
@@ -191,16 +260,15 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   RunFlags run_flags;
   CLI::App* const run_verb = app.add_subcommand("run",
                                                 "Run a scenario (.yaml), a world (.sdf) or a robot (.urdf)");
-  run_verb->add_option("file", run_flags.options.file, "Scenario, world or robot");
-  run_verb->add_option("--from", run_flags.options.from_file, "Go on from a snapshot instead of a file");
+  run_verb->add_option("file", run_flags.options.spec.file, "Scenario, world or robot");
+  run_verb->add_option("--from", run_flags.options.spec.from_file,
+                       "Continue from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
   run_flags.options.hooks = hooks;
   run_verb->footer(
       "Example: sandlot run scenarios/indoor.yaml --duration 60s --set physics=planar --svg run.svg");
   run_verb->callback([&] {
     if (Status status = run_flags.finish(); !status) result = complain(status.error());
-    else if (run_flags.options.file.empty() == run_flags.options.from_file.empty())
-      result = complain({"run needs either a file or --from", "sandlot run scenarios/indoor.yaml"});
     else result = run(run_flags.options);
   });
 
@@ -208,7 +276,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   std::string demo_name = "demo";
   CLI::App* const demo_verb = app.add_subcommand("demo",
                                                  "Show a scenario that comes with Sandlot, on a page");
-  demo_verb->add_option("name", demo_name, "Name of a file in scenarios/; list: say which there are")
+  demo_verb->add_option("name", demo_name, "Name of a file in scenarios/; list: print the names")
       ->capture_default_str();
   demo_flags.add_to(*demo_verb);
   demo_verb->footer(
@@ -223,12 +291,42 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     if (!status) return void(result = complain(status.error()));
     auto file = demo_file(demo_name);
     if (!file) return void(result = complain(file.error()));
-    demo_flags.options.file = *file;
+    demo_flags.options.spec.file = *file;
     result = run(demo_flags.options);
   });
 
-  add_console_verb(app, result);
-  add_render_verb(app, result);
+  ConsoleOptions console_options;
+  CLI::App* const console_verb = app.add_subcommand("console", "Talk to a run that was started with --port");
+  console_verb->add_option("address", console_options.url,
+                           "Port, HOST:PORT, or the address that the run printed; 8765 on this machine");
+  console_verb
+      ->add_option("--command", console_options.lines,
+                   "Send this line instead of reading lines; may be given several times")
+      ->allow_extra_args(false);
+  console_verb->add_option("--script", console_options.script_file,
+                           "Send the lines of a file; ends at the first that fails");
+  console_verb->add_option("--token", console_options.token,
+                           "Token of the run, where it has one; or SANDLOT_TOKEN in the environment");
+  console_verb->add_flag("--json", console_options.json, "Answers as JSON, one object per line");
+  console_verb->footer(
+      "Exit code 0, 1 when a line failed, 2 when there is no run to talk to. docs/console.md has the "
+      "commands.\n"
+      "Example: sandlot console --command 'set */laser.noise.white 2 cm' --command 'show rover.pose.x'");
+  console_verb->callback([&] { result = console(console_options); });
+
+  RenderFlags render_flags;
+  CLI::App* const render_verb = app.add_subcommand("render",
+                                                   "Take a picture of a world, as a PNG or JPEG file");
+  render_flags.add_to(*render_verb);
+  render_verb->footer(
+      "Example: sandlot render scenarios/msl_field.yaml --from -6,-9,5 --at 0,0,0 --out field.png\n"
+      "         sandlot render scenarios/msl_field.yaml --camera follow:cyan4 --time 2s --size 640x480 --out "
+      "cyan4.png\n"
+      "         sandlot render scenarios/indoor.yaml --overhead --plane instances --out map.png");
+  render_verb->callback([&] {
+    const Status status = render_flags.finish();
+    result = status ? render(render_flags.options) : complain(status.error());
+  });
 
   FileOptions file_options;
   std::vector<std::string> file_sets;
@@ -236,15 +334,10 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                                  int (*act)(const FileOptions&)) -> CLI::App* {
     CLI::App* const verb = app.add_subcommand(name, help);
     verb->add_option("files", file_options.files, "Scenarios or worlds")->required();
-    verb->add_option("--set", file_sets, "Change the scenario before it is loaded: path=value")
-        ->allow_extra_args(false);
-    verb->add_flag(
-        "--skip-missing", file_options.skip_missing,
-        "Leave out, with a warning, what a world names and nobody has: models, meshes, heightmaps");
-    verb->add_option("--path", file_options.paths,
-                     "Folder to search for models and other files; may be given several times")
-        ->allow_extra_args(false);
-    verb->add_flag("--json", file_options.json, "Print as JSON");
+    add_sets(*verb, file_sets);
+    add_skip_missing(*verb, file_options.skip_missing);
+    add_paths(*verb, file_options.paths);
+    add_json(*verb, file_options.json);
     verb->footer(example);
     verb->callback([&, act] {
       if (Status status = read_sets(file_sets, file_options.overrides); !status)
@@ -275,8 +368,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   plot_verb->add_option("--title", plot_options.figure.title, "Title of the figure");
   plot_verb->add_option("--x-label", plot_options.figure.x_label, "Label of the horizontal axis");
   plot_verb->add_option("--y-label", plot_options.figure.y_label, "Label of the vertical axis");
-  plot_verb->add_option("--x-range", plot_x_range, "What the horizontal axis shows: 0,10");
-  plot_verb->add_option("--y-range", plot_y_range, "What the vertical axis shows: -1,1");
+  plot_verb->add_option("--x-range", plot_x_range, "Range of the horizontal axis: 0,10");
+  plot_verb->add_option("--y-range", plot_y_range, "Range of the vertical axis: -1,1");
   plot_verb
       ->add_option("--label", plot_options.figure.labels,
                    "Name of a line in the legend; once per line, in order")
@@ -312,7 +405,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   replay_verb->add_option("--snapshot", replay_options.snapshots.file,
                           "Write a snapshot: at the end, or at --snapshot-at");
   replay_verb->add_option("--snapshot-at", replay_snapshot_at.text, "Simulated time of the snapshot");
-  replay_verb->add_option("--summary", replay_options.summary_file, "Write what was found as JSON");
+  replay_verb->add_option("--summary", replay_options.summary_file, "Write the result as JSON");
   replay_verb
       ->add_option("--path", replay_options.paths, "Folder to search for plugins; may be given several times")
       ->allow_extra_args(false);
@@ -320,12 +413,12 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   std::string replay_rate;
   replay_serve.add_to(*replay_verb);
   replay_verb->add_option("--rate", replay_rate, "With --port: 1 is real time; max: as fast as possible");
-  replay_verb->add_flag("--json", replay_options.json, "Print as JSON");
+  add_json(*replay_verb, replay_options.json);
   replay_verb->footer("Example: sandlot replay r.mcap --verify\n         sandlot replay r.mcap --port 8765");
   replay_verb->callback([&] {
     Status status = until.read("--until", replay_options.until_s);
     if (status) status = replay_snapshot_at.read("--snapshot-at", replay_options.snapshots.at_s);
-    if (status) status = check(replay_options.snapshots);
+    if (status) status = check_snapshot_options(replay_options.snapshots);
     if (status) status = replay_serve.finish(replay_options.serve);
     if (status) status = read_rate(replay_rate.empty() ? "1" : replay_rate, replay_options.rate);
     if (status && !replay_rate.empty() && !replay_options.serve)
@@ -338,14 +431,14 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                                                  "Find where two recordings or snapshots begin to differ");
   diff_verb->add_option("a", diff_options.a, "Recording (.mcap) or snapshot")->required();
   diff_verb->add_option("b", diff_options.b, "Recording (.mcap) or snapshot")->required();
-  diff_verb->add_option("--limit", diff_options.limit, "Show so many values at most")->capture_default_str();
+  diff_verb->add_option("--limit", diff_options.limit, "Most values to show")->capture_default_str();
   diff_verb->add_option("--threads", diff_options.threads, "Threads; 0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   diff_verb
       ->add_option("--path", diff_options.paths, "Folder to search for plugins; may be given several times")
       ->allow_extra_args(false);
-  diff_verb->add_flag("--json", diff_options.json, "Print as JSON");
+  add_json(*diff_verb, diff_options.json);
   diff_verb->footer(
       "Exit code 0: no difference in the ticks that both have, 1: a difference, 2: they cannot be compared.\n"
       "Example: sandlot diff a.mcap b.mcap");
@@ -354,15 +447,12 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   ConvertOptions convert_options;
   CLI::App* const convert_verb = app.add_subcommand(
       "convert", "Turn URDF, SDF and scenarios into each other, by the extensions of the files");
-  convert_verb->add_option("in", convert_options.in, "What is there: .urdf, .sdf, .world or .yaml")
+  convert_verb->add_option("in", convert_options.in, "File to read: .urdf, .sdf, .world or .yaml")
       ->required();
-  convert_verb->add_option("out", convert_options.out, "What it becomes: .sdf, .world, .urdf or .yaml")
+  convert_verb->add_option("out", convert_options.out, "File to write: .sdf, .world, .urdf or .yaml")
       ->required();
   convert_verb->add_flag("--force", convert_options.force, "Replace the file when it exists");
-  convert_verb
-      ->add_option("--path", convert_options.paths,
-                   "Folder to search for models and other files; may be given several times")
-      ->allow_extra_args(false);
+  add_paths(*convert_verb, convert_options.paths);
   convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
   convert_verb->callback([&] { result = convert(convert_options); });
 
@@ -370,7 +460,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   std::vector<std::string> calibrate_sets;
   CLI::App* const calibrate_verb = app.add_subcommand(
       "calibrate", "Measure the errors of a detector in a camera's pictures, as keys of its level `objects`");
-  calibrate_verb->add_option("file", calibrate_options.file, "Scenario with the camera and things to see")
+  calibrate_verb
+      ->add_option("file", calibrate_options.file, "Scenario with the camera and objects to be seen")
       ->required();
   calibrate_verb->add_option("--camera", calibrate_options.camera, "The camera: robot/device")->required();
   calibrate_verb->add_option("--samples", calibrate_options.samples, "Pictures")
@@ -378,34 +469,30 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       ->capture_default_str();
   calibrate_verb
       ->add_option("--label", calibrate_options.labels,
-                   "Things with this label only; may be given several times")
+                   "Label of the objects to use; may be given several times")
       ->allow_extra_args(false);
   calibrate_verb
       ->add_option("--max-range", calibrate_options.max_range_m,
-                   "Things are put as far away as this, in metres")
+                   "Largest distance at which objects are placed, in metres")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   calibrate_verb
       ->add_option("--detector", calibrate_options.detector,
-                   "picture: finds things by their colours; objects: the camera's level `objects` itself")
+                   "picture: finds objects by their colours; objects: the camera's level `objects` itself")
       ->check(CLI::IsMember({"picture", "objects"}))
       ->capture_default_str();
   calibrate_verb->add_flag("--as-it-runs", calibrate_options.as_it_runs,
-                           "Let the scenario run with its controllers instead of moving things about");
+                           "Let the scenario run with its controllers instead of placing objects at random");
   calibrate_verb->add_option("--seed", calibrate_options.seed,
                              "Seed of all random numbers, instead of the scenario's");
-  calibrate_verb->add_option("--set", calibrate_sets, "Change the scenario before it is loaded: path=value")
-      ->allow_extra_args(false);
-  calibrate_verb
-      ->add_option("--path", calibrate_options.paths,
-                   "Folder to search for models and other files; may be given several times")
-      ->allow_extra_args(false);
+  add_sets(*calibrate_verb, calibrate_sets);
+  add_paths(*calibrate_verb, calibrate_options.paths);
   calibrate_verb->add_option("--out", calibrate_options.out,
-                             "Write the keys to this file instead, to be included");
+                             "Write the keys to this file, which a scenario can include");
   calibrate_verb->add_option(
       "--pictures", calibrate_options.pictures,
-      "Folder that gets the first twelve pictures: frames about what was found, crosses where things are");
-  calibrate_verb->add_flag("--json", calibrate_options.json, "Print as JSON");
+      "Folder for the first twelve pictures: frames around detections, crosses at the true positions");
+  add_json(*calibrate_verb, calibrate_options.json);
   calibrate_verb->footer(
       "Exit code 0: measured, 1: there was nothing to be seen, 2: the input is wrong.\n"
       "Example: sandlot calibrate scenarios/ball.yaml --camera seeker/eye --samples 500 --out eye.yaml");
@@ -420,8 +507,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   list_verb->add_option(
       "what", list_options.what,
       "devices, controllers, engines, noise (these four when left out), levels, messages or plugins");
-  list_verb->add_flag("--verbose", list_options.verbose, "With every field: unit, range, default, meaning");
-  list_verb->add_flag("--json", list_options.json, "Print as JSON");
+  list_verb->add_flag("--verbose", list_options.verbose,
+                      "Print every field with unit, range, default and meaning");
+  add_json(*list_verb, list_options.json);
   list_verb->add_flag("--markdown", list_options.markdown, "Print as the reference page of the docs");
   list_verb->add_flag("--schema", list_options.schema, "Print the JSON schema of scenario files");
   list_verb
@@ -435,17 +523,17 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   CLI::App* const bench_verb = app.add_subcommand("bench",
                                                   "Measure Sandlot against references in the same run");
   bench_verb->add_option("name", bench_options.name, "Rows whose name contains this; all when left out");
-  bench_verb->add_flag("--json", bench_options.json, "Print as JSON");
+  add_json(*bench_verb, bench_options.json);
   bench_verb->footer("Example: sandlot bench ranges --json");
   bench_verb->callback([&] { result = bench(bench_options); });
 
   ValidateOptions validate_options;
   CLI::App* const validate_verb = app.add_subcommand("validate",
-                                                     "Run experiments of which theory knows the result");
+                                                     "Run experiments whose results theory predicts");
   validate_verb->add_option("name", validate_options.name, "One experiment; all when left out");
   validate_verb->add_option("--out", validate_options.out,
                             "Folder to write validation.md and its figures into");
-  validate_verb->add_flag("--json", validate_options.json, "Print as JSON");
+  add_json(*validate_verb, validate_options.json);
   validate_verb->footer("Example: sandlot validate friction");
   validate_verb->callback([&] { result = validate(validate_options); });
 
@@ -464,8 +552,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       verb->add_option("--from", from.text, "Begin at this time of the recording");
       verb->add_option("--to", to.text, "End after this time");
     }
-    if (act == topic_echo) verb->add_option("--count", recording_options.count, "End after so many messages");
-    verb->add_flag("--json", recording_options.json, "Print as JSON");
+    if (act == topic_echo)
+      verb->add_option("--count", recording_options.count, "Number of messages after which to end");
+    add_json(*verb, recording_options.json);
     verb->footer(example);
     verb->callback([&, act] {
       Status status = from.read("--from", recording_options.from_s);
@@ -478,7 +567,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   add_topic_verb("echo", "Print the messages of a topic",
                  "Example: sandlot topic echo run.mcap /rover/laser/ranges --from 2s --count 1", true,
                  topic_echo);
-  add_topic_verb("hz", "How often messages came", "Example: sandlot topic hz run.mcap", false, topic_hz);
+  add_topic_verb("hz", "Rates of messages", "Example: sandlot topic hz run.mcap", false, topic_hz);
 
   ExportOptions export_options;
   std::string export_values;
@@ -486,7 +575,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   export_verb->add_option("file", export_options.recording, "The recording, an MCAP file")->required();
   export_verb
       ->add_option("--values", export_values,
-                   "Numbers, parted by commas: /topic.path, or a topic for all numbers in it")
+                   "Numbers, separated by commas: /topic.path, or a topic for all numbers in it")
       ->required();
   export_verb->add_option("--out", export_options.out, "The CSV file")->required();
   export_verb->add_option("--from", from.text, "Begin at this time of the recording");
@@ -506,8 +595,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   doctor_verb->add_option("file", recording_options.file,
                           "A recording (MCAP) or a snapshot; this build and machine if left out");
   doctor_verb->add_flag("--dry-run", recording_options.dry_run,
-                        "Only say what would be done to the recording");
-  doctor_verb->add_flag("--json", doctor_json, "Print as JSON");
+                        "Print what would be done to the recording, without doing it");
+  add_json(*doctor_verb, doctor_json);
   doctor_verb->footer(
       "Exit code 0: whole, or repaired; 1: not whole (--dry-run); 2: no recording.\n"
       "Example: sandlot doctor run.mcap");

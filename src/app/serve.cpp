@@ -9,7 +9,9 @@
 #include <span>
 
 #include "app/remote_console.h"
+#include "run/outputs.h"
 #include "server/http/http.h"
+#include "server/server.h"
 
 namespace sandlot::app {
 namespace {
@@ -26,8 +28,13 @@ Result<std::string> make_token() {
 
 }  // namespace
 
+Served::Served(std::unique_ptr<server::Server> server) : server_(std::move(server)) {}
+Served::Served(Served&&) noexcept = default;
+Served& Served::operator=(Served&&) noexcept = default;
+Served::~Served() = default;
+
 Result<Served> Served::start(const ServeOptions& options, Session& session, Console& console,
-                             std::function<std::optional<server::ServerOptions::Recording>()> recording) {
+                             RunOutputs* outputs) {
   server::ServerOptions server_options;
   server::TransportOptions& transport = server_options.transport;
   transport.address = options.address;
@@ -40,24 +47,28 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   }
   for (const std::string& origin : options.origins)
     if (server::judge_origin(origin, "", std::span(&origin, 1)) == server::Origin::foreign)
-      return Error{"--allow-origin: '" + origin + "' is no origin", "write https://app.example.org"};
+      return Error{"--allow-origin: '" + origin + "' is not an origin", "write https://app.example.org"};
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
-  server_options.recording = std::move(recording);
-  Served out;
-  SL_ASSIGN(out.server_, server::Server::start(server_options, session, console));
-  std::fprintf(stderr, "page: %s%s\n", out.server_->url().c_str(),
+  if (outputs)
+    server_options.recording = [outputs]() -> std::optional<server::ServerOptions::Recording> {
+      auto progress = outputs->recording();
+      if (!progress) return std::nullopt;
+      return server::ServerOptions::Recording{std::move(progress->file), progress->messages, progress->bytes};
+    };
+  SL_ASSIGN(auto server, server::Server::start(server_options, session, console));
+  std::fprintf(stderr, "page: %s%s\n", server->url().c_str(),
                transport.token.empty() ? "" : ("?token=" + url_encoded(transport.token)).c_str());
-  return out;
+  return Served(std::move(server));
 }
 
-void Served::look() { most_ = std::max(most_, server_->counters().clients); }
+void Served::count_viewers() { most_ = std::max(most_, server_->counters().clients); }
 
-nlohmann::ordered_json Served::stop() {
-  look();
+ServerSummary Served::stop() {
+  count_viewers();
   server_->stop();
   const server::Counters counters = server_->counters();
-  return {{"viewers_most", most_}, {"refused", counters.refused}, {"dropped", counters.dropped}};
+  return {.viewers_most = most_, .refused = counters.refused, .dropped = counters.dropped};
 }
 
 }  // namespace sandlot::app

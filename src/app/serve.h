@@ -1,28 +1,40 @@
 #pragma once
-/// A run's page, from the command line's point of view: where it is, and who was there.
+/// Page of a run for the command line: prints its address and counts viewers.
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "server/server.h"
+#include "run/summary.h"
+
+namespace sandlot {
+class Console;
+class RunOutputs;
+class Session;
+namespace server {
+class Server;
+}
+}  // namespace sandlot
 
 namespace sandlot::app {
 
 class Served {
  public:
-  /// Starts the server and prints where the page is, one line on standard error.
-  /// Errors   the address cannot be bound; an origin that is none.
-  /// @param recording  see ServerOptions; unset: nothing is recorded
-  static Result<Served> start(
-      const ServeOptions& options, Session& session, Console& console,
-      std::function<std::optional<server::ServerOptions::Recording>()> recording = {});
-  /// Now and then, so that it knows how many there are.
-  void look();
-  /// Says good-bye to all viewers. @return what the summary tells of them
-  nlohmann::ordered_json stop();
+  /// Starts the server and prints the address of the page, one line on standard error.
+  /// @param outputs  of the run, for what the page shows about its recording; null: nothing is recorded
+  /// Errors   the address cannot be bound; an origin that is not one.
+  static Result<Served> start(const ServeOptions& options, Session& session, Console& console,
+                              RunOutputs* outputs = nullptr);
+  Served(Served&&) noexcept;
+  Served& operator=(Served&&) noexcept;
+  ~Served();
+
+  /// Call now and then, for the largest number of viewers at one time.
+  void count_viewers();
+  /// Closes all connections.
+  ServerSummary stop();
 
  private:
+  explicit Served(std::unique_ptr<server::Server> server);
   std::unique_ptr<server::Server> server_;
   std::uint64_t most_ = 0;
 };

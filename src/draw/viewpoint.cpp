@@ -5,10 +5,13 @@
 #include <cmath>
 #include <set>
 
+#include "assets/image/visible.h"
 #include "base/hash.h"
 #include "base/math.h"
 #include "base/text.h"
+#include "optics/picture.h"
 #include "sim/visuals/render_scene.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::draw {
 namespace {

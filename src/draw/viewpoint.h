@@ -7,10 +7,19 @@
 #include <optional>
 #include <string>
 
-#include "assets/image/visible.h"
-#include "geometry/vec3.h"
-#include "optics/picture.h"
-#include "sim/world/simulation.h"
+#include "base/result.h"
+#include "base/time.h"
+#include "geometry/pose.h"
+
+namespace sandlot {
+class Simulation;
+namespace assets {
+struct Picture;
+}
+namespace optics {
+class LensTable;
+}
+}  // namespace sandlot
 
 namespace sandlot::draw {
 

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "assets/image/visible.h"
 #include "base/math.h"
 #include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::draw {
 namespace {

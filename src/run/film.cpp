@@ -4,6 +4,9 @@
 #include <cstring>
 #include <fstream>
 
+#include "assets/image/visible.h"
+#include "sim/world/simulation.h"
+
 namespace sandlot {
 
 Result<Film> Film::begin(const FilmOptions& options, Simulation& simulation) {
@@ -14,11 +17,11 @@ Result<Film> Film::begin(const FilmOptions& options, Simulation& simulation) {
   if (std::ofstream out(options.file, std::ios::binary | std::ios::app); !out)
     return Error{"cannot write '" + options.file + "': " + std::strerror(errno)};
   Film film(options, std::move(view), simulation.now());
-  SL_TRY(film.look(simulation));
+  SL_TRY(film.take_due_pictures(simulation));
   return film;
 }
 
-Status Film::look(Simulation& simulation) {
+Status Film::take_due_pictures(Simulation& simulation) {
   const auto time_of = [&](std::uint64_t number) {
     return begin_ + Time::from_ns(static_cast<std::int64_t>(number * 1'000'000'000u /
                                                             static_cast<unsigned>(options_.rate_hz)));

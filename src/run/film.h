@@ -1,29 +1,23 @@
 #pragma once
-/// A film of a run, taken while it goes on: one picture every 1 / rate of simulated time, from a draw::Viewpoint.
+/// Film of a run, taken while it runs: one picture every 1 / rate of simulated time, from a viewpoint.
 ///
 /// The run waits for each picture and is not changed by it. A robot's camera that has not sent a picture yet delays the
 /// beginning of the film.
 #include <optional>
 #include <string>
 
-#include "draw/viewpoint.h"
 #include "record/video/video.h"
+#include "run/spec.h"
 
 namespace sandlot {
-
-struct FilmOptions {
-  std::string file;  ///< "": none
-  draw::ViewpointOptions view;
-  int rate_hz = 25;
-};
 
 class Film {
  public:
   /// Takes the first picture. Errors   in the options; a file that cannot be written.
   static Result<Film> begin(const FilmOptions& options, Simulation& simulation);
 
-  /// After each tick: the pictures that are due.
-  Status look(Simulation& simulation);
+  /// Call after each tick.
+  Status take_due_pictures(Simulation& simulation);
   Status finish();
 
   const std::string& file() const { return options_.file; }

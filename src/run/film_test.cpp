@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot {
 namespace {
@@ -42,7 +43,7 @@ TEST(Film, HasAPictureForEachTimeAndChangesNothing) {
     }
     for (int i = 0; i < 50; ++i) {
       EXPECT_TRUE((*again)->tick());
-      if (film) { EXPECT_TRUE(film->look(**again)); }
+      if (film) { EXPECT_TRUE(film->take_due_pictures(**again)); }
     }
     if (film) {
       EXPECT_EQ(film->pictures(), 26u) << "at the start, and every 0.04 s of the second that follows";

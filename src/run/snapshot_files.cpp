@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "base/text.h"
+#include "sim/world/snapshot.h"
 
 namespace sandlot {
 namespace {
@@ -21,7 +21,7 @@ Error about(Error error, const std::string& path) {
 
 }  // namespace
 
-Status check(const SnapshotOptions& options) {
+Status check_snapshot_options(const SnapshotOptions& options) {
   if (options.file.empty() && options.at_s)
     return Error{"--snapshot-at says when, but not where to", "add --snapshot FILE"};
   if (options.file.empty() && options.every_s)
@@ -54,7 +54,7 @@ Status SnapshotFiles::write(const Simulation& simulation, const std::string& fil
   return write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-Status SnapshotFiles::after(const Simulation& simulation) {
+Status SnapshotFiles::after_tick(const Simulation& simulation) {
   Status status;
   if (next_ && simulation.now() >= *next_) {
     const Time every = Time::from_s(*options_.every_s);
@@ -75,20 +75,22 @@ Status SnapshotFiles::after(const Simulation& simulation) {
     taken_ = true;
     if (Status at = write(simulation, options_.file); status) status = std::move(at);
   }
-  if (status || std::exchange(told_, true)) return {};
+  if (status || std::exchange(failed_, true)) return {};
   return status;
 }
 
-Status SnapshotFiles::finish(const Simulation& simulation) {
+Status SnapshotFiles::finish(const Simulation& simulation, Diagnostics& diagnostics) {
   if (taken_) return {};
   taken_ = true;
   if (options_.at_s)
-    log::warning(fmt::format("the run ended before {} s: '{}' is its state at the end, {} s",
-                             number_text(*options_.at_s), options_.file, number_text(simulation.now().s())));
+    diagnostics.warn(
+        {fmt::format("the run ended before {} s: '{}' is its state at the end, {} s",
+                     number_text(*options_.at_s), options_.file, number_text(simulation.now().s()))});
   return write(simulation, options_.file);
 }
 
-Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t most_bytes) {
+Result<std::vector<std::byte>> read_snapshot_file(const std::string& path) {
+  constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) return Error{"cannot read '" + path + "': it is a folder"};
   std::ifstream in(path, std::ios::binary);
@@ -114,8 +116,8 @@ bool is_snapshot_file(const std::string& path) {
   return in && head == snapshot_magic;
 }
 
-Result<std::vector<std::pair<std::string, std::string>>> examine_file(const std::string& path) {
-  SL_ASSIGN(const std::vector<std::byte> bytes, read_file(path, most_snapshot_bytes));
+Result<std::vector<std::pair<std::string, std::string>>> snapshot_facts(const std::string& path) {
+  SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot_file(path));
   auto examined = examine_snapshot(bytes);
   if (!examined) return about(std::move(examined.error()), path);
   const SnapshotInfo& info = *examined;
@@ -133,9 +135,10 @@ Result<std::vector<std::pair<std::string, std::string>>> examine_file(const std:
                             info.setup.instances.size())}};
 }
 
-Result<std::unique_ptr<Simulation>> restore_file(const std::string& path, const SimulationOptions& options,
-                                                 Diagnostics& diagnostics) {
-  SL_ASSIGN(const std::vector<std::byte> bytes, read_file(path, most_snapshot_bytes));
+Result<std::unique_ptr<Simulation>> restore_snapshot_file(const std::string& path,
+                                                          const SimulationOptions& options,
+                                                          Diagnostics& diagnostics) {
+  SL_ASSIGN(const std::vector<std::byte> bytes, read_snapshot_file(path));
   auto simulation = Simulation::restore(bytes, options, diagnostics);
   if (!simulation) return about(std::move(simulation.error()), path);
   return simulation;

@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/json_text.h"
 #include "assets/image/write.h"
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/math.h"
 #include "base/text.h"
 #include "perception/finder.h"

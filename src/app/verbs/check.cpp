@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
+#include "base/json_text.h"
 #include "sim/lint/lint.h"
 
 namespace sandlot::app {

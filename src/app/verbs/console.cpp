@@ -1,6 +1,4 @@
 /// `sandlot console`: talks to a run in another program, by hand or from a script.
-#include "app/verbs/console.h"
-
 #include <editline/readline.h>
 #include <unistd.h>
 
@@ -14,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
 #include "app/remote_console.h"
+#include "base/json_text.h"
 #include "base/text.h"
 
 namespace sandlot::app {
@@ -222,25 +220,6 @@ int console(const ConsoleOptions& options) {
   if (!options.lines.empty()) return exit_ok;
   if (isatty(STDIN_FILENO) && !options.json) return by_hand(remote, *url);
   return from_stream(remote, std::cin, "", options.json);
-}
-
-void add_console_verb(CLI::App& app, int& result) {
-  static ConsoleOptions options;
-  CLI::App* const verb = app.add_subcommand("console", "Talk to a run that was started with --port");
-  verb->add_option("address", options.url,
-                   "Port, HOST:PORT, or the address that the run printed; 8765 on this machine");
-  verb->add_option("--command", options.lines,
-                   "Say this line instead of reading them; may be given several times")
-      ->allow_extra_args(false);
-  verb->add_option("--script", options.script_file, "Say the lines of a file; ends at the first that fails");
-  verb->add_option("--token", options.token,
-                   "To be let in where the run asks for it; or SANDLOT_TOKEN in the environment");
-  verb->add_flag("--json", options.json, "Answers as JSON, one object per line");
-  verb->footer(
-      "Exit code 0, 1 when a line failed, 2 when there is no run to talk to. docs/console.md has the "
-      "commands.\n"
-      "Example: sandlot console --command 'set */laser.noise.white 2 cm' --command 'show rover.pose.x'");
-  verb->callback([&result] { result = console(options); });
 }
 
 }  // namespace sandlot::app

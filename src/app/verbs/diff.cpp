@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
-#include "app/report.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "record/recording.h"
 #include "record/values_diff.h"
+#include "run/snapshot_files.h"
+#include "run/summary.h"
+#include "sim/world/snapshot.h"
 
 namespace sandlot::app {
 namespace {
@@ -44,7 +46,7 @@ Result<Side> open(const std::string& file) {
   Side side;
   side.file = file;
   if (is_snapshot_file(file)) {
-    SL_ASSIGN(side.snapshot, read_file(file, most_snapshot_bytes));
+    SL_ASSIGN(side.snapshot, read_snapshot_file(file));
     auto info = examine_snapshot(side.snapshot);
     if (!info) return about(std::move(info.error()), file);
     side.begin = std::move(*info);

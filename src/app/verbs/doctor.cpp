@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "app/commands.h"
-#include "app/json_text.h"
-#include "app/report.h"
+#include "base/json_text.h"
 #include "base/math.h"
 #include "base/random.h"
+#include "run/summary.h"
 #include "server/server.h"
 #include "sim/load/load.h"
 
@@ -61,8 +61,9 @@ Finding repeatable(const EngineKind& engine) {
   }
   const bool same = hashes[0] == hashes[1] && hashes[0] == hashes[2];
   return {std::string("repeatable, ") + engine.name, same,
-          same ? "one hash for 1 and 2 threads and over a snapshot: " + hex(hashes[0])
-               : "hashes differ: " + hex(hashes[0]) + " " + hex(hashes[1]) + " " + hex(hashes[2])};
+          same ? "one hash for 1 and 2 threads and over a snapshot: " + hash_text(hashes[0])
+               : "hashes differ: " + hash_text(hashes[0]) + " " + hash_text(hashes[1]) + " " +
+                     hash_text(hashes[2])};
 }
 
 /// Known bits of the functions all results rest on; measured where the project's golden hashes were made.
@@ -79,7 +80,7 @@ Finding known_bits() {
   }
   constexpr std::uint64_t expected = 0x037a49614dbce6ac;
   return {"known bits", h == expected,
-          "mathematics and random numbers give " + hex(h) + ", expected " + hex(expected)};
+          "mathematics and random numbers give " + hash_text(h) + ", expected " + hash_text(expected)};
 }
 
 }  // namespace

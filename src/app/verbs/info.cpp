@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
+#include "base/json_text.h"
+#include "run/snapshot_files.h"
 #include "sim/watch/values.h"
 
 namespace sandlot::app {
@@ -80,11 +81,11 @@ int info(const FileOptions& options) {
     const bool is_snapshot = is_snapshot_file(file);
     std::vector<std::pair<std::string, std::string>> facts;
     if (is_snapshot) {
-      auto examined = examine_file(file);
+      auto examined = snapshot_facts(file);
       if (!examined) return complain(examined.error());
       facts = std::move(*examined);
     }
-    const auto built = is_snapshot ? restore_file(file, {.paths = options.paths}, diagnostics)
+    const auto built = is_snapshot ? restore_snapshot_file(file, {.paths = options.paths}, diagnostics)
                                    : build(file, options, diagnostics);
     if (!built) {
       print_warnings(diagnostics);

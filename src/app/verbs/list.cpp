@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "app/commands.h"
-#include "app/json_text.h"
 #include "base/field_json.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "builders/builder.h"
 #include "controllers/controllers.h"

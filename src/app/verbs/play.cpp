@@ -2,18 +2,20 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/json_text.h"
-#include "app/report.h"
 #include "app/serve.h"
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "console/console.h"
 #include "record/tape.h"
+#include "run/summary.h"
+#include "sim/session/session.h"
 
 namespace sandlot::app {
 namespace {
 
-/// What does not fit together with showing a recording.
+/// Options that do not go together with showing a recording.
 Status check_player(const ReplayOptions& options) {
   const auto refuse = [](const char* flag) {
     return Error{std::string(flag) + " does not go with --port, which shows the recording to viewers",
@@ -64,17 +66,20 @@ int play(const ReplayOptions& options) {
   catch_interrupts();
   RunReport report;
   const Status status = session.run(report, [&](const Simulation&) {
-    served->look();
+    served->count_viewers();
     return !interrupted();
   });
-  nlohmann::ordered_json json{{"file", options.file},
-                              {"ticks", report.ticks},
-                              {"compared_ticks", check.compared()},
-                              {"different_ticks", check.different()},
-                              {"state_hash", hex(session.simulation().state_hash())},
-                              {"profile", Simulation::profile()},
-                              {"recorded_profile", profile},
-                              {"server", served->stop()}};
+  const ServerSummary viewers = served->stop();
+  nlohmann::ordered_json json{
+      {"file", options.file},
+      {"ticks", report.ticks},
+      {"compared_ticks", check.compared()},
+      {"different_ticks", check.different()},
+      {"state_hash", hash_text(session.simulation().state_hash())},
+      {"profile", Simulation::profile()},
+      {"recorded_profile", profile},
+      {"server",
+       {{"viewers_most", viewers.viewers_most}, {"refused", viewers.refused}, {"dropped", viewers.dropped}}}};
   if (options.json) fmt::print("{}\n", json_text(json));
   else
     fmt::print("played     {} ticks, {}\n", report.ticks,

@@ -6,12 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "base/time.h"
 #include "messages/dynamic.h"
 #include "messages/json.h"
 #include "record/mcap/repair.h"
+#include "run/snapshot_files.h"
 
 namespace sandlot::app {
 namespace {
@@ -61,7 +62,7 @@ Json contents(const mcap::Summary& summary, const mcap::Header& header) {
 
 int doctor_file(const RecordingOptions& options) {
   if (is_snapshot_file(options.file)) {
-    const auto facts = examine_file(options.file);
+    const auto facts = snapshot_facts(options.file);
     if (!facts) return complain(facts.error());
     Json json;
     for (const auto& [name, value] : *facts) {

@@ -3,11 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
-#include "app/report.h"
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "record/recording.h"
+#include "run/snapshot_files.h"
+#include "run/summary.h"
 
 namespace sandlot::app {
 namespace {
@@ -25,7 +26,7 @@ struct Outcome {
 Outcome go_through(record::Recording& recording, record::Replay& replay, const ReplayOptions& options) {
   Outcome out;
   SnapshotFiles snapshots(options.snapshots, replay.simulation());
-  const auto note = [&](Status status) {
+  const auto record_error = [&](Status status) {
     if (!status) out.other_errors.push_back(std::move(status.error()));
   };
   const Time until = options.until_s ? Time::from_s(*options.until_s) : Time{INT64_MAX};
@@ -52,13 +53,15 @@ Outcome go_through(record::Recording& recording, record::Replay& replay, const R
     if (replay.simulation().tick_index() == before) continue;
     ++out.ticks;
     out.compared = out.compared || !(*tick)->parts.empty();
-    note(snapshots.after(replay.simulation()));
+    record_error(snapshots.after_tick(replay.simulation()));
     if (*difference) {
       out.difference = std::move(**difference);
       break;
     }
   }
-  note(snapshots.finish(replay.simulation()));
+  Diagnostics diagnostics;
+  record_error(snapshots.finish(replay.simulation(), diagnostics));
+  print_warnings(diagnostics);
   return out;
 }
 
@@ -69,7 +72,7 @@ nlohmann::ordered_json as_json(const Outcome& out, const record::Recording& reco
             {"ticks", out.ticks},
             {"end_tick", simulation.tick_index()},
             {"end_time", simulation.now().s()},
-            {"state_hash", hex(simulation.state_hash())},
+            {"state_hash", hash_text(simulation.state_hash())},
             {"profile", Simulation::profile()},
             {"recorded_profile", recording.begin().profile},
             {"verified", options.verify && out.compared && !out.difference && !out.error && !out.interrupted},
@@ -123,7 +126,7 @@ int replay(const ReplayOptions& options) {
                  options.logged
                      ? "every tick, but for the programs' own state: it was logged orders that drove"
                      : "every tick has the recorded hash");
-    fmt::print("state      {} ({})\n", hex(simulation.state_hash()), Simulation::profile());
+    fmt::print("state      {} ({})\n", hash_text(simulation.state_hash()), Simulation::profile());
   }
   bool failed = out.difference || out.error || !out.other_errors.empty();
   const auto tell = [](const std::string& text) { fmt::print(stderr, "error: {}\n", text); };

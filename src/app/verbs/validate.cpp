@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_text.h"
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "base/text.h"
 #include "draw/plot.h"
 #include "validation/validation.h"

@@ -1,4 +1,4 @@
-#include "app/report.h"
+#include "run/travel.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,13 @@
 #include <set>
 
 #include "sim/load/load.h"
+#include "sim/world/simulation.h"
 
-namespace sandlot::app {
+namespace sandlot {
 namespace {
 
 /// Robots that come and go keep their own distances: told apart by name, whatever their place in the list.
-TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
+TEST(TravelMeter, FollowsEachRobotWhenOneLeaves) {
   Diagnostics diagnostics;
   const std::vector<formats::Override> overrides{{"robots.count", "4"}};
   LoadOptions options;
@@ -23,10 +24,10 @@ TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
   ASSERT_TRUE(made) << made.error().text();
   Simulation& simulation = **made;
 
-  TravelRecorder travel;
-  travel.begin_at(simulation.tick_index());
-  travel.look(simulation);
-  EXPECT_TRUE(travel.robots().empty()) << "what stands at the beginning is no news";
+  TravelMeter travel;
+  travel.restart(simulation.tick_index());
+  travel.update(simulation);
+  EXPECT_TRUE(travel.robots().empty()) << "the state at the beginning is not a step";
 
   std::map<std::string, double> driven_m;
   std::map<std::string, Vec3> last;
@@ -34,8 +35,8 @@ TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
   for (int tick = 0; tick < 60; ++tick) {
     if (tick == 30) simulation.submit(DeleteRequest{"scout2"});
     ASSERT_TRUE(simulation.tick());
-    travel.look(simulation);
-    travel.look(simulation);  // twice in one tick is once
+    travel.update(simulation);
+    travel.update(simulation);  // twice in one tick is once
     for (const auto& entity : simulation.entities()) {
       if (!entity->instance.is_robot) continue;
       const std::string& name = entity->instance.name;
@@ -48,7 +49,7 @@ TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
     }
   }
   ASSERT_EQ(travel.robots().size(), 4u);
-  for (const TravelRecorder::Travel& robot : travel.robots()) {
+  for (const TravelMeter::Travel& robot : travel.robots()) {
     EXPECT_NEAR(robot.distance_m, driven_m[robot.name], 1e-12) << robot.name;
     EXPECT_EQ(robot.cells.size(), cells[robot.name].size()) << robot.name;
     EXPECT_EQ(robot.last, last[robot.name]) << robot.name;
@@ -57,4 +58,4 @@ TEST(TravelRecorder, FollowsEachRobotWhenOneLeaves) {
 }
 
 }  // namespace
-}  // namespace sandlot::app
+}  // namespace sandlot

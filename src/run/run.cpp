@@ -1,0 +1,151 @@
+#include "run/run.h"
+
+#include <optional>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/text.h"
+#include "console/console.h"
+#include "run/outputs.h"
+#include "sim/session/session.h"
+
+namespace sandlot {
+namespace {
+
+/// The parts of a run and how they are connected. Session calls back into the others, but only within execute().
+class Run {
+ public:
+  Run(const RunSpec& spec, const RunCallbacks& callbacks, PreparedRun prepared, Diagnostics diagnostics)
+      : spec_(spec),
+        callbacks_(callbacks),
+        prepared_(std::move(prepared)),
+        warnings_(std::move(diagnostics.warnings)),
+        begin_(prepared_.simulation->now()),
+        experiment_(callbacks.hooks ? std::make_optional<Experiment>(*prepared_.simulation, *callbacks.hooks)
+                                    : std::nullopt),
+        session_(std::move(prepared_.simulation), session_options()),
+        outputs_(spec, session_, [this](Error warning) { warn(std::move(warning)); }),
+        console_(session_, {.paths = spec.paths,
+                            .experiment = experiment_ ? &*experiment_ : nullptr,
+                            .record = [this](const std::string& file) { return outputs_.record(file); }}) {}
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  /// All that can refuse the run, in the order that replaces files last.
+  Status start();
+  /// From the first tick to the last.
+  void execute();
+  /// Ends what is being written and writes the files of the end.
+  Summary finish();
+
+ private:
+  Session::Options session_options();
+  Status tick(Simulation& simulation, std::optional<Time> measured);
+  bool keep_going(const Simulation& simulation);
+  void warn(Error warning);
+
+  const RunSpec& spec_;
+  const RunCallbacks& callbacks_;
+  PreparedRun prepared_;
+  std::vector<Error> warnings_;
+  Time begin_;
+  std::optional<Experiment> experiment_;
+  Session session_;
+  RunOutputs outputs_;
+  Console console_;
+  RunReport report_;
+  std::optional<std::uint64_t> seen_tick_;  ///< by keep_going()
+};
+
+Session::Options Run::session_options() {
+  return {
+      .pace = {spec_.rate},
+      .paused = spec_.paused,
+      .history_mb = spec_.steered ? Session::Options().history_mb : 0,
+      .simulation = prepared_.options,
+      .may_not_rewind = experiment_ ? "its experiment in C++ keeps a state of its own" : "",
+      .on_world = [this](Simulation& next, const std::string& why) { outputs_.on_world_replaced(next, why); },
+      .tick = [this](Simulation& simulation,
+                     std::optional<Time> measured) { return tick(simulation, measured); }};
+}
+
+Status Run::tick(Simulation& simulation, std::optional<Time> measured) {
+  // A tick that runs again after a rewind has all its input already.
+  if (!session_.rerunning()) SL_TRY(console_.before_tick());
+  return experiment_ ? experiment_->tick(measured) : simulation.tick(measured);
+}
+
+void Run::warn(Error warning) {
+  if (callbacks_.on_warning) callbacks_.on_warning(warning);
+  warnings_.push_back(std::move(warning));
+}
+
+Status Run::start() {
+  SL_TRY(outputs_.open_log(prepared_));
+  for (const std::string& line : spec_.commands) SL_TRY(console_.schedule(line));
+  if (!spec_.script_file.empty()) SL_TRY(console_.schedule_script(spec_.script_file));
+  if (callbacks_.on_ready) SL_TRY(callbacks_.on_ready({session_, console_, outputs_}));
+  return outputs_.start(prepared_);
+}
+
+bool Run::keep_going(const Simulation& simulation) {
+  const bool same_tick = std::exchange(seen_tick_, simulation.tick_index()) == simulation.tick_index();
+  for (const std::string& answer : console_.take_answers())
+    if (callbacks_.on_answer) callbacks_.on_answer(answer);
+  if (!spec_.steered && same_tick && session_.report().state == Session::State::paused) {
+    outputs_.record_error(Error{
+        "the run was paused at " + number_text(simulation.now().s()) + " s, and nobody can let it go on",
+        "add --port 8765, or leave what pauses it out of the script"});
+    return false;
+  }
+  return outputs_.after_tick() && (!callbacks_.keep_going || callbacks_.keep_going(simulation));
+}
+
+void Run::execute() {
+  Status status = experiment_ ? experiment_->start() : Status();
+  if (status)
+    status = session_.run(report_, [this](const Simulation& simulation) { return keep_going(simulation); });
+  if (status) status = console_.finish();
+  if (!status) {
+    outputs_.rescue(status.error());
+    outputs_.record_error(std::move(status));
+  }
+  if (experiment_) outputs_.record_error(experiment_->finish());
+  // A difference, where the sum over the ticks would carry their rounding.
+  if (session_.epoch() == 1) report_.sim_s = (session_.simulation().now() - begin_).s();
+}
+
+Summary Run::finish() {
+  outputs_.finish();
+  Summary summary = summarise(session_.simulation(), report_, outputs_.travel());
+  outputs_.add_to(summary);
+  for (const Error& warning : warnings_) summary.warnings.push_back(warning.text());
+  for (const Error& error : outputs_.errors()) summary.errors.push_back(error.text());
+  if (callbacks_.on_end) callbacks_.on_end(summary);
+  const std::string text = as_json_text(summary);
+  const auto write = [&](const std::string& file, const std::string& content) {
+    if (const Status written = write_file(file, content); !written)
+      summary.errors.push_back(written.error().text());
+  };
+  if (!spec_.summary_file.empty()) write(spec_.summary_file, text);
+  if (const auto drawing = outputs_.drawing()) write(spec_.drawing_file, *drawing);
+  return summary;
+}
+
+}  // namespace
+
+Result<Summary> run(const RunSpec& spec, const RunCallbacks& callbacks) {
+  Diagnostics diagnostics;
+  std::span<const ControllerKind* const> controllers;
+  if (callbacks.hooks) controllers = callbacks.hooks->controllers;
+  auto prepared = prepare(spec, controllers, diagnostics);
+  if (callbacks.on_warning)
+    for (const Error& warning : diagnostics.warnings) callbacks.on_warning(warning);
+  if (!prepared) return prepared.error();
+  Run one(spec, callbacks, std::move(*prepared), std::move(diagnostics));
+  SL_TRY(one.start());
+  one.execute();
+  return one.finish();
+}
+
+}  // namespace sandlot

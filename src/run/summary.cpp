@@ -1,0 +1,169 @@
+#include "run/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/json_text.h"
+#include "run/travel.h"
+#include "sim/session/runner.h"
+#include "sim/watch/monitor.h"
+
+namespace sandlot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json value_json(const T& value);
+
+template <class T>
+Json list_json(const std::vector<T>& list) {
+  Json out = Json::array();
+  for (const T& each : list) out.push_back(value_json(each));
+  return out;
+}
+
+template <class T>
+Json list_json(const std::vector<Named<T>>& list) {
+  Json out = Json::object();
+  for (const Named<T>& each : list) out[each.name] = value_json(each.value);
+  return out;
+}
+
+template <class T>
+Json fields_json(const T& fielded) {
+  Json out;
+  T::fields(fielded, [&](const Field& field, const auto& member) {
+    using Member = std::remove_cvref_t<decltype(member)>;
+    if constexpr (is_optional<Member>::value) {
+      if constexpr (Fielded<typename Member::value_type>)
+        if (!member) return;
+    }
+    out[field.key] = value_json(member);
+  });
+  return out;
+}
+
+template <class T>
+Json value_json(const T& value) {
+  if constexpr (std::is_same_v<T, StateHash>) return hash_text(value.value);
+  else if constexpr (is_optional<T>::value) return value ? value_json(*value) : Json(nullptr);
+  else if constexpr (is_vector<T>::value) return list_json(value);
+  else if constexpr (Fielded<T>) return fields_json(value);
+  else return value;
+}
+
+double rounded(double x, double unit) { return std::round(x / unit) * unit; }
+
+std::optional<std::array<double, 6>> pose_of(const Simulation& simulation, const std::string& robot) {
+  const auto id = simulation.find_instance(robot);
+  if (!id) return std::nullopt;
+  const Pose X_WM = simulation.engine().pose(*id);
+  const Vec3 rpy = rpy_from_quat(X_WM.q);
+  return std::array{X_WM.p.x, X_WM.p.y, X_WM.p.z, rpy.x, rpy.y, rpy.z};
+}
+
+/// Positions of a robot's moving joints; nothing when it is gone.
+std::vector<Named<double>> joints_of(const Simulation& simulation, const std::string& robot) {
+  std::vector<Named<double>> out;
+  const auto id = simulation.find_instance(robot);
+  if (!id || !simulation.engine().capabilities().joints) return out;
+  const model::Model& model = *simulation.find_entity(robot)->instance.model;
+  const auto joints = simulation.engine().joints(*id);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (model.joints[i].type != model::JointType::fixed)
+      out.push_back({model.joints[i].name, simulation.engine().joint_states()[joints[i].index].position});
+  return out;
+}
+
+}  // namespace
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+Summary summarise(const Simulation& simulation, const RunReport& report, const TravelMeter& travel) {
+  const model::Setup& setup = simulation.setup();
+  const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
+  Summary out;
+  out.name = setup.name;
+  out.physics = setup.engine;
+  out.seed = setup.seed;
+  out.ticks = report.ticks;
+  out.sim_s = report.sim_s;
+  out.wall_s = report.wall_s;
+  out.real_time_factor = report.wall_s > 0 ? report.sim_s / report.wall_s : 0.0;
+  out.late_ticks = report.late_ticks;
+  if (setup.clock.mode == model::Clock::Mode::continuous)
+    out.step = {report.ticks ? report.sim_s / ticks : 0.0, report.shortest.s(), report.longest.s()};
+  for (std::size_t i = 0; i < phase_names.size(); ++i)
+    out.phase_us.push_back(
+        {phase_names[i], rounded(static_cast<double>(simulation.phase_times().ns[i]) * 1e-3 / ticks, 1e-3)});
+  out.end_tick = simulation.tick_index();
+  out.end_s = simulation.now().s();
+  out.stopped = simulation.stop_reason().value_or("");
+  out.state_hash = {simulation.state_hash()};
+  for (const SubHash& sub : simulation.sub_hashes()) out.sub_hashes.push_back({sub.path, {sub.hash}});
+  out.profile = Simulation::profile();
+  for (const TravelMeter::Travel& robot : travel.robots()) {
+    const Vec3 extent = robot.highest - robot.lowest;
+    out.robots.push_back({.name = robot.name,
+                          .distance_m = rounded(robot.distance_m, 1e-3),
+                          .extent_m = {rounded(extent.x, 1e-3), rounded(extent.y, 1e-3)},
+                          .covered_m2 = robot.covered_m2(),
+                          .pose = pose_of(simulation, robot.name),
+                          .joints = joints_of(simulation, robot.name)});
+  }
+  const EngineCounters counters = simulation.engine().counters();
+  out.engine = {counters.solver_messages, counters.contacts, counters.awake_bodies};
+  out.refused_commands = simulation.refused_commands();
+  for (const Monitor::Event& event : simulation.monitor().events()) {
+    EventSummary& added = out.events.emplace_back(EventSummary{event.decl.name, event.count, {}, {}});
+    if (event.count > 0) added.first_s = event.first.s(), added.last_s = event.last.s();
+  }
+  std::map<std::string, std::vector<std::string>> teams;
+  for (const model::Instance* instance : simulation.instances())
+    if (!instance->team.empty()) teams[instance->team].push_back(instance->name);
+  for (auto& [team, robots] : teams) out.teams.push_back({team, std::move(robots)});
+  return out;
+}
+
+nlohmann::ordered_json as_json(const Summary& summary) { return fields_json(summary); }
+
+std::string as_json_text(const Summary& summary) { return json_text(as_json(summary)) + "\n"; }
+
+std::string as_text(const Summary& s) {
+  std::string out;
+  out += fmt::format("scenario   {} ({}, seed {})\n", s.name, s.physics, s.seed);
+  out += fmt::format("simulated  {:.3f} s in {:.3f} s, {:.1f} x real time, {} ticks\n", s.sim_s, s.wall_s,
+                     s.real_time_factor, s.ticks);
+  if (s.step)
+    out += fmt::format("clock      continuous: steps of {:.3g} ms, from {:.3g} to {:.3g}; {} were cut\n",
+                       1e3 * s.step->mean_s, 1e3 * s.step->min_s, 1e3 * s.step->max_s, s.late_ticks);
+  out += "per tick  ";
+  for (const auto& [name, us] : s.phase_us) out += fmt::format(" {} {:.1f}", name, us);
+  out += " us\n";
+  constexpr std::size_t most_robots = 12;
+  for (std::size_t i = 0; i < std::min(most_robots, s.robots.size()); ++i)
+    out += fmt::format("robot      {}: drove {:.2f} m, covered {:.2f} m^2\n", s.robots[i].name,
+                       s.robots[i].distance_m, s.robots[i].covered_m2);
+  if (s.robots.size() > most_robots) out += fmt::format("           ... {} robots in all\n", s.robots.size());
+  for (const EventSummary& event : s.events) {
+    out += fmt::format("event      {}: ", event.name);
+    if (event.count == 0) out += "did not happen\n";
+    else if (event.count == 1) out += fmt::format("at {} s\n", *event.first_s);
+    else out += fmt::format("{} times, first at {} s\n", event.count, *event.first_s);
+  }
+  if (s.recording)
+    out += fmt::format("recording  {}: {} messages, {:.2f} MB\n", s.recording->file, s.recording->messages,
+                       1e-6 * static_cast<double>(s.recording->bytes));
+  const char* const from_outside = s.errors.empty() ? "by request" : "by an error";
+  out += fmt::format("stopped    {}\n", s.stopped.empty() ? from_outside : s.stopped);
+  out += fmt::format("state      {} ({})\n", hash_text(s.state_hash.value), s.profile);
+  for (const std::string& error : s.errors) out += fmt::format("error      {}\n", error);
+  return out;
+}
+
+}  // namespace sandlot

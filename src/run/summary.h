@@ -1,0 +1,198 @@
+#pragma once
+/// Summary of a run: figures of its world, clock and robots. As a struct for programs, as JSON for files, as text for people.
+///
+/// The field list gives the keys of the JSON and their order. Keys stay: people parse them.
+/// Optional numbers are null in JSON when unset; optional groups (step_s, video ...) are left out.
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/fields.h"
+
+namespace sandlot {
+
+class Simulation;
+class TravelMeter;
+struct RunReport;
+
+/// Entry of a list that is an object in JSON, with the names as its keys.
+template <class T>
+struct Named {
+  std::string name;
+  T value{};
+};
+
+/// Hash of state; 16 hexadecimal digits in JSON.
+struct StateHash {
+  std::uint64_t value = 0;
+  friend bool operator==(StateHash, StateHash) = default;
+};
+
+/// Tick lengths of a continuous clock.
+struct StepSummary {
+  double mean_s = 0, min_s = 0, max_s = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"mean", "s", "Mean length of a tick."}, s.mean_s);
+    visit(Field{"min", "s", "Shortest tick."}, s.min_s);
+    visit(Field{"max", "s", "Longest tick."}, s.max_s);
+  }
+};
+
+struct RobotSummary {
+  std::string name;
+  double distance_m = 0;
+  std::array<double, 2> extent_m{};
+  double covered_m2 = 0;
+  std::optional<std::array<double, 6>> pose;
+  std::vector<Named<double>> joints;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name."}, s.name);
+    visit(Field{"distance_m", "m", "Distance driven in the horizontal plane, to the millimetre."},
+          s.distance_m);
+    visit(Field{"extent_m", "m", "Size in x and y of the box around the path, to the millimetre."},
+          s.extent_m);
+    visit(Field{"covered_m2", "m^2", "Area of the cells of 0.5 m that the robot visited."}, s.covered_m2);
+    visit(
+        Field{"pose", "", "x y z [m], roll pitch yaw [rad] of the model frame; null when the robot is gone."},
+        s.pose);
+    visit(Field{"joints", "rad or m", "Positions of the moving joints."}, s.joints);
+  }
+};
+
+struct EngineSummary {
+  std::uint64_t solver_messages = 0, contacts = 0, awake_bodies = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"solver_messages", "1", "Messages of the solver about steps that it could not solve well."},
+          s.solver_messages);
+    visit(Field{"contacts", "1", "Contact points in the last sub-step."}, s.contacts);
+    visit(Field{"awake_bodies", "1", "Bodies that are not asleep."}, s.awake_bodies);
+  }
+};
+
+struct EventSummary {
+  std::string name;
+  std::uint64_t count = 0;
+  std::optional<double> first_s, last_s;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name."}, s.name);
+    visit(Field{"count", "1", "Times that the event happened."}, s.count);
+    visit(Field{"first", "s", "Simulated time of the first one; null for none."}, s.first_s);
+    visit(Field{"last", "s", "Simulated time of the last one; null for none."}, s.last_s);
+  }
+};
+
+struct VideoSummary {
+  std::string file;
+  std::uint64_t pictures = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"file", "", "Video file."}, s.file);
+    visit(Field{"pictures", "1", "Pictures in it."}, s.pictures);
+  }
+};
+
+struct RecordingSummary {
+  std::string file;
+  std::uint64_t messages = 0, bytes = 0, dropped_messages = 0, lost_ticks = 0;
+  bool complete = true;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"file", "", "MCAP file."}, s.file);
+    visit(Field{"messages", "1", "Messages in it."}, s.messages);
+    visit(Field{"bytes", "B", "Size of the file."}, s.bytes);
+    visit(Field{"dropped_messages", "1", "Messages that the disk was too slow for."}, s.dropped_messages);
+    visit(Field{"lost_ticks", "1", "Ticks without log and hash."}, s.lost_ticks);
+    visit(Field{"complete", "", "Whether it can be replayed."}, s.complete);
+  }
+};
+
+struct ServerSummary {
+  std::uint64_t viewers_most = 0, refused = 0, dropped = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"viewers_most", "1", "Most viewers at one time."}, s.viewers_most);
+    visit(Field{"refused", "1", "Connections refused."}, s.refused);
+    visit(Field{"dropped", "1", "Messages dropped for slow viewers."}, s.dropped);
+  }
+};
+
+struct Summary {
+  std::string name, physics;
+  std::uint64_t seed = 0;
+  std::uint64_t ticks = 0;
+  double sim_s = 0, wall_s = 0, real_time_factor = 0;
+  std::uint64_t late_ticks = 0;
+  std::optional<StepSummary> step;
+  std::vector<Named<double>> phase_us;
+  std::uint64_t end_tick = 0;
+  double end_s = 0;
+  std::string stopped;
+  StateHash state_hash;
+  std::vector<Named<StateHash>> sub_hashes;
+  std::string profile;
+  std::vector<RobotSummary> robots;
+  EngineSummary engine;
+  std::uint64_t refused_commands = 0;
+  std::vector<EventSummary> events;
+  std::optional<double> criterion;
+  std::vector<Named<std::vector<std::string>>> teams;
+  std::vector<std::string> warnings, errors;
+  std::optional<VideoSummary> video;
+  std::optional<RecordingSummary> recording;
+  std::optional<ServerSummary> server;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the scenario."}, s.name);
+    visit(Field{"physics", "", "Name of the engine."}, s.physics);
+    visit(Field{"seed", "", "Seed of the random streams."}, s.seed);
+    visit(Field{"ticks", "1", "Ticks that ran."}, s.ticks);
+    visit(Field{"sim_seconds", "s", "Simulated time that ran."}, s.sim_s);
+    visit(Field{"wall_seconds", "s", "Time that this took."}, s.wall_s);
+    visit(Field{"real_time_factor", "1", "Simulated time per wall time."}, s.real_time_factor);
+    visit(Field{"late_ticks", "1",
+                "Ticks more than one step behind the clock; continuous clock: ticks that were cut."},
+          s.late_ticks);
+    visit(Field{"step_s", "s", "Lengths of the ticks of a continuous clock."}, s.step);
+    visit(Field{"phase_us", "us", "Mean time per tick of each phase."}, s.phase_us);
+    visit(Field{"end_tick", "1", "Number of the last tick."}, s.end_tick);
+    visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
+    visit(Field{"stopped", "", "Reason for the end; empty when it came from outside, or by an error."},
+          s.stopped);
+    visit(Field{"state_hash", "", "Hash of the whole state."}, s.state_hash);
+    visit(Field{"sub_hashes", "", "Hashes of the parts of the state."}, s.sub_hashes);
+    visit(Field{"profile", "", "Numeric profile: build and processor family."}, s.profile);
+    visit(Field{"robots", "", "Robots that took part, in order of their first tick."}, s.robots);
+    visit(Field{"engine", "", "Counters of the physics engine."}, s.engine);
+    visit(Field{"refused_commands", "1", "Commands and requests that were refused."}, s.refused_commands);
+    visit(Field{"events", "", "Events of the scenario and of the run."}, s.events);
+    visit(Field{"criterion", "1", "Figure of merit; null when none is defined."}, s.criterion);
+    visit(Field{"teams", "", "Names of the robots of each team."}, s.teams);
+    visit(Field{"warnings", "", "Warnings, each with its remedy."}, s.warnings);
+    visit(Field{"errors", "", "Errors that ended the run, or that results could not be written for."},
+          s.errors);
+    visit(Field{"video", "", "Film of the run."}, s.video);
+    visit(Field{"recording", "", "Recording of the run."}, s.recording);
+    visit(Field{"server", "", "Viewers of the run."}, s.server);
+  }
+};
+
+/// Figures of the world and its clock; what was written about the run, warnings and errors are for the caller to add.
+Summary summarise(const Simulation& simulation, const RunReport& report, const TravelMeter& travel);
+
+nlohmann::ordered_json as_json(const Summary& summary);
+/// Text of the JSON file.
+std::string as_json_text(const Summary& summary);
+/// About a dozen lines for people.
+std::string as_text(const Summary& summary);
+
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace sandlot
