@@ -14,6 +14,9 @@
 namespace sandlot::app {
 namespace {
 
+/// For people: 0.3 for 0.30000000000000004.
+std::string rounded(double x) { return fmt::format("{:.6g}", x); }
+
 std::string numbers(Vec3 v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0); }
 
 /// "1.6 4.65 0" and, when it is turned, "turned 0 0 1.571" (roll pitch yaw).
@@ -323,9 +326,9 @@ std::string head_text(const std::string& file, const Simulation& simulation) {
   const std::string steps = clock.mode == model::Clock::Mode::continuous
                                 ? fmt::format(
                                       "continuous clock, steps of {} to {} s in sub-steps of at most {} s",
-                                      number_text(clock.min_step.s()), number_text(clock.max_step.s()),
-                                      number_text(setup.step.s() / setup.substeps))
-                                : fmt::format("step {} s in {}", number_text(setup.step.s()),
+                                      rounded(clock.min_step.s()), rounded(clock.max_step.s()),
+                                      rounded(setup.step.s() / setup.substeps))
+                                : fmt::format("step {} s in {}", rounded(setup.step.s()),
                                               counted(static_cast<std::size_t>(setup.substeps), "sub-step"));
   out += fmt::format("  {} physics, {}, control every {}, seed {}{}\n", setup.engine, steps,
                      counted(static_cast<std::size_t>(setup.control_interval), "tick"), setup.seed,
