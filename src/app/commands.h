@@ -12,7 +12,7 @@
 #include "formats/scenario/scenario.h"
 #include "run/film.h"
 #include "run/snapshot_files.h"
-#include "sim/session/experiment.h"
+#include "sim/session/run_hooks.h"
 
 namespace sandlot::app {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// `sandlot run` with an experiment of the user's own inside.
-#include "sim/session/experiment.h"
+#include "sim/session/run_hooks.h"
 
 namespace sandlot {
 

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "console/command.h"
 #include "console/words.h"
+#include "sim/session/run_hooks.h"
 
 namespace sandlot {
 
@@ -42,9 +43,9 @@ Error unknown_command(const std::string& word, const Console::Options& options) 
           suggestion(word, console::command_names(options))};
 }
 
-const ConsoleCommand* own_command(const Console::Options& options, std::string_view name) {
+const HookCommand* own_command(const Console::Options& options, std::string_view name) {
   if (!options.experiment) return nullptr;
-  for (const ConsoleCommand& own : options.experiment->commands())
+  for (const HookCommand& own : options.experiment->commands())
     if (own.name == name) return &own;
   return nullptr;
 }

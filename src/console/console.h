@@ -20,6 +20,8 @@
 
 namespace sandlot {
 
+class RunHooks;
+
 /// Who says a line.
 struct Speaker {
   bool may_steer = true;
@@ -36,7 +38,7 @@ class Console {
   struct Options {
     std::vector<std::string> paths;    ///< folders to search for models (`add`) and files
     std::string folder = ".";          ///< where store, load and record may write and read: there and below
-    Experiment* experiment = nullptr;  ///< whose commands are known too
+    RunHooks* experiment = nullptr;    ///< whose commands are known too
     /// Starts a recording to a file, or ends it (""). Unset: there is none.
     std::function<Result<std::string>(const std::string& file)> record;
   };

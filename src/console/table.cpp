@@ -1,6 +1,7 @@
 /// The table of commands.
 #include "base/text.h"
 #include "console/command.h"
+#include "sim/session/run_hooks.h"
 
 namespace sandlot::console {
 namespace {
@@ -192,7 +193,7 @@ std::vector<std::string> command_names(const Console::Options& options) {
       if (!other.empty()) out.emplace_back(other);
   }
   if (options.experiment)
-    for (const ConsoleCommand& own : options.experiment->commands()) out.push_back(own.name);
+    for (const HookCommand& own : options.experiment->commands()) out.push_back(own.name);
   return out;
 }
 
@@ -207,7 +208,7 @@ Said say_help(Call& call) {
       return std::optional(text);
     }
     if (call.options.experiment)
-      for (const ConsoleCommand& own : call.options.experiment->commands())
+      for (const HookCommand& own : call.options.experiment->commands())
         if (own.name == word) return std::optional(own.name + "\n" + own.help);
     return Error{"there is no command '" + word.substr(0, 60) + "'",
                  suggestion(word, command_names(call.options))};
@@ -221,7 +222,7 @@ Said say_help(Call& call) {
   };
   for (const Verb& command : table()) add(command.name, command.help);
   if (call.options.experiment)
-    for (const ConsoleCommand& own : call.options.experiment->commands()) add(own.name, own.help);
+    for (const HookCommand& own : call.options.experiment->commands()) add(own.name, own.help);
   text += "\n`help WORD` says what follows a word.";
   return std::optional(text);
 }

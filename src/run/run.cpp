@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "console/console.h"
 #include "run/outputs.h"
+#include "sim/session/run_hooks.h"
 #include "sim/session/session.h"
 
 namespace sandlot {
@@ -21,7 +22,7 @@ class Run {
         prepared_(std::move(prepared)),
         warnings_(std::move(diagnostics.warnings)),
         begin_(prepared_.simulation->now()),
-        experiment_(callbacks.hooks ? std::make_optional<Experiment>(*prepared_.simulation, *callbacks.hooks)
+        experiment_(callbacks.hooks ? std::make_optional<RunHooks>(*prepared_.simulation, *callbacks.hooks)
                                     : std::nullopt),
         session_(std::move(prepared_.simulation), session_options()),
         outputs_(spec, session_, [this](Error warning) { warn(std::move(warning)); }),
@@ -49,7 +50,7 @@ class Run {
   PreparedRun prepared_;
   std::vector<Error> warnings_;
   Time begin_;
-  std::optional<Experiment> experiment_;
+  std::optional<RunHooks> experiment_;
   Session session_;
   RunOutputs outputs_;
   Console console_;

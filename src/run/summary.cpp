@@ -9,7 +9,7 @@
 
 #include "base/json_text.h"
 #include "run/travel.h"
-#include "sim/session/runner.h"
+#include "sim/session/session.h"
 #include "sim/watch/monitor.h"
 
 namespace sandlot {

@@ -1,4 +1,11 @@
 #pragma once
-/// For experiments in C++: hooks around a run, and a main() that is `sandlot run` with them.
+/// Header for experiments in C++: hooks around a run, and a main() that is `sandlot run` with them.
 #include "app/experiment.h"
 #include "sandlot/embed.h"
+
+namespace sandlot {
+
+/// What hooks receive; the name that programs use.
+using Experiment = RunHooks;
+
+}  // namespace sandlot

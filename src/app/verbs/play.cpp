@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "console/console.h"
-#include "record/tape.h"
+#include "record/input_log.h"
 #include "run/summary.h"
 #include "sim/session/session.h"
 
@@ -41,7 +41,7 @@ int play(const ReplayOptions& options) {
   auto simulation = Simulation::restore(recording->snapshot(), simulation_options, diagnostics);
   if (run.cut)
     diagnostics.warn({fmt::format("the recording ends at {}: {}",
-                                  record::tick_text(run.tape.last_tick, run.tape.end), run.cut->what)});
+                                  record::tick_text(run.input_log.last_tick, run.input_log.end), run.cut->what)});
   const std::string profile = recording->begin().profile;
   if (profile != Simulation::profile())
     diagnostics.warn({"it was recorded with another numeric profile (" + profile + "), this is " +
@@ -57,8 +57,8 @@ int play(const ReplayOptions& options) {
                    .paused = true,
                    .stay = true,
                    .simulation = simulation_options,
-                   .tape = std::move(run.tape),
-                   .on_world = [&](Simulation&, const std::string&) { check.begin_anew(); }});
+                   .input_log = std::move(run.input_log),
+                   .on_world = [&](Simulation&, const std::string&) { check.begin_again(); }});
   session.add_observer(&check);
   Console console(session, {.paths = options.paths});
   auto served = Served::start(*options.serve, session, console);

@@ -77,13 +77,13 @@ Session::Session(std::unique_ptr<Simulation> simulation, Options options)
       history_gap_s_(options_.history_every_s),
       playing_(!options_.paused),
       pace_(options_.pace) {
-  if (options_.tape) past_ = std::move(*options_.tape);
+  if (options_.input_log) past_ = std::move(*options_.input_log);
   else input_ = std::make_unique<Input>(past_);
   if (input_ && options_.history_mb > 0) simulation_->add_observer(input_.get());
   if (options_.history_mb <= 0 && options_.may_not_rewind.empty())
     options_.may_not_rewind = "no snapshots are kept";
   report_.begin = simulation_->now();
-  report_.replay = options_.tape.has_value();
+  report_.replay = options_.input_log.has_value();
   report_.may_not_rewind = options_.may_not_rewind;
   report_.state = playing_ ? State::playing : State::paused;
   refresh_report();
@@ -226,7 +226,7 @@ void Session::set_state(State state) {
 }
 
 std::string Session::why_no_input() const {
-  if (options_.tape) return "this is a recording: it takes no input";
+  if (options_.input_log) return "this is a recording: it takes no input";
   return rerunning() ? "the run is on its way to " + time_text(target_.value_or(Time{})) : "";
 }
 
@@ -239,7 +239,7 @@ void Session::refresh_report() {
   report_.epoch = epoch_;
   report_.speed = pace_.factor;
   report_.end = simulation_->setup().stop;
-  if (options_.tape) report_.end = past_.end;
+  if (options_.input_log) report_.end = past_.end;
   report_.target = target_;
   report_.takes_no_input = why_no_input();
   if (report_.history.size() != history_.size() ||
@@ -250,8 +250,8 @@ void Session::refresh_report() {
 }
 
 Status Session::advance(std::optional<Time> measured, RunReport& report) {
-  if (options_.tape || rerunning())
-    if (const std::optional<Time> taped = feed_tape()) measured = taped;
+  if (options_.input_log || rerunning())
+    if (const std::optional<Time> logged = feed_input_log()) measured = logged;
   const Time before = simulation_->now();
   const bool rerun = rerunning();
   Status status = options_.tick ? options_.tick(*simulation_, measured) : simulation_->tick(measured);
@@ -323,12 +323,12 @@ Status Session::go_back(Time to) {
   for (std::size_t i = 0; i < history_.size(); ++i)
     if (history_[i].now <= to) best = i;
   const Time now = simulation_->now();
-  const bool ahead = to >= now && failure_;
+  const bool ahead = to >= now && status_;
   if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // only run on
   SL_TRY(may_rewind());  // the run may have passed the time since it was asked for
   const std::uint64_t frontier = simulation_->tick_index();
   const std::uint64_t before = rerun_until_;
-  if (!options_.tape) rerun_until_ = std::max(frontier, rerun_until_);
+  if (!options_.input_log) rerun_until_ = std::max(frontier, rerun_until_);
   Status status = replace(history_[best].bytes, "rewound to " + time_text(to));
   if (!status) rerun_until_ = before;
   return status;
@@ -349,7 +349,7 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     refuse_loads(std::move(others), "another one was asked for meanwhile");
     status = may_rewind();
-    if (status && options_.tape) status = Error{"this is a recording: nothing can be loaded into it"};
+    if (status && options_.input_log) status = Error{"this is a recording: nothing can be loaded into it"};
     if (status) status = replace(load.bytes, "loaded");
     if (status) {
       past_ = {};
@@ -361,7 +361,7 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
       const std::lock_guard again(mutex_);
       report_.begin = simulation_->now();
       report_.reason.clear();
-      failure_ = {};
+      status_ = {};
       seeking_ = false;
       target_.reset();
     }
@@ -374,7 +374,7 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
       forget_future();
       const std::lock_guard again(mutex_);
       report_.reason.clear();
-      failure_ = {};
+      status_ = {};
       seeking_ = false;
       target_.reset();
     }
@@ -388,7 +388,7 @@ bool Session::obey(std::unique_lock<std::mutex>& lock) {
     const std::lock_guard again(mutex_);
     if (status) {
       report_.reason.clear();
-      failure_ = {};
+      status_ = {};
     } else {
       seeking_ = false;
       target_.reset();
@@ -438,15 +438,15 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
       refresh_report();
       continue;
     }
-    const bool tape_over = options_.tape && simulation_->tick_index() >= past_.last_tick;
-    const bool over = !failure_ || simulation_->stop_reason() || tape_over;
+    const bool log_over = options_.input_log && simulation_->tick_index() >= past_.last_tick;
+    const bool over = !status_ || simulation_->stop_reason() || log_over;
     if (over) {
       seeking_ = false;
       steps_left_ = 0;
       target_.reset();
-      if (failure_) report_.reason = simulation_->stop_reason().value_or("the recording ends here");
+      if (status_) report_.reason = simulation_->stop_reason().value_or("the recording ends here");
       lock.unlock();
-      set_state(failure_ ? State::ended : State::failed);
+      set_state(status_ ? State::ended : State::failed);
       refresh_report();
       lock.lock();
       if (!options_.stay) break;
@@ -463,7 +463,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
     }
     // Of the world that is there now. A tape has the lengths of its ticks: it is played like one with a fixed clock.
     const model::Clock& clock = simulation_->setup().clock;
-    const bool continuous = clock.mode == model::Clock::Mode::continuous && !options_.tape;
+    const bool continuous = clock.mode == model::Clock::Mode::continuous && !options_.input_log;
     const bool unpaced = seeking_ || steps_left_ > 0 || (!pace_.factor && !continuous);
     const double factor = pace_.factor.value_or(1);
     if (std::exchange(paced_by, pace_.factor) != pace_.factor) pacer.forget();
@@ -505,16 +505,16 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
     }
     if (!seeking_ && steps_left_ > 0) --steps_left_;
     lock.unlock();
-    failure_ = advance(measured, report);
+    status_ = advance(measured, report);
     const double rtf = pacer.set ? pacer.real_time_factor(simulation_->now()) : 0;
     {
       const std::lock_guard again(mutex_);
       report_.late_ticks = report.late_ticks;
       report_.real_time_factor = rtf;
       // Of an order that failed it is enough to say so until the run goes on.
-      report_.reason = failure_ ? "" : failure_.error().text();
+      report_.reason = status_ ? "" : status_.error().text();
     }
-    if (failure_) keep_snapshot();
+    if (status_) keep_snapshot();
     refresh_report();
     if (!go_on()) break;
   }
@@ -533,7 +533,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
   }
   for (const auto& [sequence, done] : waiting) done(Error{"the run has ended"});
   refuse_loads(std::move(loads), "the run has ended");
-  return std::move(failure_);
+  return std::move(status_);
 }
 
 }  // namespace sandlot

@@ -14,7 +14,7 @@
 ///             had happened behind it is forgotten.
 /// Worlds      a reset, a jump back and a load put another Simulation in place of the first: epoch() counts them, and
 ///             Options::on_world is told. References to the old one end there.
-/// InputLog        input of a recording, given as Options::tape: the run then is that recording's, ends where it ends, and
+/// InputLog        input of a recording, given as Options::input_log: the run then is that recording's, ends where it ends, and
 ///             takes no other input.
 /// Threads     run() belongs to one thread, the simulation's. Orders may come from any.
 /// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and `history_mb` of memory.
@@ -28,16 +28,31 @@
 #include <string>
 #include <vector>
 
-#include "sim/session/runner.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
 
-/// What came from outside, by the tick that carried it out: with a state it makes the same run again.
+/// Speed of a run against the wall clock.
+struct Pace {
+  /// Real time x factor; unset: as fast as possible, and real time for a setup with a continuous clock.
+  std::optional<double> factor;
+};
+
+/// Totals of Session::run().
+struct RunReport {
+  std::uint64_t ticks = 0;
+  double wall_s = 0;
+  double sim_s = 0;
+  /// Ticks that began more than one step behind the clock; of a continuous clock, ticks cut to the longest step.
+  std::uint64_t late_ticks = 0;
+  Time shortest, longest;  ///< tick
+};
+
+/// Input log: all input from outside by the tick that carried it out. Together with a first state it gives the same run.
 struct InputLog {
   std::map<std::uint64_t, std::vector<LogEntry>> entries;
-  std::uint64_t last_tick = 0;  ///< where it ends
-  Time end;
+  std::uint64_t last_tick = 0;  ///< last tick of the log
+  Time end;                     ///< time of that tick
 };
 
 class Session {
@@ -56,7 +71,7 @@ class Session {
     double history_mb = 256;     ///< memory for snapshots to rewind to; 0: none
     double history_every_s = 1;  ///< simulated time between two, at least; more as the run becomes long
     SimulationOptions simulation = {};  ///< for the worlds that follow the first
-    std::optional<InputLog> tape = {};
+    std::optional<InputLog> input_log = {};
     std::string may_not_rewind = {};  ///< not empty: why reset, load and jumps back are refused
     /// Called on the simulation's thread when another world has come; `why`: "reset", "rewound to 3 s", "loaded".
     std::function<void(Simulation& world, const std::string& why)> on_world = {};
@@ -146,7 +161,7 @@ class Session {
   bool woken() const;
   Status may_rewind() const;
   Status advance(std::optional<Time> measured, RunReport& report);
-  std::optional<Time> feed_tape();
+  std::optional<Time> feed_input_log();
   /// Carries out what waits; unlocks meanwhile. @return whether it did something
   bool obey(std::unique_lock<std::mutex>& lock);
   Status go_back(Time to);
@@ -170,7 +185,7 @@ class Session {
   std::size_t history_bytes_ = 0;
   double history_gap_s_ = 1, snapshot_cost_s_ = 0, snapshot_at_s_ = -1e9;  ///< wall clock
   std::uint64_t rerun_until_ = 0;                                          ///< tick
-  Status failure_;
+  Status status_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -16,7 +16,7 @@ double wall_s() {
 }  // namespace
 
 /// Queues what the tape has for the next tick. @return its measured length, if it had one
-std::optional<Time> Session::feed_tape() {
+std::optional<Time> Session::feed_input_log() {
   std::optional<Time> measured;
   const auto found = past_.entries.find(simulation_->tick_index() + 1);
   if (found == past_.entries.end()) return measured;
@@ -69,7 +69,7 @@ void Session::keep_snapshot() {
 /// The run goes on from here: what it had become behind is no more.
 void Session::forget_future() {
   rerun_until_ = 0;
-  if (options_.tape) return;
+  if (options_.input_log) return;
   past_.entries.erase(past_.entries.upper_bound(simulation_->tick_index()), past_.entries.end());
   while (history_.size() > 1 && history_.back().tick > simulation_->tick_index()) {
     history_bytes_ -= history_.back().bytes.size();

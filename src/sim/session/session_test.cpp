@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "sim/test_world.h"
@@ -45,6 +46,91 @@ TEST(Session, EndsWhereTheRunEnds) {
   EXPECT_EQ(report.ticks, 100u);
   EXPECT_EQ(session.report().state, Session::State::ended);
   EXPECT_EQ(session.simulation().state_hash(), hash_after(rolling(1), 100));
+}
+
+/// By hand: 1 s at 10 x real time cannot take less than 0.1 s, but for the last tick, which need not be waited for. Whether
+/// the run keeps up depends on the machine and is not tested.
+TEST(Session, NeverRunsAheadOfItsClock) {
+  Session session(build(rolling(1)), {.pace = {10.0}});
+  RunReport report;
+  ASSERT_TRUE(session.run(report));
+  EXPECT_EQ(report.ticks, 100u);
+  EXPECT_GE(report.wall_s, 0.1 - 0.001 - 1e-9);
+  EXPECT_EQ(session.simulation().state_hash(), hash_after(rolling(1), 100)) << "the clock changes no result";
+}
+
+/// By hand: at real time a tick of 10 ms that takes 30 ms is late. After 1.2 s without a tick the clock is set again: the
+/// next tick waits for it, where a run that caught up would do 120 ticks at once.
+TEST(Session, CountsLateTicksAndDoesNotCatchUpWhenFarBehind) {
+  using Clock = std::chrono::steady_clock;
+  Session session(build(rolling(0.1)), {.pace = {1.0}});
+  Clock::time_point behind;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    if (simulation.tick_index() == 2) std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    if (simulation.tick_index() == 5) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+      behind = Clock::now();
+    }
+    return true;
+  }));
+  EXPECT_EQ(report.ticks, 10u);
+  EXPECT_GE(report.late_ticks, 2u);
+  // One tick notices the delay, the next begins the clock, the last three wait for 10 ms each.
+  EXPECT_GE(std::chrono::duration<double>(Clock::now() - behind).count(), 0.03 - 0.001);
+}
+
+TEST(Session, EndsWhenTheCallerSaysSo) {
+  Session session(build(rolling()), {});
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [](const Simulation& s) { return s.tick_index() < 30; }));
+  EXPECT_EQ(report.ticks, 30u);
+}
+
+/// Records the length of each tick, and the lengths in its log.
+struct Lengths : Observer {
+  Wants wants() const override { return {.log = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    ticks.push_back(frame->step);
+    for (const LogEntry& entry : frame->log) {
+      if (entry.kind != LogEntry::step) continue;
+      Time logged;
+      ByteReader r(entry.bytes);
+      read(r, logged.ns);
+      logged_ticks.push_back(logged);
+    }
+  }
+  std::vector<Time> ticks, logged_ticks;
+};
+
+TEST(Session, AContinuousClockTakesTheTimeThatTheLastTickTook) {
+  model::Setup setup = rolling(0.3);
+  setup.clock = {model::Clock::Mode::continuous, Time::from_s(1e-3), Time::from_s(0.03)};
+  Session session(build(setup), {});
+  Lengths lengths;
+  session.add_observer(&lengths);
+  RunReport report;
+  // A cycle of at least 5 ms, now and then one of 50 ms: more than the longest tick.
+  const auto slow = [](const Simulation& s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(s.tick_index() % 8 == 5 ? 50 : 5));
+    return true;
+  };
+  ASSERT_TRUE(session.run(report, slow));
+  ASSERT_GE(lengths.ticks.size(), 7u);
+  EXPECT_EQ(lengths.logged_ticks, lengths.ticks);
+  EXPECT_EQ(lengths.ticks[0], setup.step) << "nothing has been measured yet";
+  EXPECT_EQ(lengths.ticks[5], setup.clock.max_step);
+  for (std::size_t i = 1; i < lengths.ticks.size(); ++i) {
+    EXPECT_GE(lengths.ticks[i], Time::from_s(5e-3)) << i;
+    EXPECT_LE(lengths.ticks[i], setup.clock.max_step) << i;
+  }
+  EXPECT_GE(report.late_ticks, 1u);
+  EXPECT_LE(report.sim_s, report.wall_s + setup.step.s()) << "it never runs ahead of the wall clock";
+  // The log alone gives the same run.
+  const auto replay = build(setup);
+  for (const Time length : lengths.logged_ticks) ASSERT_TRUE(replay->tick(length));
+  EXPECT_EQ(replay->now(), session.simulation().now());
+  EXPECT_EQ(replay->state_hash(), session.simulation().state_hash());
 }
 
 TEST(Session, AStepIsExactlyOneTickAndLeavesItPaused) {
@@ -184,29 +270,29 @@ TEST(Session, ARunThatHasEndedWaitsForOrdersIfItShallStay) {
   EXPECT_EQ(report.ticks, 100u) << "50 before the reset and 50 after it";
 }
 
-TEST(Session, RunsATapeAndTakesNothingElse) {
-  InputLog tape;
+TEST(Session, RunsAnInputLogAndTakesNothingElse) {
+  InputLog log;
   const auto reference = build(rolling());
   struct Keep final : Observer {
-    InputLog& tape;
-    explicit Keep(InputLog& to) : tape(to) {}
+    InputLog& log;
+    explicit Keep(InputLog& to) : log(to) {}
     Wants wants() const override { return {.input = true}; }
     void on_frame(const std::shared_ptr<const Frame>& frame) override {
-      if (!frame->log.empty()) tape.entries[frame->tick] = frame->log;
+      if (!frame->log.empty()) log.entries[frame->tick] = frame->log;
     }
-  } keep(tape);
+  } keep(log);
   const std::vector<std::byte> begin = reference->snapshot();
   reference->add_observer(&keep);
   for (int tick = 0; tick < 200; ++tick) {
     if (tick == 70) reference->submit(PoseRequest{"ball", {{2, 0, 3}, {}}});
     ASSERT_TRUE(reference->tick());
   }
-  tape.last_tick = 200;
-  tape.end = reference->now();
+  log.last_tick = 200;
+  log.end = reference->now();
   Diagnostics diagnostics;
   auto world = Simulation::restore(begin, {}, diagnostics);
   ASSERT_TRUE(world);
-  Session session(std::move(*world), {.tape = tape});
+  Session session(std::move(*world), {.input_log = log});
   EXPECT_FALSE(session.submit(PoseRequest{"ball", {}}));
   RunReport report;
   ASSERT_TRUE(session.run(report));

@@ -147,7 +147,7 @@ Status Simulation::build(Diagnostics& diagnostics) {
 Status Simulation::add_event(model::EventDecl decl) {
   SL_TRY(monitor_->add_event(std::move(decl), false, {}));
   judge();
-  return failure_;
+  return status_;
 }
 
 /// The kinds that `controller:` may name: ours, the program's own, then those of the plugins.

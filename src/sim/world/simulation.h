@@ -260,7 +260,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::uint64_t next_serial_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::optional<std::string> stop_reason_;
-  Status failure_;
+  Status status_;
 
   std::mutex inbox_mutex_;
   std::vector<Pending> inbox_;

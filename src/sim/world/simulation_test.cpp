@@ -519,5 +519,20 @@ TEST(Requests, TheLogOfARunRepeatsItWithEverythingThatWasAskedOfIt) {
   EXPECT_EQ(repeated.hashes, live.hashes);
 }
 
+TEST(Simulation, TicksLongerThanASamplingIntervalLoseSamplesAndDoNotPileThemUp) {
+  model::Setup setup = arena("planar", 1);
+  setup.clock.mode = model::Clock::Mode::continuous;
+  for (auto& device : setup.instances.back().devices)
+    if (device.name == "laser") device.config.set("rate", Node::scalar("20"));
+  const auto simulation = build(setup);
+  const TopicBase* const scan = simulation->find_topic("rover1/laser");
+  ASSERT_TRUE(scan);
+  const std::uint64_t before = scan->count;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation->tick(Time::from_s(0.1)));
+  EXPECT_EQ(scan->count - before, 5u) << "one per tick: there are two intervals in each";
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(simulation->tick(Time::from_s(0.01)));
+  EXPECT_EQ(scan->count - before, 15u) << "0.5 s at 20 Hz, none made up for";
+}
+
 }  // namespace
 }  // namespace sandlot::test

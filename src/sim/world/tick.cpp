@@ -14,13 +14,13 @@
 namespace sandlot {
 /// One step of the world. Each phase sees what the phases before it left; see docs/architecture.md section 3.
 Status Simulation::tick(std::optional<Time> measured) {
-  if (!failure_) return failure_;
+  if (!status_) return status_;
   arena_->execute([&] {
     set_step(measured);
     take_commands();        // 1  requests from outside, then what programs ordered in the previous tick
     actuate();              // 2  actuators turn commands into targets and wrenches
     physics();              // 3  sub-steps: servo loops, then the engine
-    if (!failure_) return;  // nothing has moved: the world is that of the last tick that was sound
+    if (!status_) return;  // nothing has moved: the world is that of the last tick that was sound
     now_ = now_ + step_;
     ++tick_;
     update_scene();   // 4  new poses into the ray scene
@@ -30,7 +30,7 @@ Status Simulation::tick(std::optional<Time> measured) {
     control();        // 8  programs decide; their orders act in the next tick
     publish();        // 9  the immutable frame to observers
   });
-  return failure_;
+  return status_;
 }
 
 Context Simulation::context() {
@@ -147,10 +147,10 @@ void Simulation::physics() {
     actuation_.watch.clear();
   }
   if (Status finite = engine_->check_finite(); !finite) {
-    failure_ = std::move(finite);
-    failure_.error().what += ", between " + number_text(now_.s()) + " s and " +
+    status_ = std::move(finite);
+    status_.error().what += ", between " + number_text(now_.s()) + " s and " +
                              number_text((now_ + step_).s()) + " s";
-    stop_reason_ = failure_.error().what;
+    stop_reason_ = status_.error().what;
   }
 }
 
@@ -226,8 +226,8 @@ void Simulation::judge() {
   if (judged) {
     if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
   } else {
-    if (failure_) failure_ = std::move(judged.error());
-    if (tick_ > 0) stop_reason_ = failure_.error().what;  // else the first tick() answers: see control()
+    if (status_) status_ = std::move(judged.error());
+    if (tick_ > 0) stop_reason_ = status_.error().what;  // else the first tick() answers: see control()
   }
 }
 
@@ -315,12 +315,12 @@ void Simulation::control() {
   });
   for (const ProgramEntry* entry : running_) {
     programs_changed_ = programs_changed_ || entry->ended;
-    if (!entry->failure || !failure_) continue;
-    failure_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
+    if (!entry->failure || !status_) continue;
+    status_ = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
                          number_text(now_.s()) + " s: " + *entry->failure,
                      "", entry->decl.place};
     // At tick 0 nothing runs yet that could stop: the first tick() answers with the failure.
-    if (tick_ > 0) stop_reason_ = failure_.error().what;
+    if (tick_ > 0) stop_reason_ = status_.error().what;
   }
 }
 

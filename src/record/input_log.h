@@ -4,7 +4,7 @@
 ///
 ///   SL_ASSIGN(RecordedRun run, read_run(recording));
 ///   RunCheck check(run);
-///   Session session(std::move(simulation), {.stay = true, .tape = run.tape});
+///   Session session(std::move(simulation), {.stay = true, .input_log = run.input_log});
 ///   session.add_observer(&check);
 ///
 /// Errors   a log entry that cannot be read. A recording that is torn off or damaged ends where it is whole, and says why
@@ -20,7 +20,7 @@
 namespace sandlot::record {
 
 struct RecordedRun {
-  InputLog tape;
+  InputLog input_log;
   std::uint64_t first_tick = 0;
   /// After tick first_tick + i. Nothing: the recording does not tell.
   std::vector<std::optional<std::uint64_t>> hashes;
@@ -39,7 +39,7 @@ class RunCheck final : public Observer {
   Wants wants() const override { return {.hash = true}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override;
   /// Of another world, which begins as it was recorded.
-  void begin_anew() { differing_ = false; }
+  void begin_again() { differing_ = false; }
 
   std::uint64_t compared() const { return compared_; }
   std::uint64_t different() const { return different_; }

@@ -1,4 +1,4 @@
-#include "sim/session/experiment.h"
+#include "sim/session/run_hooks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,18 +22,18 @@ model::Setup falling_ball() {
   return setup;
 }
 
-void advance(Experiment& experiment, int ticks) {
+void advance(RunHooks& run, int ticks) {
   for (int i = 0; i < ticks; ++i) {
-    const Status status = experiment.tick();
+    const Status status = run.tick();
     ASSERT_TRUE(status) << status.error().text();
   }
 }
 
-TEST(Experiment, HooksAreCalledInTheOrderThatIsPromised) {
+TEST(RunHooks, HooksAreCalledInTheOrderThatIsPromised) {
   const auto sim = build(falling_ball());
   std::vector<std::string> called;
   const auto note = [&](const char* what) {
-    return [&called, what](Experiment& e) -> Status {
+    return [&called, what](RunHooks& e) -> Status {
       called.push_back(what + std::to_string(e.simulation().tick_index()));
       return {};
     };
@@ -42,26 +42,26 @@ TEST(Experiment, HooksAreCalledInTheOrderThatIsPromised) {
               .before_tick = note("before"),
               .after_tick = note("after"),
               .on_end = note("end")};
-  hooks.on_event = [&](Experiment& e, const std::string& name) -> Status {
+  hooks.on_event = [&](RunHooks& e, const std::string& name) -> Status {
     called.push_back(name + std::to_string(e.simulation().tick_index()));
     if (name == "first") e.emit("second");
     return {};
   };
-  Experiment experiment(*sim, hooks);
-  ASSERT_TRUE(experiment.start());
-  experiment.emit("first");
-  advance(experiment, 2);
-  ASSERT_TRUE(experiment.finish());
+  RunHooks run(*sim, hooks);
+  ASSERT_TRUE(run.start());
+  run.emit("first");
+  advance(run, 2);
+  ASSERT_TRUE(run.finish());
   EXPECT_THAT(called,
               ElementsAre("start0", "before0", "first1", "after1", "before1", "second2", "after2", "end2"));
 }
 
-TEST(Experiment, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
+TEST(RunHooks, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
   const auto sim = build(falling_ball());
   std::vector<std::uint64_t> ticks;
   int began = 0;
   Hooks hooks;
-  hooks.on_contact = [&](Experiment& e, const Touch& touch) -> Status {
+  hooks.on_contact = [&](RunHooks& e, const Touch& touch) -> Status {
     ticks.push_back(e.simulation().tick_index());
     began += touch.began;
     EXPECT_EQ(touch.a, "ground");
@@ -74,8 +74,8 @@ TEST(Experiment, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
     EXPECT_LE(touch.depth_m, 0.01);
     return {};
   };
-  Experiment experiment(*sim, hooks);
-  advance(experiment, 40);
+  RunHooks run(*sim, hooks);
+  advance(run, 40);
   // 50 mm take sqrt(2 * 0.05 / 9.81) = 101 ms; contacts are those that the last step began with.
   ASSERT_FALSE(ticks.empty());
   EXPECT_GE(ticks.front(), 10u);
@@ -91,22 +91,22 @@ struct Log : Observer {
   std::vector<std::vector<LogEntry>> ticks;
 };
 
-TEST(Experiment, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
+TEST(RunHooks, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
   const auto with_hooks = build(falling_ball());
   Log log;
   with_hooks->add_observer(&log);
   Hooks hooks;
-  hooks.after_tick = [](Experiment& e) -> Status {
+  hooks.after_tick = [](RunHooks& e) -> Status {
     if (e.simulation().tick_index() == 7) e.emit("serve");
     return {};
   };
-  hooks.on_event = [](Experiment& e, const std::string&) -> Status {
+  hooks.on_event = [](RunHooks& e, const std::string&) -> Status {
     e.simulation().submit(
         SpawnRequest{placed("ball2", one_shape("ball", Sphere{0.1}, 1), {{0.31, 0.2, 0.6}, {}})});
     return {};
   };
-  Experiment experiment(*with_hooks, hooks);
-  advance(experiment, 60);
+  RunHooks run(*with_hooks, hooks);
+  advance(run, 60);
   ASSERT_TRUE(with_hooks->find_instance("ball2"));
 
   const auto without = build(falling_ball());
@@ -122,22 +122,22 @@ TEST(Experiment, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
   EXPECT_EQ(without->state_hash(), with_hooks->state_hash());
 }
 
-TEST(Experiment, AHookThatFailsOrThrowsEndsTheTickWithItsName) {
+TEST(RunHooks, AHookThatFailsOrThrowsEndsTheTickWithItsName) {
   const auto sim = build(falling_ball());
   Hooks hooks;
-  hooks.before_tick = [](Experiment& e) -> Status {
+  hooks.before_tick = [](RunHooks& e) -> Status {
     if (e.simulation().tick_index() == 1) return Error{"no power"};
     return {};
   };
-  hooks.after_tick = [](Experiment& e) -> Status {
+  hooks.after_tick = [](RunHooks& e) -> Status {
     if (e.simulation().tick_index() == 1) throw std::runtime_error("no luck");
     return {};
   };
-  Experiment experiment(*sim, hooks);
-  const Status thrown = experiment.tick();
+  RunHooks run(*sim, hooks);
+  const Status thrown = run.tick();
   ASSERT_FALSE(thrown);
   EXPECT_EQ(thrown.error().what, "after_tick: threw: no luck");
-  const Status failed = experiment.tick();
+  const Status failed = run.tick();
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().what, "before_tick: no power");
   EXPECT_EQ(sim->tick_index(), 1u);
@@ -147,51 +147,33 @@ struct Console {
   std::unique_ptr<Simulation> sim = build(falling_ball());
   std::vector<std::string> said;
   Hooks hooks;
-  std::unique_ptr<Experiment> experiment;
+  std::unique_ptr<RunHooks> run;
   Console() {
     hooks.commands.push_back(
         {"kick", "kick WORDS: says them",
-         [this](Experiment& e, std::span<const std::string> words) -> Result<std::string> {
+         [this](RunHooks& e, std::span<const std::string> words) -> Result<std::string> {
            std::string all = std::to_string(e.simulation().now().ns / 1'000'000);
            for (const std::string& word : words) all += "|" + word;
            said.push_back(all);
            if (!words.empty() && words[0] == "hard") throw std::runtime_error("ouch");
            return all;
          }});
-    experiment = std::make_unique<Experiment>(*sim, hooks);
+    run = std::make_unique<RunHooks>(*sim, hooks);
   }
 };
 
-TEST(Experiment, ALineIsACommandAndItsWords) {
+TEST(RunHooks, ALineIsACommandAndItsWords) {
   Console console;
-  EXPECT_EQ(console.experiment->execute("  kick  ball \"far away\" ").value(), "0|ball|far away");
-  EXPECT_THAT(console.experiment->execute("help").value(), HasSubstr("kick WORDS: says them"));
+  EXPECT_EQ(console.run->execute("  kick  ball \"far away\" ").value(), "0|ball|far away");
+  EXPECT_THAT(console.run->execute("help").value(), HasSubstr("kick WORDS: says them"));
   const auto complaint = [&](const char* line) {
-    const auto result = console.experiment->execute(line);
+    const auto result = console.run->execute(line);
     return result ? std::string() : result.error().text();
   };
   EXPECT_THAT(complaint("kik ball"), HasSubstr("did you mean 'kick'?"));
   EXPECT_THAT(complaint(""), HasSubstr("says nothing"));
   EXPECT_THAT(complaint("kick \"ball"), HasSubstr("not closed"));
   EXPECT_THAT(complaint("kick hard"), HasSubstr("ouch"));
-}
-
-TEST(Experiment, ScheduledLinesAreSaidBeforeTheFirstTickAtTheirTimeOrLater) {
-  Console console;
-  Experiment& experiment = *console.experiment;
-  for (const char* line : {"at 45ms kick late", "kick now", "at 0.02 kick b", "at 0.02 kick c"})
-    ASSERT_TRUE(experiment.schedule(line)) << line;
-  advance(experiment, 6);
-  EXPECT_THAT(console.said, ElementsAre("0|now", "20|b", "20|c", "50|late"));
-  EXPECT_THAT(experiment.take_answers(),
-              ElementsAre("at 0 s: 0|now", "at 0.02 s: 20|b", "at 0.02 s: 20|c", "at 0.05 s: 50|late"));
-  EXPECT_TRUE(experiment.take_answers().empty());
-  for (const char* line : {"at", "at 2s", "at noon kick", "at -1s kick", "fly", "at 2s fly", ""})
-    EXPECT_FALSE(experiment.schedule(line)) << line;
-  ASSERT_TRUE(experiment.schedule("kick hard"));
-  const Status failed = experiment.tick();
-  ASSERT_FALSE(failed);
-  EXPECT_THAT(failed.error().what, HasSubstr("at 0.06 s"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "record/tape.h"
+#include "record/input_log.h"
 
 #include "base/text.h"
 
@@ -24,8 +24,8 @@ bool readable(const LogEntry& entry) {
 Result<RecordedRun> read_run(Recording& recording) {
   RecordedRun out;
   out.first_tick = recording.begin().tick;
-  out.tape.last_tick = out.first_tick;
-  out.tape.end = recording.begin().now;
+  out.input_log.last_tick = out.first_tick;
+  out.input_log.end = recording.begin().now;
   const auto told = [&](std::uint64_t tick) -> std::optional<std::uint64_t>& {
     const std::size_t index = tick - out.first_tick;
     if (out.hashes.size() <= index) out.hashes.resize(index + 1);
@@ -43,8 +43,8 @@ Result<RecordedRun> read_run(Recording& recording) {
     }
     const RecordedTick& tick = **next;
     if (tick.tick < out.first_tick) continue;
-    if (tick.tick > out.tape.last_tick + 1) {
-      out.cut = Error{"the log is incomplete: tick " + std::to_string(out.tape.last_tick + 1) +
+    if (tick.tick > out.input_log.last_tick + 1) {
+      out.cut = Error{"the log is incomplete: tick " + std::to_string(out.input_log.last_tick + 1) +
                           " is missing, it goes on with tick " + std::to_string(tick.tick),
                       "nothing behind it can be played"};
       break;
@@ -60,9 +60,9 @@ Result<RecordedRun> read_run(Recording& recording) {
                      "the recording is damaged there"};
       outside.push_back(entry);
     }
-    if (!outside.empty()) out.tape.entries.emplace(tick.tick, std::move(outside));
-    out.tape.last_tick = tick.tick;
-    out.tape.end = tick.now;
+    if (!outside.empty()) out.input_log.entries.emplace(tick.tick, std::move(outside));
+    out.input_log.last_tick = tick.tick;
+    out.input_log.end = tick.now;
   }
   return out;
 }

@@ -1,5 +1,5 @@
 /// A recording fed to a Session: what came from outside comes again, and every tick has its recorded hash.
-#include "record/tape.h"
+#include "record/input_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,11 +65,11 @@ Played play(const Fixture& fixture, const RecordedRun& run) {
   auto simulation = Simulation::restore(recording->snapshot(), {}, diagnostics);
   EXPECT_TRUE(static_cast<bool>(simulation));
   RunCheck check(run, [&](std::uint64_t tick, Time) { out.told.push_back(tick); });
-  Session session(std::move(*simulation), {.pace = {}, .tape = run.tape});
+  Session session(std::move(*simulation), {.pace = {}, .input_log = run.input_log});
   session.add_observer(&check);
   RunReport report;
   EXPECT_TRUE(static_cast<bool>(session.run(report)));
-  EXPECT_EQ(report.ticks, run.tape.last_tick - run.first_tick);
+  EXPECT_EQ(report.ticks, run.input_log.last_tick - run.first_tick);
   out.hash = session.simulation().state_hash();
   out.compared = check.compared();
   out.different = check.different();
@@ -80,16 +80,16 @@ TEST(InputLog, HoldsWhatCameFromOutsideAtItsTickAndAHashForEveryTick) {
   const Fixture fixture;
   const RecordedRun run = fixture.run();
   EXPECT_EQ(run.first_tick, begin_tick);
-  EXPECT_EQ(run.tape.last_tick, begin_tick + ticks);
-  EXPECT_EQ(run.tape.end, fixture.original->now());
+  EXPECT_EQ(run.input_log.last_tick, begin_tick + ticks);
+  EXPECT_EQ(run.input_log.end, fixture.original->now());
   EXPECT_FALSE(run.cut);
   // The 31st and the 81st tick behind the tenth; nothing of the controllers, which order something all the time.
-  ASSERT_EQ(run.tape.entries.size(), 2u);
+  ASSERT_EQ(run.input_log.entries.size(), 2u);
   for (const std::uint64_t tick : {begin_tick + 31, begin_tick + 81}) {
-    ASSERT_TRUE(run.tape.entries.contains(tick)) << tick;
-    ASSERT_EQ(run.tape.entries.at(tick).size(), 1u);
-    EXPECT_EQ(run.tape.entries.at(tick).front().target, "rover1");
-    EXPECT_EQ(run.tape.entries.at(tick).front().source.id, 3u);
+    ASSERT_TRUE(run.input_log.entries.contains(tick)) << tick;
+    ASSERT_EQ(run.input_log.entries.at(tick).size(), 1u);
+    EXPECT_EQ(run.input_log.entries.at(tick).front().target, "rover1");
+    EXPECT_EQ(run.input_log.entries.at(tick).front().source.id, 3u);
   }
   ASSERT_EQ(run.hashes.size(), ticks + 1);
   EXPECT_EQ(run.hashes.back(), fixture.original->state_hash());
@@ -107,7 +107,7 @@ TEST(InputLog, TellsTheFirstTickThatDiffersOnce) {
   const Fixture fixture;
   RecordedRun run = fixture.run();
   // Without the second leap the run is another one from the tick on that carried it out: 81 to 120, forty ticks.
-  run.tape.entries.erase(begin_tick + 81);
+  run.input_log.entries.erase(begin_tick + 81);
   const Played played = play(fixture, run);
   EXPECT_THAT(played.told, testing::ElementsAre(begin_tick + 81));
   EXPECT_EQ(played.different, 40u);
@@ -119,11 +119,11 @@ TEST(InputLog, EndsWhereARecordingIsTornOff) {
   std::filesystem::resize_file(fixture.file(), std::filesystem::file_size(fixture.file()) / 2);
   const RecordedRun run = fixture.run();
   EXPECT_TRUE(run.cut);
-  EXPECT_GT(run.tape.last_tick, begin_tick);
-  EXPECT_LT(run.tape.last_tick, begin_tick + ticks);
+  EXPECT_GT(run.input_log.last_tick, begin_tick);
+  EXPECT_LT(run.input_log.last_tick, begin_tick + ticks);
   const Played played = play(fixture, run);
   EXPECT_EQ(played.different, 0u);
-  EXPECT_EQ(played.compared, run.tape.last_tick - begin_tick);
+  EXPECT_EQ(played.compared, run.input_log.last_tick - begin_tick);
 }
 
 }  // namespace

@@ -1,16 +1,15 @@
-#include "sim/session/experiment.h"
+#include "sim/session/run_hooks.h"
 
 #include <algorithm>
 
 #include "base/text.h"
-#include "base/units.h"
 #include "sim/watch/monitor.h"
 #include "sim/world/program.h"
 
 namespace sandlot {
 namespace {
 
-/// Words parted by blanks; quotes keep blanks together.
+/// The words of a line, separated by blanks; quotes keep blanks together.
 Result<std::vector<std::string>> words_of(std::string_view line) {
   std::vector<std::string> out;
   bool in_word = false, quoted = false;
@@ -34,7 +33,7 @@ Result<std::vector<std::string>> words_of(std::string_view line) {
 }  // namespace
 
 template <class... Arguments>
-Status Experiment::call(const char* name, const std::function<Status(Experiment&, Arguments...)>& hook,
+Status RunHooks::call(const char* name, const std::function<Status(RunHooks&, Arguments...)>& hook,
                         const std::type_identity_t<Arguments>&... arguments) {
   if (!hook) return {};
   Status status;
@@ -44,16 +43,15 @@ Status Experiment::call(const char* name, const std::function<Status(Experiment&
   return status;
 }
 
-Status Experiment::start() {
-  for (const ConsoleCommand& command : hooks_.commands)
+Status RunHooks::start() {
+  for (const HookCommand& command : hooks_.commands)
     SL_CHECK_MSG(command.act != nullptr, "a console command without a function");
   return call("on_start", hooks_.on_start);
 }
 
-Status Experiment::finish() { return call("on_end", hooks_.on_end); }
+Status RunHooks::finish() { return call("on_end", hooks_.on_end); }
 
-Status Experiment::tick(std::optional<Time> measured) {
-  SL_TRY(say_due_lines());
+Status RunHooks::tick(std::optional<Time> measured) {
   SL_TRY(call("before_tick", hooks_.before_tick));
   SL_TRY(sim_.tick(measured));
   SL_TRY(report_contacts());
@@ -61,7 +59,7 @@ Status Experiment::tick(std::optional<Time> measured) {
   return call("after_tick", hooks_.after_tick);
 }
 
-Status Experiment::report_contacts() {
+Status RunHooks::report_contacts() {
   if (!hooks_.on_contact) return {};
   const auto entities = sim_.entities();
   const Engine& engine = sim_.engine();
@@ -72,7 +70,7 @@ Status Experiment::report_contacts() {
         owner_[body.index] = static_cast<std::uint32_t>(i);
     owner_revision_ = sim_.revision();
   }
-  // A pair of things may touch in many points and with several links: the deepest stands for all of them.
+  // A pair may touch in many points and with several links: the deepest contact stands for all of them.
   std::map<std::pair<std::uint32_t, std::uint32_t>, Contact> deepest;
   for (Contact contact : engine.contacts()) {
     std::uint32_t a = owner_[contact.a.index], b = owner_[contact.b.index];
@@ -97,8 +95,8 @@ Status Experiment::report_contacts() {
   return {};
 }
 
-Status Experiment::report_events() {
-  // Those that a hook emits while it hears of one come after the next tick, so that two hooks cannot play ping-pong.
+Status RunHooks::report_events() {
+  // Events that a hook emits here are reported after the next tick, so that two hooks cannot call each other without end.
   const std::span<const std::string> of_scenario = sim_.monitor().happened();
   std::vector<std::string> happened(of_scenario.begin(), of_scenario.end());
   for (std::string& name : std::exchange(emitted_, {})) happened.push_back(std::move(name));
@@ -106,10 +104,10 @@ Status Experiment::report_events() {
   return {};
 }
 
-Result<const ConsoleCommand*> Experiment::find_command(const std::vector<std::string>& words) const {
+Result<const HookCommand*> RunHooks::find_command(const std::vector<std::string>& words) const {
   if (words.empty()) return Error{"the line says nothing"};
   std::vector<std::string> names;
-  for (const ConsoleCommand& command : hooks_.commands) {
+  for (const HookCommand& command : hooks_.commands) {
     if (words.front() == command.name) return &command;
     names.push_back(command.name);
   }
@@ -117,53 +115,19 @@ Result<const ConsoleCommand*> Experiment::find_command(const std::vector<std::st
                names.empty() ? "this program has none" : suggestion(words.front(), names)};
 }
 
-Result<std::string> Experiment::execute(std::string_view line) {
+Result<std::string> RunHooks::execute(std::string_view line) {
   SL_ASSIGN(const std::vector<std::string> words, words_of(line));
   if (words.size() == 1 && words.front() == "help") {
     std::string out;
-    for (const ConsoleCommand& command : hooks_.commands)
+    for (const HookCommand& command : hooks_.commands)
       out += (out.empty() ? "" : "\n") + command.name + "  " + command.help;
     return out;
   }
-  SL_ASSIGN(const ConsoleCommand* const command, find_command(words));
+  SL_ASSIGN(const HookCommand* const command, find_command(words));
   Result<std::string> answer = std::string();
   const auto thrown = caught([&] { answer = command->act(*this, std::span(words).subspan(1)); });
   if (thrown) return Error{"'" + words.front() + "' threw: " + *thrown};
   return answer;
-}
-
-Status Experiment::schedule(std::string_view text) {
-  Line line{sim_.now(), std::string(text)};
-  SL_ASSIGN(const std::vector<std::string> words, words_of(text));
-  if (!words.empty() && words.front() == "at") {
-    auto at_s = parse_quantity(words.size() > 1 ? words[1] : "", "s");
-    if (!at_s || !(*at_s >= 0 && *at_s <= 9e9) || words.size() < 3)
-      return Error{"'" + std::string(text) + "' is not of the form at TIME COMMAND",
-                   "for example: at 2s kick ball"};
-    line.at = Time::from_s(*at_s);
-    const std::size_t time = text.find(words[1], text.find("at") + 2);
-    line.text = std::string(text.substr(time + words[1].size()));
-  }
-  SL_ASSIGN(const std::vector<std::string> said, words_of(line.text));
-  if (auto command = find_command(said); !command) return std::move(command.error());
-  const auto later = std::upper_bound(lines_.begin(), lines_.end(), line.at,
-                                      [](Time at, const Line& other) { return at < other.at; });
-  lines_.insert(later, std::move(line));
-  return {};
-}
-
-Status Experiment::say_due_lines() {
-  while (!lines_.empty() && lines_.front().at <= sim_.now()) {
-    const Line line = std::move(lines_.front());
-    lines_.erase(lines_.begin());
-    auto answer = execute(line.text);
-    if (!answer) {
-      answer.error().what = "at " + number_text(sim_.now().s()) + " s: " + answer.error().what;
-      return std::move(answer.error());
-    }
-    answers_.push_back("at " + number_text(sim_.now().s()) + " s: " + *answer);
-  }
-  return {};
 }
 
 }  // namespace sandlot
