@@ -1,22 +1,27 @@
 #pragma once
-/// A run that people steer while it goes on: play, pause, step, speed, reset, rewind, jump.
+/// Session: one run of a simulation that can be paused, stepped, sped up, reset and rewound while it goes on.
 ///
 ///   Session session(std::move(simulation), {.pace = {1.0}});
 ///   session.add_observer(&viewer);
 ///   ... other threads: session.pause(); session.submit(request, source, done); session.post(task);
 ///   Status status = session.run(report, keep_going);      // returns when the run has ended or quit() was called
 ///
-/// The wall clock decides when a tick happens, never what it does. What comes from outside enters through submit() at
-/// tick boundaries and is logged, so a steered run can be recorded and replayed like any other.
+/// The wall clock decides when a tick happens, never its result. Input from outside enters through submit() between two
+/// ticks and is logged, so that a steered run can be recorded and replayed like any other.
 ///
-/// Rewinding   snapshots are kept while the run goes on, and what came from outside since. A jump back restores one and
-///             runs again up to the time asked for, with the same input: the world there is the same to the bit. What
-///             had happened behind it is forgotten.
-/// Worlds      a reset, a jump back and a load put another Simulation in place of the first: epoch() counts them, and
-///             Options::on_world is told. References to the old one end there.
-/// InputLog        input of a recording, given as Options::input_log: the run then is that recording's, ends where it ends, and
-///             takes no other input.
-/// Threads     run() belongs to one thread, the simulation's. Orders may come from any.
+/// Orders      act between two ticks, in this order: quit; a load; a reset; a jump; then play, pause, step and speed.
+///               play     ticks at the speed, until a pause
+///               step     exactly so many ticks without waiting, then pause
+///               jump     ticks without waiting until the target ("seeking"), then as before: playing or paused
+///             pause, step and reset end a jump that is under way. See Session::next_step().
+/// Rewinding   snapshots are kept while the run goes on, and the input since. A jump back restores one and runs again up
+///             to the target with the same input: the world there is the same to the bit. The history after the
+///             target is dropped.
+/// Worlds      a reset, a jump back and a load replace the Simulation by another one: epoch() counts them, and
+///             Options::on_world is called. References to the old one become invalid there.
+/// Input log   of a recording, given as Options::input_log: the run repeats the recording, ends where it ends, and takes no
+///             other input.
+/// Threads     run() belongs to one thread, the simulation's. Orders may come from any thread.
 /// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and `history_mb` of memory.
 #include <chrono>
 #include <condition_variable>
@@ -60,22 +65,22 @@ class Session {
   enum class State : std::uint8_t {
     playing,
     paused,
-    seeking,  ///< on its way to where jump() asked for, as fast as it can
-    ended,    ///< it has a reason to stop; a jump back goes on from there
+    seeking,  ///< on its way to the target of a jump, as fast as possible
+    ended,    ///< it has a reason to stop; a jump back continues from there
     failed,   ///< a tick failed
   };
   struct Options {
     Pace pace;
-    bool paused = false;  ///< begins so
+    bool paused = false;  ///< begins paused
     bool stay = false;    ///< when the run ends by itself, wait for orders instead of returning from run()
     double history_mb = 256;     ///< memory for snapshots to rewind to; 0: none
     double history_every_s = 1;  ///< simulated time between two, at least; more as the run becomes long
     SimulationOptions simulation = {};  ///< for the worlds that follow the first
-    std::optional<InputLog> input_log = {};
-    std::string may_not_rewind = {};  ///< not empty: why reset, load and jumps back are refused
-    /// Called on the simulation's thread when another world has come; `why`: "reset", "rewound to 3 s", "loaded".
+    std::optional<InputLog> input_log = {};  ///< input of a recording to repeat
+    std::string may_not_rewind = {};         ///< not empty: why reset, load and jumps back are refused
+    /// Called on the simulation's thread when the world was replaced; `why`: "reset", "rewound to 3 s", "loaded".
     std::function<void(Simulation& world, const std::string& why)> on_world = {};
-    /// Does a tick, with everything around it; unset: Simulation::tick().
+    /// Runs one tick with everything around it; unset: Simulation::tick().
     std::function<Status(Simulation& world, std::optional<Time> measured)> tick = {};
   };
   Session(std::unique_ptr<Simulation> simulation, Options options);
@@ -93,15 +98,15 @@ class Session {
   /// To the first state; goes on playing if it was. Errors: the run may not be rewound.
   Status reset();
   /// To the first tick not before a simulated time: back, from a snapshot; forward, by running as fast as possible. Then
-  /// playing or paused as before. Errors: before the beginning, or behind the end of a tape; back, where that is not allowed.
+  /// playing or paused as before. Errors: before the beginning or after the end; back, where that is not allowed.
   Status jump(Time to);
-  /// Replaces the world by that of a snapshot, which a later reset goes back to. Of several that wait the last one counts.
+  /// Replaces the world by that of a snapshot, which a later reset returns to. Of several pending loads the last one counts.
   /// `done` is called once: on the simulation's thread, or here when the run has ended.
   void load(std::vector<std::byte> snapshot, std::function<void(const Status&)> done);
   /// Ends run().
   void quit();
 
-  /// What became of a request, on the simulation's thread.
+  /// Receives the outcome of a request, on the simulation's thread.
   using Done = std::function<void(const Status&)>;
   /// Queues a request for the next tick. @return its sequence number; an error at once when the run takes no input now.
   /// While the run is paused the request waits.
@@ -114,7 +119,7 @@ class Session {
   struct Report {
     State state = State::playing;
     Time now, step, begin;
-    std::optional<Time> end;  ///< where it will stop by itself
+    std::optional<Time> end;  ///< time at which it will stop by itself
     std::uint64_t tick = 0, epoch = 1, revision = 0;
     std::optional<double> speed;
     double real_time_factor = 0;  ///< over the last second or so; 0 when paused
@@ -128,7 +133,7 @@ class Session {
   };
   /// From any thread.
   Report report() const;
-  /// Called when the state of the run has changed, or an order was given, on the thread where that happened. It must not
+  /// Called when the state of the run has changed or an order was given, on the thread where that happened. It must not
   /// block, nor call the session. Set it before run().
   std::function<void()> on_change;
 
@@ -136,66 +141,103 @@ class Session {
   Simulation& simulation() { return *simulation_; }
   const Simulation& simulation() const { return *simulation_; }
   std::uint64_t epoch() const { return epoch_; }
-  /// It runs again what had happened before; input comes from the tape, and nobody should add any.
+  /// The run repeats ticks from before a jump back: its input comes from the log, and no other should be added.
   bool rerunning() const { return simulation_->tick_index() < rerun_until_; }
   /// For this and all following worlds.
   void add_observer(Observer* observer);
   void remove_observer(Observer* observer);
-  /// Runs until the end, quit(), or `keep_going` (asked after each tick and at least 10 times a second) says no.
+  /// Runs until the end, quit(), or `keep_going` (called after each tick and at least 10 times a second) returns false.
   Status run(RunReport& report, const std::function<bool(const Simulation&)>& keep_going = {});
 
  private:
+  /// Snapshot to rewind to.
   struct Kept {
     std::uint64_t tick = 0;
     Time now;
     std::vector<std::byte> bytes;
   };
-  struct Input;
+  struct InputRecorder;
   struct Pacer;
   struct Load {
     std::vector<std::byte> bytes;
     std::function<void(const Status&)> done;
   };
+  /// Orders that replace the world or move the run in time; carried out between two ticks by process_order().
+  struct Pending {
+    std::vector<Load> loads;
+    bool reset = false;
+    std::optional<Time> jump;
+    bool any() const { return !loads.empty() || reset || jump; }
+  };
+  /// What the run does while no order is pending and it seeks nothing.
+  enum class Mode : std::uint8_t { paused, playing, stepping };
+  /// Whether the run is on its way to `target_`.
+  enum class Seek : std::uint8_t {
+    none,
+    active,
+    cancelled,  ///< by an order from another thread; the simulation's thread has to forget the future still
+  };
+  /// What the loop of run() does next.
+  enum class Step : std::uint8_t { leave, process_order, end_seek, end, pause, tick };
 
-  void order(const std::function<void()>& give);
-  bool woken() const;
+  // session.cpp: orders and reports
+  void post_order(const std::function<void()>& apply);
+  void cancel_seek();
+  void stop_stepping();
   Status may_rewind() const;
-  Status advance(std::optional<Time> measured, RunReport& report);
-  std::optional<Time> feed_input_log();
-  /// Carries out what waits; unlocks meanwhile. @return whether it did something
-  bool obey(std::unique_lock<std::mutex>& lock);
-  Status go_back(Time to);
-  Status replace(std::span<const std::byte> bytes, const std::string& why);
-  static void refuse_loads(std::vector<Load> loads, const char* why);
   std::string why_no_input() const;
-  void forget_future();
-  void keep_snapshot();
-  void run_tasks(std::chrono::milliseconds patience);
-  void answer_outcomes();
   void set_state(State state);
   void refresh_report();
+
+  // session_loop.cpp: the loop
+  Step next_step() const;
+  bool is_over() const;
+  void process_order();
+  Status load_last(std::vector<Load> loads);
+  Status reset_world();
+  void clear_end();
+  void drop_target();
+  void end_seek();
+  void end_run();
+  void wait_for_order();
+  bool wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time>& measured);
+  void run_tick(Pacer& pacer, RunReport& report, std::optional<Time> measured);
+  Status advance(std::optional<Time> measured, RunReport& report);
+  void run_tasks(std::chrono::milliseconds patience);
+  void answer_outcomes();
+  void answer_the_rest();
+
+  // session_history.cpp: snapshots and input
+  std::optional<Time> feed_input_log();
+  Status go_back(Time to);
+  Status replace(std::span<const std::byte> bytes, const std::string& why);
+  void forget_future();
+  void keep_snapshot();
 
   Options options_;
   std::unique_ptr<Simulation> simulation_;  ///< replaced under the mutex
   std::vector<Observer*> observers_;
-  std::unique_ptr<Input> input_;
+  std::unique_ptr<InputRecorder> input_recorder_;  ///< null for a run with an input log
   std::uint64_t epoch_ = 1;
-  InputLog past_;             ///< what came from outside since the first state kept; or the recording's
-  std::deque<Kept> history_;  ///< ascending; the first is where the run began
+  InputLog past_;             ///< input since the first snapshot kept; or the recording's
+  std::deque<Kept> history_;  ///< ascending; the first is the beginning of the run
   std::size_t history_bytes_ = 0;
   double history_gap_s_ = 1, snapshot_cost_s_ = 0, snapshot_at_s_ = -1e9;  ///< wall clock
   std::uint64_t rerun_until_ = 0;                                          ///< tick
-  Status status_;
+  Status status_;                                                          ///< of the latest tick
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  // Guarded:
-  std::map<std::uint64_t, Done> waiting_;  ///< by sequence number
-  bool playing_ = true, seeking_ = false, reset_ = false, quit_ = false, running_ = true, woken_ = false;
-  std::uint64_t steps_left_ = 0;
+  // Guarded by mutex_:
+  Mode mode_ = Mode::playing;
+  Seek seek_ = Seek::none;
+  std::optional<Time> target_;    ///< of the jump under way
+  std::uint64_t steps_left_ = 0;  ///< > 0 while mode_ is stepping
+  Pending pending_;
+  bool quit_ = false, running_ = true;
+  bool woken_ = false;  ///< something came that the loop must look at before it sleeps
   Pace pace_;
-  std::optional<Time> jump_, target_;
-  std::vector<Load> loads_;
+  std::map<std::uint64_t, Done> waiting_;  ///< by sequence number
   std::deque<std::function<void(Session&)>> tasks_;
   Report report_;
 };

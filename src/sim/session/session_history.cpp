@@ -1,8 +1,9 @@
-/// What a session keeps so that it can go back: snapshots, and what came from outside.
+/// History of a session: the snapshots that it can go back to, and the input since then.
 #include <algorithm>
 #include <chrono>
 
-#include "sim/session/session.h"
+#include "base/text.h"
+#include "sim/session/input_recorder.h"
 
 namespace sandlot {
 namespace {
@@ -15,7 +16,18 @@ double wall_s() {
 
 }  // namespace
 
-/// Queues what the tape has for the next tick. @return its measured length, if it had one
+void Session::InputRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
+  const auto from_outside = [](const LogEntry& entry) {
+    return entry.kind == LogEntry::step || entry.source.kind != Source::Kind::program;
+  };
+  std::vector<LogEntry> entries;
+  for (const LogEntry& entry : frame->log)
+    if (from_outside(entry)) entries.push_back(entry);
+  if (entries.empty()) log.entries.erase(frame->tick);
+  else log.entries[frame->tick] = std::move(entries);
+}
+
+/// Submits the logged input of the next tick. @return the logged length of the tick, if it was measured
 std::optional<Time> Session::feed_input_log() {
   std::optional<Time> measured;
   const auto found = past_.entries.find(simulation_->tick_index() + 1);
@@ -37,8 +49,8 @@ std::optional<Time> Session::feed_input_log() {
   return measured;
 }
 
-/// Snapshots are taken where they cost little, and thinned out so that their number and size stay bounded: the older, the
-/// further apart.
+/// Takes a snapshot where that costs little, and thins them out so that their number and size stay bounded: the older, the
+/// farther apart.
 void Session::keep_snapshot() {
   if (options_.history_mb <= 0) return;
   const Time now = simulation_->now();
@@ -66,7 +78,7 @@ void Session::keep_snapshot() {
   }
 }
 
-/// The run goes on from here: what it had become behind is no more.
+/// Drops snapshots and input after the present tick: the run goes on from here in another way.
 void Session::forget_future() {
   rerun_until_ = 0;
   if (options_.input_log) return;
@@ -75,6 +87,44 @@ void Session::forget_future() {
     history_bytes_ -= history_.back().bytes.size();
     history_.pop_back();
   }
+}
+
+/// Builds the world of a snapshot in place of the present one. Requests that still wait are refused.
+Status Session::replace(std::span<const std::byte> bytes, const std::string& why) {
+  Diagnostics given_before;  // these warnings were given when the run began
+  SL_ASSIGN(auto world, Simulation::restore(bytes, options_.simulation, given_before));
+  for (Observer* observer : observers_) world->add_observer(observer);
+  if (input_recorder_) world->add_observer(input_recorder_.get());
+  std::map<std::uint64_t, Done> waiting;
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(simulation_, world);
+    std::swap(waiting, waiting_);
+    ++epoch_;
+    // Before anybody can submit to the new world: ticks that are repeated have their input already.
+    report_.takes_no_input = why_no_input();
+  }
+  for (const auto& [sequence, done] : waiting) done(Error{"the run was " + why + " before"});
+  if (options_.on_world) options_.on_world(*simulation_, why);
+  return {};
+}
+
+/// Restores the latest snapshot not after `to`, unless running on from here is the shorter way.
+Status Session::go_back(Time to) {
+  // The latest one not after `to`; the first is the beginning of the run.
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < history_.size(); ++i)
+    if (history_[i].now <= to) best = i;
+  const Time now = simulation_->now();
+  const bool ahead = to >= now && status_;
+  if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // forward: only run on
+  SL_TRY(may_rewind());  // the run may have passed the target since the order
+  const std::uint64_t frontier = simulation_->tick_index();
+  const std::uint64_t before = rerun_until_;
+  if (!options_.input_log) rerun_until_ = std::max(frontier, rerun_until_);
+  Status status = replace(history_[best].bytes, "rewound to " + number_text(to.s()) + " s");
+  if (!status) rerun_until_ = before;
+  return status;
 }
 
 }  // namespace sandlot

@@ -21,18 +21,6 @@ model::Setup rolling(std::optional<double> stop_s = std::nullopt) {
   return setup;
 }
 
-/// Calls `at` before the loop goes on after tick n: the test's other thread, without races.
-struct Script {
-  std::function<void(Session&)> after;
-  Session& session;
-  std::function<bool(const Simulation&)> keep_going() {
-    return [this](const Simulation&) {
-      after(session);
-      return true;
-    };
-  }
-};
-
 std::uint64_t hash_after(model::Setup setup, std::uint64_t ticks) {
   const auto simulation = build(std::move(setup));
   for (std::uint64_t i = 0; i < ticks; ++i) EXPECT_TRUE(simulation->tick());
