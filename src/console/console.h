@@ -36,9 +36,9 @@ struct Answer {
 class Console {
  public:
   struct Options {
-    std::vector<std::string> paths;    ///< folders to search for models (`add`) and files
-    std::string folder = ".";          ///< where store, load and record may write and read: there and below
-    RunHooks* experiment = nullptr;    ///< whose commands are known too
+    std::vector<std::string> paths;  ///< folders to search for models (`add`) and files
+    std::string folder = ".";        ///< where store, load and record may write and read: there and below
+    RunHooks* experiment = nullptr;  ///< whose commands are known too
     /// Starts a recording to a file, or ends it (""). Unset: there is none.
     std::function<Result<std::string>(const std::string& file)> record;
   };

@@ -40,8 +40,9 @@ int play(const ReplayOptions& options) {
   const SimulationOptions simulation_options{.threads = options.threads, .paths = options.paths};
   auto simulation = Simulation::restore(recording->snapshot(), simulation_options, diagnostics);
   if (run.cut)
-    diagnostics.warn({fmt::format("the recording ends at {}: {}",
-                                  record::tick_text(run.input_log.last_tick, run.input_log.end), run.cut->what)});
+    diagnostics.warn(
+        {fmt::format("the recording ends at {}: {}",
+                     record::tick_text(run.input_log.last_tick, run.input_log.end), run.cut->what)});
   const std::string profile = recording->begin().profile;
   if (profile != Simulation::profile())
     diagnostics.warn({"it was recorded with another numeric profile (" + profile + "), this is " +

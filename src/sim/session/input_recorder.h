@@ -5,8 +5,8 @@
 namespace sandlot {
 
 struct Session::InputRecorder final : Observer {
-  explicit InputRecorder(InputLog& to) : log(to) {}
-  InputLog& log;
+  explicit InputRecorder(InputLog& to) : input(to) {}
+  InputLog& input;
   Wants wants() const override { return {.input = true, .instances = false}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override;
 };

@@ -34,7 +34,7 @@ Result<std::vector<std::string>> words_of(std::string_view line) {
 
 template <class... Arguments>
 Status RunHooks::call(const char* name, const std::function<Status(RunHooks&, Arguments...)>& hook,
-                        const std::type_identity_t<Arguments>&... arguments) {
+                      const std::type_identity_t<Arguments>&... arguments) {
   if (!hook) return {};
   Status status;
   const auto thrown = caught([&] { status = hook(*this, arguments...); });

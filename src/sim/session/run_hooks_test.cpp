@@ -149,15 +149,14 @@ struct Console {
   Hooks hooks;
   std::unique_ptr<RunHooks> run;
   Console() {
-    hooks.commands.push_back(
-        {"kick", "kick WORDS: says them",
-         [this](RunHooks& e, std::span<const std::string> words) -> Result<std::string> {
-           std::string all = std::to_string(e.simulation().now().ns / 1'000'000);
-           for (const std::string& word : words) all += "|" + word;
-           said.push_back(all);
-           if (!words.empty() && words[0] == "hard") throw std::runtime_error("ouch");
-           return all;
-         }});
+    hooks.commands.push_back({"kick", "kick WORDS: says them",
+                              [this](RunHooks& e, std::span<const std::string> words) -> Result<std::string> {
+                                std::string all = std::to_string(e.simulation().now().ns / 1'000'000);
+                                for (const std::string& word : words) all += "|" + word;
+                                said.push_back(all);
+                                if (!words.empty() && words[0] == "hard") throw std::runtime_error("ouch");
+                                return all;
+                              }});
     run = std::make_unique<RunHooks>(*sim, hooks);
   }
 };

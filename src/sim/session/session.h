@@ -75,7 +75,7 @@ class Session {
     bool stay = false;    ///< when the run ends by itself, wait for orders instead of returning from run()
     double history_mb = 256;     ///< memory for snapshots to rewind to; 0: none
     double history_every_s = 1;  ///< simulated time between two, at least; more as the run becomes long
-    SimulationOptions simulation = {};  ///< for the worlds that follow the first
+    SimulationOptions simulation = {};       ///< for the worlds that follow the first
     std::optional<InputLog> input_log = {};  ///< input of a recording to repeat
     std::string may_not_rewind = {};         ///< not empty: why reset, load and jumps back are refused
     /// Called on the simulation's thread when the world was replaced; `why`: "reset", "rewound to 3 s", "loaded".

@@ -23,8 +23,8 @@ void Session::InputRecorder::on_frame(const std::shared_ptr<const Frame>& frame)
   std::vector<LogEntry> entries;
   for (const LogEntry& entry : frame->log)
     if (from_outside(entry)) entries.push_back(entry);
-  if (entries.empty()) log.entries.erase(frame->tick);
-  else log.entries[frame->tick] = std::move(entries);
+  if (entries.empty()) input.entries.erase(frame->tick);
+  else input.entries[frame->tick] = std::move(entries);
 }
 
 /// Submits the logged input of the next tick. @return the logged length of the tick, if it was measured

@@ -13,7 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr auto nap = std::chrono::milliseconds(100);  ///< longest sleep without calling keep_going
+constexpr auto nap = std::chrono::milliseconds(100);         ///< longest sleep without calling keep_going
 constexpr auto tasks_pause = std::chrono::milliseconds(10);  ///< longest delay of the next tick by tasks
 
 Clock::duration wall(double seconds) { return std::chrono::duration_cast<Clock::duration>(Seconds(seconds)); }
@@ -42,7 +42,9 @@ struct Session::Pacer {
   }
   /// After a stop, a jump or another speed: the clock begins again with the next tick.
   void forget() { set = false; }
-  Clock::time_point due(Time now, double speed) const { return origin + wall((now - sim_origin).s() / speed); }
+  Clock::time_point due(Time now, double speed) const {
+    return origin + wall((now - sim_origin).s() / speed);
+  }
   double real_time_factor(Time now) {
     if (!set) return 0;
     constexpr double window_s = 1, between_s = 0.1;

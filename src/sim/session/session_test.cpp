@@ -262,11 +262,11 @@ TEST(Session, RunsAnInputLogAndTakesNothingElse) {
   InputLog log;
   const auto reference = build(rolling());
   struct Keep final : Observer {
-    InputLog& log;
-    explicit Keep(InputLog& to) : log(to) {}
+    InputLog& input;
+    explicit Keep(InputLog& to) : input(to) {}
     Wants wants() const override { return {.input = true}; }
     void on_frame(const std::shared_ptr<const Frame>& frame) override {
-      if (!frame->log.empty()) log.entries[frame->tick] = frame->log;
+      if (!frame->log.empty()) input.entries[frame->tick] = frame->log;
     }
   } keep(log);
   const std::vector<std::byte> begin = reference->snapshot();

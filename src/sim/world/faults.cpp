@@ -1,12 +1,10 @@
-/// Devices that fail, and the factors on the errors of all devices.
+/// Failures and clocks of devices.
 #include "sim/world/faults.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.h"
-#include "noise/chain.h"
-#include "sim/world/simulation.h"
 
 namespace sandlot {
 
@@ -92,67 +90,6 @@ Status Faults::check(std::span<const SimulationParts::Slot> topics) const {
                "/clock"};
 }
 
-bool Simulation::takes_commands(const Device& device) const {
-  if (!device.faults) return true;
-  const Failing failing = device.faults->at(now_);
-  return !failing.stuck && !failing.dead;
-}
-
-/// Takes the samples that are due in a pool with devices that have faults.
-void Simulation::sense_faulty(Pool& pool, const Context& ctx) {
-  for (const std::uint32_t index : pool.due) {
-    const Device& device = *pool.devices[index];
-    if (!device.faults) continue;
-    const Failing failing = device.faults->at(now_);
-    if (failing.factor != 1) pool.pool->scale_errors(index, device.errors * failing.factor);
-    auto& before = device.faults->before;
-    if (!failing.stuck && !failing.dead) continue;
-    if (before.empty())
-      for (const Slot& slot : device.topics) before.push_back(slot.topic->clone());
-    for (std::size_t i = 0; i < before.size(); ++i) before[i]->copy_from(*device.topics[i].topic);
-  }
-  pool.pool->sense(ctx, {pool.due, pool.sample, pool.levels, pool.since});
-  for (const std::uint32_t index : pool.due) {
-    const Device& device = *pool.devices[index];
-    if (!device.faults) continue;
-    const FaultsSpec& spec = device.faults->spec;
-    const Failing failing = device.faults->at(now_);
-    if (failing.factor != 1) pool.pool->scale_errors(index, device.errors);
-    if (failing.stuck || failing.dead)
-      for (std::size_t i = 0; i < device.topics.size(); ++i) {
-        TopicBase& topic = *device.topics[i].topic;
-        const TopicBase& before = *device.faults->before[i];
-        const bool published = topic.count != before.count;
-        topic.copy_from(before);
-        if (published && !failing.dead && topic.count > 0) topic.republish(now_);
-      }
-    if (!spec.clock) continue;
-    const double errors = std::min(max_errors, pool.pool->errors(index) * device.errors * failing.factor);
-    const Stream random(setup_.seed, device.key, Purpose::noise, pool.sample[index]);
-    const Time shown = clock_at(*spec.clock, now_, errors, random);
-    for (const Slot& slot : device.topics)
-      if (slot.topic->count > 0 && slot.topic->stamp == now_) slot.topic->restamp(shown);
-  }
-}
-
-/// Those that act now, of a pool in which some may be dead: these let go of what they hold.
-std::span<const std::uint32_t> Simulation::acting(Pool& pool, const Context* let_go) {
-  if (pool.faulty == 0) return pool.all;
-  pool.due.clear();
-  for (const std::uint32_t index : pool.all) {
-    const Device& device = *pool.devices[index];
-    if (device.commands.empty() || !device.faults || !device.faults->at(now_).dead) {
-      pool.due.push_back(index);
-    } else if (let_go) {
-      // Wheels keep their rollers: only a switch of the level would bring them back.
-      const std::size_t wheels = actuation_.wheels.size();
-      pool.pool->release(index, *let_go);
-      actuation_.wheels.resize(wheels);
-    }
-  }
-  return pool.due;
-}
-
 Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std::uint32_t& faulty,
                      const FailureOrder& order) {
   if (order.kind == FailureOrder::Kind::noisy && !pool.has_errors())
@@ -167,32 +104,6 @@ Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std:
     --faulty;
   }
   return {};
-}
-
-Status Simulation::set_errors(Entity* entity, std::string_view field, const Node& value) {
-  if (field != errors_field.key)
-    return Error{"'" + std::string(field.substr(0, 60)) + "' is no parameter of the whole", "errors is",
-                 value.place()};
-  SL_ASSIGN(const double factor,
-            read_number(value, errors_field, errors_field.min, errors_field.max, false, "/errors"));
-  (entity ? entity->instance.errors : setup_.errors) = factor;
-  for (const auto& each : entities_)
-    for (const auto& device : each->devices) {
-      device->errors = setup_.errors * each->instance.errors;
-      pools_[device->kind].pool->scale_errors(device->index, device->errors);
-    }
-  return {};
-}
-
-bool Simulation::errors_scaled() const {
-  return setup_.errors != 1 || std::any_of(entities_.begin(), entities_.end(),
-                                           [](const auto& each) { return each->instance.errors != 1; });
-}
-
-void Simulation::save_errors(ByteWriter& w) const {
-  write(w, setup_.errors);
-  for (const auto& entity : entities_)
-    if (entity->instance.errors != 1) write(w, entity->serial), write(w, entity->instance.errors);
 }
 
 }  // namespace sandlot

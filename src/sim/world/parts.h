@@ -1,5 +1,5 @@
 #pragma once
-/// The parts that a Simulation consists of, for the files of sim/ and those who read it by address.
+/// Parts of a Simulation: entities with their devices and programs, for the files of sim/ and for readers by address.
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,19 +20,19 @@ struct SimulationParts {
   struct Device {
     explicit Device(std::shared_ptr<const model::DeviceDecl> declared)
         : shared_decl(std::move(declared)), decl(*shared_decl) {}
-    std::shared_ptr<const model::DeviceDecl> shared_decl;  ///< by devices alike
+    std::shared_ptr<const model::DeviceDecl> shared_decl;  ///< one object for equal declarations
     const model::DeviceDecl& decl;
     std::string path;
     std::uint64_t key = 0;
-    std::uint32_t kind = 0;   ///< index into pools_
+    std::uint32_t kind = 0;   ///< index of its pool
     std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
     std::vector<Slot> topics, commands;
-    std::vector<std::pair<std::string, Pose>> frames;  ///< beside its own, as X_SF
+    std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
     double errors = 1;                                 ///< the world's factor on errors times the robot's
     std::shared_ptr<Faults> faults;                    ///< null: it has none
   };
-  /// When a device takes its samples: looked at in every tick, so those of a pool lie side by side.
+  /// Sampling times of a device. Read in every tick, so those of a pool lie side by side.
   struct Timing {
     Time start;                ///< due times count from here
     std::uint64_t sample = 0;  ///< index of the next sample
@@ -41,7 +41,7 @@ struct SimulationParts {
     double rate_hz = 0;        ///< 0: every tick
     bool requested = false;
   };
-  /// Where an order of a program goes at the active levels.
+  /// Destination of an order of a program at the active levels.
   struct Route {
     Device* device = nullptr;
     Slot* slot = nullptr;  ///< null: nothing takes it
@@ -49,17 +49,17 @@ struct SimulationParts {
   struct ProgramEntry {
     explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
         : shared_decl(std::move(declared)), decl(*shared_decl) {}
-    std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< by robots alike
+    std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< one object for equal declarations
     const model::ControllerDecl& decl;
     std::string path;
     std::uint64_t key = 0;
     const ControllerKind* kind = nullptr;
     std::unique_ptr<Program> program;
-    Controller* controller = nullptr;  ///< the program's, where that is all there is to it
-    std::shared_ptr<const Description>
-        description;                       ///< shared by robots alike: its `robot` is the first of them
+    Controller* controller = nullptr;  ///< the program's, where it is no more than a controller
+    /// One object for robots with equal devices: its `robot` is the first of them.
+    std::shared_ptr<const Description> description;
     std::vector<Route> routes;             ///< per actuator of the description
-    std::vector<const TopicBase*> topics;  ///< what its readings point to at the active levels
+    std::vector<const TopicBase*> topics;  ///< topics of its readings at the active levels
     std::vector<std::uint64_t> seen;       ///< message counts at its previous step
     Command command;
     std::uint64_t steps = 0;
@@ -73,6 +73,18 @@ struct SimulationParts {
     std::uint64_t serial = 0;  ///< creation order over the whole run
     std::vector<std::unique_ptr<Device>> devices;
     std::vector<std::unique_ptr<ProgramEntry>> programs;
+
+    /// By path, "rover/laser"; null when there is none.
+    Device* find_device(std::string_view path) {
+      for (const auto& device : devices)
+        if (device->path == path) return device.get();
+      return nullptr;
+    }
+    ProgramEntry* find_program(std::string_view path) {
+      for (const auto& program : programs)
+        if (program->path == path) return program.get();
+      return nullptr;
+    }
   };
 };
 

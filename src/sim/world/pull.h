@@ -1,6 +1,6 @@
 #pragma once
-/// A spring between a point of a link and a point in the world, as a hand pulls at things: it accelerates light and heavy
-/// things alike.
+/// Pulls: springs between a point of a link and a point in the world, as a hand pulls at a body. Light and heavy models are
+/// accelerated alike.
 ///
 /// Law      force = m (w^2 (target - point) - 2 w v), w = 2 pi / 1 s, m the mass of the whole instance, v the velocity of the point:
 ///          critically damped, so that what hangs on it comes to rest at the target within about a second. At most 50 m
@@ -8,11 +8,16 @@
 /// Time     from the tick that takes the request until `hold` later, or until the next request for the same instance.
 /// Limits   engine `rigid` only; no torque but that of the force about the centre of mass.
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
-#include "base/fields.h"
+#include "base/bytes.h"
 #include "base/time.h"
+#include "devices/context.h"
 #include "physics/engine.h"
+#include "sim/world/parts.h"
+#include "sim/world/request.h"
 
 namespace sandlot {
 
@@ -31,25 +36,35 @@ struct Pull {
   }
 };
 
-/// Longest a pull may last: a request of somebody who is gone does not pull for ever.
+/// Longest duration of a pull, so that the request of a client that is gone ends by itself [s].
 inline constexpr double longest_pull_s = 10;
-
-/// A device that somebody drives from outside: the robot's own controllers are not heard by it until then.
-struct Hold {
-  std::uint64_t device = 0;  ///< its key
-  Time until;
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"device", "1", "Key of the device."}, s.device);
-    visit(Field{"until", "s", "Time at which commands of programs take effect again."}, s.until);
-  }
-};
-/// From each command on [s].
-inline constexpr double held_s = 0.5;
 
 double mass_kg(const model::Model& model);
 
 /// The force of a pull now, as a wrench at the link's centre of mass.
 Wrench wrench_of(const Pull& pull, BodyId body, const BodyState& state, const model::Link& link,
                  double mass_kg);
+
+/// The pulls at the entities of a world: State.
+class Pulls {
+ public:
+  using Entity = SimulationParts::Entity;
+
+  /// Begins, renews or ends the pull at an entity.
+  Status start(const Entity& entity, const PullRequest& request, Time now);
+  /// Ends the pull at an entity that is removed.
+  void remove(const Entity& entity);
+  /// Adds the forces of all pulls to a sub-step's wrenches. @param begin  of the tick
+  void add_wrenches(std::span<const std::unique_ptr<Entity>> entities, const Engine& engine, Time begin,
+                    Actuation& actuation);
+
+  bool empty() const { return pulls_.empty(); }
+  void save(ByteWriter& w) const;
+  /// Reads to the end. @return false: the bytes do not fit these entities
+  bool load(std::span<const std::unique_ptr<Entity>> entities, ByteReader& r);
+
+ private:
+  std::vector<Pull> pulls_;  ///< those that are over stay until the next tick
+};
 
 }  // namespace sandlot

@@ -90,94 +90,23 @@ Result<SnapshotInfo> examine_snapshot(std::span<const std::byte> bytes) {
   return info;
 }
 
-void Simulation::save_device(const Device& device, ByteWriter& w) const {
-  const Timing& when = timing(device);
-  write(w, device.levels);
-  write(w, when.start);
-  write(w, when.sample);
-  write(w, when.last);
-  write(w, when.requested);
-  for (const Slot& slot : device.topics) slot.topic->save(w);
-  for (const Slot& slot : device.commands) slot.topic->save(w);
-  pools_[device.kind].pool->save(device.index, w);
-}
-
-void Simulation::load_device(Device& device, ByteReader& r) {
-  Timing& when = pools_[device.kind].timing[device.index];
-  std::uint32_t levels = 0;
-  read(r, levels);
-  // Kinds look for their active levels without asking whether there are any.
-  const std::size_t known = std::max<std::size_t>(pools_[device.kind].kind->levels.size(), 1);
-  if (levels == 0 || (known < 32 && levels >> known != 0)) return r.fail();
-  set_active_levels(device, levels);
-  read(r, when.start);
-  read(r, when.sample);
-  read(r, when.last);
-  read(r, when.requested);
-  // Due times are computed from these: what cannot be would overflow.
-  constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
-  if (when.start < Time{} || when.start > now_ || when.last < Time{} || when.last > now_ ||
-      when.sample > most_samples)
-    return r.fail();
-  for (Slot& slot : device.topics) slot.topic->load(r);
-  for (Slot& slot : device.commands) slot.topic->load(r);
-  pools_[device.kind].pool->load(device.index, r);
-  if (r.ok()) plan_next_sample(device);
-}
-
-void Simulation::save_program(const ProgramEntry& program, ByteWriter& w) {
-  write(w, program.steps);
-  write(w, program.ended);
-  write(w, program.seen);
-  write(w, static_cast<std::uint32_t>(program.command.orders().size()));
-  for (const Command::Order& order : program.command.orders()) {
-    const auto bytes = program.command.bytes(order);
-    write(w, order.slot);
-    write(w, static_cast<std::uint32_t>(bytes.size()));
-    w.raw(bytes.data(), bytes.size());
-  }
-  program.program->save(w);
-}
-
-bool Simulation::load_program(ProgramEntry& program, ByteReader& r) {
-  const std::size_t readings = program.seen.size();
-  read(r, program.steps);
-  read(r, program.ended);
-  read(r, program.seen);
-  std::uint32_t orders = 0;
-  read(r, orders);
-  program.command.clear();
-  for (std::uint32_t i = 0; i < orders && r.ok(); ++i) {
-    std::uint32_t slot = 0, size = 0;
-    read(r, slot);
-    read(r, size);
-    const auto bytes = r.take(size);
-    if (slot >= program.description->actuators.size()) return false;
-    program.command.set_bytes(slot, bytes);
-  }
-  program.program->load(r);
-  return r.ok() && program.seen.size() == readings;
-}
-
 void Simulation::save_run(ByteWriter& w) const {
   write(w, now_);
   write(w, tick_);
   write(w, revision_);
   write(w, next_serial_);
-  write(w, refused_commands_);
+  write(w, commands_.refused());
   for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
   for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
   monitor_->save(w);
   // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
   const bool scaled = errors_scaled();
-  // Orders of failures; few devices have any faults.
-  const bool ordered = std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) {
-    return pool.faulty > 0 && std::any_of(pool.devices.begin(), pool.devices.end(),
-                                          [](const Device* device) { return is_ordered(*device); });
-  });
-  if (!pulls_.empty() || !holds_.empty() || scaled || ordered)
-    write_block(w, [&](ByteWriter& block) { save_pulls(block); });
-  if (!holds_.empty() || scaled || ordered) write_block(w, [&](ByteWriter& block) { write(block, holds_); });
+  const bool ordered = devices_.any_failure_ordered();
+  const std::vector<ManualOverride>& overrides = commands_.overrides();
+  if (!pulls_.empty() || !overrides.empty() || scaled || ordered)
+    write_block(w, [&](ByteWriter& block) { pulls_.save(block); });
+  if (!overrides.empty() || scaled || ordered)
+    write_block(w, [&](ByteWriter& block) { write(block, overrides); });
   if (scaled || ordered) write_block(w, [&](ByteWriter& block) { save_errors(block); });
   if (!ordered) return;
   write_block(w, [&](ByteWriter& block) {
@@ -191,22 +120,15 @@ void Simulation::save_run(ByteWriter& w) const {
   });
 }
 
-void Simulation::save_pulls(ByteWriter& w) const {
-  for (const Pull& pull : pulls_) Pull::state(pull, [&](const auto& member) { write(w, member); });
+bool Simulation::errors_scaled() const {
+  return setup_.errors != 1 || std::any_of(entities_.begin(), entities_.end(),
+                                           [](const auto& each) { return each->instance.errors != 1; });
 }
 
-bool Simulation::load_pulls(ByteReader& r) {
-  while (r.ok() && r.remaining() > 0) {
-    Pull pull;
-    Pull::state(pull, [&](auto& member) { read(r, member); });
-    const auto entity = std::find_if(entities_.begin(), entities_.end(),
-                                     [&](const auto& each) { return each->serial == pull.serial; });
-    if (!r.ok() || entity == entities_.end() || pull.link >= (*entity)->instance.model->links.size() ||
-        !is_finite(pull.point_L) || !is_finite(pull.target_W))
-      return false;
-    pulls_.push_back(pull);
-  }
-  return r.ok();
+void Simulation::save_errors(ByteWriter& w) const {
+  write(w, setup_.errors);
+  for (const auto& entity : entities_)
+    if (entity->instance.errors != 1) write(w, entity->serial), write(w, entity->instance.errors);
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -214,7 +136,9 @@ bool Simulation::load_run(ByteReader& r) {
   read(r, tick_);
   read(r, revision_);
   read(r, next_serial_);
-  read(r, refused_commands_);
+  std::uint64_t refused = 0;
+  read(r, refused);
+  commands_.restore(refused);
   constexpr std::int64_t most_ns = std::int64_t{1} << 61;  // 73 years, and far from an overflow
   if (now_.ns < 0 || now_.ns > most_ns) return false;
   for (const auto& rule : rules_) {
@@ -228,11 +152,13 @@ bool Simulation::load_run(ByteReader& r) {
   monitor_->load(r);
   if (!r.ok() || r.remaining() == 0) return r.ok();
   ByteReader pulls = read_block(r);
-  if (!r.ok() || !load_pulls(pulls)) return false;
+  if (!r.ok() || !pulls_.load(entities_, pulls)) return false;
   if (r.remaining() == 0) return true;
-  ByteReader holds = read_block(r);
-  read(holds, holds_);
-  if (!r.ok() || !holds.ok() || holds.remaining() != 0) return false;
+  ByteReader block = read_block(r);
+  std::vector<ManualOverride> overrides;
+  read(block, overrides);
+  if (!r.ok() || !block.ok() || block.remaining() != 0) return false;
+  commands_.restore(std::move(overrides));
   if (r.remaining() == 0) return true;
   read_block(r);  // factors on errors: for the hash; the Model has brought them
   if (!r.ok() || r.remaining() == 0) return r.ok();
@@ -246,21 +172,20 @@ bool Simulation::load_run(ByteReader& r) {
     Device* const device = failures.ok() ? find_device(path) : nullptr;
     if (!device || order.kind > FailureOrder::Kind::noisy || !(order.factor >= 0 && order.factor <= 1000))
       return false;
-    Pool& pool = pools_[device->kind];
-    if (!order_failure(*device, *pool.pool, pool.faulty, order)) return false;
+    if (!devices_.order_failure(*device, order)) return false;
   }
   return r.ok() && failures.ok();
 }
 
-/// Calls visit(path, key, fill) for each entity's part of the State, in creation order.
+/// Calls visit(path, key, fill) for each part of the State after the run's own, in creation order.
 template <class Visit>
 void Simulation::for_each_state(Visit&& visit) const {
   for (const auto& entity : entities_) {
     visit(entity->instance.name, entity->key, [&](ByteWriter& w) { engine_->save(entity->id, w); });
     for (const auto& device : entity->devices)
-      visit(device->path, device->key, [&](ByteWriter& w) { save_device(*device, w); });
+      visit(device->path, device->key, [&](ByteWriter& w) { devices_.save(*device, w); });
     for (const auto& program : entity->programs)
-      visit(program->path, program->key, [&](ByteWriter& w) { save_program(*program, w); });
+      visit(program->path, program->key, [&](ByteWriter& w) { Programs::save(*program, w); });
   }
 }
 
@@ -351,8 +276,8 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
     decl = {plugin->file, plugin->name, plugin->hash, decl.place};
   }
   std::unique_ptr<Simulation> sim(new Simulation(std::move(opened.setup), options));
-  Diagnostics said_before;  // these warnings were given when the run began
-  SL_TRY(sim->build(said_before));
+  Diagnostics given_before;  // these warnings were given when the run began
+  SL_TRY(sim->build(given_before));
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) sim->entities_[i]->serial = opened.serials[i];
   ByteReader run = read_block(r);
   if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
@@ -363,17 +288,17 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
       return damaged("the bodies of '" + entity.instance.name + "' cannot be read");
     for (const auto& device : entity.devices) {
       ByteReader state = read_block(r);
-      sim->load_device(*device, state);
+      sim->devices_.load(*device, state, sim->now_);
       if (!whole(state)) return damaged("the device '" + device->path + "' cannot be read");
     }
     for (const auto& program : entity.programs) {
       ByteReader state = read_block(r);
-      if (!load_program(*program, state) || !whole(state))
+      if (!Programs::load(*program, state) || !whole(state))
         return damaged("the program '" + program->path + "' cannot be read");
     }
-    sim->point_programs_at_active_levels(entity);
+    sim->programs_.follow_levels(entity);
   }
-  sim->programs_changed_ = true;
+  sim->programs_.entities_changed();
   if (!whole(r)) return damaged("there is more in it than belongs there");
   sim->arena_->execute([&] {
     sim->update_scene();

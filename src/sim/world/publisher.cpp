@@ -1,7 +1,5 @@
-/// The last phase of a tick: the frame for the observers.
-///
-/// Recording wants a copy of all messages and a hash of all State at every tick, so both are made as cheap as they can
-/// be: memory goes round between here and those who hold frames, and what did not change is not hashed again.
+#include "sim/world/publisher.h"
+
 #include <algorithm>
 
 #include "base/hash_each.h"
@@ -10,8 +8,8 @@
 namespace sandlot {
 namespace {
 
-/// Objects that are handed out and filled again once nobody else holds them. They are asked for in the order in which
-/// they were made, which is that in which a queue gives them back.
+/// Pool of shared objects: one is handed out again once nobody else holds it. They are handed out in the order in which they
+/// were made, which is the order in which a queue gives them back.
 template <class T>
 class Ring {
  public:
@@ -54,7 +52,8 @@ void resize_keeping(std::vector<T>& items, std::size_t size, std::vector<T>& spa
 
 }  // namespace
 
-struct Simulation::Publishing {
+/// What is kept from frame to frame.
+struct Publisher::Memory {
   Ring<Frame> frames;
   std::vector<LogEntry> spare_log;
 
@@ -66,7 +65,7 @@ struct Simulation::Publishing {
     std::uint64_t hash = 0;
   };
   std::vector<Part> parts;
-  std::uint64_t hashed_tick = ~std::uint64_t{0};  ///< what `parts` tells of
+  std::uint64_t hashed_tick = ~std::uint64_t{0};  ///< tick of `parts`
   std::uint64_t hashed_revision = 0;
   std::shared_ptr<const std::vector<std::string>> part_names;
   std::uint64_t part_names_revision = 0;
@@ -90,20 +89,32 @@ struct Simulation::Publishing {
   }
 };
 
-void Simulation::publish() {
-  const PhaseTimer timer(phase_times_, Phase::publish);
+Publisher::Publisher(const Simulation& simulation) : sim_(simulation) {}
+Publisher::~Publisher() = default;
+
+void Publisher::begin_tick() {
+  wants_ = {.instances = false};
+  for (const Observer* observer : observers_) {
+    const Observer::Wants wants = observer->wants();
+    wants_.messages = wants_.messages || wants.messages;
+    wants_.log = wants_.log || wants.log;
+    wants_.input = wants_.input || wants.input || wants.log;
+    wants_.hash = wants_.hash || wants.hash;
+    wants_.links = wants_.links || wants.links;
+    wants_.contacts = wants_.contacts || wants.contacts;
+    wants_.instances = wants_.instances || wants.instances || wants.links;
+  }
+}
+
+void Publisher::publish() {
   if (observers_.empty()) return;
-  if (!publishing_) publishing_ = std::make_shared<Publishing>();
-  const std::shared_ptr<Frame> frame = publishing_->frames.take([] { return std::make_shared<Frame>(); });
-  frame->tick = tick_;
-  frame->now = now_;
-  frame->step = step_;
-  frame->revision = revision_;
+  if (!memory_) memory_ = std::make_unique<Memory>();
+  const std::shared_ptr<Frame> frame = memory_->frames.take([] { return std::make_shared<Frame>(); });
+  fill_time(*frame);
   if (wants_.instances) fill_instances(*frame, wants_.links);
   else frame->instances.clear();
   fill_topics(*frame);
-  resize_keeping(frame->log, log_.size(), publishing_->spare_log);
-  std::copy(log_.begin(), log_.end(), frame->log.begin());
+  fill_log(*frame);
   fill_hashes(*frame);
   frame->contacts.clear();
   if (wants_.contacts) fill_contacts(*frame);
@@ -111,34 +122,44 @@ void Simulation::publish() {
   for (Observer* observer : observers_) observer->on_frame(shown);
 }
 
-std::shared_ptr<const Frame> Simulation::look(const Observer::Wants& wants) const {
+std::shared_ptr<const Frame> Publisher::look(const Observer::Wants& wants) const {
   auto frame = std::make_shared<Frame>();
-  frame->tick = tick_;
-  frame->now = now_;
-  frame->step = step_;
-  frame->revision = revision_;
+  fill_time(*frame);
   fill_instances(*frame, wants.links);
   if (wants.contacts) fill_contacts(*frame);
   return frame;
 }
 
-void Simulation::fill_contacts(Frame& frame) const {
-  const std::span<const Contact> contacts = engine_->contacts();
+void Publisher::fill_time(Frame& frame) const {
+  frame.tick = sim_.tick_;
+  frame.now = sim_.now_;
+  frame.step = sim_.step_;
+  frame.revision = sim_.revision_;
+}
+
+void Publisher::fill_log(Frame& frame) {
+  const std::span<const LogEntry> log = sim_.commands_.tick_log();
+  resize_keeping(frame.log, log.size(), memory_->spare_log);
+  std::copy(log.begin(), log.end(), frame.log.begin());
+}
+
+void Publisher::fill_contacts(Frame& frame) const {
+  const std::span<const Contact> contacts = sim_.engine_->contacts();
   frame.contacts.assign(contacts.begin(), contacts.end());
 }
 
-void Simulation::fill_instances(Frame& frame, bool links) const {
-  frame.instances.resize(entities_.size());
-  const auto states = engine_->states();
-  for (std::size_t i = 0; i < entities_.size(); ++i) {
-    const Entity& entity = *entities_[i];
+void Publisher::fill_instances(Frame& frame, bool links) const {
+  frame.instances.resize(sim_.entities_.size());
+  const auto states = sim_.engine_->states();
+  for (std::size_t i = 0; i < sim_.entities_.size(); ++i) {
+    const SimulationParts::Entity& entity = *sim_.entities_[i];
     FrameInstance& out = frame.instances[i];
     out.name = entity.instance.name;
     out.id = entity.id;
     out.serial = entity.serial;
     out.is_robot = entity.instance.is_robot;
-    out.X_WM = engine_->pose(entity.id);
-    const std::span<const BodyId> bodies = engine_->bodies(entity.id);
+    out.X_WM = sim_.engine_->pose(entity.id);
+    const std::span<const BodyId> bodies = sim_.engine_->bodies(entity.id);
     out.V_WB = states[bodies.front().index].V_WB;
     out.model = entity.instance.model;
     out.X_WL.clear();
@@ -147,17 +168,17 @@ void Simulation::fill_instances(Frame& frame, bool links) const {
   }
 }
 
-void Simulation::fill_topics(Frame& frame) {
+void Publisher::fill_topics(Frame& frame) {
   frame.topics.clear();  // before copies are asked for: those that this frame held are free now
   if (!wants_.messages) return;
   std::size_t place = 0;
-  for (const auto& entity : entities_)
+  for (const auto& entity : sim_.entities_)
     for (const auto& device : entity->devices)
-      for (const Slot& slot : device->topics) {
+      for (const SimulationParts::Slot& slot : device->topics) {
         const std::size_t own = place++;
-        if (slot.topic->count == 0 || slot.topic->stamp != now_) continue;
-        if (publishing_->copies.size() <= own) publishing_->copies.resize(own + 1);
-        Ring<TopicBase>& ring = publishing_->copies[own];
+        if (slot.topic->count == 0 || slot.topic->stamp != sim_.now_) continue;
+        if (memory_->copies.size() <= own) memory_->copies.resize(own + 1);
+        Ring<TopicBase>& ring = memory_->copies[own];
         const auto clone = [&] { return std::shared_ptr<TopicBase>(slot.topic->clone()); };
         std::shared_ptr<TopicBase> copy = ring.take(clone);
         // Devices come and go, and with them the places.
@@ -172,13 +193,13 @@ void Simulation::fill_topics(Frame& frame) {
 
 /// A device that only senses changes when it takes a sample, a program when it runs and when its orders are carried
 /// out; both also by requests. Between those their hashes stay.
-void Simulation::fill_hashes(Frame& frame) {
+void Publisher::fill_hashes(Frame& frame) {
   frame.hash = 0;
   frame.parts.clear();
   if (!wants_.hash) return;
-  Publishing& p = *publishing_;
-  const bool goes_on = p.hashed_tick + 1 == tick_ && p.hashed_revision == revision_ && outcomes_.empty() &&
-                       !p.parts.empty();
+  Memory& p = *memory_;
+  const bool goes_on = p.hashed_tick + 1 == sim_.tick_ && p.hashed_revision == sim_.revision_ &&
+                       sim_.outcomes().empty() && !p.parts.empty();
   std::size_t count = 0;
   constexpr std::uint64_t always = ~std::uint64_t{0};
   const auto add = [&](std::uint64_t key, std::uint64_t version, auto&& fill) {
@@ -193,24 +214,25 @@ void Simulation::fill_hashes(Frame& frame) {
     constexpr std::size_t enough = 64 * 1024;
     if (p.bytes.size() > enough) p.hash_waiting();
   };
-  add(0, always, [&](ByteWriter& w) { save_run(w); });
-  for (const auto& entity : entities_) {
-    add(entity->key, always, [&](ByteWriter& w) { engine_->save(entity->id, w); });
+  add(0, always, [&](ByteWriter& w) { sim_.save_run(w); });
+  for (const auto& entity : sim_.entities_) {
+    add(entity->key, always, [&](ByteWriter& w) { sim_.engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
-      const bool only_senses = pools_[device->kind].kind->phases == phase_sense;
+      const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense;
       // Samples and commands only become more, and so does their sum.
-      std::uint64_t version = timing(*device).sample;
-      for (const Slot& slot : device->commands) version += slot.topic->count;
-      add(device->key, only_senses ? version : always, [&](ByteWriter& w) { save_device(*device, w); });
+      std::uint64_t version = sim_.timing(*device).sample;
+      for (const SimulationParts::Slot& slot : device->commands) version += slot.topic->count;
+      add(device->key, only_senses ? version : always,
+          [&](ByteWriter& w) { sim_.devices_.save(*device, w); });
     }
     for (const auto& program : entity->programs)
       add(program->key, 2 * program->steps + (program->command.orders().empty() ? 0 : 1),
-          [&](ByteWriter& w) { save_program(*program, w); });
+          [&](ByteWriter& w) { Programs::save(*program, w); });
   }
   p.hash_waiting();
   p.parts.resize(count);
-  p.hashed_tick = tick_;
-  p.hashed_revision = revision_;
+  p.hashed_tick = sim_.tick_;
+  p.hashed_revision = sim_.revision_;
   frame.hash = p.parts.front().hash;
   frame.parts.push_back(frame.hash);
   for (std::size_t i = 1; i < count; ++i) {
@@ -218,9 +240,9 @@ void Simulation::fill_hashes(Frame& frame) {
     frame.hash = hash_combine(frame.hash, p.parts[i].hash);
   }
   // Which parts there are changes with the Model alone.
-  if (!p.part_names || p.part_names_revision != revision_) {
-    p.part_names = name_parts();
-    p.part_names_revision = revision_;
+  if (!p.part_names || p.part_names_revision != sim_.revision_) {
+    p.part_names = sim_.name_parts();
+    p.part_names_revision = sim_.revision_;
   }
   frame.part_names = p.part_names;
 }

@@ -1,0 +1,415 @@
+/// Devices in their pools: how they are built, sampled, commanded and saved.
+#include "sim/world/device_pools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "assets/image/write.h"
+#include "base/text.h"
+#include "noise/chain.h"
+#include "sim/load/presets.h"
+#include "sim/world/faults.h"
+
+namespace sandlot {
+namespace {
+
+/// Collects what a device creates while it is built.
+struct SlotMaker final : TopicMaker {
+  std::vector<SimulationParts::Slot> topics, commands;
+  std::vector<std::pair<std::string, Pose>> frames;
+  void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
+    topics.push_back({std::move(topic), level});
+  }
+  void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) override {
+    commands.push_back({std::move(slot), level});
+  }
+  void adopt_frame(std::string name, const Pose& X_SF) override {
+    frames.emplace_back(std::move(name), X_SF);
+  }
+};
+
+/// Levels named by `level: x` or `levels: [x, y]`; both keys belong to the simulator, not to the kind's spec.
+Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& place) {
+  std::vector<std::string> known;
+  for (const LevelInfo& level : kind.levels) known.emplace_back(level.name);
+  const Node* one = config.find("level");
+  const Node* many = config.find("levels");
+  if (one && many) return one->error("give either 'level' or 'levels'");
+  if (many && (!many->is_sequence() || many->items().empty()))
+    return wrong_type(*many, "a list of levels", "/levels");
+  std::uint32_t bits = many || one ? 0u : 1u;
+  const auto take = [&](const Node& node, const std::string& path) -> Status {
+    const Place& at = node.place().file ? node.place() : place;
+    if (!node.is_scalar())
+      return Error{"expected the name of a level", "several levels at once: levels: [a, b]", at, path};
+    const auto found = std::find(known.begin(), known.end(), node.text());
+    if (found == known.end())
+      return Error{"device kind '" + std::string(kind.name) + "' has no level '" + node.text() + "'",
+                   suggestion(node.text(), known), at, path};
+    const std::uint32_t bit = 1u << (found - known.begin());
+    if (bits & bit) return Error{"level '" + node.text() + "' is named twice", "", at, path};
+    bits |= bit;
+    return {};
+  };
+  if (one) SL_TRY(take(*one, "/level"));
+  for (std::size_t i = 0; many && i < many->items().size(); ++i)
+    SL_TRY(take(many->items()[i], "/levels/" + std::to_string(i)));
+  config.erase("level");
+  config.erase("levels");
+  return bits;
+}
+
+std::string encode_image(int width, int height, int channels, std::span<const std::uint8_t> pixels,
+                         int quality) {
+  const assets::Pixels8 image{width, height, channels, pixels};
+  return quality > 0 ? assets::jpeg_of(image, quality) : assets::png_of(image);
+}
+
+}  // namespace
+
+void DevicePools::add_kind(const Kind& kind) {
+  SL_CHECK(kind.api_version == device_api_version);
+  pools_.push_back({&kind, kind.create_pool(), {}, {}, {}, {}, {}, {}, {}});
+}
+
+Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
+                        Diagnostics& diagnostics) {
+  model::DeviceDecl decl = declared;
+  const Kind* kind = nullptr;
+  std::vector<std::string> names;
+  for (const Pool& pool : pools_) {
+    names.emplace_back(pool.kind->name);
+    if (decl.kind == pool.kind->name) kind = pool.kind;
+  }
+  if (!kind) return Error{"no kind of device '" + decl.kind + "'", suggestion(decl.kind, names), decl.place};
+  const std::string path = entity.instance.name + "/" + sanitised(decl.name);
+  if (entity.find_device(path))
+    return Error{"robot '" + entity.instance.name + "' has two devices named '" + decl.name + "'",
+                 "give one of them another name", decl.place};
+  SL_TRY(lay_preset(decl.config, *kind));
+  SL_ASSIGN(const std::uint32_t levels, take_levels(decl.config, *kind, decl.place));
+  const auto pool = std::find_if(pools_.begin(), pools_.end(), [&](const Pool& p) { return p.kind == kind; });
+  SL_CHECK(pool != pools_.end());
+  SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, *pool->pool, kind->name));
+
+  SlotMaker maker;
+  const DeviceBuild build{decl,
+                          entity.instance,
+                          path,
+                          entity_key(path),
+                          setup_.seed,
+                          engine.bodies(entity.id),
+                          engine.joints(entity.id),
+                          engine.capabilities(),
+                          setup_.step,
+                          levels,
+                          maker,
+                          setup_.gravity,
+                          setup_.geography,
+                          setup_.magnetic_field_T,
+                          setup_.errors * entity.instance.errors,
+                          encode_image};
+  SL_TRY(pool->pool->add(build));
+  const auto index = static_cast<std::uint32_t>(pool->devices.size());
+  if (Status fits = faults ? faults->check(maker.topics) : Status(); !fits) {
+    pool->pool->remove(index);
+    return fits;
+  }
+  const double rate_hz = pool->pool->rate_hz(index);
+  const double tick_hz = 1e9 / static_cast<double>(setup_.step.ns);
+  const bool fixed = setup_.clock.mode == model::Clock::Mode::fixed;
+  if (fixed && rate_hz > tick_hz * (1 + 1e-9)) {
+    pool->pool->remove(index);
+    const Node* const rate = decl.config.find("rate");
+    return Error{
+        "rate " + number_text(rate_hz) + " Hz is above the tick rate of " + number_text(tick_hz) + " Hz",
+        "lower the rate or make time.step smaller", rate && rate->place().file ? rate->place() : decl.place,
+        "/" + path + "/rate"};
+  }
+  if (fixed && rate_hz > 0) {
+    const double ticks = tick_hz / rate_hz;
+    if (std::abs(ticks - std::round(ticks)) > 1e-6 * ticks)
+      diagnostics.warn({"rate " + number_text(rate_hz) + " Hz does not divide the tick rate of " +
+                            number_text(tick_hz) + " Hz",
+                        "samples fall on the next tick, so their spacing varies by one tick", decl.place,
+                        "/" + path + "/rate"});
+  }
+
+  const auto alike = [&](const model::DeviceDecl& other) {
+    return other.name == decl.name && other.scope == decl.scope && other.sdf_types == decl.sdf_types &&
+           other.link == decl.link && other.X_LS == decl.X_LS && other.place.file == decl.place.file &&
+           other.place.line == decl.place.line &&
+           &other.config.entries() == &std::as_const(decl.config).entries();  // copies of one
+  };
+  auto device = std::make_unique<Device>(!pool->devices.empty() && alike(pool->devices.back()->decl)
+                                             ? pool->devices.back()->shared_decl
+                                             : std::make_shared<const model::DeviceDecl>(std::move(decl)));
+  device->path = path;
+  device->key = build.key;
+  device->kind = static_cast<std::uint32_t>(pool - pools_.begin());
+  device->index = index;
+  device->topics = std::move(maker.topics);
+  device->commands = std::move(maker.commands);
+  device->frames = std::move(maker.frames);
+  device->errors = build.errors;
+  device->faults = std::move(faults);
+  if (device->faults) ++pool->faulty;
+  pool->devices.push_back(device.get());
+  pool->all.push_back(index);
+  pool->levels.push_back(levels);
+  pool->sample.push_back(0);
+  pool->since.push_back({});
+  pool->timing.push_back({.start = now});
+  set_active_levels(*device, levels);
+  plan_next_sample(*device);
+  entity.devices.push_back(std::move(device));
+  return {};
+}
+
+void DevicePools::remove(const Device& device) {
+  Pool& pool = pools_[device.kind];
+  pool.pool->remove(device.index);
+  pool.devices.erase(pool.devices.begin() + device.index);
+  pool.all.pop_back();
+  pool.timing.erase(pool.timing.begin() + device.index);
+  pool.levels.erase(pool.levels.begin() + device.index);
+  pool.sample.pop_back();
+  pool.since.pop_back();
+  if (device.faults) --pool.faulty;
+  for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
+}
+
+void DevicePools::release(const Device& device, const Context& context) {
+  pools_[device.kind].pool->release(device.index, context);
+}
+
+bool DevicePools::need_render_scene() const {
+  return std::any_of(pools_.begin(), pools_.end(),
+                     [](const Pool& pool) { return pool.kind->needs_render_scene && !pool.devices.empty(); });
+}
+
+DevicePools::Slot* DevicePools::command_slot(Device& device, std::string_view type,
+                                             std::string_view level) const {
+  const auto& levels = pools_[device.kind].kind->levels;
+  for (Slot& slot : device.commands) {
+    if (type != slot.topic->type()) continue;
+    const bool always = slot.level >= levels.size();
+    if (!level.empty() && (always || level != levels[slot.level].name)) continue;
+    if (always || (device.levels >> slot.level & 1)) return &slot;
+  }
+  return nullptr;
+}
+
+void DevicePools::plan_next_sample(const Device& device) {
+  Timing& when = pools_[device.kind].timing[device.index];
+  when.rate_hz = pools_[device.kind].pool->rate_hz(device.index);
+  when.due = when.rate_hz > 0 ? due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz)
+                              : Time{};
+}
+
+void DevicePools::set_active_levels(Device& device, std::uint32_t levels) {
+  device.levels = levels;
+  pools_[device.kind].levels[device.index] = levels;
+}
+
+// ------------------------------------------------------------------------------------------- changes by requests
+
+Status DevicePools::set_levels(Device& device, std::span<const std::string> names, const Context& context) {
+  Pool& pool = pools_[device.kind];
+  std::vector<std::string> known;
+  for (const LevelInfo& level : pool.kind->levels) known.emplace_back(level.name);
+  std::uint32_t bits = 0;
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      return Error{"device '" + device.path + "' has no level '" + name + "'", suggestion(name, known)};
+    bits |= 1u << (found - known.begin());
+  }
+  if (bits == 0) return Error{"a device needs at least one active level", suggestion("", known)};
+  SL_TRY(pool.pool->switch_level(device.index, device.levels, bits, context));
+  set_active_levels(device, bits);
+  return {};
+}
+
+Status DevicePools::set_parameter(Device& device, std::string_view field, const Node& value) {
+  SL_TRY(pools_[device.kind].pool->set_parameter(device.index, field, value));
+  plan_next_sample(device);
+  return {};
+}
+
+Status DevicePools::order_failure(Device& device, const FailureOrder& order) {
+  Pool& pool = pools_[device.kind];
+  return sandlot::order_failure(device, *pool.pool, pool.faulty, order);
+}
+
+void DevicePools::scale_errors(Device& device, double factor) {
+  device.errors = factor;
+  pools_[device.kind].pool->scale_errors(device.index, factor);
+}
+
+/// Few devices have any faults: pools without them are not searched.
+bool DevicePools::any_failure_ordered() const {
+  return std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) {
+    return pool.faulty > 0 && std::any_of(pool.devices.begin(), pool.devices.end(),
+                                          [](const Device* device) { return is_ordered(*device); });
+  });
+}
+
+// --------------------------------------------------------------------------------------------------------- phases
+
+void DevicePools::actuate(const Context& context) {
+  for (Pool& pool : pools_)
+    if ((pool.kind->phases & phase_actuate) && !pool.devices.empty())
+      pool.pool->actuate(context, {acting(pool, context, true), pool.sample, pool.levels, pool.since});
+}
+
+void DevicePools::pre_substep(const Context& context, double h_s) {
+  for (Pool& pool : pools_)
+    if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
+      pool.pool->pre_substep(context, {acting(pool, context, false), pool.sample, pool.levels, pool.since},
+                             h_s);
+}
+
+void DevicePools::post_substep(const Context& context, double h_s) {
+  for (Pool& pool : pools_)
+    if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
+      pool.pool->post_substep(context, {acting(pool, context, false), pool.sample, pool.levels, pool.since},
+                              h_s);
+}
+
+/// Lists the devices whose sample is due at `now`, and plans their next one.
+void DevicePools::find_due(Pool& pool, Time now, Time step) const {
+  const bool continuous = setup_.clock.mode == model::Clock::Mode::continuous;
+  pool.due.clear();
+  for (std::uint32_t i = 0; i < pool.devices.size(); ++i) {
+    Timing& when = pool.timing[i];
+    if (!when.requested && when.due > now) continue;
+    when.requested = false;
+    pool.due.push_back(i);
+    pool.sample[i] = when.sample;
+    // The first sample has no predecessor: it counts as one nominal interval after it.
+    if (when.sample == 0) pool.since[i] = when.rate_hz > 0 ? due_time({}, 1, when.rate_hz) : step;
+    else pool.since[i] = now - when.last;
+    when.last = now;
+    ++when.sample;
+    if (when.rate_hz <= 0) continue;  // due in every tick
+    // A tick of a continuous clock may be longer than the interval: the samples that it skips are lost.
+    if (continuous && when.due > Time{}) {
+      const double passed = (now - when.start).s() * when.rate_hz;
+      when.sample = std::max(when.sample, static_cast<std::uint64_t>(passed) + 1);
+    }
+    when.due = due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz);
+  }
+}
+
+void DevicePools::sense(const Context& context) {
+  for (Pool& pool : pools_) {
+    if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
+    find_due(pool, context.now, context.tick);
+    if (pool.due.empty()) continue;
+    if (pool.faulty > 0) sense_faulty(pool, context);
+    else pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
+  }
+}
+
+bool DevicePools::takes_commands(const Device& device, Time now) {
+  if (!device.faults) return true;
+  const Failing failing = device.faults->at(now);
+  return !failing.stuck && !failing.dead;
+}
+
+/// Takes the samples that are due in a pool with devices that have faults.
+void DevicePools::sense_faulty(Pool& pool, const Context& context) const {
+  const Time now = context.now;
+  for (const std::uint32_t index : pool.due) {
+    const Device& device = *pool.devices[index];
+    if (!device.faults) continue;
+    const Failing failing = device.faults->at(now);
+    if (failing.factor != 1) pool.pool->scale_errors(index, device.errors * failing.factor);
+    auto& before = device.faults->before;
+    if (!failing.stuck && !failing.dead) continue;
+    if (before.empty())
+      for (const Slot& slot : device.topics) before.push_back(slot.topic->clone());
+    for (std::size_t i = 0; i < before.size(); ++i) before[i]->copy_from(*device.topics[i].topic);
+  }
+  pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
+  for (const std::uint32_t index : pool.due) {
+    const Device& device = *pool.devices[index];
+    if (!device.faults) continue;
+    const FaultsSpec& spec = device.faults->spec;
+    const Failing failing = device.faults->at(now);
+    if (failing.factor != 1) pool.pool->scale_errors(index, device.errors);
+    if (failing.stuck || failing.dead)
+      for (std::size_t i = 0; i < device.topics.size(); ++i) {
+        TopicBase& topic = *device.topics[i].topic;
+        const TopicBase& before = *device.faults->before[i];
+        const bool published = topic.count != before.count;
+        topic.copy_from(before);
+        if (published && !failing.dead && topic.count > 0) topic.republish(now);
+      }
+    if (!spec.clock) continue;
+    const double errors = std::min(max_errors, pool.pool->errors(index) * device.errors * failing.factor);
+    const Stream random(setup_.seed, device.key, Purpose::noise, pool.sample[index]);
+    const Time shown = clock_at(*spec.clock, now, errors, random);
+    for (const Slot& slot : device.topics)
+      if (slot.topic->count > 0 && slot.topic->stamp == now) slot.topic->restamp(shown);
+  }
+}
+
+/// The devices of a pool that act in this tick: all but dead actuators, which release what they hold.
+std::span<const std::uint32_t> DevicePools::acting(Pool& pool, const Context& context, bool release_dead) {
+  if (pool.faulty == 0) return pool.all;
+  const Time begin = context.now - context.tick;
+  pool.due.clear();
+  for (const std::uint32_t index : pool.all) {
+    const Device& device = *pool.devices[index];
+    if (device.commands.empty() || !device.faults || !device.faults->at(begin).dead) {
+      pool.due.push_back(index);
+    } else if (release_dead) {
+      // Wheels keep their rollers: only a switch of the level would bring them back.
+      const std::size_t wheels = context.actuation.wheels.size();
+      pool.pool->release(index, context);
+      context.actuation.wheels.resize(wheels);
+    }
+  }
+  return pool.due;
+}
+
+// ---------------------------------------------------------------------------------------------------------- State
+
+void DevicePools::save(const Device& device, ByteWriter& w) const {
+  const Timing& when = timing(device);
+  write(w, device.levels);
+  write(w, when.start);
+  write(w, when.sample);
+  write(w, when.last);
+  write(w, when.requested);
+  for (const Slot& slot : device.topics) slot.topic->save(w);
+  for (const Slot& slot : device.commands) slot.topic->save(w);
+  pools_[device.kind].pool->save(device.index, w);
+}
+
+void DevicePools::load(Device& device, ByteReader& r, Time now) {
+  Timing& when = pools_[device.kind].timing[device.index];
+  std::uint32_t levels = 0;
+  read(r, levels);
+  // Kinds look for their active levels without asking whether there are any.
+  const std::size_t known = std::max<std::size_t>(pools_[device.kind].kind->levels.size(), 1);
+  if (levels == 0 || (known < 32 && levels >> known != 0)) return r.fail();
+  set_active_levels(device, levels);
+  read(r, when.start);
+  read(r, when.sample);
+  read(r, when.last);
+  read(r, when.requested);
+  // Due times are computed from these: what cannot be would overflow.
+  constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
+  if (when.start < Time{} || when.start > now || when.last < Time{} || when.last > now ||
+      when.sample > most_samples)
+    return r.fail();
+  for (Slot& slot : device.topics) slot.topic->load(r);
+  for (Slot& slot : device.commands) slot.topic->load(r);
+  pools_[device.kind].pool->load(device.index, r);
+  if (r.ok()) plan_next_sample(device);
+}
+
+}  // namespace sandlot

@@ -1,0 +1,88 @@
+#pragma once
+/// Device pools: the devices of a world by kind, with their sampling times, levels and faults. One call per phase serves all.
+///
+/// Threads   the simulation's only; a phase uses as many threads as the arena around it has.
+/// Cost      no heap allocation per tick once vectors have reached their size.
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "devices/kind.h"
+#include "sim/world/parts.h"
+
+namespace sandlot {
+
+struct FailureOrder;  // sim/world/faults.h
+
+class DevicePools {
+ public:
+  using Device = SimulationParts::Device;
+  using Entity = SimulationParts::Entity;
+  using Slot = SimulationParts::Slot;
+  using Timing = SimulationParts::Timing;
+
+  /// `setup` must outlive the pools.
+  explicit DevicePools(const model::Setup& setup) : setup_(setup) {}
+  void add_kind(const Kind& kind);
+
+  /// Builds a device at the end of its pool and of `entity.devices`.
+  /// Errors   unknown kind, a name given twice, wrong keys, a rate above the tick rate; nothing has changed then.
+  Status add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
+             Diagnostics& diagnostics);
+  /// Takes a device out of its pool; the caller destroys it.
+  void remove(const Device& device);
+  /// Lets an actuator release what it holds, into context.actuation.
+  void release(const Device& device, const Context& context);
+
+  const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
+  const Timing& timing(const Device& device) const { return pools_[device.kind].timing[device.index]; }
+  /// Whether some device needs the render scene.
+  bool need_render_scene() const;
+  /// The command slot of a type: at the level of that name, or at an active level (""). Null: none takes it.
+  Slot* command_slot(Device& device, std::string_view type, std::string_view level) const;
+  /// False while a failure keeps the device from taking commands.
+  static bool takes_commands(const Device& device, Time now);
+
+  // Changes by requests.
+  Status set_levels(Device& device, std::span<const std::string> names, const Context& context);
+  Status set_parameter(Device& device, std::string_view field, const Node& value);
+  Status order_failure(Device& device, const FailureOrder& order);
+  void request_sample(const Device& device) { pools_[device.kind].timing[device.index].requested = true; }
+  /// @param factor  of the world times that of the robot
+  void scale_errors(Device& device, double factor);
+  /// Whether the failure of some device was ordered while the run went on.
+  bool any_failure_ordered() const;
+
+  // Phases. The tick that is computed begins at context.now - context.tick; in sense() it ends at context.now.
+  void actuate(const Context& context);
+  void pre_substep(const Context& context, double h_s);
+  void post_substep(const Context& context, double h_s);
+  void sense(const Context& context);
+
+  void save(const Device& device, ByteWriter& w) const;
+  void load(Device& device, ByteReader& r, Time now);
+
+ private:
+  struct Pool {
+    const Kind* kind = nullptr;
+    std::unique_ptr<PoolBase> pool;
+    std::vector<Device*> devices;
+    std::vector<Timing> timing;                   ///< per device
+    std::vector<std::uint32_t> all, due, levels;  ///< `levels` per device: a copy of Device::levels
+    std::vector<std::uint64_t> sample;
+    std::vector<Time> since;
+    std::uint32_t faulty = 0;  ///< number of devices with faults
+  };
+  static std::span<const std::uint32_t> acting(Pool& pool, const Context& context, bool release_dead);
+  void find_due(Pool& pool, Time now, Time step) const;
+  void sense_faulty(Pool& pool, const Context& context) const;
+  void plan_next_sample(const Device& device);
+  void set_active_levels(Device& device, std::uint32_t levels);
+
+  const model::Setup& setup_;
+  std::vector<Pool> pools_;
+};
+
+}  // namespace sandlot
