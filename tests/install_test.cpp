@@ -32,9 +32,17 @@ struct Package {
     EXPECT_EQ(installed.exit_code, 0) << installed.out;
     fs::create_directory(scratch.file("moved"));
     fs::rename(scratch.file("first"), prefix);
-    fs::copy("examples", scratch.file("examples"), fs::copy_options::recursive);
+    // Each folder in a place of its own: no example may need another.
+    for (const auto& each : fs::directory_iterator("examples")) {
+      const std::string name = each.path().filename().string();
+      fs::create_directory(scratch.file("only_" + name));
+      fs::copy(each, example(name), fs::copy_options::recursive);
+    }
   }
-  std::string example(const std::string& name) const { return scratch.file("examples/" + name); }
+  /// "embed/room.yaml"
+  std::string example(const std::string& name) const {
+    return scratch.file("only_" + name.substr(0, name.find('/')) + "/" + name);
+  }
   std::string built(const std::string& name) const { return scratch.file("build_" + name); }
 
   void build(const std::string& name) const {

@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "record/playback.h"
+#include "sim/world/lookup.h"
 
 namespace sandlot {
 namespace {
@@ -22,21 +23,6 @@ class Warnings {
   Diagnostics* asked_for_;
   Diagnostics own_;
 };
-
-Result<const Simulation::Device*> find_device(const Simulation& sim, std::string_view device) {
-  const std::string_view robot = device.substr(0, device.find('/'));
-  std::vector<std::string> robots, devices;
-  for (const auto& entity : sim.entities()) {
-    robots.push_back(entity->instance.name);
-    if (entity->instance.name != robot) continue;
-    for (const auto& each : entity->devices) {
-      devices.push_back(each->path);
-      if (device == each->path) return each.get();
-    }
-    return Error{"there is no device '" + std::string(device) + "'", suggestion(device, devices)};
-  }
-  return Error{"there is nothing named '" + std::string(robot) + "'", suggestion(robot, robots)};
-}
 
 /// The part of "rover/laser/ranges" that names a device, and the level that it may name after it.
 std::pair<std::string_view, std::string_view> split_level(std::string_view name) {
@@ -81,7 +67,7 @@ Result<std::unique_ptr<Simulation>> restore_simulation(std::span<const std::byte
 
 Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view name, const char* type) {
   const auto [path, level] = split_level(name);
-  SL_ASSIGN(const Simulation::Device* const device, find_device(sim, path));
+  SL_ASSIGN(const Simulation::Device* const device, device_named(sim, path));
   const TopicBase* found = nullptr;
   for (const Simulation::Slot& slot : device->topics) {
     if (std::string_view(slot.topic->type()) != type) continue;
@@ -98,17 +84,15 @@ Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view na
 }
 
 Status check_commandable(const Simulation& sim, std::string_view name, const char* type) {
-  SL_ASSIGN(const Simulation::Device* const device, find_device(sim, split_level(name).first));
+  SL_ASSIGN(const Simulation::Device* const device, device_named(sim, split_level(name).first));
   for (const Simulation::Slot& slot : device->commands)
     if (std::string_view(slot.topic->type()) == type) return {};
   return no_slot(name, "takes", type, device->commands);
 }
 
 Result<Pose> pose(const Simulation& sim, std::string_view instance) {
-  if (const auto id = sim.find_instance(instance)) return sim.engine().pose(*id);
-  std::vector<std::string> names;
-  for (const model::Instance* each : sim.instances()) names.push_back(each->name);
-  return Error{"there is nothing named '" + std::string(instance) + "'", suggestion(instance, names)};
+  SL_ASSIGN(const Simulation::Entity* const entity, entity_named(sim, instance));
+  return sim.engine().pose(entity->id);
 }
 
 }  // namespace sandlot

@@ -250,7 +250,7 @@ TEST(SlowVision, ALaserLocalisesWhileItAvoidsWalls) {
   const auto sim = simulation("tests/room.yaml", {}, R"(
 version: 1
 name: room
-world: ../examples/room.sdf
+world: ../examples/embed/room.sdf
 physics: planar
 time: {step: 20 ms, substeps: 1, control_interval: 5}
 seed: 3

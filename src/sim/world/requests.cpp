@@ -7,14 +7,10 @@
 #include "base/text.h"
 #include "noise/chain.h"
 #include "sim/world/faults.h"
+#include "sim/world/lookup.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
-namespace {
-
-Error no_device(const std::string& path) { return {"there is no device '" + path + "'"}; }
-
-}  // namespace
 
 /// Carries out requests: one operator per alternative of Request. A new request is a struct in request.h and an operator here.
 struct Simulation::Processor {
@@ -45,7 +41,7 @@ Status Simulation::process(Request& request, const Source& source) {
 
 Result<Simulation::Entity*> Simulation::Processor::entity_named(const std::string& name) {
   if (Entity* const entity = sim.find_entity(name)) return entity;
-  return Error{"there is nothing named '" + name + "'"};
+  return no_entity(name);
 }
 
 Result<Simulation::Device*> Simulation::Processor::device_named(const std::string& path) {

@@ -1,0 +1,18 @@
+#pragma once
+/// Lookups by name for people: the error says what is missing and suggests the nearest known name.
+#include <string_view>
+
+#include "base/result.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot {
+
+Result<const Simulation::Entity*> entity_named(const Simulation& simulation, std::string_view name);
+/// By path, "rover/laser".
+Result<const Simulation::Device*> device_named(const Simulation& simulation, std::string_view path);
+
+/// The errors alone, without a suggestion; a long name is cut.
+Error no_entity(std::string_view name);
+Error no_device(std::string_view path);
+
+}  // namespace sandlot

@@ -1,0 +1,35 @@
+/// Every folder of examples/ stands alone: it works when it is copied elsewhere.
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Examples, EachFolderStandsAlone) {
+  int checked = 0;
+  for (const auto& folder : fs::directory_iterator("examples")) {
+    ASSERT_TRUE(folder.is_directory()) << folder.path() << " belongs to no example";
+    const Scratch scratch;
+    fs::copy(folder, scratch.folder, fs::copy_options::recursive);
+    for (const auto& file : fs::directory_iterator(scratch.folder)) {
+      if (file.path().extension() != ".yaml") continue;
+      ++checked;
+      std::ifstream in(file.path());
+      std::string text, line;
+      // The plugin and its controller are built by the tests of the installed package.
+      while (std::getline(in, line))
+        if (!line.starts_with("plugins:") && line.find("kind: wall") == std::string::npos)
+          text += line + "\n";
+      const std::string yaml = scratch.write(file.path().filename(), text);
+      const Printed printed = sandlot("run " + yaml + " --headless --duration 1s");
+      EXPECT_EQ(printed.exit_code, 0) << folder.path() << "\n" << printed.out;
+    }
+  }
+  EXPECT_EQ(checked, 3);
+}
+
+}  // namespace
+}  // namespace sandlot::test
