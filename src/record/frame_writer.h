@@ -1,5 +1,5 @@
 #pragma once
-/// Turns frames of a simulation into the messages of a recording: device topics, /tf, /clock, the log and the hashes.
+/// Frame writer: frames of a simulation as the messages of a recording: device topics, /tf, /clock, the log and the hashes.
 ///
 /// Frames   of /tf and /tf_static: sim/world/transforms.h.
 /// Time     every message of a frame carries the frame's simulated time.

@@ -1,6 +1,6 @@
 #pragma once
-/// A recording as input for a Session: what came from outside, tick by tick, and the hash after each tick to hold the
-/// new run against. Programs run again.
+/// Input log of a recording: the input from outside for a Session, tick by tick, and the hash after each tick to compare
+/// the new run with. Programs run again.
 ///
 ///   SL_ASSIGN(RecordedRun run, read_run(recording));
 ///   RunCheck check(run);

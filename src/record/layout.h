@@ -1,5 +1,5 @@
 #pragma once
-/// Names in a recording of Sandlot's. What is in it besides topics: docs/recordings.md.
+/// Names in a recording of Sandlot's. Its content in addition to topics: docs/recordings.md.
 namespace sandlot::recording {
 
 inline constexpr const char* clock_topic = "/clock";          ///< rosgraph_msgs/msg/Clock

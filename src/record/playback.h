@@ -1,5 +1,5 @@
 #pragma once
-/// Puts the velocities of recordings into the `playback` controllers of a setup.
+/// Playback of recordings: their velocities are put into the `playback` controllers of a setup.
 ///
 /// A controller opens no files, and sim cannot know of recordings: whoever loads a scenario by sim/load/load.h calls this
 /// afterwards; load_simulation (sandlot/embed.h) has.

@@ -1,5 +1,5 @@
 #pragma once
-/// Records a run while it runs, in a thread of its own.
+/// Recorder: writes a run to a file while it runs, in a thread of its own.
 ///
 ///   SL_ASSIGN(auto recorder, Recorder::start({.recording = {.file = "out.mcap"}}, simulation));
 ///   simulation.add_observer(recorder.get());

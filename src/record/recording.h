@@ -1,5 +1,5 @@
 #pragma once
-/// A recording as a replay needs it: where it began, and every tick behind that.
+/// Recording as a replay needs it: the snapshot of its beginning, and every tick after that.
 ///
 /// Reads    attachment `snapshot`, metadata `sandlot`, and the channels /sandlot/log, /sandlot/hash and /sandlot/parts.
 ///          The rest of the file is not looked at.

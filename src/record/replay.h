@@ -1,6 +1,6 @@
 #pragma once
-/// Runs a recorded run again and compares: from the snapshot that the recording holds, fed tick by tick with what was
-/// carried out then.
+/// Replay: a recorded run is repeated and compared, from the snapshot in the recording, with the recorded input of each
+/// tick.
 ///
 ///   SL_ASSIGN(Replay replay, Replay::begin(snapshot, {.programs = Programs::recompute}, diagnostics));
 ///   while (const RecordedTick* tick = ...) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Where two worlds differ, value by value, by the addresses of sim/watch/values.h.
+/// Differences between two worlds, value by value, by the addresses of sim/watch/values.h.
 #include <optional>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// Straight on until something is near, then away from it: a swarm that does this spreads like a gas.
+/// Diffusion: straight on until something is near, then away from it: a swarm that does this spreads like a gas.
 ///
 /// Reads    a LaserScan with intensities: readings of proximity sensors, 0 nothing to 1 touching.
 /// Orders   a Twist for a drive that can turn on the spot.

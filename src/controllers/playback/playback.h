@@ -1,8 +1,8 @@
 #pragma once
-/// Drives a robot as another one once drove: gives the velocities of a recording again.
+/// Playback: drives a robot by the velocities of a recording.
 ///
 /// Reads    nothing. The velocities are in `samples`; where a scenario names a recording (`file`), they are put there
-///          while the scenario is loaded, so that a snapshot needs the recording no more.
+///          while the scenario is loaded, so that a snapshot no longer needs the recording.
 /// Orders   a Twist for the drive `to` in every control step: vx, vy [m/s], wz [rad/s] in the robot's frame.
 /// Time     sample times count from the beginning of the recording; the one of time t is given in the first control step
 ///          not before start + t / rate, and holds until the next. Before the first and after the last: zero.

@@ -1,5 +1,5 @@
 #pragma once
-/// Looks for a thing, such as the ball, and drives to it.
+/// Seeker: looks for an object, such as the ball, and drives to it.
 ///
 /// Reads    a camera: its objects where it works at that level, else its pictures, in which perception finds the thing by its
 ///          colour. Nothing else in here knows the difference, and a level switched in the run goes unnoticed.

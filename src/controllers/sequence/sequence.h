@@ -1,5 +1,5 @@
 #pragma once
-/// Gives orders at set times: step responses, demonstrations, robots that play a part.
+/// Sequence: orders at set times: step responses, demonstrations, robots that play a part.
 ///
 /// Reads    nothing.
 /// Orders   to the devices it names: a number is a Float64 (joint motors: angle, speed or effort by their level), a list

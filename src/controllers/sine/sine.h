@@ -1,5 +1,5 @@
 #pragma once
-/// Moves motors to and fro, each a little after the one before it: creatures that walk, crawl and roll without knowing.
+/// Sine: moves motors back and forth, each a little later than the one before: creatures that walk, crawl and roll blindly.
 ///
 /// Reads    nothing.
 /// Orders   a Float64 to each of its motors in every control step: offset + amplitude * shape(phase). The motor's level

@@ -1,5 +1,5 @@
 #pragma once
-/// Wanders about without bumping into things, by a planar laser scan alone.
+/// Wander: drives about without touching anything, by a planar laser scan alone.
 ///
 /// Reads    a LaserScan of any number of beams over 120 degrees or more, facing forward.
 /// Orders   a Twist for a drive that can turn on the spot about its centre.

@@ -1,5 +1,5 @@
 #pragma once
-/// Drives through a list of points, one after the other, on arcs.
+/// Waypoints: drives through a list of points, one after the other, on arcs.
 ///
 /// Reads    an Odometry of the robot's base: the drive's own, or a ground_truth. The points are in its frame.
 /// Orders   a Twist for a drive that can turn on the spot.

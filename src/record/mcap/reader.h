@@ -1,5 +1,5 @@
 #pragma once
-/// Reads MCAP files: by their index where there is one, else by walking through them once.
+/// Reader of MCAP files: by their index where there is one, else by walking through them once.
 ///
 ///   SL_ASSIGN(mcap::Reader reader, mcap::Reader::open("r.mcap"));
 ///   mcap::Cursor cursor = reader.messages({.from = 2'000'000'000, .topics = {"/rover/laser/ranges"}});

@@ -1,10 +1,10 @@
 #pragma once
-/// Says whether a recording is whole, and makes one whole that is not: its process was killed, its disk was full,
-/// its bytes were damaged.
+/// Examination and repair of recordings that are not whole: the process was killed, the disk was full, bytes were
+/// damaged.
 ///
 /// Kept      every chunk, attachment and metadata record whose bytes are whole. Message indexes, summary and footer are
-///           written anew; messages that stood outside chunks get one.
-/// Dropped   the torn tail and damaged pieces; how many bytes they took is said.
+///           written again; messages that stood outside chunks get one.
+/// Dropped   the torn tail and damaged pieces; their size in bytes is reported.
 /// Safety    the new file is written beside the old one and takes its place when it is complete and on the disk. An old
 ///           file that had damage before its end stays as FILE.damaged, since somebody may get more out of it.
 #include "record/mcap/reader.h"

@@ -1,6 +1,6 @@
 #pragma once
-/// Goes through the records of an MCAP file from its beginning and checks everything on the way: what repairs and
-/// examinations see, and how files without a summary are read.
+/// Walk through the records of an MCAP file from its beginning, with all checks: used by repairs and examinations, and to
+/// read files without a summary.
 ///
 /// Errors   `file: damaged at byte N: what`. One damaged piece does not hide those behind it: see resume().
 /// Limits   Limits below; a file cannot make us hold more than one chunk of that size.

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes an MCAP file, version 0: chunks with message indexes, attachments, metadata, and at the end the summary.
+/// Writer of an MCAP file, version 0: chunks with message indexes, attachments, metadata, and at the end the summary.
 ///
 ///   SL_ASSIGN(mcap::Writer writer, mcap::Writer::create("out.mcap", {}));
 ///   const auto schema = writer.add_schema("std_msgs/msg/Float64", "ros2msg", text);

@@ -1,5 +1,5 @@
 #pragma once
-/// What is probably a slip in a world that can run: `sandlot check` says it, `sandlot run` does not.
+/// Lint: probable mistakes in a world that can run. `sandlot check` reports them, `sandlot run` does not.
 ///
 /// Each rule is a function of rules.h with its derivation beside it. A rule that cannot be derived has no place here: a
 /// false alarm costs more than a slip that stays.

@@ -1,5 +1,5 @@
 #pragma once
-/// The rules of lint.h, one function per group, and what they share.
+/// The rules of lint.h, one function per group, and their shared geometry.
 #include <set>
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-/// How things stand before the first tick: in each other, below the ground, in the air, far away.
+/// Positions before the first tick: overlapping, below the ground, in the air, far away.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the world's instances look like: to detectors (devices/labelled_object.h) and to cameras (optics/picture.h).
+/// Labelled objects: the world's instances as detectors (devices/labelled_object.h) and cameras (optics/picture.h) name them.
 #include <memory>
 #include <span>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
-/// What there is to see: the visuals and lights of a world as cameras draw them, and its things as detectors name them.
+/// Render scene: visuals and lights of the world as cameras draw them, and its labelled objects as detectors name them.
 ///
-/// Made when the first device that sees is built, or when somebody outside asks for a picture; nothing here is State.
+/// Built with the first device that needs it, or when a client requests a picture; nothing here is State.
 /// Groups of the picture scene are the engine's bodies, and one more that stands still: the world's own lights hang on it.
 #include <map>
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes named values and expressions to a CSV file while a simulation runs.
+/// CSV log: named values and expressions of a run, written to a file while it runs.
 ///
 /// File    one line of names, then a line per sample: simulated time [s] first, then a number per column, as short as
 ///         reads back exactly; `inf` and `nan` as they are, nothing where there is no value. A column that is a single

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scenario watches: the values it names, and events that happen when a condition has held for a while.
+/// Monitor: the named values of a scenario, and its events, which happen when a condition has held for a while.
 ///
 /// Named values are computed when they are asked for, in the order of their declaration; each may use those before it.
 /// Events are judged once per tick, in phase 7. An event happens when its condition has held (was other than 0) for

@@ -1,5 +1,5 @@
 #pragma once
-/// Every number of a running simulation by its address: `rover.pose.x`, `rover/laser.ranges[3]`.
+/// Named values: every number of a running simulation by its address, `rover.pose.x`, `rover/laser.ranges[3]`.
 ///
 ///   sim.time|tick|revision|errors                   simulated time [s], tick, revision of the Model, factor on all errors
 ///   values.NAME or NAME                             a value that the scenario names

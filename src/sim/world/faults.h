@@ -1,6 +1,6 @@
 #pragma once
-/// What goes wrong with a device as a whole: failures at times that are known before, and a clock that is wrong. Keys of any
-/// device beside those of its kind:
+/// Faults of a device as a whole: failures at planned times or by order, and a clock that is wrong. Keys of any device in
+/// addition to those of its kind:
 ///
 ///   failures: [{kind: stuck, from: 3 s, until: 5 s}, {kind: dead, from: 8 s}, {kind: noisy, from: 1 s, until: 2 s, factor: 10}]
 ///   clock: {offset: 20 ms, drift: 50e-6, jitter: 1 ms}
@@ -11,12 +11,13 @@
 /// dead    It publishes nothing and takes no commands. An actuator exerts nothing.
 /// noisy   Its errors are `factor` times as large: as if its key `errors` were, of kinds that have one.
 ///
-/// Or by an order while the run goes on: the parameter `failure` of the device, whatever its kind, is stuck, dead, noisy or {kind: noisy, factor: 5}; `none` is no failure even if one
-/// is planned, `planned` what its key `failures` says. An order holds until the next one.
+/// By order while the run goes on: the parameter `failure` of the device, whatever its kind, is stuck, dead, noisy or
+/// {kind: noisy, factor: 5}; `none` is no failure even if one is planned, `planned` follows the key `failures`. An order
+/// holds until the next one.
 ///
 /// Inside the device life goes on: its samples are counted, its biases drift, so that it is as it would have been once a
 /// failure is over, and no other number in the run changes. A failure lasts from the tick at `from` to the one before
-/// `until`; dead goes before stuck, and the factors of several noisy ones multiply.
+/// `until`; dead has precedence over stuck, and the factors of several noisy ones multiply.
 ///
 /// clock   The time in the header of a message of the time t is t + e (offset + drift t + jitter n), never below 0, with
 ///         n ~ Normal(0, 1) drawn per sample and the factor e of `errors`. When the sample was taken stays as it is, and so

@@ -1,5 +1,5 @@
 #pragma once
-/// What the outside sees: one immutable frame per tick. Observers read frames and cannot change the run.
+/// Frame: the immutable picture of a tick for the outside. Observers read frames and cannot change the run.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,7 +29,7 @@ struct FrameInstance {
   std::vector<Pose> X_WL;  ///< of each link, if asked for
 };
 
-/// One thing that was carried out in a tick, in order. These entries and the first state are the replay.
+/// Entry of the log: one request or order of a tick, in order. These entries and the first state are the replay.
 struct LogEntry {
   /// The alternatives of Request in their order, and the measured length of the tick (clock `continuous`).
   static constexpr std::uint8_t command = 0, step = 255;
@@ -59,7 +59,7 @@ struct Frame {
       part_names;  ///< of `parts`; another object when they change
 };
 
-/// Something that watches. Called at the end of each tick on the simulation's thread; it must not block. It may keep
+/// Observer of a run. Called at the end of each tick on the simulation's thread; it must not block. It may keep
 /// frames and topics and read them in other threads. Once nobody holds them they are filled again, so it lets go of them
 /// on the simulation's thread.
 class Observer {

@@ -1,6 +1,6 @@
 #pragma once
-/// A Program is anything that decides for a robot: a controller in process, later RoBIOS programs and remote
-/// clients. It is resumed once per control interval and says what it waits for.
+/// Program: anything that decides for a robot, such as a controller in this process. It is resumed once per control
+/// interval and returns what it waits for.
 #include <memory>
 #include <optional>
 #include <string>

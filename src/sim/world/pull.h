@@ -2,8 +2,8 @@
 /// Pulls: springs between a point of a link and a point in the world, as a hand pulls at a body. Light and heavy models are
 /// accelerated alike.
 ///
-/// Law      force = m (w^2 (target - point) - 2 w v), w = 2 pi / 1 s, m the mass of the whole instance, v the velocity of the point:
-///          critically damped, so that what hangs on it comes to rest at the target within about a second. At most 50 m
+/// Law      force = m (w^2 (target - point) - 2 w v), w = 2 pi / 1 s, m the mass of the whole instance, v the velocity of the
+///          point: critically damped, so that what hangs on it comes to rest at the target within about a second. At most 50 m
 ///          newtons; gravity goes on, so things hang g / w^2 = 0.25 m below the target.
 /// Time     from the tick that takes the request until `hold` later, or until the next request for the same instance.
 /// Limits   engine `rigid` only; no torque but that of the force about the centre of mass.

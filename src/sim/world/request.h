@@ -1,5 +1,5 @@
 #pragma once
-/// Everything that may reach into a running simulation from outside, as one variant.
+/// Request: any change of a running simulation from outside, as one variant.
 ///
 /// Requests take effect at the beginning of the next tick, in a fixed order (administrators first, then robots by
 /// creation, then sequence), and are logged: the log plus the seed is the replay.
@@ -15,12 +15,12 @@
 
 namespace sandlot {
 
-/// Who asks.
+/// Sender of a request.
 struct Source {
   enum class Kind : std::uint8_t {
     admin,
     robot,    ///< a client that drives a robot
-    program,  ///< a controller in this process; its orders are carried out after all others
+    program,  ///< a controller in this process; its orders act after all others
   } kind = Kind::admin;
   std::uint64_t id = 0;  ///< a client's own number; of a program, its robot's creation order
 };
@@ -61,7 +61,7 @@ struct LoadDeviceRequest {
 struct UnloadDeviceRequest {
   std::string device;
 };
-/// Pulls at a thing with a spring for a while (sim/world/pull.h); `hold` 0 lets go.
+/// Pulls at an instance with a spring for a while (sim/world/pull.h); `hold` 0 lets go.
 struct PullRequest {
   std::string name;
   std::string link;        ///< "": the first
@@ -78,7 +78,7 @@ using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, Spa
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);
-/// What a request is about: "rover/drive".
+/// The target of a request: "rover/drive".
 const std::string& request_target(const Request& request);
 
 /// A request as bytes, for the log. Places (file:line) are not kept.
@@ -86,7 +86,7 @@ void write_request(ByteWriter& w, const Request& request);
 /// Reads what write_request wrote; false when the bytes are not that.
 bool read_request(ByteReader& r, Request& request);
 
-/// What became of a request, in the order they were carried out.
+/// Outcome of a request, in the order of execution.
 struct Outcome {
   Source source;
   std::uint64_t sequence = 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// A Rule judges the run once per tick, after sensing and before control: stop conditions now, referees and
-/// criteria later. It sees the truth and may end the run.
+/// Rule: a judgement of the run once per tick, after sensing and before control, such as a stop condition. It sees the true
+/// state and may end the run.
 #include <optional>
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the bytes of a snapshot say of themselves. Simulation::snapshot() makes them, Simulation::restore() reads them.
+/// Format of snapshots. Simulation::snapshot() writes them, Simulation::restore() reads them.
 ///
 /// Layout   magic, version u32, profile text; blocks, each after its length as u64: the Model (setup, instances in
 ///          creation order, their serial numbers), the run's own State, then the State of each entity, its devices and
