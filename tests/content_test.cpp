@@ -43,7 +43,7 @@ std::unique_ptr<Simulation> built(model::Setup setup) {
   return std::move(*simulation);
 }
 
-formats::SdfContent rover_file() {
+formats::WorldContent rover_file() {
   Diagnostics diagnostics;
   auto content = formats::read_sdf("models/rover/model.sdf", diagnostics);
   if (!content) ADD_FAILURE() << content.error().text();
@@ -193,7 +193,7 @@ TEST(Rover, InertiaIsThatOfTheSolidsItNames) {
                part.mass_kg * Vec3{d.y * d.y + d.z * d.z, d.x * d.x + d.z * d.z, d.x * d.x + d.y * d.y};
     ixz -= part.mass_kg * d.x * d.z;
   }
-  const formats::SdfContent content = rover_file();
+  const formats::WorldContent content = rover_file();
   const model::Link& base = content.instances[0].model->links[0];
   // The file has six digits.
   EXPECT_NEAR(base.inertial.mass_kg, mass, 1e-9);
@@ -211,7 +211,7 @@ TEST(Rover, InertiaIsThatOfTheSolidsItNames) {
 
 TEST(Rover, FitsIntoADiscOfItsRadius) {
   // What planar physics takes as its footprint: no collision shape reaches beyond the chassis.
-  const formats::SdfContent content = rover_file();
+  const formats::WorldContent content = rover_file();
   for (const model::Link& link : content.instances[0].model->links)
     for (const model::Collision& collision : link.collisions) {
       const Pose X = link.X_ML * collision.X_LC;

@@ -79,6 +79,14 @@ concept NamedEnum = std::is_enum_v<T> && requires(T t) {
   enum_names(t);
 };
 
+/// Name of an enumerator; "" for a value that has none.
+template <NamedEnum E>
+const char* name_of(E value) {
+  for (const auto& entry : enum_names(value))
+    if (entry.value == value) return entry.name;
+  return "";
+}
+
 /// A part of a value that goes by a name of its own, such as `x` of a vector or `yaw` of a pose.
 struct Component {
   const char* name;

@@ -170,11 +170,7 @@ constexpr TypeInfo make_type_info() {
         const auto names = enum_names(T{});
         return i < names.size() ? names[i].name : nullptr;
       };
-      info.name = [](const void* x) -> const char* {
-        for (const auto& entry : enum_names(T{}))
-          if (entry.value == *static_cast<const T*>(x)) return entry.name;
-        return "";
-      };
+      info.name = [](const void* x) -> const char* { return name_of(*static_cast<const T*>(x)); };
     }
   } else if constexpr (std::is_same_v<T, Time>) {
     info.holds = Holds::time;

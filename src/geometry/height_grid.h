@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/fields.h"
 #include "geometry/vec3.h"
 
 namespace sandlot {
@@ -16,6 +17,16 @@ struct HeightGrid {
   std::vector<float> height_m;        ///< columns * rows
   std::string source;                 ///< file it came from, for messages
   double source_height_m = 1;         ///< height that the file's brightest pixel stands for
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"columns", "1", "Samples along x."}, s.columns);
+    visit(Field{"rows", "1", "Samples along y."}, s.rows);
+    visit(Field{"size_x", "m", "Extent along x."}, s.size_x_m);
+    visit(Field{"size_y", "m", "Extent along y."}, s.size_y_m);
+    visit(Field{"height", "m", "Heights, row by row."}, s.height_m);
+    visit(Field{"source", "", "File that the heights are from."}, s.source);
+    visit(Field{"source_height", "m", "Height of the brightest pixel of the file."}, s.source_height_m);
+  }
 
   float at(int column, int row) const {
     return height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/fields.h"
 #include "geometry/color.h"
 #include "geometry/shape.h"
 #include "geometry/vec3.h"
@@ -20,6 +21,14 @@ struct MeshPart {
   std::uint32_t first_triangle = 0, triangles = 0;
   Color color;          ///< the file's own
   std::string texture;  ///< file of the colour texture; "" for none
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the sub-mesh; empty when the file has none."}, s.name);
+    visit(Field{"first_triangle", "", "Index of the first triangle."}, s.first_triangle);
+    visit(Field{"triangles", "", "Number of triangles."}, s.triangles);
+    visit(Field{"color", "1", "Colour in the file."}, s.color);
+    visit(Field{"texture", "", "File of the colour texture; empty for none."}, s.texture);
+  }
 };
 
 struct TriangleMesh {
@@ -33,6 +42,19 @@ struct TriangleMesh {
   std::string source_part;      ///< the only part of the file that was taken; "" for all
   bool source_centred = false;  ///< that part's middle was moved to the origin
   bool is_hull = false;         ///< the convex hull of it, or of a part that hangs together
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"vertices", "m", "Vertices in the shape's frame."}, s.vertices);
+    visit(Field{"triangles", "", "Indices of the corners."}, s.triangles);
+    visit(Field{"texture_uv", "1", "Texture coordinates of the vertices."}, s.texture_uv);
+    visit(Field{"parts", "", "Parts with a colour of their own."}, s.parts);
+    visit(Field{"source", "", "File that the mesh is from; empty for one that was made."}, s.source);
+    visit(Field{"source_scale", "1", "Scale applied to the vertices of the file."}, s.source_scale);
+    visit(Field{"source_part", "", "Only part of the file that was taken; empty for all."}, s.source_part);
+    visit(Field{"source_centred", "", "Whether that part's middle was moved to the origin."},
+          s.source_centred);
+    visit(Field{"is_hull", "", "Whether the mesh is the convex hull of what the file holds."}, s.is_hull);
+  }
 };
 
 /// What a homogeneous solid bounded by the mesh weighs, from integrals over its triangles.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,8 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "files/text.h"
-#include "formats/sdf/document.h"
-#include "formats/sdf/sdf.h"
+#include "formats/kind.h"
 #include "formats/sdf/write.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
@@ -23,15 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Format { sdf, urdf, scenario, builder };
+bool is_builder(const std::string& path) { return starts_with(path, "builder:"); }
 
-Result<Format> format_of(const std::string& path) {
-  if (starts_with(path, "builder:")) return Format::builder;
-  const std::string extension = fs::path(path).extension().string();
-  if (extension == ".sdf" || extension == ".world") return Format::sdf;
-  if (extension == ".urdf" || extension == ".xacro") return Format::urdf;
-  if (extension == ".yaml" || extension == ".yml") return Format::scenario;
-  return Error{"'" + path + "' has no known extension", "convert knows .sdf, .world, .urdf and .yaml"};
+/// The format of a file to read or to write.
+Result<const formats::FormatKind*> format_of(const std::string& path) {
+  if (const formats::FormatKind* const format = formats::find_format(path)) return format;
+  return Error{"'" + path + "' has no known extension", "convert knows " + formats::known_extensions()};
 }
 
 /// A path written in `file_folder`, as one that means the same file when written in `new_folder`.
@@ -83,7 +80,8 @@ std::string obj_text(const TriangleMesh& mesh, const std::string& comment) {
 
 struct Job {
   const ConvertOptions& options;
-  Format from, to;
+  const formats::FormatKind* from;  ///< null for a builder
+  const formats::FormatKind& to;
   SearchPath search;
   Diagnostics& diagnostics;
   std::vector<Beside>& beside;
@@ -121,28 +119,25 @@ struct Job {
 
   /// The document itself, with includes resolved and URDF translated: nothing of it is lost.
   Result<std::string> tree_to_sdf() const {
-    const formats::SdfOptions sdf{.path = search};
-    SL_ASSIGN(const std::string text, read_text_file(options.in, sdf.limits.max_bytes));
-    SL_ASSIGN([[maybe_unused]] const formats::SdfContent content,
-              formats::parse_sdf(text, options.in, diagnostics, sdf));
-    Diagnostics said_already;
-    formats::Notes notes(said_already);
-    SL_ASSIGN(Xml root, formats::load_document(text, options.in, notes, sdf));
+    const formats::ReadOptions reading{.path = search};
+    SL_ASSIGN(const std::string text, read_text_file(options.in, from->max_bytes));
+    SL_ASSIGN([[maybe_unused]] const formats::WorldContent content,
+              from->world(text, options.in, reading, diagnostics));
+    Diagnostics repeated;
+    SL_ASSIGN(Xml root, from->sdf_tree(text, options.in, reading, repeated));
     // Older versions have been rewritten as 1.9.
     double minor = 0;
     const std::string* const version = root.attribute("version");
     if (!version || !starts_with(*version, "1.") || !parse_number(version->substr(2), minor) || minor < 9)
       root.set_attribute("version", "1.9");
-    Mover{folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    return moved_text(root);
   }
 
-  Result<std::string> scenario_to_sdf() const {
+  Result<std::string> setup_to_file() const {
     SL_ASSIGN(model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
     for (model::Instance& instance : setup.instances) give_terrain_a_file(instance);
-    SL_ASSIGN(Xml root, formats::sdf_of(setup, diagnostics));
-    Mover{folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    SL_ASSIGN(Xml root, to.write_world(setup, diagnostics));
+    return moved_text(root);
   }
 
   /// A model with parameters as the one model of a file.
@@ -152,28 +147,26 @@ struct Job {
     model::Instance named = instance;
     named.original_name = named.name = instance.model->name;
     give_terrain_a_file(named);
-    SL_ASSIGN(Xml root, to == Format::urdf ? formats::urdf_of(named, diagnostics)
-                                           : formats::sdf_of(named, diagnostics));
+    SL_ASSIGN(const Xml root, to.write_model(named, diagnostics));
     return formats::xml_text(root, comment());
   }
 
-  Result<std::string> model_to_urdf() const {
-    SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, diagnostics, {.path = search}));
-    if (!content.world_name.empty())
-      return Error{"'" + options.in + "' is a world, and a URDF file holds one robot",
+  Result<std::string> model_to_file() const {
+    SL_ASSIGN(const formats::WorldContent content,
+              formats::read_world(options.in, {.path = search}, diagnostics));
+    if (content.is_world())
+      return Error{"'" + options.in + "' is a world, and a " + format_name() + " file holds one robot",
                    "name a file with one <model>"};
-    SL_ASSIGN(Xml root, formats::urdf_of(content.instances.front(), diagnostics));
-    Mover{folder_of(options.out), search}(root);
-    return formats::xml_text(root, comment());
+    SL_ASSIGN(Xml root, to.write_model(content.instances.front(), diagnostics));
+    return moved_text(root);
   }
 
   /// A scenario that runs the file: ticks of 10 ms or as fine as the sensors need, physics at the file's own step.
   Result<std::string> file_to_scenario() const {
     SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
-    Diagnostics said_already;
-    SL_ASSIGN(const formats::SdfContent content,
-              formats::read_sdf(options.in, said_already, {.path = search}));
+    Diagnostics repeated;
+    SL_ASSIGN(const formats::WorldContent content,
+              formats::read_world(options.in, {.path = search}, repeated));
     double fastest_hz = 0;
     for (const model::Instance& instance : setup.instances)
       for (const model::DeviceDecl& device : instance.devices)
@@ -189,10 +182,10 @@ struct Job {
     const std::string named = failed || relative.empty() ? fs::absolute(options.in).string()
                                                          : relative.string();
     std::string out = "# " + comment() + "\nversion: 1\nname: " + quoted(stem) + "\n";
-    if (!content.world_name.empty()) out += "world: " + quoted(named) + "\n";
+    if (content.is_world()) out += "world: " + quoted(named) + "\n";
     out += fmt::format("physics: rigid\ntime: {{step: {} s, substeps: {}, stop: 60 s}}\nseed: 1\n",
                        number_text(rounded(step_s * substeps)), substeps);
-    if (content.world_name.empty()) {
+    if (!content.is_world()) {
       const model::Instance& robot = content.instances.front();
       out += "robots:\n  - name: " + quoted(robot.original_name) + "\n    model: " + quoted(named) +
              "\n    pose: [0, 0, 0]\n";
@@ -200,7 +193,20 @@ struct Job {
     return out;
   }
 
+  /// "URDF"
+  std::string format_name() const {
+    std::string out = to.name;
+    for (char& c : out) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return out;
+  }
+
  private:
+  /// The document with file names as seen from where it is written.
+  std::string moved_text(Xml& root) const {
+    Mover{folder_of(options.out), search}(root);
+    return formats::xml_text(root, comment());
+  }
+
   /// Products of decimal steps have tails of binary dust.
   static double rounded(double s) { return std::floor(s * 1e9 + 0.5) / 1e9; }
 
@@ -215,51 +221,52 @@ struct Job {
 };
 
 Result<std::string> converted(const Job& job) {
-  if (job.to == Format::builder)
-    return Error{"'" + job.options.out + "' is no file", "name a file to write: .sdf or .urdf"};
-  if (job.from == Format::builder) {
-    if (job.to != Format::scenario) return job.built_to_file();
+  if (!job.from) {
+    if (job.to.write_model) return job.built_to_file();
     return Error{"scenarios name builders themselves: model: {builder: ...}", "convert it to .sdf"};
   }
-  if (job.to == Format::scenario) {
-    if (job.from == Format::scenario)
+  if (job.to.scenario) {
+    if (job.from->scenario)
       return Error{"'" + job.options.in + "' is a scenario already",
                    "convert makes scenarios of worlds and robots"};
     return job.file_to_scenario();
   }
-  if (job.to == Format::urdf) {
-    if (job.from == Format::scenario)
-      return Error{"'" + job.options.in + "' is a scenario, and a URDF file holds one robot",
-                   "convert it to .sdf"};
-    return job.model_to_urdf();
-  }
-  return job.from == Format::scenario ? job.scenario_to_sdf() : job.tree_to_sdf();
+  if (job.to.sdf_tree && job.from->sdf_tree && job.to.write_world) return job.tree_to_sdf();
+  if (job.to.write_world) return job.setup_to_file();
+  if (job.from->scenario)
+    return Error{
+        "'" + job.options.in + "' is a scenario, and a " + job.format_name() + " file holds one robot",
+        "convert it to .sdf"};
+  return job.model_to_file();
 }
 
 /// What cannot be read back is not written.
 Status check_result(const Job& job, const std::string& text) {
   Diagnostics unheard;
   Error error;
-  if (job.to == Format::scenario) {
-    const auto back = formats::parse_scenario(text, job.options.out, {}, unheard);
+  if (job.to.scenario) {
+    const auto back = job.to.scenario(text, job.options.out, {}, unheard);
     if (back) return {};
     error = back.error();
   } else {
-    const auto back = formats::parse_sdf(text, job.options.out, unheard, {.path = job.search});
+    const auto back = job.to.world(text, job.options.out, {.path = job.search}, unheard);
     if (back) return {};
     error = back.error();
   }
-  return Error{"'" + job.options.in + "' cannot be said in the other format: " + error.what, error.fix};
+  return Error{"'" + job.options.in + "' cannot be written in the other format: " + error.what, error.fix};
 }
 
 Status run_job(const ConvertOptions& options, Diagnostics& diagnostics) {
-  SL_ASSIGN(const Format from, format_of(options.in));
-  SL_ASSIGN(const Format to, format_of(options.out));
+  const formats::FormatKind* from = nullptr;
+  if (!is_builder(options.in)) { SL_ASSIGN(from, format_of(options.in)); }
+  if (is_builder(options.out))
+    return Error{"'" + options.out + "' is not a file", "name a file to write: .sdf or .urdf"};
+  SL_ASSIGN(const formats::FormatKind* const to, format_of(options.out));
   std::error_code ignored;
   if (fs::exists(options.out, ignored) && !options.force)
     return Error{"'" + options.out + "' exists already", "add --force to replace it"};
   std::vector<Beside> beside;
-  const Job job{options, from, to, search_path(options.paths), diagnostics, beside};
+  const Job job{options, from, *to, search_path(options.paths), diagnostics, beside};
   SL_ASSIGN(const std::string text, converted(job));
   for (const Beside& file : beside)
     if (fs::exists(file.path, ignored) && !options.force)

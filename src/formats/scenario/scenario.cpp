@@ -154,7 +154,7 @@ template <class Keys>
 Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* what, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
-  group.place = name ? name->place() : node.place();
+  group.instance.place = name ? name->place() : node.place();
   if (keys.name.empty())
     return node.error("the " + std::string(what) + "'s name is empty", "", path + "/name");
   group.name = keys.name;
@@ -168,7 +168,7 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
                             "name a model file, or write {builder: ...} or builder:NAME", path + "/model");
   }
   group.count = keys.count;
-  group.label = keys.label;
+  group.instance.label = keys.label;
   if (!keys.pose.is_null() && keys.distribution)
     return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (keys.distribution) {
@@ -189,8 +189,8 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
 
 Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
   SL_ASSIGN(RobotGroup group, read_group(node, robot, "robot", path));
-  group.team = robot.team;
-  group.errors = robot.errors;
+  group.instance.team = robot.team;
+  group.instance.errors = robot.errors;
   for (std::size_t i = 0; i < robot.modules.size(); ++i) {
     SL_ASSIGN(Module module, read_module(node.find("modules")->items()[i], robot.modules[i],
                                          path + "/modules/" + std::to_string(i)));
@@ -200,7 +200,7 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
                      "the other one is at " + to_string(other.place), module.place, path + "/modules"};
     group.modules.push_back(std::move(module));
   }
-  SL_ASSIGN(group.controllers, read_controllers(robot, path));
+  SL_ASSIGN(group.instance.controllers, read_controllers(robot, path));
   SL_TRY(check_devices(robot.devices, path + "/devices"));
   group.devices = std::move(robot.devices);
   group.joint_controllers = std::move(robot.joint_controllers);
@@ -213,8 +213,8 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
 Status check_names(const std::vector<RobotGroup>& robots) {
   std::map<std::string, const RobotGroup*> single, stems;
   const auto clash = [](const RobotGroup& a, const RobotGroup& b, const std::string& name) {
-    return Error{"two robots would be called '" + name + "'", "the other one is at " + to_string(b.place),
-                 a.place, "/robots"};
+    return Error{"two robots would be called '" + name + "'",
+                 "the other one is at " + to_string(b.instance.place), a.instance.place, "/robots"};
   };
   for (const RobotGroup& group : robots) {
     const auto [known, fresh] = (group.count > 1 ? stems : single).emplace(sanitised(group.name), &group);
@@ -239,29 +239,29 @@ Status check_names(const std::vector<RobotGroup>& robots) {
 }
 
 Status read_physics(const Node& node, Scenario& out) {
-  out.physics = Node::map(node.place());
+  out.setup.physics = Node::map(node.place());
   if (node.is_null()) return {};
   out.engine_place = node.place();
   if (node.is_scalar()) {
-    out.engine = node.text();
+    out.setup.engine = node.text();
   } else if (node.is_map()) {
-    out.physics = node;
+    out.setup.physics = node;
     if (const Node* engine = node.find("engine")) {
       if (!engine->is_scalar()) return wrong_type(*engine, "the name of an engine", "/physics/engine");
       out.engine_place = engine->place();
-      out.engine = engine->text();
-      out.physics.erase("engine");
+      out.setup.engine = engine->text();
+      out.setup.physics.erase("engine");
     }
   } else {
     return wrong_type(node, "the name of an engine or a map with 'engine'", "/physics");
   }
-  if (out.engine.empty())
+  if (out.setup.engine.empty())
     return node.error("the name of the engine is empty", "write rigid or planar", "/physics");
   return {};
 }
 
 /// `values`, `events` and `log`: their expressions are read when the world they speak of is there.
-Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
+Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
   constexpr std::size_t most_values = 1000, longest = 2000;
   if (!root.values.is_map() && !root.values.is_null())
     return wrong_type(root.values, "a map of names to expressions", "/values");
@@ -285,8 +285,8 @@ Status read_watch(const Node& node, const spec::Root& root, Scenario& out) {
     if (const auto [known, fresh] = names.emplace(event.name, each.place()); !fresh)
       return each.find("name")->error("two events are called '" + event.name + "'",
                                       "the other one is at " + to_string(known->second), path + "/name");
-    out.events.push_back({event.name, event.when, ::sandlot::Time::from_s(event.hold_s), event.once,
-                          event.stop, each.find("when")->place()});
+    out.events.push_back({event.name, event.when, Time::from_s(event.hold_s), event.once, event.stop,
+                          each.find("when")->place()});
   }
   if (!root.log) return {};
   const Node& log = *node.find("log");
@@ -313,28 +313,30 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   SL_TRY(read_fields(node, root));
   Scenario out;
   out.file = file;
-  out.name = root.name;
+  model::Setup& setup = out.setup;
+  setup.name = root.name;
   out.world = root.world;
   if (const Node* world = node.find("world")) out.world_place = world->place();
   SL_TRY(read_physics(root.physics, out));
-  out.step_s = root.time.step_s;
-  if (root.time.clock == spec::Clock::continuous) out.clock.mode = model::Clock::Mode::continuous;
-  out.clock.min_step = Time::from_s(root.time.min_step_s);
-  out.clock.max_step = Time::from_s(root.time.max_step_s);
-  if (out.clock.max_step < out.clock.min_step)
+  setup.step = Time::from_s(root.time.step_s);
+  setup.clock.mode = root.time.clock;
+  setup.clock.min_step = Time::from_s(root.time.min_step_s);
+  setup.clock.max_step = Time::from_s(root.time.max_step_s);
+  if (setup.clock.max_step < setup.clock.min_step)
     return node.find("time")->error("min_step is longer than max_step", "", "/time");
-  out.record = root.record;
-  if (out.record) {
+  setup.substeps = root.time.substeps;
+  setup.control_interval = root.time.control_interval;
+  if (root.time.stop_s) setup.stop = Time::from_s(*root.time.stop_s);
+  setup.seed = root.seed;
+  setup.errors = root.errors;
+  setup.record = root.record;
+  if (setup.record) {
     const Node& record = *node.find("record");
-    if (out.record->file.empty())
+    std::string& target = setup.record->file;
+    if (target.empty())
       return record.error("'file' is missing", "for example file: run.mcap", "/record/file");
-    out.record->file = (std::filesystem::path(base_folder(out, record.place())) / out.record->file).string();
+    target = (std::filesystem::path(base_folder(out, record.place())) / target).string();
   }
-  out.substeps = root.time.substeps;
-  out.control_interval = root.time.control_interval;
-  out.stop_s = root.time.stop_s;
-  out.seed = root.seed;
-  out.errors = root.errors;
   for (std::size_t i = 0; i < root.plugins.size(); ++i) {
     const Node& all = *node.find("plugins");
     const Node& each = all.is_sequence() ? all.items()[i] : all;
@@ -360,8 +362,8 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
     out.robots.push_back(std::move(group));
   }
   SL_TRY(check_names(out.robots));
-  SL_TRY(read_watch(node, root, out));
-  SL_TRY(read_zones(node, root.zones, out, diagnostics));
+  SL_TRY(read_watch(node, root, setup));
+  SL_TRY(read_zones(node, root.zones, setup.zones, diagnostics));
   return out;
 }
 

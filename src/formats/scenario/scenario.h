@@ -42,49 +42,33 @@ struct Module {
   Place place, model_place, link_place;
 };
 
-/// Robots of one kind, or things: those have a name, a model, a number and a place only.
+/// Robots of one kind, or things: those have a name, a model, a label, a number and a place only.
 struct RobotGroup {
+  model::Instance
+      instance;       ///< each of them: team, label, controllers, errors, place; sim/load adds the rest
   std::string name;   ///< of the robot, or the stem when count > 1: name1, name2, ...
   std::string model;  ///< file as written (see base_folder), a name in the search path, or "builder:..."
   Node builder;       ///< in place of `model`: a map with `builder` and its parameters, else null
   int count = 1;
   Placement placement;
-  std::string team;
-  std::string label;  ///< what detectors call it
   std::vector<Module> modules;
-  std::vector<model::ControllerDecl> controllers;
   std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
   Place joint_controllers_place;
   Node devices;  ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
-  double errors = 1;  ///< factor on the errors of all its devices
-  Place place;
   Place model_place;
 };
 
+/// The part of a Setup that a scenario gives, and the files that sim/load adds to it.
 struct Scenario {
-  std::string file;  ///< as given
-  std::string name;
+  std::string file;    ///< as given
+  model::Setup setup;  ///< but for its world, plugins and instances
+  Place engine_place;
   std::string world;  ///< file as written (see base_folder); "" for an empty plane
   Place world_place;
-  std::string engine = "rigid";
-  Place engine_place;
-  Node physics;          ///< the engine's own keys; a map
-  double step_s = 0.01;  ///< length of a tick
-  model::Clock clock;
-  int substeps = 1;
-  int control_interval = 1;
-  std::optional<double> stop_s;
-  std::uint64_t seed = 1;
-  double errors = 1;                                   ///< factor on the errors of all devices
   std::vector<std::pair<std::string, Place>> plugins;  ///< files as written (see base_folder), or names
   std::vector<RobotGroup> robots;
   std::vector<RobotGroup> things;
-  std::vector<model::ValueDecl> values;
-  std::vector<model::EventDecl> events;
-  std::optional<model::LogDecl> log;
-  std::vector<model::SurfaceZone> zones;
-  std::optional<model::Recording> record;  ///< its file is made absolute or relative to the working folder
-  std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} asks for
+  std::vector<std::pair<std::string, Place>> unused_vars;  ///< entries of `vars` that no ${name} uses
 };
 
 /// One `--set path=value`; a path names a variable (`vars.x` or just `x`) or a place in the file (`robots.count`,

@@ -41,28 +41,28 @@ robots:
 TEST(Scenario, ReadsTheWholeForm) {
   const auto s = parse(indoor);
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->name, "indoor");
+  EXPECT_EQ(s->setup.name, "indoor");
   EXPECT_EQ(s->world, "../worlds/indoor.sdf");
   EXPECT_EQ(s->world_place.line, 3);
-  EXPECT_EQ(s->engine, "rigid");
-  EXPECT_EQ(s->physics.find("solver")->text(), "auto");
-  EXPECT_EQ(s->physics.find("engine"), nullptr);
-  EXPECT_NEAR(s->step_s, 0.02, 1e-17);
-  EXPECT_EQ(s->substeps, 4);
-  EXPECT_EQ(s->control_interval, 5);
-  EXPECT_EQ(s->stop_s, 120.0);
-  EXPECT_EQ(s->seed, 7u);
+  EXPECT_EQ(s->setup.engine, "rigid");
+  EXPECT_EQ(s->setup.physics.find("solver")->text(), "auto");
+  EXPECT_EQ(s->setup.physics.find("engine"), nullptr);
+  EXPECT_NEAR(s->setup.step.s(), 0.02, 1e-17);
+  EXPECT_EQ(s->setup.substeps, 4);
+  EXPECT_EQ(s->setup.control_interval, 5);
+  EXPECT_EQ(s->setup.stop->s(), 120);
+  EXPECT_EQ(s->setup.seed, 7u);
   ASSERT_EQ(s->robots.size(), 1u);
   const RobotGroup& robot = s->robots[0];
   EXPECT_EQ(robot.name, "rover");
-  EXPECT_EQ(robot.team, "red");
+  EXPECT_EQ(robot.instance.team, "red");
   EXPECT_EQ(robot.placement.X_WM.p, (Vec3{1, 2, 0.5}));
   EXPECT_NEAR(yaw_of(robot.placement.X_WM.q), math::pi / 2, 1e-15);
-  ASSERT_EQ(robot.controllers.size(), 1u);
-  EXPECT_EQ(robot.controllers[0].name, "controller");
-  EXPECT_EQ(robot.controllers[0].kind, "wander");
-  EXPECT_EQ(robot.controllers[0].config.find("kind"), nullptr);
-  EXPECT_EQ(robot.controllers[0].config.find("speed")->text(), "0.4");
+  ASSERT_EQ(robot.instance.controllers.size(), 1u);
+  EXPECT_EQ(robot.instance.controllers[0].name, "controller");
+  EXPECT_EQ(robot.instance.controllers[0].kind, "wander");
+  EXPECT_EQ(robot.instance.controllers[0].config.find("kind"), nullptr);
+  EXPECT_EQ(robot.instance.controllers[0].config.find("speed")->text(), "0.4");
   EXPECT_EQ(robot.devices.find("laser")->find("beams")->text(), "181");
   EXPECT_EQ(robot.devices.find("laser")->find("cost")->text(), "${5}");
   EXPECT_EQ(base_folder(*s, robot.model_place), "dir");
@@ -71,10 +71,10 @@ TEST(Scenario, ReadsTheWholeForm) {
 TEST(Scenario, LeavesDefaultsWhereNothingIsSaid) {
   const auto s = parse("version: 1\n");
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->engine, "rigid");
+  EXPECT_EQ(s->setup.engine, "rigid");
   EXPECT_EQ(s->world, "");
-  EXPECT_EQ(s->step_s, 0.01);
-  EXPECT_FALSE(s->stop_s);
+  EXPECT_EQ(s->setup.step.s(), 0.01);
+  EXPECT_FALSE(s->setup.stop);
 }
 
 TEST(Scenario, PlacesGroups) {
@@ -113,15 +113,15 @@ TEST(Scenario, SetReachesVariablesAndPlaces) {
                                 {"seed", "42"}});
   ASSERT_TRUE(s) << s.error().text();
   const RobotGroup& robot = s->robots[0];
-  EXPECT_EQ(robot.controllers[0].config.find("speed")->text(), "0.9");
-  EXPECT_EQ(robot.controllers[0].config.find("turn")->items()[1].text(), "2");
+  EXPECT_EQ(robot.instance.controllers[0].config.find("speed")->text(), "0.9");
+  EXPECT_EQ(robot.instance.controllers[0].config.find("turn")->items()[1].text(), "2");
   EXPECT_EQ(robot.devices.find("laser")->find("beams")->text(), "5");
   EXPECT_EQ(robot.devices.find("laser")->find("fov")->text(), "90 deg");
   EXPECT_EQ(robot.devices.find("sonar")->find("kind")->text(), "sonar");
-  EXPECT_EQ(s->engine, "planar");
-  EXPECT_NE(s->physics.find("solver"), nullptr) << "physics=planar keeps the other keys";
-  EXPECT_EQ(s->stop_s, 5);
-  EXPECT_EQ(s->seed, 42u);
+  EXPECT_EQ(s->setup.engine, "planar");
+  EXPECT_NE(s->setup.physics.find("solver"), nullptr) << "physics=planar keeps the other keys";
+  EXPECT_EQ(s->setup.stop->s(), 5);
+  EXPECT_EQ(s->setup.seed, 42u);
   EXPECT_EQ(base_folder(*s, s->engine_place), "dir") << "a --set starts from the scenario's folder";
 }
 
@@ -129,10 +129,10 @@ TEST(Scenario, SetLengthensShortForms) {
   const auto s = parse("version: 1\nphysics: planar\nrobots: [{name: a, model: m, controller: wander}]",
                        {{"physics.grid", "3"}, {"robots.controller.speed", "2"}});
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->engine, "planar");
-  EXPECT_EQ(s->physics.find("grid")->text(), "3");
-  EXPECT_EQ(s->robots[0].controllers[0].kind, "wander");
-  EXPECT_EQ(s->robots[0].controllers[0].config.find("speed")->text(), "2");
+  EXPECT_EQ(s->setup.engine, "planar");
+  EXPECT_EQ(s->setup.physics.find("grid")->text(), "3");
+  EXPECT_EQ(s->robots[0].instance.controllers[0].kind, "wander");
+  EXPECT_EQ(s->robots[0].instance.controllers[0].config.find("speed")->text(), "2");
 }
 
 TEST(Scenario, SetSaysWhatIsWrongWithItsPath) {
@@ -171,10 +171,10 @@ TEST(Scenario, SetFindsElementsOfListsByName) {
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->robots[0].count, 1);
   EXPECT_EQ(s->robots[1].count, 3);
-  EXPECT_EQ(s->robots[1].controllers.at(0).kind, "wander");
+  EXPECT_EQ(s->robots[1].instance.controllers.at(0).kind, "wander");
   EXPECT_EQ(s->robots[1].modules[0].model, "e");
   EXPECT_EQ(s->robots[1].modules[1].model, "g");
-  EXPECT_EQ(s->things[0].label, "round");
+  EXPECT_EQ(s->things[0].instance.label, "round");
   EXPECT_EQ(error_of(text, {{"robots.raer.count", "3"}}),
             "--set robots.raer.count=3: 'robots' has 2 elements, none named 'raer'; did you mean "
             "'robots.rear'?");
@@ -183,7 +183,7 @@ TEST(Scenario, SetFindsElementsOfListsByName) {
 TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {
   const auto s = parse("version: 1\nname: ${c}-x\nvars: {a: 2, b: \"${a}0\", c: \"n${b}\"}\n");
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->name, "n20-x");
+  EXPECT_EQ(s->setup.name, "n20-x");
   EXPECT_EQ(error_of("version: 1\nvars: {a: \"${b}\", b: \"${a}\"}\n"),
             "dir/s.yaml:2:22: variable 'b' is defined by itself");
   EXPECT_EQ(error_of("version: 1\nname: ${spede}\nvars: {speed: 1}\n"),
@@ -199,10 +199,10 @@ TEST(Scenario, AVariableMayChooseAmongTheEntriesOfAnother) {
       "pose}, low: ranges}\n";
   const auto s = parse(text);
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->name, "ranges-ranges");
+  EXPECT_EQ(s->setup.name, "ranges-ranges");
   const auto high = parse(text, {{"level", "world"}});
   ASSERT_TRUE(high) << high.error().text();
-  EXPECT_EQ(high->name, "pose-pose");
+  EXPECT_EQ(high->setup.name, "pose-pose");
   EXPECT_EQ(error_of(text, {{"level", "imge"}}),
             "--set level=imge: 'level' is 'imge', and 'of' has no entry for that; did you mean 'image'?");
   EXPECT_EQ(error_of("version: 1\nname: ${a[b]}\nvars: {a: 1, b: 2}\n"),
@@ -242,10 +242,10 @@ TEST(Scenario, IncludesLieBelowTheIncludingFile) {
   Diagnostics diagnostics;
   const auto s = read_scenario(folder + "top.yaml", {}, diagnostics);
   ASSERT_TRUE(s) << s.error().text();
-  EXPECT_EQ(s->name, "top");
-  EXPECT_EQ(s->seed, 2u);
-  EXPECT_EQ(s->substeps, 3);
-  EXPECT_EQ(s->step_s, 0.005);
+  EXPECT_EQ(s->setup.name, "top");
+  EXPECT_EQ(s->setup.seed, 2u);
+  EXPECT_EQ(s->setup.substeps, 3);
+  EXPECT_EQ(s->setup.step.s(), 0.005);
   EXPECT_EQ(base_folder(*s, s->world_place) + "/", folder + "sub/");
   const auto loop = read_scenario(folder + "loop.yaml", {}, diagnostics);
   ASSERT_FALSE(loop);
@@ -265,19 +265,19 @@ ground_zones:
   - {name: hole, centre: [1, 2], no_contact: true}
 )");
   ASSERT_TRUE(s) << s.error().text();
-  ASSERT_EQ(s->zones.size(), 3u);
-  EXPECT_EQ(s->zones[0].name, "ice");
-  EXPECT_EQ(s->zones[0].outline_W, (std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}));
-  EXPECT_EQ(s->zones[0].surface.mu, 0.05);
-  EXPECT_EQ(s->zones[0].surface.mu2, 0.05);
-  EXPECT_EQ(s->zones[0].place.line, 3);
-  EXPECT_EQ(s->zones[1].centre_W, (Vec3{1, 2, 0}));
-  EXPECT_EQ(s->zones[1].radius_m, 0.5);
-  EXPECT_TRUE(s->zones[1].outline_W.empty());
-  EXPECT_EQ(s->zones[1].surface.substance->hardness, 20);
-  EXPECT_EQ(s->zones[1].surface.belt_velocity_mps, (Vec3{0.7, 0, 0}));
-  EXPECT_EQ(s->zones[1].surface.rolling_resistance_m, 0.002);
-  EXPECT_FALSE(s->zones[2].surface.touches);
+  ASSERT_EQ(s->setup.zones.size(), 3u);
+  EXPECT_EQ(s->setup.zones[0].name, "ice");
+  EXPECT_EQ(s->setup.zones[0].outline_W, (std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}));
+  EXPECT_EQ(s->setup.zones[0].surface.mu, 0.05);
+  EXPECT_EQ(s->setup.zones[0].surface.mu2, 0.05);
+  EXPECT_EQ(s->setup.zones[0].place.line, 3);
+  EXPECT_EQ(s->setup.zones[1].centre_W, (Vec3{1, 2, 0}));
+  EXPECT_EQ(s->setup.zones[1].radius_m, 0.5);
+  EXPECT_TRUE(s->setup.zones[1].outline_W.empty());
+  EXPECT_EQ(s->setup.zones[1].surface.substance->hardness, 20);
+  EXPECT_EQ(s->setup.zones[1].surface.belt_velocity_mps, (Vec3{0.7, 0, 0}));
+  EXPECT_EQ(s->setup.zones[1].surface.rolling_resistance_m, 0.002);
+  EXPECT_FALSE(s->setup.zones[2].surface.touches);
   const auto wrong = [](const std::string& zones) { return error_of("version: 1\nground_zones:\n" + zones); };
   const char* const cases[][2] = {
       {"  - {name: a}", "dir/s.yaml:3:5: /ground_zones/0: expected one of 'polygon' and 'centre'"},

@@ -8,21 +8,15 @@
 #include "base/node.h"
 #include "formats/scenario/zone_spec.h"
 #include "geometry/vec3.h"
-#include "model/recording.h"
+#include "model/model.h"
 
 namespace sandlot::formats::scenario_spec {
 
 inline constexpr double max_angle_rad = 1e4;
 inline constexpr int max_robots = 1'000'000;
 
-enum class Clock : std::uint8_t { fixed, continuous };
-inline std::span<const EnumName<Clock>> enum_names(Clock) {
-  static constexpr EnumName<Clock> names[] = {{"fixed", Clock::fixed}, {"continuous", Clock::continuous}};
-  return names;
-}
-
 struct Time {
-  Clock clock = Clock::fixed;
+  model::Clock::Mode clock = model::Clock::Mode::fixed;
   double min_step_s = 1e-4, max_step_s = 0.1;
   double step_s = 0.01;
   int substeps = 1;

@@ -18,12 +18,12 @@ Status apply_overrides(Node& root, std::span<const Override> overrides);
 
 /// Replaces every ${name} in `root` by the entry of its `vars`; `$${` stands for a plain `${`.
 /// A text that is just `${name}` becomes the variable's value, whatever its type, with the variable's place.
-/// @param unused  out: entries of `vars` that nobody asked for, in file order
+/// @param unused  out: entries of `vars` that no ${name} uses, in file order
 Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place>>& unused);
 
 /// Checks and takes over the zones of the ground; zones.cpp.
-Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys, Scenario& out,
-                  Diagnostics& diagnostics);
+Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys,
+                  std::vector<model::SurfaceZone>& out, Diagnostics& diagnostics);
 
 /// "--set path=value", the `file` of what an override gives.
 inline constexpr std::string_view override_place = "--set ";

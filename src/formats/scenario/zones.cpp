@@ -49,8 +49,8 @@ Result<model::SurfaceZone> read_zone(const Node& node, const scenario_spec::Zone
 
 }  // namespace
 
-Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys, Scenario& out,
-                  Diagnostics& diagnostics) {
+Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys,
+                  std::vector<model::SurfaceZone>& out, Diagnostics& diagnostics) {
   std::map<std::string, Place> names;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Node& each = root.find("ground_zones")->items()[i];
@@ -59,7 +59,7 @@ Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys
     if (const auto [known, fresh] = names.emplace(zone.name, zone.place); !fresh)
       return each.find("name")->error("two zones are called '" + zone.name + "'",
                                       "the other one is at " + to_string(known->second), path + "/name");
-    out.zones.push_back(std::move(zone));
+    out.push_back(std::move(zone));
   }
   return {};
 }

@@ -47,7 +47,7 @@ class SdfFiles : public testing::Test {
 
   std::string folder_, error_;
   SdfOptions options_;
-  SdfContent content_;
+  WorldContent content_;
   std::vector<std::string> warnings_;
 };
 
@@ -140,7 +140,7 @@ TEST_F(SdfFiles, WorldsLightsAndActorsMayBeIncluded) {
            "<include><uri>lamp.sdf</uri><name>l2</name><pose>0 0 4 0 0 0</pose></include>"
            "<include><uri>ann.sdf</uri><pose>0 3 0 0 0 0</pose></include></world>"))
       << error_;
-  EXPECT_EQ(content_.gravity_mps2.z, -9.81) << "the world's own";
+  EXPECT_EQ(content_.gravity.z, -9.81) << "the world's own";
   ASSERT_EQ(content_.instances.size(), 2u);
   EXPECT_EQ(content_.instances[0].X_WM.p.x, 1);
   EXPECT_EQ(content_.instances[1].motion->keys.at(0).X_WM.p.y, 3);

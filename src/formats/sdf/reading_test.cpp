@@ -11,7 +11,7 @@ namespace sandlot::formats {
 namespace {
 
 struct Read {
-  std::optional<SdfContent> content;
+  std::optional<WorldContent> content;
   std::string error;
   std::vector<std::string> warnings;
 

@@ -8,7 +8,7 @@
 namespace sandlot::formats {
 namespace {
 
-Result<SdfContent> parse(const std::string& text, Diagnostics& diagnostics) {
+Result<WorldContent> parse(const std::string& text, Diagnostics& diagnostics) {
   return parse_sdf(text, "f.sdf", diagnostics, {});
 }
 constexpr const char* inertial =

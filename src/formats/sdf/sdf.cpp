@@ -32,7 +32,7 @@ bool is_standard_plugin(const Xml& plugin) {
 }
 
 /// Keys of `physics:` of the engine `rigid` that mean what elements of SDF mean.
-Status read_ode(const Xml& ode, SdfContent& out, const Reading& in) {
+Status read_ode(const Xml& ode, WorldContent& out, const Reading& in) {
   const auto take = [&](const Xml* parent, const char* element, const char* key, Range range) -> Status {
     const Xml* const child = parent ? parent->child(element) : nullptr;
     if (!child) return {};
@@ -57,7 +57,7 @@ Status read_ode(const Xml& ode, SdfContent& out, const Reading& in) {
   return {};
 }
 
-Status read_physics(const Xml& world, SdfContent& out, const Reading& in) {
+Status read_physics(const Xml& world, WorldContent& out, const Reading& in) {
   const Xml* chosen = nullptr;
   for (const Xml& child : world.children) {
     if (child.name != "physics") continue;
@@ -78,7 +78,7 @@ Status read_physics(const Xml& world, SdfContent& out, const Reading& in) {
   return {};
 }
 
-Status read_scene(const Xml& world, SdfContent& out) {
+Status read_scene(const Xml& world, WorldContent& out) {
   const Xml* const scene = world.child("scene");
   if (const Xml* const ambient = scene ? scene->child("ambient") : nullptr) {
     SL_ASSIGN(out.ambient, read_color(*ambient));
@@ -89,7 +89,7 @@ Status read_scene(const Xml& world, SdfContent& out) {
   return {};
 }
 
-Status read_geography(const Xml& element, SdfContent& out, const Reading& in) {
+Status read_geography(const Xml& element, WorldContent& out, const Reading& in) {
   in.notes.unused(element,
                   "latitude_deg longitude_deg elevation heading_deg world_frame_orientation surface_model",
                   "surface_axis_equatorial surface_axis_polar");
@@ -113,7 +113,7 @@ Status read_geography(const Xml& element, SdfContent& out, const Reading& in) {
 class Instances {
  public:
   Status add(const Xml& element, const std::vector<const Xml*>& world_joints, const Reading& in,
-             SdfContent& out) {
+             WorldContent& out) {
     model::Instance instance;
     instance.original_name = *element.attribute("name");
     instance.name = sanitised(instance.original_name);
@@ -161,11 +161,11 @@ std::map<std::string, std::vector<const Xml*>, std::less<>> joints_by_model(cons
   return out;
 }
 
-Status read_world(const Xml& world, const Reading& in, SdfContent& out) {
+Status read_world(const Xml& world, const Reading& in, WorldContent& out) {
   in.notes.unused(world, world_children, silent_world_children);
   const std::string* const name = world.attribute("name");
   out.world_name = name && !name->empty() ? *name : "world";
-  SL_TRY(read_child(world, "gravity", {-1e4, 1e4}, out.gravity_mps2));
+  SL_TRY(read_child(world, "gravity", {-1e4, 1e4}, out.gravity));
   SL_TRY(read_child(world, "magnetic_field", {-1, 1}, out.magnetic_field_T));
   SL_TRY(read_physics(world, out, in));
   SL_TRY(read_scene(world, out));
@@ -196,8 +196,8 @@ Status read_world(const Xml& world, const Reading& in, SdfContent& out) {
 
 }  // namespace
 
-Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
-                             const SdfOptions& options) {
+Result<WorldContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
+                               const SdfOptions& options) {
   Notes notes(diagnostics);
   SL_ASSIGN(const Xml root, load_document(text, file, notes, options));
   SL_TRY(check_names(root));
@@ -208,7 +208,7 @@ Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Dia
                  "the " + main.name + " of this file is read");
   SL_ASSIGN(const ResolvedFrames frames, resolve_frames(root));
   const Reading in{options, notes, frames};
-  SdfContent out;
+  WorldContent out;
   if (main.name == "world") {
     SL_TRY(read_world(main, in, out));
   } else {
@@ -218,7 +218,7 @@ Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Dia
   return out;
 }
 
-Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics, const SdfOptions& options) {
+Result<WorldContent> read_sdf(const std::string& path, Diagnostics& diagnostics, const SdfOptions& options) {
   SL_ASSIGN(const std::string text, read_text_file(path, options.limits.max_bytes));
   return parse_sdf(text, path, diagnostics, options);
 }

@@ -34,25 +34,10 @@
 #include <string_view>
 #include <vector>
 
-#include "files/resources.h"
 #include "files/xml.h"
-#include "model/model.h"
+#include "formats/content.h"
 
 namespace sandlot::formats {
-
-struct SdfContent {
-  std::string world_name;  ///< "" for a model file
-  Vec3 gravity_mps2{0, 0, -9.81};
-  Place gravity_place;
-  std::optional<double> max_step_s;  ///< <physics><max_step_size>
-  std::vector<model::Instance>
-      instances;  ///< of a world: its models; of a model file: exactly one, at its own <pose>
-  std::vector<model::Light> lights;
-  Node physics;  ///< keys for `physics:` of the engine rigid; null when the file has none
-  Color ambient = model::Setup().ambient, background = model::Setup().background;
-  std::optional<model::Geography> geography;
-  Vec3 magnetic_field_T = model::Setup().magnetic_field_T;
-};
 
 struct SdfOptions {
   XmlLimits limits;
@@ -60,10 +45,10 @@ struct SdfOptions {
   bool skip_missing = false;  ///< missing files are left out with a warning, not an error
 };
 
-Result<SdfContent> read_sdf(const std::string& path, Diagnostics& diagnostics,
-                            const SdfOptions& options = {});
+Result<WorldContent> read_sdf(const std::string& path, Diagnostics& diagnostics,
+                              const SdfOptions& options = {});
 /// As above from text; `file` names it in messages.
-Result<SdfContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
-                             const SdfOptions& options = {});
+Result<WorldContent> parse_sdf(std::string_view text, const std::string& file, Diagnostics& diagnostics,
+                               const SdfOptions& options = {});
 
 }  // namespace sandlot::formats

@@ -15,7 +15,7 @@ namespace sandlot::formats {
 namespace {
 
 struct Read {
-  std::optional<SdfContent> content;
+  std::optional<WorldContent> content;
   std::string error;
   std::vector<std::string> warnings;
 };
@@ -245,7 +245,7 @@ TEST(Sdf, ReadsWorlds) {
   ASSERT_TRUE(r.content) << r.error;
   EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
   EXPECT_EQ(r.content->world_name, "w");
-  EXPECT_EQ(r.content->gravity_mps2.z, -1.6);
+  EXPECT_EQ(r.content->gravity.z, -1.6);
   EXPECT_EQ(r.content->max_step_s, 0.002);
   ASSERT_EQ(r.content->lights.size(), 1u);
   const Vec3 beam = rotate(r.content->lights[0].X_PLight.q, {0, 0, -1});
@@ -340,7 +340,7 @@ TEST(Sdf, OlderVersionsMeanTheSame) {
       "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz>"
       "<use_parent_model_frame>1</use_parent_model_frame></axis></joint></model></world></sdf>");
   ASSERT_TRUE(r.content) << r.error;
-  EXPECT_EQ(r.content->gravity_mps2.z, -5);
+  EXPECT_EQ(r.content->gravity.z, -5);
   const model::Model& m = *r.content->instances[0].model;
   expect_pose(m.links[1].X_ML, {0, 1, 0}, math::pi / 2);
   EXPECT_NEAR(m.joints[0].axis_J.y, -1, 1e-12) << "the model's x is the turned joint's -y";

@@ -46,12 +46,6 @@ bool uses_ours(const Xml& element) {
          std::any_of(element.children.begin(), element.children.end(), uses_ours);
 }
 
-const char* type_name(model::JointType type) {
-  static constexpr const char* names[] = {"fixed", "revolute",  "continuous", "prismatic",
-                                          "ball",  "universal", "screw"};
-  return names[static_cast<std::size_t>(type)];
-}
-
 /// A model with the models that were nested in it: `a::b` is b in a. Poses of nested models are the identity, so that
 /// those of links stay what they are.
 class ModelWriter {
@@ -203,7 +197,7 @@ class ModelWriter {
   Result<Xml> joint_of_model(const model::Joint& joint, const std::string& scope) {
     Xml out = element("joint");
     out.set_attribute("name", *within(scope, joint.name));
-    out.set_attribute("type", type_name(joint.type));
+    out.set_attribute("type", name_of(joint.type));
     const bool to_world = joint.parent == model::world_link;
     const auto child = within(scope, model_.links[joint.child].name);
     const auto parent = to_world ? std::string("world") : within(scope, model_.links[joint.parent].name);

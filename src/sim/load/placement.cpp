@@ -88,7 +88,7 @@ Result<std::vector<Pose>> Placer::place(const formats::RobotGroup& group) {
         return Error{
             "a pose is for one robot, and '" + group.name + "' has count " + std::to_string(group.count),
             "use distribution: {grid: ...} or {uniform: ...}",
-            placement.place.file ? placement.place : group.place};
+            placement.place.file ? placement.place : group.instance.place};
       poses.push_back(placement.X_WM);
       break;
     case formats::Placement::Kind::grid: {
@@ -118,7 +118,7 @@ Result<std::vector<Pose>> Placer::place(const formats::RobotGroup& group) {
           return Error{"no room for robot " + std::to_string(i + 1) + " of '" + group.name + "' after " +
                            std::to_string(tries) + " tries",
                        "make the area larger, or count or clearance smaller",
-                       placement.place.file ? placement.place : group.place};
+                       placement.place.file ? placement.place : group.instance.place};
         poses.push_back(at(point.x, point.y, point.z, random.uniform(-math::pi, math::pi)));
         placed_.push_back(point);
         near.add(point);

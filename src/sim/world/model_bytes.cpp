@@ -1,4 +1,3 @@
-/// long file: one function for each struct of a Model, in their order; the writer and the reader of all are these.
 #include "sim/world/model_bytes.h"
 
 #include <algorithm>
@@ -11,7 +10,7 @@ namespace {
 
 constexpr int max_node_depth = 64;
 
-/// One description of each struct serves both directions: `io` is a Save or a Load.
+/// Both directions are one walk over the lists of fields: `io` is a Save or a Load.
 struct Save {
   ByteWriter& w;
   std::vector<const TriangleMesh*> meshes{};
@@ -34,37 +33,6 @@ struct Load {
   }
   bool ok() const { return r.ok(); }
 };
-
-template <class Io, class T, class Each>
-void list(Io& io, T& items, Each&& each) {
-  auto count = static_cast<std::uint32_t>(items.size());
-  io.value(count);
-  if constexpr (Io::loading) {
-    items.clear();
-    if (count > io.r.remaining()) return io.r.fail();
-    items.resize(count);
-  }
-  for (auto& item : items)
-    if (io.ok()) each(io, item);
-}
-
-/// As list().
-template <class Io, class T, class Each>
-void shared_list(Io& io, T& items, Each&& each) {
-  if constexpr (Io::loading) list(io, items.edit(), each);
-  else list(io, items.get(), each);
-}
-
-template <class Io, class T, class Each>
-void optional(Io& io, T& item, Each&& each) {
-  bool present = item.has_value();
-  io.value(present);
-  if constexpr (Io::loading) {
-    item.reset();
-    if (present) item.emplace();
-  }
-  if (item) each(io, *item);
-}
 
 void node(Save& io, const Node& n) {
   io.value(static_cast<std::uint8_t>(n.type()));
@@ -105,40 +73,8 @@ void node(Load& io, Node& n, int depth = 0) {
   }
 }
 
-void color(auto& io, auto& c) {
-  io.value(c.r);
-  io.value(c.g);
-  io.value(c.b);
-  io.value(c.a);
-}
-
-void mesh(auto& io, auto& m) {
-  io.value(m.vertices);
-  io.value(m.triangles);
-  io.value(m.texture_uv);
-  list(io, m.parts, [](auto& i, auto& part) {
-    i.value(part.name);
-    i.value(part.first_triangle);
-    i.value(part.triangles);
-    color(i, part.color);
-    i.value(part.texture);
-  });
-  io.value(m.source);
-  io.value(m.source_scale);
-  io.value(m.source_part);
-  io.value(m.source_centred);
-  io.value(m.is_hull);
-}
-
-void grid(auto& io, auto& g) {
-  io.value(g.columns);
-  io.value(g.rows);
-  io.value(g.size_x_m);
-  io.value(g.size_y_m);
-  io.value(g.height_m);
-  io.value(g.source);
-  io.value(g.source_height_m);
-}
+template <class Io, class T>
+void walk(Io& io, T& x);
 
 bool consistent(const TriangleMesh& m) {
   for (const auto& triangle : m.triangles)
@@ -166,22 +102,21 @@ std::uint32_t place_in_table(std::vector<const T*>& table, const T* item) {
 }
 
 /// The first mention of a mesh or grid brings it along.
-template <class T, class Each>
-void shared(Save& io, std::vector<const T*>& table, const std::shared_ptr<const T>& item, Each&& each) {
+template <class T>
+void shared(Save& io, std::vector<const T*>& table, const std::shared_ptr<const T>& item) {
   const std::size_t known = table.size();
   const std::uint32_t index = place_in_table(table, item.get());
   io.value(index);
-  if (index == known) each(io, *item);
+  if (index == known) walk(io, *item);
 }
-template <class T, class Each>
-void shared(Load& io, std::vector<std::shared_ptr<const T>>& table, std::shared_ptr<const T>& item,
-            Each&& each) {
+template <class T>
+void shared(Load& io, std::vector<std::shared_ptr<const T>>& table, std::shared_ptr<const T>& item) {
   std::uint32_t index = 0;
   io.value(index);
   if (index > table.size()) return io.r.fail();
   if (index == table.size()) {
     auto fresh = std::make_shared<T>();
-    each(io, *fresh);
+    walk(io, *fresh);
     if (!io.ok() || !consistent(*fresh)) return io.r.fail();
     table.push_back(std::move(fresh));
   }
@@ -200,10 +135,8 @@ void shape(Save& io, const Shape& s) {
   if (const auto* b = std::get_if<Barrel>(&s)) n = {b->radius_m, b->profile_m, b->length_m};
   io.value(static_cast<std::uint8_t>(s.index()));
   io.value(n);
-  if (const auto* m = std::get_if<Mesh>(&s))
-    shared(io, io.meshes, m->mesh, [](auto& i, auto& x) { mesh(i, x); });
-  if (const auto* h = std::get_if<Heightfield>(&s))
-    shared(io, io.grids, h->grid, [](auto& i, auto& x) { grid(i, x); });
+  if (const auto* m = std::get_if<Mesh>(&s)) shared(io, io.meshes, m->mesh);
+  if (const auto* h = std::get_if<Heightfield>(&s)) shared(io, io.grids, h->grid);
 }
 void shape(Load& io, Shape& s) {
   std::uint8_t index = 0;
@@ -220,13 +153,13 @@ void shape(Load& io, Shape& s) {
     case 6: s = Ellipsoid{{n[0], n[1], n[2]}}; break;
     case 7: {
       Mesh m;
-      shared(io, io.meshes, m.mesh, [](auto& i, auto& x) { mesh(i, x); });
+      shared(io, io.meshes, m.mesh);
       if (m.mesh) s = std::move(m);
       break;
     }
     case 8: {
       Heightfield h;
-      shared(io, io.grids, h.grid, [](auto& i, auto& x) { grid(i, x); });
+      shared(io, io.grids, h.grid);
       if (h.grid) s = std::move(h);
       break;
     }
@@ -235,233 +168,50 @@ void shape(Load& io, Shape& s) {
   }
 }
 
-void surface(auto& io, auto& s) {
-  io.value(s.mu);
-  io.value(s.mu2);
-  io.value(s.fdir1);
-  io.value(s.slip1);
-  io.value(s.slip2);
-  io.value(s.restitution);
-  io.value(s.restitution_threshold_mps);
-  io.value(s.soft_erp);
-  io.value(s.soft_cfm);
-  io.value(s.stiffness_N_per_m);
-  io.value(s.damping_N_s_per_m);
-  io.value(s.max_correction_mps);
-  optional(io, s.substance, [](auto& i, auto& x) {
-    i.value(x.roughness);
-    i.value(x.slip);
-    i.value(x.hardness);
-    i.value(x.elasticity);
-  });
-  optional(io, s.skin, [](auto& i, auto& x) {
-    i.value(x.axis);
-    i.value(x.ratio);
-  });
-  io.value(s.rolling_resistance_m);
-  io.value(s.belt_velocity_mps);
-  io.value(s.touches);
-}
+template <class T>
+struct is_shared_list : std::false_type {};
+template <class T>
+struct is_shared_list<SharedList<T>> : std::true_type {};
 
-void collision(auto& io, auto& c) {
-  io.value(c.name);
-  io.value(c.X_LC);
-  shape(io, c.shape);
-  surface(io, c.surface);
-}
-
-void visual(auto& io, auto& v) {
-  io.value(v.name);
-  io.value(v.X_LC);
-  shape(io, v.shape);
-  color(io, v.material.diffuse);
-  color(io, v.material.specular);
-  color(io, v.material.emissive);
-  io.value(v.material.shininess);
-  io.value(v.material.texture);
-  io.value(v.material.from_mesh);
-  io.value(v.cast_shadows);
-}
-
-void link(auto& io, auto& l) {
-  io.value(l.name);
-  io.value(l.X_ML);
-  io.value(l.inertial.mass_kg);
-  io.value(l.inertial.X_LCo);
-  io.value(l.inertial.moments);
-  io.value(l.inertial.products);
-  list(io, l.collisions, [](auto& i, auto& c) { collision(i, c); });
-  list(io, l.visuals, [](auto& i, auto& v) { visual(i, v); });
-  io.value(l.gravity);
-}
-
-void joint(auto& io, auto& j) {
-  io.value(j.name);
-  io.value(j.type);
-  io.value(j.parent);
-  io.value(j.child);
-  io.value(j.X_CJ);
-  io.value(j.axis_J);
-  io.value(j.lower);
-  io.value(j.upper);
-  io.value(j.max_effort);
-  io.value(j.max_velocity);
-  io.value(j.damping);
-  io.value(j.friction);
-  io.value(j.spring_stiffness);
-  io.value(j.spring_reference);
-  io.value(j.thread_pitch_m);
-  optional(io, j.second, [](auto& i, auto& s) {
-    i.value(s.axis_J);
-    i.value(s.lower);
-    i.value(s.upper);
-    i.value(s.damping);
-    i.value(s.friction);
-  });
-  optional(io, j.mimic, [](auto& i, auto& m) {
-    i.value(m.joint);
-    i.value(m.multiplier);
-    i.value(m.offset);
-    i.value(m.reference);
-  });
-  optional(io, j.rollers, [](auto& i, auto& w) {
-    i.value(w.radius_m);
-    i.value(w.count);
-    i.value(w.rows);
-    i.value(w.row_spacing_m);
-    i.value(w.angle_rad);
-    i.value(w.roller_radius_m);
-    i.value(w.roller_length_m);
-    i.value(w.roller_mass_kg);
-    i.value(w.bearing_friction_Nm);
-    surface(i, w.surface);
-  });
-  io.value(j.roller_of);
-}
-
-void light(auto& io, auto& l) {
-  io.value(l.type);
-  io.value(l.name);
-  io.value(l.X_PLight);
-  color(io, l.color);
-  color(io, l.specular);
-  io.value(l.cast_shadows);
-  io.value(l.range_m);
-  io.value(l.constant);
-  io.value(l.linear);
-  io.value(l.quadratic);
-  io.value(l.inner_rad);
-  io.value(l.outer_rad);
-  io.value(l.falloff);
-}
-
-void device(auto& io, auto& d) {
-  io.value(d.name);
-  io.value(d.kind);
-  io.value(d.sdf_types);
-  io.value(d.scope);
-  io.value(d.link);
-  io.value(d.X_LS);
-  node(io, d.config);
-}
-
-void controller(auto& io, auto& c) {
-  io.value(c.name);
-  io.value(c.kind);
-  node(io, c.config);
-}
-
-void whole_model(auto& io, auto& m) {
-  io.value(m.name);
-  io.value(m.label);
-  io.value(m.is_static);
-  io.value(m.self_collide);
-  list(io, m.links, [](auto& i, auto& l) { link(i, l); });
-  list(io, m.joints, [](auto& i, auto& j) { joint(i, j); });
-  list(io, m.frames, [](auto& i, auto& f) {
-    i.value(f.name);
-    i.value(f.link);
-    i.value(f.X_LF);
-  });
-  list(io, m.lights, [](auto& i, auto& l) {
-    i.value(l.link);
-    light(i, l.light);
-  });
-  list(io, m.devices, [](auto& i, auto& d) { device(i, d); });
-}
-
-void watched(auto& io, auto& s) {
-  list(io, s.values, [](auto& i, auto& v) {
-    i.value(v.name);
-    i.value(v.expression);
-  });
-  list(io, s.events, [](auto& i, auto& e) {
-    i.value(e.name);
-    i.value(e.when);
-    i.value(e.hold);
-    i.value(e.once);
-    i.value(e.stop);
-  });
-  io.value(s.addresses);
-}
-
-void setup_values(auto& io, auto& s) {
-  io.value(s.name);
-  io.value(s.engine);
-  node(io, s.physics);
-  io.value(s.gravity);
-  io.value(s.step);
-  io.value(s.clock.mode);
-  io.value(s.clock.min_step);
-  io.value(s.clock.max_step);
-  io.value(s.substeps);
-  io.value(s.control_interval);
-  io.value(s.seed);
-  io.value(s.errors);
-  io.value(s.stop);
-  list(io, s.plugins, [](auto& i, auto& p) {
-    i.value(p.file);
-    i.value(p.name);
-    i.value(p.hash);
-  });
-  list(io, s.zones, [](auto& i, auto& z) {
-    i.value(z.name);
-    i.value(z.outline_W);
-    i.value(z.centre_W);
-    i.value(z.radius_m);
-    surface(i, z.surface);
-  });
-  list(io, s.lights, [](auto& i, auto& l) { light(i, l); });
-  color(io, s.ambient);
-  color(io, s.background);
-  optional(io, s.geography, [](auto& i, auto& g) {
-    i.value(g.latitude_rad);
-    i.value(g.longitude_rad);
-    i.value(g.elevation_m);
-    i.value(g.heading_rad);
-  });
-  io.value(s.magnetic_field_T);
-  watched(io, s);
-}
-
-void instance_values(auto& io, auto& x) {
-  io.value(x.name);
-  io.value(x.original_name);
-  io.value(x.X_WM);
-  io.value(x.is_robot);
-  io.value(x.team);
-  io.value(x.label);
-  io.value(x.errors);
-  shared_list(io, x.devices, [](auto& i, auto& d) { device(i, d); });
-  shared_list(io, x.controllers, [](auto& i, auto& c) { controller(i, c); });
-  optional(io, x.motion, [](auto& i, auto& m) {
-    list(i, m.keys, [](auto& each, auto& key) {
-      each.value(key.time_s);
-      each.value(key.X_WM);
-    });
-    i.value(m.delay_s);
-    i.value(m.loop);
-  });
+/// A value of a model: its fields in the order of their list; nodes, shapes and plain values in forms of their own.
+template <class Io, class T>
+void walk(Io& io, T& x) {
+  using Value = std::remove_const_t<T>;
+  if constexpr (std::is_same_v<Value, Node>) {
+    node(io, x);
+  } else if constexpr (std::is_same_v<Value, Shape>) {
+    shape(io, x);
+  } else if constexpr (Fielded<Value>) {
+    Value::fields(x, [&](const Field&, auto& member) { walk(io, member); });
+  } else if constexpr (is_shared_list<Value>::value) {
+    if constexpr (Io::loading) walk(io, x.edit());
+    else walk(io, x.get());
+  } else if constexpr (is_optional<Value>::value) {
+    bool present = x.has_value();
+    io.value(present);
+    if constexpr (Io::loading) {
+      x.reset();
+      if (present) x.emplace();
+    }
+    if (x) walk(io, *x);
+  } else if constexpr (is_vector<Value>::value) {
+    if constexpr (Fielded<typename Value::value_type>) {
+      auto count = static_cast<std::uint32_t>(x.size());
+      io.value(count);
+      if constexpr (Io::loading) {
+        x.clear();
+        // Every element takes at least one byte: a damaged length cannot ask for more than there is.
+        if (count > io.r.remaining()) return io.r.fail();
+        x.resize(count);
+      }
+      for (auto& element : x)
+        if (io.ok()) walk(io, element);
+    } else {
+      io.value(x);
+    }
+  } else {
+    io.value(x);
+  }
 }
 
 /// A tick divides by all of these.
@@ -488,7 +238,7 @@ bool consistent(const model::Model& m) {
     if (!is_pose(l.X_ML)) return false;
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
-        j.type > model::JointType::screw || (j.mimic && j.mimic->joint >= m.joints.size()) ||
+        (j.mimic && j.mimic->joint >= m.joints.size()) ||
         (j.roller_of != model::Joint::no_joint && j.roller_of >= m.joints.size()))
       return false;
   for (const model::LinkLight& l : m.lights)
@@ -513,7 +263,7 @@ bool consistent(const model::Instance& x) {
 void write_setup(ByteWriter& w, const model::Setup& setup,
                  std::span<const model::Instance* const> instances) {
   Save io{w};
-  setup_values(io, setup);
+  walk(io, setup);
   std::vector<const model::Model*> models;
   std::vector<std::uint32_t> model_of;
   for (const model::Instance* instance : instances) {
@@ -528,25 +278,24 @@ void write_setup(ByteWriter& w, const model::Setup& setup,
     }
   }
   io.value(static_cast<std::uint32_t>(models.size()));
-  for (const model::Model* m : models) whole_model(io, *m);
+  for (const model::Model* m : models) walk(io, *m);
   io.value(static_cast<std::uint32_t>(instances.size()));
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    instance_values(io, *instances[i]);
+    walk(io, *instances[i]);
     io.value(model_of[i]);
   }
 }
 
 bool read_setup(ByteReader& r, model::Setup& setup) {
   Load io{r};
-  setup_values(io, setup);
+  walk(io, setup);
   if (!r.ok() || !is_timing(setup) || !is_factor(setup.errors)) return false;
-  if (setup.clock.mode > model::Clock::Mode::continuous) return false;
   std::uint32_t count = 0;
   io.value(count);
   std::vector<std::shared_ptr<const model::Model>> models;
   for (std::uint32_t i = 0; i < count && r.ok(); ++i) {
     auto m = std::make_shared<model::Model>();
-    whole_model(io, *m);
+    walk(io, *m);
     if (!r.ok() || !consistent(*m)) return false;
     models.push_back(std::move(m));
   }
@@ -554,7 +303,7 @@ bool read_setup(ByteReader& r, model::Setup& setup) {
   setup.instances.clear();
   for (std::uint32_t i = 0; i < count && r.ok(); ++i) {
     model::Instance instance;
-    instance_values(io, instance);
+    walk(io, instance);
     std::uint32_t index = 0;
     io.value(index);
     if (!r.ok() || index >= models.size()) return false;
@@ -567,15 +316,15 @@ bool read_setup(ByteReader& r, model::Setup& setup) {
 
 void write_instance(ByteWriter& w, const model::Instance& instance) {
   Save io{w};
-  whole_model(io, *instance.model);
-  instance_values(io, instance);
+  walk(io, *instance.model);
+  walk(io, instance);
 }
 
 bool read_instance(ByteReader& r, model::Instance& instance) {
   Load io{r};
   auto m = std::make_shared<model::Model>();
-  whole_model(io, *m);
-  instance_values(io, instance);
+  walk(io, *m);
+  walk(io, instance);
   if (!r.ok() || !consistent(*m)) return false;
   instance.model = std::move(m);
   return consistent(instance);
@@ -583,12 +332,12 @@ bool read_instance(ByteReader& r, model::Instance& instance) {
 
 void write_device(ByteWriter& w, const model::DeviceDecl& decl) {
   Save io{w};
-  device(io, decl);
+  walk(io, decl);
 }
 
 bool read_device(ByteReader& r, model::DeviceDecl& decl) {
   Load io{r};
-  device(io, decl);
+  walk(io, decl);
   return r.ok();
 }
 

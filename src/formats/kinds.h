@@ -1,0 +1,8 @@
+#pragma once
+/// The file formats there are: one line each. A format NAME defines `const FormatKind NAME_format` in its folder.
+// clang-format off
+#define SANDLOT_FORMATS(format) \
+  format(scenario)              \
+  format(sdf)                   \
+  format(urdf)
+// clang-format on

@@ -1,0 +1,18 @@
+#include "files/yaml.h"
+#include "formats/kind.h"
+
+namespace sandlot::formats {
+
+constexpr std::string_view scenario_extensions[] = {".yaml", ".yml"};
+
+extern const FormatKind scenario_format;
+constinit const FormatKind scenario_format{
+    .name = "scenario",
+    .help = "Scenarios of Sandlot (YAML): a world, robots, controllers, how time runs.",
+    .contents = "scenarios",
+    .extensions = scenario_extensions,
+    .max_bytes = TextLimits{}.max_bytes,
+    .scenario = parse_scenario,
+};
+
+}  // namespace sandlot::formats
