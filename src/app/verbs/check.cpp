@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "base/json_text.h"
+#include "formats/kind.h"
 #include "sim/lint/lint.h"
 
 namespace sandlot::app {
@@ -49,10 +49,9 @@ std::string levels_text(const Simulation& simulation) {
 std::vector<Finding> lint_file(const std::string& file, const FileOptions& options,
                                const Simulation& simulation) {
   std::vector<Finding> findings = lint(simulation);
-  const std::string extension = std::filesystem::path(file).extension().string();
-  if (extension == ".yaml" || extension == ".yml") {
-    Diagnostics said_already;
-    if (const auto scenario = formats::read_scenario(file, options.overrides, said_already))
+  if (const formats::FormatKind* const format = formats::find_format(file); format && format->scenario) {
+    Diagnostics repeated;
+    if (const auto scenario = formats::read_scenario(file, options.overrides, repeated))
       for (Finding& finding : lint(*scenario)) findings.push_back(std::move(finding));
   }
   for (Finding& finding : findings)

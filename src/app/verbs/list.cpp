@@ -1,17 +1,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "app/commands.h"
+#include "assets/mesh/mesh.h"
 #include "base/field_json.h"
 #include "base/json_text.h"
 #include "base/text.h"
 #include "builders/builder.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
+#include "formats/kind.h"
 #include "formats/ros2_control/ros2_control.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
@@ -33,6 +37,10 @@ struct Item {
   std::span<const LevelInfo> levels;
   std::vector<std::string> sdf_names;
   std::span<const Preset> presets = {};
+  // Of file formats:
+  std::string contents = {};  ///< "worlds and models"
+  std::vector<std::string> extensions = {};
+  bool written = false;  ///< by `sandlot convert`
 };
 struct Section {
   std::string key, title, intro;
@@ -55,6 +63,29 @@ std::vector<StageFamily> stage_families() {
            image_stage_types()},
           {"depth_noise", "Noise of depth pictures",
            "Stages of errors of depth pictures: `[{quadratic: {std: 1.4 mm}}, ...]`.", depth_stage_types()}};
+}
+
+Section format_section() {
+  Section out{
+      "formats",
+      "File formats",
+      "What `sandlot run`, `check`, `info` and `convert` read, by the extension of the file, and the meshes "
+      "that such files name.",
+      {}};
+  for (const formats::FormatKind* const kind : formats::format_kinds()) {
+    Item item{kind->name, kind->help, {}, {}, {}};
+    item.contents = kind->contents;
+    item.extensions.assign(kind->extensions.begin(), kind->extensions.end());
+    item.written = kind->scenario || kind->write_world || kind->write_model;
+    out.items.push_back(std::move(item));
+  }
+  for (const assets::MeshFormat& format : assets::mesh_formats()) {
+    Item item{format.name, format.help, {}, {}, {}};
+    item.contents = "meshes";
+    item.extensions.assign(format.extensions.begin(), format.extensions.end());
+    out.items.push_back(std::move(item));
+  }
+  return out;
 }
 
 std::vector<Section> sections(std::span<const ControllerKind* const> controller_table) {
@@ -101,50 +132,104 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   for (const Builder* const builder : builder_table())
     builders.items.push_back({builder->name, builder->help, builder->describe(), {}, {}, {}});
   out.push_back(std::move(builders));
+  out.push_back(format_section());
   return out;
 }
 
+std::string joined(std::span<const std::string> words, const char* between = ", ") {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
+  return out;
+}
+
+/// Six digits are enough to read; JSON has them all.
+std::string short_number(double x) { return fmt::format("{:.6g}", x); }
+
 std::string limits(const FieldInfo& field) {
-  if (!field.choices.empty()) {
-    std::string out;
-    for (const std::string& choice : field.choices) out += (out.empty() ? "" : ", ") + choice;
-    return out;
-  }
+  if (!field.choices.empty()) return joined(field.choices);
   if (field.type != "number" && field.type != "integer" && field.type != "list of number") return "";
   if (field.min <= -1e12 && field.max >= 1e12) return "";
-  return number_text(field.min) + " .. " + number_text(field.max);
+  return short_number(field.min) + " .. " + short_number(field.max);
+}
+
+std::string default_text(const FieldInfo& field) {
+  double number = 0;
+  if (field.default_value == "[]") return "";
+  return parse_number(field.default_value, number) ? short_number(number) : field.default_value;
+}
+
+/// "number m, 0 .. 10; default 1; tunable"
+std::string summary(const FieldInfo& field) {
+  std::string out = field.type;
+  if (!field.unit.empty() && field.unit != "1") out += " " + field.unit;
+  if (!limits(field).empty()) out += (field.choices.empty() ? ", " : " of ") + limits(field);
+  if (field.required) out += "; required";
+  else if (!default_text(field).empty()) out += "; default " + default_text(field);
+  if (field.tunable) out += "; tunable";
+  return out;
+}
+
+/// "Worlds and models in .sdf, .world files"
+std::string files_text(const Item& item, const char* mark = "") {
+  std::string contents = item.contents, names;
+  contents[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(contents[0])));
+  for (const std::string& each : item.extensions) names += (names.empty() ? "" : ", ") + (mark + each + mark);
+  return contents + " in " + names + " files" + (item.written ? ", also written by `sandlot convert`" : "");
+}
+
+/// What is to be said of a level in addition to its kind: a kind with one level often says the same of both.
+std::string own_help(const Item& item, const LevelInfo& level) {
+  return item.help == level.help ? "" : level.help;
+}
+
+/// Width of a column that holds these names.
+template <class List, class Name>
+std::size_t width_of(const List& list, Name name) {
+  std::size_t out = 0;
+  for (const auto& each : list) out = std::max(out, std::string_view(name(each)).size());
+  return out;
 }
 
 void print_text(const Section& section, bool verbose) {
+  const std::size_t width = width_of(section.items,
+                                     [](const Item& item) { return std::string_view(item.name); });
   fmt::print("{}\n", section.key);
   for (const Item& item : section.items) {
-    std::string levels;
-    for (const LevelInfo& level : item.levels)
-      levels += (levels.empty() ? "" : ", ") + std::string(level.name);
-    fmt::print("  {:<16} {}{}\n", item.name, item.help, levels.empty() ? "" : " Levels: " + levels + ".");
-    if (!verbose) continue;
-    for (const LevelInfo& level : item.levels)
-      fmt::print("    level {:<20} {}{}{}\n", level.name, level.help,
-                 *level.message ? std::string(" Publishes ") + level.message + "." : "",
-                 *level.command ? std::string(" Takes ") + level.command + "." : "");
-    for (const Preset& preset : item.presets) fmt::print("    preset {:<19} {}\n", preset.name, preset.help);
-    for (const FieldInfo& field : item.fields) {
-      std::string notes;
-      if (!limits(field).empty()) notes += ", " + limits(field);
-      if (field.required) notes += ", required";
-      else if (!field.default_value.empty()) notes += ", default " + field.default_value;
-      if (field.tunable) notes += ", tunable";
-      fmt::print("    {:<26} {} [{}{}{}]\n", field.path, field.help, field.type,
-                 field.unit.empty() || field.unit == "1" ? "" : " " + field.unit, notes);
+    std::string more;
+    if (item.levels.size() > 1) {
+      for (const LevelInfo& level : item.levels) more += (more.empty() ? "" : ", ") + std::string(level.name);
+      more = " Levels: " + more + ".";
     }
+    if (!item.extensions.empty()) more = " " + files_text(item) + ".";
+    fmt::print("  {:<{}}  {}{}\n", item.name, width, item.help, more);
+    if (!verbose) continue;
+    for (const LevelInfo& level : item.levels) {
+      std::string line = own_help(item, level);
+      if (*level.message) line += (line.empty() ? "" : " ") + std::string("Publishes ") + level.message + ".";
+      if (*level.command) line += (line.empty() ? "" : " ") + std::string("Takes ") + level.command + ".";
+      fmt::print("    level {:<20} {}\n", level.name, line);
+    }
+    for (const Preset& preset : item.presets) fmt::print("    preset {:<19} {}\n", preset.name, preset.help);
+    const std::size_t keys = std::max<std::size_t>(
+        26, width_of(item.fields, [](const FieldInfo& field) { return std::string_view(field.path); }));
+    for (const FieldInfo& field : item.fields)
+      fmt::print("    {:<{}} {} [{}]\n", field.path, keys, field.help, summary(field));
   }
 }
 
 void print_levels() {
+  const std::size_t kinds = width_of(device_kinds(), [](const Kind* kind) { return kind->name; });
+  std::size_t levels = 0;
+  for (const Kind* const kind : device_kinds())
+    levels = std::max(levels, width_of(kind->levels, [](const LevelInfo& level) { return level.name; }));
   fmt::print("levels\n");
-  for (const Kind* kind : device_kinds())
-    for (const LevelInfo& level : kind->levels)
-      fmt::print("  {:<16} {:<12} {}\n", kind->name, level.name, level.help);
+  for (const Kind* const kind : device_kinds()) {
+    const char* name = kind->name;
+    for (const LevelInfo& level : kind->levels) {
+      fmt::print("  {:<{}}  {:<{}}  {}\n", name, kinds, level.name, levels, level.help);
+      name = "";
+    }
+  }
 }
 
 /// One thing that a Gazebo file or a controller file may name, and what it becomes here.
@@ -172,12 +257,28 @@ std::vector<Mapped> mapped_names() {
   return out;
 }
 
+/// What of such elements has no effect, by the kind that they become, and of controllers.
+std::map<std::string, std::string> without_effect() {
+  std::map<std::string, std::string> out;
+  for (const Mapped& row : mapped_names())
+    if (!row.unused.empty())
+      out.emplace(row.element == "controller" ? "(controllers)" : row.kind, row.unused);
+  return out;
+}
+
 void print_plugins() {
+  const std::vector<Mapped> rows = mapped_names();
+  const auto column = [&](std::string Mapped::*text) {
+    return width_of(rows, [&](const Mapped& row) { return std::string_view(row.*text); });
+  };
+  const std::size_t elements = column(&Mapped::element), names = column(&Mapped::name),
+                    kinds = column(&Mapped::kind);
   fmt::print("plugins\n");
-  for (const Mapped& row : mapped_names()) {
-    fmt::print("  {:<11}{:<54} {:<18} {}\n", row.element, row.name, row.kind, row.levels);
-    if (!row.unused.empty()) fmt::print("  {:<11}  without effect: {}\n", "", row.unused);
-  }
+  for (const Mapped& row : rows)
+    fmt::print("  {:<{}}  {:<{}}  {:<{}}  {}\n", row.element, elements, row.name, names, row.kind, kinds,
+               row.levels);
+  fmt::print("without effect, by kind\n");
+  for (const auto& [kind, unused] : without_effect()) fmt::print("  {:<{}}  {}\n", kind, kinds, unused);
 }
 
 /// "float32[]", "geometry_msgs/msg/Point[4]": the type of a field as ROS writes it.
@@ -255,10 +356,11 @@ void print_plugin_table() {
       "`lib` and `.so`). Where two kinds answer to one name, the element decides: several planes make a "
       "lidar 3D. "
       "What is not in the table is named in one warning with its line.\n\n"
-      "| element | name | kind | levels | has no effect |\n|---|---|---|---|---|\n");
+      "| element | name | kind | levels |\n|---|---|---|---|\n");
   for (const Mapped& row : mapped_names())
-    fmt::print("| {} | `{}` | [{}](#{}) | {} | {} |\n", row.element, row.name, row.kind, row.kind, row.levels,
-               cell(row.unused));
+    fmt::print("| {} | `{}` | [{}](#{}) | {} |\n", row.element, row.name, row.kind, row.kind, row.levels);
+  fmt::print("\n| kind | has no effect |\n|---|---|\n");
+  for (const auto& [kind, unused] : without_effect()) fmt::print("| {} | {} |\n", kind, cell(unused));
 }
 
 void print_markdown(const std::vector<Section>& all) {
@@ -274,10 +376,12 @@ void print_markdown(const std::vector<Section>& all) {
         for (const std::string& name : item.sdf_names) names += (names.empty() ? "`" : ", `") + name + "`";
         fmt::print("\nIn SDF files: {}.\n", names);
       }
+      if (!item.extensions.empty()) fmt::print("\n{}.\n", files_text(item, "`"));
       if (!item.levels.empty()) {
         fmt::print("\n| level | publishes | takes | meaning |\n|---|---|---|---|\n");
         for (const LevelInfo& level : item.levels)
-          fmt::print("| `{}` | {} | {} | {} |\n", level.name, level.message, level.command, level.help);
+          fmt::print("| `{}` | {} | {} | {} |\n", level.name, level.message, level.command,
+                     own_help(item, level));
       }
       if (!item.presets.empty()) {
         fmt::print("\n| preset | stands for |\n|---|---|\n");
@@ -289,7 +393,7 @@ void print_markdown(const std::vector<Section>& all) {
       for (const FieldInfo& field : item.fields)
         fmt::print("| `{}` | {}{} | {} | {} | {} | {} |\n", field.path, field.type,
                    field.tunable ? ", tunable" : "", field.unit == "1" ? "" : field.unit, limits(field),
-                   field.required ? "required" : cell(field.default_value), cell(field.help));
+                   field.required ? "required" : cell(default_text(field)), cell(field.help));
     }
     if (section.key == "devices") print_plugin_table();
   }
@@ -309,6 +413,11 @@ Json to_json(const Section& section) {
       Json field{{"key", f.path}};
       field.update(field_json(f));
       fields.push_back(std::move(field));
+    }
+    if (!item.extensions.empty()) {
+      entry["contents"] = item.contents;
+      entry["extensions"] = item.extensions;
+      entry["written"] = item.written;
     }
     entry["levels"] = levels;
     entry["sdf"] = item.sdf_names;

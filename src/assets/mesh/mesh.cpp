@@ -127,15 +127,31 @@ void centre(TriangleMesh& mesh) {
   for (Vec3& v : mesh.vertices) v -= middle;
 }
 
-Status dispatch(std::string_view bytes, const std::string& extension, mesh::Builder& out,
-                Diagnostics& diagnostics) {
-  if (extension == ".stl") return mesh::read_stl(bytes, out);
-  if (extension == ".dae") return mesh::read_collada(bytes, out, diagnostics);
-  if (extension == ".obj") return mesh::read_obj(bytes, out, diagnostics);
-  if (extension == ".gltf" || extension == ".glb") return mesh::read_gltf(bytes, out, diagnostics);
-  if (extension == ".ms3d") return mesh::read_ms3d(bytes, out);
-  if (extension == ".ply") return mesh::read_ply(bytes, out);
-  return out.error("is no mesh format that is read here", "known are .dae .stl .obj .gltf .glb .ms3d .ply");
+constexpr std::string_view collada[] = {".dae"}, stl[] = {".stl"}, obj[] = {".obj"},
+                           gltf[] = {".gltf", ".glb"}, ms3d[] = {".ms3d"}, ply[] = {".ply"};
+
+/// The mesh formats there are: one entry each.
+constexpr MeshFormat formats[] = {
+    {"collada", "COLLADA: parts with colours and textures.", collada, mesh::read_collada},
+    {"stl", "STL, text or binary: triangles alone.", stl,
+     [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_stl(bytes, out); }},
+    {"obj", "Wavefront OBJ with its MTL file.", obj, mesh::read_obj},
+    {"gltf", "glTF 2, text or binary.", gltf, mesh::read_gltf},
+    {"ms3d", "MilkShape 3D.", ms3d,
+     [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_ms3d(bytes, out); }},
+    {"ply", "PLY, text or binary.", ply,
+     [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_ply(bytes, out); }},
+};
+
+Status read_by_extension(std::string_view bytes, const std::string& extension, mesh::Builder& out,
+                         Diagnostics& diagnostics) {
+  std::string known;
+  for (const MeshFormat& format : formats)
+    for (const std::string_view each : format.extensions) {
+      if (each == extension) return format.read(bytes, out, diagnostics);
+      known += " " + std::string(each);
+    }
+  return out.error("is not in a mesh format that is read here", "known are" + known);
 }
 
 Result<Parsed> parse(std::string_view bytes, const std::string& path, const MeshOptions& options,
@@ -145,7 +161,7 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   if (!is_finite(scale) || scale.x == 0 || scale.y == 0 || scale.z == 0)
     return out.error("the scale of the mesh must be three finite numbers other than 0");
   if (bytes.empty()) return out.error("is empty");
-  SL_TRY(dispatch(bytes, extension_of(path), out, diagnostics));
+  SL_TRY(read_by_extension(bytes, extension_of(path), out, diagnostics));
 
   Parsed parsed{std::move(out.mesh), {}};
   TriangleMesh& mesh = parsed.mesh;
@@ -343,5 +359,7 @@ Result<std::vector<std::shared_ptr<const TriangleMesh>>> collision_meshes(
   }
   return out;
 }
+
+std::span<const MeshFormat> mesh_formats() { return formats; }
 
 }  // namespace sandlot::assets

@@ -23,6 +23,7 @@
 ///          PLY (G. Turk, 1994).
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,9 @@
 #include "geometry/mesh.h"
 
 namespace sandlot::assets {
+namespace mesh {
+class Builder;
+}
 
 /// Which way is up in the file, as far as the format says it. Other formats are never turned.
 enum class UpAxis {
@@ -49,6 +53,16 @@ struct MeshOptions {
   std::size_t max_bytes = std::size_t{256} << 20;
   std::size_t max_triangles = 2'000'000;
 };
+
+/// A format of mesh files.
+struct MeshFormat {
+  const char* name;  ///< "collada"
+  const char* help;
+  std::span<const std::string_view> extensions;  ///< with the dot, in small letters
+  Status (*read)(std::string_view bytes, mesh::Builder& out, Diagnostics& diagnostics);
+};
+/// All that read_mesh() knows.
+std::span<const MeshFormat> mesh_formats();
 
 /// Reads a mesh, or hands out the one that an earlier call made with the same options from the same file, as long as
 /// somebody holds it and the file has not changed. Threads may call it at the same time.
