@@ -154,6 +154,7 @@ template <class Keys>
 Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* what, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
+  group.instance = keys.instance;
   group.instance.place = name ? name->place() : node.place();
   if (keys.name.empty())
     return node.error("the " + std::string(what) + "'s name is empty", "", path + "/name");
@@ -168,7 +169,6 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
                             "name a model file, or write {builder: ...} or builder:NAME", path + "/model");
   }
   group.count = keys.count;
-  group.instance.label = keys.label;
   if (!keys.pose.is_null() && keys.distribution)
     return keys.pose.error("'pose' and 'distribution' are both given", "keep one of them", path + "/pose");
   if (keys.distribution) {
@@ -189,8 +189,6 @@ Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* wh
 
 Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::string& path) {
   SL_ASSIGN(RobotGroup group, read_group(node, robot, "robot", path));
-  group.instance.team = robot.team;
-  group.instance.errors = robot.errors;
   for (std::size_t i = 0; i < robot.modules.size(); ++i) {
     SL_ASSIGN(Module module, read_module(node.find("modules")->items()[i], robot.modules[i],
                                          path + "/modules/" + std::to_string(i)));
@@ -313,8 +311,8 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   SL_TRY(read_fields(node, root));
   Scenario out;
   out.file = file;
+  out.setup = std::move(root.setup);
   model::Setup& setup = out.setup;
-  setup.name = root.name;
   out.world = root.world;
   if (const Node* world = node.find("world")) out.world_place = world->place();
   SL_TRY(read_physics(root.physics, out));
@@ -327,9 +325,6 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   setup.substeps = root.time.substeps;
   setup.control_interval = root.time.control_interval;
   if (root.time.stop_s) setup.stop = Time::from_s(*root.time.stop_s);
-  setup.seed = root.seed;
-  setup.errors = root.errors;
-  setup.record = root.record;
   if (setup.record) {
     const Node& record = *node.find("record");
     std::string& target = setup.record->file;

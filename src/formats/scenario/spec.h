@@ -1,5 +1,6 @@
 #pragma once
-/// The keys of a scenario file, once: the reader and the schema both come from these lists.
+/// The keys of a scenario file, once: the reader and the schema both come from these lists. A key whose value is a field of
+/// model::Setup or model::Instance is read into it at once; the others are taken over in scenario.cpp.
 #include <optional>
 #include <string>
 #include <vector>
@@ -127,7 +128,7 @@ struct LabelledObject {
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
-  std::string label;
+  model::Instance instance;  ///< label
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the thing; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -139,7 +140,7 @@ struct LabelledObject {
     visit(Field{"count", "1", "Number of things.", 1, max_robots}, s.count);
     visit(Field{"pose", "m", "Pose of the thing, in the same forms as that of a robot."}, s.pose);
     visit(Field{"distribution", "", "Places of several things."}, s.distribution);
-    visit(label_field, s.label);
+    visit(label_field, s.instance.label);
   }
 };
 
@@ -149,13 +150,12 @@ struct Robot {
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
-  std::string team, label;
+  model::Instance instance;  ///< team, label, errors
   std::vector<Module> modules;
   Node controller;
   Node controllers;
   std::vector<std::string> joint_controllers;
   Node devices;
-  double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -171,8 +171,8 @@ struct Robot {
         Field{"pose", "m", "Pose at the start: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
         s.pose);
     visit(Field{"distribution", "", "Places of several robots."}, s.distribution);
-    visit(Field{"team", "", "Team of the robot.", 0, 0, Field::none, 100}, s.team);
-    visit(label_field, s.label);
+    visit(Field{"team", "", "Team of the robot.", 0, 0, Field::none, 100}, s.instance.team);
+    visit(label_field, s.instance.label);
     visit(Field{"modules", "", "Models attached to the robot's own: scanners, camera heads, arms.", 0, 0,
                 Field::none, 1000},
           s.modules);
@@ -190,7 +190,7 @@ struct Robot {
           s.devices);
     visit(Field{"errors", "1", "Factor on the errors of all devices of the robot: 0 none, 1 as configured.",
                 0, 1000},
-          s.errors);
+          s.instance.errors);
   }
 };
 
@@ -228,26 +228,23 @@ struct Log {
 
 struct Root {
   int version = 1;
-  std::string name;
+  model::Setup setup;  ///< name, seed, errors, record
   std::string world;
   Node physics;
   Time time;
-  std::uint64_t seed = 1;
   Node vars;
   std::vector<std::string> plugins;
   std::vector<Robot> robots;
   std::vector<LabelledObject> things;
-  double errors = 1;
   Node values;
   std::vector<Event> events;
   std::optional<Log> log;
-  std::optional<model::Recording> record;
   std::vector<Zone> zones;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"version", "1", "Version of the scenario format.", 1, 1, Field::required}, s.version);
-    visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.name);
+    visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.setup.name);
     visit(
         Field{"world", "", "World file (SDF), relative to this file; an empty plane in sunlight if left out.",
               0, 0, Field::none, 4096},
@@ -256,7 +253,7 @@ struct Root {
           s.physics);
     visit(Field{"time", "", "Clock and steps of the run."}, s.time);
     // Numbers in files are doubles: beyond 2^53 two seeds could be the same one.
-    visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.seed);
+    visit(Field{"seed", "1", "Seed of all random numbers.", 0, 9007199254740991.0}, s.setup.seed);
     visit(Field{"vars", "", "Values of the variables written ${name}."}, s.vars);
     visit(Field{"plugins", "",
                 "Shared libraries with controllers: files relative to this one, or names in the search path.",
@@ -267,12 +264,12 @@ struct Root {
                 Field::none, 100'000},
           s.things);
     visit(Field{"errors", "1", "Factor on the errors of all devices: 0 none, 1 as configured.", 0, 1000},
-          s.errors);
+          s.setup.errors);
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "Events that happen when a condition holds.", 0, 0, Field::none, 1000},
           s.events);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
-    visit(Field{"record", "", "Recording of the run."}, s.record);
+    visit(Field{"record", "", "Recording of the run."}, s.setup.record);
     visit(
         Field{"ground_zones", "",
               "Parts of the ground with a surface of their own, seen from above; of several the last counts.",
