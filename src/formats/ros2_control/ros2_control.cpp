@@ -46,7 +46,7 @@ std::string_view last_part(std::string_view key) {
   return slash == std::string_view::npos ? key : key.substr(slash + 1);
 }
 
-/// What the whole file says, before its parts are put together.
+/// Contents of the whole file, before its parts are put together.
 struct Gathered {
   std::vector<Controller> controllers;                   ///< in the order of their types
   std::vector<std::pair<std::string, Node>> parameters;  ///< ROS 2: by controller

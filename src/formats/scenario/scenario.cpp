@@ -17,7 +17,7 @@ namespace {
 
 namespace spec = scenario_spec;
 
-/// Complains about keys that later versions read; they are no slips, so they come before "unknown key".
+/// Refuses keys that later versions read, with an error of their own in place of "unknown key".
 Status refuse_later_keys(const Node& root) {
   for (const Node::Entry& entry : root.entries())
     for (const char* const key : spec::later_keys)
@@ -300,7 +300,7 @@ Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
 
 Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
   SL_TRY(refuse_later_keys(node));
-  // A file of a later version may differ in every key: its version is the one thing to complain about.
+  // A file of a later version may differ in every key: its version is the only error.
   if (const Node* version = node.find("version")) {
     double number = 1;
     if (version->is_scalar() && parse_number(version->text(), number) && number != 1)

@@ -87,7 +87,7 @@ Result<Scenario> read_scenario(const std::string& path, std::span<const Override
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
                                 std::span<const Override> overrides, Diagnostics& diagnostics);
 
-/// The folder that a relative path written at `place` starts from: that of the file that says it (an included file's
+/// The folder that a relative path written at `place` starts from: that of the file it stands in (an included file's
 /// own), the scenario's for what came from `--set`.
 std::string base_folder(const Scenario& scenario, const Place& place);
 
@@ -105,7 +105,7 @@ std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
 /// @param stages    what lists of stages of errors may hold, by the name they are described under (FieldInfo::elements)
 /// @param builders  of models with parameters
-/// @param device_keys  keys that every device has beside its kind's
+/// @param device_keys  keys that every device has in addition to its kind's
 std::string scenario_schema(std::span<const KindFields> devices = {},
                             std::span<const KindFields> controllers = {},
                             std::span<const StageFields> stages = {},

@@ -88,7 +88,7 @@ Json object_of(const std::vector<FieldInfo>& fields) {
   return root;
 }
 
-/// A map with `kind` (or what `word` says) and the keys of that kind; `common` are keys that every kind has.
+/// A map with `kind` (or `word`) and the keys of that kind; `common` are keys that every kind has.
 Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_needed,
               const char* word = "kind") {
   Json names = Json::array(), choices = Json::array();

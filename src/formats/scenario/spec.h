@@ -121,7 +121,7 @@ inline constexpr Field label_field{
     "label",     "", "What detectors call it, such as ball; its model's name if left out.", 0, 0,
     Field::none, 100};
 
-/// What stands about in the world beside the robots.
+/// Object in the world that is not a robot.
 struct LabelledObject {
   std::string name;
   Node model;

@@ -12,7 +12,7 @@ namespace sandlot::formats {
 /// Parses `text` and merges the files it includes below it.
 Result<Node> parse_with_includes(std::string_view text, const std::string& file);
 
-/// Applies the overrides in order. New keys are put where the path says; whether they mean anything is found when
+/// Applies the overrides in order. New keys are put where the path leads; unknown ones are found when
 /// the fields are read.
 Status apply_overrides(Node& root, std::span<const Override> overrides);
 

@@ -69,7 +69,7 @@ Result<model::DeviceDecl> read_sensor(const Xml& element, const Reading& in) {
   if (!type || type->empty())
     return element.error("sensor '" + device.name + "' has no type", "write type=\"gpu_lidar\"");
   device.sdf_types.push_back("sensor:" + *type);
-  // A plugin inside a sensor is how Gazebo Classic says which of several it is.
+  // Gazebo Classic tells sensors of one type apart by the plugin inside.
   for (const Xml& child : element.children)
     if (const std::string* const file = child.name == "plugin" ? child.attribute("filename") : nullptr)
       device.sdf_types.push_back("plugin:" + *file);

@@ -186,7 +186,7 @@ class Loader {
   std::vector<std::string> open_;  ///< from the first file to the one being read
   std::map<std::string, std::pair<Xml, std::size_t>> files_;
   std::size_t elements_ = 0;
-  std::size_t left_out_ = 0;  ///< includes that nobody has
+  std::size_t left_out_ = 0;  ///< includes that cannot be found
 };
 
 }  // namespace

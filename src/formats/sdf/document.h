@@ -11,7 +11,7 @@ namespace sandlot::formats {
 
 /// The minor number of version "1.x" of an <sdf> element; a warning for those that are not wholly understood.
 Result<int> version_of(const Xml& root, Notes& notes);
-/// Rewrites what version 1.`minor` says differently from 1.9. The changes are those of libsdformat's *.convert files.
+/// Rewrites what differs in version 1.`minor` from 1.9. The changes are those of libsdformat's *.convert files.
 void modernise(Xml& element, int minor);
 
 /// Makes an <actor> a <model> with the attribute `sandlot:actor`; one without a link gets a capsule the size of a person.

@@ -258,7 +258,7 @@ Result<ResolvedFrames> resolve_frames(const Xml& root) {
   const Scope scope(*main_element(root));
   Resolver resolver;
   SL_TRY(resolver.resolve(scope));
-  // The pose of a model file's own model is what its <pose> says, unless that is the pose of a frame inside.
+  // The pose of a model file's own model is its <pose>, unless that is the pose of a frame inside.
   if (const Xml& main = *scope.element; main.name == "model" && !get(&main, "placement_frame").empty()) {
     Xml world;
     world.name = "world";

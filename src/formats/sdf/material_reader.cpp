@@ -78,7 +78,7 @@ Status read_script(const Xml& script, model::Material& out, const Reading& in) {
   return {};
 }
 
-/// PBR is reduced to its colour texture; roughness says how dull the highlight is.
+/// PBR is reduced to its colour texture; roughness makes the highlight dull.
 void read_pbr(const Xml& pbr, model::Material& out, const Reading& in) {
   const Xml* const metal = pbr.child("metal");
   const Xml* const flow = metal ? metal : pbr.child("specular");

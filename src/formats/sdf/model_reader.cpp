@@ -110,7 +110,7 @@ class ModelReader {
     return {};
   }
 
-  /// Gazebo's Label plugin says by which number segmentation cameras know a model.
+  /// Number of a model for segmentation cameras, from Gazebo's Label plugin.
   static bool is_label(const model::DeviceDecl& plugin) { return plugin.sdf_types.front() == "plugin:Label"; }
   Status read_label(const Xml& plugin) {
     const Xml* const label = plugin.child("label");
@@ -183,7 +183,7 @@ class ModelReader {
     return {};
   }
 
-  /// @param scope  what the names of links begin with beyond `prefix`: a joint of the world says `model::link`
+  /// @param scope  what the names of links begin with beyond `prefix`: a joint of the world has `model::link`
   Status read_joint(const Xml& element, const std::string& prefix, const std::string& scope) {
     model::Joint joint;
     joint.name = prefix + *element.attribute("name");

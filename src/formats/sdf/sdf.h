@@ -2,7 +2,7 @@
 /// SDFormat worlds and models, versions 1.5 to 1.9 (newer ones with a warning), and URDF robots (formats/sdf/urdf.h).
 ///
 /// Each file is taken through four checks: limits on the raw text, well-formedness (tinyxml2), names and references,
-/// and each value as it is read; so every complaint has the line that caused it.
+/// and each value as it is read; so every error has the line that caused it.
 ///
 /// libsdformat is the reference in tests and bench, not the reader: it gives up a whole world for one unknown sensor,
 /// has no line for most faults, complains on a process-wide console, retries every failure as URDF, computes
@@ -15,7 +15,7 @@
 ///          sandlot:device are its children as keys, lists written `[1, 2]`.
 /// Errors   one, with file and line; what is not used is named in one warning each, with its line.
 /// Includes models, actors, lights and whole worlds, by everything that files/resources.h finds; merged by the proxy
-///          frame rule of SDF 1.9. A path is relative to the file that says it. What a file names and nobody has is an
+///          frame rule of SDF 1.9. A path is relative to the file it stands in. A file that cannot be found is an
 ///          error, or with `skip_missing` a warning; a texture is a warning in any case.
 /// Inertia  what has no <inertial>, or auto="true", is computed from the collisions, 1000 kg/m^3 unless a <density> says
 ///          otherwise; a mesh that is not closed counts as the box around it.

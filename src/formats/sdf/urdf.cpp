@@ -87,7 +87,7 @@ Status add_pose(const Xml& owner, Xml& out, Notes& notes, const char* relative_t
 
 namespace {
 
-/// xacro is a language of its own: it is told by its elements, or by what stands for values.
+/// xacro is a language of its own: it is known by its elements, or by what stands for values.
 Status refuse_xacro(const Xml& element) {
   const auto refuse = [&](const std::string& what) {
     return element.error("this is xacro, which has to be expanded first: " + what,

@@ -4,7 +4,7 @@
 ///
 /// Kept     every link and every joint: nothing is lumped, fixed joints and links of sensors stay. A link without mass is a
 ///          frame: as long as something with mass is fixed to it, it gets a 1e-12th of that mass, which no sum shows; a
-///          part that moves by itself and has no mass at all is left to the SDF reader, which says what it takes.
+///          part that moves by itself and has no mass at all is left to the SDF reader and its error.
 /// Frames   a joint's <origin> becomes the pose of the child link in its parent; the joint itself lies in the child.
 /// Root     the canonical link. A root link called `world` is the world: what is fixed to it stands still.
 /// Floating joints leave their child free, as URDF means it; planar ones are refused.

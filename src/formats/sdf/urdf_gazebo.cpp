@@ -55,7 +55,7 @@ void lay(Xml& base, const Xml& over) {
   }
 }
 
-/// How an extension's name, an element of <gazebo reference="link">, is said in a collision of SDF.
+/// Element of SDF's collision for an extension, an element of <gazebo reference="link">.
 struct SurfaceKey {
   const char* urdf;
   std::initializer_list<const char*> sdf;
@@ -248,7 +248,7 @@ class Extensions {
     return {};
   }
 
-  /// The name of one of Gazebo's own materials, or a material as SDF says it.
+  /// The name of one of Gazebo's own materials, or a material in SDF's form.
   Status apply_material(const Xml& material, Xml& visual) {
     if (!material.children.empty()) {
       std::erase_if(visual.children, [](const Xml& child) { return child.name == "material"; });

@@ -15,7 +15,7 @@ inline constexpr std::size_t nothing = ~std::size_t{0};
 /// Adds a child that stands at the line of `from`.
 Xml& add(Xml& parent, std::string name, const Xml& from, std::string text = "");
 
-/// The attribute, or an error that says what to write.
+/// The attribute, or an error with what to write.
 Result<std::string> required(const Xml& element, const char* key, const char* example);
 /// Attribute `key` as `n` finite numbers with one blank between them; `fallback` (or, if null, an error) where it is
 /// missing.
@@ -25,7 +25,7 @@ std::vector<double> values_of(const std::string& text);
 /// One warning for each attribute that is not in `known` (names separated by blanks) and in no other namespace.
 void unused_attributes(const Xml& element, std::string_view known, Notes& notes);
 
-/// Adds the <pose> that an <origin> child says; nothing where there is none.
+/// Adds the <pose> of an <origin> child; nothing where there is none.
 Status add_pose(const Xml& owner, Xml& out, Notes& notes, const char* relative_to = nullptr);
 
 /// Links and joints by index, with the names they have in SDF.

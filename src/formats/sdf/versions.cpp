@@ -18,7 +18,7 @@ void rename_attribute(Xml& element, const char* from, const char* to) {
     if (key == from) key = to;
 }
 
-/// Until 1.4 an axis was in the model's frame, then in that of the joint unless it said otherwise.
+/// Until 1.4 an axis was in the model's frame, then in that of the joint unless given otherwise.
 void modernise_axis(Xml& axis, int minor) {
   const Xml* const flag = axis.child("use_parent_model_frame");
   const bool in_model = flag ? is_one_of(flag->text, {"1", "true", "True", "TRUE"}) : minor <= last_old;

@@ -5,7 +5,7 @@
 /// needed for the reader's normalisation to give the same bits. What the SDF reader makes of the text is the Model that
 /// was written, places aside.
 ///
-/// Not said   what a format has no words for is left out, with one warning each: controllers, seeds and engines of a
+/// Left out   what a format cannot express, with one warning each: controllers, seeds and engines of a
 ///            scenario in SDF; ball, universal and screw joints, loops and several roots in URDF are errors.
 ///            Meshes are named by their file; the scale of one is not known any more and written as 1, with a warning.
 #include <string>
@@ -26,7 +26,7 @@ Result<Xml> sdf_of(const model::Instance& instance, Diagnostics& diagnostics);
 
 /// A <robot>. Link frames move to their parent joints, as URDF has it; places in the world are lost with a warning.
 /// Devices become <gazebo> elements.
-/// Errors   what is no tree of fixed, revolute, continuous and prismatic joints with one root.
+/// Errors   what is not a tree of fixed, revolute, continuous and prismatic joints with one root.
 Result<Xml> urdf_of(const model::Instance& instance, Diagnostics& diagnostics);
 
 }  // namespace sandlot::formats

@@ -86,7 +86,7 @@ Result<model::Setup> load_file(const std::string& path, const LoadOptions& optio
                "files that are read end in " + formats::known_extensions()};
 }
 
-/// What the caller asked for takes precedence over the file.
+/// The caller's options take precedence over the file.
 void apply_options(const LoadOptions& options, model::Setup& setup) {
   setup.errors = std::min(max_errors, setup.errors * options.errors);
   if (options.seed) setup.seed = *options.seed;

@@ -16,14 +16,14 @@ struct LoadOptions {
   std::optional<double> stop_s;             ///< replaces the scenario's
   std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
   bool skip_missing = false;                ///< missing includes and meshes are left out with a warning
-  double errors = 1;  ///< factor on the errors of all devices, beside the scenario's and the robots'
+  double errors = 1;  ///< factor on the errors of all devices, in addition to the scenario's and the robots'
   /// The text of a scenario, which is not read from its path then.
   std::optional<std::string_view> text = {};
 };
 
-/// Loads a scenario (.yaml, .yml), a world or model (.sdf, .world), a robot (.urdf) or a model with parameters
-/// ("builder:snake?segments=12", builders/builder.h): what `sandlot run` accepts.
-/// What is no scenario runs at its own step, or Gazebo's 1 ms; a model by itself gets a plane to stand on.
+/// Loads a file of any format (formats/kind.h), or a model with parameters ("builder:snake?segments=12",
+/// builders/builder.h): what `sandlot run` accepts.
+/// A world or model runs at its own step, or Gazebo's 1 ms; a model by itself gets a plane to stand on.
 /// Errors carry file and line; warnings go to `diagnostics`, each once per file.
 Result<model::Setup> load(const std::string& path, const LoadOptions& options, Diagnostics& diagnostics);
 

@@ -13,7 +13,7 @@ class Placer {
   /// @param world  what stands already; must outlive the placer's construction only
   Placer(const std::vector<model::Instance>& world, std::uint64_t seed);
   /// One pose per robot of the group. Random poses keep `clearance_m` from static shapes (seen from above) and
-  /// from the origins of robots placed before; an error says when there is no room.
+  /// from the origins of robots placed before; no room is an error.
   /// Time per robot does not grow with their number.
   Result<std::vector<Pose>> place(const formats::RobotGroup& group);
   /// Something else that stands in the world.

@@ -3,7 +3,7 @@
 ///
 /// Errors   nothing there; no shared library, or a damaged one (checked before the system's loader sees it); what the
 ///          loader says; no `sandlot_plugin` in it; another API version or build id, both named. All with the place
-///          that asked for it.
+///          that names the plugin.
 /// Limits   a plugin runs in this process and can crash it. Loading one runs its static initialisers, whatever it is: one that throws there
 ///          ends the process.
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-/// The key `preset` of a device: ready-made keys of its kind, below those that stand beside it.
+/// The key `preset` of a device: ready-made keys of its kind, below those given in addition.
 #include <string_view>
 
 #include "base/node.h"
