@@ -14,6 +14,7 @@
 #include "app/verbs/topic_export.h"
 #include "base/math.h"
 #include "base/units.h"
+#include "formats/kind.h"
 #include "run/snapshot_files.h"
 
 namespace {
@@ -258,9 +259,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   int result = exit_ok;
 
   RunFlags run_flags;
-  CLI::App* const run_verb = app.add_subcommand("run",
-                                                "Run a scenario (.yaml), a world (.sdf) or a robot (.urdf)");
-  run_verb->add_option("file", run_flags.options.spec.file, "Scenario, world or robot");
+  CLI::App* const run_verb = app.add_subcommand("run", "Run a scenario, a world or a robot");
+  run_verb->add_option("file", run_flags.options.spec.file,
+                       "Scenario, world or robot: " + formats::known_extensions());
   run_verb->add_option("--from", run_flags.options.spec.from_file,
                        "Continue from a snapshot instead of a file");
   run_flags.add_to(*run_verb);
@@ -447,10 +448,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   ConvertOptions convert_options;
   CLI::App* const convert_verb = app.add_subcommand(
       "convert", "Turn URDF, SDF and scenarios into each other, by the extensions of the files");
-  convert_verb->add_option("in", convert_options.in, "File to read: .urdf, .sdf, .world or .yaml")
+  convert_verb->add_option("in", convert_options.in, "File to read: " + formats::known_extensions())
       ->required();
-  convert_verb->add_option("out", convert_options.out, "File to write: .sdf, .world, .urdf or .yaml")
-      ->required();
+  convert_verb->add_option("out", convert_options.out, "File to write, in another format")->required();
   convert_verb->add_flag("--force", convert_options.force, "Replace the file when it exists");
   add_paths(*convert_verb, convert_options.paths);
   convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
@@ -502,11 +502,13 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   });
 
   ListOptions list_options;
-  CLI::App* const list_verb = app.add_subcommand(
-      "list", "List the kinds of devices, controllers, engines and noise, message types, and Gazebo plugins");
-  list_verb->add_option(
-      "what", list_options.what,
-      "devices, controllers, engines, noise (these four when left out), levels, messages or plugins");
+  CLI::App* const list_verb = app.add_subcommand("list",
+                                                 "List the kinds of devices, controllers, engines, noise and "
+                                                 "file formats, message types, and Gazebo plugins");
+  list_verb->add_option("what", list_options.what,
+                        "devices, controllers, engines, noise, image_noise, depth_noise, faults, builders, "
+                        "formats (all of these if left "
+                        "out), levels, messages or plugins");
   list_verb->add_flag("--verbose", list_options.verbose,
                       "Print every field with unit, range, default and meaning");
   add_json(*list_verb, list_options.json);

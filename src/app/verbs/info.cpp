@@ -20,17 +20,6 @@ const char* role_of(const model::Instance& instance) {
                                      : "object";
 }
 
-const char* type_name(model::JointType type) {
-  static constexpr const char* names[] = {"fixed", "revolute",  "continuous", "prismatic",
-                                          "ball",  "universal", "screw"};
-  return names[static_cast<std::size_t>(type)];
-}
-
-const char* type_name(model::Light::Type type) {
-  static constexpr const char* names[] = {"directional", "point", "spot"};
-  return names[static_cast<std::size_t>(type)];
-}
-
 Overview overview_of(const Simulation& simulation) {
   Overview out;
   for (const model::Instance* instance : simulation.instances()) {

@@ -18,8 +18,6 @@ Overview overview_of(const Simulation& simulation);
 
 /// "robot", "static", "actor" or "object".
 const char* role_of(const model::Instance& instance);
-const char* type_name(model::JointType type);
-const char* type_name(model::Light::Type type);
 
 /// Everything, each thing by itself.
 nlohmann::ordered_json info_json(const Simulation& simulation, const Diagnostics& diagnostics);

@@ -12,7 +12,7 @@ SdfOptions sdf_options(const ReadOptions& options) {
 }
 
 Result<WorldContent> read_content(std::string_view text, const std::string& file, const ReadOptions& options,
-                          Diagnostics& diagnostics) {
+                                  Diagnostics& diagnostics) {
   return parse_sdf(text, file, diagnostics, sdf_options(options));
 }
 
