@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     SL_CHECK(!host_allowed(first, origins));
   }
-  // Who names himself as the host he talks to is no stranger; on loopback host_allowed() stands before that.
+  // A client that names the host it talks to is not a stranger; on loopback host_allowed() stands before that.
   if (judge_origin(first, second, {}) == Origin::same) SL_CHECK(first.empty() || read_host(second));
   SL_CHECK(judge_origin(first, "localhost:1", {}) != Origin::listed);
   (void)judge_origin(first, second, origins);

@@ -26,7 +26,7 @@ Result<RecordedRun> read_run(Recording& recording) {
   out.first_tick = recording.begin().tick;
   out.input_log.last_tick = out.first_tick;
   out.input_log.end = recording.begin().now;
-  const auto told = [&](std::uint64_t tick) -> std::optional<std::uint64_t>& {
+  const auto hash_of = [&](std::uint64_t tick) -> std::optional<std::uint64_t>& {
     const std::size_t index = tick - out.first_tick;
     if (out.hashes.size() <= index) out.hashes.resize(index + 1);
     return out.hashes[index];
@@ -49,7 +49,7 @@ Result<RecordedRun> read_run(Recording& recording) {
                       "nothing behind it can be played"};
       break;
     }
-    if (!tick.parts.empty()) told(tick.tick) = tick.hash;
+    if (!tick.parts.empty()) hash_of(tick.tick) = tick.hash;
     if (tick.tick == out.first_tick) continue;
     std::vector<LogEntry> outside;
     for (const LogEntry& entry : tick.log) {

@@ -22,7 +22,7 @@ class Recording {
 
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
   const SnapshotInfo& begin() const { return begin_; }
-  /// What the recorder noted beside: profile, seed, scenario ...; empty when it is gone.
+  /// Metadata of the recorder: profile, seed, scenario ...; empty when it is gone.
   const mcap::TextMap& facts() const { return facts_; }
 
   /// The next tick, or null at the end. What it points at is valid until the next call. An error: the file is damaged

@@ -156,17 +156,17 @@ void Replay::compare_log(const RecordedTick& recorded, Difference& difference) c
       return;
     }
     const LogEntry &a = recorded.log[i], &b = now[i];
-    const auto told = [&](const std::string& what) {
+    const auto differs = [&](const std::string& what) {
       difference.orders.push_back("the " + entry_text(a) + " " + what);
     };
     // Behind the first entry that is another one nothing can be paired.
     if (a.kind != b.kind || a.target != b.target || a.type != b.type || a.source.kind != b.source.kind ||
         a.source.id != b.source.id)
-      return told("was logged where now comes a " + entry_text(b));
+      return differs("was logged where now comes a " + entry_text(b));
     if (a.bytes != b.bytes)
-      told(of_program(a) ? "is not what the program orders now" : "is not what was carried out");
+      differs(of_program(a) ? "is not what the program orders now" : "is not what was carried out");
     if (a.refused != b.refused)
-      told(a.refused ? "was refused, and is not now" : "was carried out, and is refused now");
+      differs(a.refused ? "was refused, and is not now" : "was carried out, and is refused now");
   }
 }
 

@@ -52,7 +52,7 @@ Listing values_of(const Simulation& simulation, const std::string& part) {
   return out;
 }
 
-/// "rover/laser.ranges" of "rover/laser.ranges[3]"; nothing of what is no element of a list.
+/// "rover/laser.ranges" of "rover/laser.ranges[3]"; empty for an address that is not an element of a list.
 std::string_view list_of(std::string_view address) {
   return address.ends_with(']') ? address.substr(0, address.rfind('[')) : std::string_view();
 }

@@ -80,7 +80,7 @@ struct Seeker {
   std::optional<Reading<msg::CameraInfo>> info_;
   Actuator<msg::Twist> drive_;
   Pose X_BS_;
-  // Made anew from camera_info: no state.
+  // Computed from camera_info: not State.
   msg::CameraInfo known_;
   perception::Finder finder_;
   std::vector<perception::Found> found_;

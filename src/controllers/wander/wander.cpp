@@ -15,7 +15,7 @@ constexpr double heading_step_rad = 5 * math::pi / 180;
 constexpr double blocked_m = 0.15;
 /// Above this the way ahead is clear enough to end a turn on the spot.
 constexpr double clear_m = 0.6;
-/// A scanner that sees no less than this needs no memory: what is beside or behind cannot be run into.
+/// A scanner that sees no less than this needs no memory: obstacles at the side or behind cannot be hit.
 constexpr double wide_view_rad = 200 * math::pi / 180;
 constexpr double memory_m = 1.2;
 constexpr float memory_s = 3;

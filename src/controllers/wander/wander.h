@@ -84,7 +84,7 @@ struct State {
   }
 };
 
-/// A scan reduced to sectors, in the robot's frame. Scratch: made anew from each message.
+/// A scan reduced to sectors, in the robot's frame. Scratch: computed from each message.
 struct Sectors {
   struct Echo {
     double x_m, y_m;  ///< of the echo

@@ -1,4 +1,4 @@
-/// The checksum of MCAP. Every byte of a recording is summed twice, in its chunk and in the file, so that beside images,
+/// Checksum of MCAP. Every byte of a recording is summed twice, in its chunk and in the file, so that with images in it,
 /// which are hardly compressed, zlib's would cost more than the compression.
 ///
 /// Source   V. Gopal et al., "Fast CRC Computation for Generic Polynomials Using PCLMULQDQ Instruction", Intel 2009: the
@@ -55,7 +55,7 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
     before = ~crc32_folded(bytes.data(), folded, ~before);
     bytes = bytes.subspan(folded);
   }
-  if (bytes.empty()) return before;  // zlib takes a null pointer as the wish to begin anew
+  if (bytes.empty()) return before;  // zlib begins again at a null pointer
   return static_cast<std::uint32_t>(
       ::crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }

@@ -41,9 +41,9 @@ ChunkIndex entry_of(const Walk::Piece& piece) {
 }
 
 /// What the file says at its end against what is in it. Parts that a foreign writer left out are no error.
-Status compare(const InputFile& file, std::uint64_t at, const Summary& told, const Summary& found) {
-  const auto same_part = [](const auto& told_part, const auto& found_part) {
-    return std::all_of(told_part.begin(), told_part.end(), [&](const auto& one) {
+Status compare(const InputFile& file, std::uint64_t at, const Summary& declared, const Summary& found) {
+  const auto same_part = [](const auto& declared_part, const auto& found_part) {
+    return std::all_of(declared_part.begin(), declared_part.end(), [&](const auto& one) {
       const auto same = found_part.find(one.first);
       return same != found_part.end() && same->second == one.second;
     });
@@ -55,12 +55,12 @@ Status compare(const InputFile& file, std::uint64_t at, const Summary& told, con
   const auto wrong = [&](const char* what) {
     return file.damaged(at, std::string("the summary has other ") + what + " than the data");
   };
-  if (!same_part(told.schemas, found.schemas)) return wrong("schemas");
-  if (!same_part(told.channels, found.channels)) return wrong("channels");
-  if (!told.chunks.empty() && bare(told.chunks) != bare(found.chunks)) return wrong("chunks");
-  if (!told.attachments.empty() && told.attachments != found.attachments) return wrong("attachments");
-  if (!told.metadata.empty() && told.metadata != found.metadata) return wrong("metadata");
-  const Statistics& t = told.statistics;
+  if (!same_part(declared.schemas, found.schemas)) return wrong("schemas");
+  if (!same_part(declared.channels, found.channels)) return wrong("channels");
+  if (!declared.chunks.empty() && bare(declared.chunks) != bare(found.chunks)) return wrong("chunks");
+  if (!declared.attachments.empty() && declared.attachments != found.attachments) return wrong("attachments");
+  if (!declared.metadata.empty() && declared.metadata != found.metadata) return wrong("metadata");
+  const Statistics& t = declared.statistics;
   const Statistics& f = found.statistics;
   if (t.message_count != f.message_count || t.chunk_count != f.chunk_count || t.start_time != f.start_time ||
       t.end_time != f.end_time || t.attachment_count != f.attachment_count ||
@@ -74,9 +74,9 @@ Status check_end(const InputFile& file, const Walk::Piece& end, const Limits& li
     SL_ASSIGN(const std::uint32_t crc, crc_of(file, 0, end.offset));
     if (crc != end.data_crc) return file.damaged(end.offset, "the checksum of all data does not fit");
   }
-  SL_ASSIGN(const std::optional<Summary> told, read_summary(file, limits));
-  if (!told) return file.damaged(end.offset + end.length, "there is no summary");
-  return compare(file, end.offset + end.length, *told, found);
+  SL_ASSIGN(const std::optional<Summary> declared, read_summary(file, limits));
+  if (!declared) return file.damaged(end.offset + end.length, "there is no summary");
+  return compare(file, end.offset + end.length, *declared, found);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ Result<Examination> examine(const std::string& path, const Limits& limits) {
   Examination result;
   result.header = walk.header();
   result.file_bytes = file.size();
-  if (const auto told = read_summary(file, limits); told && *told) walk.know(**told);
+  if (const auto declared = read_summary(file, limits); declared && *declared) walk.know(**declared);
   Summary& found = result.found;
   std::uint64_t chunks = 0;
   SL_ASSIGN(const auto end,
@@ -126,7 +126,7 @@ Result<Examination> examine(const std::string& path, const Limits& limits) {
 Result<Repaired> repair(const std::string& path, Examination before, const Limits& limits) {
   SL_ASSIGN(const InputFile file, InputFile::open(path));
   SL_ASSIGN(Walk walk, Walk::begin(file, limits));
-  if (const auto told = read_summary(file, limits); told && *told) walk.know(**told);
+  if (const auto declared = read_summary(file, limits); declared && *declared) walk.know(**declared);
   const std::string part = path + ".repaired";
   SL_ASSIGN(OutputFile out, OutputFile::create(part));
   struct Remove {

@@ -5,7 +5,7 @@
 /// Kept      every chunk, attachment and metadata record whose bytes are whole. Message indexes, summary and footer are
 ///           written again; messages that stood outside chunks get one.
 /// Dropped   the torn tail and damaged pieces; their size in bytes is reported.
-/// Safety    the new file is written beside the old one and takes its place when it is complete and on the disk. An old
+/// Safety    the new file is written next to the old one and takes its place when it is complete and on the disk. An old
 ///           file that had damage before its end stays as FILE.damaged, since somebody may get more out of it.
 #include "record/mcap/reader.h"
 
@@ -34,7 +34,7 @@ Result<Examination> examine(const std::string& path, const Limits& limits = {});
 struct Repaired {
   Examination before;
   std::uint64_t kept_messages = 0, lost_bytes = 0, new_bytes = 0;
-  std::string kept_original;  ///< "" unless the old file was kept beside
+  std::string kept_original;  ///< "" unless the old file was kept next to it
 };
 
 /// @pre  examine() said that the file is not whole

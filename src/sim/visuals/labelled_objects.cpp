@@ -24,7 +24,7 @@ Bounds bounds_of_model(const model::Model& model) {
   return visuals.empty() ? collisions : visuals;
 }
 
-/// Of the visual with the largest box about it: what one would name if asked for the thing's colour.
+/// Colour of the visual with the largest bounding box: the colour that a person would name.
 Color color_of(const model::Model& model) {
   Color color;
   double largest = -1;

@@ -17,7 +17,7 @@ Simulation::Simulation(model::Setup setup, const SimulationOptions& options)
     : setup_(std::move(setup)), options_(options), monitor_(std::make_unique<Monitor>(*this)) {
   const int available = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : available;
-  // TBB caps its workers at the number of cores unless told otherwise; with it a run in more threads than cores
+  // TBB caps its workers at the number of cores by default; with it a run in more threads than cores
   // would quietly test fewer.
   if (threads > available)
     more_threads_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -169,7 +169,7 @@ void Publisher::fill_instances(Frame& frame, bool links) const {
 }
 
 void Publisher::fill_topics(Frame& frame) {
-  frame.topics.clear();  // before copies are asked for: those that this frame held are free now
+  frame.topics.clear();  // before copies are taken: those that this frame held are free now
   if (!wants_.messages) return;
   std::size_t place = 0;
   for (const auto& entity : sim_.entities_)
