@@ -1,5 +1,6 @@
 #pragma once
-/// What a solid looks like from straight above: a circle or a convex polygon, and the heights it spans.
+/// Outline of a solid for drawing it from above: a circle or a convex polygon, and the heights it spans; and paths with fewer
+/// points.
 #include <optional>
 #include <vector>
 

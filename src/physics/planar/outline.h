@@ -1,5 +1,5 @@
 #pragma once
-/// What a solid is in the plane: a convex outline, upright over an interval of heights.
+/// Outline of a solid in the plane: a convex prism, upright over an interval of heights.
 ///
 /// Exact      upright boxes, cylinders, cones' bases and capsules lying flat or standing up; for rays also their lids.
 /// Meshes     each triangle by itself, over its own heights: so a building of one mesh has rooms. Upright triangles are
@@ -9,25 +9,16 @@
 ///            rim, an ellipsoid one over a 32-gon about its shadow.
 /// Errors     terrain has no outline; the engine refuses it.
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "geometry/pose.h"
 #include "geometry/shape.h"
+#include "geometry/silhouette.h"
 #include "physics/planar/turn.h"
 
 namespace sandlot::planar {
 
-struct Heights {
-  double min_m = std::numeric_limits<double>::infinity();
-  double max_m = -std::numeric_limits<double>::infinity();
-  bool empty() const { return !(min_m <= max_m); }
-  void add(Heights h) {
-    if (h.min_m < min_m) min_m = h.min_m;
-    if (h.max_m > max_m) max_m = h.max_m;
-  }
-};
 /// True when the two share more than `clearance_m`.
 constexpr bool meet(Heights a, Heights b, double clearance_m) {
   return a.max_m - b.min_m > clearance_m && b.max_m - a.min_m > clearance_m;
@@ -56,16 +47,6 @@ void add_outlines(const Shape& shape, const Pose& X_WC, std::vector<Outline>& ou
 /// The convex hull of points over some heights; nothing when it has no area.
 void add_polygon(std::vector<Vec2> points, Heights h, std::vector<Outline>& outlines,
                  std::vector<Edge>& edges);
-
-/// Heights of a shape at X_WC; empty for a plane.
-Heights heights_of(const Shape& shape, const Pose& X_WC);
-
-/// Points and circles whose hull is the shadow of a shape at X_WC.
-struct Round {
-  Vec2 centre;
-  double radius_m;
-};
-void add_shadow(const Shape& shape, const Pose& X_WC, std::vector<Round>& hull);
 
 struct Nearest {
   double distance_m;  ///< negative inside

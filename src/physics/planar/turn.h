@@ -7,6 +7,7 @@
 
 #include "base/math.h"
 #include "geometry/pose.h"
+#include "geometry/vec2.h"
 
 namespace sandlot::planar {
 
@@ -18,14 +19,6 @@ struct Turn {
   friend constexpr bool operator==(Turn, Turn) = default;
 };
 
-struct Vec2 {
-  double x = 0, y = 0;
-  friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
-  friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-  friend constexpr Vec2 operator*(double k, Vec2 a) { return {k * a.x, k * a.y}; }
-  friend constexpr bool operator==(Vec2, Vec2) = default;
-};
-constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 constexpr Vec2 rotate(Turn t, Vec2 v) { return {t.c * v.x - t.s * v.y, t.s * v.x + t.c * v.y}; }
 constexpr Vec2 rotate_back(Turn t, Vec2 v) { return {t.c * v.x + t.s * v.y, t.c * v.y - t.s * v.x}; }
 
