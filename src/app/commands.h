@@ -149,12 +149,6 @@ int topic_list(const RecordingOptions& options);
 int topic_echo(const RecordingOptions& options);
 int topic_hz(const RecordingOptions& options);
 
-/// Scenario of `sandlot demo NAME`, found beside the program or above it.
-Result<std::string> demo_file(const std::string& name);
-
-/// Prints the names that demo_file() knows.
-int list_demos();
-
 /// Simulation of a file. Building it finds errors that reading alone does not (joints, levels, rates).
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics);
@@ -164,9 +158,5 @@ int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
 /// Prints an error when standard output could not be written, as on a full disk. @return the exit code then, else `code`
 int finish_output(int code);
-
-/// Whether the user wants the program to stop (SIGINT, SIGTERM).
-bool interrupted();
-void catch_interrupts();
 
 }  // namespace sandlot::app

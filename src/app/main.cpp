@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "app/commands.h"
+#include "app/demos.h"
 #include "app/flags.h"
 #include "app/verbs/calibrate.h"
 #include "app/verbs/topic_export.h"

@@ -1,4 +1,5 @@
 #include "app/verbs/calibrate.h"
+#include "app/interrupt.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

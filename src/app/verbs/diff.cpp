@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "base/json_text.h"
 #include "base/text.h"
 #include "record/recording.h"

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "app/commands.h"
+#include "app/demos.h"
 #include "base/json_text.h"
 #include "base/math.h"
 #include "base/random.h"

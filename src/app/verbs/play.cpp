@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/serve.h"
 #include "base/atomic_file.h"
 #include "base/json_text.h"

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/serve.h"
 #include "base/json_text.h"
