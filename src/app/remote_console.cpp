@@ -47,7 +47,7 @@ Result<std::string> console_url(std::string_view written, std::string_view token
   else if (starts_with(url, "http://")) url = "ws://" + url.substr(7);
   else if (url.find("://") == std::string::npos) url = "ws://" + url;
   if (!starts_with(url, "ws://"))
-    return Error{"'" + std::string(written.substr(0, 100)) + "' is no address of a run",
+    return Error{"'" + std::string(written.substr(0, 100)) + "' is not the address of a run",
                  "write the port, or ws://HOST:PORT"};
   const std::size_t host = 5;
   // A page's own address has a path and perhaps a token behind it.
@@ -133,7 +133,7 @@ Status RemoteConsole::ask(std::uint32_t service, const std::string& line) {
   write(w, call_service);
   write(w, service);
   write(w, ++calls_);
-  write(w, std::string("json"));  // its length as u32 goes before it
+  write(w, std::string("json"));  // its length as u32 precedes it
   w.raw(request.data(), request.size());
   if (Status sent = socket_->send(w.bytes(), false); !sent) return gone();
   return {};

@@ -1,5 +1,5 @@
 #pragma once
-/// The console of a run in another program: its lines over the Foxglove protocol (docs/viewer_protocol.md).
+/// Console of a run in another program: lines over the Foxglove protocol (docs/viewer_protocol.md).
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,7 +14,7 @@ struct RemoteAnswer {
   std::string text;
 };
 
-/// A text as it stands in the query of an address.
+/// Text for the query of an address.
 std::string url_encoded(std::string_view text);
 
 /// "ws://127.0.0.1:8765/?token=..." from what people write: a port, HOST:PORT, an http or ws address, nothing.
@@ -22,19 +22,19 @@ Result<std::string> console_url(std::string_view written, std::string_view token
 
 class RemoteConsole {
  public:
-  /// Errors: nobody is there, or it is no Sandlot, or it has no console.
+  /// Errors: nobody listens, or it is not Sandlot, or it has no console.
   static Result<std::unique_ptr<RemoteConsole>> connect(const std::string& url);
 
-  /// Waits for the answer; `give_up` is asked ten times a second. Errors: the connection is gone, or it was given up.
+  /// Waits for the answer; `give_up` is called ten times a second. Errors: the connection is gone, or `give_up` returned true.
   Result<RemoteAnswer> say(const std::string& line, bool (*give_up)());
-  /// How the last word may go on; none when that takes longer than a second.
+  /// Continuations of the last word; none when they take longer than a second.
   std::vector<std::string> complete(const std::string& line);
   /// "admin" or "spectator"
   const std::string& role() const { return role_; }
 
  private:
   explicit RemoteConsole(std::unique_ptr<server::WebSocketClient> socket) : socket_(std::move(socket)) {}
-  /// Takes one message. @return whether it answers `call`: then `answer_` is what it says
+  /// Takes one message. @return whether it answers `call`; `answer_` then has the text
   Result<bool> take(double timeout_s, std::uint32_t call);
   Status ask(std::uint32_t service, const std::string& line);
   void read_text(std::string_view text, std::uint32_t call);

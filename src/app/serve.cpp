@@ -16,7 +16,7 @@
 namespace sandlot::app {
 namespace {
 
-/// 32 hexadecimal digits that nobody guesses. Not for the run: its random numbers come from streams.
+/// Token of 32 random hexadecimal digits. Not for the run, whose random numbers come from streams.
 Result<std::string> make_token() {
   std::array<unsigned char, 16> bytes;
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))

@@ -32,7 +32,7 @@ std::vector<Vec2> points_of(const std::vector<SilhouetteDisc>& discs) {
   return points;
 }
 
-/// Radius of the circle that a silhouette is, when all its discs have one centre; else 0.
+/// Radius of a circular silhouette, whose discs have one centre; else 0.
 double circle_radius_m(const std::vector<SilhouetteDisc>& discs) {
   double radius_m = 0;
   for (const SilhouetteDisc& disc : discs) radius_m = std::max(radius_m, disc.radius_m);

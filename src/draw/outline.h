@@ -9,9 +9,9 @@
 
 namespace sandlot::draw {
 
-/// Silhouette in the world's xy plane.
+/// Outline in the world's xy plane.
 ///
-/// Limits   round parts of leaning cylinders and capsules are drawn with 32 corners per turn.
+/// Limits   those of geometry/silhouette.h; the ends of leaning capsules have 32 corners per turn.
 struct Outline {
   std::vector<Vec3> corners;  ///< counter-clockwise, z = 0; empty: a circle
   Vec3 centre_m;              ///< of the circle or of the shape's frame, z = 0
@@ -22,7 +22,7 @@ struct Outline {
 /// Nothing for planes, which have no edge.
 std::optional<Outline> outline_from_above(const Shape& shape, const Pose& X_WC);
 
-/// The path without those points that lie within `tolerance_m` of the line through the ones that stay; first and
+/// Path without the points that lie within `tolerance_m` of the line through the ones that stay; first and
 /// last stay. Heights are ignored.
 /// Source   D. Douglas, T. Peucker, Algorithms for the reduction of the number of points required to represent a
 ///          digitized line or its caricature, Cartographica 10 (1973).

@@ -94,7 +94,7 @@ bool covers(const Outline& outline, Vec3 point) {
   return true;
 }
 
-/// What the picture shows: all that stands, all robots and paths; what moves by itself only if it is near that.
+/// Area of the drawing: static solids, robots and paths; other moving solids only when they are near those.
 Area visible_area(const std::vector<Drawn>& solids, const std::vector<std::vector<Drawn>>& robots,
                   const Plan& plan) {
   Area area;
@@ -252,7 +252,7 @@ class Writer {
 
   void scans() {
     if (!detailed_) return;
-    // Many fans on top of each other would hide the room.
+    // Many scans on top of each other would hide the room.
     const double opacity = plan_.robots.size() > 2 ? 0.07 : 0.14;
     for (std::size_t i = 0; i < plan_.robots.size(); ++i)
       for (const Plan::Scan& scan : plan_.robots[i].scans) {

@@ -1,10 +1,10 @@
 #pragma once
-/// A drawing of a world from above as plain data, and its SVG.
+/// Plan: drawing of a world from above as plain data, and its SVG.
 ///
 /// Frame    the world's: x to the right, y up the page; lengths in metres.
 /// Output   one self-contained SVG file: no scripts, no fonts, no links. Coordinates are whole millimetres, so that
-///          the same plan gives the same bytes. Solids are drawn in the order of their upper edges; what hangs above
-///          all robots is drawn translucent, because they drive below it.
+///          the same plan gives the same bytes. Solids are drawn in the order of their upper edges; solids above all
+///          robots are translucent, because robots drive below them.
 /// Limits   at most 8000 solids (the largest ones) and 60,000 corners of paths (coarser where there are more); with
 ///          more than 100 robots no scans, names or details of robots. Below 1.5 MB up to 3000 robots.
 #include <optional>
@@ -46,7 +46,7 @@ struct Plan {
 
 std::string to_svg(const Plan& plan);
 
-/// Text as XML shows it: markup characters replaced, control characters left out.
+/// Text for XML: markup characters replaced, control characters left out.
 std::string xml_text(std::string_view text);
 
 }  // namespace sandlot::draw

@@ -69,7 +69,7 @@ Result<std::size_t> column_of(const Table& table, std::string_view wanted) {
                suggestion(wanted, table.names), place};
 }
 
-/// "#d00000" of "red" or of itself.
+/// Code of a colour: "#d00000" for "red" and for "#d00000".
 Result<std::string> colour_of(const std::string& wanted) {
   const bool code = wanted.size() == 7 && wanted[0] == '#' &&
                     wanted.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
@@ -103,7 +103,7 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
       lines.push_back({label, table.names[y], table.units[y], "", &table.columns[x], &table.columns[y]});
     }
   }
-  if (lines.empty()) return Error{"there is no column to draw beside '" + options.x + "'"};
+  if (lines.empty()) return Error{"there is no column to draw in addition to '" + options.x + "'"};
   if (lines.size() > most_lines)
     return Error{std::to_string(lines.size()) + " lines are too many for one figure",
                  "choose at most 24 by --y"};
@@ -120,7 +120,7 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
   return lines;
 }
 
-/// The range of what is drawn, with a little air.
+/// Range of the lines with a small margin.
 std::pair<double, double> range_of(const std::vector<Line>& lines, bool of_x,
                                    const std::optional<std::pair<double, double>>& given,
                                    const std::optional<std::pair<double, double>>& x_given) {
@@ -207,7 +207,7 @@ Result<Table> read_csv(std::string_view text, const std::string& file) {
   if (text.starts_with("\x89MCAP"))
     return Error{"this is a recording", "`sandlot topic export` makes a table of its numbers", place};
   if (text.substr(0, 4096).find('\0') != std::string_view::npos)
-    return Error{"this is no table", "expected lines of text: names, then numbers", place};
+    return Error{"this is not a table", "expected lines of text: names, then numbers", place};
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = text.find('\n', at);
     if (end == std::string_view::npos) end = text.size();
@@ -237,8 +237,8 @@ Result<Table> read_csv(std::string_view text, const std::string& file) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
       double value = nan;
       if (!trim(fields[i]).empty() && !parse_number(fields[i], value))
-        return Error{"'" + fields[i].substr(0, 40) + "' in column '" + table.names[i] + "' is no number", "",
-                     place};
+        return Error{"'" + fields[i].substr(0, 40) + "' in column '" + table.names[i] + "' is not a number",
+                     "", place};
       table.columns[i].push_back(value);
     }
   }
@@ -292,7 +292,7 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
     }
     if (one_name) y_label = with_unit(lines.front().name, one_unit ? lines.front().unit : "");
     else if (one_unit && !lines.front().unit.empty()) y_label = "[" + lines.front().unit + "]";
-    // No label of the axis can say it: then the legend does.
+    // Several lines: the legend has their names.
     for (std::size_t i = options.labels.size(); !one_unit && i < lines.size(); ++i)
       lines[i].label = with_unit(lines[i].label, lines[i].unit);
   }

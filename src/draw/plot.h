@@ -1,8 +1,8 @@
 #pragma once
-/// Lines over time (or over anything) from CSV files, as an SVG figure that can go into a paper or a README.
+/// Plot: columns of CSV files as lines over time or over another column, as an SVG figure for papers and READMEs.
 ///
-/// Axes have round ticks, a light grid and units where the columns tell them (`rover.pose.x [m]`; `time` is in seconds).
-/// Colours are Okabe and Ito's, which people who are colour-blind can tell apart; beyond seven lines they come dashed.
+/// Axes have round ticks, a light grid and units where the columns have them (`rover.pose.x [m]`; `time` is in seconds).
+/// Colours are Okabe and Ito's, which people who are colour-blind can tell apart; from the eighth line on they are dashed.
 /// A cell that is empty, `nan` or `inf` breaks the line. Points that fall into one pixel column are drawn as their first,
 /// last, lowest and highest, so that a file of a million lines gives a small figure that looks the same.
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace sandlot::draw {
 
-/// A CSV file with a line of names and numbers below.
+/// CSV file: a line of names, then numbers.
 struct Table {
   std::string file;
   std::vector<std::string> names;            ///< without unit
@@ -34,7 +34,7 @@ struct PlotOptions {
       colours;  ///< of the lines, in order: "red", "blue" or "#1f77b4"; the others get their own
   std::optional<std::pair<double, double>> x_range, y_range;
 };
-/// The figure; errors name the nearest column.
+/// SVG of the figure; errors name the nearest column.
 Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOptions& options);
 
 /// Ticks at round numbers within [low, high], at most `most`, and their texts.

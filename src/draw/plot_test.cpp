@@ -30,7 +30,7 @@ TEST(Plot, ReadsWhatTheLogWrites) {
 TEST(Plot, BadFilesAreNamedWithTheirLine) {
   EXPECT_NE(complaint("").find("run.csv: the file is empty"), std::string::npos) << complaint("");
   EXPECT_NE(complaint("a,b\n1,2\n3\n").find("run.csv:3: the line has 1 fields"), std::string::npos);
-  EXPECT_NE(complaint("a,b\n1,x\n").find("run.csv:2: 'x' in column 'b' is no number"), std::string::npos);
+  EXPECT_NE(complaint("a,b\n1,x\n").find("run.csv:2: 'x' in column 'b' is not a number"), std::string::npos);
 }
 
 TEST(Plot, TicksAreRound) {

@@ -11,7 +11,7 @@ namespace sandlot::draw {
 namespace {
 
 constexpr std::size_t max_path_points = 20'000;
-constexpr double jump_m = 0.5;  // farther than this in one tick: the robot was put somewhere else
+constexpr double jump_m = 0.5;  // a longer step in one tick is a change of pose from outside
 
 Pose sensor_pose(const Simulation& simulation, const Simulation::Entity& entity,
                  const Simulation::Device& device) {
@@ -36,7 +36,7 @@ Plan::Scan to_scan(const msg::LaserScan& scan, const Pose& X_WS) {
   return out;
 }
 
-/// What an instance looks like: its visuals, or where it has none its collision shapes in grey.
+/// Visuals of an instance; its collision shapes in grey for links without visuals.
 void add_solids(const Simulation& simulation, const Simulation::Entity& entity,
                 std::vector<Plan::Solid>& out) {
   const model::Model& model = *entity.instance.model;

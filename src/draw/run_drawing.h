@@ -1,6 +1,6 @@
 #pragma once
-/// A picture of a run from above: the world, the robots with their paths and their last laser scans, as one SVG
-/// file that a browser or README shows.
+/// Drawing of a run from above: the world, the robots with their paths and last laser scans, as one SVG file for
+/// browsers and READMEs.
 #include <map>
 #include <string>
 #include <vector>
@@ -10,15 +10,14 @@
 
 namespace sandlot::draw {
 
-/// Watches a run and remembers what the picture needs. Add it as an observer before the run.
+/// Observer that collects paths and scans. Add it before the run.
 ///
 /// Limits   a robot's path is kept as at most 20,000 points: 2 cm apart on the first 400 m, then twice that, and so on.
 class RunDrawing final : public Observer {
  public:
-  /// @param simulation  must outlive the recorder; its static world is drawn as it is when drawing
+  /// @param simulation  must outlive the drawing; draw() shows its static world at that time
   explicit RunDrawing(const Simulation& simulation);
   void on_frame(const std::shared_ptr<const Frame>& frame) override;
-  /// What there is to draw now.
   Plan plan() const;
   /// The finished drawing.
   std::string draw() const { return to_svg(plan()); }

@@ -27,7 +27,7 @@ struct ViewpointOptions {
   std::string camera;  ///< "robot/device", "follow:robot" or "overhead"; "": from
   std::optional<Vec3> from, at;
   std::optional<int> width, height;     ///< 960 x 540 if left out; a robot's camera has its own
-  double fov_rad = 1.0471975511965976;  ///< of the width
+  double fov_rad = 1.0471975511965976;  ///< across the picture
   std::string plane = "rgb";            ///< depth, labels or instances; as colours
   int samples = 4;
   bool shadows = true;

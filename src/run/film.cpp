@@ -11,7 +11,7 @@ namespace sandlot {
 
 Result<Film> Film::begin(const FilmOptions& options, Simulation& simulation) {
   SL_ASSIGN(draw::Viewpoint view, draw::Viewpoint::make(options.view, simulation));
-  // A robot's camera tells its size with its first picture; the rest can be judged now.
+  // The size of a robot's camera is known with its first picture; the rest can be checked now.
   SL_TRY(VideoWriter::check(
       {options.file, options.view.width.value_or(960), options.view.height.value_or(540), options.rate_hz}));
   if (std::ofstream out(options.file, std::ios::binary | std::ios::app); !out)

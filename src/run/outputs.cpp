@@ -12,7 +12,7 @@
 namespace sandlot {
 namespace {
 
-/// A warning for a pattern that fits no topic: something spawned later may bring one, but more likely it is misspelt.
+/// Warning for a pattern that fits no topic: a robot spawned later may have one, but a misspelling is more likely.
 std::optional<Error> unmatched(const std::string& pattern, const Simulation& simulation) {
   std::vector<std::string> known{recording::tf_topic,  recording::tf_static_topic, recording::clock_topic,
                                  recording::log_topic, recording::hash_topic,      recording::parts_topic};
@@ -58,7 +58,7 @@ Status RunOutputs::start(const PreparedRun& prepared) {
     session_.add_observer(recorder_.get());
   }
   if (log_) {
-    // Replaces what was there, so it comes after everything that may refuse the run.
+    // Replaces an old file, so it comes after everything that may refuse the run.
     SL_TRY(log_->begin());
     session_.add_observer(log_.get());
   }

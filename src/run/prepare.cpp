@@ -14,8 +14,7 @@
 namespace sandlot {
 namespace {
 
-/// No two of the files of a run, the scenario first and then what it writes, are one. "" is none; devices may be
-/// shared.
+/// Checks that the files of a run, the scenario and its results, are all different. "" is none; devices may be shared.
 Status check_apart(std::initializer_list<std::string> files) {
   std::set<std::filesystem::path> known;
   std::error_code ignored;
@@ -80,7 +79,7 @@ Result<std::unique_ptr<Simulation>> make_world(const RunSpec& spec,
   return Simulation::create(std::move(setup), simulation_options, diagnostics);
 }
 
-/// What to log: the scenario's `log` with the command line's words laid over it. Nothing: no log.
+/// Log of the run: the scenario's `log`, changed by the spec. Nothing: no log.
 Result<std::optional<model::LogDecl>> log_declaration(const RunSpec& spec, const Simulation& simulation) {
   std::optional<model::LogDecl> log = simulation.setup().log;
   if (spec.log_file.empty() && spec.log_values.empty() && !spec.log_rate_hz) return log;
@@ -99,7 +98,7 @@ Result<std::optional<model::LogDecl>> log_declaration(const RunSpec& spec, const
   return log;
 }
 
-/// What to record: the scenario's word, changed by the command line. Nothing when neither asks for it.
+/// Recording of the run: the scenario's, changed by the spec. Nothing when neither has one.
 Result<std::optional<RecordOptions>> record_options(const RunSpec& spec, const Simulation& simulation) {
   RecordOptions out;
   if (simulation.setup().record) out.recording = *simulation.setup().record;

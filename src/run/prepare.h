@@ -1,5 +1,5 @@
 #pragma once
-/// From a RunSpec to what a run needs before its first tick: the world, and what to log and to record of it.
+/// Preparation of a run: from a RunSpec to the world before its first tick, its log and its recording.
 #include <memory>
 #include <optional>
 

@@ -23,9 +23,9 @@ Error about(Error error, const std::string& path) {
 
 Status check_snapshot_options(const SnapshotOptions& options) {
   if (options.file.empty() && options.at_s)
-    return Error{"--snapshot-at says when, but not where to", "add --snapshot FILE"};
+    return Error{"--snapshot-at gives a time, but there is no file", "add --snapshot FILE"};
   if (options.file.empty() && options.every_s)
-    return Error{"--snapshot-every says when, but not where to", "add --snapshot FILE"};
+    return Error{"--snapshot-every gives a time, but there is no file", "add --snapshot FILE"};
   if (options.every_s && !(*options.every_s >= 1e-3))
     return Error{"--snapshot-every: must be at least 0.001 s, as the files are named by milliseconds"};
   if (options.keep > 0 && !options.every_s)
@@ -63,7 +63,7 @@ Status SnapshotFiles::after_tick(const Simulation& simulation) {
     status = write(simulation, file);
     if (status) {
       written_.push_back(file);
-      // An older one goes only when the newer one is there.
+      // An older file is removed only when the newer one is written.
       for (; options_.keep > 0 && written_.size() > static_cast<std::size_t>(options_.keep);
            written_.pop_front()) {
         std::error_code ignored;

@@ -12,7 +12,7 @@
 namespace sandlot {
 namespace {
 
-/// Robots that come and go keep their own distances: told apart by name, whatever their place in the list.
+/// Robots that come and go keep their own distances: distinguished by name, whatever their place in the list.
 TEST(TravelMeter, FollowsEachRobotWhenOneLeaves) {
   Diagnostics diagnostics;
   const std::vector<formats::Override> overrides{{"robots.count", "4"}};

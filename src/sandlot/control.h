@@ -1,5 +1,5 @@
 #pragma once
-/// For controllers of your own: the border they are written against, and what makes a shared library of them.
+/// Controllers of your own: their interface, and the table that makes a shared library a plugin.
 #include "base/math.h"  // the same bits on every machine, unlike <cmath>
 #include "control/controller.h"
 #include "control/plugin.h"

@@ -8,7 +8,7 @@
 namespace sandlot {
 namespace {
 
-/// Says the warnings that nobody asked to see.
+/// Logs warnings for callers that do not take them.
 class Warnings {
  public:
   explicit Warnings(Diagnostics* asked_for) : asked_for_(asked_for) {}

@@ -59,7 +59,7 @@ Result<View<M>> reading(const Simulation& sim, std::string_view device) {
 /// Fails unless the device ("rover/drive") takes commands of `type`, at whatever level.
 Status check_commandable(const Simulation& sim, std::string_view device, const char* type);
 
-/// Queues a command for the next tick. What became of it then: Simulation::outcomes().
+/// Queues a command for the next tick. Its outcome: Simulation::outcomes().
 /// Errors   no such device, or none that takes this type.
 template <class M>
 Status command(Simulation& sim, const std::string& device, const M& message) {
@@ -70,7 +70,7 @@ Status command(Simulation& sim, const std::string& device, const M& message) {
   return {};
 }
 
-/// Where an instance is now, in the world.
+/// Present pose of an instance in the world.
 Result<Pose> pose(const Simulation& sim, std::string_view instance);
 
 /// The value, or the error on standard error and the end of the program with exit code 2: for main().

@@ -1,5 +1,5 @@
 #pragma once
-/// Header for experiments in C++: hooks around a run, and a main() that is `sandlot run` with them.
+/// Hooks of your own around a run, and a main() that is `sandlot run` with them.
 #include "app/experiment.h"
 #include "sandlot/embed.h"
 

@@ -1,3 +1,3 @@
 #pragma once
-/// For programs that have a simulation inside: load, step, read, command, save.
+/// Simulation inside a program of your own: load, step, read, command, save.
 #include "sandlot/embed.h"

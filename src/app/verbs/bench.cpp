@@ -10,7 +10,7 @@
 
 namespace sandlot::app {
 
-/// Becomes the program `sandlot-bench` beside this one.
+/// Replaces this process by `sandlot-bench`, which lies in the same folder.
 int bench(const BenchOptions& options) {
   std::string program;
   for (const std::string& file : program_files())

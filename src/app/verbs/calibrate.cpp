@@ -49,7 +49,7 @@ class Stand {
   const model::Instance& robot() const { return *robot_; }
   double min_visible() const { return min_visible_; }
   const std::vector<std::string>& labels() const { return labels_; }  ///< that the level looks for; none: all
-  std::vector<Seen> told() const;
+  std::vector<Seen> objects() const;
 
  private:
   Status set(const char* field, const char* value);
@@ -140,7 +140,7 @@ Status Stand::next_sample(Time not_before) {
   return {};
 }
 
-std::vector<Seen> Stand::told() const {
+std::vector<Seen> Stand::objects() const {
   std::vector<Seen> out;
   const std::vector<LabelledObject>& things = sim_->render_scene().labelled_objects;
   for (const msg::Object& object : topic<msg::ObjectArray>("objects")->message.objects) {
@@ -153,7 +153,7 @@ std::vector<Seen> Stand::told() const {
   return out;
 }
 
-/// Things of one label and colour, as their models declare them.
+/// Objects of one label and colour, as their models declare them.
 struct Wanted {
   perception::Target target;
   double height_m = 0;
@@ -203,7 +203,7 @@ std::vector<Wanted> wanted_of(Simulation& sim, const Stand& stand, const Calibra
   return out;
 }
 
-/// Puts things anywhere in view and the robot's front anywhere; the same in all stands.
+/// Places objects anywhere in view and the robot's front anywhere; the same in all stands.
 class Shuffle {
  public:
   Shuffle(Simulation& sim, const Stand& stand, const CalibrateOptions& options, double half_view_rad)
@@ -261,13 +261,13 @@ class Shuffle {
   std::vector<Piece> things_, fixed_;
 };
 
-double bearing_off(const Seen& is, const Seen& told) {
-  return std::abs(math::wrap_angle(told.bearing_rad - is.bearing_rad));
+double bearing_off(const Seen& is, const Seen& detected) {
+  return std::abs(math::wrap_angle(detected.bearing_rad - is.bearing_rad));
 }
-/// Whether that may have been told of this, whatever its label.
-bool is_near(const Seen& is, const Seen& told) {
-  return bearing_off(is, told) < gate_rad + math::atan2(is.radius_m, is.range_m) &&
-         std::abs(told.range_m - is.range_m) < std::max(0.6, 0.6 * is.range_m) + is.radius_m;
+/// Whether a detection may belong to an object, whatever its label.
+bool is_near(const Seen& is, const Seen& detected) {
+  return bearing_off(is, detected) < gate_rad + math::atan2(is.radius_m, is.range_m) &&
+         std::abs(detected.range_m - is.range_m) < std::max(0.6, 0.6 * is.range_m) + is.radius_m;
 }
 
 /// Pairs what was detected with what is there, the nearest bearings first, and counts. Another label at the place of a thing is a
@@ -298,7 +298,8 @@ void compare(const std::vector<Seen>& truth, const std::vector<Seen>& aside,
   for (const Pair& pair : pairs)
     if (of_truth[pair.t] == detected.size() && !used[pair.d]) of_truth[pair.t] = pair.d, used[pair.d] = true;
   for (std::size_t t = 0; t < truth.size(); ++t) {
-    if (truth[t].visible < min_visible) continue;  // nobody has to see that; who does has found no ghost
+    if (truth[t].visible < min_visible)
+      continue;  // too little of it to be missed, and no ghost when detected
     Sighted s{truth[t].range_m, truth[t].visible};
     auto& label = out.labels[truth[t].label];
     ++label.sighted, ++out.sighted;
@@ -421,14 +422,14 @@ Result<Calibration> calibrate_camera(const CalibrateOptions& asked, Diagnostics&
     if (other) SL_TRY(other->next_sample(not_before));
     out.seconds += (sim.now() - last).s();
     last = sim.now();
-    std::vector<Seen> truth = stand->told(), detected;
+    std::vector<Seen> truth = stand->objects(), detected;
     const auto unwanted = [&](const Seen& s) {
       return std::none_of(wanted.begin(), wanted.end(),
                           [&](const Wanted& w) { return w.target.label == s.label; });
     };
     std::erase_if(truth, unwanted);
     if (other) {
-      detected = other->told();
+      detected = other->objects();
       std::erase_if(detected, unwanted);
     } else {
       const auto* image = stand->topic<msg::Image>("image");

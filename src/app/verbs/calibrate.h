@@ -1,9 +1,9 @@
 #pragma once
-/// `sandlot calibrate`: how well a detector does in a camera's pictures, as errors of the camera's level `objects`.
+/// `sandlot calibrate`: errors of a detector in a camera's pictures, as parameters of the camera's level `objects`.
 ///
-/// Truth    the camera's own objects, told without errors, in the same samples as the pictures.
+/// Truth    objects of the camera without errors, from the same samples as the pictures.
 /// Detector `picture`: perception/finder.h, which knows the colours and sizes of the things as their models declare them. `objects`: the level
-///          `objects` as the scenario sets it, in a second world that moves alike: a check of the method.
+///          `objects` as the scenario sets it, in a second world with the same motion: a check of the method.
 /// Samples  the robot stands; before each picture it is turned at random and the things that are looked for are put anywhere in view,
 ///          none into another. With `as_it_runs` the scenario runs with its controllers instead.
 #include <functional>
@@ -45,7 +45,7 @@ struct Calibration {
 /// @param progress  called after each picture with the part that is done; false stops
 Result<Calibration> calibrate_camera(const CalibrateOptions& options, Diagnostics& diagnostics,
                                      const std::function<bool(double)>& progress = {});
-/// As keys of a scenario.
+/// Calibration as keys of a scenario.
 std::string calibration_yaml(const CalibrateOptions& options, const Calibration& calibration);
 int calibrate(const CalibrateOptions& options);
 

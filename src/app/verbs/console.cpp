@@ -29,7 +29,7 @@ bool take_interrupt() {
   return seen;
 }
 
-/// ctrl-c gives up a line or an answer, not the program.
+/// ctrl-c ends a line or the wait for an answer, not the program.
 void watch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = [](int) { interrupt_seen = 1; };
@@ -37,7 +37,7 @@ void watch_interrupts() {
   sigaction(SIGINT, &action, nullptr);  // without SA_RESTART: reading the terminal ends
 }
 
-/// Prints an answer. @return whether the line went well
+/// Prints an answer. @return whether the line succeeded
 bool tell(const std::string& line, const RemoteAnswer& answer, bool json) {
   if (json) {
     nlohmann::ordered_json out{{"line", line}, {"ok", answer.ok}};
@@ -59,7 +59,7 @@ std::string first_word(std::string_view line) {
   return std::string(line.substr(0, line.find_first_of(" \t")));
 }
 
-/// What a program asks for is data where there is such.
+/// The line with --json added for a program, where the command has data.
 std::string asked_for(const std::string& line, bool json) {
   if (!json) return line;
   for (const char* word : {"list", "ls", "show", "view", "get", "values", "events"})
@@ -73,10 +73,10 @@ After say(RemoteConsole& console, const std::string& line, bool json) {
   if (trim(line).empty()) return After::go_on;
   if (first_word(line) == "exit") return After::leave;
   auto answer = console.say(asked_for(line, json), take_interrupt);
-  // The run may be gone before its answer is on its way.
+  // The run may end before it answers.
   if (!answer && first_word(line) == "quit") return After::leave;
   if (!answer) {
-    // What was given up may still be done: only the connection's end ends this.
+    // The run may still carry out a line that was not waited for: only a lost connection ends the loop.
     std::fprintf(stderr, "error: %s\n", answer.error().text().c_str());
     return answer.error().what.find("connection") == std::string::npos ? After::failed : After::lost;
   }
@@ -92,7 +92,7 @@ char** candidates_for(const char*, int, int end) {
   const std::string line(rl_line_buffer, static_cast<std::size_t>(end));
   const std::vector<std::string> words = completing->complete(line);
   if (words.empty()) return nullptr;
-  // What they have in common, then each; freed by the library.
+  // The common beginning, then each word; the library frees them.
   std::string common = words.front();
   for (const std::string& word : words) {
     std::size_t n = 0;
@@ -185,7 +185,7 @@ int from_stream(RemoteConsole& console, std::istream& in, const std::string& nam
     if (text.empty() || text.front() == '#') continue;
     const After after = say(console, std::string(text), json);
     if (after == After::failed || after == After::lost) code = exit_failed;
-    // What comes next in a script counts on what went before.
+    // Later lines of a script rely on earlier ones.
     if (after == After::failed && !name.empty()) {
       std::fprintf(stderr, "error: %s:%d: the script ends here\n", name.c_str(), number);
       break;

@@ -19,13 +19,13 @@ using record::RecordedTick;
 using record::Recording;
 using record::Replay;
 
-/// One of the two: a recording that is gone through, or a snapshot.
+/// Side of a comparison: a recording that is read tick by tick, or a snapshot.
 struct Side {
   std::string file;
   std::optional<Recording> recording;
   std::vector<std::byte> snapshot;  ///< where it begins
   SnapshotInfo begin;
-  std::optional<RecordedTick> tick;  ///< the one that was read last
+  std::optional<RecordedTick> tick;  ///< last one read
 
   std::uint64_t at() const { return tick ? tick->tick : begin.tick; }
   Time now() const { return tick ? tick->now : begin.now; }
@@ -60,7 +60,7 @@ Result<Side> open(const std::string& file) {
   return side;
 }
 
-/// The world of one side at `tick`, run again from where it begins.
+/// World of one side at `tick`, run again from its beginning.
 Result<Replay> world_at(const Side& side, std::uint64_t tick, const DiffOptions& options) {
   Diagnostics diagnostics;
   auto replay = Replay::begin(
@@ -91,7 +91,7 @@ struct Found {
   std::string note;
 };
 
-/// Compares the two worlds themselves: all parts, or those of which it is known that they differ.
+/// Compares the two worlds themselves: all parts, or those that are known to differ.
 Status compare_worlds(const Replay& a, const Replay& b, const DiffOptions& options, Found& found) {
   const Simulation &x = a.simulation(), &y = b.simulation();
   std::vector<std::string> names_a, names_b;
@@ -128,7 +128,7 @@ Result<Found> compare(Side& a, Side& b, const DiffOptions& options) {
     found.compared = 1;
     return found;
   }
-  // Two recordings: their hashes tell the first tick. Where both begin there may be a difference already.
+  // Two recordings: their hashes give the first tick that differs, which may be that of the beginning.
   const std::uint64_t begin = std::max(a.begin.tick, b.begin.tick);
   for (Side* side : {&a, &b})
     while (side->at() < begin) {
@@ -146,7 +146,7 @@ Result<Found> compare(Side& a, Side& b, const DiffOptions& options) {
     }
     bool more_a = true, more_b = true;
     do {
-      // A recording may tell the hashes of the state that it begins with, or lack a tick.
+      // A recording may hold the hashes of its first state, or lack a tick.
       const std::uint64_t at_a = a.at(), at_b = b.at();
       if (at_a <= at_b) { SL_ASSIGN(more_a, a.advance()); }
       if (at_b <= at_a) { SL_ASSIGN(more_b, b.advance()); }

@@ -22,7 +22,7 @@ struct Finding {
   std::string detail;
 };
 
-/// A small pile of boxes on each engine: the same hash in one and two threads, and over a restore.
+/// Test of determinism: a small pile of boxes has one hash with one and two threads, and over a restore.
 Finding repeatable(const EngineKind& engine) {
   auto box = std::make_shared<model::Model>();
   box->name = "box";
@@ -67,7 +67,7 @@ Finding repeatable(const EngineKind& engine) {
                      hash_text(hashes[2])};
 }
 
-/// Known bits of the functions all results rest on; measured where the project's golden hashes were made.
+/// Known bits of the functions that all results depend on, from the machine of the project's golden hashes.
 Finding known_bits() {
   Stream stream(1, entity_key("doctor"), Purpose::noise, 0);
   std::uint64_t h = 0;

@@ -14,7 +14,7 @@
 namespace sandlot::app {
 namespace {
 
-/// For people: 0.3 for 0.30000000000000004.
+/// Number for people: 0.3 for 0.30000000000000004.
 std::string rounded(double x) { return fmt::format("{:.6g}", x); }
 
 std::string numbers(Vec3 v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0); }
@@ -92,7 +92,7 @@ class Table {
     for (const auto& row : rows_)
       for (std::size_t i = 0; i + 1 < row.size(); ++i) {
         if (width.size() <= i) width.resize(i + 1, 0);
-        // One overlong cell shall not push everybody's columns away.
+        // One very long cell does not widen the column of all rows.
         width[i] = std::max(width[i], std::min<std::size_t>(row[i].size(), 48));
       }
     std::string out;
@@ -132,7 +132,7 @@ std::string limits_text(const model::Joint& joint) {
   return joined(words, ", ");
 }
 
-/// What a device was mapped from, its name in the file where that differs, and the place. Places are left out when things
+/// Origin of a device: element of the file, its name there where that differs, and place. Places are left out when objects
 /// are compared.
 std::string origin_text(const model::DeviceDecl& decl, const std::string& address, bool places) {
   std::string out;
@@ -202,7 +202,7 @@ void add_devices(const Simulation& simulation, const Simulation::Entity& entity,
   }
 }
 
-/// The parts of a thing, without its own line. What reads the same under the name "*" and without places is alike.
+/// Parts of an object, without its own line. Objects with the same text under the name "*" and without places are alike.
 std::string parts_text(const Simulation& simulation, const Simulation::Entity& entity, const Shown& shown) {
   const model::Instance& instance = entity.instance;
   const model::Model& model = *instance.model;
@@ -235,7 +235,7 @@ struct Group {
   std::vector<const Simulation::Entity*> members;
 };
 
-/// What is not printed and yet makes two things different.
+/// Properties that are not printed but make two objects different.
 void add_config(const Node& node, std::string& out) {
   out += node.text() + "(";
   for (const Node& item : node.items()) add_config(item, out);
@@ -274,7 +274,7 @@ std::string hidden_text(const model::Instance& instance) {
   return out;
 }
 
-/// Things that differ in name and place alone, in the order of the first of each kind.
+/// Groups of objects that differ in name and pose alone, in the order of their first members.
 std::vector<Group> groups_of(const Simulation& simulation) {
   std::vector<Group> groups;
   std::map<std::string, std::size_t> known;

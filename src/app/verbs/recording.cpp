@@ -29,7 +29,7 @@ mcap::Query query_of(const RecordingOptions& options) {
   return query;
 }
 
-/// Opens a recording for reading, and says what is wrong with it without giving up.
+/// Opens a recording for reading; damage is a warning.
 Result<mcap::Reader> open(const RecordingOptions& options) {
   SL_ASSIGN(mcap::Reader reader, mcap::Reader::open(options.file));
   if (reader.trouble())

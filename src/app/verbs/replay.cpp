@@ -14,7 +14,7 @@
 namespace sandlot::app {
 namespace {
 
-/// How far a replay came and what it found.
+/// Result of a replay: how many ticks ran, and the first difference.
 struct Outcome {
   std::uint64_t ticks = 0;
   bool compared = false;  ///< there were hashes

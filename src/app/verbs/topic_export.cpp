@@ -29,7 +29,7 @@ std::optional<double> as_number(const MessageValue& value) {
   return std::nullopt;
 }
 
-/// How one topic's messages become columns.
+/// Columns of one topic.
 struct Source {
   DynamicSchema schema;
   std::vector<std::string> wanted;
@@ -44,7 +44,7 @@ Error at(const std::string& file, std::string what, std::string fix = "") {
   return {std::move(what), std::move(fix), place, ""};
 }
 
-/// The paths of all numbers in a message.
+/// Paths of all numbers in a message.
 Result<std::vector<std::string>> numbers_in(const Source& source, std::span<const std::byte> cdr) {
   std::vector<std::string> paths;
   SL_TRY(visit_values(source.schema.info(), cdr, [&](std::string_view path, const MessageValue& value) {
@@ -104,7 +104,7 @@ Status export_csv(const ExportOptions& options) {
     if (!parsed) return at(options.recording, "the schema of '" + topic.topic + "': " + parsed.error().what);
     Source source{std::move(*parsed), std::move(topic.paths), 0, 0, {}, false};
     {
-      // The first message tells what there is: names are checked against it, and a topic by itself is all of it.
+      // Names are checked against the first message; a topic without a path stands for all its numbers.
       mcap::Cursor first = reader.messages({.topics = {topic.topic}});
       SL_ASSIGN(const mcap::Message* const message, first.next());
       if (message) {
@@ -176,7 +176,7 @@ Result<std::vector<WantedTopic>> wanted_topics(std::span<const std::string> valu
       out.push_back({*longest, {}});
       known = out.end() - 1;
     } else if (all || known->paths.empty()) {
-      known->paths.clear();  // all of it holds what was named besides
+      known->paths.clear();  // the whole topic includes paths named separately
       continue;
     }
     if (!all) known->paths.push_back(value.substr(longest->size() + 1));

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers of a recording as a CSV file.
+/// Export of numbers from a recording to a CSV file.
 ///
 /// A row per time at which one of the topics has a message: `time` [s] first, then per column the value of the latest
 /// message so far; nothing before the first one and where a list is too short. A topic by itself stands for all numbers
@@ -20,19 +20,18 @@ struct ExportOptions {
   std::vector<std::string> values;  ///< "/rover/laser/ranges.ranges[3]" or "/rover/laser/ranges"
   std::optional<double> from_s, to_s;
 };
-/// The verb.
 int topic_export(const ExportOptions& options);
 
-/// What was asked of one topic.
+/// Request for numbers of one topic.
 struct WantedTopic {
   std::string topic;
   std::vector<std::string> paths;  ///< empty: all numbers
 };
-/// Parts "/topic.path" where the longest topic ends. Errors name the nearest topic.
+/// Splits "/topic.path" behind the longest known topic. Errors name the nearest topic.
 Result<std::vector<WantedTopic>> wanted_topics(std::span<const std::string> values,
                                                std::span<const std::string> topics);
 
-/// The rows of a CSV file from values that come in the order of time.
+/// Rows of a CSV file from values in order of time; each column holds its latest value.
 class HeldColumns {
  public:
   /// @return the number of the column

@@ -18,7 +18,7 @@ using validation::Row;
 using validation::Section;
 
 std::string number(double x) {
-  // Rounding noise around zero is no news.
+  // Rounding noise around zero.
   return std::abs(x) < 1e-9 ? "0" : fmt::format("{:.4g}", x);
 }
 
