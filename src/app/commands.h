@@ -156,7 +156,8 @@ Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOpt
 /// Prints an error in the form of all verbs. @return exit_bad_input
 int complain(const Error& error);
 void print_warnings(const Diagnostics& diagnostics);
-/// Prints an error when standard output could not be written, as on a full disk. @return the exit code then, else `code`
+/// Prints an error when standard output could not be written, as on a full disk. @return the exit code then,
+/// else `code`
 int finish_output(int code);
 
 }  // namespace sandlot::app

@@ -9,7 +9,8 @@
 namespace sandlot::app {
 namespace {
 
-/// Least squares with parameters >= 0: the best of all choices of parameters that are 0. For up to three of them that is quick.
+/// Least squares with parameters >= 0: the best of all choices of parameters that are 0. For up to three of
+/// them that is quick.
 Eigen::VectorXd fit_not_negative(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values,
                                  const Eigen::VectorXd& weights) {
   const Eigen::Index n = columns.cols();

@@ -1,14 +1,16 @@
 #pragma once
 /// Fit of a detector's errors to the parameters of a camera's level `objects` (devices/cameras/detector.h).
 ///
-/// Model    P(missed) = miss_rate + miss_rate_per_m range + miss_rate_hidden (1 - visible); bearing + bearing_std n;
-///          range + (range_std + range_std_per_m range) n; ghosts come at a constant rate; of what
-///          is found the part `confusion` is taken for something else.
-/// Method   misses: least squares, weighted by 1 / (P (1 - P)) in repeated passes, of which no parameter may become negative; deviation of
-///          ranges: the same on |error| sqrt(pi / 2), whose mean is the deviation. Systematic errors are part of the deviations, and given in addition. Deviations are those of
-///          what has its own label.
-/// Errors   of N sightings: bearing_std by the factor 1 +- 0.71 / sqrt(N), a deviation of ranges by 1 +- 0.76 / sqrt(N), a miss rate P by
-///          +- sqrt(P (1 - P) / N), where the ranges are alike; the confusion by the same.
+/// Model    P(missed) = miss_rate + miss_rate_per_m range + miss_rate_hidden (1 - visible); bearing +
+///          bearing_std n; range + (range_std + range_std_per_m range) n; ghosts come at a constant rate; of
+///          what is found the part `confusion` is taken for something else.
+/// Method   misses: least squares, weighted by 1 / (P (1 - P)) in repeated passes, of which no parameter may
+///          become negative; deviation of ranges: the same on |error| sqrt(pi / 2), whose mean is the
+///          deviation. Systematic errors are part of the deviations, and given in addition. Deviations are
+///          those of what has its own label.
+/// Errors   of N sightings: bearing_std by the factor 1 +- 0.71 / sqrt(N), a deviation of ranges by 1 +- 0.76
+///          / sqrt(N), a miss rate P by +- sqrt(P (1 - P) / N), where the ranges are alike; the confusion by
+///          the same.
 #include <span>
 #include <vector>
 

@@ -37,8 +37,9 @@ TEST(DetectorFit, GivesBackTheErrorsThatWereThere) {
                           .range_std_per_m = 0.03};
   constexpr int n = 6000;
   const DetectorFit fit = fit_detector(sightings(truth, n), 90, 300);
-  // P is about 0.18 on average: sqrt(0.18 * 0.82 / 6000) = 0.005 for a mean; the slope over ranges that spread by 8 / sqrt(12) = 2.3 m:
-  // 0.005 / 2.3; a constant at 0 m, 5 m from the middle: 0.005 * sqrt(1 + (5 / 2.3)^2) = 0.012; hidden parts spread by 0.24. Four of each.
+  // P is about 0.18 on average: sqrt(0.18 * 0.82 / 6000) = 0.005 for a mean; the slope over ranges that
+  // spread by 8 / sqrt(12) = 2.3 m: 0.005 / 2.3; a constant at 0 m, 5 m from the middle: 0.005 * sqrt(1 + (5
+  // / 2.3)^2) = 0.012; hidden parts spread by 0.24. Four of each.
   EXPECT_NEAR(fit.miss_rate, 0.03, 4 * 0.012);
   EXPECT_NEAR(fit.miss_rate_per_m, 0.02, 4 * 0.0022);
   EXPECT_NEAR(fit.miss_rate_hidden, 0.3, 4 * 0.021);

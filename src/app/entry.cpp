@@ -1,4 +1,5 @@
-/// The `sandlot` command itself. It is this small because everything else is in libsandlot, where plugins find it too.
+/// The `sandlot` command itself. It is this small because everything else is in libsandlot, where plugins
+/// find it too.
 #include "app/commands.h"
 
 #ifdef SANDLOT_CHECK_X86_64_V3
@@ -9,8 +10,9 @@
 
 namespace {
 
-/// Ends the program with a sentence instead of an illegal instruction. Runs before the initialisers of libsandlot, which are
-/// compiled for x86-64-v3 already; this file alone is compiled for every x86-64 processor.
+/// Ends the program with a sentence instead of an illegal instruction. Runs before the initialisers of
+/// libsandlot, which are compiled for x86-64-v3 already; this file alone is compiled for every x86-64
+/// processor.
 void check_processor() {
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&

@@ -18,8 +18,8 @@ bool interrupted() { return interrupt_requested.load(std::memory_order_relaxed);
 
 void catch_interrupts() {
   const auto handler = [](int signal) {
-    // A second signal ends the program at once, unless it is the echo of the first: timeout(1) and some shells
-    // signal the process and then its whole group.
+    // A second signal ends the program at once, unless it is the echo of the first: timeout(1) and some
+    // shells signal the process and then its whole group.
     static std::atomic<std::int64_t> first_ns{0};
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);

@@ -3,7 +3,8 @@
 
 namespace sandlot::app {
 
-/// From here on the signals are taken as requests. A second one, half a second later or more, ends the program at once.
+/// From here on the signals are taken as requests. A second one, half a second later or more, ends the
+/// program at once.
 void catch_interrupts();
 bool interrupted();
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Progress of a run as one line on the terminal: simulated time, speed, time left. Nothing when standard error is not a terminal.
+/// Progress of a run as one line on the terminal: simulated time, speed, time left. Nothing when standard
+/// error is not a terminal.
 #include <chrono>
 
 #include "base/time.h"

@@ -17,7 +17,8 @@ struct RemoteAnswer {
 /// Text for the query of an address.
 std::string url_encoded(std::string_view text);
 
-/// "ws://127.0.0.1:8765/?token=..." from what people write: a port, HOST:PORT, an http or ws address, nothing.
+/// "ws://127.0.0.1:8765/?token=..." from what people write: a port, HOST:PORT, an http or ws address,
+/// nothing.
 Result<std::string> console_url(std::string_view written, std::string_view token);
 
 class RemoteConsole {
@@ -25,7 +26,8 @@ class RemoteConsole {
   /// Errors: nobody listens, or it is not Sandlot, or it has no console.
   static Result<std::unique_ptr<RemoteConsole>> connect(const std::string& url);
 
-  /// Waits for the answer; `give_up` is called ten times a second. Errors: the connection is gone, or `give_up` returned true.
+  /// Waits for the answer; `give_up` is called ten times a second. Errors: the connection is gone, or
+  /// `give_up` returned true.
   Result<RemoteAnswer> say(const std::string& line, bool (*give_up)());
   /// Continuations of the last word; none when they take longer than a second.
   std::vector<std::string> complete(const std::string& line);

@@ -1,14 +1,16 @@
 #pragma once
-/// File that appears under its name when it is whole: a full disk, or the end of the process, leaves what was there before.
+/// File that appears under its name when it is whole: a full disk, or the end of the process, leaves what was
+/// there before.
 ///
 ///   AtomicFile file("run.csv");
 ///   SL_TRY(file.write(text));     // as often as needed
 ///   return file.commit();         // without it, the destructor discards what was written
 ///
-/// The bytes go to `PATH.part` beside the target, which commit() renames. A link stays a link: the file it leads to is replaced.
-/// Pipes and devices such as /dev/stdout are written to directly.
+/// The bytes go to `PATH.part` beside the target, which commit() renames. A link stays a link: the file it
+/// leads to is replaced. Pipes and devices such as /dev/stdout are written to directly.
 /// Errors   name the path as it was given, and the system's reason.
-/// Limits   no fsync: after a power failure the target may be empty. Two writers of one path disturb each other.
+/// Limits   no fsync: after a power failure the target may be empty. Two writers of one path disturb each
+///          other.
 #include <fstream>
 #include <string>
 #include <string_view>

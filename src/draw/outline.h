@@ -1,6 +1,6 @@
 #pragma once
-/// Outline of a solid for drawing it from above: a circle or a convex polygon, and the heights it spans; and paths with fewer
-/// points.
+/// Outline of a solid for drawing it from above: a circle or a convex polygon, and the heights it spans; and
+/// paths with fewer points.
 #include <optional>
 #include <vector>
 
@@ -24,8 +24,8 @@ std::optional<Outline> outline_from_above(const Shape& shape, const Pose& X_WC);
 
 /// Path without the points that lie within `tolerance_m` of the line through the ones that stay; first and
 /// last stay. Heights are ignored.
-/// Source   D. Douglas, T. Peucker, Algorithms for the reduction of the number of points required to represent a
-///          digitized line or its caricature, Cartographica 10 (1973).
+/// Source   D. Douglas, T. Peucker, Algorithms for the reduction of the number of points required to
+///          represent a digitized line or its caricature, Cartographica 10 (1973).
 std::vector<Vec3> simplified(const std::vector<Vec3>& path, double tolerance_m);
 
 }  // namespace sandlot::draw

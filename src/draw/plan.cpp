@@ -225,8 +225,8 @@ class Writer {
     put("\" fill=\"none\" stroke=\"#000\" stroke-opacity=\".07\" stroke-width=\"{}\"/>\n", px(1));
   }
 
-  /// With robots in the picture, what they can drive below must not hide them or what they see: table tops, but not
-  /// the mattress on a bed, below which something stands that is as high as a robot.
+  /// With robots in the picture, what they can drive below must not hide them or what they see: table tops,
+  /// but not the mattress on a bed, below which something stands that is as high as a robot.
   bool hangs_over_robots(const Drawn& solid) const {
     if (robot_top_m_ <= 0 || solid.outline.bottom_m < robot_top_m_) return false;
     return std::none_of(solids_.begin(), solids_.end(), [&](const Drawn& below) {

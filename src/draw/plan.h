@@ -2,11 +2,12 @@
 /// Plan: drawing of a world from above as plain data, and its SVG.
 ///
 /// Frame    the world's: x to the right, y up the page; lengths in metres.
-/// Output   one self-contained SVG file: no scripts, no fonts, no links. Coordinates are whole millimetres, so that
-///          the same plan gives the same bytes. Solids are drawn in the order of their upper edges; solids above all
-///          robots are translucent, because robots drive below them.
-/// Limits   at most 8000 solids (the largest ones) and 60,000 corners of paths (coarser where there are more); with
-///          more than 100 robots no scans, names or details of robots. Below 1.5 MB up to 3000 robots.
+/// Output   one self-contained SVG file: no scripts, no fonts, no links. Coordinates are whole millimetres,
+///          so that the same plan gives the same bytes. Solids are drawn in the order of their upper edges;
+///          solids above all robots are translucent, because robots drive below them.
+/// Limits   at most 8000 solids (the largest ones) and 60,000 corners of paths (coarser where there are
+///          more); with more than 100 robots no scans, names or details of robots. Below 1.5 MB up to 3000
+///          robots.
 #include <optional>
 #include <string>
 #include <vector>

@@ -249,7 +249,8 @@ Result<Table> read_csv(std::string_view text, const std::string& file) {
 
 Ticks round_ticks(double low, double high, int most) {
   Ticks out;
-  // The step is 1, 2 or 5 times a power of ten, found by going there: no logarithm, so no last bit to worry about.
+  // The step is 1, 2 or 5 times a power of ten, found by going there: no logarithm, so no last bit to worry
+  // about.
   double power = 1;
   int decimals = 0;
   while (power * most > high - low && decimals < 300) power /= 10, ++decimals;

@@ -1,10 +1,12 @@
 #pragma once
-/// Plot: columns of CSV files as lines over time or over another column, as an SVG figure for papers and READMEs.
+/// Plot: columns of CSV files as lines over time or over another column, as an SVG figure for papers and
+/// READMEs.
 ///
-/// Axes have round ticks, a light grid and units where the columns have them (`rover.pose.x [m]`; `time` is in seconds).
-/// Colours are Okabe and Ito's, which people who are colour-blind can tell apart; from the eighth line on they are dashed.
-/// A cell that is empty, `nan` or `inf` breaks the line. Points that fall into one pixel column are drawn as their first,
-/// last, lowest and highest, so that a file of a million lines gives a small figure that looks the same.
+/// Axes have round ticks, a light grid and units where the columns have them (`rover.pose.x [m]`; `time` is
+/// in seconds). Colours are Okabe and Ito's, which people who are colour-blind can tell apart; from the
+/// eighth line on they are dashed. A cell that is empty, `nan` or `inf` breaks the line. Points that fall
+/// into one pixel column are drawn as their first, last, lowest and highest, so that a file of a million
+/// lines gives a small figure that looks the same.
 #include <optional>
 #include <string>
 #include <string_view>

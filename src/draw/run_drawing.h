@@ -1,6 +1,6 @@
 #pragma once
-/// Drawing of a run from above: the world, the robots with their paths and last laser scans, as one SVG file for
-/// browsers and READMEs.
+/// Drawing of a run from above: the world, the robots with their paths and last laser scans, as one SVG file
+/// for browsers and READMEs.
 #include <map>
 #include <string>
 #include <vector>
@@ -12,7 +12,8 @@ namespace sandlot::draw {
 
 /// Observer that collects paths and scans. Add it before the run.
 ///
-/// Limits   a robot's path is kept as at most 20,000 points: 2 cm apart on the first 400 m, then twice that, and so on.
+/// Limits   a robot's path is kept as at most 20,000 points: 2 cm apart on the first 400 m, then twice that,
+///          and so on.
 class RunDrawing final : public Observer {
  public:
   /// @param simulation  must outlive the drawing; draw() shows its static world at that time

@@ -133,7 +133,8 @@ Result<Pose> Viewpoint::pose(Simulation& simulation) {
   const double flat = std::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
   if (!lag_)
     lag_ = Lag{simulation.now(), place, flat > 0 ? ahead.x / flat : 1, flat > 0 ? ahead.y / flat : 0};
-  // A first-order lag of the heading, so that a robot that turns is seen to turn. One that stands on its nose has none.
+  // A first-order lag of the heading, so that a robot that turns is seen to turn. One that stands on its nose
+  // has none.
   const double share = 1 - math::exp(-(simulation.now() - lag_->at).s() / lag_s);
   lag_->at = simulation.now();
   lag_->place = place;

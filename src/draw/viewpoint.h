@@ -1,8 +1,9 @@
 #pragma once
-/// Viewpoint of a picture for people: a camera of a robot, one that follows a robot, from above, or from anywhere.
+/// Viewpoint of a picture for people: a camera of a robot, one that follows a robot, from above, or from
+/// anywhere.
 ///
-/// A robot's camera gives the images that it publishes, errors and all. The others are pinhole cameras that belong to no
-/// robot: they show the visuals without errors, and no run is changed by them.
+/// A robot's camera gives the images that it publishes, errors and all. The others are pinhole cameras that
+/// belong to no robot: they show the visuals without errors, and no run is changed by them.
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,11 +36,12 @@ struct ViewpointOptions {
 
 class Viewpoint {
  public:
-  /// Errors   options that do not go together, a size that cannot be, no such robot or camera (with those there are).
+  /// Errors   options that do not go together, a size that cannot be, no such robot or camera (with those
+  ///          there are).
   static Result<Viewpoint> make(const ViewpointOptions& options, Simulation& simulation);
 
-  /// The picture at the end of the last tick. A robot's camera: the last one that it published; an empty picture if there is
-  /// none yet.
+  /// The picture at the end of the last tick. A robot's camera: the last one that it published; an empty
+  /// picture if there is none yet.
   /// Errors   the robot has gone, or the camera's messages are no pictures.
   Result<assets::Picture> picture(Simulation& simulation);
   /// Pose of a viewpoint that is not a device, at the end of the last tick.

@@ -17,7 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A red cube of 1 m that stands on the ground at (2, 0), and a robot that turns on the spot; light from everywhere.
+/// A red cube of 1 m that stands on the ground at (2, 0), and a robot that turns on the spot; light from
+/// everywhere.
 constexpr const char* world_sdf = R"(<sdf version="1.9"><world name="w">
   <scene><ambient>1 1 1 1</ambient><background>0 0 1 1</background></scene>
   <model name="cube"><static>true</static><pose>2 0 0.5 0 0 0</pose><link name="l">
@@ -69,8 +70,8 @@ Rgb at(const assets::Picture& p, int x, int y) {
 constexpr Rgb red{255, 0, 0}, blue{0, 0, 255};
 
 TEST_F(Views, ShowWhatIsThereWhereItIs) {
-  // From 2 m before the front of the cube, at the height of its middle, 90 degrees wide: the front spans +-atan(0.5 / 2), which is
-  // a quarter of the width of 200 pixels: from 74.5 to 124.5 px.
+  // From 2 m before the front of the cube, at the height of its middle, 90 degrees wide: the front spans
+  // +-atan(0.5 / 2), which is a quarter of the width of 200 pixels: from 74.5 to 124.5 px.
   ViewpointOptions options{.from = Vec3{-0.5, 0, 0.5},
                            .at = Vec3{2, 0, 0.5},
                            .width = 200,
@@ -128,8 +129,8 @@ TEST_F(Views, AViewThatFollowsLagsBehindTheHeading) {
   const Pose first = *view->pose(*simulation);
   EXPECT_LT(first.p.x, -3.3) << "behind it";
   EXPECT_GT(first.p.z, 0.2) << "and above";
-  // The heading goes on at 1 rad/s once the drive turns so fast. A first-order lag of 0.5 s is then 0.5 rad behind, a little more
-  // as the directions are averaged and not the angles.
+  // The heading goes on at 1 rad/s once the drive turns so fast. A first-order lag of 0.5 s is then 0.5 rad
+  // behind, a little more as the directions are averaged and not the angles.
   double turned = 0;
   while (simulation->now().s() < 5) {
     ASSERT_TRUE(simulation->tick());

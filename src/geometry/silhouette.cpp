@@ -16,8 +16,8 @@ constexpr int facets = 32;
 
 Vec2 flat(Vec3 v) { return {v.x, v.y}; }
 
-/// The rim of a disc of radius r about `centre` with unit normal `axis`, seen from above: a circle, a line or an
-/// ellipse, which its 32 tangents enclose.
+/// The rim of a disc of radius r about `centre` with unit normal `axis`, seen from above: a circle, a line or
+/// an ellipse, which its 32 tangents enclose.
 void add_rim(Vec3 centre, Vec3 axis, double r, std::vector<SilhouetteDisc>& hull) {
   const double tilt = std::sqrt(axis.x * axis.x + axis.y * axis.y);
   if (tilt < upright) return hull.push_back({flat(centre), r});

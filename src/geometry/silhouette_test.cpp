@@ -40,8 +40,8 @@ TEST(Silhouette, StandingRoundShapesAreDiscsWithOneCentre) {
 }
 
 TEST(Silhouette, ALeaningDiscIsEnclosedByTangents) {
-  // A cylinder of no length that leans by a about y: an ellipse with the half axes r cos a and r. The 32-gon of tangents lies
-  // outside it by at most 1 / cos(pi / 32) - 1 = 0.48 %.
+  // A cylinder of no length that leans by a about y: an ellipse with the half axes r cos a and r. The 32-gon
+  // of tangents lies outside it by at most 1 / cos(pi / 32) - 1 = 0.48 %.
   const double a = 0.7, r = 0.5;
   const auto discs = silhouette(Cylinder{r, 0}, pose_from_rpy({}, {0, a, 0}));
   for (int i = 0; i < 100; ++i) {

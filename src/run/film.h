@@ -1,8 +1,8 @@
 #pragma once
 /// Film of a run, taken while it runs: one picture every 1 / rate of simulated time, from a viewpoint.
 ///
-/// The run waits for each picture and is not changed by it. A robot's camera that has not sent a picture yet delays the
-/// beginning of the film.
+/// The run waits for each picture and is not changed by it. A robot's camera that has not sent a picture yet
+/// delays the beginning of the film.
 #include <optional>
 #include <string>
 

@@ -12,7 +12,8 @@
 namespace sandlot {
 namespace {
 
-/// Warning for a pattern that fits no topic: a robot spawned later may have one, but a misspelling is more likely.
+/// Warning for a pattern that fits no topic: a robot spawned later may have one, but a misspelling is more
+/// likely.
 std::optional<Error> unmatched(const std::string& pattern, const Simulation& simulation) {
   std::vector<std::string> known{recording::tf_topic,  recording::tf_static_topic, recording::clock_topic,
                                  recording::log_topic, recording::hash_topic,      recording::parts_topic};

@@ -1,6 +1,6 @@
 #pragma once
-/// RunOutputs: everything that is written about a run while it runs: CSV log, recording, film, drawing, snapshot files, and the
-/// distances for its summary.
+/// RunOutputs: everything that is written about a run while it runs: CSV log, recording, film, drawing,
+/// snapshot files, and the distances for its summary.
 ///
 ///   RunOutputs outputs(spec, session, warn);
 ///   SL_TRY(outputs.open_log(prepared));      // checks the log before any file is replaced
@@ -44,15 +44,16 @@ class RunOutputs {
   Status start(const PreparedRun& prepared);
   /// @return false: the log cannot be written, and the run should end
   bool after_tick();
-  /// Ends log, recording and film, which hold one run without a leap in time; drawing and distances begin again.
+  /// Ends log, recording and film, which hold one run without a leap in time; drawing and distances begin
+  /// again.
   /// @param why  "reset", "rewound to 3 s", "loaded"
   void on_world_replaced(Simulation& next, const std::string& why);
   /// Starts a recording of the run from now on, or ends it (""). @return a sentence for the one who asked
   Result<std::string> record(const std::string& file);
   /// Nothing when nothing is recorded. From any thread.
   std::optional<RecordingProgress> recording();
-  /// After the engine has failed: stores the state before it as a snapshot, unless one that was asked for will hold it, and
-  /// names the file in `error`.
+  /// After the engine has failed: stores the state before it as a snapshot, unless one that was asked for
+  /// will hold it, and names the file in `error`.
   void rescue(Error& error);
   /// Ends what is still being written.
   void finish();

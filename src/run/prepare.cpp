@@ -14,7 +14,8 @@
 namespace sandlot {
 namespace {
 
-/// Checks that the files of a run, the scenario and its results, are all different. "" is none; devices may be shared.
+/// Checks that the files of a run, the scenario and its results, are all different. "" is none; devices may
+/// be shared.
 Status check_apart(std::initializer_list<std::string> files) {
   std::set<std::filesystem::path> known;
   std::error_code ignored;

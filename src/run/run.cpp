@@ -13,7 +13,8 @@
 namespace sandlot {
 namespace {
 
-/// The parts of a run and how they are connected. Session calls back into the others, but only within execute().
+/// The parts of a run and how they are connected. Session calls back into the others, but only within
+/// execute().
 class Run {
  public:
   Run(const RunSpec& spec, const RunCallbacks& callbacks, PreparedRun prepared, Diagnostics diagnostics)

@@ -1,13 +1,14 @@
 #pragma once
-/// One run from a spec to its summary, for the command line, studies, workers and programs that embed Sandlot.
+/// One run from a spec to its summary, for the command line, studies, workers and programs that embed
+/// Sandlot.
 ///
 ///   RunSpec spec{.file = "scenarios/indoor.yaml", .seed = 3, .duration_s = 10};
 ///   Result<Summary> summary = run(spec);
 ///
-/// Nothing is printed, and nothing is shared between runs: any number may follow each other in a process, or run on several
-/// threads at once, as long as they write different files.
-/// Errors   of the spec and its files: the Result, and nothing was run or replaced. What goes wrong later: Summary::errors, with
-///          the results so far.
+/// Nothing is printed, and nothing is shared between runs: any number may follow each other in a process, or
+/// run on several threads at once, as long as they write different files.
+/// Errors   of the spec and its files: the Result, and nothing was run or replaced. What goes wrong later:
+///          Summary::errors, with the results so far.
 #include <functional>
 #include <string>
 

@@ -69,8 +69,8 @@ TEST_F(RunTest, ARobotThatAcceleratesIsWhereTheFormulaSays) {
   EXPECT_EQ(s.physics, "planar");
   EXPECT_THAT(s.errors, IsEmpty());
   ASSERT_EQ(s.robots.size(), 1u);
-  // 0.5 s at 1 m/s^2, then 0.5 s at 0.5 m/s: 0.375 m. The controller's order acts one tick late (5 mm), the ramp is off by half
-  // a step of speed (2.5 mm), the distance is rounded to 1 mm.
+  // 0.5 s at 1 m/s^2, then 0.5 s at 0.5 m/s: 0.375 m. The controller's order acts one tick late (5 mm), the
+  // ramp is off by half a step of speed (2.5 mm), the distance is rounded to 1 mm.
   EXPECT_NEAR((*s.robots[0].pose)[0], 0.375, 0.0081);
   EXPECT_NEAR(s.robots[0].distance_m, (*s.robots[0].pose)[0], 0.0005001);
   EXPECT_NEAR(s.robots[0].extent_m[1], 0, 1e-9);
@@ -79,7 +79,8 @@ TEST_F(RunTest, ARobotThatAcceleratesIsWhereTheFormulaSays) {
 TEST_F(RunTest, AStopConditionEndsTheRunAtItsTime) {
   const Summary s = summary_of(
       {.file = folder + "drive.yaml", .duration_s = 10, .stop_when = "rover.pose.x > 0.2"});
-  // 0.125 m at 0.5 s, then 0.075 m at 0.5 m/s: 0.65 s, one tick late by the controller, one by the ramp, one by judging at ticks.
+  // 0.125 m at 0.5 s, then 0.075 m at 0.5 m/s: 0.65 s, one tick late by the controller, one by the ramp, one
+  // by judging at ticks.
   EXPECT_NEAR(s.end_s, 0.65, 0.0301);
   EXPECT_GT((*s.robots[0].pose)[0], 0.2);
   EXPECT_LE((*s.robots[0].pose)[0], 0.2051);

@@ -44,7 +44,8 @@ std::string numbered_file(const std::string& file, Time now) {
 SnapshotFiles::SnapshotFiles(const SnapshotOptions& options, const Simulation& simulation)
     : options_(options), taken_(options.file.empty()) {
   if (!options.every_s) return;
-  // Multiples of the interval, counted from time zero, so that a run that is continued goes on with the same names.
+  // Multiples of the interval, counted from time zero, so that a run that is continued goes on with the same
+  // names.
   const Time every = Time::from_s(*options.every_s);
   next_ = every * (simulation.now().ns / every.ns + 1);
 }

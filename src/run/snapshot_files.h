@@ -3,9 +3,10 @@
 ///
 ///   --snapshot a.snapshot                          at the end of the run
 ///   --snapshot a.snapshot --snapshot-at 5s         once, at the first tick not before 5 s
-///   --snapshot a.snapshot --snapshot-every 10s     a-000010.000.snapshot, a-000020.000.snapshot ..., and at the end
+///   --snapshot a.snapshot --snapshot-every 10s     a-000010.000.snapshot ..., and one at the end
 ///
-/// A file appears under its name when it is whole: a full disk, or the end of the process, costs none that is there.
+/// A file appears under its name when it is whole: a full disk, or the end of the process, costs none that is
+/// there.
 #include <deque>
 #include <optional>
 #include <string>

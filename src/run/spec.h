@@ -1,7 +1,9 @@
 #pragma once
-/// RunSpec: a run as plain data. World, input, clock and results; nothing of a command line, a terminal or a server.
+/// RunSpec: a run as plain data. World, input, clock and results; nothing of a command line, a terminal or a
+/// server.
 ///
-/// Errors  name the options of `sandlot run` that fields stand for (--from is `from_file`, --svg is `drawing_file`).
+/// Errors  name the options of `sandlot run` that fields stand for (--from is `from_file`, --svg is
+///         `drawing_file`).
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
-/// Summary of a run: figures of its world, clock and robots. As a struct for programs, as JSON for files, as text for people.
+/// Summary of a run: figures of its world, clock and robots. As a struct for programs, as JSON for files, as
+/// text for people.
 ///
 /// The field list gives the keys of the JSON and their order. Keys stay: people parse them.
 /// Optional numbers are null in JSON when unset; optional groups (step_s, video ...) are left out.
@@ -183,7 +184,8 @@ struct Summary {
   }
 };
 
-/// Figures of the world and its clock; what was written about the run, warnings and errors are for the caller to add.
+/// Figures of the world and its clock; what was written about the run, warnings and errors are for the caller
+/// to add.
 Summary summarise(const Simulation& simulation, const RunReport& report, const TravelMeter& travel);
 
 nlohmann::ordered_json as_json(const Summary& summary);

@@ -8,11 +8,13 @@
 ///     or_exit(sim->tick());
 ///   }
 ///
-/// Errors    a Result or Status with the text to show: error().text(). or_exit() does so and ends the program.
-/// Threads   one thread at a time may use a Simulation; submit() (and command()) may be called from any. Inside, a tick
-///           uses as many threads as SimulationOptions asks for; the result does not depend on it.
-/// Lifetime  a Simulation owns everything in it. What reading() returns is valid until the next tick. Simulations are
-///           independent of each other; any number may live in one process.
+/// Errors    a Result or Status with the text to show: error().text(). or_exit() does so and ends the
+///           program.
+/// Threads   one thread at a time may use a Simulation; submit() (and command()) may be called from any.
+///           Inside, a tick uses as many threads as SimulationOptions asks for; the result does not depend on
+///           it.
+/// Lifetime  a Simulation owns everything in it. What reading() returns is valid until the next tick.
+///           Simulations are independent of each other; any number may live in one process.
 /// Determinism  the same file, seed and commands at the same ticks give the same state_hash() after each.
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +31,8 @@ struct EmbedOptions {
   SimulationOptions simulation;
 };
 
-/// From a scenario, a world or a robot, as `sandlot run` takes it. Warnings go to `diagnostics`, or to standard error.
+/// From a scenario, a world or a robot, as `sandlot run` takes it. Warnings go to `diagnostics`, or to
+/// standard error.
 Result<std::unique_ptr<Simulation>> load_simulation(const std::string& file, const EmbedOptions& options = {},
                                                     Diagnostics* diagnostics = nullptr);
 /// From the text of a scenario; `name` stands for it in messages, and relative paths begin at its folder.
@@ -42,7 +45,8 @@ Result<std::unique_ptr<Simulation>> restore_simulation(std::span<const std::byte
                                                        const SimulationOptions& options = {},
                                                        Diagnostics* diagnostics = nullptr);
 
-/// The topic of a device ("rover/laser": its active level; "rover/laser/ranges": that one) that carries `type`.
+/// The topic of a device ("rover/laser": its active level; "rover/laser/ranges": that one) that carries
+/// `type`.
 Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view device, const char* type);
 
 /// The latest message of a device. `valid`: there is one; `fresh`: it came in the latest tick.

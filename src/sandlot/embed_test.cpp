@@ -42,7 +42,8 @@ TEST(Embed, ACommandMovesTheRobotFromTheNextTickOn) {
   or_exit(command(*sim, "rover/drive", msg::Twist{.linear = {0.5, 0, 0}, .angular = {}}));
   EXPECT_EQ(or_exit(pose(*sim, "rover")).p.x, 0.0);
   for (int i = 0; i < 100; ++i) or_exit(sim->tick());
-  // 0.5 s at 1 m/s^2, then 0.5 s at 0.5 m/s: 0.375 m. Steps of 10 ms add or lose half a step of the ramp: 2.5 mm.
+  // 0.5 s at 1 m/s^2, then 0.5 s at 0.5 m/s: 0.375 m. Steps of 10 ms add or lose half a step of the ramp: 2.5
+  // mm.
   EXPECT_NEAR(or_exit(pose(*sim, "rover")).p.x, 0.375, 0.0026);
 }
 
@@ -66,7 +67,8 @@ TEST(Embed, ARobotPlaysBackAFileAsItDoesInTheCommand) {
   };
   const auto sim = or_exit(with(file));
   while (sim->now() < Time::from_s(2)) or_exit(sim->tick());
-  // 0.5 m/s ordered for a second; ramps up and down at 1 m/s^2 alike: 0.5 m, give or take a control step of 50 ms.
+  // 0.5 m/s ordered for a second; ramps up and down at 1 m/s^2 alike: 0.5 m, give or take a control step of
+  // 50 ms.
   EXPECT_NEAR(or_exit(pose(*sim, "rover")).p.x, 0.5, 0.025);
 
   const auto none = with("not_there.mcap");

@@ -22,8 +22,8 @@
 namespace sandlot::app {
 namespace {
 
-/// Detections farther off in bearing than that, beyond the edge of the thing, are of something else: of a goal that is half out of
-/// the picture a detector tells the middle of the other half.
+/// Detections farther off in bearing than that, beyond the edge of the thing, are of something else: of a
+/// goal that is half out of the picture a detector tells the middle of the other half.
 constexpr double gate_rad = 0.2;
 constexpr int most_pictures = 12;
 
@@ -270,9 +270,10 @@ bool is_near(const Seen& is, const Seen& detected) {
          std::abs(detected.range_m - is.range_m) < std::max(0.6, 0.6 * is.range_m) + is.radius_m;
 }
 
-/// Pairs what was detected with what is there, the nearest bearings first, and counts. Another label at the place of a thing is a
-/// confusion, where nothing with the right one is about as near.
-/// @param aside  things that are not in the truth: a strip of a goal at the picture's edge is none, and no ghost either
+/// Pairs what was detected with what is there, the nearest bearings first, and counts. Another label at the
+/// place of a thing is a confusion, where nothing with the right one is about as near.
+/// @param aside  things that are not in the truth: a strip of a goal at the picture's edge is none, and no
+/// ghost either
 void compare(const std::vector<Seen>& truth, const std::vector<Seen>& aside,
              const std::vector<Seen>& detected, double min_visible, std::vector<Sighted>& sighted,
              Calibration& out) {

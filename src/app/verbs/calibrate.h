@@ -1,11 +1,14 @@
 #pragma once
-/// `sandlot calibrate`: errors of a detector in a camera's pictures, as parameters of the camera's level `objects`.
+/// `sandlot calibrate`: errors of a detector in a camera's pictures, as parameters of the camera's level
+/// `objects`.
 ///
 /// Truth    objects of the camera without errors, from the same samples as the pictures.
-/// Detector `picture`: perception/finder.h, which knows the colours and sizes of the things as their models declare them. `objects`: the level
-///          `objects` as the scenario sets it, in a second world with the same motion: a check of the method.
-/// Samples  the robot stands; before each picture it is turned at random and the things that are looked for are put anywhere in view,
-///          none into another. With `as_it_runs` the scenario runs with its controllers instead.
+/// Detector `picture`: perception/finder.h, which knows the colours and sizes of the objects as their models
+///          declare them. `objects`: the level `objects` as the scenario sets it, in a second world with the
+///          same motion: a check of the method.
+/// Samples  the robot stands; before each picture it is turned at random and the things that are looked for
+///          are put anywhere in view, none into another. With `as_it_runs` the scenario runs with its
+///          controllers instead.
 #include <functional>
 #include <map>
 #include <string>

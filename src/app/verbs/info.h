@@ -22,7 +22,8 @@ const char* role_of(const model::Instance& instance);
 /// Everything, one entry per object.
 nlohmann::ordered_json info_json(const Simulation& simulation, const Diagnostics& diagnostics);
 
-/// Tree for people: objects that differ in name and pose alone are one entry, simple objects one line. Numbers are rounded.
+/// Tree for people: objects that differ in name and pose alone are one entry, simple objects one line.
+/// Numbers are rounded.
 /// @param file  as the user named it
 std::string info_text(const std::string& file, const Simulation& simulation, const Diagnostics& diagnostics);
 

@@ -132,8 +132,8 @@ std::string limits_text(const model::Joint& joint) {
   return joined(words, ", ");
 }
 
-/// Origin of a device: element of the file, its name there where that differs, and place. Places are left out when objects
-/// are compared.
+/// Origin of a device: element of the file, its name there where that differs, and place. Places are left out
+/// when objects are compared.
 std::string origin_text(const model::DeviceDecl& decl, const std::string& address, bool places) {
   std::string out;
   if (!decl.sdf_types.empty()) out = "from " + decl.sdf_types.front() + " \"" + decl.name + "\"";
@@ -202,7 +202,8 @@ void add_devices(const Simulation& simulation, const Simulation::Entity& entity,
   }
 }
 
-/// Parts of an object, without its own line. Objects with the same text under the name "*" and without places are alike.
+/// Parts of an object, without its own line. Objects with the same text under the name "*" and without places
+/// are alike.
 std::string parts_text(const Simulation& simulation, const Simulation::Entity& entity, const Shown& shown) {
   const model::Instance& instance = entity.instance;
   const model::Model& model = *instance.model;

@@ -53,7 +53,8 @@ Result<std::vector<std::string>> numbers_in(const Source& source, std::span<cons
   return paths;
 }
 
-/// Whether messages of a type can have a number at `path`, "ranges[3]" or "pose.position.x", however long lists become.
+/// Whether messages of a type can have a number at `path`, "ranges[3]" or "pose.position.x", however long
+/// lists become.
 bool may_hold(const MessageInfo& info, std::string_view path) {
   const MessageInfo* type = &info;
   while (type) {

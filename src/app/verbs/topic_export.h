@@ -1,9 +1,9 @@
 #pragma once
 /// Export of numbers from a recording to a CSV file.
 ///
-/// A row per time at which one of the topics has a message: `time` [s] first, then per column the value of the latest
-/// message so far; nothing before the first one and where a list is too short. A topic by itself stands for all numbers
-/// that its first message holds.
+/// A row per time at which one of the topics has a message: `time` [s] first, then per column the value of
+/// the latest message so far; nothing before the first one and where a list is too short. A topic by itself
+/// stands for all numbers that its first message holds.
 #include <functional>
 #include <optional>
 #include <span>
@@ -38,7 +38,8 @@ class HeldColumns {
   std::size_t add(std::string name);
   std::size_t size() const { return names_.size(); }
   std::string header() const;
-  /// A message at `time_ns` begins: the row of an earlier time goes to `out`, and the columns begin..end lose their value.
+  /// A message at `time_ns` begins: the row of an earlier time goes to `out`, and the columns begin..end lose
+  /// their value.
   void message(std::uint64_t time_ns, std::size_t begin, std::size_t end, std::string& out);
   void set(std::size_t column, double value) { cells_[column] = value; }
   /// The last row.
