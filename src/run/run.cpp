@@ -23,12 +23,12 @@ class Run {
         prepared_(std::move(prepared)),
         warnings_(std::move(diagnostics.warnings)),
         begin_(prepared_.simulation->now()),
-        experiment_(callbacks.hooks ? std::make_optional<RunHooks>(*prepared_.simulation, *callbacks.hooks)
-                                    : std::nullopt),
+        hooks_(callbacks.hooks ? std::make_optional<RunHooks>(*prepared_.simulation, *callbacks.hooks)
+                               : std::nullopt),
         session_(std::move(prepared_.simulation), session_options()),
         outputs_(spec, session_, [this](Error warning) { warn(std::move(warning)); }),
         console_(session_, {.paths = spec.paths,
-                            .experiment = experiment_ ? &*experiment_ : nullptr,
+                            .experiment = hooks_ ? &*hooks_ : nullptr,
                             .record = [this](const std::string& file) { return outputs_.record(file); }}) {}
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -51,7 +51,7 @@ class Run {
   PreparedRun prepared_;
   std::vector<Error> warnings_;
   Time begin_;
-  std::optional<RunHooks> experiment_;
+  std::optional<RunHooks> hooks_;
   Session session_;
   RunOutputs outputs_;
   Console console_;
@@ -65,7 +65,7 @@ Session::Options Run::session_options() {
       .paused = spec_.paused,
       .history_mb = spec_.steered ? Session::Options().history_mb : 0,
       .simulation = prepared_.options,
-      .may_not_rewind = experiment_ ? "its experiment in C++ keeps a state of its own" : "",
+      .may_not_rewind = hooks_ ? "its experiment in C++ keeps a state of its own" : "",
       .on_world = [this](Simulation& next, const std::string& why) { outputs_.on_world_replaced(next, why); },
       .tick = [this](Simulation& simulation,
                      std::optional<Time> measured) { return tick(simulation, measured); }};
@@ -74,7 +74,7 @@ Session::Options Run::session_options() {
 Status Run::tick(Simulation& simulation, std::optional<Time> measured) {
   // A tick that runs again after a rewind has all its input already.
   if (!session_.rerunning()) SL_TRY(console_.before_tick());
-  return experiment_ ? experiment_->tick(measured) : simulation.tick(measured);
+  return hooks_ ? hooks_->tick(measured) : simulation.tick(measured);
 }
 
 void Run::warn(Error warning) {
@@ -104,7 +104,7 @@ bool Run::keep_going(const Simulation& simulation) {
 }
 
 void Run::execute() {
-  Status status = experiment_ ? experiment_->start() : Status();
+  Status status = hooks_ ? hooks_->start() : Status();
   if (status)
     status = session_.run(report_, [this](const Simulation& simulation) { return keep_going(simulation); });
   if (status) status = console_.finish();
@@ -112,7 +112,7 @@ void Run::execute() {
     outputs_.rescue(status.error());
     outputs_.record_error(std::move(status));
   }
-  if (experiment_) outputs_.record_error(experiment_->finish());
+  if (hooks_) outputs_.record_error(hooks_->finish());
   // A difference, where the sum over the ticks would carry their rounding.
   if (session_.epoch() == 1) report_.sim_s = (session_.simulation().now() - begin_).s();
 }
