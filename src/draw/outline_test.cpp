@@ -49,6 +49,15 @@ TEST(Outline, OfStandingRoundThingsIsACircle) {
   }
 }
 
+TEST(Outline, OfAStandingBarrelIsTheCircleOfItsMiddle) {
+  const Barrel barrel{.radius_m = 0.3, .profile_m = 0.5, .length_m = 0.4};
+  const auto o = outline_from_above(barrel, {{1, 2, 3}, {}});
+  ASSERT_TRUE(o);
+  EXPECT_TRUE(o->corners.empty());
+  EXPECT_NEAR(o->radius_m, 0.3, 1e-15);
+  EXPECT_NEAR(o->top_m, 3.2, 1e-12);
+}
+
 TEST(Outline, OfALyingCylinderIsARectangle) {
   // Lying along x, its silhouette is length x diameter; 32 corners put one exactly at the widest place.
   const auto o = outline_from_above(Cylinder{0.2, 1.5}, {{0, 0, 0.2}, quat_from_rpy(0, math::pi / 2, 0)});
