@@ -176,7 +176,8 @@ TEST(HelpTexts, OfScenarioKeysStandAlone) {
 
 TEST(HelpTexts, OfConsoleCommandsStandAlone) {
   std::vector<HelpText> texts;
-  for (const console::Verb& verb : console::commands()) texts.push_back({verb.name, verb.help});
+  for (const console::BuiltinCommand& command : console::commands())
+    texts.push_back({command.name, command.help});
   EXPECT_GT(texts.size(), 20u);
   EXPECT_EQ(faults_of(texts), "");
 }

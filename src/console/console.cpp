@@ -7,17 +7,17 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
-#include "console/words.h"
+#include "console/line_parsing.h"
 #include "sim/session/run_hooks.h"
 
 namespace sandlot {
 
-using console::Call;
-using console::Verb;
+using console::BuiltinCommand;
+using console::CommandCall;
 using console::Word;
 
 /// Answers of scheduled lines come with the outcome of a tick, and the console may be gone by then.
-struct Console::Said {
+struct Console::ScheduledAnswers {
   std::vector<std::string> answers;
   std::optional<Error> failure;
 };
@@ -54,13 +54,13 @@ const HookCommand* own_command(const Console::Options& options, std::string_view
 Result<std::vector<Word>> words_for(std::string_view line) {
   std::vector<Word> plain = console::plain_words_of(line);
   if (plain.empty()) return plain;
-  const Verb* const command = console::find_command(plain.front().text);
+  const BuiltinCommand* const command = console::find_command(plain.front().text);
   if (command && command->plain) return plain;
   return console::words_of(line);
 }
 
-/// Does what a line says, or rehearses it. @return nothing: it says the answer later
-console::Said act(Call& call, const Verb& command, std::vector<Word> words) {
+/// Executes a line, or rehearses it. @return nothing: the answer comes later
+console::CommandResult act(CommandCall& call, const BuiltinCommand& command, std::vector<Word> words) {
   std::vector<std::string> texts;
   for (Word& word : words) {
     if (!command.plain && word.text == "--json") {
@@ -84,7 +84,7 @@ console::Said act(Call& call, const Verb& command, std::vector<Word> words) {
 
 }  // namespace
 
-std::string_view console::Call::rest(std::size_t count) const {
+std::string_view console::CommandCall::rest(std::size_t count) const {
   if (count == 0 || count > ends.size()) return {};
   return trim(line.substr(ends[count - 1]));
 }
@@ -93,13 +93,13 @@ Console::Console(Session& session, Options options)
     : session_(session),
       options_(std::move(options)),
       epoch_(session.epoch()),
-      said_(std::make_shared<Said>()) {}
+      answers_(std::make_shared<ScheduledAnswers>()) {}
 
-void Console::execute(std::string_view line, const Speaker& speaker, const Reply& reply) {
-  execute(line, speaker, reply, false);
+void Console::execute(std::string_view line, const Caller& caller, const Reply& reply) {
+  execute(line, caller, reply, false);
 }
 
-void Console::execute(std::string_view line, const Speaker& speaker, const Reply& reply, bool before_tick) {
+void Console::execute(std::string_view line, const Caller& caller, const Reply& reply, bool before_tick) {
   const auto answer = [&](bool ok, std::string text) {
     if (reply) reply({ok, std::move(text)});
   };
@@ -112,16 +112,16 @@ void Console::execute(std::string_view line, const Speaker& speaker, const Reply
   if (!words) return answer(false, words.error().text());
   if (words->empty() || words->front().text.empty()) return answer(true, "");
   const std::string name = words->front().text;
-  const Verb* const command = console::find_command(name);
+  const BuiltinCommand* const command = console::find_command(name);
   if (!command) {
     if (!own_command(options_, name)) return answer(false, unknown_command(name, options_).text());
-    if (!speaker.may_steer) return answer(false, "'" + name + "' is for those who may steer; you may watch");
+    if (!caller.may_steer) return answer(false, "'" + name + "' is for those who may steer; you may watch");
     auto done = options_.experiment->execute(line);
     return done ? answer(true, std::move(*done)) : answer(false, done.error().text());
   }
-  if (command->steers && !speaker.may_steer)
+  if (command->steers && !caller.may_steer)
     return answer(false, "'" + name + "' changes the run; you may watch, not steer");
-  Call call{session_, options_, speaker, reply, {}, line};
+  CommandCall call{session_, options_, caller, reply, {}, line};
   call.before_tick = before_tick;
   call.schedule = [&](std::string_view later) -> Result<Time> {
     constexpr std::size_t most_waiting = 10'000;
@@ -133,18 +133,18 @@ void Console::execute(std::string_view line, const Speaker& speaker, const Reply
     insert(std::move(scheduled));
     return at;
   };
-  auto said = act(call, *command, std::move(*words));
-  if (!said) return answer(false, said.error().text());
-  if (*said) answer(true, std::move(**said));
+  auto result = act(call, *command, std::move(*words));
+  if (!result) return answer(false, result.error().text());
+  if (*result) answer(true, std::move(**result));
 }
 
 Status Console::rehearse(std::string_view line) {
   if (line.size() > console::most_letters)
     return Error{"a line has " + std::to_string(console::most_letters) + " letters at most"};
   SL_ASSIGN(std::vector<Word> words, words_for(line));
-  if (words.empty()) return Error{"the line says nothing"};
+  if (words.empty()) return Error{"the line is empty"};
   const std::string name = words.front().text;
-  const Verb* const command = console::find_command(name);
+  const BuiltinCommand* const command = console::find_command(name);
   if (!command) {
     if (own_command(options_, name)) return {};
     return unknown_command(name, options_);
@@ -154,13 +154,13 @@ Status Console::rehearse(std::string_view line) {
       return Error{"'" + name + "' needs more words", name + " " + command->usage};
     return {};
   }
-  const Speaker speaker;
+  const Caller caller;
   const Reply nobody;
-  Call call{session_, options_, speaker, nobody, {}, line};
+  CommandCall call{session_, options_, caller, nobody, {}, line};
   call.rehearsal = true;
-  const auto said = act(call, *command, std::move(words));
+  const auto result = act(call, *command, std::move(words));
   // What is not there yet may be there when the time comes.
-  if (!said && !call.unknown_thing) return said.error();
+  if (!result && !call.unknown_thing) return result.error();
   return {};
 }
 
@@ -185,7 +185,7 @@ Result<Console::Scheduled> Console::read_scheduled(std::string_view line, const 
 }
 
 void Console::insert(Scheduled scheduled) {
-  // Behind those of the same time, and behind what has been said.
+  // Behind those of the same time, and behind what has been executed.
   const auto later = std::upper_bound(scheduled_.begin() + static_cast<std::ptrdiff_t>(next_),
                                       scheduled_.end(), scheduled.at,
                                       [](Time at, const Scheduled& other) { return at < other.at; });
@@ -219,7 +219,7 @@ Status Console::schedule_script(const std::string& file) {
   return {};
 }
 
-/// After a change of time: what would not have been said yet had the run come to here by itself.
+/// After a change of time: what would not have been executed yet had the run come to here by itself.
 void Console::find_next() {
   const Simulation& simulation = session_.simulation();
   const Time before = simulation.now() - simulation.setup().step;
@@ -228,7 +228,7 @@ void Console::find_next() {
   std::stable_sort(scheduled_.begin(), scheduled_.end(),
                    [](const Scheduled& a, const Scheduled& b) { return a.at < b.at; });
   next_ = 0;
-  // All that is due by then is said where the run begins, which may be later than 0.
+  // All that is due by then is executed where the run begins, which may be later than 0.
   if (simulation.now() <= session_.report().begin) return;
   while (next_ < scheduled_.size() && scheduled_[next_].at <= before) ++next_;
 }
@@ -237,7 +237,7 @@ Status Console::before_tick() {
   SL_TRY(finish());
   if (scheduled_.empty()) return {};
   if (epoch_ != session_.epoch()) {
-    // On its way to where it was before, the run takes what was said then from its own log.
+    // On its way to where it was before, the run takes the input of that time from its own log.
     if (!session_.report().takes_no_input.empty()) return {};
     epoch_ = session_.epoch();
     find_next();
@@ -246,14 +246,14 @@ Status Console::before_tick() {
     Scheduled& due = scheduled_[next_++];
     if (due.over) continue;
     const std::vector<Word> words = console::plain_words_of(due.text);
-    const Verb* const verb = words.empty() ? nullptr : console::find_command(words.front().text);
-    due.over = !due.of_run || (verb && verb->travels);
+    const BuiltinCommand* const command = words.empty() ? nullptr : console::find_command(words.front().text);
+    due.over = !due.of_run || (command && command->travels);
     const Scheduled line = due;
     const std::string when = "at " + number_text(session_.simulation().now().s()) + " s: ";
-    const auto take = [said = said_, when, line](const Answer& answer) {
+    const auto take = [answers = answers_, when, line](const Answer& answer) {
       if (answer.ok || !line.of_run)
-        said->answers.push_back(when + (answer.ok ? "" : "error: ") + answer.text);
-      else if (!said->failure) said->failure = Error{when + answer.text, "", line.place};
+        answers->answers.push_back(when + (answer.ok ? "" : "error: ") + answer.text);
+      else if (!answers->failure) answers->failure = Error{when + answer.text, "", line.place};
     };
     execute(line.text, {}, take, true);
     SL_TRY(finish());
@@ -262,18 +262,18 @@ Status Console::before_tick() {
 }
 
 Status Console::finish() {
-  if (!said_->failure) return {};
-  Error error = std::move(*said_->failure);
-  said_->failure.reset();
+  if (!answers_->failure) return {};
+  Error error = std::move(*answers_->failure);
+  answers_->failure.reset();
   return error;
 }
 
-std::vector<std::string> Console::take_answers() { return std::exchange(said_->answers, {}); }
+std::vector<std::string> Console::take_answers() { return std::exchange(answers_->answers, {}); }
 
 namespace console {
 
-Said submit(Call& call, std::vector<Asked> asked) {
-  SL_CHECK(!asked.empty());
+CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests) {
+  SL_CHECK(!requests.empty());
   if (call.rehearsal) return std::optional<std::string>();
   struct Waiting {
     Session& session;
@@ -285,39 +285,39 @@ Said submit(Call& call, std::vector<Asked> asked) {
   const bool stands = !call.before_tick && report.state != Session::State::playing &&
                       report.state != Session::State::seeking;
   auto waiting = std::make_shared<Waiting>(
-      Waiting{call.session, stands ? Console::Reply() : call.reply, asked.size()});
+      Waiting{call.session, stands ? Console::Reply() : call.reply, requests.size()});
   std::string with_next;
   std::size_t submitted = 0;
-  constexpr std::size_t most_told = 20;
-  const auto told = [](const std::vector<std::string>& lines) {
+  constexpr std::size_t most_lines = 20;
+  const auto joined = [](const std::vector<std::string>& lines) {
     std::string text;
-    for (std::size_t i = 0; i < lines.size() && i < most_told; ++i) text += (i ? "\n" : "") + lines[i];
-    if (lines.size() > most_told) text += "\n... and " + std::to_string(lines.size() - most_told) + " more";
+    for (std::size_t i = 0; i < lines.size() && i < most_lines; ++i) text += (i ? "\n" : "") + lines[i];
+    if (lines.size() > most_lines) text += "\n... and " + std::to_string(lines.size() - most_lines) + " more";
     return text;
   };
   std::vector<std::string> later;
-  for (Asked& each : asked) {
-    const auto done = [waiting, told, text = each.text](const Status& status) {
+  for (PendingRequest& each : requests) {
+    const auto done = [waiting, joined, text = each.text](const Status& status) {
       const std::string tick = std::to_string(waiting->session.simulation().tick_index());
       if (status) waiting->done.push_back(text + " from tick " + tick);
       else waiting->refused.push_back(status.error().text());
       if (--waiting->left > 0 || !waiting->reply) return;
-      if (waiting->refused.empty()) return waiting->reply({true, told(waiting->done)});
-      std::string failed = told(waiting->refused);
-      if (!waiting->done.empty()) failed += "\ndone all the same:\n" + told(waiting->done);
+      if (waiting->refused.empty()) return waiting->reply({true, joined(waiting->done)});
+      std::string failed = joined(waiting->refused);
+      if (!waiting->done.empty()) failed += "\ndone all the same:\n" + joined(waiting->done);
       waiting->reply({false, failed});
     };
     later.push_back(each.text + " with the next tick");
-    auto sequence = call.session.submit(std::move(each.request), call.speaker.source, done);
+    auto sequence = call.session.submit(std::move(each.request), call.caller.source, done);
     if (!sequence) {
       if (submitted == 0) return std::move(sequence.error());
-      waiting->left -= 1;  // the run stopped taking input in between: the rest is told with what was taken
+      waiting->left -= 1;  // the run stopped taking input in between: the answer names what was taken
       waiting->refused.push_back(sequence.error().text());
       continue;
     }
     ++submitted;
   }
-  if (stands) return std::optional(told(later));
+  if (stands) return std::optional(joined(later));
   return std::optional<std::string>();
 }
 

@@ -5,7 +5,7 @@
 ///   console.execute("set rover/laser.noise.white 2 cm", {.may_steer = true}, [](const Answer& a) { ... });
 ///
 /// Threads  the simulation's (Session::post brings a line there).
-/// Answers  each line is answered exactly once: at once, or when what it asked for was carried out. While the run is paused a
+/// Answers  each line is answered exactly once: at once, or when its requests have been carried out. While the run is paused a
 ///          request is answered at once: "... with the next tick".
 /// Errors   unknown words name the nearest known one; a line that fails has done nothing.
 /// Limits   a line has 4096 characters at most, an address pattern meets at most 10,000 things.
@@ -22,8 +22,8 @@ namespace sandlot {
 
 class RunHooks;
 
-/// Who says a line.
-struct Speaker {
+/// Origin and rights of a line.
+struct Caller {
   bool may_steer = true;
   Source source = {};
 };
@@ -45,21 +45,21 @@ class Console {
   Console(Session& session, Options options);
 
   using Reply = std::function<void(const Answer&)>;
-  void execute(std::string_view line, const Speaker& speaker, const Reply& reply);
+  void execute(std::string_view line, const Caller& caller, const Reply& reply);
 
   /// How the last word of `line` may go on, at most 100, sorted: whole words.
   std::vector<std::string> complete(std::string_view line) const;
 
   /// "at 2s set rover/laser.noise.white 0.1", or a line without a time: before the first tick. Scripts are such lines,
   /// `#` begins a comment. Errors name file and line; what is wrong in a word is found now where that can be. After a
-  /// reset or a jump back the lines behind that time are said again, but for those that go through time themselves.
+  /// reset or a jump back the lines behind that time are executed again, except those that go through time themselves.
   Status schedule(std::string_view line, const Place& place = {});
   Status schedule_script(const std::string& file);
-  /// Says what is due; called before each tick. An error of a line ends the run, also one that turned up in the tick before.
+  /// Executes the lines that are due; call before each tick. An error of a line ends the run, also one that turned up in the tick before.
   Status before_tick();
   /// Call when the run has ended: an error of the last tick's lines.
   Status finish();
-  /// What scheduled lines answered since this was last called.
+  /// Answers of scheduled lines since the last call.
   std::vector<std::string> take_answers();
 
  private:
@@ -67,22 +67,22 @@ class Console {
     Time at;
     std::string text;
     Place place;
-    bool of_run = true;  ///< an error of it ends the run; else it was said while the run went on
-    bool over = false;   ///< it will not be said again, whatever becomes of the time
+    bool of_run = true;  ///< an error of it ends the run; else it came while the run went on
+    bool over = false;   ///< it will not be executed again, whatever becomes of the time
   };
   Result<Scheduled> read_scheduled(std::string_view line, const Place& place);
   void insert(Scheduled scheduled);
   void find_next();
   Session& session_;
   Options options_;
-  struct Said;  ///< what scheduled lines answered; outlives the console, as answers may come late
-  void execute(std::string_view line, const Speaker& speaker, const Reply& reply, bool before_tick);
+  struct ScheduledAnswers;  ///< answers of scheduled lines; outlives the console, as answers may come late
+  void execute(std::string_view line, const Caller& caller, const Reply& reply, bool before_tick);
   Status rehearse(std::string_view line);
 
   std::vector<Scheduled> scheduled_;  ///< in order of time
-  std::size_t next_ = 0;              ///< the first that has not been said
+  std::size_t next_ = 0;              ///< the first that has not been executed
   std::uint64_t epoch_ = 0;           ///< of the session when `next_` was found
-  std::shared_ptr<Said> said_;
+  std::shared_ptr<ScheduledAnswers> answers_;
 };
 
 }  // namespace sandlot

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "console/test_talk.h"
+#include "console/test_console.h"
 
 namespace sandlot {
 namespace {

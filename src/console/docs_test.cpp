@@ -18,11 +18,11 @@ std::string escaped(std::string_view text, std::string_view signs) {
 }
 
 /// The row of a command in docs/console.md.
-std::string row(const Verb& verb) {
-  const std::string text = std::string("| `") + verb.name + (*verb.usage ? " " : "") +
-                           escaped(verb.usage, "|") + "`" + (verb.steers ? " \\*" : "") + " | ";
-  return text + (*verb.others ? "also `" + std::string(verb.others) + "`" : "") + " | " +
-         escaped(verb.help, "|*") + " |\n";
+std::string row(const BuiltinCommand& command) {
+  const std::string text = std::string("| `") + command.name + (*command.usage ? " " : "") +
+                           escaped(command.usage, "|") + "`" + (command.steers ? " \\*" : "") + " | ";
+  return text + (*command.others ? "also `" + std::string(command.others) + "`" : "") + " | " +
+         escaped(command.help, "|*") + " |\n";
 }
 
 TEST(ConsoleDocs, TheTableIsThatOfTheCommands) {
@@ -30,7 +30,7 @@ TEST(ConsoleDocs, TheTableIsThatOfTheCommands) {
   const std::string page(std::istreambuf_iterator<char>(in), {});
   ASSERT_FALSE(page.empty());
   std::string rows;
-  for (const Verb& verb : commands()) rows += row(verb);
+  for (const BuiltinCommand& command : commands()) rows += row(command);
   EXPECT_NE(page.find("\n" + rows + "\n"), std::string::npos) << "docs/console.md should have:\n" << rows;
 }
 
@@ -38,9 +38,9 @@ TEST(ConsoleDocs, NamesAreKnownOnce) {
   std::vector<std::string> names = command_names({});
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
-  for (const Verb& verb : commands()) {
-    EXPECT_EQ(find_command(verb.name), &verb);
-    EXPECT_FALSE(verb.arguments.empty()) << verb.name;
+  for (const BuiltinCommand& command : commands()) {
+    EXPECT_EQ(find_command(command.name), &command);
+    EXPECT_FALSE(command.arguments.empty()) << command.name;
   }
 }
 

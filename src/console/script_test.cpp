@@ -1,6 +1,6 @@
 #include <fstream>
 
-#include "console/test_talk.h"
+#include "console/test_console.h"
 #include "record/replay.h"
 #include "sim/watch/values.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-/// A run of 2 s that says scheduled lines, on this thread.
+/// A run of 2 s that executes scheduled lines, on this thread.
 struct Scripted {
   explicit Scripted(const std::vector<std::string>& lines = {}, model::Setup setup = test::arena("rigid", 2),
                     int ticks_before = 0) {
@@ -52,7 +52,7 @@ const std::vector<std::string> script{"set rover1/laser.noise.white 0",
                                       "at 1.5s remove box",
                                       "at 1 s command rover2/drive Twist {\"angular\": {\"z\": 1}}"};
 
-TEST(Script, LinesAreSaidInTheFirstTickThatBeginsThen) {
+TEST(Script, LinesAreExecutedInTheFirstTickThatBeginsThen) {
   Scripted run(script);
   ASSERT_TRUE(run.run());
   EXPECT_EQ(run.answers, (std::vector<std::string>{
@@ -156,8 +156,8 @@ TEST(Script, AJumpBackSaysLinesAgainWhenTheirTimeComes) {
   EXPECT_EQ(run.session->simulation().state_hash(), straight.session->simulation().state_hash());
 }
 
-/// A run that goes on from a snapshot says at once what should have been said before; so it does after a reset.
-TEST(Script, AResetSaysAgainWhatIsSaidAtTheBeginning) {
+/// A run that goes on from a snapshot executes at once what was due before; so it does after a reset.
+TEST(Script, AResetExecutesAgainWhatIsDueAtTheBeginning) {
   Scripted run({"echo first", "at 0.2s echo missed", "at 1s reset"}, test::arena("rigid", 1), 50);
   ASSERT_TRUE(run.run());
   EXPECT_EQ(run.session->epoch(), 2u);

@@ -194,7 +194,7 @@ class Parser {
       below = std::max(below, heights_[own->second]);
     }
     if (below >= max_depth) return Error{"schema: types nest deeper than 32 in " + shown(info.name)};
-    set_least(info);
+    set_derived(info);
     height = below + 1;
     return {};
   }

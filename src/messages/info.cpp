@@ -39,8 +39,40 @@ MessageInfo time_info(const char* name) {
                          .unit = "ns",
                          .help = "Nanoseconds in addition to the whole seconds.",
                          .type = Wire::uint32});
-  set_least(info);
+  set_derived(info);
   return info;
+}
+
+/// Fills `floats` and `float_lists`; messages without a place in memory have none of either.
+void set_floats(MessageInfo& info) {
+  const auto add = [&](std::size_t offset, std::size_t count, Wire type) {
+    if (!info.floats.empty()) {
+      FloatRun& last = info.floats.back();
+      if (last.type == type && last.offset + last.count * size_of(type) == offset) {
+        last.count += count;
+        return;
+      }
+    }
+    info.floats.push_back({offset, count, type});
+  };
+  for (std::size_t i = 0; i < info.fields.size(); ++i) {
+    const MessageField& field = info.fields[i];
+    const bool is_float = field.type == Wire::float32 || field.type == Wire::float64;
+    const bool in_message = field.message &&
+                            !(field.message->floats.empty() && field.message->float_lists.empty());
+    if (!is_float && !in_message) continue;
+    const bool nested_lists = in_message && !field.message->float_lists.empty();
+    if (field.count == MessageField::Count::sequence || nested_lists) info.float_lists.push_back(i);
+    if (field.count == MessageField::Count::sequence) continue;
+    const std::size_t length = field.count == MessageField::Count::array ? field.length : 1;
+    if (is_float) {
+      add(field.offset, length, field.type);
+      continue;
+    }
+    for (std::size_t k = 0; k < length; ++k)
+      for (const FloatRun& run : field.message->floats)
+        add(field.offset + k * field.stride + run.offset, run.count, run.type);
+  }
 }
 
 /// A message of doubles that C++ keeps in another order or under other names.
@@ -54,7 +86,7 @@ MessageInfo doubles_info(const char* name, const std::string& noun,
                            .type = Wire::float64,
                            .offset = offset,
                            .stride = sizeof(double)});
-  set_least(info);
+  set_derived(info);
   return info;
 }
 
@@ -83,7 +115,7 @@ std::string long_name(std::string_view name) {
   return std::string(name.substr(0, slash)) + "/msg/" + std::string(name.substr(slash + 1));
 }
 
-void set_least(MessageInfo& info) {
+void set_derived(MessageInfo& info) {
   constexpr std::size_t enough = std::size_t{1}
                                  << 40;  // more than any message has; keeps products within 64 bits
   std::size_t sum = 0;
@@ -98,6 +130,7 @@ void set_least(MessageInfo& info) {
     sum = std::min(enough, sum + std::min(all, enough));
   }
   info.least = std::max<std::size_t>(sum, 1);  // an empty message is one byte
+  set_floats(info);
 }
 
 template <>
@@ -150,7 +183,7 @@ const MessageInfo& message_info<Pose>() {
                            .message = &message_info<Quat>(),
                            .offset = offsetof(Pose, q),
                            .stride = sizeof(Quat)});
-    set_least(made);
+    set_derived(made);
     return with_memory<Pose>(std::move(made));
   }();
   return info;

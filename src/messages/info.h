@@ -62,6 +62,12 @@ struct MessageField {
   const VectorAccess* vector = nullptr;  ///< of a sequence
 };
 
+/// Floating-point numbers that lie side by side in memory, those of nested messages included.
+struct FloatRun {
+  std::size_t offset = 0, count = 0;
+  Wire type = Wire::float64;
+};
+
 struct MessageConstant {
   std::string name;
   Wire type;
@@ -76,6 +82,9 @@ struct MessageInfo {
   std::size_t least = 1;  ///< bytes that a value takes on the wire, alignment aside; never 0
   bool is_time = false;   ///< two fields on the wire, one count of nanoseconds in memory
   // In memory. A type that was read from a schema has no `create`.
+  std::vector<FloatRun> floats;  ///< all outside lists
+  std::vector<std::size_t>
+      float_lists;  ///< indices of fields with floats in lists, their own or a nested message's
   void* (*create)() = nullptr;
   void (*destroy)(void*) = nullptr;
 };
@@ -89,7 +98,7 @@ std::string short_name(std::string_view name);
 /// "sensor_msgs/msg/LaserScan" from either form.
 std::string long_name(std::string_view name);
 
-/// Works out `least` from the fields.
-void set_least(MessageInfo& info);
+/// Works out from the fields what follows from them: `least`, `floats`, `float_lists`.
+void set_derived(MessageInfo& info);
 
 }  // namespace sandlot

@@ -105,7 +105,7 @@ const MessageInfo& message_info() {
     if constexpr (requires { M::constants(add); }) M::constants(add);
     made.create = []() -> void* { return new M(); };
     made.destroy = [](void* object) { delete static_cast<M*>(object); };
-    set_least(made);
+    set_derived(made);
     made.schema = schema_text(made);
     return made;
   }();

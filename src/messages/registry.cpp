@@ -21,7 +21,7 @@ namespace sandlot {
 #define SL_MESSAGE(type) template const MessageInfo& message_info<type>();
 #include "messages/types.def"
 #undef SL_MESSAGE
-#define SL_SERVICE(type)                                     \
+#define SL_SERVICE(type, ...)                                \
   template const MessageInfo& message_info<type::Request>(); \
   template const MessageInfo& message_info<type::Response>();
 #include "messages/services.def"
@@ -44,7 +44,7 @@ std::vector<const MessageInfo*> make_list() {
 
 std::vector<ServiceInfo> make_services() {
   std::vector<ServiceInfo> list;
-#define SL_SERVICE(type) \
+#define SL_SERVICE(type, ...) \
   list.push_back({type::ros_type, &message_info<type::Request>(), &message_info<type::Response>()});
 #include "messages/services.def"
 #undef SL_SERVICE

@@ -25,10 +25,18 @@ class TopicBase {
   Time stamp;                                        ///< of the latest message
   std::uint64_t count = 0;                           ///< messages so far; 0: none yet
 
-  virtual void save(ByteWriter& w) const = 0;
+  /// Stamp, count and message.
+  void save(ByteWriter& w) const {
+    write(w, stamp);
+    write(w, count);
+    save_message(w);
+  }
   virtual void load(ByteReader& r) = 0;
-  /// Takes the message alone from bytes (a command); false when they are not exactly one message.
-  virtual bool assign(std::span<const std::byte> bytes) = 0;
+  /// The message alone: the bytes of a command (messages/command.h).
+  virtual void save_message(ByteWriter& w) const = 0;
+  /// Takes the message alone, as a command. Errors: bytes that are not exactly one message, numbers that
+  /// check_command() refuses; the old message stays.
+  virtual Status assign(std::span<const std::byte> bytes) = 0;
   virtual std::unique_ptr<TopicBase> clone() const = 0;
   /// A number of the message by its path, and all of them.
   virtual ValueFound value(std::span<const ValueStep> path) const = 0;
@@ -54,7 +62,13 @@ class TopicBase {
   const char* type_;
 };
 
-/// What a value holds outside itself.
+/// Whether a message may be a command. Floating-point numbers must be finite; elements of lists may be NaN, which leaves
+/// the element's joint or wheel as it is. A velocity or a single number has no such meaning: NaN there would only stay in
+/// the state and in its snapshots.
+/// @param message  null: the bytes were not one
+Status check_command(const MessageInfo& info, const void* message);
+
+/// Bytes that a value holds on the heap.
 template <class T>
 std::size_t heap_bytes(const T& value) {
   if constexpr (std::is_same_v<T, std::string>) {
@@ -91,23 +105,19 @@ class Topic : public TopicBase {
     if constexpr (requires { message.header; }) return message.header.stamp = other, true;
     else return false;
   }
-  void save(ByteWriter& w) const override {
-    write(w, stamp);
-    write(w, count);
-    write(w, message);
-  }
+  void save_message(ByteWriter& w) const override { write(w, message); }
   void load(ByteReader& r) override {
     read(r, stamp);
     read(r, count);
     read(r, message);
   }
-  bool assign(std::span<const std::byte> bytes) override {
+  Status assign(std::span<const std::byte> bytes) override {
     ByteReader r(bytes);
     M taken{};
     read(r, taken);
-    if (!r.ok() || r.remaining() != 0) return false;
+    SL_TRY(check_command(message_info<M>(), r.ok() && r.remaining() == 0 ? &taken : nullptr));
     message = std::move(taken);
-    return true;
+    return {};
   }
   std::unique_ptr<TopicBase> clone() const override { return std::make_unique<Topic>(*this); }
   const MessageInfo& info() const override { return message_info<M>(); }

@@ -20,6 +20,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "messages/command.h"
 #include "messages/messages.h"
 #include "sim/load/load.h"
 #include "sim/world/simulation.h"
@@ -68,9 +69,7 @@ Status check_commandable(const Simulation& sim, std::string_view device, const c
 template <class M>
 Status command(Simulation& sim, const std::string& device, const M& message) {
   SL_TRY(check_commandable(sim, device, M::ros_type));
-  ByteWriter bytes;
-  write(bytes, message);
-  sim.submit(CommandRequest{device, M::ros_type, std::move(bytes.buffer())});
+  sim.submit(CommandRequest{device, M::ros_type, command_bytes(message)});
   return {};
 }
 

@@ -9,12 +9,10 @@ namespace sandlot::server {
 namespace {
 
 HttpAnswer text_answer(int status, std::string_view text) {
-  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
-  auto owned = std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
   HttpAnswer out;
   out.status = status;
-  out.body = *owned;
-  out.owned = std::move(owned);
+  out.owned = payload_of(text);
+  out.body = *out.owned;
   return out;
 }
 
@@ -108,7 +106,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   log::set_listener([self](log::Level level, std::string_view text) {
     if (!self->hub.counts().log_read) return;
     const std::uint8_t ros_level = level == log::Level::warning ? 30 : level == log::Level::info ? 20 : 10;
-    self->mailbox->put([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
+    self->mailbox->push([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
   });
   // Last: from here on viewers may give orders, which call on_change.
   ready->set_value();
@@ -139,7 +137,7 @@ void Server::stop() {
   // Not before: as long as the transport's thread lives, an order of a viewer may be calling it.
   impl_->session.on_change = impl_->others_on_change;
   impl_->mailbox->close();
-  impl_->feed->leave();
+  impl_->feed->detach();
 }
 
 }  // namespace sandlot::server

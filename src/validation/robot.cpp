@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "base/bytes.h"
 #include "base/math.h"
+#include "messages/command.h"
 #include "messages/messages.h"
 #include "sim/load/load.h"
 
@@ -31,9 +31,7 @@ void Robot::command(Twist velocity) {
   msg::Twist message;
   message.linear = {velocity.vx_mps, velocity.vy_mps, 0};
   message.angular = {0, 0, velocity.wz_radps};
-  ByteWriter w;
-  write(w, message);
-  sim->submit(CommandRequest{"robot/drive", msg::Twist::ros_type, {w.bytes().begin(), w.bytes().end()}});
+  sim->submit(CommandRequest{"robot/drive", msg::Twist::ros_type, command_bytes(message)});
 }
 
 void Robot::switch_level(const std::string& to) {

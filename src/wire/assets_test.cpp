@@ -65,8 +65,8 @@ TEST(Assets, MeshesComeAsBytesAndEqualOnesOnce) {
                                              {"v2", {}, Mesh{same}, {}, false, {}},
                                              {"v3", {}, Mesh{other}, {}, true, {}}}));
   const Assets assets;
-  WorldTeller teller(assets);
-  const Json visuals = visuals_of(teller.tell(*simulation, 1));
+  WorldJsonWriter writer(assets);
+  const Json visuals = visuals_of(writer.write(*simulation, 1));
   EXPECT_EQ(visuals[0]["shape"], Json::parse(R"({"type":"mesh","mesh":"a0"})"));
   EXPECT_EQ(visuals[1]["shape"], visuals[0]["shape"]);
   EXPECT_EQ(visuals[2]["shape"]["mesh"], "a1");
@@ -90,7 +90,7 @@ TEST(Assets, MeshesComeAsBytesAndEqualOnesOnce) {
 
   // The same world once more, its things at other addresses: nothing is numbered anew.
   const auto again = test::again(*simulation);
-  EXPECT_EQ(visuals_of(teller.tell(*again, 2)), visuals);
+  EXPECT_EQ(visuals_of(writer.write(*again, 2)), visuals);
   EXPECT_FALSE(assets.get("mesh/a2"));
 }
 
@@ -104,7 +104,7 @@ TEST(Assets, GridsComeAsBytes) {
   const auto shared = std::make_shared<const HeightGrid>(grid);
   const auto simulation = test::build(shown({{"v", {}, Heightfield{shared}, {}, true, {}}}));
   const Assets assets;
-  const Json visuals = visuals_of(WorldTeller(assets).tell(*simulation, 1));
+  const Json visuals = visuals_of(WorldJsonWriter(assets).write(*simulation, 1));
   EXPECT_EQ(visuals[0]["shape"], Json::parse(R"({"type":"heightmap","grid":"g0"})"));
   const auto body = assets.get("grid/g0");
   ASSERT_TRUE(body);
@@ -126,10 +126,10 @@ TEST(Assets, TexturesAreFilesThatAModelNamesAndNothingElse) {
   visuals.push_back(visual);
   const auto simulation = test::build(shown(std::move(visuals)));
   const Assets assets;
-  const Json told = visuals_of(WorldTeller(assets).tell(*simulation, 1));
+  const Json written = visuals_of(WorldJsonWriter(assets).write(*simulation, 1));
   for (int i = 0; i < 6; ++i)
-    EXPECT_EQ(told[static_cast<std::size_t>(i)]["material"]["texture"], "t" + std::to_string(i));
-  EXPECT_EQ(told[6]["material"]["texture"], "");
+    EXPECT_EQ(written[static_cast<std::size_t>(i)]["material"]["texture"], "t" + std::to_string(i));
+  EXPECT_EQ(written[6]["material"]["texture"], "");
   const auto text = [](const std::vector<std::byte>& bytes) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
@@ -162,7 +162,7 @@ TEST(Assets, WhatIsNoNameOfOneIsRefused) {
 
 TEST(Assets, MayBeAskedFromAnyThreadWhileTheWorldGrows) {
   const Assets assets;
-  WorldTeller teller(assets);
+  WorldJsonWriter writer(assets);
   std::atomic<bool> stop = false;
   std::thread reader([&] {
     while (!stop)
@@ -179,7 +179,7 @@ TEST(Assets, MayBeAskedFromAnyThreadWhileTheWorldGrows) {
     for (Vec3& v : mesh.vertices) v.z = i;
     const auto shared = std::make_shared<const TriangleMesh>(std::move(mesh));
     const auto simulation = test::build(shown({{"v", {}, Mesh{shared}, {}, true, {}}}));
-    EXPECT_EQ(visuals_of(teller.tell(*simulation, 1))[0]["shape"]["mesh"], "a" + std::to_string(i));
+    EXPECT_EQ(visuals_of(writer.write(*simulation, 1))[0]["shape"]["mesh"], "a" + std::to_string(i));
   }
   stop = true;
   reader.join();

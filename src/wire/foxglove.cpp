@@ -287,7 +287,7 @@ const Operation operations[] = {
     {"fetchAsset", read_fetch_asset},
 };
 
-/// The text whose length the next 4 bytes tell.
+/// The text whose length is in the next 4 bytes.
 bool read_counted(ByteReader& r, std::string& out) {
   std::uint32_t size = 0;
   read(r, size);

@@ -12,7 +12,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using model::JointType;
 
-/// How far off a viewer may draw a link for its pose to be told by joints.
+/// How far off a viewer may draw a link for its pose to be sent as joint positions.
 constexpr double most_off_m = 1e-3, most_off_rad = 0.01;
 
 void put(Bytes& out, const auto& value) {
@@ -131,7 +131,7 @@ void PoseWriter::encode(const FrameInstance& instance, const LinkTree& tree, Byt
   put(out, static_cast<std::uint32_t>(instance.serial));
   put(out, std::uint8_t{0});
   if (encode_joints(instance, tree, out)) return;
-  // A joint gave way under load, or turned about an axis that nobody tells of.
+  // A joint gave way under load, or turned about an axis that nobody sends.
   out.resize(5);
   out[4] = std::byte{1};
   for (const Pose& X_WL : instance.X_WL) put_pose(out, X_WL);

@@ -2,7 +2,7 @@
 /// What viewers draw: the world as JSON, sent once and when it changes; poses as compact bytes, 30 times a second; meshes and
 /// height grids as bytes. Layouts: docs/viewer_protocol.md.
 ///
-/// Threads  WorldTeller::tell() belongs to the simulation's thread (between ticks); PoseWriter and the functions on frames to any one
+/// Threads  WorldJsonWriter::write() belongs to the simulation's thread (between ticks); PoseWriter and the functions on frames to any one
 ///          thread, they read frames alone.
 /// Cost     poses: one encoding per frame for all clients, no allocation once `out` has its size; 27 bytes for a robot with two
 ///          wheels; things at rest cost a comparison. World: models and kinds are written once and kept.
@@ -37,7 +37,7 @@ class Assets {
   Result<Body> get(std::string_view path) const;
 
  private:
-  friend class WorldTeller;
+  friend class WorldJsonWriter;
   std::shared_ptr<AssetTable> table_;
 };
 
@@ -45,18 +45,18 @@ class Assets {
 inline constexpr std::size_t most_texture_bytes = std::size_t{64} << 20;
 
 /// Writes the JSON of /sandlot/world.
-class WorldTeller {
+class WorldJsonWriter {
  public:
-  explicit WorldTeller(Assets assets) : assets_(std::move(assets)) {}
-  std::string tell(const Simulation& simulation, std::uint64_t epoch);
+  explicit WorldJsonWriter(Assets assets) : assets_(std::move(assets)) {}
+  std::string write(const Simulation& simulation, std::uint64_t epoch);
 
  private:
-  struct ToldModel {
+  struct WrittenModel {
     std::uint64_t number = 0;
-    bool used = false;  ///< in the world that is being told
+    bool used = false;  ///< in the world that is being written
   };
-  using ByContent = std::map<std::string, ToldModel>;  ///< JSON of a model, without its id
-  ByContent::iterator told(const std::shared_ptr<const model::Model>& model);
+  using ByContent = std::map<std::string, WrittenModel>;  ///< JSON of a model, without its id
+  ByContent::iterator written_model(const std::shared_ptr<const model::Model>& model);
   const std::string& kind_json(const void* kind, const char* help, std::span<const LevelInfo> levels,
                                std::vector<FieldInfo> (*describe)());
 
@@ -64,7 +64,7 @@ class WorldTeller {
   ByContent models_;
   struct Known {
     std::weak_ptr<const model::Model> model;
-    ByContent::iterator told;
+    ByContent::iterator written;
   };
   std::unordered_map<const model::Model*, Known> known_models_;
   std::unordered_map<const void*, std::string> kinds_;
@@ -87,8 +87,8 @@ class PoseWriter {
  private:
   struct Entry {
     std::shared_ptr<const LinkTree> tree;
-    std::vector<Pose> X_WL;         ///< when it was told last
-    std::vector<std::byte> record;  ///< that was told last
+    std::vector<Pose> X_WL;         ///< when last sent
+    std::vector<std::byte> record;  ///< that was last sent
     std::uint64_t round = 0;        ///< of the last frame that had it
   };
   void encode(const FrameInstance& instance, const LinkTree& tree, std::vector<std::byte>& out);
@@ -109,6 +109,6 @@ void write_contacts(const Frame& frame, std::vector<std::byte>& out);
 /// The JSON of /sandlot/commands; "" when nothing came from outside in this frame.
 std::string commands_json(const Frame& frame);
 /// What a request asks for, in words: "noise/white = 0.02", "pose 1 2 0".
-std::string words_of(const LogEntry& entry);
+std::string describe_request(const LogEntry& entry);
 
 }  // namespace sandlot::wire

@@ -169,8 +169,8 @@ void expect_same(const Viewer& viewer, const Frame& frame, double slack_m, doubl
 TEST(World, TellsWhatStandsInIt) {
   const auto simulation = build(arena("rigid", 2));
   advance(*simulation, 3);
-  WorldTeller teller{Assets()};
-  const Json world = Json::parse(teller.tell(*simulation, 5));
+  WorldJsonWriter writer{Assets()};
+  const Json world = Json::parse(writer.write(*simulation, 5));
   EXPECT_EQ(world["epoch"], 5);
   EXPECT_EQ(world["revision"], simulation->revision());
   EXPECT_EQ(world["name"], "arena");
@@ -230,16 +230,16 @@ TEST(World, TellsWhatStandsInIt) {
             Json::parse(R"({"type":"plane","normal":[0,0,1]})"));
 }
 
-TEST(World, ZonesOfTheGroundAreToldWhereThereAreSome) {
+TEST(World, HasZonesOfTheGroundWhereThereAreSome) {
   auto setup = arena("rigid", 2);
-  WorldTeller teller{Assets()};
-  EXPECT_FALSE(Json::parse(teller.tell(*build(setup), 1)).contains("zones"));
+  WorldJsonWriter writer{Assets()};
+  EXPECT_FALSE(Json::parse(writer.write(*build(setup), 1)).contains("zones"));
   setup.zones.push_back({"ice", {{1, 2, 0}, {3, 2, 0}, {1, 4, 0}}, {}, 0, {}, {}});
   setup.zones[0].surface.mu = 0.05;
   setup.zones.push_back({"belt", {}, {5, 6, 0}, 2, {}, {}});
   setup.zones[1].surface.belt_velocity_mps = {0.7, 0, 0};
   setup.zones[1].surface.touches = false;
-  const Json zones = Json::parse(teller.tell(*build(setup), 2))["zones"];
+  const Json zones = Json::parse(writer.write(*build(setup), 2))["zones"];
   EXPECT_EQ(zones[0],
             Json::parse(R"({"name":"ice","centre":[0,0,0],"radius_m":0,"corners":[[1,2,0],[3,2,0],[1,4,0]],
     "friction":0.05,"rolling_resistance_m":0,"belt_velocity":[0,0,0],"hole":false})"));
@@ -251,10 +251,10 @@ TEST(World, ZonesOfTheGroundAreToldWhereThereAreSome) {
 
 TEST(World, NumbersStayWhenTheWorldIsBuiltAnew) {
   const auto simulation = build(arena("rigid", 2));
-  WorldTeller teller{Assets()};
-  const Json first = Json::parse(teller.tell(*simulation, 1));
+  WorldJsonWriter writer{Assets()};
+  const Json first = Json::parse(writer.write(*simulation, 1));
   const auto again = test::again(*simulation);
-  const Json second = Json::parse(teller.tell(*again, 2));
+  const Json second = Json::parse(writer.write(*again, 2));
   EXPECT_EQ(second["models"], first["models"]);
   EXPECT_EQ(second["instances"], first["instances"]);
   // A model that is gone frees nothing for others: its number is not given out again.
@@ -262,7 +262,7 @@ TEST(World, NumbersStayWhenTheWorldIsBuiltAnew) {
   again->submit(DeleteRequest{"crate2"});
   again->submit(SpawnRequest{test::placed("ball", test::one_shape("ball", Sphere{0.1}, 1), {{0, 0, 1}, {}})});
   advance(*again, 1);
-  const Json third = Json::parse(teller.tell(*again, 2));
+  const Json third = Json::parse(writer.write(*again, 2));
   EXPECT_GT(third["revision"], second["revision"]);
   std::set<std::string> before, after;
   for (const Json& model : first["models"]) before.insert(model["id"]);
@@ -279,8 +279,8 @@ TEST(Poses, OfARunningWorldAreWhereTheEngineHasThem) {
     const auto simulation = build(arena(engine, 4));
     Camera camera(*simulation);
     Viewer viewer;
-    WorldTeller teller{Assets()};
-    viewer.world = Json::parse(teller.tell(*simulation, 1));
+    WorldJsonWriter world_writer{Assets()};
+    viewer.world = Json::parse(world_writer.write(*simulation, 1));
     PoseWriter writer;
     std::vector<std::byte> out;
     for (int i = 0; i < 80; ++i) {
@@ -297,7 +297,7 @@ TEST(Poses, OfARunningWorldAreWhereTheEngineHasThem) {
         EXPECT_EQ(size, 27u);  // 4 id, 1 form, 12 position, 6 orientation, 2 x 2 wheels
       }
     }
-    // Two lone crates at rest, ground, walls and pillars: told once. The rovers drive.
+    // Two lone crates at rest, ground, walls and pillars: sent once. The rovers drive.
     EXPECT_LE(viewer.count, 6u) << engine;
     EXPECT_GE(viewer.count, 4u) << engine;
     EXPECT_TRUE(writer.write(camera.frame, 1, true, out));
@@ -312,12 +312,12 @@ TEST(Poses, OfARunningWorldAreWhereTheEngineHasThem) {
   }
 }
 
-TEST(Poses, AThingThatIsPutElsewhereIsToldEvenIfItNeverMoves) {
+TEST(Poses, AThingThatIsPutElsewhereIsSentEvenIfItNeverMoves) {
   const auto simulation = build(arena("rigid", 0));
   Camera camera(*simulation);
   advance(*simulation, 200);  // until the crates rest
   Viewer viewer;
-  viewer.world = Json::parse(WorldTeller{Assets()}.tell(*simulation, 1));
+  viewer.world = Json::parse(WorldJsonWriter{Assets()}.write(*simulation, 1));
   PoseWriter writer;
   std::vector<std::byte> out;
   writer.write(camera.frame, 1, true, out);
@@ -384,7 +384,7 @@ struct Posed {
   }
 };
 
-/// A gadget somewhere, its world told.
+/// A gadget somewhere, with its world as JSON.
 Posed posed_at_rest(const std::shared_ptr<model::Model>& model) {
   model::Setup setup;
   setup.instances.push_back(test::placed("gadget", model, {}));
@@ -392,7 +392,7 @@ Posed posed_at_rest(const std::shared_ptr<model::Model>& model) {
   const auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
   EXPECT_TRUE(simulation) << simulation.error().text();
   Posed out;
-  out.viewer.world = Json::parse(WorldTeller{Assets()}.tell(**simulation, 1));
+  out.viewer.world = Json::parse(WorldJsonWriter{Assets()}.write(**simulation, 1));
   FrameInstance instance;
   instance.name = "gadget";
   instance.serial = serial_of(**simulation, "gadget");
@@ -409,7 +409,7 @@ Pose moved(const model::Model& model, std::uint32_t joint, const Pose& motion) {
   return inverse(model.links[j.parent].X_ML) * model.links[j.child].X_ML * j.X_CJ * motion * inverse(j.X_CJ);
 }
 
-TEST(Poses, JointsOfEveryTypeAreToldByTheirPositions) {
+TEST(Poses, JointsOfEveryTypeAreSentAsPositions) {
   const auto model = gadget();
   Posed posed = posed_at_rest(model);
   const Vec3 axis = model->joints[0].axis_J;
@@ -440,7 +440,7 @@ TEST(Poses, JointsOfEveryTypeAreToldByTheirPositions) {
   }
 }
 
-TEST(Poses, WhatJointsDoNotTellIsToldLinkByLink) {
+TEST(Poses, WhatJointsDoNotDetermineIsSentLinkByLink) {
   const auto model = test::rover_model();
   Posed posed = posed_at_rest(model);
   std::vector<Pose>& X = posed.frame.instances[0].X_WL;
@@ -487,7 +487,7 @@ TEST(Poses, OrientationsOfAllSortsKeepTheirPrecision) {
   }
 }
 
-TEST(Contacts, AreToldAsFloats) {
+TEST(Contacts, AreSentAsFloats) {
   Frame frame;
   frame.tick = 7;
   frame.now = Time{70'000'000};
@@ -516,7 +516,7 @@ TEST(Commands, SayWhatCameFromOutside) {
   const auto simulation = build(arena("rigid", 1));
   Camera camera(*simulation);
   advance(*simulation, 6);
-  EXPECT_EQ(commands_json(camera.frame), "") << "a controller's orders are not told";
+  EXPECT_EQ(commands_json(camera.frame), "") << "a controller's orders are left out";
   const auto said = [&](Request request) {
     simulation->submit(std::move(request), {Source::Kind::robot, 3});
     advance(*simulation, 1);
@@ -560,14 +560,14 @@ TEST(Commands, SayWhatCameFromOutside) {
   EXPECT_EQ(drive["text"], "Twist linear 0.5 0 0 angular 0 0 0");
   EXPECT_EQ(drive["kind"], "command");
   // Whatever a recording says, there are words for it.
-  EXPECT_EQ(words_of({.kind = 5, .bytes = {std::byte{77}}}), "pose");
-  EXPECT_EQ(words_of({.kind = 99}), "unknown");
+  EXPECT_EQ(describe_request({.kind = 5, .bytes = {std::byte{77}}}), "pose");
+  EXPECT_EQ(describe_request({.kind = 99}), "unknown");
   LogEntry large;
   large.kind = 1;
   ByteWriter bytes;
   write_request(bytes, ParameterRequest{"a", "b", Node::scalar(std::string(100'000, 'x'))});
   large.bytes = bytes.buffer();
-  EXPECT_LT(words_of(large).size(), 400u);
+  EXPECT_LT(describe_request(large).size(), 400u);
 }
 
 }  // namespace

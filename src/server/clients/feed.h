@@ -19,7 +19,7 @@
 namespace sandlot::server {
 
 /// What all clients together want to see.
-struct Interest {
+struct SubscriptionSummary {
   bool clients = false;  ///< there are any
   bool frames = false, contacts = false, commands = false, parameters = false, world = false,
        transforms_static = false;
@@ -27,13 +27,13 @@ struct Interest {
 };
 
 /// What a new subscriber is told at once, whether it has changed or not.
-struct Demand {
+struct InitialSend {
   bool frame = false, world = false, transforms_static = false;
   std::vector<std::uint32_t> latest;  ///< channels of device topics and watches
 };
 
 /// The world as it is now; what nobody asked for or has not changed is null.
-struct Told {
+struct WorldUpdate {
   std::shared_ptr<const Inventory> inventory;
   Payload world, transforms_static;
   Time now;
@@ -43,10 +43,10 @@ class Feed final : public Observer {
  public:
   Feed(Session& session, std::shared_ptr<Mailbox> mailbox, wire::Assets assets, double poses_hz);
 
-  void attend(std::shared_ptr<const Interest> interest);
-  void look(const Demand& demand);
+  void set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary);
+  void send_initial(const InitialSend& initial);
   /// Ends it: it watches nothing any more.
-  void leave();
+  void detach();
   /// Viewers do not know the latest tick yet, and no frame is coming. From any thread.
   bool stale() const { return stale_; }
 
@@ -59,7 +59,7 @@ class Feed final : public Observer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Shown {
+  struct SubscribedTopic {
     std::uint32_t channel = 0;
     const TopicBase* topic = nullptr;  ///< null: it is not there now
     std::uint64_t count = 0;           ///< of the message that was sent last
@@ -71,35 +71,35 @@ class Feed final : public Observer {
     double rate_hz = 0;
     Time begin;
     std::int64_t sample = 0;
-    std::optional<Time> told;  ///< of its last sample in this world
+    std::optional<Time> sampled_at;  ///< time of its last sample in this world
     std::vector<std::string> texts;
     std::vector<std::vector<std::string>> addresses;
     std::vector<std::optional<ValueExpression>> values;
   };
   /// Follows the Session to another revision or world.
-  void follow();
+  void follow_session();
   void find_topics();
-  void tell(bool again_world, bool again_static);
-  ChannelMessage message(Shown& shown) const;
+  void send_world_if_changed(bool again_world, bool again_static);
+  ChannelMessage message(SubscribedTopic& topic) const;
   ChannelMessage sample(Watch& watch);
   void add_samples(Batch& batch);
-  void tell_parameters(const Frame& frame);
+  void send_parameters(const Frame& frame);
 
   Session& session_;
   const std::shared_ptr<Mailbox> mailbox_;
-  wire::WorldTeller teller_;
+  wire::WorldJsonWriter world_writer_;
   const Clock::duration period_;
   bool watching_ = false;  ///< it is an observer
-  std::shared_ptr<const Interest> interest_ = std::make_shared<Interest>();
+  std::shared_ptr<const SubscriptionSummary> subscribed_ = std::make_shared<SubscriptionSummary>();
   std::uint64_t epoch_ = 0, revision_ = 0;  ///< that it follows
-  std::vector<Shown> topics_;
+  std::vector<SubscribedTopic> topics_;
   std::size_t previews_ = 0;  ///< of them
   std::vector<Watch> watches_;
   std::vector<std::byte> scratch_;
 
-  bool told_inventory_ = false, told_world_ = false, told_static_ = false;  ///< as they are now
+  bool inventory_sent_ = false, world_sent_ = false, static_sent_ = false;  ///< as they are now
   Payload world_, transforms_static_;                                       ///< as told last
-  Clock::time_point next_tell_, next_frame_;
+  Clock::time_point next_world_update_, next_frame_;
   mutable bool due_ = false;
   std::atomic<bool> stale_ = false;
 };

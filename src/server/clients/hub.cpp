@@ -15,7 +15,7 @@ constexpr auto flush_pause =
 constexpr auto watch_patience = 10s;             ///< a watch without its subscriber goes
 constexpr std::size_t portion = 256;             ///< channels in one message
 constexpr std::size_t patient_bytes = 4u << 20;  ///< so much may wait when more channels are told
-constexpr int complaints_per_s = 20;
+constexpr int most_refusals_per_s = 20;
 
 template <class... F>
 struct Overloaded : F... {
@@ -36,32 +36,32 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
       assets_(std::move(assets)) {
   // Another run of the program is another session; nothing else depends on this number.
   session_id_ = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
-  add_channel(What::world, "/sandlot/world", "json", "sandlot.World");
-  add_channel(What::status, "/sandlot/status", "json", "sandlot.Status");
-  add_channel(What::commands, "/sandlot/commands", "json", "sandlot.Commands");
-  add_channel(What::poses, "/sandlot/poses", "sandlot-poses", "sandlot.Poses");
-  add_channel(What::contacts, "/sandlot/contacts", "sandlot-contacts", "sandlot.Contacts");
-  add_channel(What::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
-  add_channel(What::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
-  add_channel(What::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
-  add_channel(What::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
-  add_services();
+  add_channel(ChannelKind::world, "/sandlot/world", "json", "sandlot.World");
+  add_channel(ChannelKind::status, "/sandlot/status", "json", "sandlot.Status");
+  add_channel(ChannelKind::commands, "/sandlot/commands", "json", "sandlot.Commands");
+  add_channel(ChannelKind::poses, "/sandlot/poses", "sandlot-poses", "sandlot.Poses");
+  add_channel(ChannelKind::contacts, "/sandlot/contacts", "sandlot-contacts", "sandlot.Contacts");
+  add_channel(ChannelKind::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
+  add_channel(ChannelKind::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
+  add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
+  add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
 }
 
-std::uint32_t Hub::add_channel(What what, const char* topic, const char* encoding, const char* schema) {
+std::uint32_t Hub::add_channel(ChannelKind kind, const char* topic, const char* encoding,
+                               const char* schema) {
   const std::uint32_t id = next_channel_++;
   Channel& made = channels_[id];
-  made.what = what;
-  made.said = {id, topic, encoding, schema, "", ""};
-  if (made.said.encoding == "json") {
-    made.said.schema = R"({"type":"object"})";
-    made.said.schema_encoding = "jsonschema";
-  } else if (made.said.encoding == "cdr") {
-    made.said.schema = find_message(schema).value()->schema;
-    made.said.schema_encoding = "ros2msg";
+  made.kind = kind;
+  made.advertised = {id, topic, encoding, schema, "", ""};
+  if (made.advertised.encoding == "json") {
+    made.advertised.schema = R"({"type":"object"})";
+    made.advertised.schema_encoding = "jsonschema";
+  } else if (made.advertised.encoding == "cdr") {
+    made.advertised.schema = find_message(schema).value()->schema;
+    made.advertised.schema_encoding = "ros2msg";
   }
-  if (what != What::device && what != What::watch) fixed_[static_cast<std::size_t>(what)] = id;
+  if (kind != ChannelKind::device && kind != ChannelKind::watch) fixed_[static_cast<std::size_t>(kind)] = id;
   return id;
 }
 
@@ -73,7 +73,7 @@ Hub::Client* Hub::find(ClientId id) {
 void Hub::connected(ClientId id, bool may_steer) {
   Client& client = clients_[id];
   client.may_steer = may_steer;
-  client.budgeted = client.complained = Clock::now();
+  client.budgeted = client.refusals_since = Clock::now();
   foxglove::ServerInfo info;
   info.name = options_.name;
   info.capabilities = {"clientPublish",   "time",  "parameters", "parametersSubscribe", "services",
@@ -84,18 +84,18 @@ void Hub::connected(ClientId id, bool may_steer) {
                    {"sandlot_role", may_steer ? "admin" : "spectator"}};
   info.session_id = session_id_;
   transport_->send_text(id, foxglove::server_info(info));
-  std::vector<foxglove::Service> services;
-  for (std::size_t i = 0; i < services_.size(); ++i) {
-    const ServiceInfo& type = *services_[i].type;
+  std::vector<foxglove::Service> offered;
+  for (const Service& service : services()) {
+    const ServiceInfo& type = *service.type;
     const auto side = [](const MessageInfo& message) {
       return foxglove::Service::Side{"cdr", message.name, "ros2msg", message.schema};
     };
-    services.push_back({static_cast<std::uint32_t>(i + 1), services_[i].name, type.name, side(*type.request),
-                        side(*type.response)});
+    offered.push_back({static_cast<std::uint32_t>(offered.size() + 1), service.name, type.name,
+                       side(*type.request), side(*type.response)});
   }
-  transport_->send_text(id, foxglove::advertise_services(services));
+  transport_->send_text(id, foxglove::advertise_services(offered));
   advertise_waiting(id, client);
-  interest_changed_ = true;
+  subscriptions_changed_ = true;
   graph_changed_ = true;
   flush();
 }
@@ -110,7 +110,7 @@ void Hub::disconnected(ClientId id) {
     if (each.owner == id) watches.push_back(channel);
   for (const std::uint32_t watch : watches) remove_channel(watch);
   clients_.erase(id);
-  interest_changed_ = true;
+  subscriptions_changed_ = true;
   graph_changed_ = true;
   flush();
 }
@@ -120,21 +120,21 @@ bool Hub::refuse(ClientId id, const std::string& why, std::string_view about) {
   Client* const client = find(id);
   if (!client) return false;
   const auto now = Clock::now();
-  if (now > client->complained + 1s) {
-    client->complained = now;
-    client->complaints = 0;
-    if (client->kept_quiet > 0)
-      transport_->send_text(id, foxglove::status(Level::error, std::to_string(client->kept_quiet) +
+  if (now > client->refusals_since + 1s) {
+    client->refusals_since = now;
+    client->errors = 0;
+    if (client->refusals_unsent > 0)
+      transport_->send_text(id, foxglove::status(Level::error, std::to_string(client->refusals_unsent) +
                                                                    " more requests were refused"));
-    client->kept_quiet = 0;
+    client->refusals_unsent = 0;
   }
-  if (++client->complaints <= complaints_per_s)
+  if (++client->errors <= most_refusals_per_s)
     transport_->send_text(id, foxglove::status(Level::error, why, about));
-  else ++client->kept_quiet;
+  else ++client->refusals_unsent;
   return false;
 }
 
-bool Hub::may_ask(ClientId id, Client& client) {
+bool Hub::within_budget(ClientId id, Client& client) {
   const auto now = Clock::now();
   const double passed_s = std::chrono::duration<double>(now - client.budgeted).count();
   client.budgeted = now;
@@ -151,7 +151,7 @@ void Hub::message(ClientId id, std::span<const std::byte> bytes, bool text) {
   const auto read = text ? foxglove::read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()})
                          : foxglove::read_binary(bytes);
   const auto* const called = read ? std::get_if<foxglove::CallService>(&*read) : nullptr;
-  if (!may_ask(id, *client)) {
+  if (!within_budget(id, *client)) {
     if (called)
       transport_->send_text(id,
                             foxglove::service_failure(called->service, called->call, "too many requests"));
@@ -161,11 +161,11 @@ void Hub::message(ClientId id, std::span<const std::byte> bytes, bool text) {
     refuse(id, read.error().text());
     return;
   }
-  obey(id, *client, *read);
+  handle(id, *client, *read);
   flush();
 }
 
-void Hub::obey(ClientId id, Client& client, const foxglove::ClientMessage& message) {
+void Hub::handle(ClientId id, Client& client, const foxglove::ClientMessage& message) {
   std::visit(Overloaded{
                  [&](const foxglove::Subscribe& m) { subscribe(id, client, m); },
                  [&](const foxglove::Unsubscribe& m) {
@@ -188,7 +188,7 @@ void Hub::obey(ClientId id, Client& client, const foxglove::ClientMessage& messa
                      else if (client.parameters.size() < most_subscriptions) client.parameters.insert(name);
                      else return void(refuse(id, "more than 10000 parameters are subscribed to"));
                    }
-                   interest_changed_ = true;
+                   subscriptions_changed_ = true;
                  },
                  [&](const foxglove::SubscribeGraph& m) {
                    client.graph = m.subscribe;
@@ -232,25 +232,25 @@ void Hub::subscribe(ClientId id, Client& client, const foxglove::Subscribe& requ
     }
     client.subscriptions[subscription] = channel_id;
     Subscriber made{id, subscription, false};
-    switch (to.what) {
-      case What::device:
-      case What::watch: demand_.latest.push_back(channel_id); break;
-      case What::world: demand_.world = true; break;
-      case What::transforms_static: demand_.transforms_static = true; break;
-      case What::poses: demand_.frame = true; break;
-      case What::status: break;
-      case What::transforms:
-      case What::clock:
-      case What::contacts:
-        demand_.frame = true;
-        made.primed = true;
+    switch (to.kind) {
+      case ChannelKind::device:
+      case ChannelKind::watch: initial_.latest.push_back(channel_id); break;
+      case ChannelKind::world: initial_.world = true; break;
+      case ChannelKind::transforms_static: initial_.transforms_static = true; break;
+      case ChannelKind::poses: initial_.frame = true; break;
+      case ChannelKind::status: break;
+      case ChannelKind::transforms:
+      case ChannelKind::clock:
+      case ChannelKind::contacts:
+        initial_.frame = true;
+        made.initial_state_sent = true;
         break;
-      default: made.primed = true;
+      default: made.initial_state_sent = true;
     }
     to.subscribers.push_back(made);
-    if (to.what == What::status) send_status();
+    if (to.kind == ChannelKind::status) send_status();
   }
-  interest_changed_ = true;
+  subscriptions_changed_ = true;
   graph_changed_ = true;
   if (refused > 0)
     refuse(id, refused == 1 ? why : why + ", and " + std::to_string(refused - 1) + " more were refused");
@@ -272,7 +272,7 @@ void Hub::unsubscribe(ClientId id, Client& client, std::uint32_t subscription) {
     remove_channel(channel_id);
     transport_->send_text(id, foxglove::unadvertise(gone));
   }
-  interest_changed_ = true;
+  subscriptions_changed_ = true;
   graph_changed_ = true;
 }
 
@@ -288,24 +288,24 @@ void Hub::remove_channel(std::uint32_t id) {
   if (found == channels_.end()) return;
   for (const Subscriber& each : found->second.subscribers)
     if (Client* const client = find(each.client)) client->subscriptions.erase(each.id);
-  if (found->second.what == What::watch) {
+  if (found->second.kind == ChannelKind::watch) {
     watched_ -= found->second.numbers;
     if (Client* const owner = find(found->second.owner)) owner->watched -= found->second.numbers;
     post([feed = feed_, id](Session&) { feed->unwatch(id); });
   }
   channels_.erase(found);
-  interest_changed_ = true;
+  subscriptions_changed_ = true;
 }
 
 /// Ten thousand robots have many channels, and a queue has an end: they are told in portions.
 void Hub::advertise_waiting(ClientId id, Client& client) {
-  while (client.told_channels < next_channel_ && transport_->waiting_bytes(id) < patient_bytes) {
-    std::vector<foxglove::Channel> told;
-    auto next = channels_.lower_bound(client.told_channels);
-    for (; next != channels_.end() && told.size() < portion; ++next)
-      if (next->second.owner == 0) told.push_back(next->second.said);
-    client.told_channels = next == channels_.end() ? next_channel_ : next->first;
-    if (!told.empty()) transport_->send_text(id, foxglove::advertise(told));
+  while (client.advertised_below < next_channel_ && transport_->waiting_bytes(id) < patient_bytes) {
+    std::vector<foxglove::Channel> batch;
+    auto next = channels_.lower_bound(client.advertised_below);
+    for (; next != channels_.end() && batch.size() < portion; ++next)
+      if (next->second.owner == 0) batch.push_back(next->second.advertised);
+    client.advertised_below = next == channels_.end() ? next_channel_ : next->first;
+    if (!batch.empty()) transport_->send_text(id, foxglove::advertise(batch));
   }
 }
 
@@ -328,33 +328,34 @@ bool Hub::post(std::function<void(Session&)> task) { return session_.post(std::m
 
 /// Tells the simulation's thread what is wanted now.
 void Hub::flush() {
-  const bool demanded = demand_.frame || demand_.world || demand_.transforms_static ||
-                        !demand_.latest.empty();
+  const bool initial_wanted = initial_.frame || initial_.world || initial_.transforms_static ||
+                              !initial_.latest.empty();
   const auto now = Clock::now();
-  if ((!interest_changed_ && !demanded) || now < flushed_ + flush_pause) return;
-  auto interest = std::make_shared<Interest>();
-  interest->clients = !clients_.empty();
-  interest->frames = subscribed(What::poses) || subscribed(What::transforms) || subscribed(What::clock);
-  interest->contacts = subscribed(What::contacts);
-  interest->commands = subscribed(What::commands);
-  interest->world = subscribed(What::world);
-  counts_.log_read = subscribed(What::log);
-  interest->transforms_static = subscribed(What::transforms_static);
+  if ((!subscriptions_changed_ && !initial_wanted) || now < flushed_ + flush_pause) return;
+  auto summary = std::make_shared<SubscriptionSummary>();
+  summary->clients = !clients_.empty();
+  summary->frames = subscribed(ChannelKind::poses) || subscribed(ChannelKind::transforms) ||
+                    subscribed(ChannelKind::clock);
+  summary->contacts = subscribed(ChannelKind::contacts);
+  summary->commands = subscribed(ChannelKind::commands);
+  summary->world = subscribed(ChannelKind::world);
+  counts_.log_read = subscribed(ChannelKind::log);
+  summary->transforms_static = subscribed(ChannelKind::transforms_static);
   for (const auto& [id, client] : clients_)
-    if (client.all_parameters || !client.parameters.empty()) interest->parameters = true;
+    if (client.all_parameters || !client.parameters.empty()) summary->parameters = true;
   for (const auto& [id, each] : channels_)
-    if (each.what == What::device && !each.subscribers.empty())
-      interest->topics.emplace_back(id, each.said.topic);
-  std::sort(demand_.latest.begin(), demand_.latest.end());
-  const bool posted = post([feed = feed_, interest, demand = demand_](Session&) {
-    feed->attend(interest);
-    feed->look(demand);
+    if (each.kind == ChannelKind::device && !each.subscribers.empty())
+      summary->topics.emplace_back(id, each.advertised.topic);
+  std::sort(initial_.latest.begin(), initial_.latest.end());
+  const bool posted = post([feed = feed_, summary, initial = initial_](Session&) {
+    feed->set_subscriptions(summary);
+    feed->send_initial(initial);
   });
   flushed_ = now;
   if (!posted) return;  // the timer tries again
-  interest_changed_ = false;
-  demand_ = {};
-  looking_ = interest->clients;
+  subscriptions_changed_ = false;
+  initial_ = {};
+  looking_ = summary->clients;
 }
 
 void Hub::timer() {
@@ -363,17 +364,17 @@ void Hub::timer() {
   state_changed();
   if (now >= status_sent_ + 200ms) send_status();
   if (now >= time_sent_ + 200ms) send_time(report_.now);
-  const Channel& poses = channel(What::poses);
+  const Channel& poses = channel(ChannelKind::poses);
   const bool key_missing = std::any_of(poses.subscribers.begin(), poses.subscribers.end(),
-                                       [](const Subscriber& each) { return !each.primed; });
+                                       [](const Subscriber& each) { return !each.initial_state_sent; });
   if ((feed_->stale() || key_missing) && !looking_ && now >= framed_ + 80ms && now >= looked_ + 80ms) {
-    demand_.frame = true;
+    initial_.frame = true;
     looked_ = now;
   }
   for (auto& [id, client] : clients_) advertise_waiting(id, client);
   std::vector<std::uint32_t> unused;
   for (auto& [id, each] : channels_) {
-    if (each.what != What::watch) continue;
+    if (each.kind != ChannelKind::watch) continue;
     if (!each.subscribers.empty()) each.unused_since = now;
     else if (now >= each.unused_since + watch_patience) unused.push_back(id);
   }
@@ -389,12 +390,12 @@ void Hub::timer() {
 void Hub::drain() {
   if (draining_) return;
   draining_ = true;
-  mailbox_->take(mail_);
-  for (Mail& mail : mail_) {
-    if (mail.errand) mail.errand(*this);
-    else send_batch(mail.batch);
+  mailbox_->take(items_);
+  for (QueuedItem& item : items_) {
+    if (item.task) item.task(*this);
+    else send_batch(item.batch);
   }
-  mail_.clear();
+  items_.clear();
   draining_ = false;
   counts_.dropped = mailbox_->dropped();
   flush();

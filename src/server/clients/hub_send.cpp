@@ -24,11 +24,6 @@ const char* name_of(Session::State state) {
   return "failed";
 }
 
-Payload payload_of(std::string_view text) {
-  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
-  return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
-}
-
 template <class M>
 Payload cdr_of(const M& message) {
   auto bytes = std::make_shared<std::vector<std::byte>>();
@@ -45,7 +40,7 @@ bool Hub::send(Subscriber& to, Time stamp, const Payload& bytes, bool droppable)
 
 void Hub::send_to_all(Channel& channel, Time stamp, const Payload& bytes, bool droppable) {
   for (Subscriber& each : channel.subscribers)
-    if (each.primed) send(each, stamp, bytes, droppable);
+    if (each.initial_state_sent) send(each, stamp, bytes, droppable);
 }
 
 void Hub::send_time(Time now) {
@@ -55,17 +50,18 @@ void Hub::send_time(Time now) {
     if (!client.subscriptions.empty()) transport_->send(id, {}, bytes, false, true);
 }
 
-void Hub::tell(const Told& told) {
-  if (told.inventory) adopt(*told.inventory);
-  if (told.inventory) inventory_ = told.inventory;
-  const auto latch = [&](What what, const Payload& payload, Payload& last) {
+void Hub::send_world(const WorldUpdate& update) {
+  if (update.inventory) adopt(*update.inventory);
+  if (update.inventory) inventory_ = update.inventory;
+  const auto latch = [&](ChannelKind kind, const Payload& payload, Payload& last) {
     if (!payload) return;
-    for (Subscriber& each : channel(what).subscribers)
-      if (!each.primed || payload != last) each.primed = send(each, told.now, payload, false);
+    for (Subscriber& each : channel(kind).subscribers)
+      if (!each.initial_state_sent || payload != last)
+        each.initial_state_sent = send(each, update.now, payload, false);
     last = payload;
   };
-  latch(What::world, told.world, world_);
-  latch(What::transforms_static, told.transforms_static, transforms_static_);
+  latch(ChannelKind::world, update.world, world_);
+  latch(ChannelKind::transforms_static, update.transforms_static, transforms_static_);
 }
 
 /// Channels come and go with the devices; those whose name and type stay keep their number.
@@ -78,7 +74,7 @@ void Hub::adopt(const Inventory& inventory) {
       now[key] = known->second;
       devices_.erase(known);
     } else {
-      now[key] = add_channel(What::device, topic.name.c_str(), "cdr", topic.info->name.c_str());
+      now[key] = add_channel(ChannelKind::device, topic.name.c_str(), "cdr", topic.info->name.c_str());
     }
   }
   if (!devices_.empty()) {
@@ -88,7 +84,7 @@ void Hub::adopt(const Inventory& inventory) {
     for (const auto& [id, client] : clients_) {
       std::vector<std::uint32_t> known;
       for (const std::uint32_t each : gone)
-        if (each < client.told_channels) known.push_back(each);
+        if (each < client.advertised_below) known.push_back(each);
       if (!known.empty()) transport_->send_text(id, foxglove::unadvertise(known));
     }
   }
@@ -97,18 +93,18 @@ void Hub::adopt(const Inventory& inventory) {
   graph_changed_ = true;
 }
 
-void Hub::tell_latest(std::span<const ChannelMessage> latest, std::span<const std::uint32_t> channels) {
+void Hub::send_latest(std::span<const ChannelMessage> latest, std::span<const std::uint32_t> channels) {
   looking_ = false;
   for (const ChannelMessage& message : latest) {
     const auto found = channels_.find(message.channel);
     if (found == channels_.end()) continue;
     for (Subscriber& each : found->second.subscribers)
-      if (!each.primed) send(each, message.stamp, message.bytes, true);
+      if (!each.initial_state_sent) send(each, message.stamp, message.bytes, true);
   }
   for (const std::uint32_t id : channels) {
     const auto found = channels_.find(id);
     if (found == channels_.end()) continue;
-    for (Subscriber& each : found->second.subscribers) each.primed = true;
+    for (Subscriber& each : found->second.subscribers) each.initial_state_sent = true;
   }
 }
 
@@ -119,50 +115,50 @@ void Hub::send_batch(Batch& batch) {
     const auto found = channels_.find(message.channel);
     if (found != channels_.end()) send_to_all(found->second, message.stamp, message.bytes);
   }
-  if (batch.commands) send_to_all(channel(What::commands), batch.now, batch.commands, false);
+  if (batch.commands) send_to_all(channel(ChannelKind::commands), batch.now, batch.commands, false);
   if (!batch.frame) return;
   framed_ = Clock::now();
   send_poses(batch);
-  if (subscribed(What::transforms)) {
+  if (subscribed(ChannelKind::transforms)) {
     transforms_of(*batch.frame, transforms_);
-    send_to_all(channel(What::transforms), batch.now, cdr_of(transforms_));
+    send_to_all(channel(ChannelKind::transforms), batch.now, cdr_of(transforms_));
   }
-  if (subscribed(What::clock)) {
+  if (subscribed(ChannelKind::clock)) {
     msg::Clock clock;
     clock.clock = batch.now;
-    send_to_all(channel(What::clock), batch.now, cdr_of(clock));
+    send_to_all(channel(ChannelKind::clock), batch.now, cdr_of(clock));
   }
-  if (batch.contacts && subscribed(What::contacts)) {
+  if (batch.contacts && subscribed(ChannelKind::contacts)) {
     auto bytes = std::make_shared<std::vector<std::byte>>();
     wire::write_contacts(*batch.frame, *bytes);
-    send_to_all(channel(What::contacts), batch.now, bytes);
+    send_to_all(channel(ChannelKind::contacts), batch.now, bytes);
   }
   mailbox_->give_back(std::move(batch.frame));
 }
 
 void Hub::send_poses(const Batch& batch) {
-  std::vector<Subscriber>& subscribers = channel(What::poses).subscribers;
+  std::vector<Subscriber>& subscribers = channel(ChannelKind::poses).subscribers;
   if (subscribers.empty()) return;
   if (batch.epoch != poses_epoch_) {
     poses_ = {};
     poses_epoch_ = batch.epoch;
-    for (Subscriber& each : subscribers) each.primed = false;
+    for (Subscriber& each : subscribers) each.initial_state_sent = false;
   }
-  const auto is_primed = [](const Subscriber& each) { return each.primed; };
-  if (std::any_of(subscribers.begin(), subscribers.end(), is_primed)) {
+  const auto has_initial_state = [](const Subscriber& each) { return each.initial_state_sent; };
+  if (std::any_of(subscribers.begin(), subscribers.end(), has_initial_state)) {
     auto bytes = std::make_shared<std::vector<std::byte>>();
     if (poses_.write(*batch.frame, batch.epoch, false, *bytes))
       for (Subscriber& each : subscribers)
-        if (each.primed) each.primed = send(each, batch.now, bytes, true);
+        if (each.initial_state_sent) each.initial_state_sent = send(each, batch.now, bytes, true);
   }
-  if (std::all_of(subscribers.begin(), subscribers.end(), is_primed)) return;
+  if (std::all_of(subscribers.begin(), subscribers.end(), has_initial_state)) return;
   // Who has missed something needs all; but not before there is room for it.
   constexpr std::size_t room_bytes = 4u << 20;
   auto bytes = std::make_shared<std::vector<std::byte>>();
   for (Subscriber& each : subscribers) {
-    if (each.primed || transport_->waiting_bytes(each.client) > room_bytes) continue;
+    if (each.initial_state_sent || transport_->waiting_bytes(each.client) > room_bytes) continue;
     if (bytes->empty()) poses_.write(*batch.frame, batch.epoch, true, *bytes);
-    each.primed = send(each, batch.now, bytes, true);
+    each.initial_state_sent = send(each, batch.now, bytes, true);
   }
 }
 
@@ -174,19 +170,19 @@ void Hub::state_changed() {
       report_.target == before.target &&
       (report_.state == Session::State::playing || report_.tick == before.tick))
     return;
-  if (report_.epoch != before.epoch || report_.state != Session::State::playing) demand_.frame = true;
+  if (report_.epoch != before.epoch || report_.state != Session::State::playing) initial_.frame = true;
   if (report_.state != before.state && !report_.reason.empty())
     send_log(report_.state == Session::State::failed ? 40 : 20, report_.reason);
   if (report_.speed != before.speed ||
       (report_.state == Session::State::paused) != (before.state == Session::State::paused))
-    tell_own_parameters();
+    send_own_parameters();
   send_status();
   flush();
 }
 
 void Hub::send_status() {
   status_sent_ = Clock::now();
-  std::vector<Subscriber>& subscribers = channel(What::status).subscribers;
+  std::vector<Subscriber>& subscribers = channel(ChannelKind::status).subscribers;
   if (subscribers.empty()) return;
   ordered_json out;
   const auto seconds = [](const std::optional<Time>& time) {
@@ -229,18 +225,18 @@ void Hub::send_status() {
   for (Subscriber& each : subscribers) {
     const Client* const client = find(each.client);
     const bool sent = send(each, report_.now, client && client->may_steer ? admins : spectators, true);
-    each.primed = each.primed || sent;
+    each.initial_state_sent = each.initial_state_sent || sent;
   }
 }
 
 void Hub::send_log(std::uint8_t level, const std::string& text) {
-  if (!subscribed(What::log)) return;
+  if (!subscribed(ChannelKind::log)) return;
   msg::Log log;
   log.stamp = report_.now;
   log.level = level;
   log.name = "sandlot";
   log.msg = text;
-  send_to_all(channel(What::log), report_.now, cdr_of(log), true);
+  send_to_all(channel(ChannelKind::log), report_.now, cdr_of(log), true);
 }
 
 void Hub::answer(ClientId id, const Payload& response, bool text) {
@@ -250,6 +246,6 @@ void Hub::answer(ClientId id, const Payload& response, bool text) {
   transport_->send(id, {}, response, text, false);
 }
 
-void Hub::complain(ClientId client, const std::string& why) { refuse(client, why); }
+void Hub::report_refusal(ClientId client, const std::string& why) { refuse(client, why); }
 
 }  // namespace sandlot::server

@@ -114,24 +114,4 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
                              : "nothing in this world takes commands"};
 }
 
-Result<std::vector<std::byte>> command_bytes(const TopicBase& blank, bool json,
-                                             std::span<const std::byte> bytes) {
-  const std::unique_ptr<TopicBase> message = blank.clone();
-  if (json) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    SL_ASSIGN(const AnyMessage any, message_from_json(blank.info(), text));
-    std::vector<std::byte> cdr;
-    any.to_cdr(cdr);
-    SL_TRY(message->from_cdr(cdr));
-  } else {
-    SL_TRY(message->from_cdr(bytes));
-  }
-  ByteWriter before, all;
-  write(before, message->stamp);
-  write(before, message->count);
-  message->save(all);
-  const auto content = all.bytes().subspan(before.size());
-  return std::vector<std::byte>(content.begin(), content.end());
-}
-
 }  // namespace sandlot::server

@@ -49,8 +49,4 @@ struct Inventory {
 /// @pre on the simulation's thread
 std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, std::uint64_t epoch);
 
-/// A command's bytes as base/bytes.h writes them, from what a client sent.
-Result<std::vector<std::byte>> command_bytes(const TopicBase& blank, bool json,
-                                             std::span<const std::byte> bytes);
-
 }  // namespace sandlot::server

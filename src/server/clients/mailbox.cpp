@@ -21,23 +21,23 @@ void Mailbox::close() {
     const std::lock_guard lock(wake_mutex_);
     wake_ = nullptr;
   }
-  std::deque<Mail> thrown;  // after the lock: an errand's end may put another
+  std::deque<QueuedItem> thrown;  // after the lock: a task's end may put another
   const std::lock_guard lock(mutex_);
   closed_ = true;
-  thrown.swap(mail_);
+  thrown.swap(items_);
 }
 
-void Mailbox::put(Batch batch) {
+void Mailbox::push(Batch batch) {
   const std::size_t size = batch.bytes();
   {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     bytes_ += size;
-    mail_.push_back({std::move(batch), {}});
+    items_.push_back({std::move(batch), {}});
     // A frame is let go of here, on the thread that fills it.
-    for (; bytes_ > limit_ && thinned_ + 1 < mail_.size(); ++thinned_) {
-      Mail& oldest = mail_[thinned_];
-      if (oldest.errand) continue;
+    for (; bytes_ > limit_ && thinned_ + 1 < items_.size(); ++thinned_) {
+      QueuedItem& oldest = items_[thinned_];
+      if (oldest.task) continue;
       bytes_ -= oldest.batch.bytes();
       dropped_ += oldest.batch.messages.size() + (oldest.batch.frame ? 1 : 0);
       oldest.batch.frame = nullptr;
@@ -48,11 +48,11 @@ void Mailbox::put(Batch batch) {
   wake(false);
 }
 
-void Mailbox::put(Errand errand) {
+void Mailbox::push(Task task) {
   {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
-    mail_.push_back({{}, std::move(errand)});
+    items_.push_back({{}, std::move(task)});
   }
   wake(true);
 }
@@ -77,13 +77,13 @@ void Mailbox::release() {
   returned_.clear();
 }
 
-void Mailbox::take(std::deque<Mail>& out) {
+void Mailbox::take(std::deque<QueuedItem>& out) {
   {
     const std::lock_guard lock(wake_mutex_);
     woken_ = false;
   }
   const std::lock_guard lock(mutex_);
-  out.swap(mail_);
+  out.swap(items_);
   bytes_ = 0;
   thinned_ = 0;
 }

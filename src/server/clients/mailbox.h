@@ -1,11 +1,11 @@
 #pragma once
-/// What goes from the simulation's thread to the transport's: what happened in ticks, and errands.
+/// What goes from the simulation's thread to the transport's: what happened in ticks, and tasks.
 ///
 /// Batches   one per tick with something to tell. They wait in a queue of `limit_bytes`; when it is full the oldest ones lose
 ///           what viewers can do without (frames, messages), which is counted. What came from outside stays.
-/// Errands   calls of the Hub, in order with the batches; those that ask for them bound how many there are.
+/// Tasks   calls of the Hub, in order with the batches; those that ask for them bound how many there are.
 /// Frames    are given back, so that the thread that made them lets go of them and fills them again.
-/// Threads   put() and release() as said; take(), give_back() and close() belong to the transport's.
+/// Threads   push() and release() as said; take(), give_back() and close() belong to the transport's.
 /// Cost      a lock per batch that is never held while something is encoded or sent.
 #include <chrono>
 #include <deque>
@@ -38,11 +38,11 @@ struct Batch {
   std::size_t bytes() const;
 };
 
-using Errand = std::function<void(Hub&)>;
+using Task = std::function<void(Hub&)>;
 
-struct Mail {
+struct QueuedItem {
   Batch batch;
-  Errand errand;  ///< empty: it is a batch
+  Task task;  ///< empty: it is a batch
 };
 
 class Mailbox {
@@ -50,17 +50,17 @@ class Mailbox {
   explicit Mailbox(std::size_t limit_bytes = 32u << 20) : limit_(limit_bytes) {}
   /// @param wake  brings the transport's thread to take(); called with a lock of its own, also by other threads
   void open(std::function<void()> wake);
-  /// No wake() comes after it, and errands are thrown away.
+  /// No wake() comes after it, and tasks are thrown away.
   void close();
 
   /// Simulation's thread.
-  void put(Batch batch);
+  void push(Batch batch);
   /// Any thread.
-  void put(Errand errand);
+  void push(Task task);
   /// Simulation's thread: lets go of the frames that were given back.
   void release();
 
-  void take(std::deque<Mail>& out);
+  void take(std::deque<QueuedItem>& out);
   void give_back(std::shared_ptr<const Frame> frame);
 
   std::uint64_t dropped() const;
@@ -69,7 +69,7 @@ class Mailbox {
   void wake(bool now);
   const std::size_t limit_;
   mutable std::mutex mutex_;
-  std::deque<Mail> mail_;
+  std::deque<QueuedItem> items_;
   std::size_t bytes_ = 0;
   std::size_t thinned_ = 0;  ///< so many at the front have nothing left to lose
   std::uint64_t dropped_ = 0;

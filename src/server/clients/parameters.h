@@ -1,8 +1,7 @@
 #pragma once
-/// Tunable fields of devices and programs as parameters by name: "rover/laser.noise.white", "rover/controller.speed".
+/// Parameters of a simulation (sim/watch/parameters.h) in the form of the Foxglove protocol; names are their addresses.
 ///
-/// Names     those of addresses (docs/values.md): parts behind the first dot, elements as "[3]" or ".3".
-/// Values    numbers and bools; lists of numbers with a length.
+/// Values    numbers, bools, names of choices; lists of numbers with a length.
 /// Limits    list_parameters() leaves out fields inside lists of maps (stages of noise): they can be read and set by name.
 /// Threads   the simulation's, for what takes a Simulation.
 #include <span>
@@ -23,7 +22,6 @@ foxglove::Parameter read_parameter(const Simulation& simulation, const std::stri
 std::vector<foxglove::Parameter> read_parameters(const Simulation& simulation,
                                                  std::span<const std::string> names);
 
-std::string parameter_name(std::string_view target, std::string_view field);
 /// The request that sets it. Errors: a name or a value that cannot be one.
 Result<ParameterRequest> parameter_request(const foxglove::Parameter& parameter);
 

@@ -4,9 +4,9 @@
 #include "messages/messages.h"
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
-#include "server/clients/name_filter.h"
 #include "server/clients/parameters.h"
 #include "server/clients/preview.h"
+#include "server/services/name_filter.h"
 #include "sim/test_world.h"
 
 namespace sandlot::server::test {
@@ -20,9 +20,9 @@ TEST(Mailbox, LosesTheOldestMessagesWhenItIsFullButNotWhatCameFromOutside) {
     batch.now = Time::from_ns(i);
     batch.messages.push_back({1, batch.now, bytes(3000)});
     batch.commands = bytes(1);
-    mailbox.put(std::move(batch));
+    mailbox.push(std::move(batch));
   }
-  std::deque<Mail> taken;
+  std::deque<QueuedItem> taken;
   mailbox.take(taken);
   ASSERT_EQ(taken.size(), 10u);
   std::size_t whole = 0;
@@ -41,16 +41,16 @@ TEST(Mailbox, WakesOnceUntilSomebodyHasLooked) {
   Mailbox mailbox;
   int woken = 0;
   mailbox.open([&] { ++woken; });
-  mailbox.put([](Hub&) {});
-  mailbox.put([](Hub&) {});
+  mailbox.push([](Hub&) {});
+  mailbox.push([](Hub&) {});
   EXPECT_EQ(woken, 1);
-  std::deque<Mail> taken;
+  std::deque<QueuedItem> taken;
   mailbox.take(taken);
   EXPECT_EQ(taken.size(), 2u);
-  mailbox.put([](Hub&) {});
+  mailbox.push([](Hub&) {});
   EXPECT_EQ(woken, 2);
   mailbox.close();
-  mailbox.put([](Hub&) {});
+  mailbox.push([](Hub&) {});
   EXPECT_EQ(woken, 2);
 }
 
@@ -150,26 +150,6 @@ TEST(Inventory, KnowsWhereAMessageGoes) {
   EXPECT_NE(address("/rover1/drive", "std_msgs/String").find("takes geometry_msgs/msg/Twist"),
             std::string::npos);
   EXPECT_NE(address("/rover1/drove", "").find("did you mean '/rover1/drive'"), std::string::npos);
-}
-
-TEST(Inventory, TurnsMessagesIntoTheBytesThatCommandsHave) {
-  const Topic<msg::Twist> blank("/x");
-  msg::Twist twist;
-  twist.linear.x = 1.5;
-  twist.angular.z = -2;
-  ByteWriter expected;
-  write(expected, twist);
-  std::vector<std::byte> cdr;
-  write_cdr(message_info<msg::Twist>(), &twist, cdr);
-  const std::string json = R"({"linear": {"x": 1.5}, "angular": {"z": -2}})";
-  const auto from_cdr = command_bytes(blank, false, cdr);
-  const auto from_json = command_bytes(blank, true, std::as_bytes(std::span(json)));
-  ASSERT_TRUE(from_cdr);
-  ASSERT_TRUE(from_json);
-  EXPECT_EQ(*from_cdr, expected.buffer());
-  EXPECT_EQ(*from_json, expected.buffer());
-  EXPECT_FALSE(command_bytes(blank, false, std::span(cdr).first(20)));
-  EXPECT_FALSE(command_bytes(blank, true, {}));
 }
 
 }  // namespace

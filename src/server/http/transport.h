@@ -28,6 +28,10 @@ namespace sandlot::server {
 using ClientId = std::uint64_t;
 /// Bytes that several clients may wait for at once.
 using Payload = std::shared_ptr<const std::vector<std::byte>>;
+inline Payload payload_of(std::string_view text) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+  return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
+}
 
 struct TransportOptions {
   std::string address = "127.0.0.1";

@@ -2,11 +2,7 @@
 #include "sim/world/commands.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
-
-#include "messages/geometry_msgs.h"
-#include "messages/std_msgs.h"
 
 namespace sandlot {
 
@@ -39,30 +35,8 @@ void Commands::conclude(const Pending& pending, Status status, bool logged) {
   if (logged) log_request(pending.request, outcomes_.back());
 }
 
-namespace {
-
-/// A velocity or a single number has no "leave that as it is", as NaN is in a list of joints: it asks for what nobody can do,
-/// and would stay in the state and in its snapshots.
-template <class Message>
-bool is_finite_message(std::span<const std::byte> bytes) {
-  static_assert(sizeof(Message) % sizeof(double) == 0);
-  ByteReader r(bytes);
-  for (std::size_t i = 0; i < sizeof(Message) / sizeof(double); ++i) {
-    double x = 0;
-    read(r, x);
-    if (r.ok() && !std::isfinite(x)) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
 Status Commands::deliver(SimulationParts::Slot& slot, std::span<const std::byte> bytes, Time now) {
-  const TopicBase* const topic = slot.topic.get();
-  if ((topic_cast<msg::Twist>(topic) && !is_finite_message<msg::Twist>(bytes)) ||
-      (topic_cast<msg::Float64>(topic) && !is_finite_message<msg::Float64>(bytes)))
-    return Error{"the command is not finite", "numbers; what is to stay as it is needs no command"};
-  if (!slot.topic->assign(bytes)) return Error{"the bytes are no " + std::string(slot.topic->type())};
+  SL_TRY(slot.topic->assign(bytes));
   slot.topic->stamp = now;
   ++slot.topic->count;
   return {};

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
-#include "console/words.h"
+#include "console/line_parsing.h"
 #include "geometry/bounds.h"
 #include "sim/load/load.h"
 #include "sim/world/pull.h"
@@ -176,7 +176,7 @@ model::Instance made_of(const std::string& name, const Shape& shape, const Looks
 bool is_primitive(std::string_view name) { return name == "box" || name == "sphere" || name == "cylinder"; }
 
 /// The instance that MODEL stands for, without name and pose.
-Result<model::Instance> pattern_of(Call& call, const std::string& model, const Looks& looks) {
+Result<model::Instance> pattern_of(CommandCall& call, const std::string& model, const Looks& looks) {
   if (is_primitive(model)) {
     SL_ASSIGN(const Shape shape, primitive(model, looks));
     return made_of(model, shape, looks);
@@ -209,7 +209,7 @@ Result<model::Instance> pattern_of(Call& call, const std::string& model, const L
 
 }  // namespace
 
-Said say_pose(Call& call) {
+CommandResult cmd_pose(CommandCall& call) {
   SL_ASSIGN(const Simulation::Entity* const thing, find_thing(call, call.words.front()));
   const std::string& name = thing->instance.name;
   Pose X_WM = call.simulation().engine().pose(thing->id);
@@ -221,7 +221,7 @@ Said say_pose(Call& call) {
   return submit(call, {{PoseRequest{name, X_WM}, name + " at " + pose_text(X_WM)}});
 }
 
-Said say_drag(Call& call) {
+CommandResult cmd_drag(CommandCall& call) {
   SL_ASSIGN(const Simulation::Entity* const thing, find_thing(call, call.words.front()));
   const std::string& name = thing->instance.name;
   Pose X_WM = call.simulation().engine().pose(thing->id);
@@ -232,7 +232,7 @@ Said say_drag(Call& call) {
   return submit(call, {{PoseRequest{name, X_WM}, name + " at " + pose_text(X_WM)}});
 }
 
-Said say_pull(Call& call) {
+CommandResult cmd_pull(CommandCall& call) {
   SL_ASSIGN(const Simulation::Entity* const thing, find_thing(call, call.words.front()));
   const std::string& name = thing->instance.name;
   std::span<const std::string> words = call.words.subspan(1);
@@ -259,7 +259,7 @@ Said say_pull(Call& call) {
                                              " " + number_text(t.z) + " m"}});
 }
 
-Said say_add(Call& call) {
+CommandResult cmd_add(CommandCall& call) {
   std::vector<std::string> words(call.words.begin(), call.words.end());
   SL_ASSIGN(const Looks looks, take_looks(words));
   // "copy of NAME as NEW X Y" is "NAME NEW X Y".
@@ -301,12 +301,12 @@ Said say_add(Call& call) {
   return submit(call, {{SpawnRequest{std::move(instance)}, std::move(text)}});
 }
 
-Said say_remove(Call& call) {
+CommandResult cmd_remove(CommandCall& call) {
   SL_ASSIGN(const std::vector<const Simulation::Entity*> things, match_things(call, call.words.front()));
-  std::vector<Asked> asked;
+  std::vector<PendingRequest> requests;
   for (const Simulation::Entity* thing : things)
-    asked.push_back({DeleteRequest{thing->instance.name}, thing->instance.name + " removed"});
-  return submit(call, std::move(asked));
+    requests.push_back({DeleteRequest{thing->instance.name}, thing->instance.name + " removed"});
+  return submit(call, std::move(requests));
 }
 
 }  // namespace sandlot::console

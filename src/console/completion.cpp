@@ -3,8 +3,9 @@
 
 #include "base/text.h"
 #include "console/command.h"
-#include "console/words.h"
+#include "console/line_parsing.h"
 #include "devices/kind.h"
+#include "sim/watch/parameters.h"
 #include "sim/watch/values.h"
 #include "sim/world/faults.h"
 
@@ -12,7 +13,7 @@ namespace sandlot {
 namespace {
 
 using console::Argument;
-using console::Verb;
+using console::BuiltinCommand;
 using Entity = Simulation::Entity;
 
 constexpr std::size_t most_candidates = 100;
@@ -134,9 +135,9 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
       break;
     case Argument::parameter:
       complete_addresses(simulation, out, slash_if_devices, [&](const Entity& entity) {
+        Parameters parameters(simulation);
         for (const std::string& path : device_paths(entity, true))
-          for (const console::Parameter& parameter : console::parameters_of(simulation, entity, path))
-            out.add(parameter.address());
+          for (const Parameter& parameter : parameters.list(entity, path)) out.add(parameter.address());
         for (const auto& device : entity.devices) out.add(device->path + "." + failure_field);
       });
       break;
@@ -171,7 +172,7 @@ std::vector<std::string> Console::complete(std::string_view line) const {
     complete_argument(simulation, options_, Argument::command, {}, out);
     return std::move(out).take();
   }
-  const Verb* const command = console::find_command(words.front().text);
+  const BuiltinCommand* const command = console::find_command(words.front().text);
   if (!command) return {};
   std::vector<std::string> before;
   for (std::size_t i = 1; i < words.size(); ++i) before.push_back(words[i].text);

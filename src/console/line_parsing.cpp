@@ -1,4 +1,4 @@
-#include "console/words.h"
+#include "console/line_parsing.h"
 
 #include <algorithm>
 #include <cctype>

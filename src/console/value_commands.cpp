@@ -7,12 +7,13 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
-#include "console/words.h"
+#include "console/line_parsing.h"
 #include "devices/kind.h"
 #include "files/yaml.h"
-#include "messages/registry.h"
+#include "messages/command.h"
 #include "noise/chain.h"
 #include "sim/watch/monitor.h"
+#include "sim/watch/parameters.h"
 #include "sim/world/faults.h"
 
 namespace sandlot::console {
@@ -56,7 +57,7 @@ std::string line_of(const Simulation& simulation, const ValueEntry& entry) {
 }
 
 /// All values whose address fits, or that belong to a thing or device that fits.
-Status gather(Call& call, std::string_view pattern, std::vector<ValueEntry>& out) {
+Status gather(CommandCall& call, std::string_view pattern, std::vector<ValueEntry>& out) {
   if (pattern.size() > most_pattern)
     return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
   const Simulation& simulation = call.simulation();
@@ -94,19 +95,6 @@ Status gather(Call& call, std::string_view pattern, std::vector<ValueEntry>& out
   return {};
 }
 
-/// The bytes of a message as a command carries them.
-std::vector<std::byte> bytes_of(const TopicBase& slot, const AnyMessage& message) {
-  std::vector<std::byte> cdr;
-  message.to_cdr(cdr);
-  const std::unique_ptr<TopicBase> copy = slot.clone();
-  SL_CHECK(copy->from_cdr(cdr));
-  ByteWriter head, all;
-  write(head, copy->stamp);
-  write(head, copy->count);
-  copy->save(all);  // stamp, count, message
-  return {all.bytes().begin() + static_cast<std::ptrdiff_t>(head.size()), all.bytes().end()};
-}
-
 bool is_of_type(const TopicBase& slot, std::string_view type) {
   const std::string_view full = slot.type();
   return long_name(type) == full || full.substr(full.rfind('/') + 1) == type;
@@ -118,7 +106,7 @@ struct SlotFound {
 };
 
 /// The slot that a target and a type name; active ones go first.
-Result<SlotFound> find_slot(Call& call, std::string_view target, std::string_view type) {
+Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::string_view type) {
   target = without_slash(target);
   if (target.size() > 8 && target.substr(target.size() - 8) == "/command") target.remove_suffix(8);
   const Simulation::Entity* const entity = call.simulation().find_entity(robot_of(target));
@@ -154,7 +142,7 @@ Result<SlotFound> find_slot(Call& call, std::string_view target, std::string_vie
 
 }  // namespace
 
-Said say_show(Call& call) {
+CommandResult cmd_show(CommandCall& call) {
   std::vector<std::string> lines;
   Json rows = Json::array();
   const Simulation& simulation = call.simulation();
@@ -211,14 +199,15 @@ Said say_show(Call& call) {
 namespace {
 
 /// `errors`, `sim.errors`: of all devices; `rover.errors`, `*.errors`: of all devices of robots.
-Said set_errors(Call& call, std::string_view thing, const Node& value, std::string_view written) {
+CommandResult set_errors(CommandCall& call, std::string_view thing, const Node& value,
+                         std::string_view written) {
   auto factor = read_number(value, errors_field, errors_field.min, errors_field.max, false, "");
   if (!factor) return std::move(factor.error());
-  std::vector<Asked> asked;
+  std::vector<PendingRequest> requests;
   std::vector<std::string> names;
   const auto ask = [&](const std::string& target) {
-    asked.push_back({ParameterRequest{target, errors_field.key, value},
-                     target + ".errors = " + std::string(written.substr(0, 100))});
+    requests.push_back({ParameterRequest{target, errors_field.key, value},
+                        target + ".errors = " + std::string(written.substr(0, 100))});
   };
   if (thing == "sim") ask("sim");
   else
@@ -227,31 +216,32 @@ Said set_errors(Call& call, std::string_view thing, const Node& value, std::stri
       names.push_back(name);
       if (is_pattern(thing) ? !entity->devices.empty() && fits(thing, name) : thing == name) ask(name);
     }
-  if (asked.empty()) {
+  if (requests.empty()) {
     call.unknown_thing = true;
     return Error{"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, names)};
   }
-  if (asked.size() > most_matches)
+  if (requests.size() > most_matches)
     return Error{"'" + std::string(thing) + "' meets more than " + std::to_string(most_matches) + " things",
                  "narrow it down"};
-  return submit(call, std::move(asked));
+  return submit(call, std::move(requests));
 }
 
 /// `rover/laser.failure`, `*/laser.failure`.
-Said set_failure(Call& call, std::string_view thing, const Node& value, std::string_view written) {
+CommandResult set_failure(CommandCall& call, std::string_view thing, const Node& value,
+                          std::string_view written) {
   auto order = read_failure_order(value);
   if (!order) return std::move(order.error());
   SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, thing));
-  std::vector<Asked> asked;
+  std::vector<PendingRequest> requests;
   for (const std::string& device : devices)
-    asked.push_back({ParameterRequest{device, failure_field, value},
-                     device + ".failure = " + std::string(written.substr(0, 100))});
-  return submit(call, std::move(asked));
+    requests.push_back({ParameterRequest{device, failure_field, value},
+                        device + ".failure = " + std::string(written.substr(0, 100))});
+  return submit(call, std::move(requests));
 }
 
 }  // namespace
 
-Said say_set(Call& call) {
+CommandResult cmd_set(CommandCall& call) {
   const std::string_view address = without_slash(call.words.front());
   if (address.size() > most_pattern)
     return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
@@ -279,13 +269,14 @@ Said say_set(Call& call) {
   const bool plain = !is_pattern(thing) && !is_pattern(path, true);
 
   const Simulation& simulation = call.simulation();
+  Parameters parameters(simulation);
   std::vector<Parameter> matching;
   std::vector<std::string> near;
   bool met_thing = false;
   const auto look = [&](const Simulation::Entity& entity, const std::string& target) {
     if (plain ? target != thing : !fits(thing, target)) return;
     met_thing = true;
-    for (Parameter& parameter : parameters_of(simulation, entity, target)) {
+    for (Parameter& parameter : parameters.list(entity, target)) {
       const std::string whole = parameter.address();
       const std::string_view own = std::string_view(whole).substr(target.size() + 1);
       if (plain ? own == path : fits(path, own, true)) matching.push_back(std::move(parameter));
@@ -311,20 +302,14 @@ Said say_set(Call& call) {
                                           : match_devices(call, thing).error();
       return Error{"no device fits '" + std::string(thing) + "'"};
     }
-    if (plain) {
-      std::string slashes;
-      for (const char c : path)
-        if (c != ']') slashes += c == '.' || c == '[' ? '/' : c;
-      const Parameter wanted{std::string(thing), slashes, ""};
-      SL_TRY(check_parameter(simulation, wanted, value));
-    }
+    if (plain) { SL_TRY(parameters.check({std::string(thing), field_path(path)}, value)); }
     return Error{
         "no parameter '" + std::string(path.substr(0, 100)) + "' of '" + std::string(thing) + "' can be set",
         suggestion(address, near)};
   }
-  std::vector<Asked> asked;
+  std::vector<PendingRequest> requests;
   for (Parameter& parameter : matching) {
-    if (Status fine = check_parameter(simulation, parameter, value); !fine) {
+    if (Status fine = parameters.check(parameter, value); !fine) {
       fine.error().place = {};
       fine.error().path = parameter.address();
       return std::move(fine.error());
@@ -334,16 +319,16 @@ Said say_set(Call& call) {
                             ? parse_quantity(value.text(), parameter.unit.empty() ? "1" : parameter.unit)
                             : Result<double>(Error{});
     text += number ? with_unit(*number, parameter.unit) : std::string(written.substr(0, 100));
-    asked.push_back(
-        {ParameterRequest{std::move(parameter.target), std::move(parameter.path), value}, std::move(text)});
+    requests.push_back(
+        {ParameterRequest{std::move(parameter.target), std::move(parameter.field), value}, std::move(text)});
   }
-  return submit(call, std::move(asked));
+  return submit(call, std::move(requests));
 }
 
-Said say_level(Call& call) {
+CommandResult cmd_level(CommandCall& call) {
   SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, without_slash(call.words.front())));
   const std::vector<std::string> levels(call.words.begin() + 1, call.words.end());
-  std::vector<Asked> asked;
+  std::vector<PendingRequest> requests;
   for (const std::string& path : devices) {
     const Simulation::Entity* const entity = call.simulation().find_entity(robot_of(path));
     for (const auto& device : entity->devices) {
@@ -358,26 +343,26 @@ Said say_level(Call& call) {
     }
     std::string text = path + " at level";
     for (const std::string& level : levels) text += " " + level;
-    asked.push_back({LevelRequest{path, levels}, std::move(text)});
+    requests.push_back({LevelRequest{path, levels}, std::move(text)});
   }
-  return submit(call, std::move(asked));
+  return submit(call, std::move(requests));
 }
 
-Said say_command(Call& call) {
+CommandResult cmd_command(CommandCall& call) {
   SL_ASSIGN(const SlotFound found, find_slot(call, call.words[0], call.words[1]));
-  SL_ASSIGN(const AnyMessage message, message_from_json(found.slot->info(), call.rest(2)));
-  CommandRequest request{found.target, found.slot->type(), bytes_of(*found.slot, message)};
+  SL_ASSIGN(std::vector<std::byte> bytes, command_from_json(*found.slot, call.rest(2)));
+  CommandRequest request{found.target, found.slot->type(), std::move(bytes)};
   return submit(call, {{std::move(request), found.target + " got a " + found.slot->type()}});
 }
 
-Said say_sample(Call& call) {
+CommandResult cmd_sample(CommandCall& call) {
   SL_ASSIGN(const std::vector<std::string> devices, match_devices(call, without_slash(call.words.front())));
-  std::vector<Asked> asked;
-  for (const std::string& path : devices) asked.push_back({SampleRequest{path}, path + " measures"});
-  return submit(call, std::move(asked));
+  std::vector<PendingRequest> requests;
+  for (const std::string& path : devices) requests.push_back({SampleRequest{path}, path + " measures"});
+  return submit(call, std::move(requests));
 }
 
-Said say_values(Call& call) {
+CommandResult cmd_values(CommandCall& call) {
   const Monitor& monitor = call.simulation().monitor();
   if (monitor.value_names().empty() && !call.json)
     return std::optional<std::string>("the scenario names none");
@@ -392,7 +377,7 @@ Said say_values(Call& call) {
   return std::optional(call.json ? json_text(rows) : text);
 }
 
-Said say_events(Call& call) {
+CommandResult cmd_events(CommandCall& call) {
   const Monitor& monitor = call.simulation().monitor();
   if (monitor.events().empty() && !call.json) return std::optional<std::string>("the scenario has none");
   Json rows = Json::array();
@@ -416,7 +401,7 @@ std::string kind_of(const Simulation::Entity& entity) {
   return entity.instance.is_robot ? "robot" : entity.instance.model->is_static ? "static" : "object";
 }
 
-Said list_entities(Call& call, std::span<const Simulation::Entity* const> things) {
+CommandResult list_entities(CommandCall& call, std::span<const Simulation::Entity* const> things) {
   Json rows = Json::array();
   std::string text;
   for (const Simulation::Entity* thing : things) {
@@ -435,7 +420,7 @@ Said list_entities(Call& call, std::span<const Simulation::Entity* const> things
   return std::optional(call.json ? json_text(rows) : text);
 }
 
-Said list_topics(Call& call) {
+CommandResult list_topics(CommandCall& call) {
   Json rows = Json::array();
   std::string text;
   for (const TopicBase* topic : call.simulation().topics()) {
@@ -446,13 +431,14 @@ Said list_topics(Call& call) {
   return std::optional(call.json ? json_text(rows) : text);
 }
 
-Said list_parameters(Call& call) {
+CommandResult list_parameters(CommandCall& call) {
   Json rows = Json::array();
   std::string text;
   std::size_t count = 0;
   const Simulation& simulation = call.simulation();
+  Parameters parameters(simulation);
   const auto add = [&](const Simulation::Entity& entity, const std::string& target) {
-    for (const Parameter& parameter : parameters_of(simulation, entity, target)) {
+    for (const Parameter& parameter : parameters.list(entity, target)) {
       if (++count > most_matches) return;
       auto found = NamedValue::find(simulation,
                                     target + ".parameter." + parameter.address().substr(target.size() + 1));
@@ -472,7 +458,7 @@ Said list_parameters(Call& call) {
   return std::optional(call.json ? json_text(rows) : text);
 }
 
-Said list_models(Call& call) {
+CommandResult list_models(CommandCall& call) {
   Json rows = Json::array();
   std::string text;
   const auto add = [&](const std::string& name, const std::string& help) {
@@ -486,7 +472,7 @@ Said list_models(Call& call) {
   return std::optional(call.json ? json_text(rows) : text);
 }
 
-Said list_one(Call& call, std::string_view address) {
+CommandResult list_one(CommandCall& call, std::string_view address) {
   std::vector<ValueEntry> entries;
   SL_TRY(gather(call, address, entries));
   if (call.json) {
@@ -514,7 +500,7 @@ Said list_one(Call& call, std::string_view address) {
 
 }  // namespace
 
-Said say_list(Call& call) {
+CommandResult cmd_list(CommandCall& call) {
   const std::string what = call.words.empty() ? "entities" : std::string(without_slash(call.words.front()));
   if (call.words.size() > 1) return Error{"'list' lists one thing at a time"};
   const Simulation& simulation = call.simulation();

@@ -163,7 +163,7 @@ void write_light(Writer& w, const model::Light& light) {
   });
 }
 
-/// A round zone has a radius, another one its corners; what it does only as far as a colour can tell.
+/// A round zone has a radius, another one its corners; what it does only as far as a colour can show it.
 void write_zone(Writer& w, const model::SurfaceZone& zone) {
   w.object([&] {
     w.key("name").text(zone.name);
@@ -217,7 +217,7 @@ void write_joint(Writer& w, const model::Joint& joint) {
     w.key("thread_pitch_m").number(joint.thread_pitch_m);
   });
 }
-static_assert(model::world_link == LinkTree::none, "both are told as -1");
+static_assert(model::world_link == LinkTree::none, "both are written as -1");
 
 /// All but the id, as members of an object.
 std::string model_content(AssetTable& assets, const std::shared_ptr<const model::Model>& model) {
@@ -290,19 +290,20 @@ void write_instance(Writer& w, const Simulation& simulation, const Simulation::E
 
 }  // namespace
 
-WorldTeller::ByContent::iterator WorldTeller::told(const std::shared_ptr<const model::Model>& model) {
+WorldJsonWriter::ByContent::iterator WorldJsonWriter::written_model(
+    const std::shared_ptr<const model::Model>& model) {
   if (const auto known = known_models_.find(model.get());
       known != known_models_.end() && !known->second.model.expired())
-    return known->second.told;
+    return known->second.written;
   const auto [place, fresh] = models_.try_emplace(model_content(*assets_.table_, model));
   if (fresh) place->second.number = next_model_++;
   known_models_[model.get()] = {model, place};
   return place;
 }
 
-const std::string& WorldTeller::kind_json(const void* kind, const char* help,
-                                          std::span<const LevelInfo> levels,
-                                          std::vector<FieldInfo> (*describe)()) {
+const std::string& WorldJsonWriter::kind_json(const void* kind, const char* help,
+                                              std::span<const LevelInfo> levels,
+                                              std::vector<FieldInfo> (*describe)()) {
   std::string& out = kinds_[kind];
   if (!out.empty()) return out;
   nlohmann::ordered_json level_list = nlohmann::ordered_json::array(),
@@ -319,7 +320,7 @@ const std::string& WorldTeller::kind_json(const void* kind, const char* help,
   return out = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-std::string WorldTeller::tell(const Simulation& simulation, std::uint64_t epoch) {
+std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t epoch) {
   std::string out;
   Writer w(out);
   const model::Setup& setup = simulation.setup();
@@ -344,7 +345,7 @@ std::string WorldTeller::tell(const Simulation& simulation, std::uint64_t epoch)
     std::vector<ByContent::iterator> models;
     w.key("models").list([&] {
       for (const auto& entity : simulation.entities()) {
-        const auto model = models.emplace_back(told(entity->instance.model));
+        const auto model = models.emplace_back(written_model(entity->instance.model));
         if (std::exchange(model->second.used, true)) continue;
         w.raw("{\"id\":\"m" + std::to_string(model->second.number) + "\"," + model->first + "}");
       }
@@ -371,7 +372,7 @@ std::string WorldTeller::tell(const Simulation& simulation, std::uint64_t epoch)
     });
   });
   std::erase_if(known_models_, [](const auto& each) {
-    return each.second.model.expired() || !each.second.told->second.used;
+    return each.second.model.expired() || !each.second.written->second.used;
   });
   std::erase_if(models_, [](const auto& each) { return !each.second.used; });
   return out;

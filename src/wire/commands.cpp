@@ -115,7 +115,7 @@ void put_float(std::vector<std::byte>& out, double x) {
 
 }  // namespace
 
-std::string words_of(const LogEntry& entry) {
+std::string describe_request(const LogEntry& entry) {
   std::string out;
   if (entry.kind == LogEntry::command) {
     out = command_words(entry);
@@ -143,7 +143,7 @@ std::string commands_json(const Frame& frame) {
                        name_of(entry.source.kind), entry.source.id, entry.sequence, request_kind(entry.kind));
     append_json(entry.target, out);
     out += ",\"text\":";
-    append_json(words_of(entry), out);
+    append_json(describe_request(entry), out);
     out += entry.refused ? ",\"refused\":true,\"why\":" : ",\"refused\":false,\"why\":";
     append_json(entry.why, out);
     out += '}';

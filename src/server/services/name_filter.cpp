@@ -1,4 +1,4 @@
-#include "server/clients/name_filter.h"
+#include "server/services/name_filter.h"
 
 namespace sandlot::server {
 namespace {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "messages/command.h"
 #include "server/clients/hub.h"
 #include "server/clients/parameters.h"
 
@@ -15,16 +16,16 @@ constexpr const char* paused_name = "sandlot.paused";
 bool is_own(const std::string& name) { return name == speed_name || name == paused_name; }
 
 /// Answers of several parameters that come at different times; the last one who lets go of it sends them.
-struct Setting {
+struct ParameterAnswer {
   std::shared_ptr<Mailbox> mailbox;
   ClientId client = 0;
   std::string id;
   std::vector<Parameter> values;
-  std::vector<std::string> complaints;  ///< one per value; "": it was set
+  std::vector<std::string> errors;  ///< one per value; "": it was set
 
-  ~Setting() {
-    mailbox->put([client = client, id = id, values = std::move(values), complaints = std::move(complaints)](
-                     Hub& hub) { hub.answer_parameters(client, id, values, complaints); });
+  ~ParameterAnswer() {
+    mailbox->push([client = client, id = id, values = std::move(values), errors = std::move(errors)](
+                      Hub& hub) { hub.answer_parameters(client, id, values, errors); });
   }
 };
 
@@ -43,26 +44,26 @@ Parameter Hub::own_parameter(const std::string& name) const {
   return out;
 }
 
-void Hub::tell_own_parameters() {
+void Hub::send_own_parameters() {
   const Parameter own[] = {own_parameter(speed_name), own_parameter(paused_name)};
-  tell_parameters(own);
+  send_parameters(own);
 }
 
-void Hub::tell_parameters(std::span<const Parameter> changed) {
+void Hub::send_parameters(std::span<const Parameter> changed) {
   for (const auto& [id, client] : clients_) {
-    std::vector<Parameter> told;
+    std::vector<Parameter> chosen;
     for (const Parameter& each : changed)
-      if (client.all_parameters || client.parameters.count(each.name) > 0) told.push_back(each);
-    if (!told.empty()) transport_->send_text(id, foxglove::parameter_values(told));
+      if (client.all_parameters || client.parameters.count(each.name) > 0) chosen.push_back(each);
+    if (!chosen.empty()) transport_->send_text(id, foxglove::parameter_values(chosen));
   }
 }
 
 void Hub::answer_parameters(ClientId id, const std::string& about, std::span<const Parameter> values,
-                            std::span<const std::string> complaints) {
+                            std::span<const std::string> errors) {
   Client* const client = find(id);
   if (!client) return;
   if (client->calls > 0) --client->calls;
-  for (const std::string& each : complaints)
+  for (const std::string& each : errors)
     if (!each.empty()) refuse(id, each, about);
   transport_->send_text(id, foxglove::parameter_values(values, about));
 }
@@ -76,21 +77,21 @@ void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParamet
         refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are asked for by name",
                request.id));
   ++client.calls;
-  const auto setting = std::make_shared<Setting>();
-  setting->mailbox = mailbox_;
-  setting->client = id;
-  setting->id = request.id;
-  if (request.names.empty()) setting->values = {own_parameter(speed_name), own_parameter(paused_name)};
+  const auto answer = std::make_shared<ParameterAnswer>();
+  answer->mailbox = mailbox_;
+  answer->client = id;
+  answer->id = request.id;
+  if (request.names.empty()) answer->values = {own_parameter(speed_name), own_parameter(paused_name)};
   for (const std::string& name : request.names)
-    if (is_own(name)) setting->values.push_back(own_parameter(name));
-  post([setting, names = request.names](Session& session) {
+    if (is_own(name)) answer->values.push_back(own_parameter(name));
+  post([answer, names = request.names](Session& session) {
     const Simulation& simulation = session.simulation();
-    if (names.empty() && !list_parameters(simulation, setting->values))
-      setting->complaints.push_back("there are more than " + std::to_string(most_parameters) +
-                                    " parameters; ask for the others by name");
+    if (names.empty() && !list_parameters(simulation, answer->values))
+      answer->errors.push_back("there are more than " + std::to_string(most_parameters) +
+                               " parameters; ask for the others by name");
     // The session's own have no such address.
     for (Parameter& found : read_parameters(simulation, names))
-      if (found.value.index() != 0 && !is_own(found.name)) setting->values.push_back(std::move(found));
+      if (found.value.index() != 0 && !is_own(found.name)) answer->values.push_back(std::move(found));
   });
 }
 
@@ -99,45 +100,45 @@ void Hub::set_parameters(ClientId id, Client& client, const foxglove::SetParamet
   if (client.calls >= most_calls)
     return void(refuse(id, "too many requests wait for their answers", request.id));
   ++client.calls;
-  const auto setting = std::make_shared<Setting>();
-  setting->mailbox = mailbox_;
-  setting->client = id;
-  setting->id = request.id;
-  setting->values.resize(request.parameters.size());
-  setting->complaints.resize(request.parameters.size());
+  const auto answer = std::make_shared<ParameterAnswer>();
+  answer->mailbox = mailbox_;
+  answer->client = id;
+  answer->id = request.id;
+  answer->values.resize(request.parameters.size());
+  answer->errors.resize(request.parameters.size());
   for (std::size_t i = 0; i < request.parameters.size(); ++i) {
     const Parameter& parameter = request.parameters[i];
-    setting->values[i].name = parameter.name;
-    std::string& complaint = setting->complaints[i];
+    answer->values[i].name = parameter.name;
+    std::string& error = answer->errors[i];
     if (is_own(parameter.name)) {
       const auto* const number = std::get_if<double>(&parameter.value);
       const auto* const flag = std::get_if<bool>(&parameter.value);
       if (parameter.name == speed_name && number) {
         const Status status = session_.set_speed(*number == 0 ? std::nullopt : std::optional(*number));
-        if (!status) complaint = status.error().text();
+        if (!status) error = status.error().text();
       } else if (parameter.name == paused_name && flag) {
         if (*flag) session_.pause();
         else session_.play();
       } else {
-        complaint = parameter.name + (parameter.name == speed_name ? " is a number" : " is true or false");
+        error = parameter.name + (parameter.name == speed_name ? " is a number" : " is true or false");
       }
-      setting->values[i] = own_parameter(parameter.name);
-      if (complaint.empty()) setting->values[i].value = parameter.value;  // it acts before the next tick
+      answer->values[i] = own_parameter(parameter.name);
+      if (error.empty()) answer->values[i].value = parameter.value;  // it acts before the next tick
       continue;
     }
     auto made = parameter_request(parameter);
     if (!made) {
-      complaint = made.error().text();
+      error = made.error().text();
       continue;
     }
     // Until it is answered the entry says that the run is over: it is if nobody answers.
-    complaint = "the run is over";
+    error = "the run is over";
     const auto queued = session_.submit(
-        std::move(*made), {Source::Kind::admin, id}, [setting, i, &session = session_](const Status& status) {
-          setting->complaints[i] = status ? "" : setting->values[i].name + ": " + status.error().text();
-          setting->values[i] = read_parameter(session.simulation(), setting->values[i].name);
+        std::move(*made), {Source::Kind::admin, id}, [answer, i, &session = session_](const Status& status) {
+          answer->errors[i] = status ? "" : answer->values[i].name + ": " + status.error().text();
+          answer->values[i] = read_parameter(session.simulation(), answer->values[i].name);
         });
-    if (!queued) complaint = queued.error().text();
+    if (!queued) error = queued.error().text();
   }
 }
 
@@ -183,12 +184,16 @@ void Hub::publish(ClientId id, Client& client, const foxglove::ClientData& data)
     publication.target = *target;
   }
   const Inventory::Slot& slot = *publication.target.slot;
-  auto bytes = command_bytes(*slot.blank, publication.json, data.bytes);
+  auto bytes = publication.json
+                   ? command_from_json(*slot.blank,
+                                       {reinterpret_cast<const char*>(data.bytes.data()), data.bytes.size()})
+                   : command_from_cdr(*slot.blank, data.bytes);
   if (!bytes) return void(refuse(id, publication.topic + ": " + bytes.error().text()));
   const auto queued = session_.submit(
       CommandRequest{publication.target.address, slot.info->name, std::move(*bytes)},
       {Source::Kind::robot, id}, [mailbox = mailbox_, id](const Status& status) {
-        if (!status) mailbox->put([id, why = status.error().text()](Hub& hub) { hub.complain(id, why); });
+        if (!status)
+          mailbox->push([id, why = status.error().text()](Hub& hub) { hub.report_refusal(id, why); });
       });
   if (!queued) refuse(id, queued.error().text());
 }
@@ -198,7 +203,8 @@ foxglove::Graph Hub::graph() const {
   std::map<std::string, std::vector<std::string>> published, subscribed;
   for (const Inventory::Topic& topic : inventory_->topics) published[topic.name].push_back(topic.device);
   for (const auto& [id, each] : channels_)
-    if (each.what != What::device && each.owner == 0) published[each.said.topic].emplace_back("sandlot");
+    if (each.kind != ChannelKind::device && each.owner == 0)
+      published[each.advertised.topic].emplace_back("sandlot");
   for (const Inventory::Slot& slot : inventory_->slots) subscribed[slot.name].push_back(slot.device);
   for (const Inventory::Program& program : inventory_->programs) {
     for (const std::string& topic : program.reads) subscribed[topic].push_back(program.path);
@@ -207,7 +213,7 @@ foxglove::Graph Hub::graph() const {
   for (const auto& [id, each] : channels_)
     if (each.owner == 0)
       for (const Subscriber& subscriber : each.subscribers)
-        subscribed[each.said.topic].push_back("viewer " + std::to_string(subscriber.client));
+        subscribed[each.advertised.topic].push_back("viewer " + std::to_string(subscriber.client));
   for (const auto& [id, client] : clients_)
     for (const auto& [channel, publication] : client.publications) {
       const auto target = inventory_->target(publication.topic, publication.type);
@@ -216,7 +222,7 @@ foxglove::Graph Hub::graph() const {
   foxglove::Graph out;
   for (auto& [name, ids] : published) out.published.push_back(Named{name, std::move(ids)});
   for (auto& [name, ids] : subscribed) out.subscribed.push_back(Named{name, std::move(ids)});
-  for (const Service& service : services_) out.services.push_back(Named{service.name, {"sandlot"}});
+  for (const Service& service : services()) out.services.push_back(Named{service.name, {"sandlot"}});
   return out;
 }
 

@@ -8,9 +8,9 @@ namespace {
 
 using A = Argument;
 
-const std::vector<Verb>& table() {
-  static const std::vector<Verb> commands{
-      {"help", "?", "[WORD]", "All commands, or one of them in full.", false, 0, {A::command}, say_help},
+const std::vector<BuiltinCommand>& table() {
+  static const std::vector<BuiltinCommand> commands{
+      {"help", "?", "[WORD]", "All commands, or one of them in full.", false, 0, {A::command}, cmd_help},
       {"list",
        "ls",
        "[entities|models|topics|parameters|NAME|NAME/DEVICE] [--json]",
@@ -18,7 +18,7 @@ const std::vector<Verb>& table() {
        false,
        0,
        {A::list},
-       say_list},
+       cmd_list},
       {"show",
        "view get",
        "ADDRESS... [--json]",
@@ -26,7 +26,7 @@ const std::vector<Verb>& table() {
        false,
        1,
        {A::value},
-       say_show},
+       cmd_show},
       {"set",
        "",
        "ADDRESS VALUE",
@@ -34,7 +34,7 @@ const std::vector<Verb>& table() {
        true,
        2,
        {A::parameter, A::none},
-       say_set,
+       cmd_set,
        true},
       {"level",
        "",
@@ -43,7 +43,7 @@ const std::vector<Verb>& table() {
        true,
        2,
        {A::device, A::level},
-       say_level,
+       cmd_level,
        true},
       {"command",
        "",
@@ -52,7 +52,7 @@ const std::vector<Verb>& table() {
        true,
        3,
        {A::target, A::type, A::none},
-       say_command,
+       cmd_command,
        true,
        true},
       {"sample",
@@ -62,11 +62,11 @@ const std::vector<Verb>& table() {
        true,
        1,
        {A::device},
-       say_sample,
+       cmd_sample,
        true},
-      {"pause", "", "", "Stops the clock.", true, 0, {A::none}, say_pause},
-      {"run", "play", "[SPEED]", "Continues the run.", true, 0, {A::speed}, say_run},
-      {"step", "", "[N]", "Runs N ticks, one by default, then pauses.", true, 0, {A::none}, say_step},
+      {"pause", "", "", "Stops the clock.", true, 0, {A::none}, cmd_pause},
+      {"run", "play", "[SPEED]", "Continues the run.", true, 0, {A::speed}, cmd_run},
+      {"step", "", "[N]", "Runs N ticks, one by default, then pauses.", true, 0, {A::none}, cmd_step},
       {"speed",
        "",
        "[X|max]",
@@ -74,8 +74,8 @@ const std::vector<Verb>& table() {
        true,
        0,
        {A::speed},
-       say_speed},
-      {"reset", "", "", "Returns to the beginning.", true, 0, {A::none}, say_reset, false, false, true},
+       cmd_speed},
+      {"reset", "", "", "Returns to the beginning.", true, 0, {A::none}, cmd_reset, false, false, true},
       {"jump",
        "rewind",
        "TIME",
@@ -83,7 +83,7 @@ const std::vector<Verb>& table() {
        true,
        1,
        {A::none},
-       say_jump,
+       cmd_jump,
        false,
        false,
        true},
@@ -94,7 +94,7 @@ const std::vector<Verb>& table() {
        true,
        1,
        {A::thing, A::none},
-       say_pose,
+       cmd_pose,
        true},
       {"drag",
        "",
@@ -103,7 +103,7 @@ const std::vector<Verb>& table() {
        true,
        3,
        {A::thing, A::none},
-       say_drag,
+       cmd_drag,
        true},
       {"pull",
        "",
@@ -112,7 +112,7 @@ const std::vector<Verb>& table() {
        true,
        2,
        {A::thing, A::link, A::none},
-       say_pull,
+       cmd_pull,
        true},
       {"add",
        "",
@@ -121,7 +121,7 @@ const std::vector<Verb>& table() {
        true,
        3,
        {A::model, A::none},
-       say_add,
+       cmd_add,
        true},
       {"remove",
        "delete",
@@ -130,9 +130,9 @@ const std::vector<Verb>& table() {
        true,
        1,
        {A::thing},
-       say_remove,
+       cmd_remove,
        true},
-      {"store", "", "FILE", "Writes the state to a snapshot file.", true, 1, {A::none}, say_store},
+      {"store", "", "FILE", "Writes the state to a snapshot file.", true, 1, {A::none}, cmd_store},
       {"load",
        "",
        "FILE",
@@ -140,11 +140,11 @@ const std::vector<Verb>& table() {
        true,
        1,
        {A::none},
-       say_load,
+       cmd_load,
        false,
        false,
        true},
-      {"record", "", "FILE|off", "Begins a recording, or ends it.", true, 1, {A::off}, say_record},
+      {"record", "", "FILE|off", "Begins a recording, or ends it.", true, 1, {A::off}, cmd_record},
       {"at",
        "",
        "TIME LINE",
@@ -152,12 +152,12 @@ const std::vector<Verb>& table() {
        true,
        2,
        {A::none},
-       say_at,
+       cmd_at,
        false,
        true},
-      {"time", "", "", "Simulated time, tick, speed, and whether it runs.", false, 0, {A::none}, say_time},
-      {"hash", "", "", "Hash of all state; equal runs have equal hashes.", false, 0, {A::none}, say_hash},
-      {"values", "", "[--json]", "The values that the scenario names.", false, 0, {A::none}, say_values},
+      {"time", "", "", "Simulated time, tick, speed, and whether it runs.", false, 0, {A::none}, cmd_time},
+      {"hash", "", "", "Hash of all state; equal runs have equal hashes.", false, 0, {A::none}, cmd_hash},
+      {"values", "", "[--json]", "The values that the scenario names.", false, 0, {A::none}, cmd_values},
       {"events",
        "",
        "[--json]",
@@ -165,19 +165,19 @@ const std::vector<Verb>& table() {
        false,
        0,
        {A::none},
-       say_events},
-      {"echo", "", "TEXT", "Prints the text; for scripts.", false, 0, {A::none}, say_echo, false, true},
-      {"quit", "", "", "Ends the run.", true, 0, {A::none}, say_quit},
+       cmd_events},
+      {"echo", "", "TEXT", "Prints the text; for scripts.", false, 0, {A::none}, cmd_echo, false, true},
+      {"quit", "", "", "Ends the run.", true, 0, {A::none}, cmd_quit},
   };
   return commands;
 }
 
 }  // namespace
 
-std::span<const Verb> commands() { return table(); }
+std::span<const BuiltinCommand> commands() { return table(); }
 
-const Verb* find_command(std::string_view name) {
-  for (const Verb& command : table()) {
+const BuiltinCommand* find_command(std::string_view name) {
+  for (const BuiltinCommand& command : table()) {
     if (name == command.name) return &command;
     for (const std::string_view other : split(command.others, ' '))
       if (!other.empty() && name == other) return &command;
@@ -187,7 +187,7 @@ const Verb* find_command(std::string_view name) {
 
 std::vector<std::string> command_names(const Console::Options& options) {
   std::vector<std::string> out;
-  for (const Verb& command : table()) {
+  for (const BuiltinCommand& command : table()) {
     out.emplace_back(command.name);
     for (const std::string_view other : split(command.others, ' '))
       if (!other.empty()) out.emplace_back(other);
@@ -197,10 +197,10 @@ std::vector<std::string> command_names(const Console::Options& options) {
   return out;
 }
 
-Said say_help(Call& call) {
+CommandResult cmd_help(CommandCall& call) {
   if (!call.words.empty()) {
     const std::string& word = call.words.front();
-    if (const Verb* const command = find_command(word)) {
+    if (const BuiltinCommand* const command = find_command(word)) {
       std::string text = std::string(command->name) + (*command->usage ? " " : "") + command->usage + "\n" +
                          command->help;
       if (*command->others) text += std::string("\nAlso: ") + command->others;
@@ -214,13 +214,14 @@ Said say_help(Call& call) {
                  suggestion(word, command_names(call.options))};
   }
   std::size_t width = 0;
-  for (const Verb& command : table()) width = std::max(width, std::string_view(command.name).size());
+  for (const BuiltinCommand& command : table())
+    width = std::max(width, std::string_view(command.name).size());
   std::string text;
   const auto add = [&](const std::string& name, const std::string& help) {
     text += (text.empty() ? "" : "\n") + name +
             std::string(std::max(width, name.size()) - name.size() + 2, ' ') + help;
   };
-  for (const Verb& command : table()) add(command.name, command.help);
+  for (const BuiltinCommand& command : table()) add(command.name, command.help);
   if (call.options.experiment)
     for (const HookCommand& own : call.options.experiment->commands()) add(own.name, own.help);
   text += "\n`help WORD` says what follows a word.";

@@ -1,4 +1,4 @@
-/// Commands about the run as a whole: its clock, its state in files, what it says of itself.
+/// Commands about the run as a whole: its clock, its state in files, its description.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
-#include "console/words.h"
+#include "console/line_parsing.h"
 #include "sim/world/snapshot.h"
 
 namespace sandlot::console {
@@ -36,7 +36,7 @@ std::string speed_text(std::optional<double> speed) {
   return speed ? "real time x " + number_text(*speed) : std::string("as fast as possible");
 }
 
-Status set_speed(Call& call, std::string text) {
+Status set_speed(CommandCall& call, std::string text) {
   if (text == "max" || text == "0") return call.session.set_speed(std::nullopt);
   if (!text.empty() && (text.back() == 'x' || text.back() == 'X')) text.pop_back();
   double factor = 0;
@@ -70,12 +70,12 @@ bool is_snapshot_file(const std::string& file) {
 
 }  // namespace
 
-Said say_pause(Call& call) {
+CommandResult cmd_pause(CommandCall& call) {
   call.session.pause();
   return std::optional("paused " + at(call.simulation()));
 }
 
-Said say_run(Call& call) {
+CommandResult cmd_run(CommandCall& call) {
   if (!call.words.empty()) SL_TRY(set_speed(call, call.words.front()));
   const Session::Report report = call.session.report();
   if (report.state == Session::State::ended || report.state == Session::State::failed)
@@ -86,7 +86,7 @@ Said say_run(Call& call) {
                                           : "runs at speed " + call.words.front());
 }
 
-Said say_step(Call& call) {
+CommandResult cmd_step(CommandCall& call) {
   double count = 1;
   if (!call.words.empty() && (!parse_number(call.words.front(), count) || !(count >= 1 && count <= 1e9) ||
                               count != std::floor(count)))
@@ -96,19 +96,19 @@ Said say_step(Call& call) {
                        std::to_string(call.simulation().tick_index()));
 }
 
-Said say_speed(Call& call) {
+CommandResult cmd_speed(CommandCall& call) {
   if (call.words.empty()) return std::optional(speed_text(call.session.report().speed));
   SL_TRY(set_speed(call, call.words.front()));
   const bool max = call.words.front() == "max" || call.words.front() == "0";
   return std::optional(max ? speed_text(std::nullopt) : "real time x " + call.words.front());
 }
 
-Said say_reset(Call& call) {
+CommandResult cmd_reset(CommandCall& call) {
   SL_TRY(call.session.reset());
   return std::optional("back to " + number_text(call.session.report().begin.s()) + " s");
 }
 
-Said say_jump(Call& call) {
+CommandResult cmd_jump(CommandCall& call) {
   std::string text;
   for (const std::string& word : call.words) text += (text.empty() ? "" : " ") + word;
   const bool relative = !text.empty() && (text.front() == '+' || text.front() == '-');
@@ -122,7 +122,7 @@ Said say_jump(Call& call) {
   return std::optional("goes to " + number_text(to.s()) + " s");
 }
 
-Said say_store(Call& call) {
+CommandResult cmd_store(CommandCall& call) {
   SL_ASSIGN(const std::string file, file_within(call.options, call.words.front()));
   std::error_code failed;
   // Nobody shall lose a scenario to a slip.
@@ -133,7 +133,7 @@ Said say_store(Call& call) {
   return std::optional("stored in " + file + " " + at(call.simulation()));
 }
 
-Said say_load(Call& call) {
+CommandResult cmd_load(CommandCall& call) {
   SL_ASSIGN(const std::string file, file_within(call.options, call.words.front()));
   SL_ASSIGN(std::vector<std::byte> bytes, read_snapshot(file));
   call.session.load(std::move(bytes),
@@ -145,7 +145,7 @@ Said say_load(Call& call) {
   return std::optional<std::string>();
 }
 
-Said say_record(Call& call) {
+CommandResult cmd_record(CommandCall& call) {
   if (!call.options.record) return Error{"nothing can be recorded here"};
   if (call.words.front() == "off") {
     SL_ASSIGN(std::string text, call.options.record(""));
@@ -159,13 +159,13 @@ Said say_record(Call& call) {
   return std::optional(std::move(text));
 }
 
-Said say_at(Call& call) {
+CommandResult cmd_at(CommandCall& call) {
   SL_CHECK(call.schedule != nullptr);
   SL_ASSIGN(const Time at, call.schedule(trim(call.line)));
-  return std::optional("will be said at " + number_text(at.s()) + " s");
+  return std::optional("will run at " + number_text(at.s()) + " s");
 }
 
-Said say_time(Call& call) {
+CommandResult cmd_time(CommandCall& call) {
   const Session::Report report = call.session.report();
   std::string text = fmt::format("{} s, tick {}, {}", number_text(call.simulation().now().s()),
                                  call.simulation().tick_index(), name_of(report.state));
@@ -175,18 +175,18 @@ Said say_time(Call& call) {
   return std::optional(std::move(text));
 }
 
-Said say_hash(Call& call) {
+CommandResult cmd_hash(CommandCall& call) {
   return std::optional(
       fmt::format("{:016x} after tick {}", call.simulation().state_hash(), call.simulation().tick_index()));
 }
 
-Said say_echo(Call& call) {
+CommandResult cmd_echo(CommandCall& call) {
   const std::size_t blank = trim(call.line).find_first_of(" \t");
   return std::optional(blank == std::string_view::npos ? std::string()
                                                        : std::string(trim(trim(call.line).substr(blank))));
 }
 
-Said say_quit(Call& call) {
+CommandResult cmd_quit(CommandCall& call) {
   call.session.quit();
   return std::optional<std::string>("the run ends " + at(call.simulation()));
 }

@@ -1,0 +1,35 @@
+/// Sandlot's own services: the console, its completion, watched values.
+#include "console/console.h"
+
+#include "server/services/service.h"
+
+namespace sandlot::server::service {
+
+void console(const ServiceContext& context, const msg::Console::Request& request,
+             const Reply<msg::Console>& reply) {
+  const Caller caller{context.may_steer, {Source::Kind::admin, context.client}};
+  context.host.post([&console = context.host.console(), caller, reply, line = request.line](Session&) {
+    console.execute(line, caller, [reply](const Answer& answer) { reply({answer.ok, answer.text}); });
+  });
+}
+
+void complete(const ServiceContext& context, const msg::Complete::Request& request,
+              const Reply<msg::Complete>& reply) {
+  context.host.post([&console = context.host.console(), reply, line = request.line](Session&) {
+    reply({console.complete(line)});
+  });
+}
+
+void watch_values(const ServiceContext& context, const msg::WatchValues::Request& request,
+                  const Reply<msg::WatchValues>& reply) {
+  if (request.values.empty()) return reply({.text = "no values are named"});
+  if (!(request.rate_hz >= 0 && request.rate_hz <= 1e6))
+    return reply({.text = "the rate is not within 0 and 1e6 Hz"});
+  context.host.watch(context.client, request.values, request.rate_hz,
+                     [reply](const Result<std::string>& topic) {
+                       if (topic) reply({.ok = true, .topic = *topic});
+                       else reply({.text = topic.error().text()});
+                     });
+}
+
+}  // namespace sandlot::server::service
