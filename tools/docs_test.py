@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the pages: every relative link leads to a file, every anchor to a heading, and every function that a page links to
-its source file by [`name`](path) stands in that file."""
+"""Checks the pages: every relative link leads to a file, every anchor to a heading, every function that a page links to its
+source file by [`name`](path) stands in that file, and so does every block of code that begins with ```cpp from=path."""
 import pathlib
 import re
 import subprocess
@@ -9,6 +9,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINK = re.compile(r"!?\[([^\]]*)\]\(([^)\s]+)\)")
+QUOTE = re.compile(r"^```\w+ from=(\S+)\n(.*?)^```", re.M | re.S)
 SKIPPED = {"build", "node_modules", ".git"}
 
 
@@ -46,6 +47,10 @@ def mistakes(root):
             if code and path.suffix in {".h", ".cpp"}:
                 if not re.search(rf"\b{re.escape(code[1].split('::')[-1])}\b", path.read_text()):
                     found.append(f"{page.relative_to(root)}: '{code[1]}' is not in {name}")
+        for name, code in QUOTE.findall(page.read_text()):
+            source = root / name
+            if not source.exists() or code not in source.read_text():
+                found.append(f"{page.relative_to(root)}: this is not in {name}:\n{code}")
     return found
 
 
@@ -70,10 +75,11 @@ class Docs(unittest.TestCase):
             root = pathlib.Path(folder)
             (root / "code.cpp").write_text("void here() {}\n")
             (root / "good.md").write_text("# A heading\n[`here`](code.cpp), [x](#a-heading), [y](https://a.b/c)\n"
-                                          "```\n[in](code)\n```\n")
+                                          "```\n[in](code)\n```\n```cpp from=code.cpp\nvoid here() {}\n```\n")
             self.assertEqual(mistakes(root), [])
-            (root / "bad.md").write_text("[a](gone.md) [b](good.md#nothing) [`away`](code.cpp) ![c](gone.png)\n")
-            self.assertEqual(len(mistakes(root)), 4)
+            (root / "bad.md").write_text("[a](gone.md) [b](good.md#nothing) [`away`](code.cpp) ![c](gone.png)\n"
+                                         "```cpp from=code.cpp\nvoid there() {}\n```\n")
+            self.assertEqual(len(mistakes(root)), 5)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "console/console.h"
 #include "server/server.h"
+#include "sim/session/session.h"
 #include "sim/test_world.h"
 
 namespace sandlot::app {

@@ -12,6 +12,7 @@
 #include "run/outputs.h"
 #include "server/http/http.h"
 #include "server/server.h"
+#include "sim/session/session.h"
 
 namespace sandlot::app {
 namespace {

@@ -1,17 +1,19 @@
 #include "base/field_json.h"
 
-#include <nlohmann/json.hpp>
-
 namespace sandlot {
 
-nlohmann::ordered_json field_json(const FieldInfo& field) {
-  nlohmann::ordered_json out{{"type", field.type},         {"unit", field.unit},
-                             {"help", field.help},         {"default", field.default_value},
-                             {"required", field.required}, {"tunable", field.tunable},
-                             {"choices", field.choices},   {"length", field.length}};
-  if (field.type == "number" || field.type == "integer" || field.type == "list of number")
-    out["min"] = field.min, out["max"] = field.max;
-  return out;
+void write_field(JsonWriter& json, const FieldInfo& field) {
+  json.key("type").text(field.type);
+  json.key("unit").text(field.unit);
+  json.key("help").text(field.help);
+  json.key("default").text(field.default_value);
+  json.key("required").flag(field.required);
+  json.key("tunable").flag(field.tunable);
+  json.key("choices").texts(field.choices);
+  json.key("length").integer(field.length);
+  if (field.type != "number" && field.type != "integer" && field.type != "list of number") return;
+  json.key("min").real(field.min);
+  json.key("max").real(field.max);
 }
 
 }  // namespace sandlot

@@ -1,13 +1,12 @@
 #pragma once
 /// A field of a spec as JSON, for `sandlot list --json` and for the forms of viewers.
-#include <nlohmann/json_fwd.hpp>
-
 #include "base/describe.h"
+#include "base/json_writer.h"
 
 namespace sandlot {
 
-/// All but its path, which each of those who ask calls by another name: type, unit, help, default, required, tunable, choices,
-/// length; min and max of numbers and lists of them.
-nlohmann::ordered_json field_json(const FieldInfo& field);
+/// Writes all but its path, which each caller names in its own way, as members of the object that is open: type, unit, help,
+/// default, required, tunable, choices, length; min and max of numbers and lists of them.
+void write_field(JsonWriter& json, const FieldInfo& field);
 
 }  // namespace sandlot

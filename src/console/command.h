@@ -56,16 +56,17 @@ enum class Argument : std::uint8_t {
   speed,
 };
 
+/// A command of the console's own, in contrast to those of a program's hooks.
 struct BuiltinCommand {
   const char* name;
-  const char* others;               ///< further names, parted by blanks
-  const char* usage;                ///< what follows the name
-  const char* help;                 ///< one sentence
-  bool steers;                      ///< it changes the run, or writes a file
-  std::size_t least;                ///< words that must follow
-  std::vector<Argument> arguments;  ///< the last one goes for all that follow
+  const char* aliases = "";   ///< further names, separated by blanks
+  const char* usage = "";     ///< what follows the name
+  const char* help;           ///< one sentence
+  bool steers = false;        ///< it changes the run, or writes a file: not for spectators
+  std::size_t min_words = 0;  ///< that must follow
+  std::vector<Argument> arguments = {Argument::none};  ///< the last one goes for all that follow
   CommandResult (*act)(CommandCall&);
-  bool submits = false;  ///< all it does goes through submit(): it can be rehearsed
+  bool submits = false;  ///< all its effects go through submit(): it can be rehearsed
   bool plain = false;    ///< quotes are letters like others
   bool travels = false;  ///< it leaves the present time
 };

@@ -72,7 +72,7 @@ console::CommandResult act(CommandCall& call, const BuiltinCommand& command, std
   }
   texts.erase(texts.begin());
   call.ends.erase(call.ends.begin());
-  if (texts.size() < command.least)
+  if (texts.size() < command.min_words)
     return Error{"'" + std::string(command.name) + "' needs more words",
                  std::string(command.name) + " " + command.usage};
   if (texts.size() > 0 && !*command.usage)
@@ -150,7 +150,7 @@ Status Console::rehearse(std::string_view line) {
     return unknown_command(name, options_);
   }
   if (!command->submits) {
-    if (words.size() <= command->least)
+    if (words.size() <= command->min_words)
       return Error{"'" + name + "' needs more words", name + " " + command->usage};
     return {};
   }
@@ -249,7 +249,7 @@ Status Console::before_tick() {
     const BuiltinCommand* const command = words.empty() ? nullptr : console::find_command(words.front().text);
     due.over = !due.of_run || (command && command->travels);
     const Scheduled line = due;
-    const std::string when = "at " + number_text(session_.simulation().now().s()) + " s: ";
+    const std::string when = "at " + readable(session_.simulation().now().s()) + " s: ";
     const auto take = [answers = answers_, when, line](const Answer& answer) {
       if (answer.ok || !line.of_run)
         answers->answers.push_back(when + (answer.ok ? "" : "error: ") + answer.text);

@@ -21,7 +21,7 @@ std::string escaped(std::string_view text, std::string_view signs) {
 std::string row(const BuiltinCommand& command) {
   const std::string text = std::string("| `") + command.name + (*command.usage ? " " : "") +
                            escaped(command.usage, "|") + "`" + (command.steers ? " \\*" : "") + " | ";
-  return text + (*command.others ? "also `" + std::string(command.others) + "`" : "") + " | " +
+  return text + (*command.aliases ? "also `" + std::string(command.aliases) + "`" : "") + " | " +
          escaped(command.help, "|*") + " |\n";
 }
 

@@ -1,5 +1,7 @@
 #include "console/line_parsing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -186,8 +188,16 @@ Result<Color> read_color(std::string_view text) {
   return Color{parts[0], parts[1], parts[2], parts[3]};
 }
 
+std::string readable(double value) {
+  constexpr double exact = 9007199254740992.0;  // 2^53
+  if (!std::isfinite(value) || (value == std::floor(value) && std::abs(value) < exact))
+    return number_text(value + 0.0);
+  if (std::abs(value) < 1000 || std::abs(value) >= exact) return fmt::format("{:.6g}", value);
+  return number_text(std::round(value * 1000) / 1000);
+}
+
 std::string with_unit(double value, std::string_view unit) {
-  std::string text = number_text(value);
+  std::string text = readable(value);
   if (!unit.empty() && unit != "1") text.append(" ").append(unit);
   return text;
 }

@@ -36,7 +36,10 @@ Result<double> take_quantity(std::span<const std::string>& words, const char* na
 /// "red", "#ff8000" or "1,0.5,0[,1]".
 Result<Color> read_color(std::string_view text);
 
-/// A number with its unit as people read it: "0.02 m", "3".
+/// A number as people read it: to six significant digits, but no coarser than thousandths; whole numbers are exact. Answers
+/// that programs read (--json) have all digits.
+std::string readable(double value);
+/// The same with its unit: "0.02 m", "3".
 std::string with_unit(double value, std::string_view unit);
 
 }  // namespace sandlot::console

@@ -78,5 +78,15 @@ TEST(Words, Colours) {
   EXPECT_EQ(read_color("redd").error().fix.find("did you mean 'red'") != std::string::npos, true);
 }
 
+TEST(Numbers, AreRoundedForPeopleButWholeOnesAndMillisecondsStay) {
+  EXPECT_EQ(readable(0.1 + 0.2), "0.3");
+  EXPECT_EQ(readable(1.0 / 3), "0.333333");
+  EXPECT_EQ(readable(1.23456789e-9), "1.23457e-09");
+  EXPECT_EQ(readable(1234567), "1234567") << "a tick";
+  EXPECT_EQ(readable(12345.6789), "12345.679") << "a time";
+  EXPECT_EQ(readable(-0.0), "0");
+  EXPECT_EQ(with_unit(0.30000000000000004, "m"), "0.3 m");
+}
+
 }  // namespace
 }  // namespace sandlot::console

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string at(const Simulation& simulation) {
-  return "at " + number_text(simulation.now().s()) + " s, tick " + std::to_string(simulation.tick_index());
+  return "at " + readable(simulation.now().s()) + " s, tick " + std::to_string(simulation.tick_index());
 }
 
 const char* name_of(Session::State state) {
@@ -33,7 +33,7 @@ const char* name_of(Session::State state) {
 }
 
 std::string speed_text(std::optional<double> speed) {
-  return speed ? "real time x " + number_text(*speed) : std::string("as fast as possible");
+  return speed ? "real time x " + readable(*speed) : std::string("as fast as possible");
 }
 
 Status set_speed(CommandCall& call, std::string text) {
@@ -105,7 +105,7 @@ CommandResult cmd_speed(CommandCall& call) {
 
 CommandResult cmd_reset(CommandCall& call) {
   SL_TRY(call.session.reset());
-  return std::optional("back to " + number_text(call.session.report().begin.s()) + " s");
+  return std::optional("back to " + readable(call.session.report().begin.s()) + " s");
 }
 
 CommandResult cmd_jump(CommandCall& call) {
@@ -119,7 +119,7 @@ CommandResult cmd_jump(CommandCall& call) {
     return Error{"TIME: must be in [0, 9e9] s, is " + number_text(*seconds)};
   const Time to = Time::from_s(*seconds);
   SL_TRY(call.session.jump(to));
-  return std::optional("goes to " + number_text(to.s()) + " s");
+  return std::optional("goes to " + readable(to.s()) + " s");
 }
 
 CommandResult cmd_store(CommandCall& call) {
@@ -162,12 +162,12 @@ CommandResult cmd_record(CommandCall& call) {
 CommandResult cmd_at(CommandCall& call) {
   SL_CHECK(call.schedule != nullptr);
   SL_ASSIGN(const Time at, call.schedule(trim(call.line)));
-  return std::optional("will run at " + number_text(at.s()) + " s");
+  return std::optional("will run at " + readable(at.s()) + " s");
 }
 
 CommandResult cmd_time(CommandCall& call) {
   const Session::Report report = call.session.report();
-  std::string text = fmt::format("{} s, tick {}, {}", number_text(call.simulation().now().s()),
+  std::string text = fmt::format("{} s, tick {}, {}", readable(call.simulation().now().s()),
                                  call.simulation().tick_index(), name_of(report.state));
   if (!report.reason.empty()) text += " (" + report.reason + ")";
   text += ", " + speed_text(report.speed);

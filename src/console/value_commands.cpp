@@ -2,8 +2,8 @@
 #include "sim/watch/values.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "base/json_writer.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
@@ -19,7 +19,6 @@
 namespace sandlot::console {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Is = ValueFound::Is;
 
 std::string_view thing_of(std::string_view address) { return address.substr(0, address.find('.')); }
@@ -29,14 +28,38 @@ std::string_view without_slash(std::string_view address) {
   return address;
 }
 
-std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+/// A list of objects as JSON.
+class JsonRows {
+ public:
+  JsonRows() { json_.begin_list(); }
+  /// @param members  writes those of one object
+  template <class F>
+  void add(F members) {
+    json_.object([&] { members(json_); });
+  }
+  std::string take() && {
+    json_.end_list();
+    return std::move(text_);
+  }
 
-Json row(const ValueEntry& entry) {
-  return {{"address", entry.path},
-          {"unit", entry.unit},
-          {"help", entry.help},
-          {"value", entry.is == Is::value ? Json(entry.value) : Json()},
-          {"count", entry.list ? entry.count : 0}};
+ private:
+  std::string text_;
+  JsonWriter json_{text_};
+};
+
+void write_number(JsonWriter& json, std::string_view key, std::optional<double> value) {
+  if (value) json.key(key).real(*value);
+  else json.key(key).null();
+}
+
+void add_row(JsonRows& rows, const ValueEntry& entry) {
+  rows.add([&](JsonWriter& json) {
+    json.key("address").text(entry.path);
+    json.key("unit").text(entry.unit);
+    json.key("help").text(entry.help);
+    write_number(json, "value", entry.is == Is::value ? std::optional(entry.value) : std::nullopt);
+    json.key("count").integer(entry.list ? entry.count : 0);
+  });
 }
 
 std::string line_of(const Simulation& simulation, const ValueEntry& entry) {
@@ -46,7 +69,7 @@ std::string line_of(const Simulation& simulation, const ValueEntry& entry) {
     for (std::size_t i = 0; i < entry.count && i < most; ++i) {
       auto element = NamedValue::find_or_wait(simulation, entry.path + "[" + std::to_string(i) + "]");
       const auto value = element.read();
-      text += (i ? ", " : "") + (value ? number_text(*value) : "-");
+      text += (i ? ", " : "") + (value ? readable(*value) : "-");
     }
     text += entry.count > most ? ", ...]" : "]";
     if (!entry.unit.empty() && entry.unit != "1") text += " " + entry.unit;
@@ -144,7 +167,7 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
 
 CommandResult cmd_show(CommandCall& call) {
   std::vector<std::string> lines;
-  Json rows = Json::array();
+  JsonRows rows;
   const Simulation& simulation = call.simulation();
   std::size_t met = 0;
   for (const std::string& word : call.words) {
@@ -154,7 +177,7 @@ CommandResult cmd_show(CommandCall& call) {
       ValueEntry entry{value->address(), value->unit(), "", number ? Is::value : Is::absent,
                        number.value_or(0)};
       lines.push_back(line_of(simulation, entry));
-      rows.push_back(row(entry));
+      add_row(rows, entry);
       continue;
     }
     std::vector<ValueEntry> entries;
@@ -178,7 +201,7 @@ CommandResult cmd_show(CommandCall& call) {
       ValueEntry entry{expression.text(), expression.unit(), "", number ? Is::value : Is::absent,
                        number ? number->value : 0};
       lines.push_back(line_of(simulation, entry));
-      rows.push_back(row(entry));
+      add_row(rows, entry);
       continue;
     }
     // Of all words together: a line has room for two thousand '*'.
@@ -187,10 +210,10 @@ CommandResult cmd_show(CommandCall& call) {
       return Error{"the line meets more than " + std::to_string(most_matches) + " values", "narrow it down"};
     for (const ValueEntry& entry : entries) {
       if (!call.json) lines.push_back(line_of(simulation, entry));
-      else rows.push_back(row(entry));
+      else add_row(rows, entry);
     }
   }
-  if (call.json) return std::optional(json_text(rows));
+  if (call.json) return std::optional(std::move(rows).take());
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
   return std::optional(std::move(text));
@@ -366,33 +389,38 @@ CommandResult cmd_values(CommandCall& call) {
   const Monitor& monitor = call.simulation().monitor();
   if (monitor.value_names().empty() && !call.json)
     return std::optional<std::string>("the scenario names none");
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   for (std::uint32_t i = 0; i < monitor.value_names().size(); ++i) {
     const auto value = monitor.value(i);
     const std::string& name = monitor.value_names()[i];
-    rows.push_back({{"name", name}, {"value", value ? Json(*value) : Json()}});
-    text += (text.empty() ? "" : "\n") + name + (value ? " = " + number_text(*value) : " has no value");
+    rows.add([&](JsonWriter& json) {
+      json.key("name").text(name);
+      write_number(json, "value", value);
+    });
+    text += (text.empty() ? "" : "\n") + name + (value ? " = " + readable(*value) : " has no value");
   }
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 CommandResult cmd_events(CommandCall& call) {
   const Monitor& monitor = call.simulation().monitor();
   if (monitor.events().empty() && !call.json) return std::optional<std::string>("the scenario has none");
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   for (const Monitor::Event& event : monitor.events()) {
-    rows.push_back({{"name", event.decl.name},
-                    {"when", event.decl.when},
-                    {"count", event.count},
-                    {"last_s", event.count > 0 ? Json(event.last.s()) : Json()}});
+    rows.add([&](JsonWriter& json) {
+      json.key("name").text(event.decl.name);
+      json.key("when").text(event.decl.when);
+      json.key("count").integer(event.count);
+      write_number(json, "last_s", event.count > 0 ? std::optional(event.last.s()) : std::nullopt);
+    });
     text += (text.empty() ? "" : "\n") + event.decl.name + " (" + event.decl.when + ") ";
     text += event.count == 0 ? std::string("has not happened")
                              : "happened " + std::to_string(event.count) + " x, last at " +
-                                   number_text(event.last.s()) + " s";
+                                   readable(event.last.s()) + " s";
   }
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 namespace {
@@ -402,37 +430,45 @@ std::string kind_of(const Simulation::Entity& entity) {
 }
 
 CommandResult list_entities(CommandCall& call, std::span<const Simulation::Entity* const> things) {
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   for (const Simulation::Entity* thing : things) {
     const Pose X = call.simulation().engine().pose(thing->id);
     const model::Instance& instance = thing->instance;
-    rows.push_back({{"name", instance.name},
-                    {"kind", kind_of(*thing)},
-                    {"model", instance.model->name},
-                    {"team", instance.team},
-                    {"pose", {X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z}}});
+    rows.add([&](JsonWriter& json) {
+      json.key("name").text(instance.name);
+      json.key("kind").text(kind_of(*thing));
+      json.key("model").text(instance.model->name);
+      json.key("team").text(instance.team);
+      json.key("pose").list([&] {
+        for (const double x : {X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z}) json.real(x);
+      });
+    });
     if (!call.json)
       text += (text.empty() ? "" : "\n") + instance.name + "  " + kind_of(*thing) + "  " +
-              instance.model->name + "  at " + number_text(X.p.x) + " " + number_text(X.p.y) + " " +
-              number_text(X.p.z) + " m";
+              instance.model->name + "  at " + readable(X.p.x) + " " + readable(X.p.y) + " " +
+              readable(X.p.z) + " m";
   }
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 CommandResult list_topics(CommandCall& call) {
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   for (const TopicBase* topic : call.simulation().topics()) {
-    rows.push_back({{"name", topic->name()}, {"type", topic->type()}, {"count", topic->count}});
+    rows.add([&](JsonWriter& json) {
+      json.key("name").text(topic->name());
+      json.key("type").text(topic->type());
+      json.key("count").integer(topic->count);
+    });
     text += (text.empty() ? "" : "\n") + topic->name() + "  " + topic->type() + "  " +
             std::to_string(topic->count);
   }
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 CommandResult list_parameters(CommandCall& call) {
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   std::size_t count = 0;
   const Simulation& simulation = call.simulation();
@@ -442,43 +478,47 @@ CommandResult list_parameters(CommandCall& call) {
       if (++count > most_matches) return;
       auto found = NamedValue::find(simulation,
                                     target + ".parameter." + parameter.address().substr(target.size() + 1));
-      if (std::optional<double> value; found && (value = found->read())) {
-        rows.push_back({{"address", parameter.address()}, {"unit", parameter.unit}, {"value", *value}});
-        text += (text.empty() ? "" : "\n") + parameter.address() + " = " + with_unit(*value, parameter.unit);
-      } else {
-        rows.push_back({{"address", parameter.address()}, {"unit", parameter.unit}, {"value", Json()}});
-        text += (text.empty() ? "" : "\n") + parameter.address();
-      }
+      const std::optional<double> value = found ? found->read() : std::nullopt;
+      rows.add([&](JsonWriter& json) {
+        json.key("address").text(parameter.address());
+        json.key("unit").text(parameter.unit);
+        write_number(json, "value", value);
+      });
+      text += (text.empty() ? "" : "\n") + parameter.address();
+      if (value) text += " = " + with_unit(*value, parameter.unit);
     }
   };
   for (const auto& entity : simulation.entities()) {
     for (const auto& device : entity->devices) add(*entity, device->path);
     for (const auto& program : entity->programs) add(*entity, program->path);
   }
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 CommandResult list_models(CommandCall& call) {
-  Json rows = Json::array();
+  JsonRows rows;
   std::string text;
   const auto add = [&](const std::string& name, const std::string& help) {
-    rows.push_back({{"name", name}, {"help", help}});
+    rows.add([&](JsonWriter& json) {
+      json.key("name").text(name);
+      json.key("help").text(help);
+    });
     text += (text.empty() ? "" : "\n") + name + (help.empty() ? "" : "  " + help);
   };
   add("box", "size=X,Y,Z color=... mass=...");
   add("sphere", "size=DIAMETER color=... mass=...");
   add("cylinder", "size=DIAMETER,HEIGHT color=... mass=...");
   for (const ModelFile& file : model_files(call.options)) add(file.name, file.help);
-  return std::optional(call.json ? json_text(rows) : text);
+  return std::optional(call.json ? std::move(rows).take() : text);
 }
 
 CommandResult list_one(CommandCall& call, std::string_view address) {
   std::vector<ValueEntry> entries;
   SL_TRY(gather(call, address, entries));
   if (call.json) {
-    Json rows = Json::array();
-    for (const ValueEntry& entry : entries) rows.push_back(row(entry));
-    return std::optional(json_text(rows));
+    JsonRows rows;
+    for (const ValueEntry& entry : entries) add_row(rows, entry);
+    return std::optional(std::move(rows).take());
   }
   std::string text;
   const auto add = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };

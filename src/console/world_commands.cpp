@@ -255,8 +255,8 @@ CommandResult cmd_pull(CommandCall& call) {
   if (!words.empty())
     return Error{"'" + words.front().substr(0, 40) + "' is too much", "pull NAME LINK PX PY PZ TX TY TZ"};
   const Vec3 t = pull.target_W;
-  return submit(call, {{std::move(pull), name + " pulled to " + number_text(t.x) + " " + number_text(t.y) +
-                                             " " + number_text(t.z) + " m"}});
+  return submit(call, {{std::move(pull), name + " pulled to " + readable(t.x) + " " + readable(t.y) + " " +
+                                             readable(t.z) + " m"}});
 }
 
 CommandResult cmd_add(CommandCall& call) {

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/utf8.h"
 #include "messages/cdr.h"
 #include "messages/json.h"
 #include "messages/typed_array.h"
-#include "messages/utf8.h"
 
 namespace sandlot {
 namespace {

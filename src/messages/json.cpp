@@ -1,19 +1,17 @@
 #include "messages/json.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/base64.h"
+#include "base/json_writer.h"
 #include "base/text.h"
 #include "base/time.h"
 #include "messages/cdr.h"
 #include "messages/typed_array.h"
-#include "messages/utf8.h"
 
 namespace sandlot {
 namespace {
@@ -22,67 +20,56 @@ using Json = nlohmann::json;
 using Count = MessageField::Count;
 
 template <class T>
-void add_as(const std::byte* value, std::string& out) {
+T number_of_type(const std::byte* value) {
   T number;
   std::memcpy(&number, value, sizeof number);
-  if constexpr (std::is_floating_point_v<T>) {
-    if (!std::isfinite(number)) return void(out += "null");
-    // "-0" is an integer to readers of JSON, and those have no negative zero.
-    if (number == 0 && std::signbit(number)) return void(out += "-0.0");
-  }
-  std::array<char, 32> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
-  out.append(text.data(), end);
+  return number;
 }
 
-void add_number(Wire type, const std::byte* value, std::string& out) {
+void write_number(JsonWriter& w, Wire type, const std::byte* value) {
   switch (type) {
-    case Wire::boolean: out += *value != std::byte{0} ? "true" : "false"; break;
+    case Wire::boolean: w.flag(*value != std::byte{0}); break;
     case Wire::byte:
     case Wire::character:
-    case Wire::uint8: add_as<std::uint8_t>(value, out); break;
-    case Wire::int8: add_as<std::int8_t>(value, out); break;
-    case Wire::int16: add_as<std::int16_t>(value, out); break;
-    case Wire::uint16: add_as<std::uint16_t>(value, out); break;
-    case Wire::int32: add_as<std::int32_t>(value, out); break;
-    case Wire::uint32: add_as<std::uint32_t>(value, out); break;
-    case Wire::int64: add_as<std::int64_t>(value, out); break;
-    case Wire::uint64: add_as<std::uint64_t>(value, out); break;
-    case Wire::float32: add_as<float>(value, out); break;
-    case Wire::float64: add_as<double>(value, out); break;
+    case Wire::uint8: w.integer(number_of_type<std::uint8_t>(value)); break;
+    case Wire::int8: w.integer(number_of_type<std::int8_t>(value)); break;
+    case Wire::int16: w.integer(number_of_type<std::int16_t>(value)); break;
+    case Wire::uint16: w.integer(number_of_type<std::uint16_t>(value)); break;
+    case Wire::int32: w.integer(number_of_type<std::int32_t>(value)); break;
+    case Wire::uint32: w.integer(number_of_type<std::uint32_t>(value)); break;
+    case Wire::int64: w.integer(number_of_type<std::int64_t>(value)); break;
+    case Wire::uint64: w.integer(number_of_type<std::uint64_t>(value)); break;
+    case Wire::float32: w.number(number_of_type<float>(value)); break;
+    case Wire::float64: w.number(number_of_type<double>(value)); break;
     case Wire::string:
     case Wire::message: break;
   }
 }
 
-class Writer : public CdrVisitor {
+/// Writes what a walk through a message meets.
+class MessageWriter : public CdrVisitor {
  public:
-  explicit Writer(std::string& out) : out_(out) { out_.clear(); }
-  void open(const MessageInfo&) override { separate(), out_ += '{'; }
-  void close() override { out_ += '}'; }
-  void field(const MessageField& field) override { separate(), append_json(field.name, out_), out_ += ':'; }
-  void open_list(std::size_t) override { separate(), out_ += '['; }
-  void close_list() override { out_ += ']'; }
-  void text(std::string_view text) override { separate(), append_json(text, out_); }
-  void number(Wire type, const std::byte* value) override { separate(), add_number(type, value, out_); }
+  explicit MessageWriter(std::string& out) : json_(out) { out.clear(); }
+  void open(const MessageInfo&) override { json_.begin_object(); }
+  void close() override { json_.end_object(); }
+  void field(const MessageField& field) override { json_.key(field.name); }
+  void open_list(std::size_t) override { json_.begin_list(); }
+  void close_list() override { json_.end_list(); }
+  void text(std::string_view text) override { json_.text(text); }
+  void number(Wire type, const std::byte* value) override { write_number(json_, type, value); }
   void numbers(Wire type, std::span<const std::byte> bytes) override {
     if (is_octet(type)) {
-      out_ += '"';
-      add_base64(bytes, out_);
-      out_ += '"';
-      return;
+      std::string text = "\"";
+      add_base64(bytes, text);
+      return json_.raw(text += '"');
     }
-    out_ += '[';
-    for (std::size_t i = 0; i < bytes.size(); i += size_of(type)) number(type, &bytes[i]);
-    out_ += ']';
+    json_.begin_list();
+    for (std::size_t i = 0; i < bytes.size(); i += size_of(type)) write_number(json_, type, &bytes[i]);
+    json_.end_list();
   }
 
  private:
-  /// A comma, unless this is the first of a list or the value of a field.
-  void separate() {
-    if (!out_.empty() && out_.back() != '{' && out_.back() != '[' && out_.back() != ':') out_ += ',';
-  }
-  std::string& out_;
+  JsonWriter json_;
 };
 
 std::string kind_of(const Json& value) {
@@ -267,35 +254,8 @@ Status set_message(const MessageInfo& info, const Json& value, void* object) {
 
 }  // namespace
 
-void append_json(std::string_view text, std::string& out) {
-  out += '"';
-  // Most texts are names: what needs no second look goes at once.
-  const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
-  const auto odd = std::find_if_not(text.begin(), text.end(), plain);
-  out.append(text.begin(), odd);
-  text.remove_prefix(static_cast<std::size_t>(odd - text.begin()));
-  each_utf8(text, [&](std::string_view piece) {
-    for (const char c : piece) {
-      if (c == '"' || c == '\\') (out += '\\') += c;
-      else if (c == '\n') out += "\\n";
-      else if (c == '\t') out += "\\t";
-      else if (static_cast<unsigned char>(c) < 0x20) {
-        constexpr std::string_view hex = "0123456789abcdef";
-        (((out += "\\u00") += hex[static_cast<unsigned char>(c) >> 4]) += hex[c & 15]);
-      } else {
-        out += c;
-      }
-    }
-  });
-  out += '"';
-}
-
-void append_json(double number, std::string& out) {
-  add_as<double>(reinterpret_cast<const std::byte*>(&number), out);
-}
-
 Status cdr_to_json(const MessageInfo& info, std::span<const std::byte> cdr, std::string& out) {
-  Writer writer(out);
+  MessageWriter writer(out);
   return walk_cdr(info, cdr, writer);
 }
 

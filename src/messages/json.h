@@ -19,11 +19,6 @@
 
 namespace sandlot {
 
-/// Appends a text as a JSON string. Bytes that are no UTF-8 become U+FFFD.
-void append_json(std::string_view text, std::string& out);
-/// Appends a number in the shortest form that reads back as the same; NaN and infinities as null.
-void append_json(double number, std::string& out);
-
 /// Replaces what `out` holds by the JSON of a message given as CDR.
 Status cdr_to_json(const MessageInfo& info, std::span<const std::byte> cdr, std::string& out);
 

@@ -15,9 +15,7 @@ std::size_t log_bytes(const Frame& frame) {
 }
 
 std::size_t bytes_of(const Frame& frame) {
-  std::size_t sum = log_bytes(frame);
-  for (const FrameInstance& instance : frame.instances)
-    sum += sizeof instance + instance.X_WL.size() * sizeof(Pose);
+  std::size_t sum = log_bytes(frame) + pose_bytes(frame);
   for (const auto& topic : frame.topics) sum += topic->memory_bytes();
   return sum;
 }
@@ -68,11 +66,7 @@ void Recorder::on_frame(const std::shared_ptr<const Frame>& frame) {
     item.tf_static = std::make_shared<const msg::TFMessage>(static_transforms(simulation_));
   }
   const auto limit = static_cast<std::size_t>(recording_.queue_mb * 1024 * 1024);
-  {
-    const std::lock_guard lock(mutex_);
-    returned_.swap(done_);
-  }
-  returned_.clear();
+  returns_.release();
   {
     std::unique_lock lock(mutex_);
     ++report_.frames;
@@ -124,7 +118,7 @@ void Recorder::run() {
         ++report_.lost_frames;
       }
       (item.small ? small_bytes_ : waiting_bytes_) -= item.bytes;
-      done_.push_back(std::move(item));
+      returns_.give_back(std::move(item.frame));
       emptied_.notify_one();
     }
     batch.clear();
@@ -144,8 +138,7 @@ Status Recorder::finish() {
   }
   filled_.notify_one();
   thread_.join();
-  done_.clear();
-  returned_.clear();
+  returns_.release();
   const Status ended = writer_.finish({{"ticks", std::to_string(report_.frames)},
                                        {"end_ns", std::to_string(now_.ns)},
                                        {"complete", report_.complete() ? "true" : "false"},

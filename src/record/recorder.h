@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "record/frame_writer.h"
+#include "sim/world/frame_returns.h"
 
 namespace sandlot {
 
@@ -68,8 +69,7 @@ class Recorder final : public Observer {
   std::mutex mutex_;
   std::condition_variable filled_, emptied_;
   std::vector<Item> queue_;
-  std::vector<Item> done_;      ///< given back, so that frames are filled again by the thread that made them
-  std::vector<Item> returned_;  ///< of the simulation's thread
+  FrameReturns returns_;
   std::size_t waiting_bytes_ = 0, small_bytes_ = 0;
   bool ending_ = false, failed_ = false;
   Status status_;

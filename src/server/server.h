@@ -1,23 +1,28 @@
 #pragma once
-/// Serves a run to viewers: the page, the Foxglove protocol, services, parameters, publishing. What is said: docs/viewer_protocol.md.
+/// Server of a run: the page, the Foxglove protocol, services, parameters, publishing. Messages: docs/viewer_protocol.md.
 ///
 ///   Session session(...);
 ///   SL_ASSIGN(auto server, Server::start({.transport = {.port = 8765}}, session, console));
 ///   ... session.run(report) ...
 ///   server->stop();
 ///
-/// The run   is never changed by who looks: messages are copied on the simulation's thread only while somebody has subscribed, and
+/// The run   is never changed by viewers: messages are copied on the simulation's thread only while somebody has subscribed, and
 ///           encoded and sent by the server's own thread. When that falls behind, frames are left out.
 /// Errors    start(): the address cannot be bound.
 /// Cost      on the simulation's thread: filling frames with what is subscribed, at most 30 times a second for poses.
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
-#include "console/console.h"
 #include "server/http/transport.h"
-#include "sim/session/session.h"
+
+namespace sandlot {
+class Console;
+class Session;
+}  // namespace sandlot
 
 namespace sandlot::server {
 
@@ -30,7 +35,7 @@ struct ServerOptions {
     std::string file;
     std::uint64_t messages = 0, bytes = 0;
   };
-  /// What is being recorded; asked by the server's thread. Unset: nothing.
+  /// The recording in progress; called on the server's thread. Unset: none.
   std::function<std::optional<Recording>()> recording = {};
 };
 
@@ -43,7 +48,7 @@ class Server {
   ~Server();
   std::string url() const;
   Counters counters() const;
-  /// Says good-bye to all viewers. @pre session.run() has returned, or this is its thread
+  /// Closes all connections. @pre session.run() has returned, or this is its thread
   void stop();
 
  private:

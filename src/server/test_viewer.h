@@ -4,13 +4,16 @@
 
 #include <chrono>
 #include <cstring>
+#include <deque>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
+#include "console/console.h"
 #include "messages/cdr.h"
 #include "messages/registry.h"
 #include "server/server.h"
+#include "sim/session/session.h"
 #include "sim/test_world.h"
 #include "wire/foxglove.h"
 

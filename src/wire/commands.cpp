@@ -1,21 +1,18 @@
 #include <fmt/format.h>
 
-#include <cstring>
-#include <limits>
-
+#include "base/json_writer.h"
 #include "base/text.h"
 #include "messages/geometry_msgs.h"
-#include "messages/json.h"
 #include "wire/scene.h"
 
 namespace sandlot::wire {
 namespace {
 
-constexpr std::size_t most_words = 300;  ///< bytes of text about one request
+constexpr std::size_t most_description_bytes = 300;  ///< bytes of text about one request
 
 /// A value as a file would write it on one line.
 void add_node(const Node& node, std::string& out) {
-  if (out.size() > most_words) return;
+  if (out.size() > most_description_bytes) return;
   if (node.is_scalar()) {
     out += node.text();
   } else if (node.is_sequence()) {
@@ -38,17 +35,17 @@ void add_node(const Node& node, std::string& out) {
   }
 }
 
-std::string words(Vec3 v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); }
+std::string text_of(Vec3 v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); }
 /// As the console takes it: x y z, with yaw or all angles where it is turned.
-std::string words(const Pose& X) {
+std::string text_of(const Pose& X) {
   const Vec3 angles = rpy_from_quat(normalised(X.q));
   constexpr double flat = 1e-9;
-  if (std::abs(angles.x) > flat || std::abs(angles.y) > flat) return words(X.p) + " " + words(angles);
-  if (std::abs(angles.z) > flat) return fmt::format("{} {:.6g}", words(X.p), angles.z);
-  return words(X.p);
+  if (std::abs(angles.x) > flat || std::abs(angles.y) > flat) return text_of(X.p) + " " + text_of(angles);
+  if (std::abs(angles.z) > flat) return fmt::format("{} {:.6g}", text_of(X.p), angles.z);
+  return text_of(X.p);
 }
 
-struct Words {
+struct RequestText {
   std::string operator()(const CommandRequest& x) const { return x.type; }
   std::string operator()(const ParameterRequest& x) const {
     std::string out = x.field + " = ";
@@ -62,10 +59,10 @@ struct Words {
   }
   std::string operator()(const SpawnRequest& x) const {
     return "add " + (x.instance.model ? x.instance.model->name : std::string()) + " at " +
-           words(x.instance.X_WM);
+           text_of(x.instance.X_WM);
   }
   std::string operator()(const DeleteRequest&) const { return "remove"; }
-  std::string operator()(const PoseRequest& x) const { return "pose " + words(x.X_WM); }
+  std::string operator()(const PoseRequest& x) const { return "pose " + text_of(x.X_WM); }
   std::string operator()(const SampleRequest&) const { return "sample"; }
   std::string operator()(const LoadDeviceRequest& x) const {
     return "load device " + x.device.name + " (" + x.device.kind + ")";
@@ -73,12 +70,12 @@ struct Words {
   std::string operator()(const UnloadDeviceRequest&) const { return "unload device"; }
   std::string operator()(const PullRequest& x) const {
     if (x.hold.ns <= 0) return "pull off";
-    return "pull " + (x.link.empty() ? "" : x.link + " ") + words(x.point_L) + " " + words(x.target_W);
+    return "pull " + (x.link.empty() ? "" : x.link + " ") + text_of(x.point_L) + " " + text_of(x.target_W);
   }
 };
 
 /// The numbers of those commands that people give by hand; the type alone of others.
-std::string command_words(const LogEntry& entry) {
+std::string command_text(const LogEntry& entry) {
   const auto taken = [&]<class M>(M message) -> std::optional<M> {
     ByteReader r(entry.bytes);
     read(r, message);
@@ -86,7 +83,7 @@ std::string command_words(const LogEntry& entry) {
     return message;
   };
   const auto twist = [](const msg::Twist& t) {
-    return "Twist linear " + words(t.linear) + " angular " + words(t.angular);
+    return "Twist linear " + text_of(t.linear) + " angular " + text_of(t.angular);
   };
   if (entry.type == msg::Twist::ros_type)
     if (const auto message = taken(msg::Twist())) return twist(*message);
@@ -104,29 +101,20 @@ const char* name_of(Source::Kind kind) {
   return "admin";
 }
 
-void put(std::vector<std::byte>& out, const auto& value) {
-  const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
-  out.insert(out.end(), bytes, bytes + sizeof value);
-}
-void put_float(std::vector<std::byte>& out, double x) {
-  constexpr double most = std::numeric_limits<float>::max();
-  put(out, static_cast<float>(std::clamp(x, -most, most)));
-}
-
 }  // namespace
 
 std::string describe_request(const LogEntry& entry) {
   std::string out;
   if (entry.kind == LogEntry::command) {
-    out = command_words(entry);
+    out = command_text(entry);
   } else {
     ByteReader r(entry.bytes);
     Request request;
     if (!read_request(r, request)) return request_kind(entry.kind);
-    out = std::visit(Words(), request);
+    out = std::visit(RequestText(), request);
   }
-  if (out.size() > most_words) {
-    out.resize(most_words);
+  if (out.size() > most_description_bytes) {
+    out.resize(most_description_bytes);
     out.append("...");
   }
   return out;
@@ -134,33 +122,32 @@ std::string describe_request(const LogEntry& entry) {
 
 std::string commands_json(const Frame& frame) {
   std::string out;
+  JsonWriter w(out);
+  bool any = false;
   for (const LogEntry& entry : frame.log) {
     if (entry.kind == LogEntry::step || entry.source.kind == Source::Kind::program) continue;
-    out += out.empty() ? "{\"commands\":[" : ",";
-    out += fmt::format("{{\"tick\":{},\"time_s\":", frame.tick);
-    append_json(frame.now.s(), out);
-    out += fmt::format(",\"source\":\"{}\",\"id\":{},\"sequence\":{},\"kind\":\"{}\",\"target\":",
-                       name_of(entry.source.kind), entry.source.id, entry.sequence, request_kind(entry.kind));
-    append_json(entry.target, out);
-    out += ",\"text\":";
-    append_json(describe_request(entry), out);
-    out += entry.refused ? ",\"refused\":true,\"why\":" : ",\"refused\":false,\"why\":";
-    append_json(entry.why, out);
-    out += '}';
+    if (!std::exchange(any, true)) {
+      w.begin_object();
+      w.key("commands").begin_list();
+    }
+    w.object([&] {
+      w.key("tick").integer(frame.tick);
+      w.key("time_s").number(frame.now.s());
+      w.key("source").text(name_of(entry.source.kind));
+      w.key("id").integer(entry.source.id);
+      w.key("sequence").integer(entry.sequence);
+      w.key("kind").text(request_kind(entry.kind));
+      w.key("target").text(entry.target);
+      w.key("text").text(describe_request(entry));
+      w.key("refused").flag(entry.refused);
+      w.key("why").text(entry.why);
+    });
   }
-  return out.empty() ? out : out + "]}";
-}
-
-void write_contacts(const Frame& frame, std::vector<std::byte>& out) {
-  out.clear();
-  out.reserve(20 + 28 * frame.contacts.size());
-  put(out, frame.tick);
-  put(out, frame.now.ns);
-  put(out, static_cast<std::uint32_t>(frame.contacts.size()));
-  for (const Contact& contact : frame.contacts)
-    for (const double x : {contact.point_W.x, contact.point_W.y, contact.point_W.z, contact.normal_W.x,
-                           contact.normal_W.y, contact.normal_W.z, contact.depth_m})
-      put_float(out, x);
+  if (any) {
+    w.end_list();
+    w.end_object();
+  }
+  return out;
 }
 
 }  // namespace sandlot::wire

@@ -1,79 +1,24 @@
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
 #include "base/field_json.h"
-#include "messages/json.h"
 #include "wire/asset_table.h"
 #include "wire/link_tree.h"
 
 namespace sandlot::wire {
 namespace {
 
-/// Appends JSON to a text: one pass and no tree of values, since a world may have thousands of things.
-class Writer {
- public:
-  explicit Writer(std::string& out) : out_(out) {}
-  Writer& key(std::string_view name) {
-    separate();
-    append_json(name, out_);
-    out_ += ':';
-    fresh_ = true;
-    return *this;
-  }
-  void text(std::string_view value) { separate(), append_json(value, out_); }
-  void number(double value) { separate(), append_json(value, out_); }
-  void number(float value) {
-    separate();
-    // The shortest form of a float is not that of the double that equals it.
-    if (std::isfinite(value)) fmt::format_to(std::back_inserter(out_), "{}", value);
-    else out_ += "null";
-  }
-  void count(std::uint64_t value) { separate(), out_ += std::to_string(value); }
-  /// -1 for nothing.
-  void index(std::uint32_t value) {
-    separate(), out_ += value == LinkTree::none ? std::string("-1") : std::to_string(value);
-  }
-  void flag(bool value) { separate(), out_ += value ? "true" : "false"; }
-  void raw(std::string_view json) { separate(), out_ += json; }
-  template <class F>
-  void object(F&& inside) {
-    around('{', '}', inside);
-  }
-  template <class F>
-  void list(F&& inside) {
-    around('[', ']', inside);
-  }
-  void numbers(std::initializer_list<double> values) {
-    list([&] {
-      for (const double value : values) number(value);
-    });
-  }
-  void vector(Vec3 v) { numbers({v.x, v.y, v.z}); }
-  void pose(const Pose& X) { numbers({X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z}); }
-  void color(Color c) {
-    list([&] {
-      for (const float value : {c.r, c.g, c.b, c.a}) number(value);
-    });
-  }
-
- private:
-  void separate() {
-    if (!fresh_) out_ += ',';
-    fresh_ = false;
-  }
-  template <class F>
-  void around(char open, char close, F& inside) {
-    separate();
-    out_ += open;
-    fresh_ = true;
-    inside();
-    out_ += close;
-    fresh_ = false;
-  }
-  std::string& out_;
-  bool fresh_ = true;  ///< nothing stands before what comes
-};
+/// Link or joint number; -1 for none.
+void write_index(JsonWriter& w, std::uint32_t value) {
+  if (value == LinkTree::none) w.integer(-1);
+  else w.integer(value);
+}
+void write_vector(JsonWriter& w, Vec3 v) { w.numbers({v.x, v.y, v.z}); }
+void write_pose(JsonWriter& w, const Pose& X) {
+  w.numbers({X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z});
+}
+void write_color(JsonWriter& w, Color c) {
+  w.list([&] {
+    for (const float value : {c.r, c.g, c.b, c.a}) w.number(value);
+  });
+}
 
 const char* name_of(model::JointType type) {
   switch (type) {
@@ -97,7 +42,7 @@ const char* name_of(model::Light::Type type) {
 }
 
 struct ShapeWriter {
-  Writer& w;
+  JsonWriter& w;
   AssetTable& assets;
   void type(const char* name) const { w.key("type").text(name); }
   void round(const char* name, double radius_m, double length_m) const {
@@ -105,7 +50,7 @@ struct ShapeWriter {
     w.key("radius").number(radius_m);
     w.key("length").number(length_m);
   }
-  void operator()(const Box& s) const { type("box"), w.key("size").vector(s.size_m); }
+  void operator()(const Box& s) const { type("box"), write_vector(w.key("size"), s.size_m); }
   void operator()(const Sphere& s) const { type("sphere"), w.key("radius").number(s.radius_m); }
   void operator()(const Cylinder& s) const { round("cylinder", s.radius_m, s.length_m); }
   void operator()(const Capsule& s) const { round("capsule", s.radius_m, s.length_m); }
@@ -114,8 +59,8 @@ struct ShapeWriter {
     round("barrel", s.radius_m, s.length_m);
     w.key("profile").number(s.profile_m);
   }
-  void operator()(const Plane& s) const { type("plane"), w.key("normal").vector(s.normal); }
-  void operator()(const Ellipsoid& s) const { type("ellipsoid"), w.key("radii").vector(s.radii_m); }
+  void operator()(const Plane& s) const { type("plane"), write_vector(w.key("normal"), s.normal); }
+  void operator()(const Ellipsoid& s) const { type("ellipsoid"), write_vector(w.key("radii"), s.radii_m); }
   void operator()(const Mesh& s) const {
     type("mesh"), w.key("mesh").text("a" + std::to_string(assets.number_of(s.mesh)));
   }
@@ -124,20 +69,20 @@ struct ShapeWriter {
   }
 };
 
-void write_shape(Writer& w, AssetTable& assets, const Shape& shape) {
+void write_shape(JsonWriter& w, AssetTable& assets, const Shape& shape) {
   w.key("shape").object([&] { std::visit(ShapeWriter{w, assets}, shape); });
 }
 
-void write_visual(Writer& w, AssetTable& assets, const model::Visual& visual) {
+void write_visual(JsonWriter& w, AssetTable& assets, const model::Visual& visual) {
   w.object([&] {
     w.key("name").text(visual.name);
-    w.key("pose").pose(visual.X_LC);
+    write_pose(w.key("pose"), visual.X_LC);
     write_shape(w, assets, visual.shape);
     const model::Material& material = visual.material;
     w.key("material").object([&] {
-      w.key("diffuse").color(material.diffuse);
-      w.key("specular").color(material.specular);
-      w.key("emissive").color(material.emissive);
+      write_color(w.key("diffuse"), material.diffuse);
+      write_color(w.key("specular"), material.specular);
+      write_color(w.key("emissive"), material.emissive);
       w.key("shininess").number(material.shininess);
       w.key("texture").text(
           material.texture.empty() ? "" : "t" + std::to_string(assets.number_of_texture(material.texture)));
@@ -147,12 +92,12 @@ void write_visual(Writer& w, AssetTable& assets, const model::Visual& visual) {
   });
 }
 
-void write_light(Writer& w, const model::Light& light) {
+void write_light(JsonWriter& w, const model::Light& light) {
   w.object([&] {
     w.key("type").text(name_of(light.type));
     w.key("name").text(light.name);
-    w.key("pose").pose(light.X_PLight);
-    w.key("color").color(light.color);
+    write_pose(w.key("pose"), light.X_PLight);
+    write_color(w.key("color"), light.color);
     w.key("cast_shadows").flag(light.cast_shadows);
     w.key("range_m").number(light.range_m);
     w.key("constant").number(light.constant);
@@ -164,28 +109,28 @@ void write_light(Writer& w, const model::Light& light) {
 }
 
 /// A round zone has a radius, another one its corners; what it does only as far as a colour can show it.
-void write_zone(Writer& w, const model::SurfaceZone& zone) {
+void write_zone(JsonWriter& w, const model::SurfaceZone& zone) {
   w.object([&] {
     w.key("name").text(zone.name);
-    w.key("centre").vector(zone.centre_W);
+    write_vector(w.key("centre"), zone.centre_W);
     w.key("radius_m").number(zone.radius_m);
     w.key("corners").list([&] {
-      for (const Vec3& corner : zone.outline_W) w.vector(corner);
+      for (const Vec3& corner : zone.outline_W) write_vector(w, corner);
     });
     w.key("friction").number(zone.surface.substance ? zone.surface.substance->roughness : zone.surface.mu);
     w.key("rolling_resistance_m").number(zone.surface.rolling_resistance_m);
-    w.key("belt_velocity").vector(zone.surface.belt_velocity_mps);
+    write_vector(w.key("belt_velocity"), zone.surface.belt_velocity_mps);
     w.key("hole").flag(!zone.surface.touches);
   });
 }
 
-void write_link(Writer& w, AssetTable& assets, const LinkTree& tree, std::uint32_t index) {
+void write_link(JsonWriter& w, AssetTable& assets, const LinkTree& tree, std::uint32_t index) {
   const model::Link& link = tree.model->links[index];
   w.object([&] {
     w.key("name").text(link.name);
-    w.key("pose").pose(link.X_ML);
-    w.key("parent").index(tree.links[index].parent);
-    w.key("joint").index(tree.links[index].joint);
+    write_pose(w.key("pose"), link.X_ML);
+    write_index(w.key("parent"), tree.links[index].parent);
+    write_index(w.key("joint"), tree.links[index].joint);
     w.key("visuals").list([&] {
       for (const model::Visual& visual : link.visuals) write_visual(w, assets, visual);
     });
@@ -193,7 +138,7 @@ void write_link(Writer& w, AssetTable& assets, const LinkTree& tree, std::uint32
       for (const model::Collision& collision : link.collisions)
         w.object([&] {
           w.key("name").text(collision.name);
-          w.key("pose").pose(collision.X_LC);
+          write_pose(w.key("pose"), collision.X_LC);
           write_shape(w, assets, collision.shape);
         });
     });
@@ -204,14 +149,14 @@ void write_link(Writer& w, AssetTable& assets, const LinkTree& tree, std::uint32
   });
 }
 
-void write_joint(Writer& w, const model::Joint& joint) {
+void write_joint(JsonWriter& w, const model::Joint& joint) {
   w.object([&] {
     w.key("name").text(joint.name);
     w.key("type").text(name_of(joint.type));
-    w.key("parent").index(joint.parent);
-    w.key("child").index(joint.child);
-    w.key("pose").pose(joint.X_CJ);
-    w.key("axis").vector(joint.axis_J);
+    write_index(w.key("parent"), joint.parent);
+    write_index(w.key("child"), joint.child);
+    write_pose(w.key("pose"), joint.X_CJ);
+    write_vector(w.key("axis"), joint.axis_J);
     w.key("lower").number(joint.lower);
     w.key("upper").number(joint.upper);
     w.key("thread_pitch_m").number(joint.thread_pitch_m);
@@ -223,7 +168,7 @@ static_assert(model::world_link == LinkTree::none, "both are written as -1");
 std::string model_content(AssetTable& assets, const std::shared_ptr<const model::Model>& model) {
   const LinkTree tree = link_tree(model);
   std::string out;
-  Writer w(out);
+  JsonWriter w(out);
   w.key("name").text(model->name);
   w.key("static").flag(model->is_static);
   w.key("links").list([&] {
@@ -235,7 +180,7 @@ std::string model_content(AssetTable& assets, const std::shared_ptr<const model:
   return out;
 }
 
-void write_topics(Writer& w, const Kind& kind, const std::vector<Simulation::Slot>& slots) {
+void write_topics(JsonWriter& w, const Kind& kind, const std::vector<Simulation::Slot>& slots) {
   w.list([&] {
     for (const Simulation::Slot& slot : slots)
       w.object([&] {
@@ -246,17 +191,17 @@ void write_topics(Writer& w, const Kind& kind, const std::vector<Simulation::Slo
   });
 }
 
-void write_instance(Writer& w, const Simulation& simulation, const Simulation::Entity& entity,
+void write_instance(JsonWriter& w, const Simulation& simulation, const Simulation::Entity& entity,
                     const std::string& model_id) {
   const model::Instance& instance = entity.instance;
   w.object([&] {
-    w.key("id").count(static_cast<std::uint32_t>(entity.serial));
+    w.key("id").integer(static_cast<std::uint32_t>(entity.serial));
     w.key("name").text(instance.name);
     w.key("original").text(instance.original_name);
     w.key("model").text(model_id);
     w.key("robot").flag(instance.is_robot);
     w.key("team").text(instance.team);
-    w.key("pose").pose(simulation.engine().pose(entity.id));
+    write_pose(w.key("pose"), simulation.engine().pose(entity.id));
     w.key("devices").list([&] {
       for (const auto& device : entity.devices) {
         const Kind& kind = simulation.kind(*device);
@@ -264,8 +209,8 @@ void write_instance(Writer& w, const Simulation& simulation, const Simulation::E
           w.key("name").text(device->decl.name);
           w.key("path").text(device->path);
           w.key("kind").text(kind.name);
-          w.key("link").index(device->decl.link);
-          w.key("pose").pose(device->decl.X_LS);
+          write_index(w.key("link"), device->decl.link);
+          write_pose(w.key("pose"), device->decl.X_LS);
           w.key("active").list([&] {
             for (std::size_t i = 0; i < kind.levels.size(); ++i)
               if (device->levels >> i & 1) w.text(kind.levels[i].name);
@@ -306,34 +251,43 @@ const std::string& WorldJsonWriter::kind_json(const void* kind, const char* help
                                               std::vector<FieldInfo> (*describe)()) {
   std::string& out = kinds_[kind];
   if (!out.empty()) return out;
-  nlohmann::ordered_json level_list = nlohmann::ordered_json::array(),
-                         fields = nlohmann::ordered_json::array();
-  for (const LevelInfo& level : levels)
-    level_list.push_back(
-        {{"name", level.name}, {"message", level.message}, {"command", level.command}, {"help", level.help}});
-  for (const FieldInfo& field : describe()) {
-    nlohmann::ordered_json one{{"path", field.path}};
-    one.update(field_json(field));
-    fields.push_back(std::move(one));
-  }
-  const nlohmann::ordered_json json{{"help", help}, {"levels", level_list}, {"fields", fields}};
-  return out = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  JsonWriter w(out);
+  w.object([&] {
+    w.key("help").text(help);
+    w.key("levels").list([&] {
+      for (const LevelInfo& level : levels)
+        w.object([&] {
+          w.key("name").text(level.name);
+          w.key("message").text(level.message);
+          w.key("command").text(level.command);
+          w.key("help").text(level.help);
+        });
+    });
+    w.key("fields").list([&] {
+      for (const FieldInfo& field : describe())
+        w.object([&] {
+          w.key("path").text(field.path);
+          write_field(w, field);
+        });
+    });
+  });
+  return out;
 }
 
 std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t epoch) {
   std::string out;
-  Writer w(out);
+  JsonWriter w(out);
   const model::Setup& setup = simulation.setup();
   w.object([&] {
-    w.key("revision").count(simulation.revision());
-    w.key("epoch").count(epoch);
+    w.key("revision").integer(simulation.revision());
+    w.key("epoch").integer(epoch);
     w.key("name").text(setup.name);
     w.key("engine").text(setup.engine);
     w.key("step_s").number(setup.step.s());
-    w.key("seed").count(setup.seed);
-    w.key("gravity").vector(setup.gravity);
-    w.key("ambient").color(setup.ambient);
-    w.key("background").color(setup.background);
+    w.key("seed").integer(setup.seed);
+    write_vector(w.key("gravity"), setup.gravity);
+    write_color(w.key("ambient"), setup.ambient);
+    write_color(w.key("background"), setup.background);
     w.key("lights").list([&] {
       for (const model::Light& light : setup.lights) write_light(w, light);
     });

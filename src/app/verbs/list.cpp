@@ -410,9 +410,13 @@ Json to_json(const Section& section) {
                         {"takes", level.command},
                         {"help", level.help}});
     for (const FieldInfo& f : item.fields) {
-      Json field{{"key", f.path}};
-      field.update(field_json(f));
-      fields.push_back(std::move(field));
+      std::string field;
+      JsonWriter writer(field);
+      writer.object([&] {
+        writer.key("key").text(f.path);
+        write_field(writer, f);
+      });
+      fields.push_back(Json::parse(field));
     }
     if (!item.extensions.empty()) {
       entry["contents"] = item.contents;

@@ -29,7 +29,7 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
     topics_.clear();
     watches_.clear();
     world_ = transforms_static_ = nullptr;
-    epoch_ = 0;  // whoever comes next is told everything
+    epoch_ = 0;  // the next client gets everything
     return;
   }
   if (!subscribed_->world) world_sent_ = false;
@@ -107,7 +107,7 @@ void Feed::send_world_if_changed(bool again_world, bool again_static) {
   static_sent_ = subscribed_->transforms_static;
   if (!update.inventory && !update.world && !update.transforms_static) return;
   mailbox_->push([update = std::move(update)](Hub& hub) { hub.send_world(update); });
-  // A world that changes at every tick is told of twice a second.
+  // A world that changes at every tick is sent twice a second.
   next_world_update_ = Clock::now() + std::chrono::milliseconds(500);
 }
 
@@ -153,7 +153,7 @@ void Feed::send_initial(const InitialSend& initial) {
   const Session::State state = session_.report().state;
   const bool stands = state != Session::State::playing && state != Session::State::seeking;
   for (Watch& watch : watches_) {
-    // A run that stands still tells where it stands, whatever the rate.
+    // A run that stands still sends its values, whatever the rate.
     const bool asked = std::binary_search(initial.latest.begin(), initial.latest.end(), watch.channel);
     if (!asked && (!stands || watch.sampled_at == batch.now)) continue;
     (asked ? latest : batch.messages).push_back(sample(watch));

@@ -1,8 +1,8 @@
 #pragma once
-/// The server's part on the simulation's thread: takes out of each tick what somebody has subscribed to, and mails it.
+/// The server's observer of the run: takes out of each tick what somebody has subscribed to, and pushes it to the mailbox.
 ///
 /// Threads   everything belongs to the simulation's thread (Session::post brings calls there), but stale().
-/// Cost      without clients it watches nothing. Frames with links are asked for `poses_hz` times a second of the wall
+/// Cost      without clients it observes nothing. Frames with links are requested `poses_hz` times a second of the wall
 ///           clock; messages are written once, only those with subscribers. Pictures: server/clients/preview.h.
 #include <atomic>
 #include <chrono>
@@ -18,21 +18,21 @@
 
 namespace sandlot::server {
 
-/// What all clients together want to see.
+/// What all clients together have subscribed to.
 struct SubscriptionSummary {
-  bool clients = false;  ///< there are any
+  bool clients = false;  ///< there are clients
   bool frames = false, contacts = false, commands = false, parameters = false, world = false,
        transforms_static = false;
   std::vector<std::pair<std::uint32_t, std::string>> topics;  ///< channels of devices
 };
 
-/// What a new subscriber is told at once, whether it has changed or not.
+/// What new subscribers get at once, whether it has changed or not.
 struct InitialSend {
   bool frame = false, world = false, transforms_static = false;
   std::vector<std::uint32_t> latest;  ///< channels of device topics and watches
 };
 
-/// The world as it is now; what nobody asked for or has not changed is null.
+/// The world as it is now; parts without a subscriber, or without a change, are null.
 struct WorldUpdate {
   std::shared_ptr<const Inventory> inventory;
   Payload world, transforms_static;
@@ -45,7 +45,7 @@ class Feed final : public Observer {
 
   void set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary);
   void send_initial(const InitialSend& initial);
-  /// Ends it: it watches nothing any more.
+  /// Ends it: the run is no longer observed.
   void detach();
   /// Viewers do not know the latest tick yet, and no frame is coming. From any thread.
   bool stale() const { return stale_; }
@@ -97,8 +97,8 @@ class Feed final : public Observer {
   std::vector<Watch> watches_;
   std::vector<std::byte> scratch_;
 
-  bool inventory_sent_ = false, world_sent_ = false, static_sent_ = false;  ///< as they are now
-  Payload world_, transforms_static_;                                       ///< as told last
+  bool inventory_sent_ = false, world_sent_ = false, static_sent_ = false;  ///< in their present form
+  Payload world_, transforms_static_;                                       ///< as last sent
   Clock::time_point next_world_update_, next_frame_;
   mutable bool due_ = false;
   std::atomic<bool> stale_ = false;

@@ -11,10 +11,10 @@ using namespace std::chrono_literals;
 using foxglove::Level;
 
 constexpr auto flush_pause =
-    20ms;  ///< between two changes of what all want: the simulation's thread carries them out
+    20ms;  ///< between two changes of the subscriptions: the simulation's thread carries them out
 constexpr auto watch_patience = 10s;             ///< a watch without its subscriber goes
 constexpr std::size_t portion = 256;             ///< channels in one message
-constexpr std::size_t patient_bytes = 4u << 20;  ///< so much may wait when more channels are told
+constexpr std::size_t patient_bytes = 4u << 20;  ///< so much may wait when more channels are advertised
 constexpr int most_refusals_per_s = 20;
 
 template <class... F>
@@ -297,7 +297,7 @@ void Hub::remove_channel(std::uint32_t id) {
   subscriptions_changed_ = true;
 }
 
-/// Ten thousand robots have many channels, and a queue has an end: they are told in portions.
+/// Advertises in portions: ten thousand robots have many channels, and a queue has an end.
 void Hub::advertise_waiting(ClientId id, Client& client) {
   while (client.advertised_below < next_channel_ && transport_->waiting_bytes(id) < patient_bytes) {
     std::vector<foxglove::Channel> batch;
@@ -326,7 +326,7 @@ void Hub::fetch(ClientId id, const foxglove::FetchAsset& request) {
 
 bool Hub::post(std::function<void(Session&)> task) { return session_.post(std::move(task)); }
 
-/// Tells the simulation's thread what is wanted now.
+/// Brings changed subscriptions to the simulation's thread.
 void Hub::flush() {
   const bool initial_wanted = initial_.frame || initial_.world || initial_.transforms_static ||
                               !initial_.latest.empty();

@@ -1,8 +1,8 @@
 #pragma once
-/// What viewers say and are told: channels, subscriptions, services, parameters, publishing. docs/viewer_protocol.md.
+/// The clients of the Foxglove protocol: channels, subscriptions, services, parameters, publishing. docs/viewer_protocol.md.
 ///
-/// Threads   the transport's, for everything. The run is reached through Session's orders, submit() and post(); what comes
-///           back lies in the Mailbox.
+/// Threads   the transport's, for everything. The run is reached through Session's orders, submit() and post(); answers come
+///           back by the Mailbox.
 /// Limits    of docs/viewer_protocol.md; what goes beyond is refused with a status of level 2 and counted.
 #include <array>
 #include <atomic>
@@ -33,16 +33,16 @@ class Hub final : private ServiceHost {
   /// Before anything else is called.
   void use(Transport& transport) { transport_ = &transport; }
 
-  // --- what the transport hands over ---
+  // --- called by the transport ---
   void connected(ClientId id, bool may_steer);
   void message(ClientId id, std::span<const std::byte> bytes, bool text);
   void disconnected(ClientId id);
   void timer();
-  /// What the simulation's thread has mailed.
+  /// Sends what lies in the mailbox.
   void drain();
   void state_changed();
 
-  // --- tasks ---
+  // --- called by tasks in the mailbox ---
   void send_world(const WorldUpdate& update);
   /// The latest messages to those who have just subscribed; from now on they get what comes.
   void send_latest(std::span<const ChannelMessage> latest, std::span<const std::uint32_t> channels);
@@ -190,7 +190,7 @@ class Hub final : private ServiceHost {
 
   bool subscriptions_changed_ = false, looking_ = false, draining_ = false;
   InitialSend initial_;
-  Payload world_, transforms_static_;  ///< as told last
+  Payload world_, transforms_static_;  ///< as last sent
   Time now_;                           ///< of the latest batch
   foxglove::Graph graph_;
   bool graph_changed_ = false;

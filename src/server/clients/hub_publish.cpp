@@ -1,4 +1,4 @@
-/// What viewers set and send: parameters, commands; and the graph of who talks to whom.
+/// Parameters and commands from clients; the connection graph.
 #include <algorithm>
 
 #include "base/text.h"

@@ -1,8 +1,7 @@
-/// What the hub tells: worlds, poses, messages, how the run goes.
+/// Messages to clients: worlds, poses, topics, state of the run.
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json_writer.h"
 #include "messages/rcl_interfaces.h"
 #include "messages/tf2_msgs.h"
 #include "server/clients/hub.h"
@@ -10,8 +9,6 @@
 
 namespace sandlot::server {
 namespace {
-
-using nlohmann::ordered_json;
 
 const char* name_of(Session::State state) {
   switch (state) {
@@ -184,42 +181,49 @@ void Hub::send_status() {
   status_sent_ = Clock::now();
   std::vector<Subscriber>& subscribers = channel(ChannelKind::status).subscribers;
   if (subscribers.empty()) return;
-  ordered_json out;
-  const auto seconds = [](const std::optional<Time>& time) {
-    return time ? ordered_json(time->s()) : ordered_json();
-  };
-  out["state"] = name_of(report_.state);
-  out["time_s"] = report_.now.s();
-  out["tick"] = report_.tick;
-  out["step_s"] = report_.step.s();
-  out["speed"] = report_.speed ? ordered_json(*report_.speed) : ordered_json();
-  out["real_time_factor"] = report_.real_time_factor;
-  out["late_ticks"] = report_.late_ticks;
-  out["reason"] = report_.reason;
-  out["begin_s"] = report_.begin.s();
-  out["end_s"] = seconds(report_.end);
-  out["history_s"] = ordered_json::array();
-  for (const Time time : report_.history) out["history_s"].push_back(time.s());
-  out["target_s"] = seconds(report_.target);
-  out["may_steer"] = true;
-  out["may_rewind"] = report_.may_not_rewind.empty();
-  out["why_not"] = "";
-  out["replay"] = report_.replay;
-  out["recording"] = nullptr;
-  if (options_.recording)
-    if (const auto recording = options_.recording())
-      out["recording"] = {
-          {"file", recording->file}, {"messages", recording->messages}, {"bytes", recording->bytes}};
-  out["viewers"] = clients_.size();
-  out["epoch"] = report_.epoch;
-  out["dropped_frames"] = mailbox_->dropped();
+  std::optional<ServerOptions::Recording> recording;
+  if (options_.recording) recording = options_.recording();
   const auto write = [&](bool admin) {
     const std::string& why_not = !report_.takes_no_input.empty() ? report_.takes_no_input
                                                                  : report_.may_not_rewind;
-    out["may_steer"] = admin && report_.takes_no_input.empty();
-    out["may_rewind"] = admin && report_.may_not_rewind.empty();
-    out["why_not"] = admin ? why_not : "you are a spectator";
-    return payload_of(out.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+    std::string out;
+    JsonWriter w(out);
+    const auto seconds = [&](const char* key, const std::optional<Time>& time) {
+      if (time) w.key(key).real(time->s());
+      else w.key(key).null();
+    };
+    w.object([&] {
+      w.key("state").text(name_of(report_.state));
+      w.key("time_s").real(report_.now.s());
+      w.key("tick").integer(report_.tick);
+      w.key("step_s").real(report_.step.s());
+      if (report_.speed) w.key("speed").real(*report_.speed);
+      else w.key("speed").null();
+      w.key("real_time_factor").real(report_.real_time_factor);
+      w.key("late_ticks").integer(report_.late_ticks);
+      w.key("reason").text(report_.reason);
+      w.key("begin_s").real(report_.begin.s());
+      seconds("end_s", report_.end);
+      w.key("history_s").list([&] {
+        for (const Time time : report_.history) w.real(time.s());
+      });
+      seconds("target_s", report_.target);
+      w.key("may_steer").flag(admin && report_.takes_no_input.empty());
+      w.key("may_rewind").flag(admin && report_.may_not_rewind.empty());
+      w.key("why_not").text(admin ? why_not : "you are a spectator");
+      w.key("replay").flag(report_.replay);
+      if (recording)
+        w.key("recording").object([&] {
+          w.key("file").text(recording->file);
+          w.key("messages").integer(recording->messages);
+          w.key("bytes").integer(recording->bytes);
+        });
+      else w.key("recording").null();
+      w.key("viewers").integer(clients_.size());
+      w.key("epoch").integer(report_.epoch);
+      w.key("dropped_frames").integer(mailbox_->dropped());
+    });
+    return payload_of(out);
   };
   const Payload admins = write(true), spectators = write(false);
   for (Subscriber& each : subscribers) {

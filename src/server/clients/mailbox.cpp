@@ -5,10 +5,7 @@ namespace sandlot::server {
 std::size_t Batch::bytes() const {
   std::size_t sum = sizeof *this + messages.size() * sizeof(ChannelMessage);
   for (const ChannelMessage& message : messages) sum += message.bytes->size();
-  if (frame)
-    for (const FrameInstance& instance : frame->instances)
-      sum += sizeof instance + instance.X_WL.size() * sizeof(Pose);
-  return sum;
+  return frame ? sum + pose_bytes(*frame) : sum;
 }
 
 void Mailbox::open(std::function<void()> wake) {
@@ -69,14 +66,6 @@ void Mailbox::wake(bool now) {
   wake_();
 }
 
-void Mailbox::release() {
-  {
-    const std::lock_guard lock(mutex_);
-    returned_.swap(done_);
-  }
-  returned_.clear();
-}
-
 void Mailbox::take(std::deque<QueuedItem>& out) {
   {
     const std::lock_guard lock(wake_mutex_);
@@ -86,11 +75,6 @@ void Mailbox::take(std::deque<QueuedItem>& out) {
   out.swap(items_);
   bytes_ = 0;
   thinned_ = 0;
-}
-
-void Mailbox::give_back(std::shared_ptr<const Frame> frame) {
-  const std::lock_guard lock(mutex_);
-  done_.push_back(std::move(frame));
 }
 
 std::uint64_t Mailbox::dropped() const {

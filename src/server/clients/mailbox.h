@@ -1,11 +1,11 @@
 #pragma once
-/// What goes from the simulation's thread to the transport's: what happened in ticks, and tasks.
+/// Queue from the simulation's thread to the transport's: batches of messages, and tasks.
 ///
-/// Batches   one per tick with something to tell. They wait in a queue of `limit_bytes`; when it is full the oldest ones lose
-///           what viewers can do without (frames, messages), which is counted. What came from outside stays.
-/// Tasks   calls of the Hub, in order with the batches; those that ask for them bound how many there are.
-/// Frames    are given back, so that the thread that made them lets go of them and fills them again.
-/// Threads   push() and release() as said; take(), give_back() and close() belong to the transport's.
+/// Batches   one per tick with something to send. They wait in a queue of `limit_bytes`; when it is full the oldest ones lose
+///           what viewers can do without (frames, messages), which is counted. Commands from outside stay.
+/// Tasks     calls of the Hub, in order with the batches; their number is bounded by those who push them.
+/// Frames    are given back to the simulation's thread (sim/world/frame_returns.h).
+/// Threads   push() and release() as noted; take(), give_back() and close() belong to the transport's.
 /// Cost      a lock per batch that is never held while something is encoded or sent.
 #include <chrono>
 #include <deque>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "server/http/transport.h"
-#include "sim/world/frame.h"
+#include "sim/world/frame_returns.h"
 
 namespace sandlot::server {
 
@@ -34,7 +34,7 @@ struct Batch {
   std::shared_ptr<const Frame> frame;  ///< with poses; null: none is due
   bool contacts = false;               ///< the frame has them
   std::vector<ChannelMessage> messages;
-  Payload commands;  ///< JSON of what came from outside
+  Payload commands;  ///< JSON of the commands from outside
   std::size_t bytes() const;
 };
 
@@ -58,10 +58,10 @@ class Mailbox {
   /// Any thread.
   void push(Task task);
   /// Simulation's thread: lets go of the frames that were given back.
-  void release();
+  void release() { returns_.release(); }
 
   void take(std::deque<QueuedItem>& out);
-  void give_back(std::shared_ptr<const Frame> frame);
+  void give_back(std::shared_ptr<const Frame> frame) { returns_.give_back(std::move(frame)); }
 
   std::uint64_t dropped() const;
 
@@ -73,8 +73,7 @@ class Mailbox {
   std::size_t bytes_ = 0;
   std::size_t thinned_ = 0;  ///< so many at the front have nothing left to lose
   std::uint64_t dropped_ = 0;
-  std::vector<std::shared_ptr<const Frame>> done_;
-  std::vector<std::shared_ptr<const Frame>> returned_;  ///< of the simulation's thread
+  FrameReturns returns_;
   bool closed_ = false;
 
   std::mutex wake_mutex_;

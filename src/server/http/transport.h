@@ -1,5 +1,5 @@
 #pragma once
-/// One port for HTTP and WebSocket: sockets, limits, queues. Who is let in is decided by server/http/http.h; what is said on it is the Handler's matter.
+/// One port for HTTP and WebSocket: sockets, limits, queues. Admission is decided by server/http/http.h; the content of messages is the Handler's matter.
 ///
 /// Threads   one thread of its own runs all connections and calls the Handler; send(), close_client(), post() and counters() may be called from
 ///           any thread, stop() from any but the Handler's.
