@@ -83,7 +83,7 @@ struct PendingRequest {
   std::string text;
 };
 /// Hands requests to the session, which answers for all of them together. @pre there is at least one
-CommandResult submit(CommandCall& call, std::vector<PendingRequest> asked);
+CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests);
 
 /// The instances whose name fits; an error when none does.
 Result<std::vector<const Simulation::Entity*>> match_things(CommandCall& call, std::string_view pattern);

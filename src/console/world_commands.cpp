@@ -153,7 +153,7 @@ Result<Shape> primitive(const std::string& name, const Looks& looks) {
 }
 
 model::Instance made_of(const std::string& name, const Shape& shape, const Looks& looks) {
-  // As dense as wood unless said otherwise: such things can be pushed and float in no way.
+  // As dense as wood unless a mass is given: such things can be pushed and float in no way.
   constexpr double wood_kg_m3 = 500;
   auto made = std::make_shared<model::Model>();
   made->name = name;

@@ -102,7 +102,7 @@ class Parser {
       if (types_.size() >= max_types) return error("more than 1000 types");
       types_.emplace_back().name = long_name(name);
       repeated_ = !by_name_.emplace(name, &types_.back())
-                       .second;  // some writers say a type twice: the first counts
+                       .second;  // some writers repeat a type: the first counts
       between_ = false;
       return {};
     }

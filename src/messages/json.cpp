@@ -267,7 +267,7 @@ Status read_json(const MessageInfo& info, std::string_view text, void* message) 
   Json document;
   try {
     document = Json::parse(text);
-  } catch (const Json::exception& e) {  // the library's only way to say where
+  } catch (const Json::exception& e) {  // the library's only way to report the place
     return Error{std::string("is no JSON: ") + e.what()};
   }
   return set_message(info, document, message);

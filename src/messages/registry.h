@@ -17,7 +17,7 @@ std::span<const MessageInfo* const> all_messages();
 /// The type of a name, `sensor_msgs/LaserScan` or `sensor_msgs/msg/LaserScan`; the error names the nearest.
 Result<const MessageInfo*> find_message(std::string_view name);
 
-/// A type of service: what is asked and what is answered.
+/// A type of service: its request and its response.
 struct ServiceInfo {
   std::string name;  ///< "sandlot_msgs/srv/Console"
   const MessageInfo *request, *response;

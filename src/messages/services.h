@@ -11,7 +11,7 @@
 
 namespace sandlot::msg {
 
-/// Says one line of the console.
+/// Executes one line of the console.
 struct Console {
   static constexpr const char* ros_type = "sandlot_msgs/srv/Console";
   struct Request {

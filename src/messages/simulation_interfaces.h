@@ -1,5 +1,5 @@
 #pragma once
-/// simulation_interfaces 2.1.0: what simulators are asked for in one common form. Its services: messages/services.h.
+/// simulation_interfaces 2.1.0: a common interface of simulators. Its services: messages/services.h.
 /// long file: one list of messages
 #include <cstdint>
 #include <string>

@@ -64,7 +64,7 @@ struct PageFile {
   std::string_view etag;  ///< without quotes: another one for other bytes
 };
 std::span<const PageFile> page_files();
-/// False: it was built without node or its packages, and "/" says how to get them.
+/// False: it was built without node or its packages, and "/" explains how to get them.
 bool has_page();
 
 }  // namespace sandlot::server

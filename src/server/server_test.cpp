@@ -169,10 +169,10 @@ TEST(Server, AWatchIsItsClientsOwnAndGoesWithItsSubscription) {
   const std::uint32_t channel = one.channels[topic]["id"];
   other.console("list entities");
   EXPECT_EQ(other.channels.count(topic), 0u);
-  other.say({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", channel}}}}});
+  other.send({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", channel}}}}});
   ASSERT_TRUE(other.until([&] { return !other.statuses.empty(); }));
   EXPECT_EQ(other.statuses[0]["level"], 2);
-  one.say({{"op", "unsubscribe"}, {"subscriptionIds", {subscription}}});
+  one.send({{"op", "unsubscribe"}, {"subscriptionIds", {subscription}}});
   EXPECT_TRUE(one.until([&] { return !one.unadvertised.empty(); }));
   EXPECT_EQ(one.unadvertised, std::vector{channel});
 }
@@ -181,11 +181,11 @@ TEST(Server, AParameterChangesTheRunAndEverybodyHearsOfIt) {
   Running run(one_rover("wander"), {});
   run.go();
   Viewer viewer(run.url()), other(run.url());
-  other.say({{"op", "subscribeParameterUpdates"}, {"parameterNames", {"rover1/laser.noise.white"}}});
+  other.send({{"op", "subscribeParameterUpdates"}, {"parameterNames", {"rover1/laser.noise.white"}}});
   const std::uint32_t commands = other.subscribe("/sandlot/commands");
   other.console("list entities");
   other.listen(0.1);
-  viewer.say({{"op", "getParameters"}, {"parameterNames", json::array()}, {"id", "all"}});
+  viewer.send({{"op", "getParameters"}, {"parameterNames", json::array()}, {"id", "all"}});
   ASSERT_TRUE(viewer.until([&] { return !viewer.parameters.empty(); }));
   std::map<std::string, json> values;
   for (const json& each : viewer.parameters[0]["parameters"]) values[each["name"]] = each["value"];
@@ -196,9 +196,9 @@ TEST(Server, AParameterChangesTheRunAndEverybodyHearsOfIt) {
   EXPECT_EQ(values["sandlot.paused"], false);
   EXPECT_EQ(values["sandlot.speed"], 0) << "as fast as possible";
 
-  viewer.say({{"op", "setParameters"},
-              {"parameters", {{{"name", "rover1/laser.noise.white"}, {"value", 0.5}}}},
-              {"id", "set"}});
+  viewer.send({{"op", "setParameters"},
+               {"parameters", {{{"name", "rover1/laser.noise.white"}, {"value", 0.5}}}},
+               {"id", "set"}});
   ASSERT_TRUE(viewer.until([&] { return viewer.parameters.size() == 2; }));
   EXPECT_EQ(viewer.parameters[1]["id"], "set");
   EXPECT_EQ(viewer.parameters[1]["parameters"][0]["value"], 0.5);
@@ -209,16 +209,16 @@ TEST(Server, AParameterChangesTheRunAndEverybodyHearsOfIt) {
   EXPECT_EQ(logged->parsed()["commands"][0]["kind"], "parameter");
   EXPECT_EQ(logged->parsed()["commands"][0]["target"], "rover1/laser");
 
-  viewer.say({{"op", "setParameters"},
-              {"parameters", {{{"name", "rover1/laser.noise.white"}, {"value", -1}}}},
-              {"id", "bad"}});
+  viewer.send({{"op", "setParameters"},
+               {"parameters", {{{"name", "rover1/laser.noise.white"}, {"value", -1}}}},
+               {"id", "bad"}});
   ASSERT_TRUE(viewer.until([&] { return viewer.parameters.size() == 3; }));
   EXPECT_EQ(viewer.parameters[2]["parameters"][0]["value"], 0.5) << "the old one";
   ASSERT_EQ(viewer.statuses.size(), 1u);
   EXPECT_EQ(viewer.statuses[0]["level"], 2);
   EXPECT_EQ(viewer.statuses[0]["id"], "bad");
 
-  viewer.say({{"op", "setParameters"}, {"parameters", {{{"name", "sandlot.paused"}, {"value", true}}}}});
+  viewer.send({{"op", "setParameters"}, {"parameters", {{{"name", "sandlot.paused"}, {"value", true}}}}});
   EXPECT_TRUE(viewer.until([&] { return run.session.report().state == Session::State::paused; }));
 }
 
@@ -231,12 +231,12 @@ TEST(Server, ClientsPublishCommandsByThreeNamesInTwoEncodings) {
   viewer.listen(0.1);
   const char* names[] = {"/rover1/cmd_vel", "/rover1/drive", "/rover1/drive/contact/command"};
   for (std::uint32_t i = 0; i < 3; ++i) {
-    viewer.say({{"op", "advertise"},
-                {"channels",
-                 {{{"id", i},
-                   {"topic", names[i]},
-                   {"encoding", "json"},
-                   {"schemaName", i == 1 ? "" : "geometry_msgs/Twist"}}}}});
+    viewer.send({{"op", "advertise"},
+                 {"channels",
+                  {{{"id", i},
+                    {"topic", names[i]},
+                    {"encoding", "json"},
+                    {"schemaName", i == 1 ? "" : "geometry_msgs/Twist"}}}}});
     viewer.publish(i, R"({"linear": {"x": 0.25}})");
     const auto logged = viewer.next(commands);
     ASSERT_TRUE(logged) << names[i] << (viewer.statuses.empty() ? "" : viewer.statuses.back().dump());
@@ -249,12 +249,12 @@ TEST(Server, ClientsPublishCommandsByThreeNamesInTwoEncodings) {
   twist.linear.x = 0.5;
   std::vector<std::byte> cdr;
   write_cdr(message_info<msg::Twist>(), &twist, cdr);
-  viewer.say({{"op", "advertise"},
-              {"channels",
-               {{{"id", 7},
-                 {"topic", "/rover1/cmd_vel"},
-                 {"encoding", "cdr"},
-                 {"schemaName", "geometry_msgs/msg/Twist"}}}}});
+  viewer.send({{"op", "advertise"},
+               {"channels",
+                {{{"id", 7},
+                  {"topic", "/rover1/cmd_vel"},
+                  {"encoding", "cdr"},
+                  {"schemaName", "geometry_msgs/msg/Twist"}}}}});
   viewer.publish(7, {reinterpret_cast<const char*>(cdr.data()), cdr.size()});
   ASSERT_TRUE(viewer.next(commands));
   const json now = viewer.console("show rover1/drive/ideal/command.linear.x");
@@ -262,7 +262,7 @@ TEST(Server, ClientsPublishCommandsByThreeNamesInTwoEncodings) {
   const std::size_t before = viewer.statuses.size();
   viewer.publish(7, "no twist");
   viewer.publish(99, "nothing");
-  viewer.say(
+  viewer.send(
       {{"op", "advertise"},
        {"channels", {{{"id", 8}, {"topic", "/rover1/cmd_val"}, {"encoding", "json"}, {"schemaName", ""}}}}});
   ASSERT_TRUE(viewer.until([&] { return viewer.statuses.size() >= before + 3; }));
@@ -285,8 +285,8 @@ TEST(Server, SpectatorsSeeButCannotSteer) {
   EXPECT_TRUE(viewer.call("/set_simulation_state", {{"state", {{"state", 2}}}}).is_null());
   ASSERT_TRUE(viewer.until([&] { return !viewer.statuses.empty(); }));
   const std::size_t before = viewer.statuses.size();
-  viewer.say({{"op", "setParameters"}, {"parameters", {{{"name", "sandlot.paused"}, {"value", true}}}}});
-  viewer.say(
+  viewer.send({{"op", "setParameters"}, {"parameters", {{{"name", "sandlot.paused"}, {"value", true}}}}});
+  viewer.send(
       {{"op", "advertise"},
        {"channels", {{{"id", 1}, {"topic", "/rover1/cmd_vel"}, {"encoding", "json"}, {"schemaName", ""}}}}});
   viewer.publish(1, "{}");
@@ -410,7 +410,7 @@ TEST(Server, TheGraphNamesWhoTalksToWhom) {
   Viewer viewer(run.url());
   ASSERT_NE(viewer.channel("/rover1/laser/ranges"), 0u);
   viewer.subscribe("/rover1/laser/ranges");
-  viewer.say({{"op", "subscribeConnectionGraph"}});
+  viewer.send({{"op", "subscribeConnectionGraph"}});
   const auto ids = [&](const char* side, const char* topic) {
     std::vector<std::string> out;
     for (const json& each : viewer.graphs.back()[side])

@@ -1,5 +1,5 @@
 #pragma once
-/// For tests: a socket that says whatever bytes it is told to, and waits for an answer with patience.
+/// For tests: a socket that sends any bytes, and waits for an answer with patience.
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -37,7 +37,7 @@ struct Socket {
     if (fd >= 0) ::close(fd);
   }
 
-  void say(std::string_view bytes) {
+  void send(std::string_view bytes) {
     while (!bytes.empty()) {
       const auto n = ::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (n <= 0) return;
@@ -81,7 +81,7 @@ struct Socket {
     return take(end);
   }
   std::string ask(std::string_view request) {
-    say(request);
+    send(request);
     return answer(!request.starts_with("HEAD"));
   }
 

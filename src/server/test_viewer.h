@@ -55,15 +55,15 @@ class Viewer {
     json parsed() const { return json::parse(text(), nullptr, false); }
   };
 
-  void say(const json& message) { say_text(message.dump()); }
-  void say_text(const std::string& text) {
+  void send(const json& message) { send_text(message.dump()); }
+  void send_text(const std::string& text) {
     ASSERT_TRUE(socket_);
-    EXPECT_TRUE(try_to_say(text));
+    EXPECT_TRUE(try_to_send(text));
   }
-  bool try_to_say(const std::string& text) {
+  bool try_to_send(const std::string& text) {
     return socket_ && static_cast<bool>(socket_->send(std::as_bytes(std::span(text)), true));
   }
-  void say_bytes(std::span<const std::byte> bytes) {
+  void send_bytes(std::span<const std::byte> bytes) {
     ASSERT_TRUE(socket_);
     const Status sent = socket_->send(bytes, false);
     EXPECT_TRUE(sent) << sent.error().text();
@@ -76,10 +76,10 @@ class Viewer {
     if (!got) return false;
     const std::span<const std::byte> bytes = got->bytes;
     if (got->text) {
-      const json said = json::parse(reinterpret_cast<const char*>(bytes.data()),
-                                    reinterpret_cast<const char*>(bytes.data()) + bytes.size());
+      const json received = json::parse(reinterpret_cast<const char*>(bytes.data()),
+                                        reinterpret_cast<const char*>(bytes.data()) + bytes.size());
       ++texts;
-      file(said);
+      file(received);
     } else if (bytes[0] == std::byte{1}) {
       data.push_back({u32_at(bytes, 1), u64_at(bytes, 5), {bytes.begin() + 13, bytes.end()}});
     } else if (bytes[0] == std::byte{2}) {
@@ -121,7 +121,7 @@ class Viewer {
     const std::uint32_t id = channel(topic);
     EXPECT_NE(id, 0u) << topic;
     const std::uint32_t subscription = ++last_subscription_;
-    say({{"op", "subscribe"}, {"subscriptions", {{{"id", subscription}, {"channelId", id}}}}});
+    send({{"op", "subscribe"}, {"subscriptions", {{{"id", subscription}, {"channelId", id}}}}});
     return subscription;
   }
   /// The next message of a subscription (those before it are forgotten).
@@ -174,7 +174,7 @@ class Viewer {
     put(&length, 4);
     put(encoding.data(), encoding.size());
     put(request.data(), request.size());
-    say_bytes(bytes);
+    send_bytes(bytes);
     return id;
   }
   json console(const std::string& line) { return call("/sandlot/console", {{"line", line}}); }
@@ -184,7 +184,7 @@ class Viewer {
     bytes.insert(bytes.end(), number, number + 4);
     const auto text = std::as_bytes(std::span(payload));
     bytes.insert(bytes.end(), text.begin(), text.end());
-    say_bytes(bytes);
+    send_bytes(bytes);
   }
 
   json info;
@@ -201,24 +201,24 @@ class Viewer {
   int times = 0, texts = 0;
 
  private:
-  void file(const json& said) {
-    const std::string op = said.value("op", "");
-    if (op == "serverInfo") info = said;
+  void file(const json& received) {
+    const std::string op = received.value("op", "");
+    if (op == "serverInfo") info = received;
     if (op == "advertise")
-      for (const json& each : said["channels"]) channels[each["topic"]] = each;
+      for (const json& each : received["channels"]) channels[each["topic"]] = each;
     if (op == "unadvertise")
-      for (const json& each : said["channelIds"]) {
+      for (const json& each : received["channelIds"]) {
         unadvertised.push_back(each);
         std::erase_if(channels, [&](const auto& known) { return known.second["id"] == each; });
       }
     if (op == "advertiseServices")
-      for (const json& each : said["services"]) services[each["name"]] = each["id"];
-    if (op == "status") statuses.push_back(said);
-    if (op == "parameterValues") parameters.push_back(said);
-    if (op == "connectionGraphUpdate") graphs.push_back(said);
+      for (const json& each : received["services"]) services[each["name"]] = each["id"];
+    if (op == "status") statuses.push_back(received);
+    if (op == "parameterValues") parameters.push_back(received);
+    if (op == "connectionGraphUpdate") graphs.push_back(received);
     if (op == "serviceCallFailure") {
-      failures[said["callId"]] = said["message"];
-      ++answers[said["callId"]];
+      failures[received["callId"]] = received["message"];
+      ++answers[received["callId"]];
     }
   }
   std::unique_ptr<WebSocketClient> socket_;

@@ -24,7 +24,7 @@ class AssetTable {
   struct Kept {
     std::shared_ptr<const LabelledObject> thing;
     std::vector<std::uint32_t> textures;                  ///< of a mesh's parts: the number + 1, 0 for none
-    std::shared_ptr<const std::vector<std::byte>> bytes;  ///< once somebody has asked
+    std::shared_ptr<const std::vector<std::byte>> bytes;  ///< from the first request on
   };
   template <class LabelledObject>
   struct Table {

@@ -2,7 +2,7 @@
 /// The Foxglove WebSocket protocol: bytes <-> structs. No sockets, no state.
 ///
 /// Both sub-protocol names carry the same messages. What a client sent is decoded by read_text() and read_binary() into one
-/// ClientMessage; what the server says is written by the functions below, text as JSON, binary little-endian.
+/// ClientMessage; the messages of the server are written by the functions below, text as JSON, binary little-endian.
 ///
 /// Errors   a message that is none of these: a sentence that can go back to the client as a status. Bounded by the limits below,
 ///          whatever the bytes; nothing is allocated that is larger than the message.
@@ -23,7 +23,7 @@ namespace sandlot::foxglove {
 
 inline constexpr std::string_view subprotocols[] = {"foxglove.websocket.v1", "foxglove.sdk.v1"};
 
-// --- what clients say ---
+// --- messages of clients ---
 struct Subscribe {
   struct Each {
     std::uint32_t id = 0, channel = 0;
@@ -99,7 +99,7 @@ inline constexpr std::size_t most_name_bytes = 4096;
 Result<ClientMessage> read_text(std::string_view text);
 Result<ClientMessage> read_binary(std::span<const std::byte> bytes);
 
-// --- what the server says ---
+// --- messages of the server ---
 struct ServerInfo {
   std::string name;
   std::vector<std::string> capabilities, encodings;

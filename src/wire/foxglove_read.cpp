@@ -304,7 +304,7 @@ Result<PlaybackControl> read_playback(ByteReader& r) {
   std::uint64_t seek = 0;
   read(r, command), read(r, speed), read(r, has_seek), read(r, seek);
   if (!read_counted(r, out.id) || r.remaining() != 0)
-    return Error{"a playback control (binary op 3) of another length than it says"};
+    return Error{"a playback control (binary op 3) whose length is wrong"};
   if (command > 1) return Error{"a playback control with the command " + std::to_string(command), "0 or 1"};
   if (!std::isfinite(speed)) return Error{"a playback control whose speed is no number"};
   out.play = command == 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What viewers draw: the world as JSON, sent once and when it changes; poses as compact bytes, 30 times a second; meshes and
+/// The world for viewers: as JSON, sent once and when it changes; poses as compact bytes, 30 times a second; meshes and
 /// height grids as bytes. Layouts: docs/viewer_protocol.md.
 ///
 /// Threads  WorldJsonWriter::write() belongs to the simulation's thread (between ticks); PoseWriter and the functions on frames to any one
@@ -78,10 +78,10 @@ class PoseWriter {
   ~PoseWriter();
   PoseWriter(PoseWriter&&) noexcept;
   PoseWriter& operator=(PoseWriter&&) noexcept;
-  /// Replaces `out` by a message. A frame of another epoch than the last is a key frame whatever is asked.
+  /// Replaces `out` by a message. A frame of another epoch than the last is a key frame in any case.
   /// @param key  everything, not only what has changed since the last call
   /// @return false: nothing has changed, `out` has no records
-  /// @pre the frame was asked for with links
+  /// @pre the frame was requested with links
   bool write(const Frame& frame, std::uint64_t epoch, bool key, std::vector<std::byte>& out);
 
  private:

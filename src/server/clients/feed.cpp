@@ -138,9 +138,9 @@ void Feed::send_initial(const InitialSend& initial) {
   std::size_t bytes = 0;
   std::vector<ChannelMessage> latest;
   for (SubscribedTopic& each : topics_) {
-    const bool asked = std::binary_search(initial.latest.begin(), initial.latest.end(), each.channel);
+    const bool wanted = std::binary_search(initial.latest.begin(), initial.latest.end(), each.channel);
     if (!each.topic || each.topic->count == 0) continue;
-    if (!asked && each.topic->count == each.count) continue;
+    if (!wanted && each.topic->count == each.count) continue;
     if (bytes > most_bytes) continue;  // the next message comes as well
     ChannelMessage made = message(each);
     bytes += made.bytes->size();
@@ -148,15 +148,15 @@ void Feed::send_initial(const InitialSend& initial) {
       each.count = each.topic->count;
       batch.messages.push_back(made);
     }
-    if (asked) latest.push_back(std::move(made));
+    if (wanted) latest.push_back(std::move(made));
   }
   const Session::State state = session_.report().state;
   const bool stands = state != Session::State::playing && state != Session::State::seeking;
   for (Watch& watch : watches_) {
     // A run that stands still sends its values, whatever the rate.
-    const bool asked = std::binary_search(initial.latest.begin(), initial.latest.end(), watch.channel);
-    if (!asked && (!stands || watch.sampled_at == batch.now)) continue;
-    (asked ? latest : batch.messages).push_back(sample(watch));
+    const bool wanted = std::binary_search(initial.latest.begin(), initial.latest.end(), watch.channel);
+    if (!wanted && (!stands || watch.sampled_at == batch.now)) continue;
+    (wanted ? latest : batch.messages).push_back(sample(watch));
   }
   if (subscribed_->frames || subscribed_->contacts) {
     batch.frame = session_.simulation().look(

@@ -332,6 +332,7 @@ void Hub::flush() {
                               !initial_.latest.empty();
   const auto now = Clock::now();
   if ((!subscriptions_changed_ && !initial_wanted) || now < flushed_ + flush_pause) return;
+  // What the simulation's thread has to copy from now on.
   auto summary = std::make_shared<SubscriptionSummary>();
   summary->clients = !clients_.empty();
   summary->frames = subscribed(ChannelKind::poses) || subscribed(ChannelKind::transforms) ||
@@ -360,10 +361,12 @@ void Hub::flush() {
 
 void Hub::timer() {
   drain();
+  // The state of the run and the clock, five times a second even while nothing changes.
   const auto now = Clock::now();
   state_changed();
   if (now >= status_sent_ + 200ms) send_status();
   if (now >= time_sent_ + 200ms) send_time(report_.now);
+  // A frame out of turn: a subscriber lacks its key frame, or the run stands still behind what viewers have seen.
   const Channel& poses = channel(ChannelKind::poses);
   const bool key_missing = std::any_of(poses.subscribers.begin(), poses.subscribers.end(),
                                        [](const Subscriber& each) { return !each.initial_state_sent; });
@@ -372,6 +375,7 @@ void Hub::timer() {
     looked_ = now;
   }
   for (auto& [id, client] : clients_) advertise_waiting(id, client);
+  // Watches whose subscriber has not come.
   std::vector<std::uint32_t> unused;
   for (auto& [id, each] : channels_) {
     if (each.kind != ChannelKind::watch) continue;

@@ -74,7 +74,7 @@ void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParamet
   // Each is looked up on the simulation's thread.
   if (request.names.size() > most_named_parameters)
     return void(
-        refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are asked for by name",
+        refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are requested by name",
                request.id));
   ++client.calls;
   const auto answer = std::make_shared<ParameterAnswer>();
@@ -131,7 +131,7 @@ void Hub::set_parameters(ClientId id, Client& client, const foxglove::SetParamet
       error = made.error().text();
       continue;
     }
-    // Until it is answered the entry says that the run is over: it is if nobody answers.
+    // Until it is answered the entry holds "the run is over", which is true if nobody answers.
     error = "the run is over";
     const auto queued = session_.submit(
         std::move(*made), {Source::Kind::admin, id}, [answer, i, &session = session_](const Status& status) {

@@ -9,7 +9,7 @@ namespace {
 foxglove::Parameter to_foxglove(std::string name, ParameterValue value) {
   foxglove::Parameter out;
   out.name = std::move(name);
-  // JSON writes a whole number like an integer: the type says that it is not one.
+  // JSON writes a whole number like an integer: the type shows that it is not one.
   if (std::holds_alternative<double>(value)) out.type = "float64";
   if (std::holds_alternative<std::vector<double>>(value)) out.type = "float64_array";
   std::visit([&](auto& x) { out.value = std::move(x); }, value);

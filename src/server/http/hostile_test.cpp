@@ -25,9 +25,9 @@ void look_at_everything(Viewer& viewer) {
   std::uint32_t id = 1;
   for (const auto& [topic, channel] : viewer.channels)
     all.push_back({{"id", id++}, {"channelId", channel["id"]}});
-  viewer.say({{"op", "subscribe"}, {"subscriptions", all}});
-  viewer.say({{"op", "subscribeParameterUpdates"}, {"parameterNames", json::array()}});
-  viewer.say({{"op", "subscribeConnectionGraph"}});
+  viewer.send({{"op", "subscribe"}, {"subscriptions", all}});
+  viewer.send({{"op", "subscribeParameterUpdates"}, {"parameterNames", json::array()}});
+  viewer.send({{"op", "subscribeConnectionGraph"}});
   viewer.call("/sandlot/watch", {{"values", {"rover1.pose.x", "rover1/laser.ranges[3]"}}, {"rate_hz", 0}});
 }
 
@@ -72,7 +72,7 @@ TEST(ServerRun, NonsenseIsRefusedWithAReasonAndCounted) {
   std::size_t refused = 0;
   for (const char* text : texts) {
     const std::size_t before = viewer.statuses.size();
-    viewer.say_text(text);
+    viewer.send_text(text);
     ASSERT_TRUE(viewer.until([&] { return viewer.statuses.size() > before; })) << text;
     EXPECT_EQ(viewer.statuses.back()["level"], 2) << text;
     ++refused;
@@ -81,14 +81,14 @@ TEST(ServerRun, NonsenseIsRefusedWithAReasonAndCounted) {
   for (const int length : {1, 4, 13, 100}) {
     bytes.assign(static_cast<std::size_t>(length), std::byte{0xff});
     const std::size_t before = viewer.statuses.size();
-    viewer.say_bytes(bytes);
+    viewer.send_bytes(bytes);
     ASSERT_TRUE(viewer.until([&] { return viewer.statuses.size() > before; })) << length;
     ++refused;
   }
   // The same subscription twice, the same channel twice.
   const std::uint32_t channel = viewer.channels["/clock"]["id"];
   for (int i = 0; i < 3; ++i)
-    viewer.say({{"op", "subscribe"}, {"subscriptions", {{{"id", 5 + i / 2}, {"channelId", channel}}}}});
+    viewer.send({{"op", "subscribe"}, {"subscriptions", {{{"id", 5 + i / 2}, {"channelId", channel}}}}});
   ASSERT_TRUE(viewer.until([&] { return viewer.statuses.size() >= refused + 2; }));
   EXPECT_GE(run.server->counters().refused, refused + 2);
   const auto state = run.session.report().tick;
@@ -130,7 +130,7 @@ TEST(ServerRun, AMillionSubscriptionsAreRefusedBeyondTheLimit) {
     std::string many = R"({"op":"subscribe","subscriptions":[)";
     for (int i = 0; i < 1'000'000; ++i) many += R"({"id":1,"channelId":1},)";
     many.back() = ']';
-    viewer.try_to_say(many + "}");
+    viewer.try_to_send(many + "}");
     viewer.until([&] { return !viewer.connected(); }, 5);
     EXPECT_FALSE(viewer.connected()) << "24 MB are more than a text message may have";
   }
@@ -139,7 +139,7 @@ TEST(ServerRun, AMillionSubscriptionsAreRefusedBeyondTheLimit) {
   std::string many = R"({"op":"subscribe","subscriptions":[)";
   for (int i = 0; i < 20'000; ++i) many += R"({"id":)" + std::to_string(i) + R"(,"channelId":1},)";
   many.back() = ']';
-  viewer.say_text(many + "}");
+  viewer.send_text(many + "}");
   ASSERT_TRUE(viewer.until([&] { return !viewer.statuses.empty(); }));
   EXPECT_TRUE(viewer.console("list entities")["ok"]) << "one channel was subscribed to, the run goes on";
 }
@@ -150,7 +150,7 @@ TEST(ServerRun, TooManyRequestsAreRefused) {
   Viewer viewer(run.url());
   ASSERT_NE(viewer.channel("/rover1/laser/ranges"), 0u);
   // 500 in a second may be asked, and they are sent at once: of 1000 about half is refused, but 20 complaints are enough.
-  for (int i = 0; i < 1000; ++i) viewer.say({{"op", "unsubscribeConnectionGraph"}});
+  for (int i = 0; i < 1000; ++i) viewer.send({{"op", "unsubscribeConnectionGraph"}});
   viewer.listen(0.5);
   EXPECT_GE(viewer.statuses.size(), 1u);
   EXPECT_LE(viewer.statuses.size(), 45u);
@@ -163,11 +163,11 @@ TEST(ServerRun, SoManyParametersMayBeAskedForByName) {
   run.go();
   Viewer viewer(run.url());
   std::vector<std::string> names(1000, "rover1/laser.noise.white");
-  viewer.say({{"op", "getParameters"}, {"parameterNames", names}, {"id", "many"}});
+  viewer.send({{"op", "getParameters"}, {"parameterNames", names}, {"id", "many"}});
   ASSERT_TRUE(viewer.until([&] { return !viewer.parameters.empty(); }));
   EXPECT_EQ(viewer.parameters[0]["parameters"].size(), 1000u);
   names.emplace_back("rover1/laser.rate");
-  viewer.say({{"op", "getParameters"}, {"parameterNames", names}, {"id", "more"}});
+  viewer.send({{"op", "getParameters"}, {"parameterNames", names}, {"id", "more"}});
   ASSERT_TRUE(viewer.until([&] { return !viewer.statuses.empty(); }));
   EXPECT_EQ(viewer.statuses[0]["id"], "more");
   EXPECT_EQ(viewer.parameters.size(), 1u);

@@ -66,7 +66,7 @@ std::optional<int> read_port(std::string_view text) {
   return text.front() == '-' ? std::nullopt : std::optional(port);
 }
 
-/// A site by its name and port; the scheme only says which port is meant by none.
+/// A site by its name and port; the scheme determines the port where none is given.
 struct Site {
   HostPort at;
   int usual_port = 80;
@@ -246,8 +246,9 @@ Admission admit(std::string_view query, std::string_view authorization, std::str
                 bool on_loopback) {
   const auto role = query_value(query, "role");
   if (!role) return {.status = 400, .why = role.error().what};
-  const auto asked = role->value_or("admin");
-  if (asked != "admin" && asked != "spectator") return {.status = 400, .why = "role is admin or spectator"};
+  const auto role_wanted = role->value_or("admin");
+  if (role_wanted != "admin" && role_wanted != "spectator")
+    return {.status = 400, .why = "role is admin or spectator"};
   auto given = query_value(query, "token");
   if (!given) return {.status = 400, .why = given.error().what};
   std::string secret = given->value_or("");
@@ -257,7 +258,7 @@ Admission admit(std::string_view query, std::string_view authorization, std::str
   if (!token.empty() && !secret.empty() && !same_secret(secret, token))
     return {.status = 401, .why = "this is not the token; without one you may look, but not steer"};
   const bool known = token.empty() ? on_loopback : !secret.empty();
-  return {.may_steer = known && asked == "admin"};
+  return {.may_steer = known && role_wanted == "admin"};
 }
 
 bool etag_matches(std::string_view if_none_match, std::string_view etag) {
@@ -282,7 +283,7 @@ std::string write_head(const AnswerHead& head) {
   line("Allow", head.allow);
   const bool stored = !head.etag.empty() && fits_header(head.etag) && head.etag.find('"') == head.etag.npos;
   if (stored) text.append("ETag: \"").append(head.etag).append("\"\r\n");
-  // no-cache: kept, but asked for again each time, which costs a 304.
+  // no-cache: kept, but requested again each time, which costs a 304.
   line("Cache-Control", stored ? "no-cache" : "no-store");
   line("Access-Control-Allow-Origin", head.allow_origin);
   line("Vary", "Origin");

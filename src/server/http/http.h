@@ -1,7 +1,7 @@
 #pragma once
 /// What of HTTP needs no socket: who may connect, what a request's target means, how an answer begins.
 ///
-/// Errors    a sentence that goes back to whoever asked.
+/// Errors    a sentence that goes back to the client.
 /// Cost      nothing here allocates more than a few times what it reads.
 /// Source    RFC 9110 and 9112 (HTTP), 3986 (URLs), 6454 (origins), 6750 (bearer tokens).
 /// Not read  X-Forwarded and Forwarded headers: anybody can write them.
@@ -34,7 +34,7 @@ struct HostPort {
 };
 std::optional<HostPort> read_host(std::string_view text);
 
-/// localhost, *.localhost, 127.0.0.0/8, ::1: names that only this machine can mean, whatever a name server says.
+/// localhost, *.localhost, 127.0.0.0/8, ::1: names that only this machine can mean, whatever a name server answers.
 bool is_loopback_name(std::string_view host);
 
 /// Whether a request to a socket on loopback names loopback, or one of `origins`, as its host. A page whose name was made to point here
@@ -50,7 +50,7 @@ enum class Origin {
 Origin judge_origin(std::string_view origin, std::string_view host_header,
                     std::span<const std::string> origins);
 
-/// Compares in a time that tells nothing but the length.
+/// Compares in a time that depends on nothing but the length.
 bool same_secret(std::string_view given, std::string_view secret);
 
 /// The first of `known` that is in the comma-separated list `offered`; empty: none.

@@ -4,7 +4,7 @@
 /// Threads   one thread of its own runs all connections and calls the Handler; send(), close_client(), post() and counters() may be called from
 ///           any thread, stop() from any but the Handler's.
 /// Queues    each client has one, of `queue_bytes`. A droppable message that finds it more than half full is dropped and counted; one that must
-///           arrive and finds it full closes the client: it is told why. An empty queue takes a message of any size. A client that takes nothing
+///           arrive and finds it full closes the client, with a reason. An empty queue takes a message of any size. A client that takes nothing
 ///           for `stall_s` is closed. A message of more than 1 MiB goes out in fragments of that size.
 /// Refused   (counted, answered with a reason and an HTTP status) what is no HTTP, heads over 16 KiB, bodies, methods but GET and HEAD,
 ///           requests with another site's Origin or, on loopback, a Host that is not loopback's (DNS rebinding); WebSockets with no known
@@ -92,7 +92,7 @@ class Transport {
   /// Runs f on the transport's thread, soon.
   void post(std::function<void()> f);
   Counters counters() const;
-  /// Says good-bye to all clients, waits at most 2 s for them, ends the thread. No call of the Handler comes after it.
+  /// Closes all clients, waits at most 2 s for them, ends the thread. No call of the Handler comes after it.
   void stop();
 
   struct Impl;

@@ -83,7 +83,7 @@ TEST(Transport, AnswersOneAfterTheOtherOnOneConnection) {
   EXPECT_EQ(s.rest(), "");
   EXPECT_TRUE(s.ended);
   Socket old(t->port());
-  old.say("GET / HTTP/1.0\r\n\r\n");
+  old.send("GET / HTTP/1.0\r\n\r\n");
   EXPECT_EQ(body(old.rest()), page);
   EXPECT_TRUE(old.ended);
   EXPECT_EQ(t->counters().refused, 0u);
@@ -92,7 +92,7 @@ TEST(Transport, AnswersOneAfterTheOtherOnOneConnection) {
 TEST(Transport, AnswersPipelinedRequestsInOrder) {
   const auto t = start();
   Socket s(t->port());
-  s.say(get("/") + get("/x") + get("/a%20b") + get("/y"));
+  s.send(get("/") + get("/x") + get("/a%20b") + get("/y"));
   EXPECT_EQ(status(s.answer()), 200);
   EXPECT_EQ(status(s.answer()), 404);
   EXPECT_EQ(status(s.answer()), 200);
@@ -141,7 +141,7 @@ TEST(Transport, RefusesEachWrongRequestWithItsStatusAndEndsTheConnection) {
   std::uint64_t refused = 0;
   for (const auto& [expected, request] : cases) {
     Socket s(t->port());
-    s.say(request);
+    s.send(request);
     const auto answer = s.rest();
     EXPECT_EQ(status(answer), expected) << request.substr(0, 200) << answer;
     EXPECT_GT(body(answer).size(), 10u) << "no reason";
@@ -168,12 +168,12 @@ TEST(Transport, AnotherSiteThatIsListedMayRead) {
 TEST(Transport, SlowRequestsAreEnded) {
   const auto t = start({.handshake_s = 0.5});
   Socket slow(t->port());
-  slow.say("GET / HTTP/1.1\r\nHost: local");
+  slow.send("GET / HTTP/1.1\r\nHost: local");
   Socket drops(t->port());
   // A drop at a time does not buy more: the whole head has to come in time.
   std::string_view drop = "GET / HTTP/1.1\r\n";
   for (int i = 0; i < 500 && !drops.more(0.02); ++i)
-    drops.say(i < 16 ? drop.substr(static_cast<std::size_t>(i), 1) : "x");
+    drops.send(i < 16 ? drop.substr(static_cast<std::size_t>(i), 1) : "x");
   EXPECT_EQ(status(drops.seen), 408);
   EXPECT_EQ(status(slow.rest()), 408);
   EXPECT_TRUE(slow.ended);
@@ -284,7 +284,7 @@ TEST(Transport, WebSocketsAreRefusedWithAReason) {
   std::uint64_t refused = 0;
   for (const auto& [expected, request, reason] : cases) {
     Socket s(t->port());
-    s.say(request);
+    s.send(request);
     const auto answer = s.rest();
     EXPECT_EQ(status(answer), expected) << request << answer;
     EXPECT_NE(body(answer).find(reason), std::string::npos) << request << answer;
@@ -296,7 +296,7 @@ TEST(Transport, WebSocketsAreRefusedWithAReason) {
     auto request = handshake();
     request.erase(request.find(line), line.size());
     Socket s(t->port());
-    s.say(request);
+    s.send(request);
     const auto answer = s.rest();
     EXPECT_TRUE(status(answer) == 400 || status(answer) == 426) << answer;
     EXPECT_EQ(t->counters().refused, ++refused);

@@ -77,7 +77,7 @@ struct Echo {
   }
   void expect_alive() {
     auto s = connect();
-    s.say(frame(1, "still there?"));
+    s.send(frame(1, "still there?"));
     EXPECT_EQ(s.frame().payload, "echo still there?");
   }
 };
@@ -89,28 +89,28 @@ std::string text_of(const Result<WebSocketClient::Message>& m) {
 TEST(WebSocket, EchoesWholeAndFragmentedMessagesOfBothKinds) {
   Echo echo;
   auto s = echo.connect();
-  s.say(frame(1, "héllo"));
+  s.send(frame(1, "héllo"));
   auto f = s.frame();
   EXPECT_EQ(f.opcode, 1);
   EXPECT_TRUE(f.fin);
   EXPECT_EQ(f.payload, "echo héllo");
-  s.say(frame(2, std::string_view("\0\xff", 2)) + frame(2, ""));
+  s.send(frame(2, std::string_view("\0\xff", 2)) + frame(2, ""));
   f = s.frame();
   EXPECT_EQ(f.opcode, 2);
   EXPECT_EQ(f.payload, std::string_view("echo \0\xff", 7));
   EXPECT_EQ(s.frame().payload, "echo ");
   // In three parts, one of them empty, a letter torn apart, a ping between.
-  s.say(frame(1, "h\xc3", false) + frame(0, "", false) + frame(9, "p") + frame(0, "\xa9!"));
+  s.send(frame(1, "h\xc3", false) + frame(0, "", false) + frame(9, "p") + frame(0, "\xa9!"));
   f = s.frame();
   EXPECT_EQ(f.opcode, 10);
   EXPECT_EQ(f.payload, "p");
   EXPECT_EQ(s.frame().payload, "echo hé!");
   // Byte by byte.
-  for (const char c : frame(1, "slow")) s.say(std::string_view(&c, 1));
+  for (const char c : frame(1, "slow")) s.send(std::string_view(&c, 1));
   EXPECT_EQ(s.frame().payload, "echo slow");
   EXPECT_EQ(echo.transport->counters().refused, 0u);
   // RFC 6455, 5.5.1: the good-bye is answered with the same code.
-  s.say(frame(8, "\x03\xe8 bye"));
+  s.send(frame(8, "\x03\xe8 bye"));
   EXPECT_EQ(s.closing().code(), 1000);
   EXPECT_EQ(s.rest(), "");
   EXPECT_TRUE(s.ended);
@@ -146,10 +146,10 @@ TEST(WebSocket, MalformedFramesEndTheirClientWithTheRightCode) {
   std::uint64_t refused = 0;
   for (const auto& [what, bytes, code] : cases) {
     auto s = echo.connect();
-    s.say(bytes);
+    s.send(bytes);
     const auto f = s.closing();
     EXPECT_EQ(f.code(), code) << what;
-    s.say(frame(8, ""));  // answers the good-bye: a client that does not is ended a little later
+    s.send(frame(8, ""));  // answers the good-bye: a client that does not is ended a little later
     s.rest();
     EXPECT_TRUE(s.ended) << what;
     ++refused;
@@ -173,10 +173,10 @@ TEST(WebSocket, LimitsOfMessages) {
   EXPECT_EQ(all(16 << 20, false), (16u << 20) + 5);
   // Spectators have nothing long to say.
   auto spectator = echo.connect();
-  spectator.say(frame(2, std::string(1 << 20, 'x')));
+  spectator.send(frame(2, std::string(1 << 20, 'x')));
   EXPECT_EQ(spectator.frame().payload.size(), (1u << 20));  // a fragment
   EXPECT_EQ(spectator.frame().payload.size(), 5u);
-  spectator.say(frame_head(2, (1 << 20) + 1));
+  spectator.send(frame_head(2, (1 << 20) + 1));
   EXPECT_EQ(spectator.closing().code(), 1009);
 }
 
@@ -185,12 +185,12 @@ TEST(WebSocket, AFloodIsEndedAndABurstIsNot) {
   auto burst = echo.connect();
   std::string many;
   for (int i = 0; i < 3000; ++i) many += frame(2, "x");
-  burst.say(many);
+  burst.send(many);
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(burst.frame().payload, "echo x") << i;
   auto flood = echo.connect();
   std::atomic<bool> stop = false;
   std::thread sender([&] {
-    while (!stop) flood.say(many);
+    while (!stop) flood.send(many);
   });
   std::thread reader([&] {
     const auto f = flood.closing();
@@ -205,15 +205,15 @@ TEST(WebSocket, AFloodIsEndedAndABurstIsNot) {
   auto pings = echo.connect();
   std::string many_pings;
   for (int i = 0; i < 6000; ++i) many_pings += frame(9, "");
-  pings.say(many_pings);
+  pings.send(many_pings);
   EXPECT_EQ(pings.closing().code(), 1008);
   // And the crumbs of a message that never ends.
   auto crumbs = echo.connect();
   std::string many_crumbs = frame(2, "x", false);
   for (int i = 0; i < 6000; ++i) many_crumbs += frame(0, "x", false);
-  crumbs.say(many_crumbs);
+  crumbs.send(many_crumbs);
   EXPECT_EQ(crumbs.closing().code(), 1008);
-  burst.say(frame(1, "me too"));
+  burst.send(frame(1, "me too"));
   EXPECT_EQ(burst.frame().payload, "echo me too");
 }
 
@@ -287,7 +287,7 @@ TEST(WebSocket, WhoCannotTakeWhatMustArriveIsToldAndEnded) {
   const auto f = slow.closing();
   EXPECT_EQ(f.code(), 1013);
   EXPECT_NE(f.payload.find("queue"), std::string::npos);
-  slow.say(frame(8, f.payload));
+  slow.send(frame(8, f.payload));
   EXPECT_TRUE(soon([&] { return echo.count(&Echo::gone) == 1; }));
 }
 
@@ -353,13 +353,13 @@ TEST(WebSocket, CloseClientSendsWhatIsQueuedThenTheReason) {
 TEST(WebSocket, AnExceptionOfTheHandlerEndsOneClient) {
   Echo echo;
   auto a = echo.connect(), b = echo.connect();
-  a.say(frame(1, "throw"));
+  a.send(frame(1, "throw"));
   a.rest();
   EXPECT_TRUE(a.ended);
-  b.say(frame(1, "fine"));
+  b.send(frame(1, "fine"));
   EXPECT_EQ(b.frame().payload, "echo fine");
   echo.transport->post([] { throw std::runtime_error("as planned"); });
-  b.say(frame(1, "still"));
+  b.send(frame(1, "still"));
   EXPECT_EQ(b.frame().payload, "echo still");
 }
 
@@ -378,7 +378,7 @@ TEST(WebSocket, StopSaysGoodByeAndDoesNotWaitForTheStalled) {
   const auto big = payload(std::string(20'000'000, 'x'));  // NOLINT(bugprone-string-constructor)
   echo.transport->send(echo.last(), {}, big, false, true);
   Socket silent(echo.transport->port()), half(echo.transport->port()), reading(echo.transport->port(), 4096);
-  half.say("GET / HT");
+  half.send("GET / HT");
   const auto client = echo.client();
   ASSERT_TRUE(soon([&] { return echo.transport->waiting_bytes(echo.last()) == 0; }));
   const auto begin = std::chrono::steady_clock::now();

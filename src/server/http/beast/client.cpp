@@ -156,7 +156,7 @@ Result<std::unique_ptr<WebSocketClient>> WebSocketClient::connect(const std::str
     std::string why = response.body();
     while (!why.empty() && why.back() == '\n') why.pop_back();
     return Error{fmt::format("{} refuses ({}): {}", at.authority(), response.result_int(),
-                             why.empty() ? "it does not say why" : why)};
+                             why.empty() ? "no reason given" : why)};
   }
   if (ec) return Error{fmt::format("{} is no server of ours: {}", at.authority(), ec.message())};
 

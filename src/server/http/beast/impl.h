@@ -58,7 +58,7 @@ struct Peer {
   /// The server stops: ends at once, or very soon.
   virtual void stop() = 0;
   virtual void end() = 0;
-  /// Whether nothing has been asked since the last answer.
+  /// Whether there was no request since the last answer.
   virtual bool idle() const = 0;
 };
 using PeerPtr = std::shared_ptr<Peer>;

@@ -392,7 +392,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     impl.dropped += unsent.size();
   }
 
-  /// Says good-bye after what is queued.
+  /// Closes the connection after the queue is sent.
   void close(ws::close_code code, std::string_view reason) {
     if (stage != Stage::open) return;
     stage = Stage::closing;
@@ -427,7 +427,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       return;
     }
     if (!stream.is_open()) {
-      // Beast has begun to say good-bye: the client did, or broke the protocol.
+      // Beast has begun to close: the client did, or broke the protocol.
       stage = Stage::closing;
       close_sent = true;
       deadline = now + goodbye;
