@@ -43,7 +43,7 @@ MessageInfo time_info(const char* name) {
   return info;
 }
 
-/// Fills `floats` and `float_lists`; messages without a place in memory have none of either.
+/// Fills `floats` and `float_lists`. Types that were read from a schema have no place in memory (stride 0), and none of either.
 void set_floats(MessageInfo& info) {
   const auto add = [&](std::size_t offset, std::size_t count, Wire type) {
     if (!info.floats.empty()) {
@@ -60,7 +60,7 @@ void set_floats(MessageInfo& info) {
     const bool is_float = field.type == Wire::float32 || field.type == Wire::float64;
     const bool in_message = field.message &&
                             !(field.message->floats.empty() && field.message->float_lists.empty());
-    if (!is_float && !in_message) continue;
+    if (field.stride == 0 || (!is_float && !in_message)) continue;
     const bool nested_lists = in_message && !field.message->float_lists.empty();
     if (field.count == MessageField::Count::sequence || nested_lists) info.float_lists.push_back(i);
     if (field.count == MessageField::Count::sequence) continue;
