@@ -249,7 +249,7 @@ Status Console::before_tick() {
     const BuiltinCommand* const command = words.empty() ? nullptr : console::find_command(words.front().text);
     due.over = !due.of_run || (command && command->travels);
     const Scheduled line = due;
-    const std::string when = "at " + readable(session_.simulation().now().s()) + " s: ";
+    const std::string when = "at " + console::readable(session_.simulation().now().s()) + " s: ";
     const auto take = [answers = answers_, when, line](const Answer& answer) {
       if (answer.ok || !line.of_run)
         answers->answers.push_back(when + (answer.ok ? "" : "error: ") + answer.text);
