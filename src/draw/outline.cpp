@@ -43,6 +43,15 @@ double circle_radius_m(const std::vector<SilhouetteDisc>& discs) {
   return radius_m;
 }
 
+/// The pose without a lean that is too small to see, for shapes of revolution about z: a circle stays one.
+Pose straightened(const Shape& shape, Pose X_WC) {
+  const bool round = std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Capsule>(shape) ||
+                     std::holds_alternative<Cone>(shape) || std::holds_alternative<Barrel>(shape);
+  const double cosine = rotate(X_WC.q, {0, 0, 1}).z;
+  if (round && std::abs(cosine) > 1 - 1e-9) X_WC.q = cosine > 0 ? Quat{1, 0, 0, 0} : Quat{0, 1, 0, 0};
+  return X_WC;
+}
+
 /// Squared distance of p from the segment a-b, in the plane.
 double squared_distance(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 ab = flat(b - a), ap = flat(p - a);
@@ -64,8 +73,9 @@ std::optional<Outline> outline_from_above(const Shape& shape, const Pose& X_WC) 
       heights.add({corner.z, corner.z});
     }
   } else {
-    add_silhouette(shape, X_WC, discs);
-    heights = heights_of(shape, X_WC);
+    const Pose X_drawn = straightened(shape, X_WC);
+    add_silhouette(shape, X_drawn, discs);
+    heights = heights_of(shape, X_drawn);
   }
   if (discs.empty()) return std::nullopt;
   Outline outline{{}, flat(X_WC.p), circle_radius_m(discs), heights.min_m, heights.max_m};

@@ -49,6 +49,15 @@ TEST(Outline, OfStandingRoundThingsIsACircle) {
   }
 }
 
+TEST(Outline, OfACylinderThatLeansByNothingVisibleIsACircle) {
+  for (const double lean : {1e-6, math::pi - 1e-6}) {
+    const auto o = outline_from_above(Cylinder{0.3, 0.6}, {{1, 2, 3}, quat_from_rpy(0, lean, 0)});
+    ASSERT_TRUE(o);
+    EXPECT_TRUE(o->corners.empty());
+    EXPECT_NEAR(o->radius_m, 0.3, 1e-6);
+  }
+}
+
 TEST(Outline, OfAStandingBarrelIsTheCircleOfItsMiddle) {
   const Barrel barrel{.radius_m = 0.3, .profile_m = 0.5, .length_m = 0.4};
   const auto o = outline_from_above(barrel, {{1, 2, 3}, {}});
