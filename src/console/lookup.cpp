@@ -7,6 +7,7 @@
 #include "console/command.h"
 #include "console/line_parsing.h"
 #include "files/resources.h"
+#include "sim/world/lookup.h"
 
 namespace sandlot::console {
 namespace {
@@ -33,10 +34,9 @@ std::vector<std::string> names_of_things(const Simulation& simulation) {
 }  // namespace
 
 Result<const Simulation::Entity*> find_thing(CommandCall& call, std::string_view name) {
-  if (const Simulation::Entity* const found = call.simulation().find_entity(name)) return found;
-  call.unknown_thing = true;
-  return Error{"there is nothing named '" + std::string(name.substr(0, 60)) + "'",
-               suggestion(name, names_of_things(call.simulation()))};
+  auto found = entity_named(call.simulation(), name);
+  if (!found) call.unknown_thing = true;
+  return found;
 }
 
 Result<std::vector<const Simulation::Entity*>> match_things(CommandCall& call, std::string_view pattern) {
@@ -71,12 +71,9 @@ Result<std::vector<std::string>> match_devices(CommandCall& call, std::string_vi
     return out.size() <= most_matches;
   };
   const bool narrow = !is_pattern(robot);
-  if (const Simulation::Entity* const only = narrow ? call.simulation().find_entity(robot) : nullptr) {
+  if (narrow) {
+    SL_ASSIGN(const Simulation::Entity* const only, find_thing(call, robot));
     look(*only);
-  } else if (narrow) {
-    call.unknown_thing = true;
-    return Error{"there is nothing named '" + std::string(robot.substr(0, 60)) + "'",
-                 suggestion(robot, names_of_things(call.simulation()))};
   } else {
     for (const auto& entity : call.simulation().entities())
       if (!look(*entity)) return too_many(pattern);
@@ -84,8 +81,9 @@ Result<std::vector<std::string>> match_devices(CommandCall& call, std::string_vi
   if (!out.empty()) return out;
   call.unknown_thing = true;
   if (near.size() > 100) near.resize(100);
-  return Error{"there is no device '" + std::string(pattern) + "'",
-               near.empty() ? "'" + std::string(robot) + "' has none" : suggestion(pattern, near)};
+  Error error = no_device(pattern);
+  error.fix = near.empty() ? "'" + std::string(robot) + "' has none" : suggestion(pattern, near);
+  return error;
 }
 
 Result<std::string> file_within(const Console::Options& options, std::string_view name) {

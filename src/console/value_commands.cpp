@@ -15,6 +15,7 @@
 #include "sim/watch/monitor.h"
 #include "sim/watch/parameters.h"
 #include "sim/world/faults.h"
+#include "sim/world/lookup.h"
 
 namespace sandlot::console {
 namespace {
@@ -320,9 +321,7 @@ CommandResult cmd_set(CommandCall& call) {
   if (matching.empty()) {
     if (!met_thing) {
       call.unknown_thing = true;
-      if (plain)
-        return match_devices(call, thing) ? Error{"there is no device '" + std::string(thing) + "'"}
-                                          : match_devices(call, thing).error();
+      if (plain) return match_devices(call, thing) ? no_device(thing) : match_devices(call, thing).error();
       return Error{"no device fits '" + std::string(thing) + "'"};
     }
     if (plain) { SL_TRY(parameters.check({std::string(thing), field_path(path)}, value)); }

@@ -3,6 +3,7 @@
 
 #include "server/services/name_filter.h"
 #include "server/services/result.h"
+#include "sim/world/lookup.h"
 
 namespace sandlot::server::service {
 namespace {
@@ -25,7 +26,7 @@ template <class S>
 void submit_request(Session& session, ClientId client, const Reply<S>& reply, const std::string& name,
                     Request request) {
   if (!session.simulation().find_instance(name))
-    return reply_result(reply, SimResult::not_found, "there is nothing named '" + name.substr(0, 200) + "'");
+    return reply_result(reply, SimResult::not_found, no_entity(name).what);
   const bool waits = session.report().state == Session::State::paused;
   const auto submitted = session.submit(std::move(request), {Source::Kind::admin, client},
                                         [reply](const Status& status) { reply_status(reply, status); });
@@ -69,8 +70,7 @@ void get_entity_state(const ServiceContext& context, const GetEntityState::Reque
     const Simulation& simulation = session.simulation();
     const Simulation::Entity* const entity = simulation.find_entity(name);
     if (!entity || entity->instance.name != name) {
-      response.result = make_result(SimResult::not_found,
-                                    "there is nothing named '" + name.substr(0, 200) + "'");
+      response.result = make_result(SimResult::not_found, no_entity(name).what);
       return reply(response);
     }
     response.result = make_result(SimResult::ok);
