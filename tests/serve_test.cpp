@@ -62,7 +62,7 @@ TEST(Serve, OptionsThatDoNotGoTogetherAreRefused) {
   refused(indoor + "--headless --port 0", "--headless");
   refused(indoor + "--port 70000", "--port");
   refused(indoor + "--port 0 --address nowhere.invalid", "nowhere.invalid");
-  refused(indoor + "--port 0 --allow-origin example.org", "'example.org' is no origin");
+  refused(indoor + "--port 0 --allow-origin example.org", "'example.org' is not an origin");
   refused(indoor + "--command 'at 2s lsit'", "lsit");
   refused(indoor + "--script /nowhere.txt", "/nowhere.txt");
   refused("replay /nowhere.mcap --port 0", "/nowhere.mcap");
