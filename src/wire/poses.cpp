@@ -3,13 +3,21 @@
 
 #include "base/bytes.h"
 #include "base/math.h"
-#include "wire/link_tree.h"
+#include "kinematics/tree.h"
 #include "wire/scene.h"
 
 namespace sandlot::wire {
+
+/// Kinematic tree of a model, which it keeps alive.
+struct LinkTree {
+  std::shared_ptr<const model::Model> model;
+  kinematics::KinematicTree tree;
+};
+
 namespace {
 
 using Bytes = std::vector<std::byte>;
+using kinematics::KinematicTree;
 using model::JointType;
 
 /// How far off a viewer may draw a link for its pose to be sent as joint positions.
@@ -73,19 +81,21 @@ double put_angle(Bytes& out, double rad) {
 
 /// Appends what a joint does; returns the motion that a viewer makes of it.
 /// @param X_PC  of the child in the parent
-Pose put_joint(Bytes& out, const model::Joint& joint, const LinkTree::Each& link, const Pose& X_PC) {
-  const auto position = [&] { return joint_position(joint, inverse(link.X_PJ) * X_PC * inverse(link.X_JC)); };
+Pose put_joint(Bytes& out, const model::Joint& joint, const KinematicTree::Branch& link, const Pose& X_PC) {
+  const auto position = [&] {
+    return kinematics::joint_position(joint, inverse(link.X_PJ) * X_PC * inverse(link.X_JL));
+  };
   switch (joint.type) {
     case JointType::fixed: return {};
     case JointType::revolute:
-    case JointType::continuous: return joint_motion(joint, put_angle(out, position()));
+    case JointType::continuous: return kinematics::joint_motion(joint, put_angle(out, position()));
     case JointType::prismatic:
-    case JointType::screw: return joint_motion(joint, put_float(out, position()));
+    case JointType::screw: return kinematics::joint_motion(joint, put_float(out, position()));
     case JointType::ball:
     case JointType::universal: break;
   }
   const Quat q_PC = put_orientation(out, X_PC.q);
-  return {{}, conjugate(link.X_PJ.q) * q_PC * conjugate(link.X_JC.q)};
+  return {{}, conjugate(link.X_PJ.q) * q_PC * conjugate(link.X_JL.q)};
 }
 
 bool near(const Pose& a, const Pose& b) {
@@ -102,26 +112,26 @@ PoseWriter& PoseWriter::operator=(PoseWriter&&) noexcept = default;
 
 std::shared_ptr<const LinkTree> PoseWriter::tree_of(const std::shared_ptr<const model::Model>& model) {
   auto& tree = trees_[model.get()];  // a tree keeps its model, so the address is that of no other
-  if (!tree) tree = std::make_shared<const LinkTree>(link_tree(model));
+  if (!tree) tree = std::make_shared<const LinkTree>(LinkTree{model, kinematics::forward_tree(*model)});
   return tree;
 }
 
 bool PoseWriter::encode_joints(const FrameInstance& instance, const LinkTree& tree, Bytes& out) {
-  const std::size_t count = tree.links.size();
+  const std::size_t count = tree.model->links.size();
   decoded_.resize(count);  // first each link's motion, or its pose where no joint carries it; then all poses
   decoded_[0] = put_pose(out, instance.X_WL[0]);
   for (std::size_t i = 1; i < count; ++i) {
-    const LinkTree::Each& link = tree.links[i];
-    decoded_[i] = link.joint == LinkTree::none
+    const KinematicTree::Branch& link = tree.tree.branches[tree.tree.branch_of[i]];
+    decoded_[i] = link.joint == KinematicTree::none
                       ? put_pose(out, instance.X_WL[i])
                       : put_joint(out, tree.model->joints[link.joint], link,
                                   inverse(instance.X_WL[link.parent]) * instance.X_WL[i]);
   }
-  for (const std::uint32_t i : tree.order) {
-    const LinkTree::Each& link = tree.links[i];
-    if (link.joint == LinkTree::none) continue;
-    decoded_[i] = decoded_[link.parent] * link.X_PJ * decoded_[i] * link.X_JC;
-    if (!near(decoded_[i], instance.X_WL[i])) return false;
+  for (const KinematicTree::Branch& link : tree.tree.branches) {
+    if (link.joint == KinematicTree::none) continue;
+    Pose& X_WL = decoded_[link.link];
+    X_WL = decoded_[link.parent] * link.X_PJ * X_WL * link.X_JL;
+    if (!near(X_WL, instance.X_WL[link.link])) return false;
   }
   return true;
 }

@@ -21,7 +21,7 @@
 namespace sandlot::wire {
 
 class AssetTable;  // wire/asset_table.h
-struct LinkTree;   // wire/link_tree.h
+struct LinkTree;   // wire/poses.cpp
 
 /// Numbers of the things that a world's JSON names instead of holding: "a5" is a mesh, "g1" a grid, "t2" a texture.
 /// Given out once and kept as long as this is alive, so that clients need nothing twice; what has the same content has the

@@ -1,13 +1,15 @@
 #include "base/field_json.h"
+#include "kinematics/tree.h"
 #include "wire/asset_table.h"
-#include "wire/link_tree.h"
 
 namespace sandlot::wire {
 namespace {
 
+using kinematics::KinematicTree;
+
 /// Link or joint number; -1 for none.
 void write_index(JsonWriter& w, std::uint32_t value) {
-  if (value == LinkTree::none) w.integer(-1);
+  if (value == KinematicTree::none) w.integer(-1);
   else w.integer(value);
 }
 void write_vector(JsonWriter& w, Vec3 v) { w.numbers({v.x, v.y, v.z}); }
@@ -124,13 +126,15 @@ void write_zone(JsonWriter& w, const model::SurfaceZone& zone) {
   });
 }
 
-void write_link(JsonWriter& w, AssetTable& assets, const LinkTree& tree, std::uint32_t index) {
-  const model::Link& link = tree.model->links[index];
+void write_link(JsonWriter& w, AssetTable& assets, const model::Model& model, const KinematicTree& tree,
+                std::uint32_t index) {
+  const model::Link& link = model.links[index];
+  const KinematicTree::Branch& branch = tree.branches[tree.branch_of[index]];
   w.object([&] {
     w.key("name").text(link.name);
     write_pose(w.key("pose"), link.X_ML);
-    write_index(w.key("parent"), tree.links[index].parent);
-    write_index(w.key("joint"), tree.links[index].joint);
+    write_index(w.key("parent"), branch.parent);
+    write_index(w.key("joint"), branch.joint);
     w.key("visuals").list([&] {
       for (const model::Visual& visual : link.visuals) write_visual(w, assets, visual);
     });
@@ -143,7 +147,7 @@ void write_link(JsonWriter& w, AssetTable& assets, const LinkTree& tree, std::ui
         });
     });
     w.key("lights").list([&] {
-      for (const model::LinkLight& each : tree.model->lights)
+      for (const model::LinkLight& each : model.lights)
         if (each.link == index) write_light(w, each.light);
     });
   });
@@ -162,17 +166,17 @@ void write_joint(JsonWriter& w, const model::Joint& joint) {
     w.key("thread_pitch_m").number(joint.thread_pitch_m);
   });
 }
-static_assert(model::world_link == LinkTree::none, "both are written as -1");
+static_assert(model::world_link == KinematicTree::none, "both are written as -1");
 
 /// All but the id, as members of an object.
 std::string model_content(AssetTable& assets, const std::shared_ptr<const model::Model>& model) {
-  const LinkTree tree = link_tree(model);
+  const KinematicTree tree = kinematics::forward_tree(*model);
   std::string out;
   JsonWriter w(out);
   w.key("name").text(model->name);
   w.key("static").flag(model->is_static);
   w.key("links").list([&] {
-    for (std::uint32_t i = 0; i < model->links.size(); ++i) write_link(w, assets, tree, i);
+    for (std::uint32_t i = 0; i < model->links.size(); ++i) write_link(w, assets, *model, tree, i);
   });
   w.key("joints").list([&] {
     for (const model::Joint& joint : model->joints) write_joint(w, joint);

@@ -9,7 +9,7 @@
 
 #include "physics/engine.h"
 #include "physics/planar/drive.h"
-#include "physics/planar/kinematic_tree.h"
+#include "physics/planar/forward_kinematics.h"
 #include "physics/planar/map.h"
 #include "physics/planar/plan.h"
 
@@ -209,7 +209,7 @@ struct Instance {
   std::uint64_t created = 0;  ///< counts up: the order in which contacts are solved
   std::string name;
   std::shared_ptr<const model::Model> model;
-  std::shared_ptr<const KinematicTree> tree;
+  std::shared_ptr<const ForwardKinematics> kinematics;
   std::shared_ptr<const Plan> plan;
   std::vector<BodyId> bodies;
   std::vector<JointId> joints;

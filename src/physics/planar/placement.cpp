@@ -89,7 +89,7 @@ void PlanarEngine::shape(std::uint32_t slot) {
     last_z_m_ = instance.z_m;
     if (last_model_ != instance.model) {
       last_model_ = instance.model;
-      last_tree_ = instance.tree;
+      last_kinematics_ = instance.kinematics;
     }
   }
   instance.plan = last_plan_;
@@ -217,7 +217,7 @@ void PlanarEngine::place_groups(std::uint32_t slot, const Pose& X_WB) {
     refresh_rolls();
     states_.resize(body_slot_.size());
     states_[instance.bodies[0].index] = {X_WB, {}};
-    instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
+    instance.kinematics->place(instance.bodies, instance.joints, joint_states_, states_);
   }
   for (const std::uint32_t k : instance.groups) {
     RigidGroup& group = groups_[k];

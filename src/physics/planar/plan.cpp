@@ -5,14 +5,17 @@
 #include <cmath>
 
 #include "geometry/mesh.h"
+#include "kinematics/tree.h"
 
 namespace sandlot::planar {
 namespace {
 
+using kinematics::KinematicTree;
 using model::JointType;
-constexpr std::uint32_t none = ~0u;
-constexpr double ground_tolerance_m =
-    5e-4;  ///< what reaches so near to the lowest point stands on the ground
+using Branch = KinematicTree::Branch;
+constexpr std::uint32_t none = KinematicTree::none;
+/// Shapes that reach this near to the lowest point stand on the ground.
+constexpr double ground_tolerance_m = 5e-4;
 
 Vec2 flat(Vec3 v) { return {v.x, v.y}; }
 double length(Vec2 v) { return std::sqrt(dot(v, v)); }
@@ -25,46 +28,16 @@ double inertia_about(const model::Inertial& inertial, Vec3 axis_L) {
          2 * (p.x * a.x * a.y + p.y * a.x * a.z + p.z * a.y * a.z);
 }
 
-/// How the links hang together, from the canonical link outwards.
-struct Branch {
-  std::uint32_t link, parent = none, joint = none;
-  bool outwards = true;  ///< the joint's child is the farther one
-};
-
 struct Builder {
   const model::Model& model;
   Plan plan;
-  std::vector<Branch> branches;
-  std::vector<std::uint32_t> branch_of;  ///< by link
-  std::vector<bool> below_wheel;         ///< by link: a wheel, or what hangs on one
+  KinematicTree tree;
+  std::vector<bool> below_wheel;  ///< by link: a wheel, or a link that a wheel carries
 
   Vec3 axis_H(const model::Joint& j) const {
     return rotate(plan.X_HL[j.child].q, rotate(j.X_CJ.q, j.axis_J));
   }
   Vec3 origin_H(const model::Joint& j) const { return plan.X_HL[j.child] * j.X_CJ.p; }
-
-  void walk() {
-    const std::size_t count = model.links.size();
-    branch_of.assign(count, none);
-    const auto add = [&](Branch b) {
-      branch_of[b.link] = static_cast<std::uint32_t>(branches.size());
-      branches.push_back(b);
-    };
-    add({0});
-    for (std::size_t next = 0; next < branches.size(); ++next) {
-      const std::uint32_t from = branches[next].link;
-      for (std::uint32_t k = 0; k < model.joints.size(); ++k) {
-        const model::Joint& j = model.joints[k];
-        if (j.parent == model::world_link) continue;
-        const bool outwards = j.parent == from;
-        const std::uint32_t to = outwards ? j.child : j.parent;
-        if ((!outwards && j.child != from) || branch_of[to] != none) continue;
-        add({to, from, k, outwards});
-      }
-    }
-    for (std::uint32_t link = 0; link < count; ++link)
-      if (branch_of[link] == none) add({link, 0});
-  }
 
   void find_bottom() {
     double bottom = std::numeric_limits<double>::infinity();
@@ -109,10 +82,10 @@ struct Builder {
   /// True when one wheel hangs on branch `b`, with its rollers and a fork of links that nothing can touch.
   bool carries_a_wheel(std::size_t b) const {
     std::vector<bool> beyond(model.links.size(), false), wheel(model.links.size(), false);
-    beyond[branches[b].link] = true;
+    beyond[tree.branches[b].link] = true;
     int wheels = 0;
-    for (std::size_t k = b; k < branches.size(); ++k) {
-      const Branch& each = branches[k];
+    for (std::size_t k = b; k < tree.branches.size(); ++k) {
+      const Branch& each = tree.branches[k];
       if (k != b && (each.parent == none || !beyond[each.parent])) continue;
       beyond[each.link] = true;
       wheel[each.link] = k != b && wheel[each.parent];
@@ -137,8 +110,8 @@ struct Builder {
     below_wheel.assign(model.links.size(), false);
     plan.groups.emplace_back();
     std::vector<std::uint32_t> steering(model.links.size(), model::Joint::no_joint);
-    for (std::size_t b = 1; b < branches.size(); ++b) {
-      const Branch& branch = branches[b];
+    for (std::size_t b = 1; b < tree.branches.size(); ++b) {
+      const Branch& branch = tree.branches[b];
       std::uint32_t& group = plan.group_of_link[branch.link];
       group = branch.parent == none ? 0 : plan.group_of_link[branch.parent];
       if (branch.parent != none) {
@@ -180,9 +153,9 @@ struct Builder {
   void part(std::size_t b, JointPlan::Kind kind, std::uint32_t& group, Vec2 axis, double sign) {
     if (plan.groups.size() >= 255) return;
     const auto child = static_cast<std::uint32_t>(plan.groups.size());
-    plan.constraints.push_back({kind, branches[b].joint, group, child,
-                                flat(origin_H(model.joints[branches[b].joint])), axis, sign, 0});
-    plan.groups.emplace_back().root = branches[b].link;
+    plan.constraints.push_back({kind, tree.branches[b].joint, group, child,
+                                flat(origin_H(model.joints[tree.branches[b].joint])), axis, sign, 0});
+    plan.groups.emplace_back().root = tree.branches[b].link;
     group = child;
   }
 
@@ -232,15 +205,16 @@ struct Builder {
     }
     for (JointPlan& constraint : plan.constraints) {
       if (constraint.kind != JointPlan::Kind::steering) continue;
-      for (std::size_t b = 1; b < branches.size(); ++b) {
+      for (std::size_t b = 1; b < tree.branches.size(); ++b) {
         bool beyond = false;
-        for (std::size_t at = b; branches[at].parent != none && !beyond; at = branch_of[branches[at].parent])
-          beyond = branches[at].joint == constraint.joint;
+        for (std::size_t at = b; tree.branches[at].parent != none && !beyond;
+             at = tree.branch_of[tree.branches[at].parent])
+          beyond = tree.branches[at].joint == constraint.joint;
         if (!beyond) continue;
-        const model::Inertial& i = model.links[branches[b].link].inertial;
-        const Vec2 arm = flat(plan.X_HL[branches[b].link] * i.X_LCo.p) - constraint.at_H;
-        constraint.inertia_kgm2 += inertia_about(i,
-                                                 rotate_inverse(plan.X_HL[branches[b].link].q, {0, 0, 1})) +
+        const model::Inertial& i = model.links[tree.branches[b].link].inertial;
+        const Vec2 arm = flat(plan.X_HL[tree.branches[b].link] * i.X_LCo.p) - constraint.at_H;
+        constraint.inertia_kgm2 += inertia_about(
+                                       i, rotate_inverse(plan.X_HL[tree.branches[b].link].q, {0, 0, 1})) +
                                    i.mass_kg * dot(arm, arm);
       }
       constraint.inertia_kgm2 = std::max(constraint.inertia_kgm2, 1e-9);
@@ -538,10 +512,9 @@ void share_weight(double weight_kg, std::span<const Vec2> points, std::span<doub
 }
 
 Plan make_plan(const model::Model& model, Quat tilt, double z_m) {
-  Builder b{.model = model, .plan = {}, .branches = {}, .branch_of = {}, .below_wheel = {}};
+  Builder b{.model = model, .plan = {}, .tree = kinematics::spanning_tree(model), .below_wheel = {}};
   const Pose X_HM = Pose{{0, 0, z_m}, tilt} * inverse(model.links[0].X_ML);
   for (const model::Link& link : model.links) b.plan.X_HL.push_back(X_HM * link.X_ML);
-  b.walk();
   b.find_bottom();
   b.sort_joints();
   b.weigh();

@@ -93,7 +93,7 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   const model::Model& model = *declared.model;
   if (last_model_ != declared.model) {
     last_model_ = declared.model;
-    last_tree_ = std::make_shared<const KinematicTree>(model);
+    last_kinematics_ = std::make_shared<const ForwardKinematics>(model);
     last_plan_ = nullptr;
   }
   const std::uint32_t slot = take_index(free_instances_, instances_);
@@ -107,7 +107,7 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   instance.created = created_++;
   instance.name = declared.name;
   instance.model = declared.model;
-  instance.tree = last_tree_;
+  instance.kinematics = last_kinematics_;
   instance.bodies.reserve(model.links.size());
   instance.joints.reserve(model.joints.size());
   for (std::size_t l = 0; l < model.links.size(); ++l) {
@@ -331,7 +331,7 @@ void PlanarEngine::refresh_links() const {
     const Instance& instance = instances_[slot];
     states_[instance.bodies[0].index] = canonical_state(slot);
     if (instance.bodies.size() > 1)
-      instance.tree->place(instance.bodies, instance.joints, joint_states_, states_);
+      instance.kinematics->place(instance.bodies, instance.joints, joint_states_, states_);
   }
   links_fresh_.store(true, std::memory_order_release);
 }

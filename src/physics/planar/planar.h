@@ -227,7 +227,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::uint64_t created_ = 0;
   std::shared_ptr<const Plan> last_plan_;  ///< robots come in series
   std::shared_ptr<const model::Model> last_model_;
-  std::shared_ptr<const KinematicTree> last_tree_;
+  std::shared_ptr<const ForwardKinematics> last_kinematics_;
   Quat last_tilt_;
   double last_z_m_ = 0;
 

@@ -1,9 +1,8 @@
 #pragma once
-/// The links of an instance as a tree over its joints, hanging from the canonical link: where each link is when the
-/// base and the joint positions are known.
+/// Forward kinematics of an instance: poses and velocities of its links from those of the canonical link and its joints.
 ///
 /// Limits   joints are kinematic; a ball joint holds its declared pose. Links that no joint connects ride on the
-///          canonical link. Of a loop of joints one is left out.
+///          canonical link. Of a loop of joints one is left out (kinematics/tree.h).
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,9 +12,9 @@
 
 namespace sandlot::planar {
 
-class KinematicTree {
+class ForwardKinematics {
  public:
-  explicit KinematicTree(const model::Model& model);
+  explicit ForwardKinematics(const model::Model& model);
 
   /// Fills the states of all links but the first from that of the first. Indices of spans are the model's.
   /// @param joints  ids of the model's joints, into `joint_states`

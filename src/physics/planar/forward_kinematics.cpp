@@ -1,5 +1,6 @@
-#include "physics/planar/kinematic_tree.h"
+#include "physics/planar/forward_kinematics.h"
 
+#include "kinematics/tree.h"
 #include "physics/planar/turn.h"
 
 namespace sandlot::planar {
@@ -15,43 +16,28 @@ Pose displacement(Vec3 axis, Vec3 point, bool slides, double position) {
 
 }  // namespace
 
-KinematicTree::KinematicTree(const model::Model& model) {
-  const std::size_t count = model.links.size();
-  std::vector<bool> placed(count, false);
-  placed[0] = true;
-  const auto add = [&](std::uint32_t link, std::uint32_t parent) -> Branch& {
-    placed[link] = true;
+ForwardKinematics::ForwardKinematics(const model::Model& model) {
+  const kinematics::KinematicTree tree = kinematics::spanning_tree(model);
+  branches_.reserve(tree.branches.size() - 1);
+  for (std::size_t b = 1; b < tree.branches.size(); ++b) {
+    const kinematics::KinematicTree::Branch& from = tree.branches[b];
     Branch& branch = branches_.emplace_back();
-    branch.link = link;
-    branch.parent = parent;
-    branch.X_PL = inverse(model.links[parent].X_ML) * model.links[link].X_ML;
-    return branch;
-  };
-  // Breadth first in the order of the joints.
-  std::vector<std::uint32_t> reached{0};
-  for (std::size_t next = 0; next < reached.size(); ++next) {
-    const std::uint32_t from = reached[next];
-    for (std::uint32_t k = 0; k < model.joints.size(); ++k) {
-      const model::Joint& joint = model.joints[k];
-      const bool outwards = joint.parent == from;
-      const std::uint32_t to = outwards ? joint.child : joint.parent;
-      if ((!outwards && joint.child != from) || to >= count || placed[to]) continue;
-      Branch& branch = add(to, from);
-      reached.push_back(to);
-      if (joint.type == model::JointType::fixed || joint.type == model::JointType::ball) continue;
-      branch.joint = k;
-      branch.slides = joint.type == model::JointType::prismatic;
-      branch.from_child = !outwards;
-      branch.axis = rotate(joint.X_CJ.q, joint.axis_J);
-      branch.point = joint.X_CJ.p;
-    }
+    branch.link = from.link;
+    branch.parent = from.parent;
+    branch.X_PL = inverse(model.links[from.parent].X_ML) * model.links[from.link].X_ML;
+    if (from.joint == kinematics::KinematicTree::none) continue;
+    const model::Joint& joint = model.joints[from.joint];
+    if (joint.type == model::JointType::fixed || joint.type == model::JointType::ball) continue;
+    branch.joint = from.joint;
+    branch.slides = joint.type == model::JointType::prismatic;
+    branch.from_child = !from.outwards;
+    branch.axis = rotate(joint.X_CJ.q, joint.axis_J);
+    branch.point = joint.X_CJ.p;
   }
-  for (std::uint32_t link = 0; link < count; ++link)
-    if (!placed[link]) add(link, 0);
 }
 
-void KinematicTree::place(std::span<const BodyId> bodies, std::span<const JointId> joints,
-                          std::span<const JointState> joint_states, std::span<BodyState> states) const {
+void ForwardKinematics::place(std::span<const BodyId> bodies, std::span<const JointId> joints,
+                              std::span<const JointState> joint_states, std::span<BodyState> states) const {
   for (const Branch& branch : branches_) {
     const BodyState& parent = states[bodies[branch.parent].index];
     BodyState& link = states[bodies[branch.link].index];
