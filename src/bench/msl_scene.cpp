@@ -70,11 +70,11 @@ MslScene::MslScene() {
     s.shape = std::move(shape);
     s.body = group;
     s.moves = group > 0;
-    s.look.diffuse = color;
+    s.appearance.diffuse = color;
     s.label = label;
     s.instance = ++count;
     shapes.push_back(std::move(s));
-    return shapes.back().look;
+    return shapes.back().appearance;
   };
   add(0, Plane{{0, 0, 1}}, at(0, 0, -0.01), {0.45f, 0.45f, 0.42f, 1}, 1);
   add(0, Box{{carpet_x, carpet_y, 0.01}}, at(0, 0, -0.005), {1, 1, 1, 1}, 1).texture = field_texture();
@@ -97,9 +97,9 @@ MslScene::MslScene() {
     robots.push_back(at(x, y, 0, r.uniform(-3, 3)));
     const std::uint32_t g = group(robots.back());
     const Color team = i % 2 ? Color{0.1f, 0.75f, 0.85f, 1} : Color{0.85f, 0.15f, 0.6f, 1};
-    optics::SurfaceAppearance& look = add(g, Mesh{body}, at(0, 0, 0.03), {0.12f, 0.12f, 0.13f, 1}, 3);
-    look.specular = {0.4f, 0.4f, 0.4f, 1};
-    look.shininess = 30;
+    optics::SurfaceAppearance& appearance = add(g, Mesh{body}, at(0, 0, 0.03), {0.12f, 0.12f, 0.13f, 1}, 3);
+    appearance.specular = {0.4f, 0.4f, 0.4f, 1};
+    appearance.shininess = 30;
     add(g, Cylinder{0.2, 0.08}, at(0, 0, 0.6), team, 3);
     add(g, Box{{0.12, 0.34, 0.08}}, at(0.22, 0, 0.1), {0.3f, 0.3f, 0.3f, 1}, 3);
   }

@@ -72,7 +72,7 @@ struct Seen {
 };
 
 /// Subscribes to the poses and reads until the run is over.
-void look(const std::string& url, Seen& seen) {
+void view(const std::string& url, Seen& seen) {
   auto client = server::WebSocketClient::connect("ws" + url.substr(4), "foxglove.websocket.v1", 5);
   SL_CHECK_MSG(client, client ? "" : client.error().text().c_str());
   bool subscribed = false;
@@ -103,7 +103,7 @@ double one_run(Seen* seen) {
                                       console);
   SL_CHECK_MSG(server, server ? "" : server.error().text().c_str());
   std::thread viewer;
-  if (seen) viewer = std::thread([&] { look((*server)->url(), *seen); });
+  if (seen) viewer = std::thread([&] { view((*server)->url(), *seen); });
   double begin = 0;
   RunReport report;
   const Status status = session.run(report, [&](const Simulation& simulation) {

@@ -137,16 +137,16 @@ Block CameraRays::block(int u0, int v0) const {
 
 Aim CameraRays::centre(const Block& block) const {
   const F zero = broadcast(0.0f);
-  return look(block, zero, zero, moving_ ? view(row_time(block)) : still_, -1);
+  return aim(block, zero, zero, moving_ ? view(row_time(block)) : still_, -1);
 }
 
 Aim CameraRays::aim(const Block& block, int sample) const {
   const auto i = static_cast<std::size_t>(sample);
-  return look(block, broadcast(on_pixel_[i][0]), broadcast(on_pixel_[i][1]),
-              moving_ ? view(row_time(block) + when_s_[i]) : still_, aperture_ ? sample : -1);
+  return aim(block, broadcast(on_pixel_[i][0]), broadcast(on_pixel_[i][1]),
+             moving_ ? view(row_time(block) + when_s_[i]) : still_, aperture_ ? sample : -1);
 }
 
-Aim CameraRays::look(const Block& block, F du, F dv, const View& view, int lens_sample) const {
+Aim CameraRays::aim(const Block& block, F du, F dv, const View& view, int lens_sample) const {
   Aim aim;
   Rays& rays = aim.rays;
   rays.base = base_;

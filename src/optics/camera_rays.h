@@ -60,7 +60,7 @@ class CameraRays {
   View view(double t_s) const;
   double row_time(const Block& block) const;
   int slice_at(double t_s) const;
-  Aim look(const Block& block, lanes::F du, lanes::F dv, const View& view, int lens_sample) const;
+  Aim aim(const Block& block, lanes::F du, lanes::F dv, const View& view, int lens_sample) const;
   lanes::F3 from_table(const Block& block, lanes::F du, lanes::F dv, lanes::I& valid, lanes::F& cone) const;
 
   const PictureJob& job_;

@@ -46,7 +46,7 @@ struct PictureShape {
   Shape shape;
   std::uint32_t body = no_body;  ///< compared with PictureJob::ignore_body
   bool moves = true;             ///< false: the group's pose never changes between revisions
-  SurfaceAppearance look;
+  SurfaceAppearance appearance;
   bool cast_shadows = true;
   std::uint32_t instance = 0;  ///< for the instance plane; 0 is "nothing"
   std::uint16_t label = 0;     ///< for the label plane; 0 is "nothing"

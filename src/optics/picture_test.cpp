@@ -159,8 +159,8 @@ TEST(Picture, WhatIsIgnoredIsNotSeenButThrowsItsShadow) {
 TEST(Picture, LambertBlinnAndAmbientByHand) {
   Studio studio;
   PictureShape& floor = studio.add(Plane{{0, 0, 1}}, {}, {0.8f, 0.4f, 0, 1});
-  floor.look.specular = {0.2f, 0.2f, 0.2f, 1};
-  floor.look.shininess = 40;
+  floor.appearance.specular = {0.2f, 0.2f, 0.2f, 1};
+  floor.appearance.shininess = 40;
   studio.surroundings.ambient = {0.1f, 0.1f, 0.1f, 1};
   // 60 degrees from the normal, in the plane of x and z.
   model::Light& sun = studio.light(model::Light::Type::directional,
@@ -179,7 +179,7 @@ TEST(Picture, LambertBlinnAndAmbientByHand) {
   job.X_WS = {{2 * math::sin(math::pi / 3), 0, 1}, quat_from_rpy(0, math::pi / 6, math::pi)};
   EXPECT_NEAR(Shot(studio, job).rgb[2], 255 * 0.2, 0.51);
   // Gain multiplies, sRGB encodes: 0.2 * 2 -> 1.055 * 0.4^(1/2.4) - 0.055 (the specular colour 0.484529 is 0.2 decoded).
-  studio.shapes[0].look.specular = {0.484529f, 0.484529f, 0.484529f, 1};
+  studio.shapes[0].appearance.specular = {0.484529f, 0.484529f, 0.484529f, 1};
   job.exposure.srgb = true;
   job.exposure.gain = 2;
   EXPECT_NEAR(Shot(studio, job).rgb[2], 255 * (1.055 * math::pow(0.4, 1 / 2.4) - 0.055), 0.6);
@@ -264,8 +264,8 @@ TEST(Picture, ACheckerboardFadesIntoGreyTowardsTheHorizon) {
       for (int k = 0; k < 3; ++k) rgb.push_back((x / square + y / square) % 2 ? 255 : 0);
   Studio studio;
   PictureShape& floor = studio.add(Plane{{0, 0, 1}}, {{}, quat_from_rpy(0, 0, 0.4)});
-  floor.look.texture = Texture::make(side, side, rgb);
-  floor.look.tile_m = 1;  // squares of 12.5 cm
+  floor.appearance.texture = Texture::make(side, side, rgb);
+  floor.appearance.tile_m = 1;  // squares of 12.5 cm
   studio.surroundings.ambient = white;
   PictureJob job;
   job.X_WS = {{0, 0, 1}, {}};
@@ -293,7 +293,7 @@ TEST(Picture, TexturesLieWhereTheirCoordinatesSay) {
   const std::vector<std::uint8_t> rgb{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
   Studio studio;
   PictureShape& box = studio.add(Box{{1, 1, 1}}, {});
-  box.look.texture = Texture::make(2, 2, rgb);
+  box.appearance.texture = Texture::make(2, 2, rgb);
   studio.surroundings.ambient = white;
   PictureJob job;
   job.lens = pinhole(1, 1, 0.05);
@@ -419,7 +419,7 @@ TEST(Picture, TheSamePixelsForAnyNumberOfThreadsAndAgain) {
     tbb::task_arena arena(threads);
     return arena.execute([] {
       Studio studio;
-      studio.add(Plane{{0, 0, 1}}, {}).look.texture = Texture::missing();
+      studio.add(Plane{{0, 0, 1}}, {}).appearance.texture = Texture::missing();
       for (int i = 0; i < 20; ++i)
         studio.add(Sphere{0.2}, {{2 + 0.3 * i, 0.4 * (i % 5) - 1, 0.2}, {}},
                    {0.5f, 0.05f * static_cast<float>(i), 0.3f, 1});

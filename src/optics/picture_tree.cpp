@@ -159,8 +159,8 @@ void PictureTree::set(std::span<const PictureShape> shapes) {
         t.tree = std::make_unique<TriangleTree>(device_, shape.shape);
         arena_.execute([&] { t.tree->commit(); });
       }
-      std::unique_ptr<Skin>& skin = t.skins[shape.look.smooth ? 1 : 0];
-      if (!skin) skin = std::make_unique<Skin>(shape.shape, shape.look.smooth);
+      std::unique_ptr<Skin>& skin = t.skins[shape.appearance.smooth ? 1 : 0];
+      if (!skin) skin = std::make_unique<Skin>(shape.shape, shape.appearance.smooth);
       visual.tree = t.tree.get();
       visual.skin = skin.get();
       visual.X_GC = shape.X_GC * Pose{t.tree->centre_m(), {}};

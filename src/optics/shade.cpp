@@ -78,7 +78,7 @@ Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative
   Surface8 s;
   s.normal = s.face_normal = broadcast(plane.normal_W);
   if (!textured) return s;
-  const double per_m = 1 / plane.given.look.tile_m;
+  const double per_m = 1 / plane.given.appearance.tile_m;
   const Vec3 base = Vec3{rays.base[0], rays.base[1], rays.base[2]} - plane.point_W;
   const auto place = [&](Vec3 axis, F& value, F3& gradient) {
     const double at = dot(axis, base) * per_m;
@@ -94,18 +94,18 @@ Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative
 I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I todo, Met& met) {
   const int lane = first_lane(todo);
   const Visual& visual = scenery.tree->visual(static_cast<std::size_t>(hits.visual[lane]));
-  const SurfaceAppearance& look = visual.given.look;
+  const SurfaceAppearance& appearance = visual.given.appearance;
   I mask = todo & (hits.visual == hits.visual[lane]);
-  Color diffuse = look.diffuse;
-  const Texture* texture = look.texture.get();
-  if (visual.skin && look.from_mesh && visual.skin->mesh() && !visual.skin->mesh()->parts.empty()) {
+  Color diffuse = appearance.diffuse;
+  const Texture* texture = appearance.texture.get();
+  if (visual.skin && appearance.from_mesh && visual.skin->mesh() && !visual.skin->mesh()->parts.empty()) {
     const auto& parts = visual.skin->mesh()->parts;
     const std::uint32_t part = visual.skin->part(static_cast<std::uint32_t>(hits.triangle[lane]));
     if (parts.size() > 1)
       for (int i = 0; i < lanes::width; ++i)
         if (mask[i] && visual.skin->part(static_cast<std::uint32_t>(hits.triangle[i])) != part) mask[i] = 0;
     diffuse = parts[part].color;
-    texture = part < look.part_textures.size() ? look.part_textures[part].get() : nullptr;
+    texture = part < appearance.part_textures.size() ? appearance.part_textures[part].get() : nullptr;
   }
   if (visual.skin && !visual.skin->has_texture_coordinates()) texture = nullptr;
 
@@ -132,12 +132,12 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
   F3 color = broadcast(diffuse);
   if (textured) color = color * sample(*texture, footprint(s, direction, cone * hits.t), mask);
   take(decoded(color, scenery.srgb), met.diffuse);
-  if (!is_black(look.emissive))
-    met.emissive = select(mask, decoded(broadcast(look.emissive), scenery.srgb), met.emissive);
-  if (!is_black(look.specular) && look.shininess > 0) {
+  if (!is_black(appearance.emissive))
+    met.emissive = select(mask, decoded(broadcast(appearance.emissive), scenery.srgb), met.emissive);
+  if (!is_black(appearance.specular) && appearance.shininess > 0) {
     met.shiny = true;
-    met.specular = select(mask, decoded(broadcast(look.specular), scenery.srgb), met.specular);
-    met.shininess = select(mask, broadcast(look.shininess), met.shininess);
+    met.specular = select(mask, decoded(broadcast(appearance.specular), scenery.srgb), met.specular);
+    met.shininess = select(mask, broadcast(appearance.shininess), met.shininess);
   }
   return mask;
 }

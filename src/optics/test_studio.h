@@ -19,14 +19,14 @@ struct Studio {
   /// Shines by itself: its colour is what is seen.
   PictureShape& glow(Shape shape, Pose X, Color color = white) {
     PictureShape& s = add(std::move(shape), X, black);
-    s.look.emissive = color;
+    s.appearance.emissive = color;
     return s;
   }
   PictureShape& add(Shape shape, Pose X, Color color = white) {
     PictureShape s;
     s.X_GC = X;
     s.shape = std::move(shape);
-    s.look.diffuse = color;
+    s.appearance.diffuse = color;
     s.label = static_cast<std::uint16_t>(shapes.size() + 1);
     s.instance = static_cast<std::uint32_t>(1000 + shapes.size());
     shapes.push_back(std::move(s));

@@ -40,7 +40,7 @@ void add_clutter(Studio& studio, double from_m, double to_m, int tiles, double s
   for (std::uint8_t& s : speckles) s = static_cast<std::uint8_t>(90 + 165 * random.uniform());
   const auto texture = optics::Texture::make(256, 256, speckles);
   optics::PictureShape& wall = studio.add(Box{{0.1, 6, 6}}, {{to_m + 0.5, 0, 0}, {}}, {0.7f, 0.7f, 0.7f, 1});
-  if (speckled) wall.look.texture = texture;
+  if (speckled) wall.appearance.texture = texture;
   const auto small = optics::Texture::make(24, 24, std::span(speckles).first(std::size_t{3} * 24 * 24));
   for (int i = 0; i < tiles; ++i) {
     const double depth = from_m + (to_m - from_m) * random.uniform();
@@ -52,7 +52,7 @@ void add_clutter(Studio& studio, double from_m, double to_m, int tiles, double s
     optics::PictureShape& tile = studio.add(Box{{0.02, size, size * 0.8}},
                                             {{depth, y, z}, quat_from_rpy(math::pi * random.uniform(), 0, 0)},
                                             {r, g, b, 1});
-    if (speckled) tile.look.texture = small;
+    if (speckled) tile.appearance.texture = small;
   }
 }
 
@@ -197,7 +197,7 @@ TEST(Vision, RobotsReadCameraInfoAsTheSimulatorMeansIt) {
     lenses.push_back(*optics::fisheye_of_fov(320, 240, 150 * degree, mapping));
   for (const Lens& lens : lenses) {
     msg::CameraInfo info;
-    eye::fill_info(info, lens, "eye");
+    cameras::fill_info(info, lens, "eye");
     SCOPED_TRACE(info.distortion_model);
     const auto model = perception::CameraModel::of(info);
     ASSERT_TRUE(model);

@@ -87,7 +87,7 @@ TEST(Vision, ColoursAreFoundInADirectedPicture) {
   const optics::Lens lens = *optics::pinhole_of_fov(400, 300, 80 * degree);
   const Pose X_BS{{0.05, 0, 0.45}, quat_from_rpy(0, 10 * degree, 0)};
   msg::CameraInfo info;
-  eye::fill_info(info, lens, "eye");
+  cameras::fill_info(info, lens, "eye");
   perception::Finder finder(Field::spec(), *perception::CameraModel::of(info), X_BS);
   Studio::Shot shot = field.shoot(lens, X_BS, 2);
   std::vector<perception::Found> found;
@@ -129,7 +129,7 @@ TEST(SlowVision, ColoursAreFoundAllAround) {
   const Pose X_BS{{0, 0, 0.7}, {}};
   const optics::Lens lens = *optics::omni_that_fills(480, 480, {.a_m = a, .b_m = b, .rim_m = 0.05});
   msg::CameraInfo info;
-  eye::fill_info(info, lens, "omni");
+  cameras::fill_info(info, lens, "omni");
   Studio::Shot shot = field.shoot(lens, X_BS, 2);
   add_noise(shot.rgb, 6);
   // A pixel is half a degree: at 1.9 m the ground is seen at 17 degrees, half a pixel is 3 cm of it; at 2.7 m 6 cm; at 4.3 m 14 cm.

@@ -26,7 +26,7 @@ struct Studio {
     s.group = group;
     s.X_GC = X_WC;
     s.shape = std::move(shape);
-    s.look.diffuse = color;
+    s.appearance.diffuse = color;
     s.instance = static_cast<std::uint32_t>(shapes.size() + 1);
     shapes.push_back(std::move(s));
     return shapes.back();

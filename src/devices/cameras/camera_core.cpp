@@ -5,10 +5,10 @@
 
 #include "base/math.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
-Look::Look(const DeviceBuild& build, const optics::Lens& lens, const LookKeys& keys)
-    : unzoomed_(lens), eye_(build, lens) {
+CameraCore::CameraCore(const DeviceBuild& build, const optics::Lens& lens, const CameraKeys& keys)
+    : unzoomed_(lens), mount_(build, lens) {
   const bool mirror = std::holds_alternative<optics::Catadioptric>(lens.model);
   const std::string optical = build.frame("optical", mirror ? X_S_optical_mirror : X_S_optical);
   picture_ = ColorImage(build, build.publish<msg::Image>(image, "image"), lens, keys.format, keys.noise,
@@ -23,12 +23,12 @@ Look::Look(const DeviceBuild& build, const optics::Lens& lens, const LookKeys& k
   poses_ = build.publish<msg::ObjectPoseArray>(world, "world");
   poses_->message.header.frame_id = "world";
   if (!keys.zoom) return;
-  constexpr std::uint32_t always = std::size(look_levels);  // a level beyond all: whatever is active
+  constexpr std::uint32_t always = std::size(camera_levels);  // a level beyond all: whatever is active
   zoom_command_ = build.accept<msg::Float64>(always, "zoom");
   zoom_ = build.publish<msg::Float64>(always, "zoom");
 }
 
-void Look::turn_zoom(const LookKeys& keys, LookState& state, double since_s, Time now) {
+void CameraCore::turn_zoom(const CameraKeys& keys, CameraState& state, double since_s, Time now) {
   if (!keys.zoom) return;
   const double wanted = zoom_command_->message.data;
   if (zoom_command_->count > 0 && std::isfinite(wanted)) {
@@ -41,31 +41,31 @@ void Look::turn_zoom(const LookKeys& keys, LookState& state, double since_s, Tim
   optics::Lens lens = unzoomed_;
   std::visit([&](auto& model) { model.fx *= state.zoom, model.fy *= state.zoom; }, lens.model);
   if (!check(lens)) return;  // so long that it shows nothing: the lens stays where it is
-  eye_.table = shared_table(lens);
+  mount_.table = shared_table(lens);
   zoom_of_table_ = state.zoom;
   const std::string optical = info_->message.header.frame_id;
   fill_info(info_->message, lens, optical);
 }
 
-optics::PictureJob Look::job(const LookKeys& keys, const Context& context) {
-  optics::PictureJob job = eye_.job(keys, context);
+optics::PictureJob CameraCore::job(const CameraKeys& keys, const Context& context) {
+  optics::PictureJob job = mount_.job(keys, context);
   job.rgb = picture_.rgb();
   return job;
 }
 
-void Look::finish(const LookKeys& keys, std::uint64_t sample, const Context& context) {
+void CameraCore::finish(const CameraKeys& keys, std::uint64_t sample, const Context& context) {
   picture_.finish(keys, keys.noise, keys.errors, sample, context);
   info_->publish(context.now);
 }
 
-void Look::detect(const LookKeys& keys, std::uint32_t levels, std::uint64_t sample, double since_s,
-                  const Context& context) {
+void CameraCore::detect(const CameraKeys& keys, std::uint32_t levels, std::uint64_t sample, double since_s,
+                        const Context& context) {
   const bool wants_objects = levels >> objects & 1, wants_poses = levels >> world & 1;
   if (!wants_objects && !wants_poses) return;
-  eye::detect(keys.objects, keys.world, keys.errors, eye_, sample, since_s, context,
-              wants_objects ? &objects_->message : nullptr, wants_poses ? &poses_->message : nullptr);
+  cameras::detect(keys.objects, keys.world, keys.errors, mount_, sample, since_s, context,
+                  wants_objects ? &objects_->message : nullptr, wants_poses ? &poses_->message : nullptr);
   if (wants_objects) objects_->publish(context.now);
   if (wants_poses) poses_->publish(context.now);
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

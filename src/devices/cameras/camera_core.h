@@ -14,10 +14,10 @@
 #include "devices/cameras/zoom.h"
 #include "physics/parallel.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 /// A Spec derives from it and from the keys of its lens.
-struct LookKeys : ExposureKeys {
+struct CameraKeys : ExposureKeys {
   double rate_hz = 30;
   Format format = Format::rgb8;
   Compression compressed = Compression::none;
@@ -43,7 +43,7 @@ struct LookKeys : ExposureKeys {
   }
 };
 
-struct LookState {
+struct CameraState {
   double zoom = 1;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"zoom", "1", "Present focal length, as a multiple of the spec's."}, s.zoom);
@@ -51,34 +51,34 @@ struct LookState {
 };
 
 enum Level : std::uint32_t { image, objects, world };
-inline constexpr LevelInfo look_levels[] = {
+inline constexpr LevelInfo camera_levels[] = {
     {"image", msg::Image::ros_type, "", "Pictures of the scene."},
     {"objects", msg::ObjectArray::ros_type, "", "Detected objects: bearing, range, label."},
     {"world", msg::ObjectPoseArray::ros_type, "", "Poses of the detected objects in the world."},
 };
 
 /// What a camera holds beside spec and state.
-class Look {
+class CameraCore {
  public:
-  Look() = default;
-  Look(const DeviceBuild& build, const optics::Lens& lens, const LookKeys& keys);
+  CameraCore() = default;
+  CameraCore(const DeviceBuild& build, const optics::Lens& lens, const CameraKeys& keys);
 
-  static bool fits(const LookKeys& keys, const LookState& state) {
+  static bool fits(const CameraKeys& keys, const CameraState& state) {
     return state.zoom >= 1 && state.zoom <= (keys.zoom ? keys.zoom->max : 1);
   }
   /// Takes the zoom where it shall be at this sample.
-  void turn_zoom(const LookKeys& keys, LookState& state, double since_s, Time now);
-  optics::PictureJob job(const LookKeys& keys, const Context& context);
-  void finish(const LookKeys& keys, std::uint64_t sample, const Context& context);
-  void detect(const LookKeys& keys, std::uint32_t levels, std::uint64_t sample, double since_s,
+  void turn_zoom(const CameraKeys& keys, CameraState& state, double since_s, Time now);
+  optics::PictureJob job(const CameraKeys& keys, const Context& context);
+  void finish(const CameraKeys& keys, std::uint64_t sample, const Context& context);
+  void detect(const CameraKeys& keys, std::uint32_t levels, std::uint64_t sample, double since_s,
               const Context& context);
 
-  const CameraMount& eye() const { return eye_; }
+  const CameraMount& mount() const { return mount_; }
 
  private:
   optics::Lens unzoomed_;
   double zoom_of_table_ = 1;
-  CameraMount eye_;
+  CameraMount mount_;
   ColorImage picture_;
   Topic<msg::CameraInfo>* info_ = nullptr;
   Topic<msg::ObjectArray>* objects_ = nullptr;
@@ -89,48 +89,48 @@ class Look {
 
 /// A camera whose Spec has the keys above and a lens: lens_of(spec, build).
 template <class Keys>
-struct LookingCamera {
+struct LevelledCamera {
   using Spec = Keys;
-  using State = LookState;
+  using State = CameraState;
   Spec spec;
   State state;
-  Look look;
+  CameraCore core;
 
-  static Result<LookingCamera> create(const DeviceBuild& build, Spec spec) {
+  static Result<LevelledCamera> create(const DeviceBuild& build, Spec spec) {
     SL_TRY(check_exposure(spec, build));
     SL_ASSIGN(const optics::Lens lens, lens_of(spec, build));
-    LookingCamera camera{std::move(spec), {}, {}};
-    camera.look = Look(build, lens, camera.spec);
+    LevelledCamera camera{std::move(spec), {}, {}};
+    camera.core = CameraCore(build, lens, camera.spec);
     return camera;
   }
-  static void sense(PoolView<LookingCamera> pool, const Context& context);
-  bool fits() const { return Look::fits(spec, state); }
+  static void sense(PoolView<LevelledCamera> pool, const Context& context);
+  bool fits() const { return CameraCore::fits(spec, state); }
 };
 
 template <class Keys>
-void LookingCamera<Keys>::sense(PoolView<LookingCamera> pool, const Context& context) {
+void LevelledCamera<Keys>::sense(PoolView<LevelledCamera> pool, const Context& context) {
   bool pictures = false;
   for (const std::uint32_t index : pool.due) {
-    LookingCamera& device = pool.all[index];
-    device.look.turn_zoom(device.spec, device.state, pool.since[index].s(), context.now);
+    LevelledCamera& device = pool.all[index];
+    device.core.turn_zoom(device.spec, device.state, pool.since[index].s(), context.now);
     pictures = pictures || (pool.levels[index] >> image & 1);
   }
   if (pictures) {
     JobBatch batch(context);
     for (const std::uint32_t index : pool.due)
-      if (pool.levels[index] >> image & 1) batch.add(pool.all[index].look.job(pool.all[index].spec, context));
+      if (pool.levels[index] >> image & 1) batch.add(pool.all[index].core.job(pool.all[index].spec, context));
     batch.flush();
     for (const std::uint32_t index : pool.due)
       if (pool.levels[index] >> image & 1)
-        pool.all[index].look.finish(pool.all[index].spec, pool.sample[index], context);
+        pool.all[index].core.finish(pool.all[index].spec, pool.sample[index], context);
   }
   parallel_for(pool.due.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
       const std::uint32_t index = pool.due[begin];
-      LookingCamera& device = pool.all[index];
-      device.look.detect(device.spec, pool.levels[index], pool.sample[index], pool.since[index].s(), context);
+      LevelledCamera& device = pool.all[index];
+      device.core.detect(device.spec, pool.levels[index], pool.sample[index], pool.since[index].s(), context);
     }
   });
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

@@ -5,7 +5,7 @@
 
 #include "base/math.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 namespace {
 
 using optics::Catadioptric;
@@ -128,4 +128,4 @@ void fill_info(msg::CameraInfo& info, const Lens& lens, const std::string& frame
   }
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

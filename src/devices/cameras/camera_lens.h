@@ -13,7 +13,7 @@
 #include "messages/sensor_images.h"
 #include "optics/lens.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 enum class Projection : std::uint8_t {
   pinhole,
@@ -94,4 +94,4 @@ inline constexpr Pose X_S_optical_mirror{{}, {0.70710678118654752, 0, 0, 0.70710
 void fill_info(msg::CameraInfo& info, const optics::Lens& lens, const std::string& frame_id,
                double baseline_m = 0);
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

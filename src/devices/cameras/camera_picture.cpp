@@ -6,7 +6,7 @@
 #include "base/math.h"
 #include "physics/parallel.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 Status check_exposure(const ExposureKeys& keys, const DeviceBuild& build) {
   if (keys.far_m <= keys.near_m)
@@ -116,4 +116,4 @@ void ColorImage::finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, d
   compressed_->publish(context.now);
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

@@ -6,7 +6,7 @@
 #include "noise/image_noise.h"
 #include "optics/picture.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 /// How pictures are taken. A Spec derives from it.
 struct ExposureKeys {
@@ -118,4 +118,4 @@ class JobBatch {
   std::size_t count_ = 0;
 };
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

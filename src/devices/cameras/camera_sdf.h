@@ -19,7 +19,7 @@ Result<Node> stereo_keys(const Node& element, Diagnostics& diagnostics);
 
 }  // namespace sandlot::sdf_element
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 inline constexpr const char* camera_sdf_note =
     "topic and frame names, triggers, saving, visibility masks, poses within <camera>, distortion centres";
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

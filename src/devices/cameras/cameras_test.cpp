@@ -75,8 +75,8 @@ class Stage : public Rig {
     optics::PictureShape shape;
     shape.group = shape.body = body;
     shape.shape = Sphere{radius};
-    shape.look.diffuse = {0, 0, 0, 1};
-    shape.look.emissive = color;
+    shape.appearance.diffuse = {0, 0, 0, 1};
+    shape.appearance.emissive = color;
     shape.instance = thing.instance;
     shapes.push_back(shape);
   }

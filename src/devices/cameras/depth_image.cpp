@@ -6,7 +6,7 @@
 
 #include "physics/parallel.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 namespace {
 
 constexpr float nan_m = std::numeric_limits<float>::quiet_NaN();
@@ -114,4 +114,4 @@ void DepthImage::fill_points(std::span<const std::uint8_t> rgb) {
   }
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

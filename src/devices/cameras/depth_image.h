@@ -7,7 +7,7 @@
 #include "devices/cameras/camera_picture.h"
 #include "noise/depth_noise.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 enum class DepthEncoding : std::uint8_t { metres, millimetres };
 inline std::span<const EnumName<DepthEncoding>> enum_names(DepthEncoding) {
@@ -39,4 +39,4 @@ class DepthImage {
   std::vector<std::array<float, 3>> at_one_m_;  ///< per pixel: the point of depth 1 m; only with points
 };
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

@@ -6,7 +6,7 @@
 
 #include "base/math.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 namespace {
 
 constexpr int across = 3;  // places per side
@@ -14,8 +14,8 @@ constexpr std::size_t places = across * across;
 constexpr double spread =
     0.65;  // of the half extent: the corners of this grid lie within a sphere, 0.65 sqrt(2) = 0.92
 
-Vec3 middle_of(const LabelledObject& thing, const Context& context) {
-  return context.engine.states()[thing.bodies.front()].X_WB * thing.bounds_B.centre();
+Vec3 middle_of(const LabelledObject& target, const Context& context) {
+  return context.engine.states()[target.bodies.front()].X_WB * target.bounds_B.centre();
 }
 
 bool in_picture(const optics::Lens& lens, Vec3 point_S) {
@@ -33,8 +33,8 @@ bool wanted(const ObjectKeys& keys, const std::string& label) {
   return keys.labels.empty() || std::find(keys.labels.begin(), keys.labels.end(), label) != keys.labels.end();
 }
 
-msg::ColorRGBA color_of(const LabelledObject& thing) {
-  return {thing.color.r, thing.color.g, thing.color.b, thing.color.a};
+msg::ColorRGBA color_of(const LabelledObject& target) {
+  return {target.color.r, target.color.g, target.color.b, target.color.a};
 }
 
 /// The labels a detector may mix up, in an order that is the same in every run.
@@ -42,7 +42,7 @@ void known_labels(const ObjectKeys& keys, const Context& context, std::vector<st
   out.clear();
   for (const std::string& label : keys.labels) out.push_back(label);
   if (out.empty())
-    for (const LabelledObject& thing : context.labelled_objects) out.push_back(thing.label);
+    for (const LabelledObject& target : context.labelled_objects) out.push_back(target.label);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
@@ -111,13 +111,13 @@ int poisson(double mean, Stream& random) {
 
 }  // namespace
 
-double visible_part(const LabelledObject& thing, const CameraMount& eye, const Context& context) {
-  const Pose X_WS = eye.X_WS(context);
-  const Pose& X_WB = context.engine.states()[thing.bodies.front()].X_WB;
-  const Vec3 middle_W = middle_of(thing, context);
+double visible_part(const LabelledObject& target, const CameraMount& mount, const Context& context) {
+  const Pose X_WS = mount.X_WS(context);
+  const Pose& X_WB = context.engine.states()[target.bodies.front()].X_WB;
+  const Vec3 middle_W = middle_of(target, context);
   const Vec3 ahead_W = normalised(middle_W - X_WS.p);
   const Vec3 side_W = normalised(cross({0, 0, 1}, ahead_W), {0, 1, 0}), up_W = cross(ahead_W, side_W);
-  const Vec3 size = thing.bounds_B.size();
+  const Vec3 size = target.bounds_B.size();
   const auto half = [&](Vec3 axis_W) { return half_extent(size, rotate_inverse(X_WB.q, axis_W)); };
   const double wide = spread * half(side_W), high = spread * half(up_W), deep = half(ahead_W);
 
@@ -132,7 +132,7 @@ double visible_part(const LabelledObject& thing, const CameraMount& eye, const C
     const Vec3 place_S = rotate_inverse(X_WS.q, place_W - X_WS.p);
     distance[i] = norm(place_S);
     direction_S[i] = normalised(place_S);
-    shown[i] = in_picture(eye.lens(), place_S);
+    shown[i] = in_picture(mount.lens(), place_S);
     any = any || shown[i];
     farthest = std::max(farthest, distance[i]);
   }
@@ -144,7 +144,7 @@ double visible_part(const LabelledObject& thing, const CameraMount& eye, const C
                    .directions = direction_S,
                    .min_m = 0,
                    .max_m = farthest + deep,
-                   .ignore_body = eye.body,
+                   .ignore_body = mount.body,
                    .distance_m = hit_m,
                    .body = hit};
   context.rays.cast({&job, 1});
@@ -152,7 +152,7 @@ double visible_part(const LabelledObject& thing, const CameraMount& eye, const C
   bool middle_open = false;
   for (std::size_t i = 0; i < places; ++i) {
     const bool met = std::isfinite(hit_m[i]);
-    if (met && std::find(thing.bodies.begin(), thing.bodies.end(), hit[i]) != thing.bodies.end()) {
+    if (met && std::find(target.bodies.begin(), target.bodies.end(), hit[i]) != target.bodies.end()) {
       ++(shown[i] ? seen : hidden);
     } else if (met && static_cast<double>(hit_m[i]) < distance[i] - deep) {
       ++hidden;
@@ -165,13 +165,13 @@ double visible_part(const LabelledObject& thing, const CameraMount& eye, const C
   return seen == 0 ? 0 : static_cast<double>(seen) / (seen + hidden);
 }
 
-void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& eye,
+void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& mount,
             std::uint64_t sample, double since_s, const Context& context, msg::ObjectArray* objects,
             msg::ObjectPoseArray* poses) {
   Filling found(objects ? &objects->objects : nullptr);
   Filling placed(poses ? &poses->objects : nullptr);
-  const Stream base = Stream(context.seed, eye.key, Purpose::noise, sample).fork(hash64("detector"));
-  const Pose X_WS = eye.X_WS(context);
+  const Stream base = Stream(context.seed, mount.key, Purpose::noise, sample).fork(hash64("detector"));
+  const Pose X_WS = mount.X_WS(context);
   std::vector<std::string_view> labels;
   const double confusion = std::min(1.0, errors * keys.confusion);
   const double ghosts = errors * keys.ghost_rate_hz * since_s;
@@ -180,17 +180,17 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
   const auto position_std = [&](double range) {
     return errors * (world.position_std_m + world.position_std_per_m * range);
   };
-  for (const LabelledObject& thing : context.labelled_objects) {
-    if (!wanted(keys, thing.label)) continue;
-    if (std::find(thing.bodies.begin(), thing.bodies.end(), eye.body) != thing.bodies.end()) continue;
-    const Vec3 middle_S = rotate_inverse(X_WS.q, middle_of(thing, context) - X_WS.p);
+  for (const LabelledObject& target : context.labelled_objects) {
+    if (!wanted(keys, target.label)) continue;
+    if (std::find(target.bodies.begin(), target.bodies.end(), mount.body) != target.bodies.end()) continue;
+    const Vec3 middle_S = rotate_inverse(X_WS.q, middle_of(target, context) - X_WS.p);
     const Measured truth = measure(middle_S);
     const bool anyway = placed && world.everything;
     double visible = 0;
-    if (truth.range <= keys.max_range_m) visible = visible_part(thing, eye, context);
+    if (truth.range <= keys.max_range_m) visible = visible_part(target, mount, context);
     const double miss = std::min(1.0, errors * (keys.miss_rate + keys.miss_rate_per_m * truth.range +
                                                 keys.miss_rate_hidden * (1 - visible)));
-    Stream random = base.fork(entity_key(thing.name));
+    Stream random = base.fork(entity_key(target.name));
     // All numbers are drawn whether they are needed or not: each has its place in the stream.
     const bool missed = random.uniform() < miss;
     const bool confused = random.uniform() < confusion;
@@ -198,14 +198,14 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
     for (double& each : n) each = random.normal();
     const bool seen = visible > 0 && visible >= keys.min_visible && !missed;
     if (!seen && !anyway) continue;
-    const std::string_view label = confused ? another(labels, thing.label, random) : thing.label;
+    const std::string_view label = confused ? another(labels, target.label, random) : target.label;
     const double confidence = (1 - miss) * visible;
     if (seen && found) {
       msg::Object& out = found.next();
       const double range_std = keys.range_std_m + keys.range_std_per_m * truth.range;
       out.label = label;
-      out.name = keys.names ? thing.name : std::string();
-      out.color = color_of(thing);
+      out.name = keys.names ? target.name : std::string();
+      out.color = color_of(target);
       put(out, {truth.bearing + errors * keys.bearing_std_rad * n[0],
                 truth.elevation + errors * keys.bearing_std_rad * n[1],
                 std::max(0.0, truth.range + errors * range_std * n[2])});
@@ -215,10 +215,10 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
     if (placed) {
       msg::ObjectPose& out = placed.next();
       out.label = label;
-      out.name = keys.names ? thing.name : std::string();
-      out.color = color_of(thing);
+      out.name = keys.names ? target.name : std::string();
+      out.color = color_of(target);
       out.position_std = position_std(truth.range);
-      out.pose = context.engine.states()[thing.bodies.front()].X_WB;
+      out.pose = context.engine.states()[target.bodies.front()].X_WB;
       out.pose.p += Vec3{n[3], n[4], 0} * out.position_std;
       out.pose.q = quat_from_axis_angle({0, 0, 1}, errors * world.heading_std_rad * n[5]) * out.pose.q;
       out.confidence = world.everything ? 1 : confidence;
@@ -227,12 +227,12 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
 
   Stream random = base.fork(1);
   for (int left = ghosts > 0 && !labels.empty() ? poisson(ghosts, random) : 0; left > 0; --left) {
-    const double u = random.uniform(-0.5, eye.lens().width - 0.5);
-    const double v = random.uniform(-0.5, eye.lens().height - 0.5);
+    const double u = random.uniform(-0.5, mount.lens().width - 0.5);
+    const double v = random.uniform(-0.5, mount.lens().height - 0.5);
     const double range = random.uniform(0, keys.max_range_m);
     const double confidence = random.uniform(0, 0.5);
     const std::string_view label = labels[random.below(static_cast<std::uint32_t>(labels.size()))];
-    const auto ray = ray_through(eye.lens(), u, v);
+    const auto ray = ray_through(mount.lens(), u, v);
     if (!ray) continue;
     if (found) {
       msg::Object& out = found.next();
@@ -255,4 +255,4 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
   placed.done();
 }
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

@@ -21,7 +21,7 @@
 
 #include "devices/cameras/camera_picture.h"
 
-namespace sandlot::eye {
+namespace sandlot::cameras {
 
 struct ObjectKeys {
   std::vector<std::string> labels;
@@ -76,12 +76,12 @@ struct WorldKeys {
 };
 
 /// The part of a thing that is seen through the lens, from 0 to 1.
-double visible_part(const LabelledObject& thing, const CameraMount& eye, const Context& context);
+double visible_part(const LabelledObject& target, const CameraMount& mount, const Context& context);
 
 /// Fills those of the two messages that are wanted (not null); publishing is the caller's.
 /// @param since_s  time since the previous sample, for ghosts
-void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& eye,
+void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& mount,
             std::uint64_t sample, double since_s, const Context& context, msg::ObjectArray* objects,
             msg::ObjectPoseArray* poses);
 
-}  // namespace sandlot::eye
+}  // namespace sandlot::cameras

@@ -28,7 +28,7 @@ struct Scene {
     optics::PictureShape made;
     made.X_GC.p = p;
     made.shape = shape;
-    made.look.diffuse = color;
+    made.appearance.diffuse = color;
     made.body = body;
     shapes.push_back(made);
   }

@@ -34,18 +34,18 @@ RenderScene::TexturePointer RenderScene::texture(const std::string& file, const 
 
 optics::SurfaceAppearance RenderScene::look_of(const model::Visual& visual, Diagnostics& diagnostics) {
   const model::Material& material = visual.material;
-  optics::SurfaceAppearance look;
-  look.diffuse = material.diffuse;
-  look.specular = material.specular;
-  look.emissive = material.emissive;
-  look.shininess = material.shininess;
-  look.texture = texture(material.texture, visual.place, diagnostics);
+  optics::SurfaceAppearance appearance;
+  appearance.diffuse = material.diffuse;
+  appearance.specular = material.specular;
+  appearance.emissive = material.emissive;
+  appearance.shininess = material.shininess;
+  appearance.texture = texture(material.texture, visual.place, diagnostics);
   const auto* const mesh = std::get_if<Mesh>(&visual.shape);
-  look.from_mesh = mesh && material.from_mesh && !mesh->mesh->parts.empty();
-  if (look.from_mesh)
+  appearance.from_mesh = mesh && material.from_mesh && !mesh->mesh->parts.empty();
+  if (appearance.from_mesh)
     for (const MeshPart& part : mesh->mesh->parts)
-      look.part_textures.push_back(texture(part.texture, visual.place, diagnostics));
-  return look;
+      appearance.part_textures.push_back(texture(part.texture, visual.place, diagnostics));
+  return appearance;
 }
 
 void RenderScene::rebuild(std::span<const std::unique_ptr<SimulationParts::Entity>> entities,

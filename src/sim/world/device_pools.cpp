@@ -93,22 +93,24 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, *pool->pool, kind->name));
 
   SlotMaker maker;
-  const DeviceBuild build{decl,
-                          entity.instance,
-                          path,
-                          entity_key(path),
-                          setup_.seed,
-                          engine.bodies(entity.id),
-                          engine.joints(entity.id),
-                          engine.capabilities(),
-                          setup_.step,
-                          levels,
-                          maker,
-                          setup_.gravity,
-                          setup_.geography,
-                          setup_.magnetic_field_T,
-                          setup_.errors * entity.instance.errors,
-                          encode_image};
+  const DeviceBuild build{
+      .decl = decl,
+      .instance = entity.instance,
+      .path = path,
+      .key = entity_key(path),
+      .seed = setup_.seed,
+      .bodies = engine.bodies(entity.id),
+      .joints = engine.joints(entity.id),
+      .engine = engine.capabilities(),
+      .tick = setup_.step,
+      .levels = levels,
+      .topics = maker,
+      .gravity_mps2 = setup_.gravity,
+      .geography = setup_.geography,
+      .magnetic_field_T = setup_.magnetic_field_T,
+      .errors = setup_.errors * entity.instance.errors,
+      .encode_image = encode_image,
+  };
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   if (Status fits = faults ? faults->check(maker.topics) : Status(); !fits) {

@@ -14,13 +14,13 @@
 
 namespace sandlot::boundingbox_camera {
 
-struct Spec : eye::LensKeys {
+struct Spec : cameras::LensKeys {
   double rate_hz = 30, near_m = 0.01, far_m = 1000;
   std::vector<std::string> labels;
   int min_pixels = 1;
 
   static void fields(auto& s, auto&& visit) {
-    eye::LensKeys::fields(s, visit);
+    cameras::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"near", "m", "Nearest visible distance.", 0, 1e4}, s.near_m);
     visit(Field{"far", "m", "Farthest visible distance.", 1e-3, 1e6}, s.far_m);
@@ -37,7 +37,7 @@ struct Camera {
   using State = NoFields;
   Spec spec;
   State state;
-  eye::CameraMount eye;
+  cameras::CameraMount mount;
   Topic<msg::vision::Detection2DArray>* boxes;
   Topic<msg::CameraInfo>* info;
   std::string frame_id;

@@ -22,16 +22,16 @@ constexpr Preset presets[] = {
 };
 }  // namespace
 
-constinit const Kind kind = make_kind<eye::LookingCamera<Spec>>({
+constinit const Kind kind = make_kind<cameras::LevelledCamera<Spec>>({
     .name = "camera",
     .help = "Camera with a pinhole, wide-angle or fisheye lens: pictures, detected objects, or their poses.",
-    .levels = eye::look_levels,
+    .levels = cameras::camera_levels,
     .sdf_types = sdf_types,
     .from_sdf =
         [](const Node& element, Diagnostics& diagnostics) {
           return sdf_element::camera_keys(element, diagnostics, {.color = true});
         },
-    .sdf_note = eye::camera_sdf_note,
+    .sdf_note = cameras::camera_sdf_note,
     .presets = presets,
     .needs_render_scene = true,
 });

@@ -15,10 +15,10 @@
 
 namespace sandlot::camera {
 
-struct Spec : eye::LensKeys, eye::LookKeys {
+struct Spec : cameras::LensKeys, cameras::CameraKeys {
   static void fields(auto& s, auto&& visit) {
-    eye::LensKeys::fields(s, visit);
-    eye::LookKeys::fields(s, visit);
+    cameras::LensKeys::fields(s, visit);
+    cameras::CameraKeys::fields(s, visit);
   }
 };
 

@@ -10,15 +10,15 @@
 
 namespace sandlot::depth_camera {
 
-struct Spec : eye::LensKeys {
+struct Spec : cameras::LensKeys {
   double rate_hz = 30, near_m = 0.1, far_m = 10;
-  eye::DepthEncoding encoding = eye::DepthEncoding::metres;
+  cameras::DepthEncoding encoding = cameras::DepthEncoding::metres;
   bool points = false;
   DepthNoiseSpec noise;
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    eye::LensKeys::fields(s, visit);
+    cameras::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"near", "m", "Nearest measured distance; nearer surfaces read -inf.", 0, 1e4}, s.near_m);
     visit(Field{"far", "m", "Farthest measured distance; farther surfaces read +inf.", 1e-3, 1e6}, s.far_m);
@@ -34,8 +34,8 @@ struct Camera {
   using State = NoFields;
   Spec spec;
   State state;
-  eye::CameraMount eye;
-  eye::DepthImage depth;
+  cameras::CameraMount mount;
+  cameras::DepthImage depth;
   Topic<msg::CameraInfo>* info = nullptr;
 
   static Result<Camera> create(const DeviceBuild& build, Spec spec);

@@ -31,8 +31,8 @@ optics::Catadioptric mirror_of(const Spec& spec) {
 
 Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build) {
   if (spec.aperture_m > 0)
-    return eye::rule_error(build, "aperture", "depth of field below a mirror is not simulated",
-                           "leave it out");
+    return cameras::rule_error(build, "aperture", "depth of field below a mirror is not simulated",
+                               "leave it out");
   const optics::Catadioptric mirror = mirror_of(spec);
   const char* const key = static_cast<double>(spec.width) * spec.height > (1 << 24) ? "width"
                           : build.decl.config.find("a")                             ? "a"
@@ -40,20 +40,20 @@ Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build) {
                           : build.decl.config.find("rim")                           ? "rim"
                                                                                     : "mirror";
   auto lens = optics::omni_that_fills(spec.width, spec.height, mirror);
-  if (!lens) return eye::lens_error(build, key, lens.error());
+  if (!lens) return cameras::lens_error(build, key, lens.error());
   if (spec.focal_length) {
     auto& model = std::get<optics::Catadioptric>(lens->model);
     model.fx = model.fy = *spec.focal_length;
     if (const Status status = check(*lens); !status)
-      return eye::lens_error(build, "focal_length", status.error());
+      return cameras::lens_error(build, "focal_length", status.error());
   }
   return lens;
 }
 
-constinit const Kind kind = make_kind<eye::LookingCamera<Spec>>({
+constinit const Kind kind = make_kind<cameras::LevelledCamera<Spec>>({
     .name = "omni_camera",
     .help = "Camera that looks into a convex mirror and sees all around.",
-    .levels = eye::look_levels,
+    .levels = cameras::camera_levels,
     .needs_render_scene = true,
 });
 

@@ -34,8 +34,8 @@ struct MirrorKeys {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"mirror", "", "Shape of the mirror."}, s.mirror);
-    visit(Field{"width", "1", "Number of pixels per row.", 1, eye::max_side_px}, s.width);
-    visit(Field{"height", "1", "Number of rows.", 1, eye::max_side_px}, s.height);
+    visit(Field{"width", "1", "Number of pixels per row.", 1, cameras::max_side_px}, s.width);
+    visit(Field{"height", "1", "Number of rows.", 1, cameras::max_side_px}, s.height);
     visit(Field{"a", "m",
                 "Shape parameter of the mirror. Hyperbolic: r^2/a^2 - z^2/b^2 = -1; parabolic: radius of the "
                 "horizon; spherical: radius.",
@@ -55,10 +55,10 @@ struct MirrorKeys {
   }
 };
 
-struct Spec : MirrorKeys, eye::LookKeys {
+struct Spec : MirrorKeys, cameras::CameraKeys {
   static void fields(auto& s, auto&& visit) {
     MirrorKeys::fields(s, visit);
-    eye::LookKeys::fields(s, visit);
+    cameras::CameraKeys::fields(s, visit);
   }
 };
 

@@ -7,13 +7,13 @@
 namespace sandlot::overhead_camera {
 namespace {
 
-bool tells(const Spec& spec, const LabelledObject& thing) {
-  return (thing.moves || spec.fixed) &&
+bool tells(const Spec& spec, const LabelledObject& target) {
+  return (target.moves || spec.fixed) &&
          (spec.labels.empty() ||
-          std::find(spec.labels.begin(), spec.labels.end(), thing.label) != spec.labels.end());
+          std::find(spec.labels.begin(), spec.labels.end(), target.label) != spec.labels.end());
 }
 
-void look(OverheadCamera& camera, std::uint64_t sample, const Context& context) {
+void observe(OverheadCamera& camera, std::uint64_t sample, const Context& context) {
   const Spec& spec = camera.spec;
   const double position_std_m = spec.errors * spec.position_std_m;
   const double yaw_std_rad = spec.errors * spec.yaw_std_rad, miss = std::min(1.0, spec.errors * spec.miss);
@@ -21,16 +21,16 @@ void look(OverheadCamera& camera, std::uint64_t sample, const Context& context) 
   const auto states = context.engine.states();
   std::vector<msg::ObjectPose>& told = camera.world->message.objects;
   std::size_t count = 0;
-  for (const LabelledObject& thing : context.labelled_objects) {
-    if (!tells(spec, thing)) continue;
-    Stream random = stream.fork(entity_key(thing.name));
+  for (const LabelledObject& target : context.labelled_objects) {
+    if (!tells(spec, target)) continue;
+    Stream random = stream.fork(entity_key(target.name));
     if (random.uniform() < miss) continue;
     if (count == told.size()) told.emplace_back();  // else: the place of an earlier sample and its memory
     msg::ObjectPose& object = told[count++];
-    object.label = thing.label;
-    object.name = spec.names ? thing.name : std::string();
-    object.color = {thing.color.r, thing.color.g, thing.color.b, thing.color.a};
-    object.pose = states[thing.bodies.front()].X_WB;
+    object.label = target.label;
+    object.name = spec.names ? target.name : std::string();
+    object.color = {target.color.r, target.color.g, target.color.b, target.color.a};
+    object.pose = states[target.bodies.front()].X_WB;
     object.pose.p.x += position_std_m * random.normal();
     object.pose.p.y += position_std_m * random.normal();
     const double turn_rad = yaw_std_rad * random.normal();
@@ -53,7 +53,7 @@ Result<OverheadCamera> OverheadCamera::create(const DeviceBuild& build, Spec spe
 }
 
 void OverheadCamera::sense(PoolView<OverheadCamera> pool, const Context& context) {
-  for (const std::uint32_t index : pool.due) look(pool.all[index], pool.sample[index], context);
+  for (const std::uint32_t index : pool.due) observe(pool.all[index], pool.sample[index], context);
 }
 
 namespace {

@@ -5,24 +5,25 @@
 namespace sandlot::rgbd_camera {
 
 Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
-  SL_TRY(eye::check_exposure(spec, build));
-  SL_ASSIGN(const optics::Lens lens, eye::lens_of(spec, build));
-  const std::string optical = build.frame("optical", eye::X_S_optical);
+  SL_TRY(cameras::check_exposure(spec, build));
+  SL_ASSIGN(const optics::Lens lens, cameras::lens_of(spec, build));
+  const std::string optical = build.frame("optical", cameras::X_S_optical);
   auto* const image = build.publish<msg::Image>(0, "image");
   auto* const deep = build.publish<msg::Image>(0, "depth");
   auto* const info = build.publish<msg::CameraInfo>(0, "camera_info");
   auto* const points = spec.points ? build.publish<msg::PointCloud2>(0, "points") : nullptr;
-  eye::fill_info(info->message, lens, optical);
-  eye::ColorImage color(build, image, lens, spec.format, spec.noise, optical);
-  eye::DepthImage depth(deep, points, lens, spec.encoding, optical, true);
-  return Camera{std::move(spec), {}, eye::CameraMount(build, lens), std::move(color), std::move(depth), info};
+  cameras::fill_info(info->message, lens, optical);
+  cameras::ColorImage color(build, image, lens, spec.format, spec.noise, optical);
+  cameras::DepthImage depth(deep, points, lens, spec.encoding, optical, true);
+  return Camera{std::move(spec),  {},  cameras::CameraMount(build, lens), std::move(color),
+                std::move(depth), info};
 }
 
 void Camera::sense(PoolView<Camera> pool, const Context& context) {
-  eye::JobBatch batch(context);
+  cameras::JobBatch batch(context);
   for (const std::uint32_t index : pool.due) {
     Camera& camera = pool.all[index];
-    optics::PictureJob job = camera.eye.job(camera.spec, context);
+    optics::PictureJob job = camera.mount.job(camera.spec, context);
     job.near_m = 0;
     job.rgb = camera.color.rgb();
     job.depth_m = camera.depth.depth_m();
@@ -38,7 +39,8 @@ void Camera::sense(PoolView<Camera> pool, const Context& context) {
       camera.true_rgb.assign(rgb.begin(), rgb.end());
     }
     camera.color.finish(spec, spec.noise, spec.errors, sample, context);
-    const Stream random = Stream(context.seed, camera.eye.key, Purpose::noise, sample).fork(hash64("depth"));
+    const Stream random = Stream(context.seed, camera.mount.key, Purpose::noise, sample)
+                              .fork(hash64("depth"));
     camera.depth.finish(spec.near_m, spec.depth_noise, spec.errors, random, camera.true_rgb, context.now);
     camera.info->publish(context.now);
   }
@@ -91,7 +93,7 @@ constinit const Kind kind = make_kind<Camera>({
         [](const Node& element, Diagnostics& diagnostics) {
           return sdf_element::camera_keys(element, diagnostics, {.color = true, .depth = true});
         },
-    .sdf_note = eye::camera_sdf_note,
+    .sdf_note = cameras::camera_sdf_note,
     .presets = presets,
     .needs_render_scene = true,
 });

@@ -10,22 +10,22 @@
 
 namespace sandlot::rgbd_camera {
 
-struct Spec : eye::LensKeys, eye::ExposureKeys {
+struct Spec : cameras::LensKeys, cameras::ExposureKeys {
   double rate_hz = 30;
-  eye::Format format = eye::Format::rgb8;
-  eye::DepthEncoding encoding = eye::DepthEncoding::metres;
+  cameras::Format format = cameras::Format::rgb8;
+  cameras::DepthEncoding encoding = cameras::DepthEncoding::metres;
   bool points = false;
   ImageNoiseSpec noise;
   DepthNoiseSpec depth_noise;
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    eye::LensKeys::fields(s, visit);
+    cameras::LensKeys::fields(s, visit);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"format", "", "Format of the colour pixels."}, s.format);
     visit(Field{"encoding", "", "Encoding of depths: metres as floats, or millimetres."}, s.encoding);
     visit(Field{"points", "", "Whether the points are published, too."}, s.points);
-    eye::ExposureKeys::fields(s, visit);
+    cameras::ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the colours."}, s.noise);
     visit(Field{"depth_noise", "m", "Errors of the depths."}, s.depth_noise);
     visit(errors_field, s.errors);
@@ -37,9 +37,9 @@ struct Camera {
   using State = NoFields;
   Spec spec;
   State state;
-  eye::CameraMount eye;
-  eye::ColorImage color;
-  eye::DepthImage depth;
+  cameras::CameraMount mount;
+  cameras::ColorImage color;
+  cameras::DepthImage depth;
   Topic<msg::CameraInfo>* info = nullptr;
   std::vector<std::uint8_t> true_rgb = {};  ///< for the points: before noise, gamma and format
 

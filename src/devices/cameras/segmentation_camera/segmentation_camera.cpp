@@ -51,8 +51,8 @@ void show(Camera& camera, const Context& context) {
     if (instance != last) {
       last = instance;
       label = 0;
-      const LabelledObject* const thing = eye::thing_of(context.labelled_objects, instance);
-      if (thing) label = number_of(thing->label, camera.spec.labels);
+      const LabelledObject* const target = cameras::labelled_object(context.labelled_objects, instance);
+      if (target) label = number_of(target->label, camera.spec.labels);
       color = color_of(label == 0 || camera.spec.color_by == ColorBy::label ? label : instance);
     }
     const std::uint32_t shown = label == 0 ? 0 : instance;
@@ -68,24 +68,24 @@ void show(Camera& camera, const Context& context) {
 }  // namespace
 
 Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
-  SL_TRY(eye::check_exposure({spec.near_m, spec.far_m}, build));
-  SL_ASSIGN(const optics::Lens lens, eye::lens_of(spec, build));
-  const std::string optical = build.frame("optical", eye::X_S_optical);
+  SL_TRY(cameras::check_exposure({spec.near_m, spec.far_m}, build));
+  SL_ASSIGN(const optics::Lens lens, cameras::lens_of(spec, build));
+  const std::string optical = build.frame("optical", cameras::X_S_optical);
   auto* const labels = build.publish<msg::Image>(0, "labels");
   auto* const instances = build.publish<msg::Image>(0, "instances");
   auto* const colored = build.publish<msg::Image>(0, "colored");
   auto* const info = build.publish<msg::CameraInfo>(0, "camera_info");
-  eye::shape_image(labels->message, lens, "mono8", 1, optical);
-  eye::shape_image(instances->message, lens, "32SC1", 4, optical);
-  eye::shape_image(colored->message, lens, "rgb8", 3, optical);
-  eye::fill_info(info->message, lens, optical);
-  Camera camera{std::move(spec), {}, eye::CameraMount(build, lens), labels, instances, colored, info};
+  cameras::shape_image(labels->message, lens, "mono8", 1, optical);
+  cameras::shape_image(instances->message, lens, "32SC1", 4, optical);
+  cameras::shape_image(colored->message, lens, "rgb8", 3, optical);
+  cameras::fill_info(info->message, lens, optical);
+  Camera camera{std::move(spec), {}, cameras::CameraMount(build, lens), labels, instances, colored, info};
   camera.seen.resize(labels->message.data.size());
   return camera;
 }
 
 void Camera::sense(PoolView<Camera> pool, const Context& context) {
-  eye::draw_instances(pool, context);
+  cameras::draw_instances(pool, context);
   for (const std::uint32_t index : pool.due) show(pool.all[index], context);
 }
 
@@ -109,7 +109,7 @@ constinit const Kind kind = make_kind<Camera>({
     .levels = levels,
     .sdf_types = sdf_types,
     .from_sdf = from_sdf,
-    .sdf_note = eye::camera_sdf_note,
+    .sdf_note = cameras::camera_sdf_note,
     .needs_render_scene = true,
 });
 

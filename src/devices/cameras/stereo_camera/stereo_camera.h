@@ -13,18 +13,18 @@
 
 namespace sandlot::stereo_camera {
 
-struct Spec : eye::LensKeys, eye::ExposureKeys {
+struct Spec : cameras::LensKeys, cameras::ExposureKeys {
   double rate_hz = 30, baseline_m = 0.12;
-  eye::Format format = eye::Format::rgb8;
+  cameras::Format format = cameras::Format::rgb8;
   ImageNoiseSpec noise;
   double errors = 1;
 
   static void fields(auto& s, auto&& visit) {
-    eye::LensKeys::fields(s, visit);
+    cameras::LensKeys::fields(s, visit);
     visit(Field{"baseline", "m", "Distance from the left eye to the right one.", 1e-4, 100}, s.baseline_m);
     visit(Field{"rate", "Hz", "Pictures per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
     visit(Field{"format", "", "Format of the pixels."}, s.format);
-    eye::ExposureKeys::fields(s, visit);
+    cameras::ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the pictures."}, s.noise);
     visit(errors_field, s.errors);
   }
@@ -36,8 +36,8 @@ struct Camera {
   Spec spec;
   State state;
   struct Side {
-    eye::CameraMount eye;
-    eye::ColorImage picture;
+    cameras::CameraMount mount;
+    cameras::ColorImage picture;
     Topic<msg::CameraInfo>* info = nullptr;
   };
   std::array<Side, 2> sides;  ///< left, right
