@@ -17,6 +17,13 @@ std::span<const Builder* const> builder_table() {
   return table;
 }
 
+Error parameter_error(const Node& config, const std::string& path, const char* key, std::string what,
+                      std::string fix, const char* other_key) {
+  const Node* at = config.find(key);
+  if (!at) at = config.find(other_key);
+  return (at ? *at : config).error(std::move(what), std::move(fix), path + "/" + key);
+}
+
 Result<Built> build_model(const Node& map, const std::string& path) {
   const Node* const name = map.find("builder");
   if (!name) return map.error("key 'builder' is missing", "write {builder: snake, ...}", path);
@@ -40,7 +47,7 @@ Result<Built> build_model(const Node& map, const std::string& path) {
                      suggestion(name->text(), names), path + "/builder");
 }
 
-std::optional<Result<Node>> builder_words(std::string_view text, const Place& written) {
+std::optional<Result<Node>> parse_builder(std::string_view text, const Place& written) {
   constexpr std::string_view scheme = "builder:";
   if (!starts_with(text, scheme)) return std::nullopt;
   const Place place = written.file ? written : Place{std::make_shared<const std::string>(text)};

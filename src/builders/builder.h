@@ -1,5 +1,5 @@
 #pragma once
-/// Models with parameters: creatures, playgrounds, robots to try drives with.
+/// Builders: models with parameters, such as creatures, playgrounds and robots to try drives with.
 ///
 /// A builder is one folder under builders/ and one line in builders/kinds.h. It writes
 ///
@@ -45,6 +45,11 @@ constexpr Builder make_builder(Builder builder) {
   return builder;
 }
 
+/// Error about the parameter `key`: at its place, else at that of `other_key`, else at that of the builder.
+/// @param path  of `config` in its file
+Error parameter_error(const Node& config, const std::string& path, const char* key, std::string what,
+                      std::string fix, const char* other_key = "");
+
 /// All builders, in the order of builders/kinds.h.
 std::span<const Builder* const> builder_table();
 
@@ -56,6 +61,6 @@ Result<Built> build_model(const Node& map, const std::string& path = "");
 /// "builder:snake?segments=12&length=40 cm" as such a map; nothing when the text does not begin with "builder:".
 /// @param place  of the text in a file; without one, errors name the text itself
 /// Errors   a part after the ? that is not key=value.
-std::optional<Result<Node>> builder_words(std::string_view text, const Place& place = {});
+std::optional<Result<Node>> parse_builder(std::string_view text, const Place& place = {});
 
 }  // namespace sandlot

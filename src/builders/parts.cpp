@@ -77,20 +77,20 @@ void add_mass(model::Model& model, std::uint32_t link, double mass_kg, double ra
 }
 
 std::uint32_t add_joint(model::Model& model, std::string name, std::uint32_t parent, std::uint32_t child,
-                        Vec3 at_M, const JointWords& words) {
+                        Vec3 at_M, const JointOptions& options) {
   const Quat q_CM = conjugate(model.links[child].X_ML.q);
   model::Joint joint;
   joint.name = std::move(name);
-  joint.type = words.type;
+  joint.type = options.type;
   joint.parent = parent;
   joint.child = child;
   joint.X_CJ = {inverse(model.links[child].X_ML) * at_M, {}};
-  joint.axis_J = normalised(normalised(rotate(q_CM, words.axis_M)));
-  joint.lower = words.lower;
-  joint.upper = words.upper;
-  joint.max_effort = words.max_effort;
-  joint.max_velocity = words.max_velocity;
-  joint.damping = words.damping;
+  joint.axis_J = normalised(normalised(rotate(q_CM, options.axis_M)));
+  joint.lower = options.lower;
+  joint.upper = options.upper;
+  joint.max_effort = options.max_effort;
+  joint.max_velocity = options.max_velocity;
+  joint.damping = options.damping;
   model.joints.push_back(std::move(joint));
   return static_cast<std::uint32_t>(model.joints.size() - 1);
 }

@@ -34,7 +34,7 @@ void add_part(model::Model& model, std::uint32_t link, const Part& part);
 /// A mass without geometry: that of a ball of this radius about the link's origin.
 void add_mass(model::Model& model, std::uint32_t link, double mass_kg, double radius_m);
 
-struct JointWords {
+struct JointOptions {
   model::JointType type = model::JointType::revolute;
   Vec3 axis_M{0, 0, 1};
   double lower = -1e16, upper = 1e16;
@@ -43,7 +43,7 @@ struct JointWords {
 };
 /// A joint at `at_M`.
 std::uint32_t add_joint(model::Model& model, std::string name, std::uint32_t parent, std::uint32_t child,
-                        Vec3 at_M, const JointWords& words);
+                        Vec3 at_M, const JointOptions& options);
 
 /// A key's value: a text, or a list of texts.
 struct KeyValue : Node {

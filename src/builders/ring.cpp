@@ -4,7 +4,7 @@
 
 namespace sandlot::builders {
 
-Built build_ring(const RingWords& s) {
+Built build_ring(const RingSpec& s) {
   Built out;
   model::Model& m = out.model;
   // Neighbours' centres are 1.15 diameters apart: room to bend.
@@ -32,20 +32,20 @@ Built build_ring(const RingWords& s) {
     const double angle = (i + 0.5) * step;
     const Vec3 where = at(angle, radius * math::cos(step / 2));
     const bool slides = s.sliders && i % 2 == 1;
-    JointWords words{.axis_M = {0, -1, 0},
-                     .lower = -s.limit_out_rad,
-                     .upper = s.limit_in_rad,
-                     .max_effort = s.power_Nm,
-                     .max_velocity = s.speed_radps};
+    JointOptions options{.axis_M = {0, -1, 0},
+                         .lower = -s.limit_out_rad,
+                         .upper = s.limit_in_rad,
+                         .max_effort = s.power_Nm,
+                         .max_velocity = s.speed_radps};
     if (slides)
-      words = {.type = model::JointType::prismatic,
-               .axis_M = {math::cos(angle), 0, math::sin(angle)},
-               .lower = -s.slide_m,
-               .upper = s.slide_m,
-               .max_effort = s.power_Nm / pitch,
-               .max_velocity = s.speed_radps * pitch};
+      options = {.type = model::JointType::prismatic,
+                 .axis_M = {math::cos(angle), 0, math::sin(angle)},
+                 .lower = -s.slide_m,
+                 .upper = s.slide_m,
+                 .max_effort = s.power_Nm / pitch,
+                 .max_velocity = s.speed_radps * pitch};
     const std::string name = numbered(slides ? "slider" : "hinge", i + 1);
-    const std::uint32_t joint = add_joint(m, name + "_joint", parent, child, where, words);
+    const std::uint32_t joint = add_joint(m, name + "_joint", parent, child, where, options);
     add_motor(m, name, joint);
   }
   add_senses(m);

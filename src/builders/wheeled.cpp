@@ -16,7 +16,13 @@ void add_lamps(model::Model& model, std::uint32_t base, Vec3 front, double apart
 
 }  // namespace
 
-std::uint32_t add_wheel(model::Model& model, const WheelWords& w) {
+Part creature_wheel(WheelShape shape, double radius, double width, double mass_kg,
+                    const model::Surface& surface) {
+  if (shape == WheelShape::balls) return {Sphere{radius}, {}, mass_kg, colors::dark, surface};
+  return {Cylinder{radius, width}, along({0, 1, 0}), mass_kg, colors::dark, surface};
+}
+
+std::uint32_t add_wheel(model::Model& model, const WheelOptions& w) {
   const std::uint32_t wheel = add_link(model, w.name + "_wheel", {w.centre_M, {}});
   model::Surface tyre;
   tyre.mu = tyre.mu2 = w.friction;

@@ -22,16 +22,12 @@ struct Spec {
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (wheelbase_m < 2.05 * wheel_radius_m)
-      return wrong("wheelbase", "the wheels of a side would touch each other",
-                   "give more than two wheel radii");
+      return parameter_error(node, path, "wheelbase", "the wheels of a side would touch each other",
+                             "give more than two wheel radii");
     if (track_m < 3 * wheel_radius_m)
-      return wrong("track", "there is no room for a body between steered wheels",
-                   "give three wheel radii or more");
+      return parameter_error(node, path, "track", "there is no room for a body between steered wheels",
+                             "give three wheel radii or more");
     return {};
   }
 };
@@ -45,12 +41,12 @@ Result<Built> build(const Spec& s) {
                colors::red);
   for (const double y : {1.0, -1.0}) {
     const std::string side = y > 0 ? "left" : "right";
-    WheelWords wheel{.name = "rear_" + side,
-                     .parent = base,
-                     .centre_M = {-s.wheelbase_m / 2, y * s.track_m / 2, r},
-                     .radius_m = r,
-                     .width_m = width,
-                     .mass_kg = 0.05 * s.mass_kg};
+    WheelOptions wheel{.name = "rear_" + side,
+                       .parent = base,
+                       .centre_M = {-s.wheelbase_m / 2, y * s.track_m / 2, r},
+                       .radius_m = r,
+                       .width_m = width,
+                       .mass_kg = 0.05 * s.mass_kg};
     add_wheel(m, wheel);
     wheel.name = "front_" + side;
     wheel.centre_M.x = s.wheelbase_m / 2;

@@ -12,33 +12,29 @@ namespace sandlot::builders::armband {
 namespace {
 
 struct Spec {
-  int segments = 12;
-  double length_m = 0.5, diameter_m = 0.2, mass_kg = 0.3, power_Nm = 6, speed_radps = 5;
-  double limit_in_rad = math::pi / 4, limit_out_rad = math::pi / 4;
+  RingSpec ring{.segments = 12,
+                .length_m = 0.5,
+                .diameter_m = 0.2,
+                .mass_kg = 0.3,
+                .power_Nm = 6,
+                .speed_radps = 5,
+                .limit_in_rad = math::pi / 4,
+                .limit_out_rad = math::pi / 4,
+                .color = colors::teal};
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"segments", "1", "Number of staves.", 4, 100}, s.segments);
-    visit(Field{"length", "m", "Length of a stave, which is the band's width.", 0.01, 10}, s.length_m);
-    visit(Field{"diameter", "m", "Diameter of a stave.", 0.005, 5}, s.diameter_m);
-    visit(Field{"mass", "kg", "Mass of a stave.", 1e-4, 1e4}, s.mass_kg);
-    visit(Field{"power", "Nm", "Largest torque of a hinge.", 0, 1e6}, s.power_Nm);
-    visit(Field{"speed", "rad/s", "Fastest turn of a hinge.", 0, 1e3}, s.speed_radps);
-    visit(Field{"limit_in", "rad", "Largest angle of a hinge inwards.", 0, 3}, s.limit_in_rad);
-    visit(Field{"limit_out", "rad", "Largest angle of a hinge outwards.", 0, 3}, s.limit_out_rad);
+    visit(Field{"segments", "1", "Number of staves.", 4, 100}, s.ring.segments);
+    visit(Field{"length", "m", "Length of a stave, which is the band's width.", 0.01, 10}, s.ring.length_m);
+    RingSpec::fields(s.ring, visit);
   }
   Status check(const Node& node, const std::string& path) const {
-    if (length_m >= diameter_m) return {};
-    const Node* const key = node.find(node.find("length") ? "length" : "diameter");
-    return (key ? *key : node)
-        .error("a stave would be shorter than it is thick", "give a length of at least the diameter",
-               path + "/length");
+    if (ring.length_m >= ring.diameter_m) return {};
+    return parameter_error(node, path, "length", "a stave would be shorter than it is thick",
+                           "give a length of at least the diameter", "diameter");
   }
 };
 
-Result<Built> build(const Spec& s) {
-  return build_ring({s.segments, s.length_m, s.diameter_m, s.mass_kg, s.power_Nm, s.speed_radps,
-                     s.limit_in_rad, s.limit_out_rad, false, 0, colors::teal});
-}
+Result<Built> build(const Spec& s) { return build_ring(s.ring); }
 
 }  // namespace
 

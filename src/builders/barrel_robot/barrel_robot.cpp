@@ -5,33 +5,25 @@
 /// Moves    motors `x` and `z` move the masses along those axes of the barrel [m].
 /// Senses   `joints`, `imu`.
 /// Limits   the masses pass through each other: they have no geometry, and their rails no mass.
-#include "builders/builder.h"
-#include "builders/parts.h"
+#include "builders/inner_masses.h"
 
 namespace sandlot::builders::barrel_robot {
 namespace {
 
 struct Spec {
-  double diameter_m = 1, length_m = 1, shell_mass_kg = 0.3, mass_kg = 1, range_m = 0.25, power_N = 150,
-         speed_mps = 2;
+  double diameter_m = 1, length_m = 1, shell_mass_kg = 0.3;
+  InnerMassSpec inner{.mass_kg = 1, .range_m = 0.25, .power_N = 150, .speed_mps = 2};
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"diameter", "m", "Diameter of the barrel.", 0.02, 20}, s.diameter_m);
     visit(Field{"length", "m", "Length of the barrel.", 0.02, 20}, s.length_m);
     visit(Field{"shell_mass", "kg", "Mass of the barrel without what is inside.", 1e-4, 1e5},
           s.shell_mass_kg);
-    visit(Field{"mass", "kg", "Mass of each of the two inner masses.", 1e-4, 1e5}, s.mass_kg);
-    visit(Field{"range", "m", "Largest travel of an inner mass to each side of the middle.", 1e-3, 10},
-          s.range_m);
-    visit(Field{"power", "N", "Largest force on an inner mass.", 0, 1e6}, s.power_N);
-    visit(Field{"speed", "m/s", "Largest speed of an inner mass.", 0, 1e3}, s.speed_mps);
+    visit(Field{"mass", "kg", "Mass of each of the two inner masses.", 1e-4, 1e5}, s.inner.mass_kg);
+    InnerMassSpec::fields(s.inner, visit);
   }
   Status check(const Node& node, const std::string& path) const {
-    if (range_m < diameter_m / 2) return {};
-    const Node* const key = node.find("range");
-    return (key ? *key : node)
-        .error("the masses would leave the barrel", "choose a range below half the diameter",
-               path + "/range");
+    return inner.check(node, path, diameter_m, "barrel");
   }
 };
 
@@ -55,24 +47,10 @@ Result<Built> build(const Spec& s) {
   constexpr Vec3 axes[] = {{1, 0, 0}, {0, 0, 1}};
   constexpr Color shades[] = {colors::red, colors::blue};
   constexpr const char* names[] = {"x", "z"};
-  for (std::size_t i = 0; i < 2; ++i) {
-    add_part(m, shell,
-             {.shape = Cylinder{0.03 * radius, 1.98 * radius},
-              .X_LP = along(axes[i]),
-              .color = shades[i],
-              .touches = false});
-    const std::uint32_t mass = add_link(m, std::string("mass_") + names[i], {});
-    add_part(m, mass,
-             {Cylinder{0.16 * radius, 0.5 * s.length_m}, along({0, 1, 0}), s.mass_kg, shades[i], {}, false});
-    add_motor(m, names[i],
-              add_joint(m, std::string("slider_") + names[i], shell, mass, {},
-                        {.type = model::JointType::prismatic,
-                         .axis_M = axes[i],
-                         .lower = -s.range_m,
-                         .upper = s.range_m,
-                         .max_effort = s.power_N,
-                         .max_velocity = s.speed_mps}));
-  }
+  for (std::size_t i = 0; i < 2; ++i)
+    add_inner_mass(
+        m, shell, names[i], axes[i], s.inner, Cylinder{0.03 * radius, 1.98 * radius},
+        {Cylinder{0.16 * radius, 0.5 * s.length_m}, along({0, 1, 0}), s.inner.mass_kg, shades[i], {}, false});
   add_senses(m);
   return out;
 }

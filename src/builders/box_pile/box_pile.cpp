@@ -29,17 +29,13 @@ struct Spec {
     visit(Field{"seed", "1", "Seed of sizes and places of the boxes.", 0, 9007199254740991.0}, s.seed);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (smallest_m > largest_m)
-      return wrong("smallest", "the smallest box is larger than the largest",
-                   "exchange smallest and largest");
+      return parameter_error(node, path, "smallest", "the smallest box is larger than the largest",
+                             "exchange smallest and largest");
     // Turned by up to 45 deg, a box takes the diagonal of its place.
     if (std::min(length_m, width_m) < 1.5 * largest_m)
-      return wrong("largest", "no box of the largest size has room in the pile's place",
-                   "give at least one and a half times of it as length and width");
+      return parameter_error(node, path, "largest", "no box of the largest size has room in the pile's place",
+                             "give at least one and a half times of it as length and width");
     return {};
   }
 };

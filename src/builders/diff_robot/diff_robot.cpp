@@ -20,10 +20,8 @@ struct Spec {
   }
   Status check(const Node& node, const std::string& path) const {
     if (track_m >= 2 * wheel_radius_m) return {};
-    const Node* const key = node.find(node.find("track") ? "track" : "wheel_radius");
-    return (key ? *key : node)
-        .error("there is no room for a body between the wheels", "give a track of at least two wheel radii",
-               path + "/track");
+    return parameter_error(node, path, "track", "there is no room for a body between the wheels",
+                           "give a track of at least two wheel radii", "wheel_radius");
   }
 };
 

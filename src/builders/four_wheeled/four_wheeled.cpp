@@ -5,20 +5,14 @@
 /// Senses   `joints`, `imu`.
 /// Source   proportions chosen after the pictures of LpzRobots; size, force and speed are its defaults.
 #include "builders/builder.h"
-#include "builders/parts.h"
+#include "builders/wheeled.h"
 
 namespace sandlot::builders::four_wheeled {
 namespace {
 
-enum class Wheels : std::uint8_t { balls, discs };
-std::span<const EnumName<Wheels>> enum_names(Wheels) {
-  static constexpr EnumName<Wheels> names[] = {{"balls", Wheels::balls}, {"discs", Wheels::discs}};
-  return names;
-}
-
 struct Spec {
   double size_m = 1, force_Nm = 3, speed_radps = 15, body_mass_kg = 4, wheel_mass_kg = 0.5;
-  Wheels wheels = Wheels::discs;
+  WheelShape wheels = WheelShape::discs;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the body; all other lengths follow from it.", 0.02, 20}, s.size_m);
@@ -51,28 +45,21 @@ Result<Built> build(const Spec& s) {
               .touches = false});
   model::Surface rubber;
   rubber.mu = rubber.mu2 = 1.2;
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0}) {
-      const std::string name = std::string(x > 0 ? "front" : "rear") + (y > 0 ? "_left" : "_right");
-      const Vec3 at{x * 0.32 * size, y * (0.2 * size + width / 2 + 0.02 * size), 0};
-      const std::uint32_t wheel = add_link(m, name + "_wheel", {at, {}});
-      if (s.wheels == Wheels::balls) {
-        add_part(m, wheel, {Sphere{radius}, {}, s.wheel_mass_kg, colors::dark, rubber});
-      } else {
-        add_part(m, wheel,
-                 {Cylinder{radius, width}, along({0, 1, 0}), s.wheel_mass_kg, colors::dark, rubber});
-      }
-      add_part(m, wheel,
-               {.shape = Box{{1.3 * radius, 1.04 * width, 0.2 * radius}},
-                .color = colors::grey,
-                .touches = false});
-      add_motor(m, name,
-                add_joint(m, name + "_joint", body, wheel, at,
-                          {.type = model::JointType::continuous,
-                           .axis_M = {0, 1, 0},
-                           .max_effort = s.force_Nm,
-                           .max_velocity = s.speed_radps}));
-    }
+  for (const auto& [corner, x, y] : corners) {
+    const std::string name = corner;
+    const Vec3 at{x * 0.32 * size, y * (0.2 * size + width / 2 + 0.02 * size), 0};
+    const std::uint32_t wheel = add_link(m, name + "_wheel", {at, {}});
+    add_part(m, wheel, creature_wheel(s.wheels, radius, width, s.wheel_mass_kg, rubber));
+    add_part(
+        m, wheel,
+        {.shape = Box{{1.3 * radius, 1.04 * width, 0.2 * radius}}, .color = colors::grey, .touches = false});
+    add_motor(m, name,
+              add_joint(m, name + "_joint", body, wheel, at,
+                        {.type = model::JointType::continuous,
+                         .axis_M = {0, 1, 0},
+                         .max_effort = s.force_Nm,
+                         .max_velocity = s.speed_radps}));
+  }
   add_senses(m);
   return out;
 }

@@ -26,15 +26,12 @@ struct Spec {
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (wheelbase_m < 2.1 * wheel_radius_m)
-      return wrong("wheelbase", "the wheels of a side would touch each other",
-                   "give more than two wheel radii");
+      return parameter_error(node, path, "wheelbase", "the wheels of a side would touch each other",
+                             "give more than two wheel radii");
     if (track_m < 2 * wheel_radius_m)
-      return wrong("track", "there is no room for a body between the wheels", "give two wheel radii or more");
+      return parameter_error(node, path, "track", "there is no room for a body between the wheels",
+                             "give two wheel radii or more");
     return {};
   }
 };
@@ -54,16 +51,15 @@ Result<Built> build(const Spec& s) {
   const double width = rollers.roller_length_m * math::cos(tilt);
   add_box_body(m, base, {s.wheelbase_m + 1.6 * r, s.track_m - width - 0.06 * s.track_m, 1.1 * r}, 0.6 * r,
                0.9 * s.mass_kg, colors::green);
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0}) {
-      rollers.angle_rad = x * y > 0 ? -tilt : tilt;
-      add_wheel(m, {.name = std::string(x > 0 ? "front" : "rear") + (y > 0 ? "_left" : "_right"),
-                    .centre_M = {x * s.wheelbase_m / 2, y * s.track_m / 2, r},
-                    .radius_m = r,
-                    .width_m = 0.8 * width,
-                    .mass_kg = 0.025 * s.mass_kg,
-                    .rollers = rollers});
-    }
+  for (const auto& [corner, x, y] : corners) {
+    rollers.angle_rad = x * y > 0 ? -tilt : tilt;
+    add_wheel(m, {.name = corner,
+                  .centre_M = {x * s.wheelbase_m / 2, y * s.track_m / 2, r},
+                  .radius_m = r,
+                  .width_m = 0.8 * width,
+                  .mass_kg = 0.025 * s.mass_kg,
+                  .rollers = rollers});
+  }
   add_device(m, "drive", "mecanum_drive",
              {{"front_left_joint", "front_left_joint"},
               {"front_right_joint", "front_right_joint"},

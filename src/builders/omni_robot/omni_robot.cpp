@@ -30,10 +30,8 @@ struct Spec {
   Status check(const Node& node, const std::string& path) const {
     // Neighbours along the circle are 2 R sin(pi / n) apart.
     if (2 * radius_m * math::sin(math::pi / wheels) > 2.1 * wheel_radius_m) return {};
-    const Node* const key = node.find(node.find("radius") ? "radius" : "wheels");
-    return (key ? *key : node)
-        .error("the wheels would touch each other", "give fewer or smaller wheels, or a larger radius",
-               path + "/radius");
+    return parameter_error(node, path, "radius", "the wheels would touch each other",
+                           "give fewer or smaller wheels, or a larger radius", "wheels");
   }
 };
 

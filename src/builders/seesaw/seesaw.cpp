@@ -21,14 +21,12 @@ struct Spec {
     visit(Field{"mass", "kg", "Mass of the plank.", 1e-3, 1e5}, s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const Node* const key = node.find("height");
-    const Node& at = key ? *key : node;
     if (height_m <= thickness_m)
-      return at.error("the plank would lie in the ground", "choose a height above its thickness",
-                      path + "/height");
+      return parameter_error(node, path, "height", "the plank would lie in the ground",
+                             "choose a height above its thickness");
     if (height_m >= length_m / 2)
-      return at.error("the plank's ends could not reach the ground", "choose a height below half its length",
-                      path + "/height");
+      return parameter_error(node, path, "height", "the plank's ends could not reach the ground",
+                             "choose a height below half its length");
     return {};
   }
 };

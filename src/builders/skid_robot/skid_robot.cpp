@@ -20,16 +20,12 @@ struct Spec {
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (wheelbase_m < 2.05 * wheel_radius_m)
-      return wrong("wheelbase", "the wheels of a side would touch each other",
-                   "give more than two wheel radii");
+      return parameter_error(node, path, "wheelbase", "the wheels of a side would touch each other",
+                             "give more than two wheel radii");
     if (track_m < 1.5 * wheel_radius_m)
-      return wrong("track", "there is no room for a body between the wheels",
-                   "give one and a half wheel radii or more");
+      return parameter_error(node, path, "track", "there is no room for a body between the wheels",
+                             "give one and a half wheel radii or more");
     return {};
   }
 };
@@ -41,13 +37,12 @@ Result<Built> build(const Spec& s) {
   const std::uint32_t base = add_link(m, "base", {});
   add_box_body(m, base, {s.wheelbase_m + 1.6 * r, s.track_m - width - 0.04 * s.track_m, 1.1 * r}, 0.6 * r,
                0.8 * s.mass_kg, colors::blue);
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0})
-      add_wheel(m, {.name = std::string(x > 0 ? "front" : "rear") + (y > 0 ? "_left" : "_right"),
-                    .centre_M = {x * s.wheelbase_m / 2, y * s.track_m / 2, r},
-                    .radius_m = r,
-                    .width_m = width,
-                    .mass_kg = 0.05 * s.mass_kg});
+  for (const auto& [corner, x, y] : corners)
+    add_wheel(m, {.name = corner,
+                  .centre_M = {x * s.wheelbase_m / 2, y * s.track_m / 2, r},
+                  .radius_m = r,
+                  .width_m = width,
+                  .mass_kg = 0.05 * s.mass_kg});
   using Names = std::vector<std::string>;
   add_device(m, "drive", "skid_drive",
              {{"left_joint", Names{"front_left_joint", "rear_left_joint"}},

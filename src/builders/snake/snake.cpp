@@ -46,10 +46,8 @@ struct Spec {
   }
   Status check(const Node& node, const std::string& path) const {
     if (length_m >= diameter_m) return {};
-    const Node* const key = node.find(node.find("length") ? "length" : "diameter");
-    return (key ? *key : node)
-        .error("a segment would be shorter than it is thick", "give a length of at least the diameter",
-               path + "/length");
+    return parameter_error(node, path, "length", "a segment would be shorter than it is thick",
+                           "give a length of at least the diameter", "diameter");
   }
 };
 

@@ -29,19 +29,15 @@ struct Spec {
     visit(Field{"mass", "kg", "Mass of the whole robot.", 0.01, 1e5}, s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (wheelbase_m < 2.2 * wheel_radius_m)
-      return wrong("wheelbase", "the wheels of a side would touch each other",
-                   "give more than two wheel radii");
+      return parameter_error(node, path, "wheelbase", "the wheels of a side would touch each other",
+                             "give more than two wheel radii");
     if (track_m < 2.2 * wheel_radius_m)
-      return wrong("track", "steered wheels of an axle would touch each other",
-                   "give more than two wheel radii");
+      return parameter_error(node, path, "track", "steered wheels of an axle would touch each other",
+                             "give more than two wheel radii");
     if (height_m < 2.4 * wheel_radius_m)
-      return wrong("height", "there is no room for a body above the wheels",
-                   "give more than two and a half wheel radii");
+      return parameter_error(node, path, "height", "there is no room for a body above the wheels",
+                             "give more than two and a half wheel radii");
     return {};
   }
 };
@@ -60,20 +56,19 @@ Result<Built> build(const Spec& s) {
             0.12 * s.mass_kg,
             colors::grey});
   std::vector<std::string> wheels, steering;
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0}) {
-      const std::string name = std::string(x > 0 ? "front" : "rear") + (y > 0 ? "_left" : "_right");
-      const Vec3 at{x * s.wheelbase_m / 2, y * s.track_m / 2, r};
-      const std::uint32_t fork = add_steering(m, name, base, at, s.steering_rad, r, 0.01 * s.mass_kg);
-      add_wheel(m, {.name = name,
-                    .parent = fork,
-                    .centre_M = at,
-                    .radius_m = r,
-                    .width_m = 0.5 * r,
-                    .mass_kg = 0.03 * s.mass_kg});
-      wheels.push_back(name + "_joint");
-      steering.push_back(name + "_steering");
-    }
+  for (const auto& [corner, x, y] : corners) {
+    const std::string name = corner;
+    const Vec3 at{x * s.wheelbase_m / 2, y * s.track_m / 2, r};
+    const std::uint32_t fork = add_steering(m, name, base, at, s.steering_rad, r, 0.01 * s.mass_kg);
+    add_wheel(m, {.name = name,
+                  .parent = fork,
+                  .centre_M = at,
+                  .radius_m = r,
+                  .width_m = 0.5 * r,
+                  .mass_kg = 0.03 * s.mass_kg});
+    wheels.push_back(name + "_joint");
+    steering.push_back(name + "_steering");
+  }
   add_device(m, "drive", "swerve_drive", {{"wheel_joint", wheels}, {"steering_joint", steering}});
   add_senses(m);
   return out;

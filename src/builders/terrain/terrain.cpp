@@ -32,11 +32,10 @@ struct Spec {
     if (size_x_m / cell_m < most && size_y_m / cell_m < most && size_x_m / cell_m >= 1 &&
         size_y_m / cell_m >= 1)
       return {};
-    const Node* const key = node.find("cell");
-    return (key ? *key : node)
-        .error(
-            "a side would have " + number_text(std::floor(std::max(size_x_m, size_y_m) / cell_m)) + " cells",
-            "choose cells so that each side has 1 to 1024", path + "/cell");
+    return parameter_error(
+        node, path, "cell",
+        "a side would have " + number_text(std::floor(std::max(size_x_m, size_y_m) / cell_m)) + " cells",
+        "choose cells so that each side has 1 to 1024");
   }
 };
 

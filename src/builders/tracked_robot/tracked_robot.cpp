@@ -23,15 +23,12 @@ struct Spec {
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    const auto wrong = [&](const char* key, const char* what, const char* fix) {
-      const Node* const at = node.find(key);
-      return (at ? *at : node).error(what, fix, path + "/" + key);
-    };
     if (length_m - 2 * wheel_radius_m < 2.05 * wheel_radius_m * (wheels - 1))
-      return wrong("length", "the wheels of a track would touch each other",
-                   "give fewer or smaller wheels, or a longer track");
+      return parameter_error(node, path, "length", "the wheels of a track would touch each other",
+                             "give fewer or smaller wheels, or a longer track");
     if (track_m < 2 * wheel_radius_m)
-      return wrong("track", "there is no room for a body between the tracks", "give two wheel radii or more");
+      return parameter_error(node, path, "track", "there is no room for a body between the tracks",
+                             "give two wheel radii or more");
     return {};
   }
 };

@@ -7,20 +7,14 @@
 /// Source   proportions chosen after the pictures of LpzRobots; force, speed and range are its defaults.
 #include "base/text.h"
 #include "builders/builder.h"
-#include "builders/parts.h"
+#include "builders/wheeled.h"
 
 namespace sandlot::builders::two_wheeled {
 namespace {
 
-enum class Wheels : std::uint8_t { balls, discs };
-std::span<const EnumName<Wheels>> enum_names(Wheels) {
-  static constexpr EnumName<Wheels> names[] = {{"balls", Wheels::balls}, {"discs", Wheels::discs}};
-  return names;
-}
-
 struct Spec {
   double size_m = 1, force_Nm = 5, speed_radps = 12, body_mass_kg = 8, wheel_mass_kg = 1, range_m = 3;
-  Wheels wheels = Wheels::balls;
+  WheelShape wheels = WheelShape::balls;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the whole robot; all other lengths follow from it.", 0.02, 20},
@@ -50,17 +44,13 @@ Result<Built> build(const Spec& s) {
             .X_LP = {{nose_x, 0, 0}, {}},
             .color = colors::white,
             .touches = false});
-  const bool balls = s.wheels == Wheels::balls;
+  const bool balls = s.wheels == WheelShape::balls;
   const double width = balls ? 2 * radius : s.size_m / 10;
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "left" : "right";
     const Vec3 at{0, side * (body_radius + width / 2 + 0.01 * s.size_m), 0};
     const std::uint32_t wheel = add_link(m, name + "_wheel", {at, {}});
-    if (balls) {
-      add_part(m, wheel, {Sphere{radius}, {}, s.wheel_mass_kg, colors::dark});
-    } else {
-      add_part(m, wheel, {Cylinder{radius, width}, along({0, 1, 0}), s.wheel_mass_kg, colors::dark});
-    }
+    add_part(m, wheel, creature_wheel(s.wheels, radius, width, s.wheel_mass_kg));
     // A disc that shows how the wheel turns.
     for (const double x : {-0.55, 0.55})
       add_part(m, wheel,

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Built made(const std::string& words) {
-  const auto map = builder_words("builder:" + words);
+  const auto map = parse_builder("builder:" + words);
   EXPECT_TRUE(map && *map) << words;
   auto built = build_model(**map);
   EXPECT_TRUE(built) << built.error().text();
@@ -32,7 +32,7 @@ Built made(const std::string& words) {
 }
 
 std::string refusal(const std::string& words) {
-  const auto map = builder_words("builder:" + words);
+  const auto map = parse_builder("builder:" + words);
   if (!map) return "no builder";
   if (!*map) return map->error().text();
   const auto built = build_model(**map);

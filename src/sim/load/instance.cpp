@@ -24,7 +24,7 @@ Result<model::Instance> built_instance(const Node& map, const std::string& name,
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
                                       std::span<const std::string> paths, bool skip_missing) {
-  if (const auto words = builder_words(model_file)) {
+  if (const auto words = parse_builder(model_file)) {
     SL_ASSIGN(const Node map, *words);
     SL_ASSIGN(model::Instance built, built_instance(map, name, ""));
     built.X_WM = X_WM * built.X_WM;

@@ -59,7 +59,7 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Rea
 /// Loads a file by its format, or a model with parameters.
 Result<model::Setup> load_file(const std::string& path, const LoadOptions& options,
                                Diagnostics& diagnostics) {
-  const auto words = builder_words(path);
+  const auto words = parse_builder(path);
   const formats::FormatKind* const format = words ? nullptr : formats::find_format(path);
   if (format && format->scenario) {
     SL_ASSIGN(formats::Scenario scenario,

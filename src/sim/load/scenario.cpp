@@ -108,7 +108,7 @@ class ScenarioLoader {
   /// The model of a group, made by a builder or read from its file; each file is read once.
   Result<model::Instance> model_of(const formats::RobotGroup& group, const std::string& where) {
     if (!group.builder.is_null()) return built_instance(group.builder, group.name, where + "/model");
-    if (const auto parameters = builder_words(group.model, group.model_place)) {
+    if (const auto parameters = parse_builder(group.model, group.model_place)) {
       SL_ASSIGN(const Node map, *parameters);
       return built_instance(map, group.name, where + "/model");
     }
@@ -179,7 +179,7 @@ class ScenarioLoader {
   /// The file behind a name in the scenario. A folder stands for its model.sdf or, without one, for its only .urdf;
   /// "builder:..." is not a file and stays as it is.
   Result<std::string> locate(const std::string& written, const Place& place) const {
-    if (builder_words(written)) return written;
+    if (parse_builder(written)) return written;
     SL_ASSIGN(const std::string found, find_resource(written, folder_at(place), search_, place));
     std::error_code ignored;
     if (!fs::is_directory(found, ignored)) return found;
