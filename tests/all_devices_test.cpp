@@ -17,7 +17,7 @@ namespace {
 const std::string scenario = "tests/scenarios/all_devices.yaml";
 
 TEST(AllDevices, GoOnFromHalfTimeToTheSameHashInAnyNumberOfThreads) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string half = scratch.file("half.snapshot");
   const auto whole = summary_of(scenario + " --snapshot-at 2s --snapshot " + half);
   ASSERT_FALSE(whole.contains("failed")) << whole["failed"];

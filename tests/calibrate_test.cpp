@@ -28,7 +28,7 @@ constexpr const char* poor_eye =
     " --set 'robots[0].devices.eye.noise=[{gaussian: {std: 6 %}}, {hundreds_and_thousands: {rate: 30 %}}]'";
 
 TEST(SlowCalibrate, WhatItWritesMakesTheHighLevelErrAsThePicturesDid) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string run = "scenarios/ball.yaml" + std::string(poor_eye) + " --samples 1500";
   const auto pictures = calibrated(run + " --out " + scratch.file("eye.yaml"));
   ASSERT_FALSE(pictures.contains("failed")) << pictures["failed"];

@@ -57,7 +57,7 @@ TEST(Cli, ARunLeavesASummaryWithWhatTheDocsPromise) {
 }
 
 TEST(Cli, RenderTakesAPictureOrSaysWhatIsWrong) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("a.png"),
                     view = "render scenarios/indoor.yaml --from 1,1,1 --at 3,3,0 --out ";
   const Printed printed = sandlot(view + file + " --size 64x48 --samples 1 --time 100ms");
@@ -82,7 +82,7 @@ TEST(Cli, RenderTakesAPictureOrSaysWhatIsWrong) {
 }
 
 TEST(Cli, AFilmLeavesTheRunAsItIs) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string run = "scenarios/indoor.yaml --duration 400ms --seed 3";
   const std::string film = " --camera overhead --video-size 64x48 --video-rate 10 --video " +
                            scratch.file("a.mp4");
@@ -107,7 +107,7 @@ TEST(Cli, ASnapshotGoesOnInANewProcessToTheSameHash) {
   for (const char* scenario :
        {"scenarios/indoor.yaml", "scenarios/indoor.yaml --set physics=planar", "scenarios/pile.yaml",
         "scenarios/fleet.yaml", "scenarios/gripping.yaml", "scenarios/gripping.yaml --set physics=planar"}) {
-    const Scratch scratch;
+    const TestFolder scratch;
     const std::string snapshot = scratch.file("half.snapshot");
     const auto whole = summary_of(std::string(scenario) + " --duration 6s");
     ASSERT_FALSE(whole.contains("failed")) << whole["failed"];
@@ -122,7 +122,7 @@ TEST(Cli, ASnapshotGoesOnInANewProcessToTheSameHash) {
 }
 
 TEST(Cli, ASnapshotInMidRunChangesNothing) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto plain = summary_of("scenarios/pile.yaml --duration 4s");
   const auto with = summary_of("scenarios/pile.yaml --duration 4s --snapshot-at 2s --snapshot " +
                                scratch.file("s.snapshot"));
@@ -132,7 +132,7 @@ TEST(Cli, ASnapshotInMidRunChangesNothing) {
 }
 
 TEST(Cli, AWorldThatExplodesIsNamedAndLeftAsASnapshot) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string world = scratch.write("drop.sdf",
                                           R"(<sdf version="1.9"><world name="drop"><model name="stone">
 <pose>0 0 100 0 0 0</pose><link name="link"><inertial><mass>1</mass></inertial><collision name="c"><geometry><sphere>
@@ -140,7 +140,7 @@ TEST(Cli, AWorldThatExplodesIsNamedAndLeftAsASnapshot) {
   const std::string scenario = scratch.write(
       "drop.yaml", "version: 1\nname: deep drop\nworld: drop.sdf\nphysics: {max_speed: 3}\n");
   const auto run = [&](const std::string& more) {
-    return shell("cd " + scratch.folder.string() + "; " + std::filesystem::absolute(SANDLOT_BIN).string() +
+    return shell("cd " + scratch.path.string() + "; " + std::filesystem::absolute(SANDLOT_BIN).string() +
                  " run " + scenario + " --headless --duration 2s " + more);
   };
   for (const std::string file : {"sandlot-failed-deep_drop.snapshot", "asked.snapshot"}) {
@@ -167,7 +167,7 @@ TEST(Cli, FilesThatCannotBeWrittenFailTheRunWith1) {
 }
 
 TEST(Cli, CheckTellsFileLineAndRemedy) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string good = "version: 1\nname: g\nrobots: []\n";
   EXPECT_EQ(sandlot("check " + scratch.write("good.yaml", good)).exit_code, 0);
   const std::string bad = scratch.write("bad.yaml", "version: 1\nname: b\nphysiks: rigid\n");
@@ -181,7 +181,7 @@ TEST(Cli, CheckTellsFileLineAndRemedy) {
 }
 
 TEST(Cli, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string log = scratch.write("run.csv", "worth keeping\n");
   const Printed printed = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --log-values sim.tick --log " + log +
@@ -194,7 +194,7 @@ TEST(Cli, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
 }
 
 TEST(Cli, NoResultOfARunOverwritesAnotherOne) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("x.csv");
   const Printed twice = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --log-values sim.tick --log " + file +
@@ -207,7 +207,7 @@ TEST(Cli, NoResultOfARunOverwritesAnotherOne) {
 }
 
 TEST(Cli, ASnapshotThatTheRunDidNotReachIsSaidToBeAnother) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed printed = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --snapshot-at 9s --snapshot " +
       scratch.file("s.snapshot"));
@@ -272,7 +272,7 @@ TEST(Cli, InfoPrintsTheTree) {
 }
 
 TEST(Cli, InfoFoldsWhatIsAlikeAndTellsWhatWasMappedAndWhatWasNot) {
-  const Scratch scratch;
+  const TestFolder scratch;
   std::string world = "<sdf version='1.9'><world name='w'>\n";
   const auto add_box = [&](const std::string& name, const char* mu) {
     world += "<model name='" + name +
@@ -316,7 +316,7 @@ TEST(Cli, DoctorIsContent) {
 }
 
 TEST(Cli, ThePictureIsSvgWithTheRobotsPath) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("run.svg");
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --headless --duration 10s --svg " + file).exit_code, 0);
   std::ifstream in(file);
@@ -327,7 +327,7 @@ TEST(Cli, ThePictureIsSvgWithTheRobotsPath) {
 }
 
 TEST(Cli, ARunWithoutAnEndCanBeInterruptedAndStillReports) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("s.json");
   const std::string command = "timeout -s INT 2 " + std::string(SANDLOT_BIN) +
                               " run scenarios/indoor.yaml --headless --rate 1 --duration 1000s --summary " +

@@ -6,10 +6,11 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "base/test_folder.h"
 
 namespace sandlot::test {
 
@@ -37,26 +38,6 @@ inline Printed sandlot(const std::string& arguments) {
   return shell(std::string(SANDLOT_BIN) + " " + arguments);
 }
 
-/// A folder that goes when the test ends.
-struct Scratch {
-  std::filesystem::path folder;
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-test-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::string file(const std::string& name) const { return (folder / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return file(name);
-  }
-};
-
 inline nlohmann::json read_json(const std::string& path) {
   std::ifstream in(path);
   return nlohmann::json::parse(in, nullptr, false);
@@ -64,7 +45,7 @@ inline nlohmann::json read_json(const std::string& path) {
 
 /// Runs a scenario and returns its summary.
 inline nlohmann::json summary_of(const std::string& arguments) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("s.json");
   const Printed printed = sandlot("run " + arguments + " --headless --summary " + file);
   if (printed.exit_code != 0) return {{"failed", printed.out}};

@@ -24,7 +24,7 @@ std::string cached(const std::string& name) {
 
 /// Installs, and moves what was installed: nothing may remember its first place.
 struct Package {
-  Scratch scratch;
+  TestFolder scratch;
   std::string prefix = scratch.file("moved/sandlot");
   Package() {
     const Printed installed = shell("cmake --install " + build_folder() + " --prefix " +

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/random.h"
+#include "base/test_folder.h"
 #include "record/mcap/repair.h"
 
 namespace sandlot::test {
@@ -23,9 +24,8 @@ pid_t start(const std::string& file) {
 }
 
 TEST(SlowKill, AtFiftyRandomMomentsEveryFileOpensAndIsTheBeginningOfTheUndisturbedOne) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-kill-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(pattern.data());
-  const std::string whole = (folder / "whole.mcap").string(), killed = (folder / "killed.mcap").string();
+  const test::TestFolder folder;
+  const std::string whole = folder.file("whole.mcap"), killed = folder.file("killed.mcap");
   int status = 0;
   waitpid(start(whole), &status, 0);
   ASSERT_EQ(status, 0);
@@ -72,7 +72,6 @@ TEST(SlowKill, AtFiftyRandomMomentsEveryFileOpensAndIsTheBeginningOfTheUndisturb
     std::filesystem::remove(killed);
   }
   EXPECT_GT(torn, 10) << "the moments were not random enough to prove anything";
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, LevelsOnTheWay,
 /// odometry go on by that in the tick of a switch as in all others. On rollers both swing by some per cent as rollers pass
 /// (docs/validation.md): 0.3 mm and 0.8 mrad are twice what is seen, and a lost tick would be ten times as much.
 TEST_P(LevelsOnTheWay, KeepPlaceVelocityAndOdometry) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto [engine, third] = GetParam();
   const std::string run =
       std::string("tests/scenarios/levels.yaml --set physics=") + engine +

@@ -14,7 +14,7 @@ using testing::Not;
 const std::string short_run = "run scenarios/indoor.yaml --set physics=planar --duration 0.2s";
 
 TEST(Output, AFullDiskBehindTheOutputIsAnError) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
   for (const std::string& verb :
@@ -27,7 +27,7 @@ TEST(Output, AFullDiskBehindTheOutputIsAnError) {
 }
 
 TEST(Output, APipeAndALinkStayWhatTheyAre) {
-  const Scratch scratch;
+  const TestFolder scratch;
   ASSERT_EQ(mkfifo(scratch.file("pipe").c_str(), 0600), 0);
   const Printed piped = shell("cat " + scratch.file("pipe") + " & " + SANDLOT_BIN + " " + short_run +
                               " --summary " + scratch.file("pipe") + " >/dev/null; wait");
@@ -42,7 +42,7 @@ TEST(Output, APipeAndALinkStayWhatTheyAre) {
 }
 
 TEST(Output, ATableGoesIntoAPipeToo) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot(short_run + " --record " + recording).exit_code, 0);
   ASSERT_EQ(mkfifo(scratch.file("pipe").c_str(), 0600), 0);
@@ -53,7 +53,7 @@ TEST(Output, ATableGoesIntoAPipeToo) {
 }
 
 TEST(Output, NamesThatAreNoUtf8AreWrittenAllTheSame) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string recording = scratch.file("b\xff.mcap"), summary = scratch.file("s.json");
   EXPECT_EQ(sandlot(short_run + " --record " + recording + " --summary " + summary).exit_code, 0);
   EXPECT_THAT(read_json(summary).at("recording").at("file"), HasSubstr("b\xef\xbf\xbd.mcap"));
@@ -63,7 +63,7 @@ TEST(Output, NamesThatAreNoUtf8AreWrittenAllTheSame) {
 }
 
 TEST(Output, ATopicWithoutANameIsRefused) {
-  const Scratch scratch;
+  const TestFolder scratch;
   ASSERT_EQ(sandlot(short_run + " --record " + scratch.file("r.mcap")).exit_code, 0);
   const Printed printed = sandlot("topic echo " + scratch.file("r.mcap") + " ''");
   EXPECT_EQ(printed.exit_code, 2);
@@ -71,7 +71,7 @@ TEST(Output, ATopicWithoutANameIsRefused) {
 }
 
 TEST(Output, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string log = scratch.write("run.csv", "time\n1\n");
   const Printed printed = sandlot(short_run + " --log " + log +
                                   " --log-values sim.time --record /nowhere/r.mcap");
@@ -81,7 +81,7 @@ TEST(Output, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
 }
 
 TEST(Output, AReplayThatWasInterruptedVerifiesNothing) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string recording = scratch.file("r.mcap");
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 150s --record-topics none --record " + recording)
                 .exit_code,

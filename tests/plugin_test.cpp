@@ -25,7 +25,7 @@ std::string scenario(const std::string& plugin, const std::string& controller) {
 }
 
 TEST(Plugin, ItsControllerDrivesARobot) {
-  const Scratch scratch;
+  const TestFolder scratch;
   // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050 rad. Each begins
   // 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
   const double predicted_rad = 0.01 * 0.01 * (100 * 101 / 2) - 100 * 0.01 * 0.01 / (2 * 6);
@@ -56,7 +56,7 @@ TEST(Plugin, ItsControllersAreListedWithTheirFields) {
 }
 
 TEST(Plugin, ASnapshotNamesItsPluginAndGoesOnWithIt) {
-  const Scratch scratch;
+  const TestFolder scratch;
   fs::copy_file(plugins() + "/good.so", scratch.file("mine.so"));
   const std::string run = scratch.write("s.yaml", scenario("mine.so", "spinner"));
   const auto whole = summary_of(run);
@@ -90,7 +90,7 @@ TEST(Plugin, ASnapshotNamesItsPluginAndGoesOnWithIt) {
 }
 
 TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto refused = [&](const std::string& plugin, auto&& matcher) {
     const std::string file = scratch.write("bad.yaml", scenario(plugin, "spinner"));
     for (const char* verb : {"run ", "check "}) {
@@ -119,7 +119,7 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
 }
 
 TEST(Plugin, ANameThatNoControllerHasSuggestsThoseOfThePlugin) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed printed = sandlot("check " +
                                   scratch.write("s.yaml", scenario(plugins() + "/good.so", "spiner")));
   EXPECT_EQ(printed.exit_code, 2);
@@ -127,7 +127,7 @@ TEST(Plugin, ANameThatNoControllerHasSuggestsThoseOfThePlugin) {
 }
 
 TEST(Plugin, AControllerThatThrowsEndsTheRunAndKeepsItsResults) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto run = [&](const std::string& end) {
     return scratch.write("s.yaml",
                          scenario(plugins() + "/good.so", "{kind: spinner, steps: 30, end: " + end + "}"));

@@ -15,7 +15,7 @@ struct Row {
 };
 
 std::vector<Row> run(const std::string& arguments) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed printed = sandlot(
       "run tests/scenarios/ptz.yaml " + arguments + " --log " + scratch.file("log.csv") +
       " --log-values 'guard/head_eye/camera_info.k[0],guard/head_unit/status.zoom,"

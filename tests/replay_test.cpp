@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string recorded(const Scratch& scratch, const std::string& name, const std::string& arguments) {
+std::string recorded(const TestFolder& scratch, const std::string& name, const std::string& arguments) {
   const std::string file = scratch.file(name);
   const Printed run = sandlot("run " + arguments + " --headless --record " + file + " --summary " + file +
                               ".json");
@@ -23,7 +23,7 @@ nlohmann::json json_of(const std::string& arguments) {
 }
 
 TEST(Replay, ARecordingVerifiesBothWaysAndEndsInTheHashOfTheRun) {
-  const Scratch scratch;
+  const TestFolder scratch;
   for (const char* scenario : {"scenarios/indoor.yaml --duration 3s", "scenarios/fleet.yaml --duration 1s",
                                "scenarios/mario.yaml --duration 2s"}) {
     const std::string file = recorded(scratch, "r.mcap", scenario);
@@ -40,7 +40,7 @@ TEST(Replay, ARecordingVerifiesBothWaysAndEndsInTheHashOfTheRun) {
 
 /// Sliders, failures and levels moved by hand: what they do is in the recording, and the same for any number of threads.
 TEST(Replay, ARunWhoseErrorsFailuresAndLevelsAreChangedOnTheWayIsReproducible) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string quiet = "scenarios/errors.yaml --duration 4s";
   const std::string steered = quiet +
                               " --command 'at 0.5s set errors 1.7' --command 'at 1s set rover.errors 0.4'"
@@ -60,7 +60,7 @@ TEST(Replay, ARunWhoseErrorsFailuresAndLevelsAreChangedOnTheWayIsReproducible) {
 }
 
 TEST(Replay, AContinuousClockIsReplayedFromTheLengthsItMeasured) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = recorded(
       scratch, "r.mcap",
       "scenarios/indoor.yaml --set physics=planar --set time.clock=continuous --duration 1s");
@@ -74,7 +74,7 @@ TEST(Replay, AContinuousClockIsReplayedFromTheLengthsItMeasured) {
 }
 
 TEST(Replay, AStateFromTheMiddleOfARecordingIsTheOneThatTheRunWouldHaveLeft) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = recorded(scratch, "r.mcap",
                                     "scenarios/indoor.yaml --set physics=planar --duration 2s");
   const std::string half = scratch.file("half.snapshot");
@@ -88,7 +88,7 @@ TEST(Replay, AStateFromTheMiddleOfARecordingIsTheOneThatTheRunWouldHaveLeft) {
 }
 
 TEST(Diff, TwoSeedsDifferFirstInWhatDrawsRandomNumbers) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string arguments = "scenarios/indoor.yaml --set physics=planar --duration 1s";
   const std::string a = recorded(scratch, "a.mcap", arguments),
                     b = recorded(scratch, "b.mcap", arguments + " --seed 2");
@@ -107,7 +107,7 @@ TEST(Diff, TwoSeedsDifferFirstInWhatDrawsRandomNumbers) {
 }
 
 TEST(Replay, WhatIsNoRecordingIsRefused) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto refused = [](const std::string& arguments, const char* word) {
     const Printed printed = sandlot(arguments);
     EXPECT_EQ(printed.exit_code, 2) << arguments << printed.out;
@@ -122,7 +122,7 @@ TEST(Replay, WhatIsNoRecordingIsRefused) {
 }
 
 TEST(Replay, ARecordingThatWasTornOffVerifiesAsFarAsItGoesAndAFlippedByteIsNamed) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = recorded(scratch, "r.mcap",
                                     "scenarios/indoor.yaml --set physics=planar --duration 20s");
   std::ifstream in(file, std::ios::binary);
@@ -141,7 +141,7 @@ TEST(Replay, ARecordingThatWasTornOffVerifiesAsFarAsItGoesAndAFlippedByteIsNamed
 }
 
 TEST(Playback, ARobotDrivesAgainAsAnotherWasRecorded) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string scenario = "scenarios/indoor.yaml --set physics=planar --duration 3s";
   const std::string file = recorded(scratch, "r.mcap", scenario);
   const auto original = read_json(file + ".json");
@@ -156,7 +156,7 @@ TEST(Playback, ARobotDrivesAgainAsAnotherWasRecorded) {
                                   ", topic: /rover/drive/ideal}'";
   const auto follows = summary_of(scenario + " --set " + by_odometry);
   ASSERT_FALSE(follows.contains("failed")) << follows["failed"];
-  for (const std::size_t i : {0, 1})
+  for (const std::size_t i : {0u, 1u})
     EXPECT_NEAR(follows["robots"][0]["pose"][i].get<double>(), original["robots"][0]["pose"][i].get<double>(),
                 0.15);
   const Printed missing = sandlot("run " + scenario +
@@ -168,7 +168,7 @@ TEST(Playback, ARobotDrivesAgainAsAnotherWasRecorded) {
 }
 
 TEST(Playback, ATableNeedsNoRecordingAndASnapshotNeedsNoTable) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string table = scratch.write("path.csv", "time,vx,vy,wz\n0,0.2,0,0\n1,0,0,0.5\n2,0,0,0\n");
   const std::string scenario =
       "scenarios/indoor.yaml --set physics=planar --duration 3s --set 'robots[0].controller={kind: playback, "

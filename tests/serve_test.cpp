@@ -14,7 +14,7 @@ using testing::HasSubstr;
 const std::string indoor = "run scenarios/indoor.yaml --set physics=planar --duration 1s --rate max ";
 
 TEST(Serve, ARunWithAPageEndsByItselfInTheStateOfOneWithout) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed served = sandlot(indoor + "--port 0 --summary " + scratch.file("served.json"));
   ASSERT_EQ(served.exit_code, 0) << served.out;
   EXPECT_THAT(served.out, ContainsRegex("page: http://127\\.0\\.0\\.1:[0-9]+/\n"));
@@ -36,7 +36,7 @@ TEST(Serve, ElsewhereThanOnThisMachineATokenIsMade) {
 }
 
 TEST(Serve, APortThatIsTakenIsRefusedBeforeAnythingIsWritten) {
-  const Scratch scratch;
+  const TestFolder scratch;
   // The first holds its port until it is stopped; the second wants the same and must leave its log alone.
   const std::string log = scratch.write("log.csv", "kept");
   const Printed both = shell(
@@ -71,7 +71,7 @@ TEST(Serve, OptionsThatDoNotGoTogetherAreRefused) {
 }
 
 TEST(Serve, ConsoleLinesSteerARunWithoutAPageAndAreInItsRecording) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string recording = scratch.file("r.mcap");
   const std::string script = scratch.write("s.txt", "# a comment\nat 0.5s pose rover 3 4.65\n");
   const Printed run = sandlot("run scenarios/indoor.yaml --set physics=planar --duration 0.52s --record " +

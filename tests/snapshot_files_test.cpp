@@ -28,17 +28,17 @@ std::string contents(const std::string& path) {
 const std::string run = "run scenarios/indoor.yaml --set physics=planar --headless ";
 
 TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 1s --snapshot-every 0.25s --snapshot " + file).exit_code, 0);
-  EXPECT_THAT(files_in(scratch.folder),
+  EXPECT_THAT(files_in(scratch.path),
               ElementsAre("a-000000.250.snapshot", "a-000000.500.snapshot", "a-000000.750.snapshot",
                           "a-000001.000.snapshot", "a.snapshot"));
   EXPECT_EQ(contents(file), contents(scratch.file("a-000001.000.snapshot")))
       << "both are the state at the end";
 
   // 0.3 s is no multiple: the next one is due at 0.5 s all the same.
-  const Scratch second;
+  const TestFolder second;
   const std::string mid = second.file("mid.snapshot"), again = second.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.3s --snapshot " + mid).exit_code, 0);
   ASSERT_EQ(
@@ -46,12 +46,12 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
               " --headless --duration 0.7s --snapshot-every 0.25s --snapshot-keep 2 --snapshot " + again)
           .exit_code,
       0);
-  EXPECT_THAT(files_in(second.folder),
+  EXPECT_THAT(files_in(second.path),
               ElementsAre("a-000000.750.snapshot", "a-000001.000.snapshot", "a.snapshot", "mid.snapshot"));
 }
 
 TEST(SnapshotFiles, InfoSaysWhatIsInOne) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.5s --seed 12 --snapshot " + file).exit_code, 0);
   const Printed info = sandlot("info " + file);
@@ -64,7 +64,7 @@ TEST(SnapshotFiles, InfoSaysWhatIsInOne) {
 }
 
 TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("good.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
   const std::string good = contents(file);
@@ -88,11 +88,11 @@ TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
   refused("newer.snapshot", newer, "has version 99");
   EXPECT_THAT(sandlot("run --from " + scratch.write("foreign.snapshot", "\x89PNG\r\n")).out,
               HasSubstr("no Sandlot snapshot"));
-  EXPECT_EQ(sandlot("run --from " + scratch.folder.string()).exit_code, 2);
+  EXPECT_EQ(sandlot("run --from " + scratch.path.string()).exit_code, 2);
 }
 
 TEST(SnapshotFiles, WhatCannotBeWrittenFailsTheRunAndCostsNoOlderFile) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
   const std::string before = contents(file);
@@ -103,7 +103,7 @@ TEST(SnapshotFiles, WhatCannotBeWrittenFailsTheRunAndCostsNoOlderFile) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(contents(scratch.file("out")), HasSubstr("cannot write '" + file + "'"));
   EXPECT_EQ(contents(file), before);
-  EXPECT_THAT(files_in(scratch.folder), ElementsAre("a.snapshot", "out")) << "no half file is left";
+  EXPECT_THAT(files_in(scratch.path), ElementsAre("a.snapshot", "out")) << "no half file is left";
   const Printed nowhere = sandlot(run + "--duration 0.1s --snapshot /nowhere/a.snapshot");
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_THAT(nowhere.out, HasSubstr("/nowhere/a.snapshot"));
@@ -127,7 +127,7 @@ TEST(SlowSnapshotFiles, EveryScenarioGoesOnFromHalfTimeToTheSameHash) {
     if (entry.path().extension() != ".yaml") continue;
     ++scenarios;
     const std::string scenario = entry.path().string();
-    const Scratch scratch;
+    const TestFolder scratch;
     const std::string half = scratch.file("half.snapshot");
     const auto whole = summary_of(scenario + " --duration 4s --snapshot-at 2s --snapshot " + half);
     ASSERT_FALSE(whole.contains("failed")) << scenario << whole["failed"];

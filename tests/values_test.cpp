@@ -34,7 +34,7 @@ TEST(Values, EveryAddressThatInfoListsCanBeLogged) {
   for (const auto& value : values)
     all += (all.empty() ? "" : ",") + value["address"].get<std::string>() +
            (value.contains("count") ? "[0]" : "");
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed run = sandlot("run scenarios/indoor.yaml --duration 1s --log " + scratch.file("a.csv") +
                               " --log-rate '10 Hz' --log-values '" + all + "'");
   EXPECT_EQ(run.exit_code, 0) << run.out;
@@ -50,7 +50,7 @@ TEST(Values, EveryAddressThatInfoListsCanBeLogged) {
 }
 
 TEST(Values, InfoListsOfEachStageOfNoiseItsOwnKeysOnly) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed info = sandlot(
       "info --values " +
       scratch.write("s.yaml", scenario("    devices: {laser: {noise: [{gaussian: {std: 1 cm}}]}}\n")));
@@ -59,7 +59,7 @@ TEST(Values, InfoListsOfEachStageOfNoiseItsOwnKeysOnly) {
 }
 
 TEST(Values, LoggingAndStoppingFromOutsideChangeNoHash) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const auto plain = summary_of("scenarios/indoor.yaml --duration 3s");
   const auto watched = summary_of("scenarios/indoor.yaml --stop-when 'sim.time >= 3' --log " +
                                   scratch.file("x.csv") + " --log-values rover.pose.x,rover/laser.ranges[3]");
@@ -71,7 +71,7 @@ TEST(Values, LoggingAndStoppingFromOutsideChangeNoHash) {
 }
 
 TEST(Values, AScenarioNamesValuesWatchesAndLogs) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string log = scratch.file("run.csv");
   const std::string file = scratch.write(
       "s.yaml", scenario("values:\n  half: sim.time / 2\n  quarter: half / 2\n"
@@ -97,7 +97,7 @@ TEST(Values, AConditionThatIsNoNumberFailsTheRun) {
 }
 
 TEST(Values, AConditionThatIsNoNumberAtTheBeginningFailsTheRunToo) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const Printed run = sandlot("run " +
                               scratch.write("s.yaml",
                                             "version: 1\nname: s\nrobots: []\nevents: "
@@ -109,7 +109,7 @@ TEST(Values, AConditionThatIsNoNumberAtTheBeginningFailsTheRunToo) {
 }
 
 TEST(Values, WrongInputIsRefusedBeforeTheFirstTick) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string old = scratch.write("old.csv", "precious\n");
   const auto refused = [](const std::string& arguments, const std::string& words) {
     const Printed run = sandlot("run scenarios/indoor.yaml --duration 1s " + arguments);
@@ -129,7 +129,7 @@ TEST(Values, WrongInputIsRefusedBeforeTheFirstTick) {
 }
 
 TEST(Values, WhatARecordingDoesNotHoldIsNamed) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string file = scratch.file("r.mcap"), out = scratch.file("out.csv");
   const Printed run = sandlot("run scenarios/indoor.yaml --duration 1s --record " + file +
                               " --record-topics '/rover/*' --record-topics /rover/lazer/ranges");
@@ -154,7 +154,7 @@ TEST(Values, WhatARecordingDoesNotHoldIsNamed) {
 }
 
 TEST(Values, ALogBecomesAFigure) {
-  const Scratch scratch;
+  const TestFolder scratch;
   const std::string csv = scratch.file("r.csv"), svg = scratch.file("r.svg");
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 2s --log " + csv +
                     " --log-values rover.pose.x,rover.pose.y")

@@ -10,6 +10,7 @@
 #endif
 
 #include "base/check.h"
+#include "base/test_folder.h"
 #include "bench/bench.h"
 #include "formats/sdf/sdf.h"
 #include "sim/load/load.h"
@@ -87,9 +88,8 @@ Row world_row(const std::string& name, bool frames) {
 
 /// A scenario of 10,000 robots with a drive and a laser each, from files to a simulation that stands at tick 0.
 Row crowd_row() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-bench-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(pattern.data());
-  std::ofstream(folder / "bot.sdf")
+  const test::TestFolder folder;
+  std::ofstream(folder.file("bot.sdf"))
       << R"(<sdf version='1.9' xmlns:sandlot='urn:sandlot:sdf'><model name='bot'>
 <link name='base'><inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
 <collision name='c'><pose>0 0 0.1 0 0 0</pose><geometry><cylinder><radius>0.1</radius><length>0.1</length></cylinder></geometry></collision></link>
@@ -100,18 +100,17 @@ Row crowd_row() {
 <sandlot:device name='drive' kind='diff_drive'><left_joint>lj</left_joint><right_joint>rj</right_joint><wheel_radius>0.05</wheel_radius></sandlot:device>
 <sandlot:device name='laser' kind='laser_scanner'><beams>24</beams><max_range>1</max_range></sandlot:device>
 </model></sdf>)";
-  std::ofstream(folder / "crowd.yaml")
+  std::ofstream(folder.file("crowd.yaml"))
       << "version: 1\nname: crowd\nphysics: planar\nrobots:\n"
          "  - {name: bot, model: bot.sdf, count: 10000, controller: wander,\n"
          "     distribution: {grid: {spacing: 1.4 m}}}\n";
   const double begin = thread_seconds();
   Diagnostics diagnostics;
-  auto setup = load((folder / "crowd.yaml").string(), {}, diagnostics);
+  auto setup = load(folder.file("crowd.yaml"), {}, diagnostics);
   SL_CHECK_MSG(setup, setup.error().what.c_str());
   const auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
   SL_CHECK_MSG(simulation, simulation.error().what.c_str());
   const double seconds = thread_seconds() - begin;
-  std::filesystem::remove_all(folder);
   return row("P8 scenario of 10,000 robots (reference: the 2 s allowed)", "s", seconds, 2, 1);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/check.h"
+#include "base/test_folder.h"
 #include "bench/bench.h"
 #include "messages/sensor_images.h"
 #include "record/recorder.h"
@@ -16,21 +17,6 @@
 
 namespace sandlot::bench {
 namespace {
-
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-bench-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string link(const char* name, const char* pose, const char* shape, const char* mass, double moment,
                  const char* mu) {
@@ -54,7 +40,7 @@ std::string wall(int number, const char* pose, const char* size) {
 }
 
 /// Twelve rovers as models/rover, with scanners of 360 beams, in four rooms with doors and things to push.
-std::string write_flat(const Folder& folder) {
+std::string write_flat(const test::TestFolder& folder) {
   const std::string wheel = "<sphere><radius>0.05</radius></sphere>";
   const std::string device = "<sandlot:device name='";
   std::ofstream(folder.file("bot.sdf"))
@@ -211,7 +197,7 @@ Row image_row(const std::string& scenario, const std::string& file) {
 }  // namespace
 
 std::vector<Row> recording() {
-  const Folder folder;
+  const test::TestFolder folder;
   const std::string scenario = write_flat(folder), file = folder.file("bench.mcap");
   Cost with, without;
   for (int i = 0; i < 5; ++i) {

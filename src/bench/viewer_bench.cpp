@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/check.h"
+#include "base/test_folder.h"
 #include "bench/bench.h"
 #include "console/console.h"
 #include "server/server.h"
@@ -46,20 +47,17 @@ std::string world_text() {
 }
 
 std::unique_ptr<Simulation> make_run() {
-  namespace fs = std::filesystem;
-  std::string pattern = (fs::temp_directory_path() / "sandlot-bench-XXXXXX").string();
-  const fs::path folder = mkdtemp(pattern.data());
-  std::ofstream(folder / "r.sdf") << world_text();
-  std::ofstream(folder / "run.yaml") << "version: 1\nname: viewer\nphysics: planar\n"
-                                        "time: {step: 10 ms, substeps: 1}\nseed: 1\nrobots:\n"
-                                        "  - name: r\n    model: r.sdf\n    count: "
-                                     << robots
-                                     << "\n    distribution: {grid: {centre: [0, 0, 0], spacing: 1 m}}\n"
-                                        "    controller: {kind: sequence, steps: [{at: 0 s, orders: "
-                                        "{diff_drive: [0.2, 0, 0.7]}}]}\n";
+  const test::TestFolder folder;
+  folder.write("r.sdf", world_text());
+  std::ofstream(folder.file("run.yaml")) << "version: 1\nname: viewer\nphysics: planar\n"
+                                            "time: {step: 10 ms, substeps: 1}\nseed: 1\nrobots:\n"
+                                            "  - name: r\n    model: r.sdf\n    count: "
+                                         << robots
+                                         << "\n    distribution: {grid: {centre: [0, 0, 0], spacing: 1 m}}\n"
+                                            "    controller: {kind: sequence, steps: [{at: 0 s, orders: "
+                                            "{diff_drive: [0.2, 0, 0.7]}}]}\n";
   Diagnostics diagnostics;
-  auto setup = load((folder / "run.yaml").string(), {}, diagnostics);
-  fs::remove_all(folder);
+  auto setup = load(folder.file("run.yaml"), {}, diagnostics);
   SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
   setup->stop = Time::from_s(run_s);
   auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);

@@ -277,7 +277,7 @@ TEST(Console, ListsADeviceForThePage) {
 }
 
 TEST(Console, StoresAndLoads) {
-  test::Folder folder;
+  const test::TestFolder folder;
   Talk talk(test::arena("rigid", 1), {.folder = folder.path.string()});
   talk.step(20);
   const std::string hash = talk.ok("hash");
@@ -299,14 +299,14 @@ TEST(Console, StoresAndLoads) {
 }
 
 TEST(Console, RecordsByWhatItIsGiven) {
-  test::Folder folder;
+  const test::TestFolder folder;
   std::string asked;
   Talk talk(test::arena("rigid", 1), {.folder = folder.path.string(), .record = [&](const std::string& file) {
                                         asked = file.empty() ? "off" : file;
                                         return Result<std::string>("fine");
                                       }});
   EXPECT_EQ(talk.ok("record run.mcap"), "fine");
-  EXPECT_EQ(asked, (folder.path / "run.mcap").string());
+  EXPECT_EQ(asked, folder.file("run.mcap"));
   talk.ok("record off");
   EXPECT_EQ(asked, "off");
   EXPECT_FALSE(talk.say("record run.txt").ok);

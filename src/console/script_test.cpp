@@ -120,10 +120,10 @@ TEST(Script, AnErrorEndsTheRunAndSaysWhere) {
 }
 
 TEST(Script, FaultsThatCanBeSeenAreFoundBeforeTheRun) {
-  test::Folder folder;
+  const test::TestFolder folder;
   Scripted run;
   const auto fault = [&](const std::string& text) {
-    const std::string file = (folder.path / "script").string();
+    const std::string file = folder.file("script");
     std::ofstream(file) << text;
     const Status status = run.console->schedule_script(file);
     return status ? std::string("none") : status.error().text().substr(folder.path.string().size() + 1);

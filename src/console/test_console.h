@@ -9,6 +9,7 @@
 #include <future>
 #include <thread>
 
+#include "base/test_folder.h"
 #include "console/console.h"
 #include "sim/test_world.h"
 
@@ -84,16 +85,6 @@ class Talk {
     return options;
   }
   std::thread runner_;
-};
-
-/// A folder that goes with the test.
-struct Folder {
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-console-XXXXXX").string();
-    path = ::mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::filesystem::path path;
 };
 
 }  // namespace sandlot::test

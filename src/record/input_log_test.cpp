@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "base/test_folder.h"
 #include "record/recorder.h"
 #include "sim/test_world.h"
 
@@ -17,12 +18,10 @@ constexpr std::uint64_t ticks = 120, begin_tick = 10;
 
 /// Two rovers from tick 10 to 130; before ticks 41 and 91 somebody puts the first one elsewhere.
 struct Fixture {
-  std::filesystem::path folder;
+  const test::TestFolder folder;
   std::unique_ptr<Simulation> original;
 
   Fixture() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-test-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
     original = test::build(test::arena("planar", 2));
     test::advance(*original, begin_tick);
     RecordOptions options;
@@ -40,10 +39,7 @@ struct Fixture {
     EXPECT_TRUE(static_cast<bool>((*recorder)->finish()));
     original->remove_observer(recorder->get());
   }
-  ~Fixture() { std::filesystem::remove_all(folder); }
-  Fixture(const Fixture&) = delete;
-  Fixture& operator=(const Fixture&) = delete;
-  std::string file() const { return (folder / "r.mcap").string(); }
+  std::string file() const { return folder.file("r.mcap"); }
 
   RecordedRun run() const {
     auto recording = Recording::open(file());

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 
+#include "base/test_folder.h"
 #include "messages/cdr.h"
 #include "messages/make_info.h"
 #include "record/glob.h"
@@ -21,13 +22,8 @@ namespace {
 
 class RecorderTest : public testing::Test {
  protected:
-  RecorderTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-record-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~RecorderTest() override { std::filesystem::remove_all(folder_); }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::filesystem::path folder_;
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  const TestFolder folder_;
 };
 
 /// Runs two rovers for `ticks` of 10 ms with a recorder. @return the hash at the end

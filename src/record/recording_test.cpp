@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/test_folder.h"
 #include "messages/cdr.h"
 #include "record/mcap/writer.h"
 #include "record/playback.h"
@@ -18,18 +19,6 @@ namespace sandlot::record {
 namespace {
 
 using testing::HasSubstr;
-
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-test-XXXXXX").string();
-    path = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const char* name) const { return (path / name).string(); }
-};
 
 /// Records 200 ticks of two rovers that wander on the planar engine, in short chunks.
 std::unique_ptr<Simulation> record(const std::string& file, std::uint64_t seed = 7) {
@@ -107,7 +96,7 @@ void copy(const std::string& from, const std::string& to, Change&& change) {
 }
 
 TEST(Recording, ReplaysToTheHashOfTheRunBothWays) {
-  const Folder folder;
+  const test::TestFolder folder;
   const auto simulation = record(folder.file("r.mcap"));
   for (const Programs programs : {Programs::recompute, Programs::logged}) {
     const Verdict verdict = verify(folder.file("r.mcap"), programs);
@@ -120,7 +109,7 @@ TEST(Recording, ReplaysToTheHashOfTheRunBothWays) {
 }
 
 TEST(Recording, AChangedByteOfACommandNamesItsTickAndTarget) {
-  const Folder folder;
+  const test::TestFolder folder;
   record(folder.file("r.mcap"));
   std::uint64_t changed = 0;
   copy(folder.file("r.mcap"), folder.file("changed.mcap"), [&](const mcap::Message& message, auto& data) {
@@ -140,7 +129,7 @@ TEST(Recording, AChangedByteOfACommandNamesItsTickAndTarget) {
 }
 
 TEST(Recording, TornOffItGoesAsFarAsItsLastWholeChunk) {
-  const Folder folder;
+  const test::TestFolder folder;
   record(folder.file("r.mcap"));
   std::filesystem::resize_file(folder.file("r.mcap"),
                                std::filesystem::file_size(folder.file("r.mcap")) * 6 / 10);
@@ -152,7 +141,7 @@ TEST(Recording, TornOffItGoesAsFarAsItsLastWholeChunk) {
 }
 
 TEST(Recording, SaysWhatKeepsItFromBeingReplayed) {
-  const Folder folder;
+  const test::TestFolder folder;
   const std::string file = folder.file("r.mcap"), other = folder.file("other.mcap");
   record(file);
   const auto without = [&](const auto& wanted) {
@@ -187,7 +176,7 @@ TEST(Recording, SaysWhatKeepsItFromBeingReplayed) {
 }
 
 TEST(Recording, ValuesTellWhereTwoSeedsDiffer) {
-  const Folder folder;
+  const test::TestFolder folder;
   const auto a = record(folder.file("a.mcap"), 7), b = record(folder.file("b.mcap"), 8);
   EXPECT_THAT(differing_setups(*a, *b), testing::ElementsAre("seed: 7 against 8"));
   const std::string parts[] = {"rover1", "rover1/laser"};
@@ -216,7 +205,7 @@ TEST(Recording, ValuesTellWhereTwoSeedsDiffer) {
 }
 
 TEST(Playback, OrdersOfARecordedRobotLeadAnotherOneAlongTheSamePath) {
-  const Folder folder;
+  const test::TestFolder folder;
   const auto original = record(folder.file("r.mcap"));
   model::Setup setup = test::arena("planar", 2);
   ASSERT_EQ(setup.instances.back().name, "rover2");

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "base/bytes.h"
 #include "base/math.h"
+#include "base/test_folder.h"
 #include "base/text.h"
 #include "formats/sdf/sdf.h"
 #include "formats/sdf/write.h"
@@ -22,28 +23,8 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-convert-XXXXXX").string();
-    path = mkdtemp(pattern.data());
-    std::filesystem::create_directory(path / "sub");
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const std::string& name) const { return (path / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name, std::ios::binary) << text;
-    return file(name);
-  }
-  std::string text(const std::string& name) const {
-    std::ifstream in(path / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+struct Folder : test::TestFolder {
+  Folder() { std::filesystem::create_directory(path / "sub"); }
 };
 
 struct Converted {
@@ -502,9 +483,9 @@ TEST(Convert, NeverReplacesAFileUnasked) {
   const Converted refused = convert(urdf, folder.file("a.sdf"));
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.printed, HasSubstr("exists already; add --force"));
-  EXPECT_EQ(folder.text("a.sdf"), "precious");
+  EXPECT_EQ(folder.read("a.sdf"), "precious");
   EXPECT_EQ(convert(urdf, folder.file("a.sdf"), true).exit_code, 0);
-  EXPECT_THAT(folder.text("a.sdf"), HasSubstr("<model name=\"turtle\""));
+  EXPECT_THAT(folder.read("a.sdf"), HasSubstr("<model name=\"turtle\""));
   EXPECT_EQ(convert(urdf, folder.file("nowhere/a.sdf")).exit_code, 2);
   EXPECT_EQ(convert(urdf, folder.file("a.txt")).exit_code, 2);
   const std::string bad = folder.write("bad.urdf", "<robot name='r'/>");
@@ -520,9 +501,9 @@ TEST(Convert, PathsMeanTheSameFilesFromTheirNewPlace) {
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
     <gazebo><plugin name="p" filename="p"><parameters>meshes/hull.stl</parameters></plugin></gazebo></robot>)");
   ASSERT_EQ(convert(folder.file("a.urdf"), folder.file("sub/a.sdf")).exit_code, 0);
-  EXPECT_THAT(folder.text("sub/a.sdf"), HasSubstr("<parameters>../meshes/hull.stl</parameters>"));
+  EXPECT_THAT(folder.read("sub/a.sdf"), HasSubstr("<parameters>../meshes/hull.stl</parameters>"));
   ASSERT_EQ(convert(folder.file("a.urdf"), folder.file("a.sdf")).exit_code, 0);
-  EXPECT_THAT(folder.text("a.sdf"), HasSubstr("<parameters>meshes/hull.stl</parameters>"));
+  EXPECT_THAT(folder.read("a.sdf"), HasSubstr("<parameters>meshes/hull.stl</parameters>"));
 }
 
 TEST(Convert, TextOfAnyKindSurvivesWriting) {

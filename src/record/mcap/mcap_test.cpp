@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "base/hash.h"
+#include "base/test_folder.h"
 #include "record/mcap/repair.h"
 #include "record/mcap/writer.h"
 
@@ -20,24 +21,20 @@ using testing::HasSubstr;
 
 class Mcap : public testing::Test {
  protected:
-  Mcap() {
-    // In memory where there is such a folder: thousands of repairs each wait for the disk.
-    const std::filesystem::path memory = "/dev/shm";
-    const bool there = std::filesystem::is_directory(memory);
-    std::string pattern = (there ? memory : std::filesystem::temp_directory_path()) / "sandlot-mcap-XXXXXX";
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~Mcap() override { std::filesystem::remove_all(folder_); }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
   static std::string bytes_of(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   std::string leave(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
+    return folder_.write(name, bytes);
   }
-  std::filesystem::path folder_;
+  /// In memory where there is such a folder: thousands of repairs each wait for the disk.
+  static std::filesystem::path parent() {
+    const std::filesystem::path memory = "/dev/shm";
+    return std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
+  }
+  const test::TestFolder folder_{parent()};
 };
 
 std::span<const std::byte> bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
@@ -351,7 +348,7 @@ TEST_F(Mcap, OtherFilesAndVersionsAreNamed) {
   EXPECT_THAT(error_of(newer), HasSubstr("version '1'"));
   EXPECT_THAT(error_of(newer), HasSubstr("x.mcap"));
   EXPECT_FALSE(Reader::open(file("nowhere.mcap")));
-  EXPECT_FALSE(Reader::open(folder_.string()));
+  EXPECT_FALSE(Reader::open(folder_.path.string()));
   std::string unknown = loose_file();
   ByteWriter w;
   w.raw(unknown.data(), unknown.size() - 9 - 4 - 9 - 20 - 8);
@@ -401,7 +398,7 @@ TEST_F(Mcap, AFileThatIsBeingWrittenIsLeftAlone) {
 
 TEST_F(Mcap, PlacesThatCannotBeWrittenSayWhy) {
   EXPECT_THAT(Writer::create(file("no/such/folder.mcap"), {}).error().what, HasSubstr("No such file"));
-  EXPECT_THAT(Writer::create(folder_.string(), {}).error().what, HasSubstr("s a directory"));
+  EXPECT_THAT(Writer::create(folder_.path.string(), {}).error().what, HasSubstr("s a directory"));
   // The kernel's own full disk.
   const auto full = Writer::create("/dev/full", {});
   ASSERT_FALSE(full);

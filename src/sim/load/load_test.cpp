@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/test_folder.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -27,17 +28,14 @@ constexpr const char* bot = R"(<?xml version="1.0"?>
 </model></sdf>)";
 
 struct Files : testing::Test {
-  fs::path folder;
+  const test::TestFolder test_folder;
+  const fs::path& folder = test_folder.path;
   void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "sandlot-load-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
     fs::create_directories(folder / "models" / "bot");
     write("models/bot/model.sdf", bot);
   }
-  void TearDown() override { fs::remove_all(folder); }
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name) << text;
-    return (folder / name).string();
+    return test_folder.write(name, text);
   }
   Result<model::Setup> load_text(const std::string& robots, std::vector<formats::Override> overrides = {}) {
     const std::string file = write("s.yaml", "version: 1\nname: s\n" + robots);

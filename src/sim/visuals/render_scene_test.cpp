@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/test_folder.h"
 #include "sim/load/load.h"
 #include "sim/test_world.h"
 #include "sim/world/simulation.h"
@@ -113,34 +114,32 @@ constexpr const char* boards = R"(<sdf version="1.9"><world name="w">
 </world></sdf>)";
 
 TEST(RenderScene, MissingTexturesAreACheckerAndOneWarningEach) {
-  std::string folder = (std::filesystem::temp_directory_path() / "sandlot-sight-XXXXXX").string();
-  folder = mkdtemp(folder.data());
-  const auto write = [&](const char* name, const std::string& text) {
-    std::ofstream(folder + "/" + name) << text;
-  };
-  write("w.sdf", boards);
-  write("board.obj",
-        "mtllib board.mtl\nusemtl paint\nv 2 0.8 -0.8\nv 2 -0.8 -0.8\nv 2 -0.8 0.8\nv 2 0.8 0.8\n"
-        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
-  write("board.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd gone.png\n");
-  write("broken.png", "no image");
+  const test::TestFolder folder;
+  folder.write("w.sdf", boards);
+  folder.write("board.obj",
+               "mtllib board.mtl\nusemtl paint\nv 2 0.8 -0.8\nv 2 -0.8 -0.8\nv 2 -0.8 0.8\nv 2 0.8 0.8\n"
+               "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  folder.write("board.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd gone.png\n");
+  folder.write("broken.png", "no image");
   Diagnostics diagnostics;
-  auto setup = load(folder + "/w.sdf", {}, diagnostics);
+  auto setup = load(folder.file("w.sdf"), {}, diagnostics);
   ASSERT_TRUE(setup) << setup.error().text();
   auto sim = Simulation::create(std::move(*setup), {}, diagnostics);
   ASSERT_TRUE(sim) << sim.error().text();
   std::vector<std::string> said;
   for (const Error& each : diagnostics.warnings)
     if (each.text().find("checker") != std::string::npos) said.push_back(each.text());
-  std::filesystem::remove_all(folder);
   std::sort(said.begin(), said.end());
   ASSERT_EQ(said.size(), 3u);
   const auto begins = [](const std::string& text, const std::string& with) {
     EXPECT_EQ(text.substr(0, with.size()), with);
   };
-  begins(said[0], folder + "/board.mtl:3: the texture '" + folder + "/gone.png' does not exist; a checker");
-  begins(said[1], folder + "/w.sdf:4: the texture '" + folder + "/no.png' is not there; a checker");
-  begins(said[2], folder + "/w.sdf:5: the texture '" + folder + "/broken.png' cannot be used: ");
+  begins(said[0], folder.file("board.mtl") + ":3: the texture '" + folder.file("gone.png") +
+                      "' does not exist; a checker");
+  begins(said[1],
+         folder.file("w.sdf") + ":4: the texture '" + folder.file("no.png") + "' is not there; a checker");
+  begins(said[2],
+         folder.file("w.sdf") + ":5: the texture '" + folder.file("broken.png") + "' cannot be used: ");
 
   // 200 px at 2 m are 2 m: the board fills the picture, each of its 8 x 8 squares 20 x 20 pixels. The upper left is magenta.
   for (const double y : {0.0, 10.0, 20.0}) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/test_folder.h"
 #include "sim/test_world.h"
 
 namespace sandlot {
@@ -14,18 +15,10 @@ std::string content(const std::string& path) {
   std::ifstream in(path);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "sandlot-log-XXXXXX").string();
-    path = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 TEST(CsvLog, WritesALinePerSample) {
-  const Folder folder;
-  const std::string file = (folder.path / "run.csv").string();
+  const test::TestFolder folder;
+  const std::string file = folder.file("run.csv");
   std::ofstream(file) << "something longer than what follows, which must not shine through"
                       << std::string(999, 'x');
   const auto simulation = test::build(test::arena("planar", 1));
@@ -51,18 +44,17 @@ TEST(CsvLog, WritesALinePerSample) {
 }
 
 TEST(CsvLog, SaysWhatIsWrongBeforeItTouchesTheFile) {
-  const Folder folder;
+  const test::TestFolder folder;
   const auto simulation = test::build(test::arena("planar", 1));
   const auto complaint = [&](const model::LogDecl& decl) {
     const auto log = CsvLog::open(*simulation, decl);
     return log ? "" : log.error().text();
   };
-  const std::string file = (folder.path / "new.csv").string();
+  const std::string file = folder.file("new.csv");
   EXPECT_NE(complaint({file, 0, {{"rovr1.pose.x", {}}}, {}}).find("did you mean"), std::string::npos);
   EXPECT_NE(complaint({file, 200, {{"sim.time", {}}}, {}}).find("above the tick rate"), std::string::npos);
-  EXPECT_NE(
-      complaint({folder.path.string() + "/no/x.csv", 0, {{"sim.time", {}}}, {}}).find("cannot write the log"),
-      std::string::npos);
+  EXPECT_NE(complaint({folder.file("no/x.csv"), 0, {{"sim.time", {}}}, {}}).find("cannot write the log"),
+            std::string::npos);
   { const auto log = CsvLog::open(*simulation, {file, 0, {{"sim.time", {}}}, {}}); }
   EXPECT_FALSE(std::filesystem::exists(file));  // opened, never begun
 }
