@@ -12,6 +12,7 @@
 #include "formats/sdf/sdf.h"
 #include "geometry/bounds.h"
 #include "sim/load/load.h"
+#include "sim/test_world.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -32,17 +33,6 @@ model::Setup loaded(const std::string& file, std::vector<formats::Override> over
   return std::move(*setup);
 }
 
-std::unique_ptr<Simulation> built(model::Setup setup) {
-  Diagnostics diagnostics;
-  auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
-  if (!simulation) {
-    ADD_FAILURE() << simulation.error().text();
-    return nullptr;
-  }
-  for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << warning.text();
-  return std::move(*simulation);
-}
-
 formats::WorldContent rover_file() {
   Diagnostics diagnostics;
   auto content = formats::read_sdf("models/rover/model.sdf", diagnostics);
@@ -56,7 +46,7 @@ TEST(Content, EveryScenarioLoadsAndBuildsWithoutAWarning) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path().string());
     ++files;
-    EXPECT_TRUE(built(loaded(entry.path().string())));
+    EXPECT_TRUE(test::build(loaded(entry.path().string())));
   }
   EXPECT_GE(files, 3);
 }
@@ -74,7 +64,7 @@ TEST(Content, WorldsOfGazeboFindTheirFloorAndSun) {
 }
 
 TEST(Materials, DoWhatTheWorldsCommentsSay) {
-  const auto simulation = built(loaded("scenarios/materials.yaml"));
+  const auto simulation = test::build(loaded("scenarios/materials.yaml"));
   ASSERT_TRUE(simulation);
   const auto body = [&](const std::string& name) {
     for (const auto& entity : simulation->entities())
@@ -228,7 +218,7 @@ TEST(Rover, StandsStillOnItsWheelsAndRearCaster) {
     auto leveled = setup;
     for (model::DeviceDecl& device : leveled.instances.back().devices)
       if (device.name == "drive") device.config.set("level", Node::scalar(level));
-    const auto simulation = built(std::move(leveled));
+    const auto simulation = test::build(std::move(leveled));
     ASSERT_TRUE(simulation);
     const Pose before = simulation->engine().pose(*simulation->find_instance("rover"));
     for (int i = 0; i < 300; ++i) ASSERT_TRUE(static_cast<bool>(simulation->tick()));
@@ -278,7 +268,7 @@ void expect_wandering(const std::string& physics, const std::string& level) {
   constexpr int runs = 4;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
     SCOPED_TRACE(physics + " " + level + " seed " + std::to_string(seed));
-    const auto simulation = built(
+    const auto simulation = test::build(
         loaded("scenarios/indoor.yaml", {{"physics", physics}, {"level", level}}, seed));
     ASSERT_TRUE(simulation);
     Tracker tracker;
@@ -305,7 +295,7 @@ TEST(SlowContent, TheRoverWandersWithoutGettingStuckOnWheels) { expect_wandering
 TEST(SlowContent, AFleetKeepsMovingAndInside) {
   for (const char* physics : {"rigid", "planar"}) {
     SCOPED_TRACE(physics);
-    const auto simulation = built(loaded("scenarios/fleet.yaml", {{"physics", physics}}));
+    const auto simulation = test::build(loaded("scenarios/fleet.yaml", {{"physics", physics}}));
     ASSERT_TRUE(simulation);
     Tracker tracker;
     simulation->add_observer(&tracker);
@@ -320,7 +310,7 @@ TEST(SlowContent, AFleetKeepsMovingAndInside) {
 }
 
 TEST(SlowContent, ThePileFallsIntoTheBinAndTheSlopeSortsWhatLiesOnIt) {
-  const auto simulation = built(loaded("scenarios/pile.yaml"));
+  const auto simulation = test::build(loaded("scenarios/pile.yaml"));
   ASSERT_TRUE(simulation);
   const auto at = [&](const char* name) {
     return simulation->engine().pose(*simulation->find_instance(name)).p;

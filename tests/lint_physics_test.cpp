@@ -12,19 +12,10 @@
 #include "physics/engine.h"
 #include "sim/lint/lint.h"
 #include "sim/load/load.h"
+#include "sim/test_world.h"
 
 namespace sandlot {
 namespace {
-
-std::unique_ptr<Simulation> built(model::Setup setup) {
-  Diagnostics diagnostics;
-  auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
-  if (!simulation) {
-    ADD_FAILURE() << simulation.error().text();
-    return nullptr;
-  }
-  return std::move(*simulation);
-}
 
 bool found(const Simulation& simulation, const char* rule) {
   for (const Finding& finding : lint(simulation))
@@ -53,7 +44,7 @@ Servo run(const std::string& file, const char* level, double p, double d) {
       gains.set("d", Node::scalar(std::to_string(d)));
       device.config.set(level, std::move(gains));
     }
-  const auto simulation = built(std::move(*setup));
+  const auto simulation = test::build(std::move(*setup));
   if (!simulation) return {};
   constexpr double wanted = 1e-3;  // far from the joint's limits
   msg::Float64 command;
@@ -173,7 +164,7 @@ TEST(LintPhysics, ThingsBelowTheTerrainAreFound) {
   EXPECT_EQ(findings[0].text.what,
             "'thing' starts below the terrain 'hill', its top 0.5 m under the surface");
   EXPECT_EQ(findings[0].text.fix, "raise it by 0.7 m or more");
-  EXPECT_TRUE(lint(*built(on_terrain(1.1))).empty());
+  EXPECT_TRUE(lint(*test::build(on_terrain(1.1))).empty());
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-/// What `check` finds suspicious. Each file of tests/suspicious begins with what it expects, all of it: lines of
-/// `expect: line 7: words`, or `expect: nothing` in the twins named *_not, which lie just on the other side of a rule's
-/// bound.
+/// Findings of `check`. Each file of tests/suspicious begins with all that it expects (base/test_expectations.h), or with
+/// `expect: nothing` in the twins named *_not, which lie just on the other side of a rule's bound.
 #include "sim/lint/lint.h"
 
 #include <gtest/gtest.h>
@@ -9,59 +8,19 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/text.h"
+#include "base/test_expectations.h"
 #include "command.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 #include "sim/load/load.h"
+#include "sim/test_world.h"
 
 namespace sandlot {
 namespace {
 
-struct Expected {
-  int line = 0;
-  std::string words;
-};
-
-std::vector<Expected> expected_in(const std::string& path) {
-  std::vector<Expected> out;
-  std::ifstream in(path);
-  std::string text;
-  while (std::getline(in, text)) {
-    const std::string mark = "expect: ";
-    const std::size_t begin = text.find(mark);
-    if (begin == std::string::npos) break;
-    text = text.substr(begin + mark.size());
-    if (const std::size_t end = text.rfind(" -->"); end != std::string::npos) text.resize(end);
-    Expected expected;
-    if (starts_with(text, "line ")) {
-      expected.line = std::stoi(text.substr(5));
-      text = text.substr(text.find(": ") + 2);
-    }
-    expected.words = text;
-    out.push_back(expected);
-  }
-  return out;
-}
-
-std::vector<std::string> files_in(const std::string& folder) {
-  std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file()) out.push_back(entry.path().string());
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-std::unique_ptr<Simulation> built(model::Setup setup) {
-  Diagnostics diagnostics;
-  auto simulation = Simulation::create(std::move(setup), {}, diagnostics);
-  if (!simulation) {
-    ADD_FAILURE() << simulation.error().text();
-    return nullptr;
-  }
-  for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << warning.text();
-  return std::move(*simulation);
-}
+using test::Expectation;
+using test::expectations_in;
+using test::files_in;
 
 std::vector<Finding> findings_of(const std::string& file) {
   Diagnostics diagnostics;
@@ -71,7 +30,7 @@ std::vector<Finding> findings_of(const std::string& file) {
     return {};
   }
   for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << warning.text();
-  const auto simulation = built(std::move(*setup));
+  const auto simulation = test::build(std::move(*setup));
   if (!simulation) return {};
   std::vector<Finding> findings = lint(*simulation);
   if (file.ends_with(".yaml"))
@@ -85,13 +44,13 @@ TEST(Lint, SuspiciousFilesAreToldWhatIsExpectedAndNothingElse) {
   ASSERT_GE(files.size(), 50u);
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    std::vector<Expected> expected = expected_in(file);
+    std::vector<Expectation> expected = expectations_in(file);
     ASSERT_FALSE(expected.empty()) << "the file does not say what it expects";
     if (expected[0].words == "nothing") expected.clear();
     EXPECT_EQ(expected.empty(), file.find("_not.") != std::string::npos);
     const std::vector<Finding> findings = findings_of(file);
     for (const Finding& finding : findings) {
-      const auto found = std::find_if(expected.begin(), expected.end(), [&](const Expected& e) {
+      const auto found = std::find_if(expected.begin(), expected.end(), [&](const Expectation& e) {
         const std::string text = finding.text.what + "; " + finding.text.fix;
         return e.line == finding.text.place.line && text.find(e.words) != std::string::npos;
       });
@@ -100,7 +59,7 @@ TEST(Lint, SuspiciousFilesAreToldWhatIsExpectedAndNothingElse) {
       if (found == expected.end()) ADD_FAILURE() << "not expected: " << finding.text.text();
       else expected.erase(found);
     }
-    for (const Expected& missing : expected) ADD_FAILURE() << "missing: " << missing.words;
+    for (const Expectation& missing : expected) ADD_FAILURE() << "missing: " << missing.words;
   }
 }
 
@@ -167,7 +126,7 @@ TEST(Lint, ManyAlikeAreSaidOnceAndManyDifferentOnesAreCounted) {
     another.X_WM.p.x = i;
     setup.instances.push_back(another);
   }
-  const auto simulation = built(setup);
+  const auto simulation = test::build(setup);
   ASSERT_TRUE(simulation);
   std::vector<Finding> findings = lint(*simulation);
   ASSERT_EQ(findings.size(), 11u);
@@ -179,7 +138,7 @@ TEST(Lint, ManyAlikeAreSaidOnceAndManyDifferentOnesAreCounted) {
   heavy->links[0].inertial.moments = 1e5 * Vec3{1, 1, 1} / 15;
   for (model::Instance& instance : setup.instances)
     if (!instance.model->is_static) instance.model = heavy, instance.X_WM.p.z = 0.1;
-  const auto heavies = built(setup);
+  const auto heavies = test::build(setup);
   ASSERT_TRUE(heavies);
   findings = lint(*heavies);
   ASSERT_EQ(findings.size(), 1u);
@@ -194,7 +153,7 @@ TEST(Lint, AShellMayBeAsLightAsItLikes) {
     ball->links[0].inertial.mass_kg = 0.3;
     ball->links[0].inertial.moments = (hollow ? 2.0 / 3 : 2.0 / 5) * 0.3 * 0.25 * Vec3{1, 1, 1};
     setup.instances.back().model = ball;
-    const auto simulation = built(setup);
+    const auto simulation = test::build(setup);
     ASSERT_TRUE(simulation);
     const std::vector<Finding> findings = lint(*simulation);
     ASSERT_EQ(findings.size(), hollow ? 0u : 1u);
@@ -232,7 +191,7 @@ TEST(Lint, FaultyFilesEndTheCheckWithTwoAndTheirLine) {
     const bool ours = file.ends_with(".sdf") || file.ends_with(".yaml");
     if (!ours) continue;
     SCOPED_TRACE(file);
-    const std::vector<Expected> expected = expected_in(file);
+    const std::vector<Expectation> expected = expectations_in(file);
     ASSERT_EQ(expected.size(), 1u);
     const test::Printed printed = test::sandlot("check --json " + file + " 2>/dev/null");
     EXPECT_EQ(printed.exit_code, 2);

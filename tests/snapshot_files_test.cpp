@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::vector<std::string> files_in(const std::filesystem::path& folder) {
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     names.push_back(entry.path().filename().string());
@@ -31,7 +31,7 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
   const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 1s --snapshot-every 0.25s --snapshot " + file).exit_code, 0);
-  EXPECT_THAT(files_in(scratch.path),
+  EXPECT_THAT(names_in(scratch.path),
               ElementsAre("a-000000.250.snapshot", "a-000000.500.snapshot", "a-000000.750.snapshot",
                           "a-000001.000.snapshot", "a.snapshot"));
   EXPECT_EQ(contents(file), contents(scratch.file("a-000001.000.snapshot")))
@@ -46,7 +46,7 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
               " --headless --duration 0.7s --snapshot-every 0.25s --snapshot-keep 2 --snapshot " + again)
           .exit_code,
       0);
-  EXPECT_THAT(files_in(second.path),
+  EXPECT_THAT(names_in(second.path),
               ElementsAre("a-000000.750.snapshot", "a-000001.000.snapshot", "a.snapshot", "mid.snapshot"));
 }
 
@@ -103,7 +103,7 @@ TEST(SnapshotFiles, WhatCannotBeWrittenFailsTheRunAndCostsNoOlderFile) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(contents(scratch.file("out")), HasSubstr("cannot write '" + file + "'"));
   EXPECT_EQ(contents(file), before);
-  EXPECT_THAT(files_in(scratch.path), ElementsAre("a.snapshot", "out")) << "no half file is left";
+  EXPECT_THAT(names_in(scratch.path), ElementsAre("a.snapshot", "out")) << "no half file is left";
   const Printed nowhere = sandlot(run + "--duration 0.1s --snapshot /nowhere/a.snapshot");
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_THAT(nowhere.out, HasSubstr("/nowhere/a.snapshot"));

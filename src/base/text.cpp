@@ -83,6 +83,12 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+bool is_one_of(std::string_view text, std::initializer_list<std::string_view> candidates) {
+  return std::find(candidates.begin(), candidates.end(), text) != candidates.end();
+}
+
+std::string_view first_part(std::string_view path) { return path.substr(0, path.find('/')); }
+
 bool starts_with(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;
 }

@@ -1,5 +1,6 @@
 #pragma once
 /// Small text services for error messages and names.
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ std::string short_text(double x);
 bool parse_number(std::string_view text, double& out);
 
 std::string_view trim(std::string_view text);
+bool is_one_of(std::string_view text, std::initializer_list<std::string_view> candidates);
+/// The part before the first '/', or all of it: "robot1" of "robot1/laser".
+std::string_view first_part(std::string_view path);
 bool starts_with(std::string_view text, std::string_view prefix);
 std::vector<std::string_view> split(std::string_view text, char separator);
 

@@ -135,7 +135,7 @@ Result<std::string> find_resource(const std::string& uri, const std::string& fol
   if (scheme == "http" || scheme == "https") return find_fuel(uri, path, place);
   if (scheme == "model" || scheme == "package") {
     while (!rest.empty() && rest.front() == '/') rest.erase(0, 1);
-    const std::string name = rest.substr(0, rest.find('/'));
+    const std::string name(first_part(rest));
     add_ancestors(folder, name, tried);
     for (std::string& each : tried) each += rest.substr(name.size());
     for (const std::string& each : path.folders) {

@@ -1,56 +1,24 @@
-/// Every file of tests/bad is refused with one error, at the line and with the words that its first line expects:
-/// `# expect: line 7: words` or, in XML, the same in a comment. Without `line N: ` only the words are compared.
-#include <algorithm>
-#include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
+/// Faulty files: every file of tests/bad is refused with one error, at the line and with the words that its first line
+/// expects (base/test_expectations.h).
 #include <gtest/gtest.h>
 
-#include "base/text.h"
+#include "base/test_expectations.h"
 #include "formats/scenario/scenario.h"
 #include "formats/sdf/sdf.h"
 
 namespace sandlot::formats {
 namespace {
 
-struct Expected {
-  int line = 0;
-  std::string words;
-};
-
-Expected expected_in(const std::string& path) {
-  std::string first;
-  std::ifstream in(path);
-  std::getline(in, first);
-  const std::string mark = "expect: ";
-  const std::size_t begin = first.find(mark);
-  if (begin == std::string::npos) return {};
-  std::string text = first.substr(begin + mark.size());
-  if (const std::size_t end = text.rfind(" -->"); end != std::string::npos) text.resize(end);
-  Expected out;
-  if (starts_with(text, "line ")) {
-    const char* const end = std::from_chars(text.data() + 5, text.data() + text.size(), out.line).ptr;
-    text = text.substr(std::min<std::size_t>(static_cast<std::size_t>(end - text.data()) + 2, text.size()));
-  }
-  out.words = text;
-  return out;
-}
-
 std::vector<std::string> files(const std::string& extension) {
-  std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator("tests/bad"))
-    if (entry.path().extension() == extension) out.push_back(entry.path().string());
-  std::sort(out.begin(), out.end());
-  return out;
+  return test::files_in("tests/bad", extension);
 }
 
 template <class Read>
 void check(const std::string& path, Read read) {
   SCOPED_TRACE(path);
-  const Expected expected = expected_in(path);
-  ASSERT_FALSE(expected.words.empty() && expected.line == 0) << "the file does not say what it expects";
+  const std::vector<test::Expectation> expectations = test::expectations_in(path);
+  ASSERT_FALSE(expectations.empty()) << "the file does not say what it expects";
+  const test::Expectation& expected = expectations.front();
   Diagnostics diagnostics;
   testing::internal::CaptureStderr();
   const auto result = read(path, diagnostics);

@@ -163,7 +163,7 @@ class Parser {
     if (type == "duration") return "builtin_interfaces/Duration";
     if (type == "Header") return "std_msgs/Header";
     if (type.find('/') != std::string_view::npos) return short_name(type);
-    return owner.name.substr(0, owner.name.find('/')) + "/" + std::string(type);
+    return std::string(first_part(owner.name)) + "/" + std::string(type);
   }
 
   Status resolve(const Open& open) {

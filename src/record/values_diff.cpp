@@ -34,7 +34,7 @@ Listing values_of(const Simulation& simulation, const std::string& part) {
     out.order.push_back(address);
     out.values[address] = {value, unit};
   };
-  const std::string entity = part == "sim" ? part : part.substr(0, part.find('/'));
+  const std::string entity(first_part(part));
   if (entity != "sim" && !simulation.find_instance(entity)) return out;
   list_values(simulation, entity == "sim" ? "" : entity, [&](const ValueEntry& entry) {
     if (!belongs_to(entry.path, part)) return;

@@ -6,12 +6,6 @@
 namespace sandlot::formats {
 namespace {
 
-bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
-  for (const char* const each : names)
-    if (name == each) return true;
-  return false;
-}
-
 Result<std::string> name_of(const Xml& element) {
   const std::string* const name = element.attribute("name");
   if (!name || trim(*name).empty())

@@ -17,10 +17,6 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
-  return std::any_of(names.begin(), names.end(), [&](const char* each) { return name == each; });
-}
-
 /// Finds or makes the element at a path below `parent`.
 Xml& at_path(Xml& parent, std::initializer_list<const char*> path, const Xml& from) {
   Xml* here = &parent;

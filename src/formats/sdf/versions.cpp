@@ -9,10 +9,6 @@ namespace {
 
 constexpr int oldest = 2, last_old = 4, last_whole = 9, newest = 12;  ///< minor versions
 
-bool is_one_of(const std::string& text, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
-}
-
 void rename_attribute(Xml& element, const char* from, const char* to) {
   for (auto& [key, value] : element.attributes)
     if (key == from) key = to;

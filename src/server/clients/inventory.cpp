@@ -103,7 +103,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
     known.push_back(slot.name.substr(1));
     if (known.empty() || known.back() != slot.device) known.push_back(slot.device);
     if (slot.active && is_twist(*slot.info)) {
-      known.push_back(slot.device.substr(0, slot.device.find('/')) + "/cmd_vel");
+      known.push_back(std::string(first_part(slot.device)) + "/cmd_vel");
       drives = true;
     }
   }

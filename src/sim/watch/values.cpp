@@ -21,8 +21,6 @@ std::pair<std::string_view, std::string_view> cut(std::string_view address) {
   return {address.substr(0, dot), address.substr(dot + 1)};
 }
 
-std::string_view robot_of(std::string_view path) { return path.substr(0, path.find('/')); }
-
 const char* joint_unit(model::JointType type, std::string_view what) {
   const bool slides = type == model::JointType::prismatic;
   if (what == "position") return slides ? "m" : "rad";
@@ -69,7 +67,7 @@ bool NamedValue::resolve() {
     index_ = *named;
     return take(What::named, 1, number(0, ""));
   }
-  const Simulation::Entity* const entity = simulation_->find_entity(robot_of(thing));
+  const Simulation::Entity* const entity = simulation_->find_entity(first_part(thing));
   if (!entity) return false;
   entity_ = entity;
   if (entity->instance.name == thing) return resolve_thing(*entity);
@@ -318,7 +316,7 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
 Error no_such(const Simulation& simulation, std::string_view address) {
   const std::string shown(address.substr(0, 100));
   const auto [thing, rest] = cut(address);
-  const Simulation::Entity* const entity = simulation.find_entity(robot_of(thing));
+  const Simulation::Entity* const entity = simulation.find_entity(first_part(thing));
   std::vector<std::string> things{"sim"};
   if (!simulation.monitor().value_names().empty()) things.emplace_back("values");
   for (const std::string& name : simulation.monitor().value_names()) things.push_back(name);

@@ -150,16 +150,16 @@ const Simulation::Entity* Simulation::find_entity(std::string_view name) const {
 }
 
 Simulation::Entity& Simulation::entity_of(const Device& device) {
-  return *find_entity(std::string_view(device.path).substr(0, device.path.find('/')));
+  return *find_entity(first_part(device.path));
 }
 
 Simulation::Device* Simulation::find_device(std::string_view path) {
-  Entity* const entity = find_entity(path.substr(0, path.find('/')));
+  Entity* const entity = find_entity(first_part(path));
   return entity ? entity->find_device(path) : nullptr;
 }
 
 Simulation::ProgramEntry* Simulation::find_program(std::string_view path) {
-  Entity* const entity = find_entity(path.substr(0, path.find('/')));
+  Entity* const entity = find_entity(first_part(path));
   return entity ? entity->find_program(path) : nullptr;
 }
 

@@ -27,7 +27,7 @@ Result<const Simulation::Entity*> entity_named(const Simulation& simulation, std
 }
 
 Result<const Simulation::Device*> device_named(const Simulation& simulation, std::string_view path) {
-  SL_ASSIGN(const Simulation::Entity* const entity, entity_named(simulation, path.substr(0, path.find('/'))));
+  SL_ASSIGN(const Simulation::Entity* const entity, entity_named(simulation, first_part(path)));
   std::vector<std::string> known;
   for (const auto& device : entity->devices) {
     if (device->path == path) return device.get();
