@@ -12,15 +12,19 @@ namespace sandlot {
 SANDLOT_DEVICES(SL_DECLARE)
 #undef SL_DECLARE
 
+Error DeviceBuild::error(const char* spec_key, std::string what, std::string fix) const {
+  const Node* const node = decl.config.find(spec_key);
+  return {std::move(what), std::move(fix), node && node->place().file ? node->place() : decl.place,
+          std::string("/") + spec_key};
+}
+
 Result<std::uint32_t> DeviceBuild::joint_index(std::string_view name, const char* spec_key) const {
   if (const auto index = instance.model->find_joint(decl.scope + std::string(name))) return *index;
   if (const auto index = instance.model->find_joint(name)) return *index;
   std::vector<std::string> names;
   for (const model::Joint& joint : instance.model->joints) names.push_back(joint.name);
-  const Node* const value = decl.config.find(spec_key);
-  return Error{"model '" + instance.model->name + "' has no joint '" + std::string(name) + "'",
-               names.empty() ? "it has no joints" : suggestion(name, names),
-               value ? value->place() : decl.place, std::string("/") + spec_key};
+  return error(spec_key, "model '" + instance.model->name + "' has no joint '" + std::string(name) + "'",
+               names.empty() ? "it has no joints" : suggestion(name, names));
 }
 
 Result<JointId> DeviceBuild::joint(std::string_view name, const char* spec_key) const {

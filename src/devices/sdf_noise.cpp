@@ -98,6 +98,19 @@ bool has_planes(const Node& sensor) {
   return planes && planes->value_or(1) > 1;
 }
 
+Status copy_scan(const Node& sensor, const Node& scan, Node& config, Diagnostics& diagnostics) {
+  copy(scan, "scan/horizontal/min_angle", config, "min_angle");
+  copy(scan, "scan/horizontal/max_angle", config, "max_angle");
+  copy(scan, "range/min", config, "min_range");
+  copy(scan, "range/max", config, "max_range");
+  copy_rate(sensor, "update_rate", config);
+  if (const Node* const noise = find(scan, "noise")) {
+    SL_ASSIGN(Node errors, range_noise(*noise, diagnostics));
+    if (!errors.entries().empty()) config.set("noise", std::move(errors));
+  }
+  return {};
+}
+
 void copy_rate(const Node& element, const char* name, Node& config) {
   const Node* const rate = find(element, name);
   config.set("rate", Node::scalar(rate ? text(rate) : "0", rate ? rate->place() : element.place()));

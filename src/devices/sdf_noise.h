@@ -18,6 +18,9 @@ Result<Node> channel_noise(const Node& noise, Diagnostics& diagnostics);
 const Node* lidar(const Node& sensor);
 /// True when its beams lie in several planes.
 bool has_planes(const Node& sensor);
+/// Keys that laser scanners have in common: min_angle, max_angle, min_range, max_range, rate, noise.
+/// @param sensor  the device's element; `scan` its <lidar> or <ray>
+Status copy_scan(const Node& sensor, const Node& scan, Node& config, Diagnostics& diagnostics);
 /// <update_rate> as `rate`: 0 when absent, which means every step in SDF and here.
 void copy_rate(const Node& element, const char* name, Node& config);
 /// The first of several spellings that is present, times a factor.

@@ -10,6 +10,8 @@
 #include <xmmintrin.h>
 #endif
 
+#include "optics/solid.h"
+
 namespace sandlot::embree {
 
 #if RTC_VERSION_MAJOR >= 4
@@ -56,6 +58,16 @@ inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, R
   rtcOccluded8(valid, scene, &context, &rays);
 }
 #endif
+
+/// Bounds of a user geometry, enlarged by a margin on all sides.
+inline void fill_bounds(const optics::Bounds& box, double margin_m, RTCBounds& out) {
+  out.lower_x = static_cast<float>(box.lower[0] - margin_m);
+  out.lower_y = static_cast<float>(box.lower[1] - margin_m);
+  out.lower_z = static_cast<float>(box.lower[2] - margin_m);
+  out.upper_x = static_cast<float>(box.upper[0] + margin_m);
+  out.upper_y = static_cast<float>(box.upper[1] + margin_m);
+  out.upper_z = static_cast<float>(box.upper[2] + margin_m);
+}
 
 /// Denormal numbers count as zero while this lives. Embree asks for it, and it must not leak: physics and noise
 /// on the same thread keep IEEE arithmetic.

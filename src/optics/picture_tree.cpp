@@ -207,15 +207,8 @@ void PictureTree::place(std::span<const Pose> X_WG, bool fixed_too) {
 
 void PictureTree::bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& layer = *static_cast<const Layer*>(arguments->geometryUserPtr);
-  const Bounds box = optics::bounds(layer.owner->visuals_[layer.visuals[arguments->primID]].solid);
-  const double margin = layer.margin_m;
-  RTCBounds& out = *arguments->bounds_o;
-  out.lower_x = static_cast<float>(box.lower[0] - margin);
-  out.lower_y = static_cast<float>(box.lower[1] - margin);
-  out.lower_z = static_cast<float>(box.lower[2] - margin);
-  out.upper_x = static_cast<float>(box.upper[0] + margin);
-  out.upper_y = static_cast<float>(box.upper[1] + margin);
-  out.upper_z = static_cast<float>(box.upper[2] + margin);
+  embree::fill_bounds(optics::bounds(layer.owner->visuals_[layer.visuals[arguments->primID]].solid),
+                      layer.margin_m, *arguments->bounds_o);
 }
 
 void PictureTree::intersect(const RTCIntersectFunctionNArguments* arguments) {

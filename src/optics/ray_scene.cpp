@@ -126,15 +126,7 @@ struct Layer {
 
 void Layer::bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& layer = *static_cast<const Layer*>(arguments->geometryUserPtr);
-  const optics::Bounds box = optics::bounds(layer.solids[arguments->primID]);
-  const double margin = layer.margin_m;
-  RTCBounds& out = *arguments->bounds_o;
-  out.lower_x = static_cast<float>(box.lower[0] - margin);
-  out.lower_y = static_cast<float>(box.lower[1] - margin);
-  out.lower_z = static_cast<float>(box.lower[2] - margin);
-  out.upper_x = static_cast<float>(box.upper[0] + margin);
-  out.upper_y = static_cast<float>(box.upper[1] + margin);
-  out.upper_z = static_cast<float>(box.upper[2] + margin);
+  embree::fill_bounds(optics::bounds(layer.solids[arguments->primID]), layer.margin_m, *arguments->bounds_o);
 }
 
 /// One float beyond `far`, so that of two surfaces at equal distances both are seen and the rule for ties decides.

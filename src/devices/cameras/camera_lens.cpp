@@ -46,24 +46,19 @@ const char* key_of_fault(const LensKeys& keys, const DeviceBuild& build) {
 
 }  // namespace
 
-Error rule_error(const DeviceBuild& build, const char* key, std::string what, std::string fix) {
-  const Node* const node = build.decl.config.find(key);
-  return {std::move(what), std::move(fix), node ? node->place() : build.decl.place, std::string("/") + key};
-}
-
 Error lens_error(const DeviceBuild& build, const char* key, const Error& error) {
-  return rule_error(build, key, error.what, error.fix);
+  return build.error(key, error.what, error.fix);
 }
 
 Result<Lens> lens_of(const LensKeys& keys, const DeviceBuild& build) {
   const bool pinhole = keys.lens == Projection::pinhole;
   const Distortion& d = keys.distortion;
   if (!pinhole && keys.lens != Projection::kannala_brandt && !d.none())
-    return rule_error(build, "distortion", "only the lenses pinhole and kannala_brandt have a distortion",
-                      "leave it out, or choose one of them");
+    return build.error("distortion", "only the lenses pinhole and kannala_brandt have a distortion",
+                       "leave it out, or choose one of them");
   if (pinhole ? d.k4 != 0 : d.p1 != 0 || d.p2 != 0)
-    return rule_error(build, "distortion", "this lens does not have all of these terms",
-                      pinhole ? "pinhole: k1 k2 p1 p2 k3" : "kannala_brandt: k1 k2 k3 k4");
+    return build.error("distortion", "this lens does not have all of these terms",
+                       pinhole ? "pinhole: k1 k2 p1 p2 k3" : "kannala_brandt: k1 k2 k3 k4");
   auto of_fov = pinhole
                     ? optics::pinhole_of_fov(keys.width, keys.height, keys.fx ? 1.0 : keys.horizontal_fov_rad)
                     : optics::fisheye_of_fov(keys.width, keys.height, keys.horizontal_fov_rad,

@@ -76,9 +76,7 @@ struct LensKeys {
   }
 };
 
-/// An error at the key that breaks a rule.
-Error rule_error(const DeviceBuild& build, const char* key, std::string what, std::string fix);
-/// As rule_error, for what optics says of a lens.
+/// Error of optics::check() at the key to blame.
 Error lens_error(const DeviceBuild& build, const char* key, const Error& error);
 
 Result<optics::Lens> lens_of(const LensKeys& keys, const DeviceBuild& build);

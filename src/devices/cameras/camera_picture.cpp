@@ -10,8 +10,7 @@ namespace sandlot::cameras {
 
 Status check_exposure(const ExposureKeys& keys, const DeviceBuild& build) {
   if (keys.far_m <= keys.near_m)
-    return rule_error(build, "far", "far must be greater than near",
-                      "near is " + number_text(keys.near_m) + " m");
+    return build.error("far", "far must be greater than near", "near is " + number_text(keys.near_m) + " m");
   return {};
 }
 

@@ -12,12 +12,6 @@ namespace {
 
 using model::JointType;
 
-/// Where the spec names the joints, for errors.
-Error error_at(const DeviceBuild& build, const char* key, std::string what, std::string fix) {
-  const Node* const node = build.decl.config.find(key);
-  return {std::move(what), std::move(fix), node ? node->place() : build.decl.place, std::string("/") + key};
-}
-
 /// Radius of the largest round collision shape of a wheel link; 0 when there is none.
 double round_shape_m(const model::Link& link) {
   double radius_m = 0;
@@ -38,12 +32,12 @@ Result<std::uint32_t> turning_joint(const Base& base, const DeviceBuild& build, 
   SL_ASSIGN(const std::uint32_t index, build.joint_index(name, key));
   const JointType type = build.instance.model->joints[index].type;
   if (type != JointType::continuous && type != JointType::revolute)
-    return error_at(build, key, "joint '" + name + "' does not turn",
-                    std::string(base.noun) + " needs revolute or continuous joints");
+    return build.error(key, "joint '" + name + "' does not turn",
+                       std::string(base.noun) + " needs revolute or continuous joints");
   const auto taken = [&](const auto& each) { return each.joint == build.joints[index]; };
   if (std::any_of(base.wheels.begin(), base.wheels.end(), taken) ||
       std::any_of(base.pivots.begin(), base.pivots.end(), taken))
-    return error_at(build, key, "joint '" + name + "' is named twice", "each wheel has a joint of its own");
+    return build.error(key, "joint '" + name + "' is named twice", "each wheel has a joint of its own");
   return index;
 }
 
@@ -71,8 +65,8 @@ Status add_pivots(Base& base, const DeviceBuild& build, std::span<const std::str
     const Pose X = X_BJ(model, joint);
     const double up = rotate(X.q, joint.axis_J).z;
     if (std::abs(up) < 0.9)
-      return error_at(build, key, "the axis of joint '" + name + "' does not stand upright",
-                      "steering joints turn about the z axis of the base");
+      return build.error(key, "the axis of joint '" + name + "' does not stand upright",
+                         "steering joints turn about the z axis of the base");
     Pivot pivot{.joint = build.joints[index],
                 .sign = up > 0 ? 1.0 : -1.0,
                 .max_effort = joint.max_effort,
@@ -99,11 +93,11 @@ Status add_wheels(Base& base, const DeviceBuild& build, const Common& spec,
     const Pose X = X_BJ(model, joint);
     const Vec3 axis = rotate(X.q, joint.axis_J);
     if (options.across && std::abs(axis.y) < 0.9)
-      return error_at(build, key, "the axis of joint '" + name + "' does not lie across the robot",
-                      "wheels turn about the y axis of the base");
+      return build.error(key, "the axis of joint '" + name + "' does not lie across the robot",
+                         "wheels turn about the y axis of the base");
     if (std::abs(axis.z) > 0.3)
-      return error_at(build, key, "the axis of joint '" + name + "' does not lie level",
-                      "a wheel's axis is parallel to the ground");
+      return build.error(key, "the axis of joint '" + name + "' does not lie level",
+                         "a wheel's axis is parallel to the ground");
     Wheel wheel{.joint = build.joints[index],
                 .driven = options.driven,
                 .max_effort = joint.max_effort,
@@ -117,8 +111,8 @@ Status add_wheels(Base& base, const DeviceBuild& build, const Common& spec,
     double radius = spec.wheel_radius_m.value_or(joint.rollers ? joint.rollers->radius_m
                                                                : round_shape_m(model.links[joint.child]));
     if (radius <= 0)
-      return error_at(build, key, "the wheel of joint '" + name + "' has no round collision shape",
-                      "give wheel_radius");
+      return build.error(key, "the wheel of joint '" + name + "' has no round collision shape",
+                         "give wheel_radius");
     std::optional<double> roller = options.roller_rad;
     if (!options.ordinary && joint.rollers) roller = joint.rollers->angle_rad;
     kinematics::Wheel geometry = roller && !options.ordinary
@@ -149,15 +143,15 @@ Result<Base> skid_base(const char* noun, const DeviceBuild& build, const Common&
   Base base{.noun = noun, .engine = build.engine};
   base.body = build.bodies[0];
   if (sides.left_joint.empty() != sides.right_joint.empty())
-    return error_at(build, sides.left_joint.empty() ? "right_joint" : "left_joint", "one side has no joints",
-                    "give left_joint and right_joint");
+    return build.error(sides.left_joint.empty() ? "right_joint" : "left_joint", "one side has no joints",
+                       "give left_joint and right_joint");
   const WheelOptions holds_along{.ordinary = false, .roller_rad = 0.5 * math::pi};
   SL_TRY(add_wheels(base, build, spec, sides.left_joint, "left_joint", holds_along));
   const std::size_t split = base.wheels.size();
   SL_TRY(add_wheels(base, build, spec, sides.right_joint, "right_joint", holds_along));
   double track = sides.track_m.value_or(0);
   if (base.wheels.empty()) {
-    if (!(track > 0)) return error_at(build, "track", "tracks without joints need a distance", "give track");
+    if (!(track > 0)) return build.error("track", "tracks without joints need a distance", "give track");
     for (const double side : {0.5, -0.5}) {
       base.wheels.push_back({.has_joint = false, .name = side > 0 ? "left" : "right"});
       base.geometry.push_back(kinematics::roller_wheel(0, side * track * sides.track_ratio.value_or(1),
@@ -179,11 +173,11 @@ Result<Base> skid_base(const char* noun, const DeviceBuild& build, const Common&
   for (const kinematics::Wheel& wheel : base.geometry) along.push_back(wheel.x_m);
   const double between = left.y - right.y;
   if (std::abs(between) < 1e-3)
-    return error_at(build, "left_joint", "the left and the right wheels have no distance between them",
-                    "move them apart, left to +y and right to -y");
+    return build.error("left_joint", "the left and the right wheels have no distance between them",
+                       "move them apart, left to +y and right to -y");
   if (between < 0)
-    return error_at(build, "left_joint", "the left wheels are not to the left of the right ones",
-                    "exchange left_joint and right_joint");
+    return build.error("left_joint", "the left wheels are not to the left of the right ones",
+                       "exchange left_joint and right_joint");
   if (!(track > 0)) track = between;
   const double ratio = sides.track_ratio.value_or(kinematics::track_ratio(along, track));
   for (std::size_t i = 0; i < base.geometry.size(); ++i)
@@ -230,8 +224,8 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
   SL_TRY(check_levels(base, build.levels));
   if (spec.odometry == Odometry::kabsch &&
       std::any_of(base.geometry.begin(), base.geometry.end(), [](const auto& w) { return !w.ordinary; }))
-    return error_at(build, "odometry", "Kabsch needs wheels that hold across their heading",
-                    "write 'odometry: least_squares'");
+    return build.error("odometry", "Kabsch needs wheels that hold across their heading",
+                       "write 'odometry: least_squares'");
   state.wheels.resize(base.wheels.size());
   state.pivots.resize(base.pivots.size());
   if (build.levels == 1u << rollers) state.handover = hand_wheels;

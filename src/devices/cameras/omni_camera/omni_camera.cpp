@@ -31,8 +31,7 @@ optics::Catadioptric mirror_of(const Spec& spec) {
 
 Result<optics::Lens> lens_of(const Spec& spec, const DeviceBuild& build) {
   if (spec.aperture_m > 0)
-    return cameras::rule_error(build, "aperture", "depth of field below a mirror is not simulated",
-                               "leave it out");
+    return build.error("aperture", "depth of field below a mirror is not simulated", "leave it out");
   const optics::Catadioptric mirror = mirror_of(spec);
   const char* const key = static_cast<double>(spec.width) * spec.height > (1 << 24) ? "width"
                           : build.decl.config.find("a")                             ? "a"

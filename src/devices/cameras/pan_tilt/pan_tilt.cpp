@@ -23,9 +23,8 @@ Result<Unit::Axis> axis_of(const DeviceBuild& build, const std::string& name, co
   SL_ASSIGN(const std::uint32_t index, build.joint_index(name, key));
   const model::Joint& joint = build.instance.model->joints[index];
   if (joint.type != model::JointType::revolute && joint.type != model::JointType::continuous) {
-    const Node* const node = build.decl.config.find(key);
-    return Error{"joint '" + name + "' does not turn", "a pan-tilt unit needs revolute or continuous joints",
-                 node ? node->place() : build.decl.place, std::string("/") + key};
+    return build.error(key, "joint '" + name + "' does not turn",
+                       "a pan-tilt unit needs revolute or continuous joints");
   }
   const bool bounded = joint.type == model::JointType::revolute;
   axis = {true,
@@ -53,9 +52,8 @@ Result<const model::DeviceDecl*> camera_of(const DeviceBuild& build, const std::
       if (each.name == wanted) return &each;
       names.push_back(each.name);
     }
-  const Node* const node = build.decl.config.find("camera");
-  return Error{"'" + build.instance.name + "' has no device '" + name + "'", suggestion(name, names),
-               node ? node->place() : build.decl.place, "/camera"};
+  return build.error("camera", "'" + build.instance.name + "' has no device '" + name + "'",
+                     suggestion(name, names));
 }
 
 Vec3 axis_W(const Unit::Axis& axis, const Context& context) {
@@ -333,9 +331,8 @@ Result<Unit> Unit::create(const DeviceBuild& build, Spec spec) {
   for (const char* const key : {"search_zoom", "zoom_per_m"}) {
     const bool wanted = (key[0] == 's' ? unit.spec.search_zoom : unit.spec.zoom_per_m) > 0;
     if (!wanted || !unit.zoom_topic.empty()) continue;
-    const Node* const node = build.decl.config.find(key);
-    return Error{"this unit has no camera that zooms", "give the camera a 'zoom', or leave this out",
-                 node ? node->place() : build.decl.place, std::string("/") + key};
+    return build.error(key, "this unit has no camera that zooms",
+                       "give the camera a 'zoom', or leave this out");
   }
   const auto& links = build.instance.model->links;
   unit.frames.emplace_back(unit.robot, build.bodies[0].index);

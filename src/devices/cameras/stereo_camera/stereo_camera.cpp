@@ -7,9 +7,8 @@ namespace sandlot::stereo_camera {
 Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
   SL_TRY(cameras::check_exposure(spec, build));
   if (spec.lens != cameras::Projection::pinhole || !spec.distortion.none())
-    return cameras::rule_error(build, spec.distortion.none() ? "lens" : "distortion",
-                               "the pictures of a stereo camera are rectified",
-                               "a pinhole without distortion");
+    return build.error(spec.distortion.none() ? "lens" : "distortion",
+                       "the pictures of a stereo camera are rectified", "a pinhole without distortion");
   SL_ASSIGN(const optics::Lens lens, cameras::lens_of(spec, build));
   const std::string optical = build.frame("optical", cameras::X_S_optical);
   Camera camera{std::move(spec), {}, {}};

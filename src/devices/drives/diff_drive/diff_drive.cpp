@@ -227,12 +227,7 @@ struct Side {
 
 Result<Side> resolve_side(const DeviceBuild& build, std::span<const std::string> names, const char* key) {
   const model::Model& model = *build.instance.model;
-  const Node* const node = build.decl.config.find(key);
-  const auto error = [&](std::string what, std::string fix) {
-    return Error{std::move(what), std::move(fix), node ? node->place() : build.decl.place,
-                 std::string("/") + key};
-  };
-  if (names.empty()) return error("a side needs at least one wheel joint", "");
+  if (names.empty()) return build.error(key, "a side needs at least one wheel joint", "");
   const Pose X_BM = inverse(model.links[0].X_ML);
   Side side;
   double round_wheels = 0;
@@ -240,12 +235,13 @@ Result<Side> resolve_side(const DeviceBuild& build, std::span<const std::string>
     SL_ASSIGN(const std::uint32_t index, build.joint_index(name, key));
     const model::Joint& joint = model.joints[index];
     if (joint.type != model::JointType::continuous && joint.type != model::JointType::revolute)
-      return error("joint '" + name + "' does not turn", "a wheel needs a revolute or continuous joint");
+      return build.error(key, "joint '" + name + "' does not turn",
+                         "a wheel needs a revolute or continuous joint");
     const Pose X_BJ = X_BM * X_MJ(model, joint);
     const double across = rotate(X_BJ.q, joint.axis_J).y;
     if (std::abs(across) < 0.9)
-      return error("the axis of joint '" + name + "' does not lie across the robot",
-                   "wheels turn about the y axis of the base");
+      return build.error(key, "the axis of joint '" + name + "' does not lie across the robot",
+                         "wheels turn about the y axis of the base");
     side.wheels.push_back(
         {build.joints[index], across > 0 ? 1.0 : -1.0, joint.max_effort, joint.max_velocity});
     side.centre_B += X_BJ.p / static_cast<double>(names.size());

@@ -23,10 +23,9 @@ Result<wheeled::Base> Mecanum::build(const DeviceBuild& build, const Spec& spec)
     kinematics::Wheel& wheel = base.geometry[i];
     const auto& corner = corners[i];
     if (wheel.x_m * corner.x < 1e-6 || wheel.y_m * corner.y < 1e-6) {
-      const Node* const node = build.decl.config.find(corner.key);
-      return Error{"the wheel of joint '" + corner.joint + "' does not stand in that corner",
-                   "x is forward, y left: exchange the joints", node ? node->place() : build.decl.place,
-                   std::string("/") + corner.key};
+      return build.error(corner.key,
+                         "the wheel of joint '" + corner.joint + "' does not stand in that corner",
+                         "x is forward, y left: exchange the joints");
     }
     if (spec.wheelbase_m) wheel.x_m = 0.5 * corner.x * *spec.wheelbase_m;
     if (spec.track_m) wheel.y_m = 0.5 * corner.y * *spec.track_m;

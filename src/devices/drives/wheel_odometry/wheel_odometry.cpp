@@ -15,23 +15,19 @@ constexpr std::uint64_t pose_use = 1;  // of the device's stream
 Result<std::vector<Wheel>> wheels(const DeviceBuild& build, const std::vector<std::string>& names,
                                   const char* key, Vec3& sum_B) {
   const model::Model& model = *build.instance.model;
-  const auto at = [&](std::string what, std::string fix) {
-    const Node* const node = build.decl.config.find(key);
-    return Error{std::move(what), std::move(fix),
-                 node && node->place().file ? node->place() : build.decl.place, std::string("/") + key};
-  };
-  if (names.empty()) return at("no wheel joint is named", "name one, or a list of them");
+  if (names.empty()) return build.error(key, "no wheel joint is named", "name one, or a list of them");
   std::vector<Wheel> out;
   for (const std::string& name : names) {
     SL_ASSIGN(const std::uint32_t index, build.joint_index(name, key));
     const model::Joint& joint = model.joints[index];
     if (joint.type != model::JointType::revolute && joint.type != model::JointType::continuous)
-      return at("joint '" + name + "' does not turn", "a wheel needs a revolute or continuous joint");
+      return build.error(key, "joint '" + name + "' does not turn",
+                         "a wheel needs a revolute or continuous joint");
     const Pose X_BJ = inverse(model.links.front().X_ML) * model.links[joint.child].X_ML * joint.X_CJ;
     const Vec3 axis_B = rotate(X_BJ.q, joint.axis_J);
     if (std::abs(axis_B.y) < 0.9)
-      return at("the axis of joint '" + name + "' does not lie across the robot",
-                "wheels turn about the y axis of the first link");
+      return build.error(key, "the axis of joint '" + name + "' does not lie across the robot",
+                         "wheels turn about the y axis of the first link");
     sum_B += X_BJ.p;
     out.push_back({build.joints[index].index, axis_B.y > 0 ? 1.0 : -1.0});
   }

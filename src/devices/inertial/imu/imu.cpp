@@ -44,20 +44,6 @@ void count(Imu& imu, const Motion& now) {
   state.running_s = 0;
 }
 
-Vec3 corrupt(const AxesSpec& spec, Axes& axes, Vec3 truth, double dt_s, Stream& random, double errors) {
-  // One after the other: the order of the draws is part of the result.
-  const double x = axes.x.corrupt(spec.x, truth.x, dt_s, random, errors);
-  const double y = axes.y.corrupt(spec.y, truth.y, dt_s, random, errors);
-  const double z = axes.z.corrupt(spec.z, truth.z, dt_s, random, errors);
-  return {x, y, z};
-}
-
-void reset(const AxesSpec& spec, Axes& axes, Stream& random, const std::string& name) {
-  axes.x.reset(spec.x, random, name + "/x");
-  axes.y.reset(spec.y, random, name + "/y");
-  axes.z.reset(spec.z, random, name + "/z");
-}
-
 /// The exact discretisation of the walk over dt, of errors and of their variances.
 void walk(const PoseSpec& spec, PoseState& state, double dt_s, double errors, Stream random) {
   const double q = errors * spec.velocity_walk, step = q * std::sqrt(dt_s);
@@ -88,7 +74,7 @@ void tell_pose(Imu& imu, std::uint64_t sample, Time since, const Context& contex
   imu.pose->publish(context.now);
 }
 
-std::array<double, 9> covariance(const AxesSpec& spec, double dt_s, double errors) {
+std::array<double, 9> covariance(const AxesNoiseSpec& spec, double dt_s, double errors) {
   std::array<double, 9> out{};
   out[0] = spec.x.variance(dt_s, errors);
   out[4] = spec.y.variance(dt_s, errors);
@@ -207,8 +193,8 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
     case Reference::custom: imu.q_RW = conjugate(quat_from_rpy(rpy.x, rpy.y, rpy.z)); break;
   }
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  reset(spec.gyro, imu.state.gyro, random, "gyro");
-  reset(spec.accel, imu.state.accel, random, "accel");
+  imu.state.gyro.reset(spec.gyro, random, "gyro");
+  imu.state.accel.reset(spec.accel, random, "accel");
   imu.base = build.bodies.front().index;
   imu.message = build.publish<msg::Imu>(imu_level, "imu");
   imu.pose = build.publish<msg::PoseWithCovarianceStamped>(pose_level, "pose");
@@ -255,8 +241,8 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
     const double dt_s = pool.since[index].s();
     msg::Imu& message = imu.message->message;
     message.orientation = normalised(imu.q_RW * now.q_WS);
-    message.angular_velocity = corrupt(imu.spec.gyro, state.gyro, rate, dt_s, random, imu.spec.errors);
-    message.linear_acceleration = corrupt(imu.spec.accel, state.accel, force, dt_s, random, imu.spec.errors);
+    message.angular_velocity = state.gyro.corrupt(imu.spec.gyro, rate, dt_s, random, imu.spec.errors);
+    message.linear_acceleration = state.accel.corrupt(imu.spec.accel, force, dt_s, random, imu.spec.errors);
     imu.message->publish(context.now);
   }
 }

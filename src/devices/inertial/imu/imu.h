@@ -32,7 +32,7 @@
 
 #include "devices/kind.h"
 #include "messages/messages.h"
-#include "noise/channel_noise.h"
+#include "noise/axes_noise.h"
 
 namespace sandlot::imu {
 
@@ -42,26 +42,6 @@ inline std::span<const EnumName<Reference>> enum_names(Reference) {
       {"start", Reference::start}, {"world", Reference::world}, {"custom", Reference::custom}};
   return names;
 }
-
-/// One error model per axis of S.
-struct AxesSpec {
-  ChannelNoiseSpec x, y, z;
-
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Errors about or along x."}, s.x);
-    visit(Field{"y", "", "Errors about or along y."}, s.y);
-    visit(Field{"z", "", "Errors about or along z."}, s.z);
-  }
-};
-struct Axes {
-  ChannelNoise x, y, z;
-
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Errors about or along x."}, s.x);
-    visit(Field{"y", "", "Errors about or along y."}, s.y);
-    visit(Field{"z", "", "Errors about or along z."}, s.z);
-  }
-};
 
 /// Errors of the level pose.
 struct PoseSpec {
@@ -96,7 +76,7 @@ struct Spec {
   double rate_hz = 100.0;
   Reference reference = Reference::world;
   Vec3 reference_rpy_rad;
-  AxesSpec gyro, accel;
+  AxesNoiseSpec gyro, accel;
   PoseSpec pose;
   double errors = 1;
 
@@ -124,7 +104,7 @@ struct State {
   double counted_s = 0;  ///< T so far
   Vec3 velocity_S;       ///< [m/s] sum of R_m^T (dv - g h)
   Vec3 turn_S;           ///< [rad] sum of the rotation vectors
-  Axes gyro, accel;
+  AxesNoise gyro, accel;
   PoseState pose;
 
   static void fields(auto& s, auto&& visit) {

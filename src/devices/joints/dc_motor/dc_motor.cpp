@@ -82,10 +82,8 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   SL_ASSIGN(const std::uint32_t index, build.joint_index(spec.joint, "joint"));
   const model::JointType type = build.instance.model->joints[index].type;
   if (type != model::JointType::revolute && type != model::JointType::continuous) {
-    const Node* const node = build.decl.config.find("joint");
-    return Error{"joint '" + spec.joint + "' does not turn",
-                 "a DC motor needs a revolute or continuous joint", node ? node->place() : build.decl.place,
-                 "/joint"};
+    return build.error("joint", "joint '" + spec.joint + "' does not turn",
+                       "a DC motor needs a revolute or continuous joint");
   }
   Motor motor{std::move(spec)};
   motor.joint = build.joints[index];

@@ -138,10 +138,8 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   using model::JointType;
   if (joint.type != JointType::revolute && joint.type != JointType::continuous &&
       joint.type != JointType::prismatic) {
-    const Node* const node = build.decl.config.find("joint");
-    return Error{"joint '" + spec.joint + "' cannot be driven",
-                 "a motor needs a revolute, continuous or prismatic joint",
-                 node ? node->place() : build.decl.place, "/joint"};
+    return build.error("joint", "joint '" + spec.joint + "' cannot be driven",
+                       "a motor needs a revolute, continuous or prismatic joint");
   }
   Motor motor{std::move(spec)};
   motor.joint = build.joints[index];

@@ -51,10 +51,8 @@ Result<Joints> Joints::create(const DeviceBuild& build, Spec spec) {
     for (const std::string& name : device.spec.joints) {
       SL_ASSIGN(const std::uint32_t index, build.joint_index(name, "joints"));
       if (!one_axis(all[index])) {
-        const Node* const node = build.decl.config.find("joints");
-        return Error{"joint '" + name + "' has no single angle or length",
-                     "name revolute, continuous, prismatic or screw joints",
-                     node ? node->place() : build.decl.place, "/joints"};
+        return build.error("joints", "joint '" + name + "' has no single angle or length",
+                           "name revolute, continuous, prismatic or screw joints");
       }
       names.push_back(name);
       device.joints.push_back(build.joints[index].index);

@@ -151,10 +151,6 @@ Result<Trajectory> Trajectory::create(const DeviceBuild& build, Spec spec) {
   if (!build.engine.joints)
     return Error{"the engine '" + std::string(build.engine.name) + "' does not simulate joints",
                  "use the engine 'rigid'"};
-  const auto at = [&](const char* key) {
-    const Node* const node = build.decl.config.find(key);
-    return node ? node->place() : build.decl.place;
-  };
   const auto can_be_driven = [](const model::Joint& joint) {
     using enum model::JointType;
     return joint.type == revolute || joint.type == continuous || joint.type == prismatic;
@@ -166,19 +162,20 @@ Result<Trajectory> Trajectory::create(const DeviceBuild& build, Spec spec) {
     return Error{"model '" + build.instance.model->name + "' has no joint that can be driven", "",
                  build.decl.place};
   if (!spec.gains.empty() && spec.gains.size() != spec.joints.size())
-    return Error{"there are " + std::to_string(spec.gains.size()) + " gains for " +
-                     std::to_string(spec.joints.size()) + " joints",
-                 "write one {p, i, d} for each joint, or none at all", at("gains"), "/gains"};
+    return build.error("gains",
+                       "there are " + std::to_string(spec.gains.size()) + " gains for " +
+                           std::to_string(spec.joints.size()) + " joints",
+                       "write one {p, i, d} for each joint, or none at all");
   Trajectory device{std::move(spec)};
   for (const std::string& name : device.spec.joints) {
     SL_ASSIGN(const std::uint32_t index, build.joint_index(name, "joints"));
     const model::Joint& joint = build.instance.model->joints[index];
     if (!can_be_driven(joint))
-      return Error{"joint '" + name + "' cannot be driven",
-                   "a trajectory needs revolute, continuous or prismatic joints", at("joints"), "/joints"};
+      return build.error("joints", "joint '" + name + "' cannot be driven",
+                         "a trajectory needs revolute, continuous or prismatic joints");
     for (const Joint& other : device.joints)
       if (other.id == build.joints[index])
-        return Error{"joint '" + name + "' is named twice", "", at("joints"), "/joints"};
+        return build.error("joints", "joint '" + name + "' is named twice", "");
     const bool bounded = joint.type != model::JointType::continuous;
     device.joints.push_back({build.joints[index], bounded ? joint.lower : -1e16, bounded ? joint.upper : 1e16,
                              joint.max_effort, joint.max_velocity});

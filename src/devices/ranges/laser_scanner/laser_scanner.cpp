@@ -15,12 +15,6 @@ enum Level : std::uint32_t { ranges_level, segments_level, pose_level };
 /// Streams of their own: switching one level on or off moves no numbers of another.
 constexpr std::uint64_t segments_use = 1, pose_use = 2;
 
-/// The error of a rule between two fields, at the key that breaks it.
-Error rule_error(const DeviceBuild& build, const char* key, std::string what, std::string fix) {
-  const Node* const node = build.decl.config.find(key);
-  return {std::move(what), std::move(fix), node ? node->place() : build.decl.place, std::string("/") + key};
-}
-
 /// From distances to what a driver reports, with errors. Only data of this scanner is touched.
 void finish(Scanner& scanner, std::uint64_t sample, Time since, const Context& context) {
   const Spec& spec = scanner.spec;
@@ -82,15 +76,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   if (samples)
     config.set("beams", scalar(std::floor(*samples * resolution.value_or(1.0)),
                                *find(*sensor, "scan/horizontal/samples")));
-  copy(*sensor, "scan/horizontal/min_angle", config, "min_angle");
-  copy(*sensor, "scan/horizontal/max_angle", config, "max_angle");
-  copy(*sensor, "range/min", config, "min_range");
-  copy(*sensor, "range/max", config, "max_range");
-  copy_rate(element, "update_rate", config);
-  if (const Node* const noise = find(*sensor, "noise")) {
-    SL_ASSIGN(Node errors, range_noise(*noise, diagnostics));
-    if (!errors.entries().empty()) config.set("noise", std::move(errors));
-  }
+  SL_TRY(copy_scan(element, *sensor, config, diagnostics));
   return config;
 }
 
@@ -98,14 +84,14 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 
 Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
   if (spec.max_range_m <= spec.min_range_m)
-    return rule_error(build, "max_range", "max_range must be greater than min_range",
-                      "min_range is " + number_text(spec.min_range_m) + " m");
+    return build.error("max_range", "max_range must be greater than min_range",
+                       "min_range is " + number_text(spec.min_range_m) + " m");
   if (spec.max_angle_rad < spec.min_angle_rad)
-    return rule_error(build, "max_angle", "max_angle must not be less than min_angle",
-                      "angles grow counter-clockwise");
+    return build.error("max_angle", "max_angle must not be less than min_angle",
+                       "angles grow counter-clockwise");
   if (spec.max_angle_rad - spec.min_angle_rad > math::tau + 1e-6)
-    return rule_error(build, "max_angle", "the beams cover more than a full turn",
-                      "max_angle - min_angle is at most 360 deg");
+    return build.error("max_angle", "the beams cover more than a full turn",
+                       "max_angle - min_angle is at most 360 deg");
 
   Scanner scanner{spec};
   scanner.key = build.key;

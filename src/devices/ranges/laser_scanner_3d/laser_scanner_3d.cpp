@@ -14,11 +14,6 @@ namespace {
 constexpr std::uint32_t point_bytes = 20;  // x y z intensity, ring, two bytes of padding
 constexpr std::uint32_t ring_offset = 16;
 
-Error rule_error(const DeviceBuild& build, const char* key, std::string what, std::string fix) {
-  const Node* const node = build.decl.config.find(key);
-  return {std::move(what), std::move(fix), node ? node->place() : build.decl.place, std::string("/") + key};
-}
-
 double angle(double first, double last, int i, int count) {
   return count > 1 ? first + i * ((last - first) / (count - 1)) : 0.5 * (first + last);
 }
@@ -66,17 +61,9 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
                                      *find(*sensor, scan + "/samples"))
                             : Node::scalar("1", sensor->place()));
   }
-  copy(*sensor, "scan/horizontal/min_angle", config, "min_angle");
-  copy(*sensor, "scan/horizontal/max_angle", config, "max_angle");
   copy(*sensor, "scan/vertical/min_angle", config, "min_elevation");
   copy(*sensor, "scan/vertical/max_angle", config, "max_elevation");
-  copy(*sensor, "range/min", config, "min_range");
-  copy(*sensor, "range/max", config, "max_range");
-  copy_rate(element, "update_rate", config);
-  if (const Node* const noise = find(*sensor, "noise")) {
-    SL_ASSIGN(Node errors, range_noise(*noise, diagnostics));
-    if (!errors.entries().empty()) config.set("noise", std::move(errors));
-  }
+  SL_TRY(copy_scan(element, *sensor, config, diagnostics));
   return config;
 }
 
@@ -84,20 +71,20 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 
 Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
   if (static_cast<std::int64_t>(spec.columns) * spec.planes > max_beams)
-    return rule_error(build, "columns", "the scanner has more than a million beams",
-                      "columns * planes is at most " + std::to_string(max_beams));
+    return build.error("columns", "the scanner has more than a million beams",
+                       "columns * planes is at most " + std::to_string(max_beams));
   if (spec.max_range_m <= spec.min_range_m)
-    return rule_error(build, "max_range", "max_range must be greater than min_range",
-                      "min_range is " + number_text(spec.min_range_m) + " m");
+    return build.error("max_range", "max_range must be greater than min_range",
+                       "min_range is " + number_text(spec.min_range_m) + " m");
   if (spec.max_angle_rad < spec.min_angle_rad)
-    return rule_error(build, "max_angle", "max_angle must not be less than min_angle",
-                      "angles grow counter-clockwise");
+    return build.error("max_angle", "max_angle must not be less than min_angle",
+                       "angles grow counter-clockwise");
   if (spec.max_angle_rad - spec.min_angle_rad > math::tau + 1e-6)
-    return rule_error(build, "max_angle", "the beams cover more than a full turn",
-                      "max_angle - min_angle is at most 360 deg");
+    return build.error("max_angle", "the beams cover more than a full turn",
+                       "max_angle - min_angle is at most 360 deg");
   if (spec.max_elevation_rad < spec.min_elevation_rad)
-    return rule_error(build, "max_elevation", "max_elevation must not be less than min_elevation",
-                      "elevations grow upwards");
+    return build.error("max_elevation", "max_elevation must not be less than min_elevation",
+                       "elevations grow upwards");
 
   Scanner scanner{spec};
   scanner.key = build.key;

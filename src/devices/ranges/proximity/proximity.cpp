@@ -64,13 +64,10 @@ float reading(const Spec& spec, float d_m) {
 
 Result<Ring> Ring::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
   const double around = spec->spacing_rad > 0 ? spec->spacing_rad : math::tau / spec->sensors;
-  if ((spec->sensors - 1) * around > math::tau + 1e-6) {
-    const Node* const node = build.decl.config.find("spacing");
-    return Error{"the sensors go round more than once",
-                 "a spacing of 0 spreads them evenly; " + std::to_string(spec->sensors) +
-                     " sensors have at most 360 deg together",
-                 node ? node->place() : build.decl.place, "/spacing"};
-  }
+  if ((spec->sensors - 1) * around > math::tau + 1e-6)
+    return build.error("spacing", "the sensors go round more than once",
+                       "a spacing of 0 spreads them evenly; " + std::to_string(spec->sensors) +
+                           " sensors have at most 360 deg together");
   Ring ring{std::move(spec)};
   ring.key = build.key;
   ring.body = build.body().index;

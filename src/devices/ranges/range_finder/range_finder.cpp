@@ -76,10 +76,8 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 
 Result<Finder> Finder::create(const DeviceBuild& build, Spec spec) {
   if (spec.max_range_m <= spec.min_range_m) {
-    const Node* const node = build.decl.config.find("max_range");
-    return Error{"max_range must be greater than min_range",
-                 "min_range is " + number_text(spec.min_range_m) + " m",
-                 node ? node->place() : build.decl.place, "/max_range"};
+    return build.error("max_range", "max_range must be greater than min_range",
+                       "min_range is " + number_text(spec.min_range_m) + " m");
   }
   Finder finder{spec};
   finder.key = build.key;

@@ -51,13 +51,10 @@ int Sensor::side(const Contact& c) const {
 
 Result<Sensor> Sensor::create(const DeviceBuild& build, Spec spec) {
   const model::Link& link = build.instance.model->links[build.decl.link];
-  const auto at = [&](const char* key) {
-    const Node* const node = build.decl.config.find(key);
-    return node && node->place().file ? node->place() : build.decl.place;
-  };
   if (spec.threshold_N > 0 && !build.engine.contact_forces)
-    return Error{"the engine '" + std::string(build.engine.name) + "' tells no contact forces",
-                 "leave the threshold out, or use the engine 'rigid'", at("threshold"), "/threshold"};
+    return build.error("threshold",
+                       "the engine '" + std::string(build.engine.name) + "' tells no contact forces",
+                       "leave the threshold out, or use the engine 'rigid'");
   Sensor sensor{std::move(spec)};
   sensor.merged = build.engine.planar;
   // The disc of the planar engine belongs to the canonical link.
@@ -75,8 +72,9 @@ Result<Sensor> Sensor::create(const DeviceBuild& build, Spec spec) {
       sensor.feels[i] = found = true;
     }
     if (!found)
-      return Error{"link '" + link.name + "' has no collision '" + name.substr(0, 60) + "'",
-                   suggestion(last, known), at("collision"), "/collision"};
+      return build.error("collision",
+                         "link '" + link.name + "' has no collision '" + name.substr(0, 60) + "'",
+                         suggestion(last, known));
   }
   sensor.contacts = build.publish<msg::ContactsState>(contact::contacts, "contacts");
   sensor.contacts->message.header.frame_id = "world";

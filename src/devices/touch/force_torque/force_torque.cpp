@@ -5,21 +5,6 @@
 namespace sandlot::force_torque {
 namespace {
 
-Vec3 corrupt(const AxesNoiseSpec& spec, AxesNoise& axes, Vec3 truth, double dt_s, Stream& random,
-             double errors) {
-  // One after the other: the order of the draws is part of the result.
-  const double x = axes.x.corrupt(spec.x, truth.x, dt_s, random, errors);
-  const double y = axes.y.corrupt(spec.y, truth.y, dt_s, random, errors);
-  const double z = axes.z.corrupt(spec.z, truth.z, dt_s, random, errors);
-  return {x, y, z};
-}
-
-void reset(const AxesNoiseSpec& spec, AxesNoise& axes, Stream& random, const std::string& name) {
-  axes.x.reset(spec.x, random, name + "/x");
-  axes.y.reset(spec.y, random, name + "/y");
-  axes.z.reset(spec.z, random, name + "/z");
-}
-
 Result<Node> noise_keys(const Node& group, Diagnostics& diagnostics) {
   using namespace sdf_element;
   Node keys = Node::map(group.place());
@@ -71,8 +56,8 @@ Result<Sensor> Sensor::create(const DeviceBuild& build, Spec spec) {
   const Quat q_MS = links[build.decl.link].X_ML.q * build.decl.X_LS.q;
   sensor.q_SC = normalised(conjugate(q_MS) * links[joint.child].X_ML.q);
   Stream random(build.seed, build.key, Purpose::initial, 0);
-  reset(sensor.spec.force, sensor.state.force, random, "force");
-  reset(sensor.spec.torque, sensor.state.torque, random, "torque");
+  sensor.state.force.reset(sensor.spec.force, random, "force");
+  sensor.state.torque.reset(sensor.spec.torque, random, "torque");
   sensor.wrench = build.publish<msg::WrenchStamped>(0, "wrench");
   sensor.wrench->message.header.frame_id = build.frame_id();
   return sensor;
@@ -115,8 +100,8 @@ void Sensor::sense(PoolView<Sensor> pool, const Context& context) {
     Stream random(context.seed, sensor.key, Purpose::noise, pool.sample[index]);
     const double dt_s = pool.since[index].s();
     msg::Wrench& wrench = sensor.wrench->message.wrench;
-    wrench.force = corrupt(sensor.spec.force, state.force, force, dt_s, random, sensor.spec.errors);
-    wrench.torque = corrupt(sensor.spec.torque, state.torque, torque, dt_s, random, sensor.spec.errors);
+    wrench.force = state.force.corrupt(sensor.spec.force, force, dt_s, random, sensor.spec.errors);
+    wrench.torque = state.torque.corrupt(sensor.spec.torque, torque, dt_s, random, sensor.spec.errors);
     sensor.wrench->publish(context.now);
   }
 }

@@ -16,7 +16,7 @@
 /// Source   SDF 1.9 <force_torque>.
 #include "devices/kind.h"
 #include "messages/messages.h"
-#include "noise/channel_noise.h"
+#include "noise/axes_noise.h"
 
 namespace sandlot::force_torque {
 
@@ -32,23 +32,6 @@ inline std::span<const EnumName<Direction>> enum_names(Direction) {
                                                   {"parent_to_child", Direction::parent_to_child}};
   return names;
 }
-
-struct AxesNoiseSpec {
-  ChannelNoiseSpec x, y, z;
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Errors along or about x."}, s.x);
-    visit(Field{"y", "", "Errors along or about y."}, s.y);
-    visit(Field{"z", "", "Errors along or about z."}, s.z);
-  }
-};
-struct AxesNoise {
-  ChannelNoise x, y, z;
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"x", "", "Errors along or about x."}, s.x);
-    visit(Field{"y", "", "Errors along or about y."}, s.y);
-    visit(Field{"z", "", "Errors along or about z."}, s.z);
-  }
-};
 
 struct Spec {
   std::string joint;
