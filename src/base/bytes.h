@@ -34,7 +34,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what ByteWriter wrote. Once a read fails all later ones do; `ok()` tells.
+/// Reads what ByteWriter wrote. Once a read fails all later ones do, and ok() is false.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

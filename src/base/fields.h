@@ -13,8 +13,8 @@
 /// `enum_names`, fixed vectors (a type with `extent` and operator[]), std::array, std::vector, std::optional
 /// and structs with fields of their own.
 ///
-/// A struct may say more of itself:
-///   Status check(const Node&, const std::string& path) const   a rule between its fields, asked whenever one was read
+/// Optional members of such a struct:
+///   Status check(const Node&, const std::string& path) const   a rule between its fields, checked whenever one was read
 ///   static constexpr const char* list_key                      a list in place of the map is the value of this key
 ///   static constexpr const char* described_as                  lists of it are described once, under this name
 #include <array>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the program says to people while it works: warnings and notes on standard error, never results.
+/// Log: warnings and notes to people on standard error while the program works, never results.
 #include <functional>
 #include <string_view>
 
@@ -12,7 +12,7 @@ void info(std::string_view text);
 void warning(std::string_view text);
 void debug(std::string_view text);
 
-/// Hears what is said as well, whatever the level; from the thread that says it. Empty: nobody does. It must say nothing itself.
+/// Also receives every entry, whatever the level, on the thread that logs it; must not log itself. Empty: no receiver.
 void set_listener(std::function<void(Level, std::string_view)> listener);
 
 }  // namespace sandlot::log

@@ -1,5 +1,5 @@
 #pragma once
-/// Where this program lies on disk: data, models and plugins are found from there.
+/// Location of this program on disk, from which data, models and plugins are found.
 #include <string>
 #include <vector>
 

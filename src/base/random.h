@@ -18,7 +18,7 @@ namespace sandlot {
 
 /// What a stream is for: one enumerator per independent use of randomness by one entity.
 enum class Purpose : std::uint32_t {
-  noise = 1,       ///< sensor errors, drawn anew per sample
+  noise = 1,       ///< sensor errors, drawn for each sample
   initial = 2,     ///< values drawn once when an entity is created (biases)
   placement = 3,   ///< start poses
   controller = 4,  ///< decisions of a control program

@@ -1,5 +1,5 @@
 #pragma once
-/// What a user did wrong, said so that it can be put right; and Result, which carries a value or that error.
+/// Error of a user, with its remedy; and Result, which carries a value or such an error.
 ///
 /// Bugs never travel this way: they stop at SL_CHECK (base/check.h).
 #include <memory>
@@ -76,7 +76,7 @@ class [[nodiscard]] Result<void> {
 /// Returned by functions that only succeed or fail.
 using Status = Result<void>;
 
-/// Warnings gathered while files are read: each names its place and is said once.
+/// Warnings gathered while files are read: each names its place and is reported once.
 struct Diagnostics {
   std::vector<Error> warnings;
   void warn(Error warning) { warnings.push_back(std::move(warning)); }

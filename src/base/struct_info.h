@@ -1,6 +1,6 @@
 #pragma once
-/// What is known of a type at run time: what it holds, and functions that reach its parts. They are made from field lists
-/// (base/fields.h), so that what walks over specs, states and messages to read, describe or list them is written and
+/// Type information at run time: what values of a type hold, and functions that reach their parts. Made from field lists
+/// (base/fields.h), so that the code that reads, describes and lists specs, states and messages is written and
 /// compiled once, not once for every struct.
 ///
 ///   const TypeInfo& type = type_info<Spec>;       // to look at a value
@@ -71,26 +71,26 @@ struct Filler {
 /// Every function takes the address of a value of the type; those that make no sense for it are null.
 struct TypeInfo {
   Holds holds = Holds::other;
-  // Of booleans, numbers, enumerations (their value) and times (in seconds).
+  // Booleans, numbers, enumerations (their value) and times (in seconds):
   double (*number)(const void*) = nullptr;
   bool integral = false;
   double lowest = 0, highest = 0;  ///< what a number can hold, and a double holds exactly
-  // Of enumerations with names.
+  // Enumerations with names:
   const char* (*choice)(std::size_t i) = nullptr;  ///< name i; null behind the last
   const char* (*name)(const void*) = nullptr;      ///< "" for a value without one
-  // Of lists of both sorts and options: what they hold. An option holds one or none.
+  // Lists of both sorts and options: their elements. An option holds one or none.
   const TypeInfo* element = nullptr;
   std::size_t extent = 0;  ///< of fixed ones
   bool is_array = false;   ///< of fixed ones: a std::array
   std::size_t (*size)(const void*) = nullptr;
   const void* (*at)(const void*, std::size_t i) = nullptr;
   const void* (*blank)() = nullptr;  ///< an element as it is made
-  // Of structs with fields.
+  // Structs with fields:
   void (*visit)(const void*, FieldVisitor&) = nullptr;
   Status (*check)(const void*, const Node&, const std::string& path) = nullptr;  ///< null without rules
   const char* list_key = nullptr;
   const char* described_as = nullptr;
-  // Of what has components, which may be a struct with fields or a fixed vector as well.
+  // Values with components, which may be structs with fields or fixed vectors as well:
   std::span<const Component> (*parts)(const void*) = nullptr;
   double (*part)(const void*, std::size_t i) = nullptr;
 
@@ -105,7 +105,7 @@ struct TypeEdit {
   const TypeEdit* element = nullptr;
   void* (*at)(void*, std::size_t i) = nullptr;  ///< of lists of both sorts but std::vector<bool>, and options
   void (*clear)(void*) = nullptr;               ///< of lists
-  /// Of lists: a new element at the end. Of options: a new value, which begins as the old one. Nothing happens if `fill`
+  /// A new element at the end of a list, or a new value of an option, which begins as the old one. Nothing happens if `fill`
   /// fails.
   Status (*add)(void*, Filler& fill) = nullptr;
   void (*visit)(void*, FieldEditor&) = nullptr;

@@ -58,7 +58,7 @@ Result<double> parse_quantity(std::string_view text, std::string_view unit) {
         unit == "1" ? "write a number" : "write a number, in " + std::string(unit) + " or with its unit"};
   std::string_view suffix = trim(text.substr(split));
   if (suffix.empty() || suffix == unit) return number;
-  // Densities and rates: "0.03 deg/s/sqrt(Hz)" where rad/s/sqrt(Hz) is asked for.
+  // Densities and rates: "0.03 deg/s/sqrt(Hz)" where rad/s/sqrt(Hz) is wanted.
   for (const std::string_view per : {"/sqrt(Hz)", "/sqrt(s)"}) {
     const auto ends = [&](std::string_view s) {
       return s.size() > per.size() && s.substr(s.size() - per.size()) == per;

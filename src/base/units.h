@@ -9,7 +9,7 @@ namespace sandlot {
 
 /// @param text  a number, optionally followed by a unit
 /// @param unit  the field's unit ("m", "rad", "s", "1", ...): what a bare number means
-/// @return the value in `unit`. An error says which units would fit; the caller adds place and path.
+/// @return the value in `unit`. An error lists the units that would fit; the caller adds place and path.
 Result<double> parse_quantity(std::string_view text, std::string_view unit);
 
 }  // namespace sandlot

@@ -1,4 +1,4 @@
-/// P8: what loading costs beside libsdformat's own parse of the same text.
+/// P8: cost of loading, compared with libsdformat's parse of the same text.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

@@ -21,7 +21,7 @@ constexpr double h_s = 0.004, wheel_radius_m = 0.07, wheel_effort_Nm = 2;
 double speed_radps(int robot, int wheel) { return 2 + 0.05 * robot + 0.5 * wheel; }
 Vec3 robot_place(int i) { return {1.0 * (i % 10), 1.0 * (i / 10), 0}; }
 Vec3 lone_box(int i) { return {0.8 * (i % 20) - 3, -1.5 - 0.8 * (i / 20), 0.1}; }
-/// Layers of 25, each a little beside the one below.
+/// Layers of 25, each a little off the one below.
 Vec3 piled_box(int i) {
   const int layer = i / 25;
   return {0.32 * (i % 5) + 0.03 * (layer % 3), 0.22 * (i / 5 % 5) + 0.02 * (layer % 2), 0.1 + 0.201 * layer};

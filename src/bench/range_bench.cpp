@@ -104,7 +104,7 @@ std::vector<Row> field_ranges() {
   return rows;
 }
 
-/// Discs spread as densely as P1 and P2 say: one per 2 m^2, none overlapping.
+/// Discs spread as densely as in P1 and P2: one per 2 m^2, none overlapping.
 std::vector<Vec3> scatter(int count, double radius_m) {
   Stream r(2, entity_key("swarm"), Purpose::placement, 0);
   const double half = std::sqrt(2.0 * count) / 2;

@@ -175,7 +175,7 @@ std::vector<Row> rollers() {
   const Timing timing = compare(
       5, [&] { ours.run(); }, [&] { bare.run(); });
   constexpr double per_step_us = 1e6 / steps;
-  // Both still go sideways at the speed they were told: else there were nothing to compare.
+  // Both still go sideways at the commanded speed: else there were nothing to compare.
   const dReal* const v = dBodyGetLinearVel(bare.bodies[0]);
   const double own_speed = norm(ours.velocity()), bare_speed = std::sqrt(v[0] * v[0] + v[1] * v[1]);
   SL_CHECK(std::abs(own_speed - 0.5) < 0.05 && std::abs(bare_speed - 0.5) < 0.05);

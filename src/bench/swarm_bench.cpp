@@ -52,7 +52,7 @@ double resident_bytes() {
 }
 
 #if SL_HAS_CHIPMUNK
-/// Discs that run straight on and are turned anew now and then, between four walls.
+/// Discs that run straight on and are turned now and then, between four walls.
 class Reference {
  public:
   explicit Reference(int robots) : space_(cpSpaceNew()) {

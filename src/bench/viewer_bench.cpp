@@ -1,4 +1,4 @@
-/// P9: what a viewer of 1000 moving robots costs: bytes per robot and frame, and time of the simulation's thread beside the
+/// P9: cost of a viewer of 1000 moving robots: bytes per robot and frame, and time of the simulation's thread beside the
 /// same run without anybody looking. The page's own time per frame is measured by a browser: tests/js/page_bench.mjs.
 #include <atomic>
 #include <cstdlib>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int robots = 1000;
 constexpr double run_s = 5;
-/// What a viewer is told once, when it comes (world, channels), is not what frames cost.
+/// What a viewer receives once, when it connects (world, channels), is not part of the cost of frames.
 constexpr std::uint64_t first_tick = 150;
 
 /// A link with two wheels that turn, and a drive that goes round in circles of its own.

@@ -53,7 +53,7 @@ Error parameter_error(const Node& config, const std::string& path, const char* k
 /// All builders, in the order of builders/kinds.h.
 std::span<const Builder* const> builder_table();
 
-/// Builds what a map says: its key `builder` names the builder, the others are its parameters. The model is called after
+/// Builds the model that a map describes: its key `builder` names the builder, the others are its parameters. The model is called after
 /// the builder and has the map's place.
 /// Errors   with the place and the key: no such builder, unknown keys, impossible parameters.
 Result<Built> build_model(const Node& map, const std::string& path = "");

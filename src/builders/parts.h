@@ -1,5 +1,5 @@
 #pragma once
-/// What builders make models of: links of parts, joints, devices. Poses of links and joints are told in the model's
+/// Parts of models: links made of solids, joints, devices. Poses of links and joints are given in the model's
 /// frame M, with all joints at 0.
 #include <initializer_list>
 #include <string>
@@ -17,7 +17,7 @@ inline constexpr Color orange{0.90f, 0.36f, 0.06f, 1}, blue{0.10f, 0.28f, 0.72f,
     stone{0.55f, 0.53f, 0.50f, 1};
 }
 
-/// A solid fixed to a link: what it weighs, what it touches with and what one sees of it.
+/// Solid fixed to a link, with mass, collision shape and visual.
 struct Part {
   Shape shape;
   Pose X_LP;

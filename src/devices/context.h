@@ -1,5 +1,5 @@
 #pragma once
-/// What the phase functions of devices see and touch in a tick.
+/// Context of the devices' phase functions in a tick: what they read and write.
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,7 +18,7 @@ namespace sandlot {
 
 class TopicBase;  // messages/topic.h
 
-/// What other devices have published and what they are told; for those that work with another one, such as a pan-tilt unit
+/// Topics and command slots of other devices, for devices that work with another one, such as a pan-tilt unit
 /// with its camera.
 class TopicFinder {
  public:
@@ -32,7 +32,7 @@ class TopicFinder {
   ~TopicFinder() = default;
 };
 
-/// What actuators want from the engine in this sub-step; filled in pool order, capacity reused.
+/// Requests of actuators to the engine in this sub-step; filled in pool order, capacity reused.
 struct Actuation {
   std::vector<Wrench> wrenches;
   std::vector<JointTarget> joints;
@@ -61,7 +61,7 @@ struct Context {
   EmissionBuffer& emissions;
   // For kinds that see (Kind::sees), in the sense phase; nothing for the others.
   optics::PictureScene* pictures = nullptr;               ///< draws the visuals as they are at `now`
-  std::span<const LabelledObject> labelled_objects = {};  ///< what detectors tell apart
+  std::span<const LabelledObject> labelled_objects = {};  ///< for detectors
   const TopicFinder* topics = nullptr;                    ///< null in tests of single kinds alone
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a device is built from, and what it makes while it is built.
+/// Inputs of a device's construction, and the topics and frames it makes.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -37,7 +37,7 @@ class TopicMaker {
 using ImageEncoder = std::string (*)(int width, int height, int channels,
                                      std::span<const std::uint8_t> pixels, int quality);
 
-/// What a device is built from.
+/// Inputs of a device's construction.
 struct DeviceBuild {
   const model::DeviceDecl& decl;
   const model::Instance& instance;
@@ -51,9 +51,9 @@ struct DeviceBuild {
   std::uint32_t levels = 1;  ///< bit i: level i is active
   TopicMaker& topics;
   Vec3 gravity_mps2{0, 0, -9.81};
-  std::optional<model::Geography> geography = {};  ///< where the world lies on the Earth, if a file says so
+  std::optional<model::Geography> geography = {};  ///< where the world lies on the Earth, if a file gives it
   Vec3 magnetic_field_T{};                         ///< of the Earth, in W
-  double errors = 1;                               ///< factor on the errors, beside the device's own
+  double errors = 1;                               ///< factor on the errors, in addition to the device's own
   ImageEncoder encode_image = nullptr;             ///< null in tests of kinds alone
 
   BodyId body() const { return bodies[decl.link]; }

@@ -65,7 +65,7 @@ const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl) {
                        [&](const char* t) { return type == t; }) &&
            (!kind.accepts || kind.accepts(decl.config));
   };
-  // Of a sensor its plugins come last in the list; of a plugin its class comes before its library.
+  // In the list a sensor's plugins come last, and a plugin's class before its library.
   std::vector<std::string> types;
   for (const std::string& type : decl.sdf_types) types.push_back(plain(type));
   if (!types.empty() && types.front().substr(0, 7) == "sensor:") std::reverse(types.begin(), types.end());

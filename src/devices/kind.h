@@ -42,10 +42,10 @@ namespace sandlot {
 /// Bumped when the structs below change; plugins built against another version are refused.
 inline constexpr int device_api_version = 7;
 
-/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys go before.
+/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys take precedence.
 struct Preset {
   const char* name;  ///< "sick_lms200"
-  const char* help;  ///< one sentence; says where the numbers come from
+  const char* help;  ///< one sentence, with the source of the numbers
   const char* keys;  ///< a map in YAML
 };
 
@@ -71,7 +71,7 @@ class PoolBase {
   /// What an actuator that goes away leaves behind (a joint set free, a base released), into context.actuation.
   virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
-  /// Of the kind: whether its devices have errors; of a device: its own factor on them.
+  /// For a kind: whether its devices have errors; for a device: its own factor on them.
   virtual bool has_errors() const = 0;
   virtual double errors(std::uint32_t index) const = 0;
   /// What multiplies a device's own factor `errors` in the phases; 1 at first.
@@ -226,7 +226,7 @@ class DevicePool final : public PoolBase {
   using Spec = typename Device::Spec;
   using Errors = ScaledErrors<Device>;
   static constexpr bool shares = shares_spec<Device>;
-  /// What create() tells of the errors (a covariance) is of all factors together; the device keeps its own.
+  /// A covariance that create() publishes is that of all factors together; the device keeps its own.
   Status keep(typename Errors::Held spec, const DeviceBuild& build) {
     [[maybe_unused]] const auto own = [&] {
       if constexpr (Errors::exist) return errors_.take(spec, build.errors);
@@ -266,7 +266,7 @@ constexpr Kind make_kind(Kind kind) {
 std::span<const Kind* const> device_kinds();
 /// By name, or an error with the nearest one.
 Result<const Kind*> find_device_kind(std::string_view name);
-/// The kind that answers to a name an SDF file used for this element, or null; of a sensor its plugin's goes before.
+/// The kind that answers to a name an SDF file used for this element, or null; a sensor's plugin takes precedence.
 const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl);
 
 }  // namespace sandlot

@@ -1,4 +1,4 @@
-/// The higher levels of laser scanner, satellite receiver, inertial unit and odometry: what they tell, and that they run
+/// The higher levels of laser scanner, satellite receiver, inertial unit and odometry: their messages, and that they run
 /// none of the work below.
 #include <gtest/gtest.h>
 
@@ -360,7 +360,7 @@ TEST(OdometryPose, OneLevelGoesOnFromWhereTheOtherIs) {
   Rig rig(wheel_odometry::kind, test::two_wheels(), 0.1);
   ASSERT_TRUE(rig.add("odo", odometer({}), 1));
   rig.engine->joint[0].position = rig.engine->joint[1]
-                                      .position = 10;  // the wheels say 1 m, the robot slipped
+                                      .position = 10;  // the wheels measure 1 m, the robot slipped
   rig.engine->body[0].X_WB.p.x = 0.8;
   rig.sense();
   ASSERT_TRUE(rig.switch_level(2));

@@ -50,7 +50,7 @@ struct Winding {
   bool fixed = false;                    ///< the power stage holds the current at at_rest_A
 };
 
-/// The bridge is told to give `volts` (as far as the supply reaches).
+/// Sets the bridge's output to `volts` (as far as the supply reaches).
 Winding winding_on_voltage(const MotorSpec& spec, double volts, double current_A, double motor_speed,
                            double h_s);
 /// The bridge drives the current that gives this torque on the joint, as far as voltage and current limit reach.

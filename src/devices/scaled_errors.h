@@ -56,7 +56,7 @@ class ScaledErrors {
     work();
   }
 
-  /// Multiplies what the spec says, and tells what it said.
+  /// Multiplies the spec's value and returns the original one.
   Own take(Held& held, double factor) {
     if constexpr (shared) {
       Own own = held;
@@ -83,7 +83,7 @@ class ScaledErrors {
   std::vector<double> factors_;  ///< per device
   std::vector<Own> own_;
   std::size_t scaled_ = 0;  ///< how many factors are not 1
-  // Of shared specs the latest scaled copy: most devices of a pool are declared alike and have one factor.
+  // The latest scaled copy of a shared spec: most devices of a pool are declared alike and have one factor.
   std::optional<SharedSpec<Spec>> source_, scaled_copy_;
   double by_ = 1;
 };

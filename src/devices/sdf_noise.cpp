@@ -12,7 +12,7 @@ struct Read {
   double correlation_s = 1;
 };
 
-/// Nothing when the element asks for no noise.
+/// Nothing when the element has no noise.
 Result<std::optional<Read>> read(const Node& noise, Diagnostics& diagnostics) {
   const Node* const type = find(noise, "type") ? find(noise, "type") : find(noise, "@type");
   const std::string name = text(type);

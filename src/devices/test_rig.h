@@ -26,7 +26,7 @@ class HandEngine final : public Engine {
   std::vector<JointState> joint;
   std::vector<JointTarget> target;
   std::vector<double> inertia, outside;  ///< per joint; the second is an effort from outside
-  std::vector<Contact> contact;          ///< what the test says there is
+  std::vector<Contact> contact;          ///< set by the test
   std::vector<JointLoad> loads;          ///< likewise
   Watch watched;                         ///< in the last step
   std::vector<BodyName> names;           ///< what the test calls the bodies
@@ -139,7 +139,7 @@ class Rig : public TopicMaker {
   std::unique_ptr<HandEngine> engine;
   std::unique_ptr<PoolBase> pool;
   std::map<std::string, std::unique_ptr<TopicBase>> topics;  ///< messages and commands by name
-  std::map<std::string, Pose> frames;                        ///< beside the sensors' own, as X_SF
+  std::map<std::string, Pose> frames;                        ///< in addition to the sensors' own, as X_SF
   const RayCaster* rays = nullptr;
   optics::PictureScene* pictures = nullptr;
   std::vector<LabelledObject> things;

@@ -14,7 +14,7 @@ namespace {
 struct HalfExtent {
   Vec3 x, y, z;  ///< axes of G in A
 
-  /// Of a cylinder's part: rings of radius r at both ends of a stick of half length h along z.
+  /// Bounds of a part of a cylinder: rings of radius r at both ends of a stick of half length h along z.
   Vec3 rings(double r, double h) const {
     const auto one = [&](double a) { return std::abs(a) * h + r * std::sqrt(std::max(0.0, 1 - a * a)); };
     return {one(z.x), one(z.y), one(z.z)};

@@ -84,7 +84,7 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh);
 /// @param segments  corners of a full circle
 TriangleMesh tessellate(const Shape& shape, int segments = 32);
 
-/// A solid from a polygon in xy, extruded from z = 0 to `height_m`; the way SDF's <polyline> says it. Further loops are
+/// A solid from a polygon in xy, extruded from z = 0 to `height_m`; as SDF's <polyline> defines it. Further loops are
 /// holes. Empty when loops touch or cross, have no area or more than 4096 corners, when a hole lies outside, and when
 /// the height is not positive.
 TriangleMesh extrude(const std::vector<std::vector<std::array<double, 2>>>& loops_m, double height_m);

@@ -1,5 +1,5 @@
 #pragma once
-/// The question every range sensor asks: a fan of rays from one pose. Answered in batches by the planar engine's
+/// Ray query of range sensors: a fan of rays from one pose. Answered in batches by the planar engine's
 /// grid or by the ray scene (optics), so a device does not know which physics runs.
 #include <cstdint>
 #include <limits>

@@ -25,7 +25,7 @@ struct Ackermann {
   double track_m = 0.5;           ///< T, >= 0
   double max_steering_rad = 0.6;  ///< of the inner wheel, below 90 degrees
 
-  /// Of the tightest turn: 1 / (L / tan(max) + T/2).
+  /// Curvature of the tightest turn: 1 / (L / tan(max) + T/2).
   double max_curvature() const;
   SteeringAngles wheels(double curvature) const;
   /// The bicycle's angle.

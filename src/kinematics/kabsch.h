@@ -6,7 +6,7 @@
 ///   theta = atan2(sum (p_x q_y - p_y q_x), sum (p_x q_x + p_y q_y)),     t = mean(q) - R mean(p),
 ///
 /// which is what the singular value decomposition of P^T Q with its sign rule comes to. The root mean square deviation that
-/// remains is zero for wheels that roll: it tells how much they slip.
+/// remains is zero for wheels that roll: a measure of their slip.
 ///
 /// rolled() makes Q of wheels that rolled r dphi along their heading: in a step the chassis turns, so that a wheel runs on an
 /// arc whose chord points half the turn further. The turn is found without and then twice with that correction; what remains is

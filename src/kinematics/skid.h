@@ -6,7 +6,7 @@
 /// T is the track (distance of the sides), x the track ratio: the instantaneous centres of rotation of the two sides lie x T
 /// apart instead of T, since the treads slip. x >= 1 depends on the ground little, on geometry and load a lot.
 ///
-/// track_ratio() is what isotropic Coulomb friction of any size says about turning in place with equal loads: at each wheel slip
+/// track_ratio() is what isotropic Coulomb friction of any size predicts for turning in place with equal loads: at each wheel slip
 /// and friction are parallel, and their moments about the middle cancel when
 ///
 ///   sum_i (T c / 2 - x_i^2) / sqrt(c^2 + x_i^2) = 0,   x = 1 + 2 c / T,

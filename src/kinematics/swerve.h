@@ -46,7 +46,7 @@ struct SteeringLimits {
 };
 struct Steering {
   double angle_rad = 0;
-  bool backward = false;  ///< the wheel turns backward to roll in the direction asked for
+  bool backward = false;  ///< the wheel turns backward to roll in the requested direction
 };
 /// @param direction_rad  of motion of the wheel, modulo a turn
 /// @param now            angle of the joint (it counts turns), and which way the wheel rolls at present

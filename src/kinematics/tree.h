@@ -19,11 +19,10 @@ struct KinematicTree {
   struct Branch {
     std::uint32_t link = 0;
     std::uint32_t parent = none;  ///< link; none: a root
-    std::uint32_t joint =
-        none;              ///< none: a root, or a link that no joint connects and that its parent carries
+    /// None: a root, or a link that no joint connects and that its parent carries.
+    std::uint32_t joint = none;
     bool outwards = true;  ///< from the joint's parent to its child
-
-    Pose X_PJ, X_JL;  ///< with all joints at position 0; identity at roots
+    Pose X_PJ, X_JL;       ///< with all joints at position 0; identity at roots
   };
   std::vector<Branch> branches;          ///< parents precede children; [0] is the canonical link
   std::vector<std::uint32_t> branch_of;  ///< by link

@@ -18,7 +18,7 @@
 /// Units    m, rad, s. Both ways work on displacements (m, rad) as well as on velocities, per small step.
 /// Errors   check(): a geometry that cannot be built or cannot drive.
 /// Limits   points of contact that do not move in D; even ground.
-/// Cost     a dozen operations per wheel; forward: a 3 x 3 system beside. No allocation.
+/// Cost     a dozen operations per wheel; forward: a 3 x 3 system in addition. No allocation.
 /// Source   K. M. Lynch, F. C. Park, Modern Robotics (2017), sec. 13.2 (omni and Mecanum wheels with sliding direction);
 ///          P. F. Muir, C. P. Neuman, J. Robotic Systems 4 (1987) 281-340 (actuated inverse, sensed forward solution by
 ///          least squares); G. Campion, G. Bastin, B. d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996) 47-62

@@ -4,7 +4,7 @@
 /// x is what comes in, y what goes out, e the factor `errors`, dt the time since the previous sample; n ~ Normal(0, 1)
 /// and u ~ Uniform(0, 1) are independent draws. U is the channel's unit. What is not finite stays as it is.
 ///
-/// Of many values at once (the beams of a scan) gaussian, white, uniform and proportional draw for each value anew;
+/// For many values at once (the beams of a scan) gaussian, white, uniform and proportional draw for each value separately;
 /// drift, bias and walk are one error that all values share.
 ///
 /// Cost     one draw per value or sample (bias: none after the start); no allocation.

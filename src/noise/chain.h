@@ -86,7 +86,7 @@ struct ChannelChain {
 
   /// Makes ready, draws what is drawn once. Called when the device is created, before any load().
   /// @param random   stream of the device, Purpose::initial; its position does not matter
-  /// @param channel  tells several channels of one device apart: "gyro/x"
+  /// @param channel  distinguishes several channels of one device: "gyro/x"
   void reset(std::span<const StageSpec> specs, const Stream& random, std::string_view channel = "");
   /// @param truth   [U]
   /// @param dt_s    [s] since the previous sample, > 0

@@ -46,7 +46,7 @@ struct ChannelNoiseSpec {
     visit(Field{"limit", "", "Largest magnitude of the values.", 0, 1e12}, s.limit);
     visit(stages_field, s.stages);
   }
-  /// Of the error of one sample about the channel's constant error.
+  /// Variance of one sample's error about the channel's constant error.
   double variance(double dt_s, double errors = 1) const {
     return errors * errors *
                (white * white + bias.bias_std * bias.bias_std +
@@ -67,7 +67,7 @@ struct ChannelNoise {
   }
 
   /// @param random   stream of the device, Purpose::initial
-  /// @param channel  tells several channels of one device apart: "gyro/x"
+  /// @param channel  distinguishes several channels of one device: "gyro/x"
   void reset(const ChannelNoiseSpec& s, Stream& random, std::string_view channel = "") {
     bias.reset(s.bias, random);
     drawn = s.mean_std * random.normal();

@@ -1,7 +1,7 @@
 #pragma once
 /// Very many normal deviates, cheaply: each is looked up for 16 random bits.
 ///
-/// Of the 2^16 equally probable values each is the middle (by probability) of its part of the normal distribution, all of
+/// Each of the 2^16 equally probable values is the middle (by probability) of its part of the normal distribution, all of
 /// them scaled so that the variance is exactly 1. The outermost are +-4.3.
 /// Cost     2 to 3 ns each. The table has 128 KB.
 #include <cstdint>

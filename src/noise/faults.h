@@ -31,7 +31,7 @@ inline double odds_per_sample(double rate, double per_second, const NoiseSample&
 /// is lost and ends them at the rate 1 / T, sampled exactly: f = r T / (1 + r T) and correlation exp(-lag (r + 1 / T)),
 /// whatever the sample rate. T = 0 loses one sample each: f = 1 - exp(-r dt).
 ///
-/// Of many values at once the chain runs along the values, one after the other, and begins anew in each sample; with
+/// For many values at once the chain runs along the values, one after the other, and restarts in each sample; with
 /// `whole` it runs over the samples and loses all values at once, and all channels of a device that has several. `hold` shows what the same beam showed before.
 struct DropoutsSpec {
   static constexpr const char* name = "dropouts";
@@ -138,7 +138,7 @@ inline std::span<const EnumName<DropoutsSpec::Shows>> enum_names(DropoutsSpec::S
 /// With the probability p per value: y = x + g, or y = g with `replace`;   g = std n, or uniform in [min, max].
 /// p = min(1, e rate), or 1 - exp(-e per_second dt). The factor changes how often, not how far.
 /// Variance of an added outlier p (std^2), or p ((max - min)^2 / 12 + (1 - p) ((min + max) / 2)^2).
-/// Of many values at once each is drawn for anew; only `replace` touches a value that is not finite.
+/// For many values at once there is one draw for each; only `replace` touches a value that is not finite.
 struct OutliersSpec {
   static constexpr const char* name = "outliers";
   static constexpr const char* help = "Outliers: occasional values that are far off.";

@@ -3,7 +3,7 @@
 ///
 ///   noise: [{shot: {full_well: 8000}}, {gaussian: {std: 2 %}}, {salt_and_pepper: {salt: 0.1 %, pepper: 0.1 %}}]
 ///
-/// A camera holds an ImageNoiseSpec in its Spec and an ImageNoise beside its State, calls reset() when it is created and
+/// A camera holds an ImageNoiseSpec in its Spec and an ImageNoise next to its State, calls reset() when it is created and
 /// corrupt() on each picture it has rendered, with its factor `errors`.
 ///
 /// Pixels   8 bits per channel, 1 to 4 channels, rows without gaps, top row first; 0 is black and 255 full scale. Between
@@ -45,7 +45,7 @@ struct ImageNoiseSpec {
   static void fields(auto& s, auto&& visit) { visit(stages_field, s.stages); }
 };
 
-/// Of one device. No State: the same streams yield it again.
+/// Image errors of one device. No State: the same streams yield them again.
 struct ImageNoise {
   /// @param device  stream of the device, Purpose::initial
   void reset(const ImageNoiseSpec& spec, const Stream& device);

@@ -65,7 +65,7 @@ struct LatencySpec {
     held.insert(held.end(), row.begin(), row.end());
     const double delay_now_s = std::max(0.0,
                                         sample.errors * (delay_s + jitter_s * (2 * random.uniform() - 1)));
-    // Sums of intervals miss whole multiples by rounding: a nanosecond is no delay.
+    // Sums of intervals miss whole multiples by rounding: a nanosecond does not count as a delay.
     const double shown_s = state.now_s - delay_now_s + 1e-9;
     std::size_t shown = 0;
     while (shown + 1 < state.time_s.size() && state.time_s[shown + 1] <= shown_s) ++shown;

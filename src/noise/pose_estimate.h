@@ -1,5 +1,5 @@
 #pragma once
-/// What a localisation says about a pose, instead of the localisation itself: an error that comes and goes but never grows,
+/// Pose estimate of a localisation, without simulating the localisation: an error that comes and goes but never grows,
 /// and now and then a wrong place.
 ///
 ///   p = p_true + e (x, y, z)         q = turn about the vertical by e a, then q_true

@@ -6,7 +6,7 @@
 ///
 /// c is the device's own constant error: `mean` plus a draw at the start, uniform within +-systematic. round() goes to
 /// multiples of e * `resolution`. b[k] is the error that all beams of sample k share: a drifting bias
-/// (noise/drifting_bias.h, including its own white part); w[k][i] ~ Normal(0, 1) is drawn for each beam anew. e is the
+/// (noise/drifting_bias.h, including its own white part); w[k][i] ~ Normal(0, 1) is drawn for each beam separately. e is the
 /// factor `errors`.
 ///
 /// Output   distances without a hit (+inf) or too near (-inf) stay as they are: only the stages dropouts and outliers turn

@@ -1,5 +1,5 @@
 #pragma once
-/// What every stage of a chain of errors (noise/chain.h) is told about the sample at hand.
+/// Sample at hand, as every stage of a chain of errors (noise/chain.h) receives it.
 #include "base/fields.h"
 
 namespace sandlot {

@@ -218,7 +218,7 @@ Runs runs_of(const std::vector<double>& x) {
   return out;
 }
 
-/// Of a two-state chain with P(lost | not) = p and P(lost | lost) = s: the fraction f = p / (p + 1 - s) estimated from
+/// Standard deviation for a two-state chain with P(lost | not) = p and P(lost | lost) = s: the fraction f = p / (p + 1 - s) estimated from
 /// n samples has the variance f (1 - f) / n (1 + r) / (1 - r) with r = s - p. Bursts are geometric: of m of them with
 /// mean L the mean length has the deviation sqrt(L (L - 1) / m).
 void expect_runs(const Runs& found, double p, double s) {

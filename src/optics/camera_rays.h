@@ -14,7 +14,7 @@ namespace sandlot::optics {
 /// X after `t_s` at constant velocity.
 Pose moved(const Pose& X, const Velocity& velocity, double t_s);
 
-/// Eight pixels beside each other: 4 x 2, or 8 x 1 when rows are exposed one after the other.
+/// Eight neighbouring pixels: 4 x 2, or 8 x 1 when rows are exposed one after the other.
 struct Block {
   lanes::I u, v;
   lanes::I inside;  ///< the image
@@ -48,7 +48,7 @@ class CameraRays {
   int slice_of(const Block& block, int sample) const;
   double time_of_slice(int slice) const;
 
-  /// What PictureJob::depth_m says of a hit at t.
+  /// Value of PictureJob::depth_m for a hit at t.
   lanes::F depth(const Block& block, const Rays& rays, lanes::F t) const;
 
  private:

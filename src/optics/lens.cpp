@@ -118,7 +118,7 @@ std::array<double, 2> radius_of(const Fisheye& f, double theta) {
           1 + q * (3 * f.k1 + q * (5 * f.k2 + q * (7 * f.k3 + q * 9 * f.k4)))};
 }
 
-/// As far as the lens is one to one, and no farther than it is asked for.
+/// As far as the lens is one to one, and no farther than requested.
 double max_theta(const Fisheye& f) {
   double most = std::min(f.max_theta_rad, pi);
   if (f.mapping == Fisheye::Mapping::orthographic) most = std::min(most, pi / 2);
@@ -332,7 +332,7 @@ Status check_size(int width, int height) {
       "1 to 8192 a side, at most 16.8 million together");
 }
 
-/// What ray() and project() need beside the numbers: found once for a whole table.
+/// Derived quantities for ray() and project(), computed once for a whole table.
 double limit(const Pinhole& p) { return is_distorted(p) ? fold_radius(p) : 0; }
 double limit(const Fisheye& f) { return max_theta(f); }
 double limit(const Catadioptric&) { return 0; }

@@ -39,7 +39,7 @@ TEST(Motion, AMovingMeshCoversEachPixelForItsShareOfTheExposure) {
   };
   for (int u = 0; u < 160; ++u) {
     const double share = past(left, u) - past(right, u);
-    // An edge crosses a pixel in 4 of the 64 slices; what each covers of the pixel is told by 4 samples, half of one too
+    // An edge crosses a pixel in 4 of the 64 slices; what each covers of the pixel is estimated by 4 samples, half of one too
     // much or too little, and the slices at both ends of the crossing may be off as a whole.
     EXPECT_NEAR(shot.red(u, 4) / 255.0, share, (4 * 0.125 + 1) / 64 + 1 / 255.0) << u;
   }

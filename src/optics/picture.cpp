@@ -90,7 +90,7 @@ void Shot::write_rgb(const Block& block, const F3& sum) {
     return lanes::truncate(255 * x + 0.5f);
   };
   const I colors = byte(sum.x) | byte(sum.y) << 8 | byte(sum.z) << 16;
-  alignas(32) std::uint8_t packed[32];  // the bytes of each half beside each other: 12, then 4 unused
+  alignas(32) std::uint8_t packed[32];  // the bytes of each half side by side: 12, then 4 unused
   lanes::store(packed, without_fourth_bytes(colors));
   // Row by row of the block, as many of its pixels as the image has.
   const int count = std::min(4, block.width - block.u[0]);
@@ -203,7 +203,7 @@ struct PictureScene::Impl {
     for (std::size_t i = 0; i < lights.size(); ++i)
       if (has_grid(lights[i].light) && i < grids.size()) shot.scenery.lights[i].grid = grids[i].from(base);
   }
-  /// The shadow grids for the present placement of the scene, where one of the jobs asks for shadows.
+  /// The shadow grids for the present placement of the scene, where one of the jobs wants shadows.
   void look_from_suns(std::span<const PictureJob> jobs, std::span<const Pose> X_WG) {
     const bool wanted = std::any_of(jobs.begin(), jobs.end(), [](const PictureJob& job) {
       return !job.rgb.empty() && job.exposure.shadows && job.exposure.lit;

@@ -8,7 +8,7 @@
 ///            normals smoothed across edges of less than 40 degrees. Of two visuals in one plane the later one is seen.
 /// Light      diffuse (Lambert) + specular (Blinn) + emissive + ambient, both sides of every surface; hard shadows of sun, point and spot
 ///            lights. Textures are filtered along the footprint of the pixel, so far lines fade instead of breaking up.
-/// Planes     `rgb` is anti-aliased, with depth of field and motion blur where asked for; depth, label and instance never
+/// Planes     `rgb` is anti-aliased, with depth of field and motion blur where set; depth, label and instance never
 ///            are: they are what the ray through the pixel's centre (and the lens's) meets in the middle of the exposure.
 /// Limits     no reflections, refractions, transparency (alpha is ignored) or indirect light beyond `ambient`.
 /// Cost       trees are built at the first render() after an update(): worlds in which nobody looks pay nothing. Then
@@ -69,14 +69,14 @@ struct Exposure {
   int samples = 1;      ///< per pixel, 1 to 256; 1 looks through pixel centres
   bool shadows = true;  ///< false: lights shine through everything
   double gain = 1;      ///< times all light
-  bool srgb =
-      false;  ///< true: textures and the picture are sRGB, light is added linearly. false: values as they are
+  /// True: textures and the picture are sRGB, light is added linearly. False: values as they are.
+  bool srgb = false;
   double aperture_m = 0;  ///< diameter of the lens; 0: all is sharp. Pinholes only
   double focus_m = 1;     ///< distance along the optical axis that is sharp
   double shutter_s = 0;   ///< how long each pixel is exposed: moving things blur
   double readout_s = 0;   ///< from the first row's exposure to the last row's; 0: all at once
-  int slices =
-      0;  ///< moments at which moving things are placed, with shutter or readout; 0: chosen (8 for a shutter, 16 for a readout)
+  /// Moments at which moving things are placed, with shutter or readout; 0: chosen (8 for a shutter, 16 for a readout).
+  int slices = 0;
   bool lit = true;  ///< false: surfaces show their own colour, as under even white light
 };
 

@@ -23,10 +23,10 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 /// Surfaces whose distances differ by less lie in one plane: what single precision leaves of it at grazing angles.
 constexpr float same_distance = 4e-6f;
-/// So few visuals that stand still are built anew with the moving ones: one tree is faster to search than two.
+/// Up to this many visuals that stand still are rebuilt with the moving ones: one tree is faster to search than two.
 constexpr std::size_t few = 256;
 
-/// What the callbacks need beside the packet: Embree hands the context through to them.
+/// Context of the callbacks in addition to the packet: Embree hands it through to them.
 struct Query : embree::QueryContext {
   const Rays* rays;
   std::uint32_t ignore_body;
@@ -41,7 +41,7 @@ constexpr unsigned tfar_field = 8, u_field = 15, v_field = 16, visual_field = 17
 
 F* field(void* packet, unsigned index) { return reinterpret_cast<F*>(packet) + index; }
 
-/// The lanes of the packet that Embree asks about. We give it eight at a time, and so does it: `id` holds the lane all
+/// Lanes of the packet in Embree's query. We give it eight at a time, and so does it: `id` holds the lane all
 /// the same.
 bool is_whole(unsigned n) { return n == unsigned{lanes::width}; }
 

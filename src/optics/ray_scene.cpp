@@ -24,7 +24,7 @@ using lanes::I;
 using optics::Solid;
 using optics::TriangleTree;
 
-/// What the callback needs beside the packet: Embree hands the context through to it.
+/// Context of the callback in addition to the packet: Embree hands it through to it.
 struct Query : embree::QueryContext {
   double origin[3];
   std::uint32_t ignore_body;

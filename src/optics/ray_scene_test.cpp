@@ -190,7 +190,7 @@ TEST(RayScene, FarFromTheOriginItIsAsSharp) {
 
 TEST(RayScene, NoEdgeIsLostFarFromTheOrigin) {
   // 10 km away floats are 1 mm apart: bounds that are rounded to them cut up to half of it off a box, unless they have
-  // a margin. Rays 0.1 mm inside the edge tell.
+  // a margin. Rays 0.1 mm inside the edge show it.
   const Vec3 there{10'000, 10'000, 0};
   std::vector<SceneShape> shapes;
   const auto width_m = [](int i) { return 1 + 1.3e-4 * i; };

@@ -73,7 +73,7 @@ Footprint8 footprint(const Surface8& s, const F3& direction, F width) {
           {length * dot(s.v_gradient, along), width * dot(s.v_gradient, across)}};
 }
 
-/// Of the plane, relative to the base of the rays; texture coordinates modulo 1, found in double precision.
+/// Surface of the plane, relative to the base of the rays; texture coordinates modulo 1, found in double precision.
 Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative, bool textured) {
   Surface8 s;
   s.normal = s.face_normal = broadcast(plane.normal_W);
@@ -111,7 +111,7 @@ I gather(const Scenery& scenery, const Rays& rays, const Hits& hits, F cone, I t
 
   const bool textured = texture != nullptr;
   const F3 direction = visual.is_plane ? rays.direction : to_shape(visual.solid, rays.direction);
-  // In one expression: a surface is dear to copy.
+  // In one expression: a surface is expensive to copy.
   const Surface8 s = [&] {
     if (visual.is_plane) return plane_surface(visual, rays, rays.from + hits.t * rays.direction, textured);
     float origin[3];

@@ -32,7 +32,7 @@ struct Scenery {
   std::uint32_t shadowless_body = no_body;
 };
 
-/// Of every lane that is valid; where nothing was hit, the background.
+/// Colour of every valid lane; where nothing was hit, the background.
 /// @param cone  width of the pixel as seen from the camera [rad]
 lanes::F3 shade(const Scenery& scenery, const Rays& rays, const Hits& hits, lanes::F cone);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Where nothing can stand between a surface and the sun, so that no shadow ray is needed.
+/// Shadow grid: places where nothing can stand between a surface and the sun, so that no shadow ray is needed.
 ///
 /// The world is seen from a directional light: a grid across its rays keeps, for each cell, how far towards the light what
 /// casts shadows there reaches at most, by its bounding boxes. A point that lies higher is lit. Never wrong, mostly enough:
@@ -9,7 +9,7 @@
 /// Self     a convex solid throws no shadow on its outside where that faces the light; so each cell knows the highest
 ///          visual, and the highest of the others.
 /// Limits   planes are left out (PictureTree::shadowed() has them).
-/// Cost     256 to 16384 cells of 12 bytes; 10 to 100 us to make, anew for each placement of the scene.
+/// Cost     256 to 16384 cells of 12 bytes; 10 to 100 us to make, once for each placement of the scene.
 #include <cstdint>
 #include <vector>
 
@@ -30,7 +30,7 @@ class ShadowGrid {
   void make(const PictureTree& tree, Vec3 to_light);
   View from(const double base[3]) const;
 
-  /// Of the valid lanes those that something might shade.
+  /// Mask of the valid lanes that something might shade.
   /// @param at    relative to the base, in W
   /// @param self  the convex visual on whose outside the point lies, where it faces the light; -1: none
   static lanes::I doubtful(const View& view, const lanes::F3& at, lanes::I valid, lanes::I self);
@@ -47,7 +47,7 @@ class ShadowGrid {
   Vec3 across_[2], to_light_;
   double corner_m_[2] = {0, 0}, cell_m_[2] = {1, 1};  ///< along across_, from W's origin
   int side_ = 0;                                      ///< cells along each
-  float far_m_ = 0;  ///< from the base: what is farther is too coarse in single precision to be told
+  float far_m_ = 0;  ///< from the base: beyond, single precision is too coarse for an answer
   std::vector<Cell> cells_;
   std::vector<double> reach_m_[2];  ///< while it is made
 };

@@ -99,7 +99,7 @@ void compare(const Shape& exact, double bulge_m, std::uint64_t sample) {
       misses += a == b;
       continue;
     }
-    // Slope of the distance, from a ray beside.
+    // Slope of the distance, from a neighbouring ray.
     const Vec3 side = 1e-3 * normalised(cross(d, Vec3{d.z, d.x, -d.y}));
     const float beside = solid.see(from + side, from + side + d),
                 above = solid.see(from + cross(d, side), from + cross(d, side) + d);

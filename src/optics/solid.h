@@ -2,7 +2,7 @@
 /// Primitive solids as rays see them: in the world, ready for eight rays at a time.
 ///
 /// Precision   the ray's origin is taken into the solid's frame in double precision, so a solid 10 km from the
-///             world's origin is as sharp as one beside it; from there on single precision. Roots are taken of
+///             world's origin is as sharp as one near it; from there on single precision. Roots are taken of
 ///             r^2 minus the squared distance of the ray from the centre (never of b^2 - c, which cancels), so
 ///             the error of a distance stays at a few float epsilon times distance and size, divided by the
 ///             cosine of incidence. Cones and ellipsoids, too, are met where they are, not where triangles would be; the

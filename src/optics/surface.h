@@ -1,5 +1,5 @@
 #pragma once
-/// What a surface is like where a ray meets it: normals, and texture coordinates with their gradients.
+/// Surface at the point where a ray meets it: normals, and texture coordinates with their gradients.
 ///
 /// Texture   box: every face once, upright. Sphere, ellipsoid: u once around z from -x through -y to +x, v from pole to pole.
 ///           Cylinder, capsule, cone, barrel: u around, v along z; their ends as seen along z. Plane: u and v along

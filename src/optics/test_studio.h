@@ -73,7 +73,7 @@ inline std::shared_ptr<const LensTable> pinhole(int width = 160, int height = 12
 }
 /// Looks straight down from a height, x of the world to the top of the image.
 inline Pose above(double x, double y, double z) { return {{x, y, z}, quat_from_rpy(0, math::pi / 2, 0)}; }
-/// Of a light that shines along `direction`.
+/// Directional light that shines along `direction`.
 inline Quat along(Vec3 direction) { return quat_between({0, 0, -1}, normalised(direction)); }
 
 }  // namespace sandlot::optics::test

@@ -182,7 +182,7 @@ void TriangleTree::place_on_mesh(const Rays& rays, Hits& hits) const {
   hits.b2 = lanes::select(found & (all != 0), weight(w_c), hits.b2);
 }
 
-/// Embree tells of a whole grid only where in it the hit is, so the triangle is looked for there: first of all that
+/// For a whole grid Embree reports only where in it the hit is, so the triangle is looked for there: first of all that
 /// the point may lie in, by more than the rounding of floats.
 template <class Rays>
 void TriangleTree::place_on_grid(const Rays& rays, Hits& hits) const {

@@ -1,5 +1,5 @@
 #pragma once
-/// From a pixel to the ray that it sees, for cameras as ROS's CameraInfo describes them and for those that were measured.
+/// Camera model: the ray of a pixel, for cameras described by ROS's CameraInfo and for measured ones.
 ///
 /// Frame    sensor frame S: x forward (the optical axis), y left, z up; below a mirror: z up along its axis, x what is upwards
 ///          in the image, and left is on the right of the image, as such cameras see it.

@@ -1,5 +1,5 @@
 #pragma once
-/// Colours by which things are told apart, and the table that sorts pixels by them.
+/// Colour classes of objects, and the table that sorts pixels into them.
 ///
 /// A range is a box in hue, saturation and value (Smith's HSV, 1978): hue stays what it is when the light changes, so its
 /// range is narrow, and those of the other two are wide. A table of 32 x 32 x 32 cells answers for a pixel in one look, as robots of

@@ -144,7 +144,7 @@ bool Finder::standing(const Target& target, std::uint32_t blob, const Sum& sum, 
   if (!(sum.lowest < -1e-3)) return false;
   const Vec3 middle = normalised(sum.direction);
   const double plane = target.foot_m - spec_.base_height_m;
-  // Directions are told by the tangent of the angle to the middle, in the ground plane; +-63 degrees are enough.
+  // Directions are given by the tangent of the angle to the middle, in the ground plane; +-63 degrees are enough.
   const Vec3 ahead = normalised(Vec3{middle.x, middle.y, 0}), left{-ahead.y, ahead.x, 0};
   double widest = 0;
   const auto each_pixel = [&](auto&& f) {
@@ -187,7 +187,7 @@ bool Finder::standing(const Target& target, std::uint32_t blob, const Sum& sum, 
   if (!(nearest < 1e8)) return false;
   if (2 * widest * nearest < spec_.min_visible * target.size_m)
     return false;  // a highlight on something else
-  // Of a round body or a wide one alike the points near the nearest one are its front.
+  // The points near the nearest one are the front of a body, whether round or wide.
   Vec3 front;
   int points = 0;
   const double within = 1.15 * nearest + 0.25 * target.depth_m;

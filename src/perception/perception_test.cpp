@@ -110,7 +110,7 @@ TEST(Perception, AColourIsKnownInShadowAndWhiteIsNoColour) {
 }
 
 TEST(Perception, PatchesAreCountedAcrossSpecks) {
-  // A ring of 5 x 4 with a speck of noise in each row, another colour beside it, and one pixel alone.
+  // A ring of 5 x 4 with a speck of noise in each row, another colour next to it, and one pixel alone.
   msg::Image image = picture(20, 10);
   for (std::uint32_t v = 2; v < 6; ++v)
     for (std::uint32_t u = 3; u < 8; ++u) dot_at(image, u, v, orange);
@@ -168,7 +168,7 @@ TEST(Perception, RaysOfLensesByHand) {
         1e-12)
         << name;
   }
-  // The hyperbola's point beside its focus is a^2 / b from the axis: there it shows the horizon.
+  // The hyperbola's point level with its focus is a^2 / b from the axis: there it shows the horizon.
   info = mirror(200);
   const double ma = info.d[0], mb = info.d[1], c = std::sqrt(ma * ma + mb * mb);
   const CameraModel omni = *CameraModel::of(info);
@@ -298,7 +298,7 @@ TEST(Perception, AnEdgeOfMixedColourIsNoBall) {
   EXPECT_EQ(balls_in(6, 6), 1u);
   EXPECT_EQ(balls_in(1, 36), 0u);
   EXPECT_EQ(balls_in(36, 1), 0u);
-  EXPECT_EQ(balls_in(3, 12), 1u);  // that may be the part beside a post
+  EXPECT_EQ(balls_in(3, 12), 1u);  // that may be the part next to a post
 }
 
 TEST(Perception, ABallBehindANetIsOne) {

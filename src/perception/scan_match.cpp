@@ -52,7 +52,7 @@ ScanMatch match_scan(const msg::LaserScan& scan, const Pose& X_BL, std::span<con
     }
     if (match.points < 3) return match;
     match.rms_m = std::sqrt(squares / match.points);
-    // Directions about which the walls say nothing are left as they are.
+    // Directions about which the walls give no information are left as they are.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     for (int i = 0; i < 3; ++i) {
@@ -61,13 +61,13 @@ ScanMatch match_scan(const msg::LaserScan& scan, const Pose& X_BL, std::span<con
       const Eigen::Vector3d axis = solver.eigenvectors().col(i);
       step += axis * (axis.dot(right) / strength);
     }
-    // Points that change walls to and fro, which is about millimetres, would never let it rest.
+    // Points that switch between walls, which is about millimetres, would never let it rest.
     if (match.steps >= 15) step *= gain *= 0.8;
     match.pose.x += step(0);
     match.pose.y += step(1);
     match.pose.theta = math::wrap_angle(match.pose.theta + step(2));
     match.converged = step.head<2>().norm() < 1e-5 && std::abs(step(2)) < 1e-5;
-    // Once it lies about right, what is far from all walls is no wall: people, other robots.
+    // Once it lies about right, what is far from all walls is not a wall: people, other robots.
     reach = std::clamp(4 * match.rms_m, 0.1, reach);
   }
   return match;

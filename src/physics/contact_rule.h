@@ -1,7 +1,7 @@
 #pragma once
 /// Exceptions from the contact law, as a function of the user's: who touches whom, and what shall come of it.
 ///
-/// The simulator asks it for every point where two shapes touch, in every sub-step. It has to be a pure function of what it
+/// The simulator calls it for every point where two shapes touch, in every sub-step. It has to be a pure function of what it
 /// is given and of constants: its own state would be no part of a snapshot.
 #include <functional>
 #include <optional>
@@ -32,7 +32,7 @@ struct PairSurface {
   std::optional<double> soft_erp, soft_cfm;  ///< unset: the engine's own
   std::optional<double> max_correction_mps;  ///< fastest correction of a penetration; unset: the engine's own
   double rolling_resistance_m = 0;
-  Vec3 belt_velocity_W_mps;  ///< of the surface of b seen from that of a, beside the motion of the bodies
+  Vec3 belt_velocity_W_mps;  ///< of b's surface relative to a's, in addition to the motion of the bodies
 };
 
 /// @param a  created before b

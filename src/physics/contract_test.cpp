@@ -1,4 +1,4 @@
-/// What every engine promises (physics/engine.h), tested on each of them. A part that an engine does not claim in its
+/// Contract of the engines (physics/engine.h), tested on each of them. A part that an engine does not claim in its
 /// capabilities() is left out by a condition, so that no test is ever skipped.
 #include <gtest/gtest.h>
 
@@ -135,7 +135,7 @@ TEST_P(EngineContract, AWallStopsAnIdealDrive) {
   // The wall's face is at 0.9, the robot's radius 0.1. A compliant contact yields by less than a millimetre.
   EXPECT_NEAR(world.state(id).X_WB.p.x, 0.8, 1e-3);
   EXPECT_NEAR(world.state(id).V_WB.linear.x, 0, 1e-3);
-  // It never passed the wall, and leaves it when told to.
+  // It never passed the wall, and leaves it on command.
   world.drive(id, {.vx_mps = -0.5, .max_accel_mps2 = 2.0});
   world.run(100);
   EXPECT_LT(world.state(id).X_WB.p.x, 0.5);
@@ -374,7 +374,7 @@ TEST_P(EngineContract, AGuidedInstanceIsWhereItWasTold) {
   EXPECT_NEAR(yaw_of(world.engine->pose(id).q), 0.5, 1e-12);
   EXPECT_NEAR(world.state(id).V_WB.linear.x, 10, 1e-12);
   EXPECT_NEAR(world.state(id).V_WB.angular.z, 50, 1e-12);
-  world.run(1);  // told nothing, it stands
+  world.run(1);  // without a command it stands
   EXPECT_NEAR(norm(world.state(id).X_WB.p - to.p), 0, 1e-12);
   EXPECT_EQ(world.state(id).V_WB.linear, Vec3{});
 }
@@ -454,7 +454,7 @@ TEST_P(EngineContract, ARuleMayLetSomethingPass) {
   EXPECT_NEAR(world.state(id).X_WB.p.x, 1.8, 1e-3);  // through the ghost, up to the face of the wall
 }
 
-/// A disc with one wheel beside it that touches nothing.
+/// A disc with one wheel at its side that touches nothing.
 model::Instance with_wheel(const std::string& name) {
   model::Model m;
   m.links.push_back(link_of("base", Cylinder{0.1, 0.1}, 2, {{0, 0, 0.05}, {}}));

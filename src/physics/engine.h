@@ -58,7 +58,7 @@ struct Wrench {
 
 /// What a joint's motor shall do; holds until the next target for this joint.
 ///
-/// A motor (mode effort) may be given what belongs to it beside its effort. All of it acts implicitly, on the velocity
+/// A motor (mode effort) may be given its own properties in addition to its effort. All of it acts implicitly, on the velocity
 /// that the sub-step ends with, so it is stable whatever its size and that of the load:
 ///
 ///   effort - damping * v - inertia * dv/dt, and Coulomb friction of at most `friction`
@@ -93,8 +93,8 @@ struct DriveTarget {
 struct RollTarget {
   JointId wheel;
   BodyId base;
-  double per_vx = 0, per_vy = 0,
-         per_wz = 0;  ///< [rad/m], [rad/m], [1]: wheel speed per velocity of the base's origin
+  /// [rad/m], [rad/m], [1]: wheel speed per velocity of the base's origin.
+  double per_vx = 0, per_vy = 0, per_wz = 0;
 };
 
 /// Whether a wheel with rollers (model::RollerWheel) runs on its rollers, each a body of its own, or as one body whose
@@ -143,7 +143,7 @@ struct JointLoad {
   Vec3 force_N, torque_Nm;
 };
 
-/// Whose forces the next step shall tell; consumed by it.
+/// Contacts and joints whose forces the next step shall report; consumed by it.
 struct Watch {
   std::vector<BodyId> contacts;  ///< all contacts of these bodies
   std::vector<JointId> loads;
@@ -167,7 +167,7 @@ struct Capabilities {
   bool contact_drives = false;  ///< wheels drive by contact and friction
   bool ideal_drives = false;
   bool rays = false;            ///< rays() answers
-  bool contact_forces = false;  ///< Contact::force_W is told
+  bool contact_forces = false;  ///< Contact::force_W is reported
   bool joint_loads = false;     ///< joint_loads() answers
   bool rollers = false;         ///< wheels can run on their rollers
   bool grips = false;           ///< set_grips() works
@@ -197,7 +197,7 @@ class Engine {
   virtual std::span<const JointId> joints(InstanceId id) const = 0;
   /// Moves a whole instance to a pose, at rest, its joints as they are; wakes it and what rested on it.
   virtual void set_pose(InstanceId id, const Pose& X_WM) = 0;
-  /// Of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the model frame's
+  /// Pose of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the model frame's
   /// origin) during it, whatever is in its way; contacts feel that velocity. Without a call it stands still.
   /// @pre it was added with a motion
   virtual void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) = 0;
@@ -261,7 +261,7 @@ struct EngineKind {
   const char* name;
   const char* help;
   std::vector<FieldInfo> (*describe)();
-  /// @param config   keys of `physics:` beside `engine`
+  /// @param config   keys of `physics:` other than `engine`
   Result<std::unique_ptr<Engine>> (*create)(const Node& config, Vec3 gravity_mps2);
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What an engine says of a body that no step can be made with.
+/// Errors of an engine about a body with whose state no step can be made.
 #include <cmath>
 #include <string>
 

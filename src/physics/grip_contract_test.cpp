@@ -1,4 +1,4 @@
-/// What every engine that claims grips promises of them (physics/engine.h).
+/// Contract of grips (physics/engine.h), tested on every engine that claims them.
 #include <gtest/gtest.h>
 
 #include "physics/test_world.h"
@@ -27,7 +27,7 @@ model::Instance guided_of(const std::string& name, Vec3 p) {
   return instance;
 }
 
-/// Two crates of 1 kg beside each other, 0.3 apart, in free space.
+/// Two crates of 1 kg side by side, 0.3 apart, in free space.
 struct Grippers : World {
   InstanceId a, b;
   explicit Grippers(const EngineKind& k, Vec3 gravity = {0, 0, 0}) : World(k, {}, gravity) {

@@ -1,10 +1,10 @@
 #pragma once
-/// What two touching surfaces make together: one law for all engines.
+/// Combination of two touching surfaces: one law for all engines.
 ///
 /// Substances  where both have one, physics/substance.h decides.
 /// Friction    else: Coulomb, pairs combine by min(). A surface with fdir1 brings its two directions along.
 /// Skin        multiplies what either law gives, along its axis. Where both have a skin, that with the smaller ratio counts.
-///             Where the axis stands up from the surface (more than 71 deg) there is no along: across holds both ways.
+///             Where the axis stands up from the surface (more than 71 deg) there is no direction along: the value across holds both ways.
 /// Bounce      the larger restitution counts, above the threshold of the surface it came from.
 /// Softness    springs in series, dampers add; slip and soft_cfm are compliances in series: they add. soft_erp and the
 ///             fastest correction: the smaller.

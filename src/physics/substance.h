@@ -1,5 +1,5 @@
 #pragma once
-/// What two touching substances make together, after LpzRobots.
+/// Contact of two substances, after LpzRobots.
 ///
 ///   mu        = r1 r2                                roughness r
 ///   slip      = s1 + s2                              slip s, [m/(s N)] per contact point
@@ -15,7 +15,7 @@
 ///   ERP = h stiffness / (h stiffness + damping),   CFM = 1 / (h stiffness + damping)
 ///
 /// which is the spring integrated implicitly: stable at any step, and the more damped the longer the step. How high a
-/// ball bounces follows from its mass, the stiffness and the damping: elasticity is no coefficient of restitution.
+/// ball bounces follows from its mass, the stiffness and the damping: elasticity is not a coefficient of restitution.
 ///
 /// Source   G. Martius (2010), eq. 2.2, 2.3; the factors: LpzRobots, ode_robots.
 #include "model/substance.h"

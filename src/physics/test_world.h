@@ -1,5 +1,5 @@
 #pragma once
-/// Models and a world for the tests of physics engines: what the tests say in one line each.
+/// Models and a world for the tests of physics engines.
 #include <memory>
 #include <string>
 #include <utility>

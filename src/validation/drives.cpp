@@ -15,7 +15,7 @@ struct Manoeuvre {
 };
 
 struct Vehicle {
-  const char* name;     ///< as the page says it
+  const char* name;     ///< as in the page
   const char* builder;  ///< with its parameters, in YAML
   std::vector<const char*> levels;
   std::vector<Manoeuvre> manoeuvres;
@@ -157,7 +157,7 @@ Measured measure(const Vehicle& vehicle, const char* engine, const char* level, 
   return {between(begin, robot.pose(), turned_rad, ticks * robot.tick_s()), mean};
 }
 
-/// What theory says of a manoeuvre, and the bound for engines.
+/// Theory's prediction for a manoeuvre, and the bound for engines.
 struct Theory {
   Twist twist;
   double bound;

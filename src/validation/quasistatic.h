@@ -1,11 +1,11 @@
 #pragma once
-/// How a vehicle moves whose wheels turn at given speeds on ground with dry friction: an answer that no engine was asked for.
+/// Quasistatic motion of a vehicle whose wheels turn at given speeds on ground with dry friction, found without any engine.
 ///
 /// Without inertia, of all velocities (v, w) of the chassis the one comes about at which friction dissipates least,
 ///
 ///   P(v, w) = sum_i N_i |d_i|,   d_i = v + w z x p_i - s_i,
 ///
-/// which says that the forces of friction balance each other. Contact i, at p_i and loaded with N_i, slips by d_i against a
+/// which means that the forces of friction balance each other. Contact i, at p_i and loaded with N_i, slips by d_i against a
 /// surface of the vehicle that runs over the ground with -s_i; of a contact on a roller only the part of d_i along the roller's
 /// axis e_i counts. P is convex; it is minimised by least squares with weights N_i / |d_i| (Weiszfeld's iteration).
 ///
@@ -45,7 +45,7 @@ void add_wheel(std::vector<Patch>& patches, double x_m, double y_m, double half_
 /// The roller on which a Mecanum wheel of joint angle `turned_rad` stands, as builders/mecanum_robot makes it: its axis is tilted by
 /// `angle_rad`, and it touches where that axis passes over the lowest line of the rim.
 ///
-/// A roller f past the bottom stands (R - r) tan f / tan(angle) beside the wheel's middle, and its axis lies on the
+/// A roller f past the bottom stands (R - r) tan f / tan(angle) to the side of the wheel's middle, and its axis lies on the
 /// ground along (sin(angle) cos f, cos(angle)).
 void add_mecanum_wheel(std::vector<Patch>& patches, double x_m, double y_m, double radius_m,
                        double roller_radius_m, int rollers, double angle_rad, double turned_rad,

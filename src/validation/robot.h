@@ -29,7 +29,7 @@ class Robot {
   Pose pose() const { return sim->engine().pose(id); }
   /// True velocity in its own frame.
   Twist velocity() const;
-  /// Of the model's k-th joint.
+  /// State of the model's k-th joint.
   const JointState& joint(std::size_t k) const {
     return sim->engine().joint_states()[sim->engine().joints(id)[k].index];
   }

@@ -38,7 +38,7 @@ Result<Built> build(const Spec& s) {
               .X_LP = {{r * cosine, r * sine, s.height_m / 2}, quat_from_axis_angle({0, 0, 1}, 2 * half * i)},
               .color = i % 2 == 0 ? colors::wood : Color{0.68f, 0.48f, 0.28f, 1}});
   }
-  add_mass(out.model, walls, 1, 1);  // a static body's is never asked for
+  add_mass(out.model, walls, 1, 1);  // a static body's is never used
   return out;
 }
 

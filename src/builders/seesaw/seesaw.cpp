@@ -36,7 +36,7 @@ Result<Built> build(const Spec& s) {
   model::Model& m = out.model;
   const Vec3 pivot{0, 0, s.height_m};
   const std::uint32_t base = add_link(m, "base", {});
-  // Two cheeks beside the plank, an axle through it.
+  // Two cheeks at the plank's sides, an axle through it.
   const double cheek = 0.06 * s.length_m, y = s.width_m / 2 + 0.03 * s.length_m;
   for (const double side : {1.0, -1.0})
     add_part(m, base,

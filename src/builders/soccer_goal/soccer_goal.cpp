@@ -86,7 +86,7 @@ Result<Built> build(const Spec& s) {
   for (const double side : {1.0, -1.0})
     part({middle_x, side * wall_y, s.height_m / 2}, {length, wall, s.height_m}, true);
   if (s.walls) {
-    add_mass(m, frame, 1, 1);  // a static body's is never asked for
+    add_mass(m, frame, 1, 1);  // a static body's is never used
     return out;
   }
 

@@ -31,7 +31,7 @@ Result<Built> build(const Spec& s) {
     wall({0, side * y, s.height_m / 2}, {s.length_m + 2 * s.wall_m, s.wall_m, s.height_m});
     wall({side * x, 0, s.height_m / 2}, {s.wall_m, s.length_m * s.factor_xy, s.height_m});
   }
-  add_mass(out.model, walls, 1, 1);  // a static body's is never asked for
+  add_mass(out.model, walls, 1, 1);  // a static body's is never used
   return out;
 }
 

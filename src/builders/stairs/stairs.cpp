@@ -40,7 +40,7 @@ Result<Built> build(const Spec& s) {
     block(front + depth / 2);
     if (s.down && i < s.steps) block(2 * run + s.platform_m - front - depth / 2);
   }
-  add_mass(out.model, link, 1, 1);  // a static body's is never asked for
+  add_mass(out.model, link, 1, 1);  // a static body's is never used
   return out;
 }
 

@@ -80,7 +80,7 @@ Result<Built> build(const Spec& s) {
   out.model.is_static = true;
   const std::uint32_t ground = add_link(out.model, "ground", {});
   add_part(out.model, ground, {.shape = Heightfield{std::move(grid)}, .color = {0.30f, 0.42f, 0.20f, 1}});
-  add_mass(out.model, ground, 1, 1);  // a static body's is never asked for
+  add_mass(out.model, ground, 1, 1);  // a static body's is never used
   return out;
 }
 

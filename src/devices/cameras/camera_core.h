@@ -1,5 +1,5 @@
 #pragma once
-/// What cameras with levels share: the directed one and the one below a mirror.
+/// Core of the cameras with levels: the directed one and the one below a mirror.
 ///
 /// Levels   `image` (the default): sensor_msgs/Image on <device>/image, CameraInfo on <device>/camera_info, with `compressed`
 ///          CompressedImage on <device>/image/compressed. `objects`:
@@ -57,7 +57,7 @@ inline constexpr LevelInfo camera_levels[] = {
     {"world", msg::ObjectPoseArray::ros_type, "", "Poses of the detected objects in the world."},
 };
 
-/// What a camera holds beside spec and state.
+/// Lens, pictures and topics of a camera, which are neither spec nor state.
 class CameraCore {
  public:
   CameraCore() = default;
@@ -66,7 +66,7 @@ class CameraCore {
   static bool fits(const CameraKeys& keys, const CameraState& state) {
     return state.zoom >= 1 && state.zoom <= (keys.zoom ? keys.zoom->max : 1);
   }
-  /// Takes the zoom where it shall be at this sample.
+  /// Moves the zoom to its value at this sample.
   void turn_zoom(const CameraKeys& keys, CameraState& state, double since_s, Time now);
   optics::PictureJob job(const CameraKeys& keys, const Context& context);
   void finish(const CameraKeys& keys, std::uint64_t sample, const Context& context);

@@ -1,5 +1,5 @@
 #pragma once
-/// The keys by which specs name a lens, shared by all devices with eyes; and what CameraInfo tells of it.
+/// Keys of a lens, shared by the specs of all cameras, and its CameraInfo.
 ///
 /// Frames   S, the sensor's: x forward, y left, z up. `<device>_optical`: z forward, x right, y down, as ROS has images'
 ///          (REP 103). Pictures and CameraInfo are stamped with the latter, detections with S.
@@ -47,7 +47,7 @@ struct Distortion {
 
 constexpr int max_side_px = 8192;
 
-/// Of a lens without a mirror. A Spec derives from it.
+/// Keys of a lens without a mirror. A Spec derives from it.
 struct LensKeys {
   Projection lens = Projection::pinhole;
   int width = 320, height = 240;

@@ -70,7 +70,7 @@ void ColorImage::compress(Topic<msg::CompressedImage>* topic, Compression compre
 }
 
 std::span<std::uint8_t> ColorImage::rgb() {
-  // Sizes are said anew: a snapshot may hold others.
+  // Sizes are set again: a snapshot may hold others.
   msg::Image& image = topic_->message;
   image.width = static_cast<std::uint32_t>(width_);
   image.height = static_cast<std::uint32_t>(height_);

@@ -1,5 +1,5 @@
 #pragma once
-/// From the picture scene to sensor_msgs/Image: what all devices with eyes share.
+/// Pictures of all cameras: from the picture scene to sensor_msgs/Image.
 #include <vector>
 
 #include "devices/cameras/camera_lens.h"
@@ -8,7 +8,7 @@
 
 namespace sandlot::cameras {
 
-/// How pictures are taken. A Spec derives from it.
+/// Keys of the exposure. A Spec derives from it.
 struct ExposureKeys {
   double near_m = 0.01, far_m = 1000;
   int samples = 1;
@@ -54,7 +54,7 @@ inline constexpr EnumName<Compression> compression_names[] = {
     {"none", Compression::none}, {"jpeg", Compression::jpeg}, {"png", Compression::png}};
 constexpr std::span<const EnumName<Compression>> enum_names(Compression) { return compression_names; }
 
-/// Where an eye is and through which lens it looks.
+/// Place of a camera on its robot, and its lens.
 struct CameraMount {
   std::uint64_t key = 0;
   std::uint32_t body = 0;  ///< index of the link that carries it

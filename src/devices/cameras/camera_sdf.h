@@ -1,5 +1,5 @@
 #pragma once
-/// SDF's <camera> as keys of the kinds with eyes; shared by their from_sdf functions.
+/// SDF's <camera> as keys of the kinds of cameras; shared by their from_sdf functions.
 ///
 /// <horizontal_fov>, <image>, <clip>, <noise> (gaussian), <distortion>, <lens> with <type>, <scale_to_hfov>, <cutoff_angle>
 /// and <intrinsics>, <depth_camera><clip>, <anti_aliasing>. SDF's defaults hold where they are not ours: 1.047 rad, 320 x 240,
@@ -14,7 +14,7 @@ struct CameraUse {
 };
 /// Keys of the lens, and of the picture or the depth as the kind has them. Names what it cannot use.
 Result<Node> camera_keys(const Node& element, Diagnostics& diagnostics, CameraUse use);
-/// Of a multicamera with two cameras side by side.
+/// Keys of a multicamera with two cameras side by side.
 Result<Node> stereo_keys(const Node& element, Diagnostics& diagnostics);
 
 }  // namespace sandlot::sdf_element

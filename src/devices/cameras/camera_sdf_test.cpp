@@ -1,4 +1,4 @@
-/// Wide-angle lenses of SDF: r = c1 f fun(theta / c2), in what the lens' keys say of it.
+/// Wide-angle lenses of SDF: r = c1 f fun(theta / c2), as keys of the lens.
 #include "devices/cameras/camera_sdf.h"
 
 #include <gtest/gtest.h>

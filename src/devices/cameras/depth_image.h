@@ -1,5 +1,5 @@
 #pragma once
-/// Depth images and the points they mean: what devices that see distances share.
+/// Depth images and point clouds, shared by the cameras that measure distances.
 ///
 /// Depth    of pinholes along the optical axis, of others the distance. 32FC1: metres, +inf beyond `far`, -inf nearer than `near`,
 ///          NaN where errors took it away (REP 118). 16UC1: millimetres, 0 for all of those and beyond 65.5 m.

@@ -1,5 +1,5 @@
 #pragma once
-/// What cameras share that tell things apart: a picture of instance numbers, and the things they name.
+/// Instance pictures of cameras that label objects: pixels hold numbers of instances.
 #include <algorithm>
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace sandlot::cameras {
 
-/// Null for what is no thing. Things stand in the order of their creation, and so of their numbers.
+/// Object of an instance number, or null. Objects are in the order of their creation, and so of their numbers.
 inline const LabelledObject* labelled_object(std::span<const LabelledObject> objects,
                                              std::uint32_t instance) {
   const auto found = std::lower_bound(

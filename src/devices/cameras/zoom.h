@@ -1,5 +1,5 @@
 #pragma once
-/// A camera's zoom lens: what the cameras that have one share with the units that turn them.
+/// Zoom lens of a camera: its keys and topics, shared by cameras and pan-tilt units.
 ///
 /// Command  <camera>/zoom/command: std_msgs/Float64, the focal length wanted in those of the spec, cut to 1 ... `max`.
 /// Output   <camera>/zoom: std_msgs/Float64, the focal length now, with every sample at any level.

@@ -1,5 +1,5 @@
 #pragma once
-/// What the drive plugins of Gazebo have in common, for the from_sdf functions of drives.
+/// Elements that Gazebo's drive plugins have in common, for the from_sdf functions of drives.
 #include <initializer_list>
 
 #include "devices/sdf_element.h"

@@ -43,7 +43,7 @@ double angle_of(const Pivot& pivot, Joints joints) { return pivot.sign * joints[
 /// Edges that an encoder has counted at an angle.
 double edges(int ticks, double angle_rad) { return std::floor(angle_rad * ticks / math::tau); }
 
-/// Points the wheels where `steering(pivot index)` says.
+/// Points the wheels along `steering(pivot index)`.
 template <class Steering>
 void point_wheels(Base& base, Steering&& steering) {
   for (std::size_t i = 0; i < base.wheels.size(); ++i) {
@@ -53,7 +53,7 @@ void point_wheels(Base& base, Steering&& steering) {
                                                    steering(static_cast<std::size_t>(wheel.pivot)));
   }
 }
-/// On rails the wheels stand as they are told, wherever their joints are on the way there.
+/// On rails the wheels stand as commanded, wherever their joints are on the way there.
 double steering_of(const Drive& drive, std::size_t p, Level level, Joints joints) {
   return level == ideal ? drive.state.pivots[p].told_rad : angle_of(drive.base.pivots[p], joints);
 }
@@ -69,7 +69,7 @@ PlanarMotion measured(Drive drive, Level level, Joints joints) {
   return kinematics::chassis_motion(base.geometry, base.turns, base.pivot_x_m).motion;
 }
 
-/// Moves the odometry on by what the wheels turned since it was last asked.
+/// Moves the odometry on by the wheels' turns since the last call.
 void count_wheels(Drive drive, Level level, Joints joints) {
   Base& base = drive.base;
   State& state = drive.state;
@@ -160,7 +160,7 @@ void take_commands(Drive drive, Level level, Joints joints) {
     state.taken[level] = velocity.count;
     state.command_time = velocity.stamp;
     state.by_wheels = 0;
-    // A message may hold anything; what is no number asks for nothing.
+    // A message may hold anything; what is not a number has no effect.
     const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
     state.command = {sane(velocity.message.linear.x), sane(velocity.message.linear.y),
                      sane(velocity.message.angular.z)};
@@ -370,7 +370,7 @@ void ramp(Drive drive, const PlanarMotion& wanted, double h_s) {
   if (part == 1) set.x = wanted.x, set.y = wanted.y;
 }
 
-/// Moves the setpoint and tells the steering where to go.
+/// Moves the setpoint and sets the steering's targets.
 void follow(Drive drive, const PlanarMotion& wanted, double h_s, Joints joints) {
   State& state = drive.state;
   PlanarMotion& set = state.setpoint;

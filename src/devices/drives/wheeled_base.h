@@ -1,5 +1,5 @@
 #pragma once
-/// What the drives with several kinds of wheels share: skid, track, Ackermann, omni, Mecanum and swerve drive.
+/// Base of the drives with wheels of several kinds: skid, track, Ackermann, omni, Mecanum and swerve drive.
 ///
 /// A kind brings a spec (the names of its joints), the wheels they are (kinematics/wheels.h) and what the chassis cannot do.
 ///
@@ -13,8 +13,8 @@
 ///          <device>/<level>/wheels/command: sensor_msgs/JointState for single wheels: `velocity` [rad/s], or `effort` (a
 ///          torque [Nm]; with `motor:` the share of the battery's voltage, -1 to 1), `position` [rad] steers. Names of joints
 ///          say whose, in any order; without names they are those of the wheels, then of the steering, in the spec's order.
-///          Wheels that a message leaves out keep what they were told. Whatever kind of command came last counts; of two in
-///          one tick the wheels'. On level `ideal` an effort asks for nothing.
+///          Wheels that a message leaves out keep their last command. Whatever kind of command came last counts; of two in
+///          one tick the wheels'. On level `ideal` an effort has no effect.
 /// Output   <device>/<level>: nav_msgs/Odometry of B from the joints alone, as diff_drive's. <device>/<level>/wheels:
 ///          sensor_msgs/JointState of wheels and steering, angles as the encoders show them. With `encoder_ticks`
 ///          <device>/<level>/ticks: std_msgs/Int64MultiArray. State: `residual` [m] of the last step's odometry (the wheels
@@ -47,7 +47,7 @@ namespace sandlot::wheeled {
 
 enum Level : std::uint32_t { ideal, contact, rollers };
 inline constexpr std::size_t most_levels = 3;
-/// What a switch of level leaves to be told to the engine, in State::handover.
+/// Commands to the engine that a switch of level leaves to be given, in State::handover.
 enum Handover : std::uint8_t { hand_base = 1, hand_wheels = 2 };
 
 struct Control {
@@ -127,7 +127,7 @@ struct Common {
 /// Per wheel.
 struct WheelState {
   double told = 0;                            ///< by a command of its own: speed or effort
-  std::uint8_t by_effort = 0;                 ///< 1: it was told an effort
+  std::uint8_t by_effort = 0;                 ///< 1: its last command was an effort
   double counted_rad = 0;                     ///< angle that the odometry has counted
   double virtual_rad = 0, virtual_radps = 0;  ///< of a wheel without a joint
   double current_A = 0;                       ///< in its motor
@@ -144,7 +144,7 @@ struct WheelState {
 struct PivotState {
   double told_rad = 0;        ///< where it is to go
   double counted_rad = 0;     ///< angle at the odometry's last step
-  std::uint8_t backward = 0;  ///< 1: its wheels turn backward to roll in the direction asked for
+  std::uint8_t backward = 0;  ///< 1: its wheels turn backward to roll in the requested direction
   static void fields(auto& s, auto&& visit) {
     visit(Field{"told", "rad", "Commanded steering angle."}, s.told_rad);
     visit(Field{"counted", "rad", "Angle at the odometry's last step."}, s.counted_rad);
@@ -157,7 +157,7 @@ struct State {
   std::uint8_t by_wheels = 0;  ///< 1: the wheels' own commands count
   kinematics::PlanarMotion command, setpoint;
   Time command_time;
-  double curvature = 0;  ///< of a car, asked for while it moved last
+  double curvature = 0;  ///< of a car, requested while it moved last
   std::uint8_t handover = 0;
   std::vector<WheelState> wheels;
   std::vector<PivotState> pivots;
@@ -226,7 +226,7 @@ struct Base {
   std::array<Topic<msg::Int64MultiArray>*, most_levels> ticks{};
   struct Running {
     Winding winding;
-    bool on_voltage = false;  ///< the engine integrates the motor; else it was asked for a speed or a torque
+    bool on_voltage = false;  ///< the engine integrates the motor; else its command was a speed or a torque
   };
   std::vector<double> turns;
   std::vector<Running> running;

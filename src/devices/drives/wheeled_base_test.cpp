@@ -1,4 +1,4 @@
-/// All drives of devices/drives/wheeled_base.h, in an engine whose joints do what they are told.
+/// All drives of devices/drives/wheeled_base.h, in an engine whose joints follow their targets exactly.
 /// long file: the same few models and configurations serve all of them.
 #include "devices/drives/wheeled_base.h"
 
@@ -170,13 +170,13 @@ TEST(Drives, RollersOfTheModelDecideOverTheKeys) {
   EXPECT_NEAR(told(rig, 1), (-0.2 - (0.3 - 0.2)) / 0.08, 1e-12);
 }
 
-/// A drive that moves as asked ends where the exact arc of its velocity does; on rails its odometry tells the same.
+/// A drive that moves as commanded ends where the exact arc of its velocity does; on rails its odometry agrees.
 struct Course {
   const char* name;
   const Kind* kind;
   model::Model model;
   Node node;
-  double x, y, turn;       ///< asked for
+  double x, y, turn;       ///< commanded
   double dx, dy;           ///< D in B
   double got_y, got_turn;  ///< what it can do of it
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// What devices that send one fan of rays per sample share: the fans that are due, cast in batches on all threads.
+/// Casting of the fans of rays that are due, in batches on all threads; for devices with one fan per sample.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -68,7 +68,7 @@ struct Wheel {
     double wanted_radps = 0, motor = 0, friction = 0;  ///< angular impulses at most
     double thrust = 0;                                 ///< what the velocity motor gave
   };
-  /// Of this step.
+  /// This step's:
   struct Now {
     Vec2 ahead, across, arm;  ///< the directions it holds, and where; with rollers the first alone
     double roll_m = 0;        ///< velocity along `ahead` that a spin of 1 rad/s makes up for
@@ -89,7 +89,7 @@ struct JointConstraint {
   double turn = 0;  ///< angular impulse of a slider or grip
   double motor = 0, friction = 0, spring = 0, limit = 0;
   BodyId body_a, body_b;  ///< of a grip
-  // Of this step.
+  // This step's:
   Vec2 arm_a, arm_b, axis;
   double rate_before = 0;
 };
@@ -100,7 +100,7 @@ double friction_along(const PairSurface& pair, Vec3 normal, Vec3 way);
 /// One side of a contact, as needed by the law of surfaces and the user's rule.
 struct ContactFace {
   const model::Surface* surface = nullptr;
-  const model::Collision* collision = nullptr;  ///< null: the rule is not asked
+  const model::Collision* collision = nullptr;  ///< null: the rule is not called
   std::uint32_t slot = none, link = 0;
   const RigidGroup* group = nullptr;  ///< null: it stands still
 };
@@ -177,7 +177,7 @@ struct Motor {
   std::uint32_t generation = 0;
   JointTarget target;
   const model::Joint* joint = nullptr;  ///< null: there is none
-  /// Kinematic joints, and the wheels of a robot that runs on rails, are moved as their targets say.
+  /// Kinematic joints, and the wheels of a robot that runs on rails, follow their targets exactly.
   enum class Role : std::uint8_t { kinematic, wheel, constraint } role = Role::kinematic;
   bool listed = false;  ///< among those that are moved so
   std::uint32_t slot = none;
@@ -218,7 +218,7 @@ struct Instance {
   std::vector<JointConstraint> constraints;
   Quat tilt;       ///< attitude of the canonical link at heading 0
   double z_m = 0;  ///< its height
-  /// Of one that stands still: its canonical link.
+  /// Canonical link of an instance that stands still.
   struct Still {
     Vec2 at;
     Quat q;

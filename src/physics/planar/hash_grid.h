@@ -1,7 +1,7 @@
 #pragma once
 /// A uniform grid over the whole plane in a table of fixed size: cell (i, j) lies in slot (i mod columns, j mod rows).
 ///
-/// There is no edge that a body could leave, and a body that flies off costs the others nothing. Cells that share a
+/// The grid has no edge that a body could cross, and a body that flies off costs the others nothing. Cells that share a
 /// slot share their lists, so a list may name things that are elsewhere: callers test what they find.
 ///
 /// Cost     building: two passes over the things and one over the slots (counting sort), no heap after warm-up.

@@ -203,7 +203,7 @@ TEST(PlanarOverlaps, ABallIsNarrowerAwayFromItsMiddle) {
 }
 
 TEST(PlanarRays, SeveralThreadsMayAskFirst) {
-  // Nothing has asked since the step, so the first to come makes the map and the links' states.
+  // Nothing has read them since the step, so the first reader makes the map and the links' states.
   Crowd crowd(7, 4, false);
   Crowd twin(7, 4, false);
   for (int round = 0; round < 20; ++round) {

@@ -51,10 +51,10 @@ struct RigidGroupPlan {
   std::vector<Edge> edges;
   Vec2 centre;          ///< of the circle around all parts, in the group's frame
   double radius_m = 0;  ///< its radius; 0: nothing to meet
-  double core_m =
-      0;  ///< radius of the smallest part's inscribed circle: what must not be passed over in a step
-  double reach_share_m =
-      1e9;  ///< how far it may come in a step beside twice its speed: what has no shape meets nothing
+  /// Radius of the smallest part's inscribed circle, which a step must not pass over.
+  double core_m = 0;
+  /// Largest way in a step in addition to twice its speed; a group without a shape meets nothing.
+  double reach_share_m = 1e9;
   Heights heights;
   bool disc = false;  ///< that circle is all there is
   Vec2 com_H;

@@ -8,7 +8,7 @@
 /// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's cradle
 ///          works), then sequential impulses with warm start hold bodies apart with Coulomb friction; overlap beyond
 ///          0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp).
-/// Surface  combined by the law of all engines (pair_surface.h), zones and the user's rule included; the rule may be asked
+/// Surface  combined by the law of all engines (pair_surface.h), zones and the user's rule included; the rule may be called
 ///          by several threads at once, and sees all joints at 0. Of a pair count: friction along the tangent, belts,
 ///          restitution, and on the ground the two directions of friction and rolling resistance. Slip, softness and
 ///          correction have no meaning: bodies are hard. So of a substance only the roughness counts (mu = r1 r2), and it
@@ -21,7 +21,7 @@
 ///          within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis alone (wheels.cpp).
 /// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of at most
 ///          what brings the robot to its velocity within the step at the acceleration it may have. Their wheels turn by
-///          the way that the base went, when asked for (rolls.cpp).
+///          the way that the base went, on demand (rolls.cpp).
 /// Joints   pivots and sliders between groups of an instance, with motor, limits, friction and spring; steering. All
 ///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
 /// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does
@@ -238,7 +238,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::vector<JointConstraint> grips_;
   std::vector<Grip> published_grips_;  ///< the same, as others see them
 
-  // Made when asked for, in const functions that several threads may call at once.
+  // Made on demand, in const functions that several threads may call at once.
   mutable std::mutex refreshing_;
   mutable std::atomic<bool> map_fresh_ = false, links_fresh_ = false, rolls_fresh_ = false;
   mutable bool walls_fresh_ = false;

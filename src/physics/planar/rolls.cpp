@@ -1,4 +1,4 @@
-// Wheels of an ideal drive that turn as the base moves: angles by multiplication, when somebody asks.
+// Wheels of an ideal drive that turn as the base moves: angles by multiplication, on demand.
 #include <algorithm>
 
 #include "base/check.h"

@@ -396,7 +396,7 @@ void PlanarEngine::find_islands(double h_s) {
 
 // --- afterwards -----------------------------------------------------------------------------------------------------
 
-/// Joints that are moved as their targets say.
+/// Joints that follow their targets exactly.
 void PlanarEngine::turn_joints(double h_s) {
   std::erase_if(turning_, [&](std::uint32_t k) {
     Motor& motor = motors_[k];

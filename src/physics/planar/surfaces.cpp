@@ -17,7 +17,7 @@ double friction_along(const PairSurface& pair, Vec3 normal, Vec3 way) {
   return size > 0 ? pair.mu * pair.mu2 / size : 0;
 }
 
-/// Of the shape in W; a group's joints at 0.
+/// Pose of the shape in W, with a group's joints at 0.
 Pose PlanarEngine::pose_of(const ContactFace& face) const {
   const Instance& instance = instances_[face.slot];
   const model::Link& link = instance.model->links[face.link];
@@ -46,7 +46,7 @@ PairSurface PlanarEngine::surfaces_at(const ContactFace& a, const ContactFace& b
     };
     rule_(told(a), told(b), point, normal, pair);
   }
-  // A rule may say anything.
+  // A rule may return anything.
   for (double* x : {&pair.mu, &pair.mu2, &pair.restitution, &pair.rolling_resistance_m})
     *x = std::max(0.0, *x);
   return pair;
@@ -64,7 +64,7 @@ void PlanarEngine::set_contact_rule(ContactRule rule) {
 
 // --- explosions -----------------------------------------------------------------------------------------------------
 
-/// How many times faster than it may be; infinite where it is no number.
+/// Speed as a multiple of the largest allowed one; infinite where it is not a number.
 double PlanarEngine::excess(Vec2 v, double w) const {
   const double most = std::max(dot(v, v) / (spec_.max_speed_mps * spec_.max_speed_mps),
                                w * w / (spec_.max_spin_radps * spec_.max_spin_radps));

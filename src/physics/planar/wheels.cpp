@@ -107,7 +107,7 @@ Wheel::Axle axle_of(const Motor& motor, const JointState& state, double inertia,
   return axle;
 }
 
-/// What the joint's state tells of its motor.
+/// Motor's part of the joint's state.
 double effort_of(const JointTarget& t, const Motor& motor, double thrust, double before, double after,
                  double h_s) {
   if (t.mode == JointTarget::Mode::velocity) return thrust / h_s;

@@ -4,7 +4,7 @@
 /// Method   plane: the barrel's farthest point. Ball and capsule: the place of their axis that is deepest in the barrel.
 ///          Box: the least overlap along its face normals and out of its edges. Mesh, terrain, cone, ellipsoid: each
 ///          triangle nearby by its face where the barrel's farthest point lies over it, else by its edges; an edge does
-///          not count beside a face that pushes the same way, so that seams of a flat floor are not felt.
+///          not count next to a face that pushes the same way, so that seams of a flat floor are not felt.
 ///          Cylinders and other barrels: see cylinder_contacts.h.
 /// Output   one point per surface that is touched; four where a flat end lies on a plane, box or triangle.
 /// Exact    plane, ball, capsule; box and triangles while the overlap is small against the barrel.

@@ -17,7 +17,7 @@ using namespace test;
 constexpr Barrel roller{0.01, 0.05, 0.03};
 const Quat along_x = quat_from_rpy(0, math::pi / 2, 0);
 
-/// Of a barrel with something that stands; normals point up into the barrel where that lies above.
+/// Contacts of a barrel with something that stands; normals point up into the barrel where that lies above.
 std::vector<Contact> contacts_of(const Shape& fixed, const Pose& X_WF, const Pose& X_WB,
                                  const Barrel& barrel = roller, double margin_of_time = 1e-6) {
   World world(rigid::engine, {}, {});

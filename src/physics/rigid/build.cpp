@@ -58,7 +58,7 @@ struct MakeGeom {
   dGeomID operator()(const Sphere& s) const { return dCreateSphere(nullptr, s.radius_m); }
   dGeomID operator()(const Cylinder& c) const { return dCreateCylinder(nullptr, c.radius_m, c.length_m); }
   dGeomID operator()(const Capsule& c) const { return dCreateCapsule(nullptr, c.radius_m, c.length_m); }
-  /// For its bounds alone: ODE knows no barrels, and is never asked to collide one.
+  /// For its bounds alone: ODE has no barrels and never collides one.
   dGeomID operator()(const Barrel& b) const { return dCreateCylinder(nullptr, b.radius_m, b.length_m); }
   dGeomID operator()(const Plane&) const { return dCreatePlane(nullptr, 0, 0, 1, 0); }
   template <class OfTriangles>
@@ -271,7 +271,7 @@ void RigidEngine::make_geoms(Instance& instance) {
   count += instance.wheels.size();
   moving += instance.wheels.size();
   // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one by one,
-  // because the box around a house says nothing about its walls.
+  // because the box around a house is no bound for its walls.
   if (moving > 1) {
     instance.space = dSimpleSpaceCreate(space_);
     dSpaceSetCleanup(instance.space, 0);

@@ -21,7 +21,7 @@ bool is_awake(const Geom& g) { return g.body ? g.body->awake : g.instance->is_mo
 
 constexpr std::size_t most_points = 512;  ///< of one pair, before they are thinned out
 
-/// Across the axis of a roller that is no body of its own friction is that of its bearing, a force [N].
+/// Across the axis of a roller that is not a body of its own, friction is that of its bearing, a force [N].
 void give_way(dSurfaceParameters& surface, const model::RollerWheel& wheel) {
   surface.mode = (surface.mode & ~(dContactApprox1_2 | dContactSlip2)) | dContactMu2;
   surface.mu2 = surface.mu > 0 ? wheel.bearing_friction_Nm / wheel.roller_radius_m : 0;
@@ -224,7 +224,7 @@ void RigidEngine::collide() {
 }
 
 /// What the surfaces at a contact point make together: those of the shapes, a zone in place of what stands still, and at
-/// last what the user's rule says.
+/// last the result of the user's rule.
 PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   const Vec3 point = vec(hit.contact.geom.pos), normal = -vec(hit.contact.geom.normal);
   const auto side = [&](const Geom& g) -> SurfaceSide {
@@ -267,7 +267,7 @@ const Body* roller_of(const Geom& a, const Geom& b) {
 
 }  // namespace
 
-/// What ODE needs beside the parameters of the surfaces: the direction of friction, and that a surface moves.
+/// ODE's inputs in addition to the parameters of the surfaces: the direction of friction, and that a surface moves.
 ///
 /// A roller on its hinge is held along its axis alone: whatever slips across, it soon turns along with. Its axis is thus the
 /// direction of the force, sliding or not; that of its slip is not, since the point of contact wanders on the barrel to where

@@ -52,7 +52,7 @@ struct Overlap {
     const double f = at(d);
     if (f < depth - 1e-13 * (A.r + B.r)) depth = f, n = d;
   }
-  /// Of both signs the one that separates.
+  /// The one of both signs that separates.
   void offer_axis(Vec3 d) { offer(dot(d, apart) < 0 ? -d : d); }
   /// The same for a vector that may be too short to have a direction.
   void offer_along(Vec3 d) {

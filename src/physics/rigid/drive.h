@@ -8,7 +8,7 @@
 ///          base is moved along the chord, hence it stays on the exact arc: the velocity of the sub-step has the heading
 ///          of its middle.
 /// Limits   the weight along the plane is carried without bound, and so is the centripetal force; what the bodies pull
-///          or push beside that is limited to mass * max_accel. What pushes the base without being known beforehand
+///          or an additional push that is limited to mass * max_accel. What pushes the base without being known beforehand
 ///          slows it by what it does within one sub-step: a base whose z leans by `a` against the ground's normal moves
 ///          g a h away from its target velocity.
 #include "physics/rigid/parts.h"

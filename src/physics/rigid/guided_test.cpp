@@ -1,4 +1,4 @@
-/// What moves along a path carries and turns what stands on it.
+/// Bodies that move along a path, which carry and turn whatever stands on them.
 #include <gtest/gtest.h>
 
 #include "base/math.h"

@@ -187,7 +187,7 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
 
 /// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's normal force,
 /// is an equation between velocities at a point: with the point at radius c = pitch / (2 pi) from the axis and the
-/// direction half along the axis, half round it, it says slide - c turn = 0.
+/// direction half along the axis, half round it, it is slide - c turn = 0.
 void add_thread_row(dWorldID world, dJointGroupID group, Joint& j, double erp, double h) {
   const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
   const Vec3 axis = axis_W(j), radial = rotate(on_parent.q, second_to(j.decl->axis_J));
@@ -296,7 +296,7 @@ void prepare_joint(Joint& j, double erp, double h) {
   if (j.target.mode != JointTarget::Mode::effort) return;
   const double effort = std::clamp(j.target.effort, -j.decl->max_effort, j.decl->max_effort);
   if (has_slope(j)) {
-    // The row says v = vel - cfm * effort, which is the motor's law solved for the velocity it ends with.
+    // The row is v = vel - cfm * effort, which is the motor's law solved for the velocity it ends with.
     const double slope = j.target.damping + j.target.inertia / h;
     set_motor_parameter(j, dParamVel, (effort + j.target.inertia / h * j.velocity) / slope);
     set_motor_parameter(j, dParamFMax, dInfinity);
@@ -410,7 +410,7 @@ void measure_position(Joint& j, double h, const Pose& X_WM) {
   } else {
     angle = 2 * math::atan2(dot({turn.x, turn.y, turn.z}, j.decl->axis_J), turn.w);
   }
-  // The measured angle is exact but wrapped; the velocity says near which turn it must lie.
+  // The measured angle is exact but wrapped; the velocity determines near which turn it must lie.
   const double expected = j.position + h * j.velocity;
   const double turns = std::floor((expected - angle) / math::tau + 0.5);
   j.position = angle + turns * math::tau;

@@ -1,9 +1,9 @@
 #pragma once
 /// Joints on ODE: what each kind of joint is made of, and its position, velocity and effort.
 ///
-/// A revolute or continuous joint is a hinge with its motor; a prismatic one a slider with a linear motor beside it; a
-/// universal one ODE's, a screw a piston (which slides and turns about one axis), both with angular motors beside.
-/// Limits, spring with damping, and friction are rows of their own (`extra`), made only where the declaration asks for
+/// A revolute or continuous joint is a hinge with its motor; a prismatic one a slider with a separate linear motor; a
+/// universal one ODE's, a screw a piston (which slides and turns about one axis), both with separate angular motors.
+/// Limits, spring with damping, and friction are rows of their own (`extra`), made only where the declaration has
 /// them, so that a motor at a limit, or against friction, gets its exact effort.
 ///
 ///   limit     unwrapped position, corrected by ERP: overshoot of at most one sub-step's motion
@@ -12,7 +12,7 @@
 ///   thread    slide = pitch / (2 pi) * turn, as one two-sided contact between the flanks of the thread: the two
 ///             bodies do not move against each other along the direction that lies on a flank's normal
 ///   motor     of its own: effort - (damping + inertia / h) (v - v_before) ..., one row, compliant by the inverse of
-///             that slope; friction of a motor is a row in the contacts' group, made anew in every sub-step
+///             that slope; friction of a motor is a row in the contacts' group, made in every sub-step
 ///   mimic     a velocity motor with at most the joint's max_effort: the leader's velocity times the multiplier, and
 ///             ERP of the position error per sub-step
 ///
@@ -28,7 +28,7 @@ namespace sandlot::rigid {
 /// Makes the ODE joints. @pre the bodies stand in the declared pose, the model at X_WM (identity unless the joint holds
 /// on to the world).
 void make_joint(dWorldID world, Joint& joint);
-/// Fixes the world side of a joint anew. @pre as above
+/// Fixes the world side of a joint again. @pre as above
 void anchor_joint(Joint& joint, const Pose& X_WM);
 void destroy_joint(Joint& joint);
 
@@ -43,7 +43,7 @@ void set_motor(Joint& joint);
 void prepare_joint(Joint& joint, double erp, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);
-/// Lets ODE tell the forces of all rows of this joint in this sub-step. @pre prepared
+/// Lets ODE report the forces of all rows of this joint in this sub-step. @pre prepared
 void tell(Joint& joint);
 /// No longer.
 void silence(Joint& joint);

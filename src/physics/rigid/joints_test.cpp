@@ -259,7 +259,7 @@ TEST(RigidJoints, ASpinningWheelDoesNotTiltADrivenRobot) {
   world.run(1, h);
   EXPECT_NEAR(world.joint(id).velocity, 40, 1e-6);
   world.drive(id, {.wz_radps = 2});
-  // A free body would answer the turning of the axis with L w = 0.2 Nm, and roll to and fro with L / I = 0.012 rad/s.
+  // A free body would answer the turning of the axis with L w = 0.2 Nm, and roll back and forth with L / I = 0.012 rad/s.
   double roll = 0;
   for (int i = 0; i < 300; ++i) {
     world.run(1, h);

@@ -38,7 +38,7 @@ std::vector<Sample> sample(const TriangleMesh& mesh) {
     p.at = at;
     p.normal += normal;
   };
-  // One point per cell is kept in the end: of a very fine mesh a part of the triangles says enough.
+  // One point per cell is kept in the end: of a very fine mesh a part of the triangles is enough.
   const std::size_t stride = 1 + mesh.triangles.size() / 200'000;
   for (std::size_t at_triangle = 0; at_triangle < mesh.triangles.size(); at_triangle += stride) {
     const auto& t = mesh.triangles[at_triangle];

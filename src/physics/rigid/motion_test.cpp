@@ -258,7 +258,7 @@ TEST(RigidMotion, ABallBouncesToItsRestitution) {
   // ground then has at most ERP * depth / h, a fifth of the speed).
   ASSERT_EQ(out.size(), 4u);
   for (std::size_t i = 0; i < in.size(); ++i) {
-    // The solver asks for e times the velocity of the step before; compliance yields CFM * m ((1 + e) v / h + g).
+    // The solver aims at e times the velocity of the step before; compliance yields CFM * m ((1 + e) v / h + g).
     EXPECT_LE(out[i], e * in[i] + 1e-12);
     EXPECT_GE(out[i], e * in[i] - 1.001 * 1e-6 * mass * ((1 + e) * in[i] / h + g));
   }

@@ -1,4 +1,4 @@
-/// Who collides with whom.
+/// Pairs of shapes that collide, and pairs that do not.
 #include <gtest/gtest.h>
 
 #include "physics/rigid/rigid_engine.h"

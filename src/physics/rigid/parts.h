@@ -1,5 +1,5 @@
 #pragma once
-/// What the rigid engine is made of: plain structs that hold ODE's handles beside Sandlot's own State.
+/// Parts of the rigid engine: plain structs that hold ODE's handles and Sandlot's own State.
 ///
 /// Frames: W world, M model, L link, B body (origin in the centre of mass), C collision, J joint.
 #include <ode/ode.h>
@@ -86,7 +86,7 @@ struct Joint {
   dJointID second = nullptr;      ///< the same rows about the second axis of a universal joint
   const Joint* leader = nullptr;  ///< whom it follows (mimic)
   std::unique_ptr<dJointFeedback> feedback;
-  /// Of main, motor, extra, second and the rows that live for one sub-step; made when the joint is watched first.
+  /// Feedback of main, motor, extra, second and the rows that live for one sub-step; made when the joint is watched first.
   std::unique_ptr<std::array<dJointFeedback, 6>> watched_rows;
   bool limited = false;
   bool soft_motor = false;  ///< the motor's row has a compliance of its own now; follows from the target

@@ -8,7 +8,7 @@
 
 namespace sandlot::rigid {
 
-/// Gives ODE what the body's State says.
+/// Writes the body's State to ODE.
 void RigidEngine::put(Body& body) {
   dBodySetPosition(body.ode, body.p.x, body.p.y, body.p.z);
   dBodySetLinearVel(body.ode, body.v.x, body.v.y, body.v.z);

@@ -12,7 +12,7 @@
 /// Limits   planes and terrain are static; no continuous collision: a body faster than its
 ///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
 /// Cost     direct solver cubic, quick solver linear in the contacts of an island.
-/// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() tells.
+/// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() reports.
 /// Source   R. Smith, Open Dynamics Engine 0.16.2; settings: docs of the fields in spec.h.
 #include <ode/ode.h>
 
@@ -204,7 +204,7 @@ class RigidEngine final : public Engine {
   EngineCounters counters_;
   std::optional<Error>
       failure_;        ///< who broke off the run; the State is that before the sub-step in which it did
-  std::string fault_;  ///< what ODE said when it stopped in the middle of a sub-step; empty: it never did
+  std::string fault_;  ///< ODE's message when it stopped in the middle of a sub-step; empty: it never did
 
   // Scratch of one sub-step; kept for its capacity.
   std::vector<Pair> pairs_, dormant_;

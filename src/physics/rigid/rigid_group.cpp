@@ -62,7 +62,7 @@ void add_masses(const model::Model& model, RigidGroup& group) {
     group.inertia_B += rotated(normalised(X_BCo.q), tensor(model.links[l].inertial));
     group.inertia_B += steiner(model.links[l].inertial.mass_kg, X_BCo.p);
   }
-  if (group.links.size() == 1)  // exactly what the file says, without the rounding of the sums
+  if (group.links.size() == 1)  // exactly as in the file, without the rounding of the sums
     group.inertia_B = rotated(normalised(first.inertial.X_LCo.q), tensor(first.inertial));
   if (group.gravity_mass_kg > 0) group.gravity_point_B = X_BM * (gravity_moment_M / group.gravity_mass_kg);
 }

@@ -109,7 +109,7 @@ TEST(RigidSleep, PosesPushesTargetsAndNewStaticsWake) {
   Tower world;
   world.run(100);
   ASSERT_EQ(world.awake(), 0u);
-  world.push(world.ids[1], {});  // nothing is no push
+  world.push(world.ids[1], {});  // a zero force is not a push
   world.run(1);
   EXPECT_EQ(world.awake(), 0u);
   world.push(world.ids[3], {0.1, 0, 0});

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scenario may set under `physics:` when the engine is `rigid`.
+/// Keys of a scenario's `physics:` for the engine `rigid`.
 #include <cstdint>
 #include <span>
 
@@ -22,8 +22,8 @@ inline std::span<const EnumName<Solver>> enum_names(Solver) {
 struct Spec {
   Solver solver = Solver::automatic;
   int quick_iterations = 50;
-  int direct_limit =
-      32;  ///< measured on stacks: equal cost at 24, direct 1.5 times as dear at 32, exact until there
+  /// Measured on stacks: equal cost at 24, direct 1.5 times as expensive at 32, exact until there.
+  int direct_limit = 32;
   double erp = 0.2;
   double cfm = 1e-6;
   double contact_correction_mps = 1;

@@ -1,7 +1,7 @@
 /// The sub-step. Between sub-steps the State is in Body, Joint and Instance alone; ODE gets what it needs from there,
 /// so nothing that a restored engine could not know takes part:
 ///
-///   1 forces      from outside, of joints and drives, into ODE; orientations written anew
+///   1 forces      from outside, of joints and drives, into ODE; orientations written again
 ///   2 contacts    found, put in order of creation, attached
 ///   3 islands     our own union-find: which solver, who may sleep
 ///   4 solve       ODE computes new velocities and positions
@@ -41,7 +41,7 @@ inline Quat rotation(Vec3 turn) {
   return {c, scale * turn.x, scale * turn.y, scale * turn.z};
 }
 
-/// Of a product of unit quaternions, whose length differs from 1 by rounding: one Newton step is exact.
+/// Normalised product of unit quaternions, whose length differs from 1 by rounding: one Newton step is exact.
 inline Quat trimmed(Quat q) {
   const double s = 1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {s * q.w, s * q.x, s * q.y, s * q.z};

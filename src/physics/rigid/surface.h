@@ -1,5 +1,5 @@
 #pragma once
-/// What a pair of surfaces (physics/pair_surface.h) is to ODE.
+/// Parameters of ODE for a pair of surfaces (physics/pair_surface.h).
 ///
 /// Friction  ODE bounds friction by a box along two directions; aligning the first with the slip makes it the isotropic
 ///           cone, because along the slip the box and the cone agree. A pair with fdir1_W keeps its directions and its box:
@@ -18,7 +18,7 @@ namespace sandlot::rigid {
 /// @param slippery   friction is switched off (an ideal drive moves one of the two)
 dSurfaceParameters parameters_of(const PairSurface& pair, double h_s, double world_cfm, bool slippery);
 
-/// Unit vector across `normal` along `wanted`, or a fixed one when `wanted` has no part across it. Inline: it is asked for
+/// Unit vector across `normal` along `wanted`, or a fixed one when `wanted` has no part across it. Inline: it is called
 /// every contact point.
 inline Vec3 friction_direction(Vec3 normal, Vec3 wanted) {
   const Vec3 across = wanted - dot(wanted, normal) * normal;

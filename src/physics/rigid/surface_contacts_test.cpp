@@ -1,4 +1,4 @@
-/// What surfaces do, against formulas: substances, belts, skins, resistance against rolling, zones, the user's rule; and
+/// Surfaces against formulas: substances, belts, skins, resistance against rolling, zones, the user's rule; and
 /// bodies that explode.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

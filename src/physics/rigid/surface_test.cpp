@@ -37,7 +37,7 @@ TEST(Surface, ModesAreSetForWhatThePairHas) {
 TEST(Surface, ASpringWithADamperIsErpAndCfmOfTheStep) {
   PairSurface pair;
   pair.stiffness_N_per_m = 2000, pair.damping_N_s_per_m = 30;
-  pair.soft_erp = 0.9, pair.soft_cfm = 1;  // do not count beside a spring
+  pair.soft_erp = 0.9, pair.soft_cfm = 1;  // do not count where there is a spring
   const dSurfaceParameters p = parameters_of(pair, 0.01, 1e-6, false);
   EXPECT_DOUBLE_EQ(p.soft_erp, 20.0 / 50);
   EXPECT_DOUBLE_EQ(p.soft_cfm, 1.0 / 50);

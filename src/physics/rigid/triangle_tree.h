@@ -1,5 +1,5 @@
 #pragma once
-/// Which triangles of a mesh lie in a box: a tree of bounding boxes in double precision, in the mesh's own frame.
+/// Tree of the bounding boxes of a mesh's triangles, to find those in a box; double precision, in the mesh's own frame.
 #include <cstdint>
 #include <vector>
 

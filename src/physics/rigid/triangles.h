@@ -38,9 +38,9 @@ class Triangles {
   dGeomID make_geom() const;
   /// Frame of ODE's shape in C: ODE's terrain has y up.
   Quat q_CO() const { return q_CO_; }
-  /// Of all but terrain.
+  /// For all but terrain.
   std::span<const Sample> samples() const { return samples_; }
-  /// Of all but terrain; made when it is asked for first.
+  /// For all but terrain; made on first use.
   const TriangleTree& tree() const;
 
  private:

@@ -14,7 +14,7 @@ Symmetric3 tensor(const model::Inertial& i) {
   return {i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z};
 }
 
-/// Of a link about its joint's axis.
+/// Moment of inertia of a link about its joint's axis.
 double spin_inertia(const model::Link& link, const model::Joint& joint) {
   const Vec3 axis = rotate_inverse(link.inertial.X_LCo.q, rotate(joint.X_CJ.q, joint.axis_J));
   return dot(axis, tensor(link.inertial) * axis);

@@ -23,10 +23,10 @@
 
 namespace sandlot::rigid {
 
-/// Of its mass, that an awake roller has beside the wheel that carries it: enough for the solvers, little for the world.
+/// Share of its mass that an awake roller has in addition to the wheel that carries it: enough for the solvers, little for the world.
 inline constexpr double awake_share = 0.2;
 
-/// Whether a wheel can be made of it at all; model/rollers.h says more.
+/// Whether a wheel can be made of it at all; see model/rollers.h.
 bool is_wheel(const model::RollerWheel& wheel);
 
 /// Takes the rollers' masses and inertias into their wheels' groups.

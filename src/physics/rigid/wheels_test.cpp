@@ -129,7 +129,7 @@ struct Case {
   bool mecanum, rollers;
   double h;
   double side, turning;  ///< relative tolerances
-  double less = 0;       ///< share of the speed that may be missing beside
+  double less = 0;       ///< further share of the speed that may be missing
 };
 class Drives : public testing::TestWithParam<Case> {};
 

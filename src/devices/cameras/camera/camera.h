@@ -5,7 +5,7 @@
 ///          down; Image and CameraInfo are stamped with it. Pixel (0, 0) is the centre of the upper left one.
 /// Levels   devices/cameras/camera_core.h: `image` | `objects` | `world`.
 /// Picture  optics/picture.h draws it from the visuals of the world, with shadows, depth of field, motion blur and rolling shutter
-///          where asked for. Then noise (noise/image_noise.h), gamma, format. The link that carries the camera is its housing and is
+///          where set. Then noise (noise/image_noise.h), gamma, format. The link that carries the camera is its housing and is
 ///          not seen; its shadow is.
 /// Limits   no automatic exposure, white balance, vignetting (a noise stage has it) or lens flares.
 /// Cost     about 30 ns per pixel, sample and light; no allocation after the first picture.

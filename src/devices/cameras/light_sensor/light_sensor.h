@@ -5,7 +5,7 @@
 ///
 /// Frame    sensor frame S: it faces along x and sees the half space before it, with the cosine.
 /// Output   level `illuminance`: sensor_msgs/Illuminance [lx]. Red, green and blue count with 0.2126, 0.7152, 0.0722, as the
-///          eye weighs them. World files give light without a unit: `lux` says what light of strength 1, falling
+///          eye weighs them. World files give light without a unit: `lux` is the illuminance that light of strength 1, falling
 ///          straight on it, is worth.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h; never below 0.

@@ -1,5 +1,5 @@
 #pragma once
-/// Camera above the field that tells all robots' software where everything is, about: the global video camera of robot
+/// Camera above the field that reports the approximate places of all objects to all robots: the global video camera of robot
 /// soccer's small leagues and of the first simulators of swarms.
 ///
 /// Frame    `world`. Its own place does not matter: it sees everything from far above.

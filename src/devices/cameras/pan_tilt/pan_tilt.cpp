@@ -82,7 +82,7 @@ Pose eye_pose(const Unit& unit, const Context& context) {
   return context.engine.states()[unit.eye_body].X_WB * unit.X_LE;
 }
 
-/// What the camera's zoom is told; null: it has none, is gone or has failed.
+/// Command slot of the camera's zoom; null: it has none, is gone or has failed.
 Topic<msg::Float64>* told_zoom(const Unit& unit, const Context& context) {
   if (unit.zoom_command_topic.empty() || !context.topics) return nullptr;
   return topic_cast<msg::Float64>(context.topics->find_command(unit.zoom_command_topic));
@@ -107,7 +107,7 @@ std::array<double, 2> zoom_of(const Unit& unit, const Context& context) {
 }
 
 /// Turns both joints so that the eye's x axis comes to the point. In the frame F of the axes (y: tilt, z: pan) the two
-/// angles are azimuth and elevation; the eye moves a little as it turns, so this is done anew in every tick.
+/// angles are azimuth and elevation; the camera moves a little as it turns, so this is done again in every tick.
 void look_at(Unit& unit, Vec3 point_W, const Context& context) {
   const Pose X_WE = eye_pose(unit, context);
   const Vec3 ahead = rotate(X_WE.q, {1, 0, 0});
@@ -192,7 +192,7 @@ void take_text(Unit& unit, const Context& context) {
   state.row = 0;
 }
 
-/// Where the thing of the label is, if the camera has told anew; of several the one nearest to the last.
+/// Place of the labelled object, if the camera has a new message; of several objects the one nearest to the last.
 std::optional<Vec3> sighting(Unit& unit, const Context& context) {
   if (unit.objects_topic.empty() || !context.topics) return std::nullopt;
   const auto* const topic = topic_cast<msg::ObjectArray>(context.topics->find_topic(unit.objects_topic));

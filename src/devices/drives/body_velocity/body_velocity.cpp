@@ -49,7 +49,7 @@ void Mover::actuate(PoolView<Mover> pool, const Context& context) {
     if (mover.command->count != state.taken) {
       state.taken = mover.command->count;
       state.command_time = mover.command->stamp;
-      // A message may hold anything; what is no number asks for nothing.
+      // A message may hold anything; what is not a number has no effect.
       const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
       state.vx_mps = sane(mover.command->message.linear.x);
       state.vy_mps = sane(mover.command->message.linear.y);

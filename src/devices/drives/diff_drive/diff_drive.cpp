@@ -21,7 +21,7 @@ double mean(std::span<const Wheel> wheels, std::span<const JointState> joints, d
   return sum / static_cast<double>(wheels.size());
 }
 
-/// Moves the odometry on by what the wheels turned since it was last asked.
+/// Moves the odometry on by the wheels' turns since the last call.
 void count_wheels(Drive& drive, std::span<const JointState> joints) {
   State& state = drive.state;
   const double left_rad = mean(drive.left, joints, &JointState::position);
@@ -47,7 +47,7 @@ void take_command(Drive& drive, Level level) {
   if (slot.count == state.taken[level]) return;
   state.taken[level] = slot.count;
   state.command_time = slot.stamp;
-  // A message may hold anything; what is no number asks for nothing.
+  // A message may hold anything; what is not a number has no effect.
   const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
   state.command_mps = sane(slot.message.linear.x);
   state.command_radps = sane(slot.message.angular.z);
@@ -161,7 +161,7 @@ void Drive::sense(PoolView<Drive> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
     if (!drive.spec->odometry) continue;
-    const auto joints = context.engine.joint_states();  // not before: engines make them when asked
+    const auto joints = context.engine.joint_states();  // not before: engines make them on demand
     count_wheels(drive, joints);
     Topic<msg::Odometry>& topic = *drive.odometry[is_ideal(pool.levels[index]) ? ideal : contact];
     const Pose X_BD{{drive.dx_m, drive.dy_m, 0}, {}};

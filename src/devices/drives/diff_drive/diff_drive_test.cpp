@@ -84,7 +84,7 @@ TEST(DiffDrive, WithoutOdometryItDrivesAndTellsNothing) {
 }
 
 TEST(DiffDrive, OdometryRunsOnExactArcs) {
-  // Wheels that turn as asked: a straight of 2 m, a quarter circle of radius 1 m, a half turn on the spot.
+  // Wheels that turn as commanded: a straight of 2 m, a quarter circle of radius 1 m, a half turn on the spot.
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("drive", drive(), contact_bit));
   const auto run = [&](double v, double omega, int ticks) {

@@ -5,7 +5,7 @@
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
 /// Geometry from the joints: wheel i rolls across its joint's axis, wherever that points. The rollers' angle is the model's
 ///          (model/wheel.h), else roller_angle for all: 90 degrees, rollers that roll across the wheel.
-/// Errors   beside those of wheeled_base.h: wheels that together cannot move or turn the drive.
+/// Errors   in addition to those of wheeled_base.h: wheels that together cannot move or turn the drive.
 /// Source   kinematics/wheels.h.
 #include "devices/drives/wheeled_drive.h"
 

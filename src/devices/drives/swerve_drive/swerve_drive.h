@@ -7,7 +7,7 @@
 ///          A wheel takes the shorter way: it turns backward rather than round (kinematics/swerve.h). While it is being steered
 ///          it is driven at the part of its speed that lies along it.
 /// Geometry from the joints; wheel_joint i hangs on steering_joint i.
-/// Errors   beside those of wheeled_base.h: a wheel that hangs on no steering joint.
+/// Errors   in addition to those of wheeled_base.h: a wheel that hangs on no steering joint.
 /// Source   kinematics/swerve.h, kinematics/kabsch.h.
 #include "devices/drives/wheeled_drive.h"
 

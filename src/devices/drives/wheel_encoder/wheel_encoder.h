@@ -5,7 +5,7 @@
 ///          declared pose of the model. Level `joint`: the exact angle, speed and effort, without quantisation.
 ///          Both may be active at once.
 /// Time     the end of the tick.
-/// Noise    level `ticks`: noise/chain.h on the angle [rad], then counting. An angle that is no number (a drop-out)
+/// Noise    level `ticks`: noise/chain.h on the angle [rad], then counting. An angle that is not a number (a drop-out)
 ///          leaves the count as it was.
 /// Limits   no index pulse, missed edges, counter width, or play between wheel and encoder.
 /// Cost     one division per sample, no allocation.

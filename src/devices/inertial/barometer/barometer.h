@@ -58,7 +58,7 @@ struct Barometer {
   static void sense(PoolView<Barometer> pool, const Context& context);
 };
 
-/// Of the standard atmosphere.
+/// Pressure of the standard atmosphere.
 double pressure_Pa(double altitude_m);
 
 extern const Kind kind;

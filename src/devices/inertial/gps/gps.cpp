@@ -70,7 +70,7 @@ Result<Receiver> Receiver::create(const DeviceBuild& build, Spec spec) {
 }
 
 namespace {
-/// Of a channel about the truth, what is drawn at the start included.
+/// Variance of a channel about the truth, what is drawn at the start included.
 double variance_of(const ChannelNoiseSpec& c, double interval_s, double errors) {
   return c.variance(interval_s, errors) + errors * errors * c.mean_std * c.mean_std;
 }
@@ -109,7 +109,7 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
       message.latitude = place.latitude_rad * 180 / math::pi;
       message.longitude = place.longitude_rad * 180 / math::pi;
       message.altitude = place.height_m;
-      // The errors may be tuned while it runs, so each sample says how large they are now.
+      // The errors may be tuned while it runs, so each sample has their present size.
       const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : context.tick.s();
       message.position_covariance[0] = message.position_covariance[4] = variance_of(spec.horizontal,
                                                                                     interval_s, spec.errors);

@@ -6,7 +6,7 @@
 ///          exactly (geometry/geodesy.h).
 /// Levels   `fix` (the default): sensor_msgs/NavSatFix; covariance diagonal, of the errors configured. `velocity`:
 ///          geometry_msgs/TwistStamped, east, north, up [m/s]. `pose`: geometry_msgs/PoseWithCovarianceStamped of the
-///          canonical link in `world`, as a filter tells it that has the receiver and a compass; errors of its own: `pose:`
+///          canonical link in `world`, as estimated by a filter that has the receiver and a compass; errors of its own: `pose:`
 ///          (noise/pose_estimate.h), roll and pitch true. Any of them at once; `pose` alone computes no fix.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h on east and north (`horizontal`, each with its own draw), up (`vertical`) and the three

@@ -141,7 +141,7 @@ Status reference_keys(const Node& frame, Node& config, Diagnostics& diagnostics)
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   using namespace sdf_element;
   Node config = Node::map(element.place());
-  // A sensor says <update_rate>; the older plugins of models say <updateRate> and <gaussianNoise>.
+  // A sensor has <update_rate>; the older plugins of models have <updateRate> and <gaussianNoise>.
   config.set("rate", Node::scalar("0", element.place()));
   SL_TRY(copy_number(element, {"update_rate", "updateRate", "update_rate_hz"}, 1.0, config, "rate"));
   config.set("reference", Node::scalar("start", element.place()));

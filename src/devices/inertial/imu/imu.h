@@ -7,8 +7,8 @@
 ///          acceleration of S's origin less gravity, so (0, 0, 9.81) at rest. orientation of S in the frame that
 ///          `reference` names. Covariances are those of the noise configured,
 ///          at the factor `errors` of the start.
-///          Level `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as an inertial navigation
-///          tells it that was right when the level became active and has had nothing but its sensors since:
+///          Level `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as estimated by an inertial navigation
+///          that was right when the level became active and has had nothing but its sensors since:
 ///
 ///            dv = velocity_walk sqrt(dt) n,  dp = v dt + its integral        std(p) = velocity_walk sqrt(t^3 / 3)
 ///            turn about the vertical: std = yaw_walk sqrt(t)
@@ -138,7 +138,7 @@ struct Imu {
   static Result<Imu> create(const DeviceBuild& build, Spec spec);
   static void pre_substep(PoolView<Imu> pool, const Context& context, double h_s);
   static void sense(PoolView<Imu> pool, const Context& context);
-  /// A level that becomes active begins anew: `imu` with an interval of its own, `pose` at the true pose.
+  /// A level that becomes active starts again: `imu` with an interval of its own, `pose` at the true pose.
   Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
 };
 

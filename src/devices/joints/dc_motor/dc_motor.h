@@ -9,9 +9,9 @@
 ///
 /// Levels   `velocity` (the default): a PID loop to a speed [rad/s]. `position`: to an angle [rad]. Both put out a voltage;
 ///          they run at `loop_rate` and see what the encoder shows: counts, and the counts since the last run. `voltage`
-///          [V] and `pwm` [-1, 1] drive the power stage as told; `effort` [Nm on the joint] drives the current that
+///          [V] and `pwm` [-1, 1] drive the power stage directly; `effort` [Nm on the joint] drives the current that
 ///          gives this torque, as far as voltage and current limit reach. Each takes a std_msgs/Float64. Exactly one
-///          level is active; a switch keeps the electrical state and the voltage, and the loop starts anew.
+///          level is active; a switch keeps the electrical state and the voltage, and the loop starts again.
 /// Output   sandlot_msgs/MotorState on each level: target, true speed of the joint, torque on the joint before Coulomb
 ///          friction, mean voltage at the terminals and current in the winding over the last sub-step.
 /// Power    the power stage is an ideal bridge on a supply of `supply_voltage` behind `supply_resistance`: at duty d the motor
@@ -71,7 +71,7 @@ struct State {
   std::uint8_t powered = 0;                        ///< 1: the power stage is on
   double command = 0;                              ///< in the active level's unit
   double target = 0;                               ///< on its way to the command
-  double volts = 0;                                ///< what the bridge is told
+  double volts = 0;                                ///< setpoint of the bridge
   double current_A = 0;                            ///< in the winding, at the end of the sub-step
   double mean_current_A = 0, terminal_V = 0;       ///< over the last sub-step
   double loop_due_s = 0;                           ///< until the controller runs again

@@ -1,5 +1,5 @@
 #pragma once
-/// Gripper: holds the nearest thing in its reach, as it stands, until it is told to open or the thing is torn off.
+/// Gripper: holds the nearest thing in its reach, as it stands, until a command opens it or the object is torn off.
 ///
 /// Frame    the grasping point is the origin of the device's frame S on its link.
 /// Command  level `hold`: std_msgs/Bool. True closes: of all bodies that forces can move, the robot's own left out, the one

@@ -121,7 +121,7 @@ struct Motor {
 
   /// A command as it came, in the level's unit.
   double in_units(Level level, double command) const;
-  /// Of commands that are shares: the limit they are shares of.
+  /// Limit of which commands are shares, where they are.
   Status check_scale(std::uint32_t levels) const;
   double effort_limit() const { return std::min(spec.max_effort, joint_effort); }
   double velocity_limit() const { return std::min(spec.max_velocity, joint_velocity); }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the joints of a robot do: angle, speed and effort of some or all of them.
+/// Joint states of a robot: angle, speed and effort of some or all of its joints.
 ///
 /// Output   level `joints`: sensor_msgs/JointState, one entry per joint in the order named (all: the model's order).
 ///          Angles [rad] (prismatic: [m]) count from the model's declared pose and do not wrap; the effort is what

@@ -132,7 +132,7 @@ void Scanner::sense(PoolView<Scanner> pool, const Context& context) {
     scanner.scan->message.ranges.resize(scanner.directions_S.size());
     return scanner.scan->message.ranges;
   };
-  // Each level serves those that have it: who tells poses alone casts no ray.
+  // Each level serves the scanners that have it: one with poses alone casts no ray.
   const auto at = [&pool](std::uint32_t level, std::vector<std::uint32_t>& chosen) {
     chosen.clear();
     for (const std::uint32_t index : pool.due)

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-/// From distances along the rays to what the ring tells, with errors. Only data of this ring is touched.
+/// From distances along the rays to the ring's readings, with errors. Only data of this ring is touched.
 void finish(Ring& ring, std::uint64_t sample, Time since, const Context& context) {
   const Spec& spec = *ring.spec;
   std::vector<float>&ranges = ring.scan->message.ranges, &readings = ring.scan->message.intensities;

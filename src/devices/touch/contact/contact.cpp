@@ -61,7 +61,7 @@ Result<Sensor> Sensor::create(const DeviceBuild& build, Spec spec) {
   sensor.body = sensor.merged && !build.instance.model->is_static ? build.bodies.front() : build.body();
   sensor.feels.assign(link.collisions.size(), sensor.spec.collision.empty());
   for (const std::string& name : sensor.spec.collision) {
-    // Files may say more than the last part of the name.
+    // Files may give more than the last part of the name.
     const auto split_at = name.rfind("::");
     const std::string last = split_at == std::string::npos ? name : name.substr(split_at + 2);
     std::vector<std::string> known;

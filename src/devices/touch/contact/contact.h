@@ -8,11 +8,11 @@
 ///          on it was at least `threshold` in any physics step since its previous sample: a blow between two samples
 ///          is not lost.
 /// Noise    none.
-/// Limits   the planar engine merges the shapes of a robot into one disc, which stands for all its links, and tells no forces:
+/// Limits   the planar engine merges the shapes of a robot into one disc, which stands for all its links, and reports no forces:
 ///          they read zero. Names are "<robot>::<link>::<collision>".
 /// Cost     nothing but a look at the list of contacts where nothing touches; the engine measures the forces of this link
 ///          only. Strings of names are written when something touches; capacity is reused.
-/// Errors   a collision that the link does not have; a threshold on an engine that tells no forces.
+/// Errors   a collision that the link does not have; a threshold on an engine that reports no forces.
 /// Source   SDF 1.9 <sensor type="contact">; message after gazebo_msgs/ContactsState.
 #include "devices/kind.h"
 #include "messages/messages.h"

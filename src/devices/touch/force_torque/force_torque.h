@@ -1,5 +1,5 @@
 #pragma once
-/// Force-torque sensor in a joint: what the two links exert on each other through it.
+/// Force-torque sensor in a joint: force and torque that the two links exert on each other through it.
 ///
 /// Frame    acts at the joint's origin. Axes by `frame`: `child` (the default) those of the child link, `parent` of the parent
 ///          link, `sensor` of the device's own pose on the child link.
@@ -12,7 +12,7 @@
 ///          real joint. On a base that moves on rails (a drive's level ideal) joints that move carry only what the rails
 ///          leave to them. Of a fixed joint in a ring of fixed joints the load is not determined.
 /// Cost     the engine's: physics/rigid/loads.cpp; two rotations per sub-step.
-/// Errors   a joint that is not there; an engine that does not tell loads.
+/// Errors   a joint that is not there; an engine that does not report loads.
 /// Source   SDF 1.9 <force_torque>.
 #include "devices/kind.h"
 #include "messages/messages.h"
