@@ -86,9 +86,9 @@ std::string write_flat(const test::TestFolder& folder) {
   return folder.file("flat.yaml");
 }
 
+/// Processor time per simulated second: of the tick's thread, of the process.
 struct Cost {
-  double tick_s = 1e9,
-         both_s = 1e9;  ///< processor time per simulated second: of the tick's thread, of the process
+  double tick_s = 1e9, both_s = 1e9;
 };
 
 double process_seconds() {

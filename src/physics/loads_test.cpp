@@ -145,7 +145,8 @@ TEST_P(EngineLoads, APushedJointBearsTheEffortToo) {
   const double alpha = 0.5 / (moments.y + 2 * 0.09);
   const JointLoad load = world.load(id, 1);
   expect_near(load.torque_Nm, {0, 0.5, 0}, 1e-9);
-  expect_near(load.force_N, {0, 0, -2 * 0.3 * alpha}, 3e-4);  // CFM / h = 1e-3 per N in addition to 1/m + r^2/I
+  expect_near(load.force_N, {0, 0, -2 * 0.3 * alpha},
+              3e-4);  // CFM / h = 1e-3 per N in addition to 1/m + r^2/I
 }
 
 TEST_P(EngineLoads, FreeFallLoadsNothingAndAPushLoadsByInertia) {

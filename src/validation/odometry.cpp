@@ -55,9 +55,8 @@ struct Course {
   double end_error_m = 0, end_turn_rad = 0;            ///< of the odometry against the truth
   double foreseen_error_m = 0, foreseen_turn_rad = 0;  ///< by the slip of the wheels
   double slipped_m = 0;                                ///< mean way of the wheels' slip
-  double largest_m = 0, largest_share = 0,
-         steady_m =
-             0;  ///< error, its largest ratio to its bound, and what a second at constant velocity adds
+  double largest_m = 0, largest_share = 0;  ///< error, and its largest ratio to its bound
+  double steady_m = 0;                      ///< error that a second at constant velocity adds
 };
 
 Course drive(const char* engine, const char* level, const char* odometry, bool slippery) {

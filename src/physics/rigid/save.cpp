@@ -15,7 +15,8 @@ constexpr std::uint8_t awake_flag = 1, quick_flag = 2, pushed_flag = 4, frozen_f
 bool in_range(Vec3 v) { return dot(v, v) < 1e24; }  // false for NaN too
 bool in_range(double x) { return std::abs(x) < 1e300; }
 
-constexpr std::uint8_t motor_flag = 4;  // in addition to the mode: the target brings damping, inertia or friction
+constexpr std::uint8_t motor_flag =
+    4;  // in addition to the mode: the target brings damping, inertia or friction
 
 void save_target(ByteWriter& w, const JointTarget& t) {
   const bool motor = t.damping > 0 || t.inertia > 0 || t.friction > 0;
