@@ -49,7 +49,8 @@ TEST(SlowCalibrate, WhatItWritesMakesTheHighLevelErrAsThePicturesDid) {
   const double ghosts = pictures["ghosts"];
   EXPECT_GT(ghosts, 20);
   EXPECT_NEAR(told["ghosts"].get<double>(), ghosts, 5 * std::sqrt(2 * ghosts));
-  // A deviation of n normal errors is known by the factor 1 +- 0.71 / sqrt(n), from their mean size by 1 +- 0.76 / sqrt(n).
+  // A deviation of n normal errors is known by the factor 1 +- 0.71 / sqrt(n), from their mean size by 1 +-
+  // 0.76 / sqrt(n).
   const double bearing = pictures["objects"]["bearing_std"];
   EXPECT_NEAR(told["objects"]["bearing_std"].get<double>(), bearing, bearing * 5 * 0.71 / std::sqrt(n));
   EXPECT_NEAR(range_std(told, 3), range_std(pictures, 3), range_std(pictures, 3) * 5 * 0.76 / std::sqrt(n));
@@ -76,8 +77,8 @@ TEST(SlowCalibrate, GivesBackTheErrorsThatTheLevelWasGiven) {
 TEST(Calibrate, OfAClearPictureThereAreHardlyAnyGhosts) {
   const auto pictures = calibrated("scenarios/ball.yaml --camera seeker/eye --samples 300");
   ASSERT_FALSE(pictures.contains("failed")) << pictures["failed"];
-  // Edges between a yellow goal and a magenta post, orange as the ball, made one in ten pictures; goals that are half hidden or
-  // half out of the picture were both missed and ghosts.
+  // Edges between a yellow goal and a magenta post, orange as the ball, made one in ten pictures; goals that
+  // are half hidden or half out of the picture were both missed and ghosts.
   EXPECT_GT(pictures["found"].get<double>(), 0.99 * pictures["sighted"].get<double>());
   EXPECT_LE(pictures["ghosts"].get<int>(), 3) << pictures.dump(1);
   // Things that are not told by colours are left out, and said to be.

@@ -82,7 +82,8 @@ TEST(Materials, DoWhatTheWorldsCommentsSay) {
                            "sled_along", "sled_across"})
     begin[name] = x(name);
   run_to(0.5);
-  // On 30 deg, v = g (sin - mu cos) t once it is faster than its slip takes up: mu is 0.5 times its own roughness.
+  // On 30 deg, v = g (sin - mu cos) t once it is faster than its slip takes up: mu is 0.5 times its own
+  // roughness.
   const double s30 = math::sin(math::pi / 6), c30 = math::cos(math::pi / 6);
   EXPECT_NEAR(norm(body("metal_block").V_WB.linear), 9.81 * (s30 - 0.25 * c30) * 0.5, 0.05);
   EXPECT_NEAR(norm(body("plastic_block").V_WB.linear), 9.81 * (s30 - 0.4 * c30) * 0.5, 0.05);

@@ -1,5 +1,5 @@
-/// Golden hashes: the state at the end of each scenario, the same in every build and for any number of threads.
-/// They change only with a commit that says why.
+/// Golden hashes: the state at the end of each scenario, the same in every build and for any number of
+/// threads. They change only with a commit that says why.
 #include <gtest/gtest.h>
 
 #include "command.h"

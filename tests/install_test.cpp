@@ -1,5 +1,5 @@
-/// The installed package as its users meet it: moved away from where it was installed, found by CMake, with our examples built
-/// against it and nothing else.
+/// The installed package as its users meet it: moved away from where it was installed, found by CMake, with
+/// our examples built against it and nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-/// Recording processes that are killed: what is on the disk opens after repair, in order, at most one chunk short.
+/// Recording processes that are killed: what is on the disk opens after repair, in order, at most one chunk
+/// short.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

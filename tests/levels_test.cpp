@@ -33,9 +33,10 @@ class LevelsOnTheWay : public testing::TestWithParam<Engine> {};
 INSTANTIATE_TEST_SUITE_P(Engines, LevelsOnTheWay,
                          testing::Values(Engine{"rigid", "rollers"}, Engine{"planar", "ideal"}));
 
-/// The robot goes round at 0.3 m/s and 0.5 rad/s, 3 mm and 5 mrad per tick, and nobody tells it so again. Place and
-/// odometry go on by that in the tick of a switch as in all others. On rollers both swing by some per cent as rollers pass
-/// (docs/validation.md): 0.3 mm and 0.8 mrad are twice what is seen, and a lost tick would be ten times as much.
+/// The robot goes round at 0.3 m/s and 0.5 rad/s, 3 mm and 5 mrad per tick, and nobody tells it so again.
+/// Place and odometry go on by that in the tick of a switch as in all others. On rollers both swing by some
+/// per cent as rollers pass (docs/validation.md): 0.3 mm and 0.8 mrad are twice what is seen, and a lost tick
+/// would be ten times as much.
 TEST_P(LevelsOnTheWay, KeepPlaceVelocityAndOdometry) {
   const TestFolder scratch;
   const auto [engine, third] = GetParam();

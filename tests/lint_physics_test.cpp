@@ -70,7 +70,8 @@ Servo run(const std::string& file, const char* level, double p, double d) {
 }
 
 TEST(LintPhysics, TheBoundOfGainsIsWhereTheLoopBecomesUnstable) {
-  // J = 0.334167 kg m^2, h = 10 ms: p = 2 J / h = 66.83. 3 % beyond, the error grows by 6 % per step; within, it shrinks.
+  // J = 0.334167 kg m^2, h = 10 ms: p = 2 J / h = 66.83. 3 % beyond, the error grows by 6 % per step; within,
+  // it shrinks.
   const std::string velocity = "tests/suspicious/gains_velocity_not.sdf";
   const Servo calm = run(velocity, "velocity", 66.83 * 0.97, 0),
               wild = run(velocity, "velocity", 66.83 * 1.03, 0);
@@ -123,7 +124,8 @@ int number_through(double v_mps, double w_m, double t_m, double h_s) {
 TEST(LintPhysics, BodiesTunnelOnceAStepIsLongerThanHalfOfWallAndBody) {
   constexpr double w = 0.3, t = 0.1, h = 0.01, bound = 0.5 * (w + t) / h;  // 20 m/s
   EXPECT_EQ(number_through(0.95 * bound, w, t, h), 0);
-  // Uniform phases: the share (v h - (t + w) / 2) / (v h) of them is first seen past the middle: 1 - 1/1.5 = 1/3 of 40.
+  // Uniform phases: the share (v h - (t + w) / 2) / (v h) of them is first seen past the middle: 1 - 1/1.5 =
+  // 1/3 of 40.
   EXPECT_NEAR(number_through(1.5 * bound, w, t, h), 40.0 / 3, 1.5);
 }
 

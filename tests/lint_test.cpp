@@ -1,5 +1,6 @@
-/// Findings of `check`. Each file of tests/suspicious begins with all that it expects (base/test_expectations.h), or with
-/// `expect: nothing` in the twins named *_not, which lie just on the other side of a rule's bound.
+/// Findings of `check`. Each file of tests/suspicious begins with all that it expects
+/// (base/test_expectations.h), or with `expect: nothing` in the twins named *_not, which lie just on the
+/// other side of a rule's bound.
 #include "sim/lint/lint.h"
 
 #include <gtest/gtest.h>

@@ -86,7 +86,8 @@ TEST(Output, AReplayThatWasInterruptedVerifiesNothing) {
   ASSERT_EQ(sandlot("run scenarios/indoor.yaml --duration 150s --record-topics none --record " + recording)
                 .exit_code,
             0);
-  // Too early a signal ends the program before it listens, too late a one finds it done: one of these meets it at work.
+  // Too early a signal ends the program before it listens, too late a one finds it done: one of these meets
+  // it at work.
   int met = 0;
   for (const char* after_s : {"0.1", "0.2", "0.4", "0.8", "1.6", "3.2", "6.4", "13"}) {
     const Printed printed = shell("timeout --preserve-status -s TERM " + std::string(after_s) + " " +

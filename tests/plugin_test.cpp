@@ -1,5 +1,5 @@
-/// Users' own controllers in shared libraries, by the command: they drive robots, are saved and restored, and what does
-/// not fit is refused with the place that asked for it.
+/// Users' own controllers in shared libraries, by the command: they drive robots, are saved and restored, and
+/// what does not fit is refused with the place that asked for it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ std::string scenario(const std::string& plugin, const std::string& controller) {
 
 TEST(Plugin, ItsControllerDrivesARobot) {
   const TestFolder scratch;
-  // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050 rad. Each begins
-  // 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
+  // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050
+  // rad. Each begins 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
   const double predicted_rad = 0.01 * 0.01 * (100 * 101 / 2) - 100 * 0.01 * 0.01 / (2 * 6);
   const std::string here = scratch.write("here.yaml", scenario("good", "spinner"));
   fs::copy_file(plugins() + "/good.so", scratch.file("libgood.so"));
@@ -110,7 +110,8 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
   refused(plugins() + "/taken.so", AllOf(HasSubstr("'wander'"), HasSubstr("so does Sandlot")));
   refused(plugins() + "/good.so, " + plugins() + "/good.so", HasSubstr("'spinner'"));
 
-  // Cut short where the loader would map it: a message, not SIGBUS. (Debug information at the end may be missing.)
+  // Cut short where the loader would map it: a message, not SIGBUS. (Debug information at the end may be
+  // missing.)
   std::ifstream in(plugins() + "/good.so", std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   for (const std::size_t size :

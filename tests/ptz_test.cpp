@@ -1,4 +1,5 @@
-/// models/ptz_camera on a robot, as a user drives it: turned and zoomed by hand, and watching a ball by itself.
+/// models/ptz_camera on a robot, as a user drives it: turned and zoomed by hand, and watching a ball by
+/// itself.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -38,7 +38,8 @@ TEST(Replay, ARecordingVerifiesBothWaysAndEndsInTheHashOfTheRun) {
   }
 }
 
-/// Sliders, failures and levels moved by hand: what they do is in the recording, and the same for any number of threads.
+/// Sliders, failures and levels moved by hand: what they do is in the recording, and the same for any number
+/// of threads.
 TEST(Replay, ARunWhoseErrorsFailuresAndLevelsAreChangedOnTheWayIsReproducible) {
   const TestFolder scratch;
   const std::string quiet = "scenarios/errors.yaml --duration 4s";

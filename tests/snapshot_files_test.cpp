@@ -120,7 +120,8 @@ TEST(SnapshotFiles, OptionsThatDoNotGoTogetherAreRefused) {
   refused("--snapshot a --snapshot-keep 3", "add --snapshot-every");
 }
 
-/// Every scenario there is: from the state at half time, in a new process, to the same end in any number of threads.
+/// Every scenario there is: from the state at half time, in a new process, to the same end in any number of
+/// threads.
 TEST(SlowSnapshotFiles, EveryScenarioGoesOnFromHalfTimeToTheSameHash) {
   int scenarios = 0;
   for (const auto& entry : std::filesystem::directory_iterator("scenarios")) {

@@ -1,8 +1,9 @@
 #pragma once
 /// State as little-endian bytes: what hashes cover and snapshots hold.
 ///
-/// write(w, x) and read(r, x) handle numbers, enumerations, strings, vectors, optionals, plain structs without
-/// padding and structs with a field list. Reading checks every length: bytes may come from a damaged file.
+/// write(w, x) and read(r, x) handle numbers, enumerations, strings, vectors, optionals, plain structs
+/// without padding and structs with a field list. Reading checks every length: bytes may come from a damaged
+/// file.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -110,7 +111,8 @@ void read(ByteReader& r, T& value) {
   } else if constexpr (is_vector<T>::value) {
     std::uint32_t size = 0;
     read(r, size);
-    // Every element takes at least one byte, a raw one its size: a damaged length cannot ask for more than there is.
+    // Every element takes at least one byte, a raw one its size: a damaged length cannot ask for more than
+    // there is.
     constexpr std::size_t least = RawBytes<typename T::value_type> ? sizeof(typename T::value_type) : 1;
     if (!r.ok() || size > r.remaining() / least) return r.fail();
     value.clear();
@@ -153,7 +155,8 @@ void read(ByteReader& r, T& value) {
   }
 }
 
-/// Calls visit(element) for each struct with fields in `member`: itself, what an optional holds, a list's elements.
+/// Calls visit(element) for each struct with fields in `member`: itself, what an optional holds, a list's
+/// elements.
 template <class Member, class Visit>
 void for_each_struct(Member& member, Visit&& visit) {
   using T = std::remove_cvref_t<Member>;
@@ -167,8 +170,8 @@ void for_each_struct(Member& member, Visit&& visit) {
   }
 }
 
-/// The tunable fields of a spec, nested ones included: the part of a spec that is State. How many there are in lists
-/// and optional structs is fixed when the spec was read.
+/// The tunable fields of a spec, nested ones included: the part of a spec that is State. How many there are
+/// in lists and optional structs is fixed when the spec was read.
 template <Fielded Spec>
 void write_tunables(ByteWriter& w, const Spec& spec) {
   Spec::fields(spec, [&](const Field& f, const auto& member) {

@@ -1,8 +1,9 @@
 #pragma once
 /// Hashes of several byte sequences at once.
 ///
-/// Cost   hash64() waits for each multiplication before it can begin the next; four sequences side by side keep the
-///        multiplier busy. Measured on the parts of a State (50 to 3000 bytes): a third of the time of one by one.
+/// Cost   hash64() waits for each multiplication before it can begin the next; four sequences side by side
+///        keep the multiplier busy. Measured on the parts of a State (50 to 3000 bytes): a third of the time
+///        of one by one.
 #include <array>
 #include <cstddef>
 #include <cstdint>

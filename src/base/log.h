@@ -12,7 +12,8 @@ void info(std::string_view text);
 void warning(std::string_view text);
 void debug(std::string_view text);
 
-/// Also receives every entry, whatever the level, on the thread that logs it; must not log itself. Empty: no receiver.
+/// Also receives every entry, whatever the level, on the thread that logs it; must not log itself. Empty: no
+/// receiver.
 void set_listener(std::function<void(Level, std::string_view)> listener);
 
 }  // namespace sandlot::log

@@ -26,8 +26,8 @@ struct Case {
   double limit;
 };
 
-// SLEEF promises 1.0 ulp; the reference is the C library in long double, whose own error of an ulp of its 64 bits is
-// 0.0005 of ours.
+// SLEEF promises 1.0 ulp; the reference is the C library in long double, whose own error of an ulp of its 64
+// bits is 0.0005 of ours.
 TEST(Math, WithinOneUlpOfTheTruth) {
   const Case cases[] = {
       // lint-ok: these are the references

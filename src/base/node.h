@@ -1,11 +1,12 @@
 #pragma once
 /// A configuration value that remembers where it was written: the common form of YAML, SDF and URDF.
 ///
-/// Readers build Nodes; specs are read from them (base/read.h), so every complaint can name file, line and key.
+/// Readers build Nodes; specs are read from them (base/read.h), so every complaint can name file, line and
+/// key.
 ///
-/// Copies share what they hold until one of them is written to, so that ten thousand robots of one model keep its keys
-/// once. A pointer or reference that a non-const member gave is for writing at once: one kept from before the Node was
-/// copied writes into the copy as well.
+/// Copies share what they hold until one of them is written to, so that ten thousand robots of one model keep
+/// its keys once. A pointer or reference that a non-const member gave is for writing at once: one kept from
+/// before the Node was copied writes into the copy as well.
 #include <memory>
 #include <string>
 #include <string_view>

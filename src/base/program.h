@@ -5,8 +5,8 @@
 
 namespace sandlot {
 
-/// Absolute paths of the program and, where that is another file, of the library that this code was linked into; links
-/// resolved. A program of a user's own finds Sandlot's data by the second.
+/// Absolute paths of the program and, where that is another file, of the library that this code was linked
+/// into; links resolved. A program of a user's own finds Sandlot's data by the second.
 std::vector<std::string> program_files();
 
 }  // namespace sandlot

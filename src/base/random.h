@@ -52,11 +52,13 @@ class Stream {
   std::uint32_t below(std::uint32_t n);
   /// Normal deviate with mean 0 and standard deviation 1.
   double normal();
-  /// A stream of its own for one use among several of this one's: it depends on the stream's key and sample and on
+  /// A stream of its own for one use among several of this one's: it depends on the stream's key and sample
+  /// and on
   /// `use`, not on how many numbers were drawn.
   Stream fork(std::uint64_t use) const;
-  /// The words (as of bits32) from the block of four number `block` on, for those who draw very many and not in one order,
-  /// such as the rows of a picture. Moves nothing and does not depend on how many numbers were drawn.
+  /// The words (as of bits32) from the block of four number `block` on, for those who draw very many and not
+  /// in one order, such as the rows of a picture. Moves nothing and does not depend on how many numbers were
+  /// drawn.
   void words(std::uint32_t block, std::span<std::uint32_t> out) const;
 
  private:

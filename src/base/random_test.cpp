@@ -27,8 +27,8 @@ TEST(Random, PhiloxGivesItsKnownAnswers) {
             (P::ctr_type{{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}}));
 }
 
-// A stream is Philox under a key and a counter that random.cpp writes down: block n of sample s of entity e has
-// counter (n, low(e), low(s), high(s)).
+// A stream is Philox under a key and a counter that random.cpp writes down: block n of sample s of entity e
+// has counter (n, low(e), low(s), high(s)).
 TEST(Random, AStreamIsPhiloxUnderItsKey) {
   const std::uint64_t entity = entity_key("robot1/laser"), sample = 0x100000002;
   Stream s(9, entity, Purpose::noise, sample);
@@ -50,7 +50,8 @@ TEST(Random, TheSameKeyGivesTheSameNumbersAndACopyGoesOnAlone) {
 }
 
 TEST(Random, UniformsAreUniform) {
-  // Mean 1/2 with standard deviation sqrt(1/12/n); chi^2 over 100 bins has mean 99 and deviation sqrt(198) = 14.
+  // Mean 1/2 with standard deviation sqrt(1/12/n); chi^2 over 100 bins has mean 99 and deviation sqrt(198) =
+  // 14.
   constexpr int n = 400'000;
   Stream s = stream();
   double sum = 0;
@@ -80,8 +81,9 @@ TEST(Random, ARangeNeverReturnsItsUpperEnd) {
 }
 
 TEST(Random, BelowIsUnbiased) {
-  // n = 3 * 2^30 is where shortcuts show: the remainder of 32 bits gives the lowest third twice as often, the high word
-  // of the product without rejection every multiple of three. Counts: mean draws / 3, deviation sqrt(draws 2/9).
+  // n = 3 * 2^30 is where shortcuts show: the remainder of 32 bits gives the lowest third twice as often, the
+  // high word of the product without rejection every multiple of three. Counts: mean draws / 3, deviation
+  // sqrt(draws 2/9).
   constexpr int draws = 90'000;
   constexpr std::uint32_t n = 3u << 30;
   Stream s = stream();
@@ -101,8 +103,8 @@ TEST(Random, BelowIsUnbiased) {
 }
 
 TEST(Random, NormalsAreNormal) {
-  // Standard deviations of the estimators over n draws: mean 1/sqrt(n), variance sqrt(2/n), skewness sqrt(6/n),
-  // kurtosis sqrt(24/n).
+  // Standard deviations of the estimators over n draws: mean 1/sqrt(n), variance sqrt(2/n), skewness
+  // sqrt(6/n), kurtosis sqrt(24/n).
   constexpr int n = 1'000'000;
   Stream s = stream();
   double m1 = 0, m2 = 0, m3 = 0, m4 = 0;

@@ -55,7 +55,8 @@ Result<Spec> read_spec(const Node& node, const std::string& path = "") {
   return spec;
 }
 
-/// Sets one tunable field by its path ("noise/white", "gains/p", "noise/0/gaussian/std") while the run goes on.
+/// Sets one tunable field by its path ("noise/white", "gains/p", "noise/0/gaussian/std") while the run goes
+/// on.
 /// @param prefix  path of `spec` itself, for messages
 /// @param unit    of the field that `spec` is the value of
 template <Fielded Spec>

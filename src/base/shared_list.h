@@ -1,9 +1,9 @@
 #pragma once
-/// A list whose copies share what is in it until one of them changes: what all robots of a group have in common is there
-/// once, however many they are.
+/// A list whose copies share what is in it until one of them changes: what all robots of a group have in
+/// common is there once, however many they are.
 ///
-/// Cost     a copy costs a reference; the first access through a list that is not const, after it was copied, a copy of all.
-///          So read through const lists (std::as_const).
+/// Cost     a copy costs a reference; the first access through a list that is not const, after it was copied,
+///          a copy of all. So read through const lists (std::as_const).
 /// Threads  as a std::vector; lists that share may be used by several threads.
 #include <initializer_list>
 #include <memory>

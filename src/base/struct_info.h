@@ -1,17 +1,17 @@
 #pragma once
-/// Type information at run time: what values of a type hold, and functions that reach their parts. Made from field lists
-/// (base/fields.h), so that the code that reads, describes and lists specs, states and messages is written and
-/// compiled once, not once for every struct.
+/// Type information at run time: what values of a type hold, and functions that reach their parts. Made from
+/// field lists (base/fields.h), so that the code that reads, describes and lists specs, states and messages
+/// is written and compiled once, not once for every struct.
 ///
 ///   const TypeInfo& type = type_info<Spec>;       // to look at a value
 ///   const TypeEdit& edit = type_edit<Spec>;       // to change one
 ///
-/// Fields are visited, not listed with their places in memory: a field list may depend on the value (the stages of a
-/// chain, the sort of a stage), and the member that it shows may be a copy that is put back afterwards (StageOf).
-/// Therefore pointers to members are good only while field() is at work.
+/// Fields are visited, not listed with their places in memory: a field list may depend on the value (the
+/// stages of a chain, the sort of a stage), and the member that it shows may be a copy that is put back
+/// afterwards (StageOf). Therefore pointers to members are good only while field() is at work.
 ///
-/// Cost     one visit is one virtual call for each field. Bytes of State, which are hashed in every tick, do not come this
-///          way: base/bytes.h generates code for each type.
+/// Cost     one visit is one virtual call for each field. Bytes of State, which are hashed in every tick, do
+///          not come this way: base/bytes.h generates code for each type.
 /// Threads  the tables are constant.
 #include <algorithm>
 #include <cstddef>
@@ -105,8 +105,8 @@ struct TypeEdit {
   const TypeEdit* element = nullptr;
   void* (*at)(void*, std::size_t i) = nullptr;  ///< of lists of both sorts but std::vector<bool>, and options
   void (*clear)(void*) = nullptr;               ///< of lists
-  /// A new element at the end of a list, or a new value of an option, which begins as the old one. Nothing happens if `fill`
-  /// fails.
+  /// A new element at the end of a list, or a new value of an option, which begins as the old one. Nothing
+  /// happens if `fill` fails.
   Status (*add)(void*, Filler& fill) = nullptr;
   void (*visit)(void*, FieldEditor&) = nullptr;
 };

@@ -21,8 +21,8 @@ std::string number_text(double x);
 /// At most three digits, for messages: 0.00305.
 std::string short_text(double x);
 
-/// The whole of `text`, blanks around it aside, as a number: "1", "-2.5e3", "+1", "nan", "inf"; no locale. False when
-/// it is not one, or one that a double cannot hold.
+/// The whole of `text`, blanks around it aside, as a number: "1", "-2.5e3", "+1", "nan", "inf"; no locale.
+/// False when it is not one, or one that a double cannot hold.
 bool parse_number(std::string_view text, double& out);
 
 std::string_view trim(std::string_view text);

@@ -1,6 +1,6 @@
 #pragma once
-/// Quantities as people write them in files: `5 cm`, `90 deg`, `1.5 km/h`, or a bare number in the field's own
-/// unit. Everything inside Sandlot is SI.
+/// Quantities as people write them in files: `5 cm`, `90 deg`, `1.5 km/h`, or a bare number in the field's
+/// own unit. Everything inside Sandlot is SI.
 #include <string_view>
 
 #include "base/result.h"

@@ -1,9 +1,9 @@
 #pragma once
 /// Any number in a struct with a field list, by its path: `noise.white`, `ranges[3]`, `pose.position.x`.
 ///
-/// A path is parsed once; following it costs a comparison per field on the way and allocates nothing. Numbers, bools (0 or
-/// 1), enumerations (their value) and times (in seconds) are values; text is not. Elements of lists go by index, also
-/// those of fixed vectors, whose parts have names too (`.x`).
+/// A path is parsed once; following it costs a comparison per field on the way and allocates nothing.
+/// Numbers, bools (0 or 1), enumerations (their value) and times (in seconds) are values; text is not.
+/// Elements of lists go by index, also those of fixed vectors, whose parts have names too (`.x`).
 #include <functional>
 #include <span>
 #include <string>
@@ -56,7 +56,8 @@ using ValueVisit = std::function<void(ValueEntry entry)>;
 void find_value(const TypeInfo& type, const void* x, std::string_view unit, std::span<const ValueStep> path,
                 ValueFound& out);
 
-/// Calls `visit` for every value in x. A list of numbers is one entry, a list of structs goes element by element.
+/// Calls `visit` for every value in x. A list of numbers is one entry, a list of structs goes element by
+/// element.
 void list_values(const TypeInfo& type, const void* x, const std::string& unit, const char* help,
                  const std::string& path, const ValueVisit& visit);
 template <class T>

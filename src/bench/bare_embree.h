@@ -1,6 +1,6 @@
 #pragma once
-/// The loop that P5 compares with: one Embree scene of analytic solids in world coordinates, ray packets prepared
-/// beforehand, nothing but tracing and reading distances.
+/// The loop that P5 compares with: one Embree scene of analytic solids in world coordinates, ray packets
+/// prepared beforehand, nothing but tracing and reading distances.
 #include <cstring>
 #include <span>
 #include <string>

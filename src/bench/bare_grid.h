@@ -1,5 +1,6 @@
 #pragma once
-/// The loop that P2 compares with: discs in a bounded grid, single precision, nothing but the walk through the cells.
+/// The loop that P2 compares with: discs in a bounded grid, single precision, nothing but the walk through
+/// the cells.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

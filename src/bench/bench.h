@@ -8,7 +8,8 @@
 
 namespace sandlot::bench {
 
-/// One line of `sandlot bench`. `ratio` = value / reference, both costs, so less is better; ok: ratio <= budget.
+/// One line of `sandlot bench`. `ratio` = value / reference, both costs, so less is better; ok: ratio <=
+/// budget.
 struct Row {
   std::string name;
   double value = 0;

@@ -1,5 +1,5 @@
-/// `sandlot-bench [SUITE] [--json]`, which `sandlot bench` runs: a program of its own, so that neither the library nor those who only
-/// build the simulator carry what is measured against.
+/// `sandlot-bench [SUITE] [--json]`, which `sandlot bench` runs: a program of its own, so that neither the
+/// library nor those who only build the simulator carry what is measured against.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,9 @@
-/// A8: what a team game costs at each level of its sensors: twelve robots on a field of 22 x 14 m, each with a laser scanner of 541
-/// beams, an inertial unit, a satellite receiver and, as far as there are such kinds, a camera and an omni-camera.
+/// A8: what a team game costs at each level of its sensors: twelve robots on a field of 22 x 14 m, each with
+/// a laser scanner of 541 beams, an inertial unit, a satellite receiver and, as far as there are such kinds,
+/// a camera and an omni-camera.
 ///
-/// The scenario of a match (scenarios/msl_field.yaml) takes the place of this field where it is installed. The
-/// reference is the same world with every sensor at its lowest level; a speed-up is 1 / ratio.
+/// The scenario of a match (scenarios/msl_field.yaml) takes the place of this field where it is installed.
+/// The reference is the same world with every sensor at its lowest level; a speed-up is 1 / ratio.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -101,7 +102,8 @@ model::Setup field() {
   return std::move(*setup);
 }
 
-/// Levels from the lowest to the highest; the first and the last that a kind has are its low and its high one.
+/// Levels from the lowest to the highest; the first and the last that a kind has are its low and its high
+/// one.
 constexpr const char* ladder[] = {"image", "ranges", "imu", "fix", "odometry", "segments", "objects", "pose"};
 
 /// @param high  whether robot i (counted from 0) tells at its high levels

@@ -22,8 +22,8 @@ namespace {
 #ifdef SANDLOT_HAS_SDFORMAT
 constexpr int models = 500;
 
-/// A world of small robots: two links, a joint, shapes, a sensor each. With `frames`, the second link and the joint's
-/// axis are given relative to frames, so that they have to be resolved.
+/// A world of small robots: two links, a joint, shapes, a sensor each. With `frames`, the second link and the
+/// joint's axis are given relative to frames, so that they have to be resolved.
 std::string world_text(bool frames) {
   const std::string inertial =
       "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz></inertia></inertial>\n";
@@ -69,7 +69,8 @@ double median_of_three(Work&& work) {
   return times[1];
 }
 
-/// Ours first: libsdformat leaves millions of free chunks behind, and tidying them up is paid by the next to allocate.
+/// Ours first: libsdformat leaves millions of free chunks behind, and tidying them up is paid by the next to
+/// allocate.
 Row world_row(const std::string& name, bool frames) {
   const std::string text = world_text(frames);
   const double ours_s = median_of_three([&] {
@@ -86,7 +87,8 @@ Row world_row(const std::string& name, bool frames) {
 
 #endif
 
-/// A scenario of 10,000 robots with a drive and a laser each, from files to a simulation that stands at tick 0.
+/// A scenario of 10,000 robots with a drive and a laser each, from files to a simulation that stands at tick
+/// 0.
 Row crowd_row() {
   const test::TestFolder folder;
   std::ofstream(folder.file("bot.sdf"))

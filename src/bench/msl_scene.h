@@ -1,6 +1,6 @@
 #pragma once
-/// The field of a middle size league match as cameras see it: carpet with lines, goals, twelve robots of two thousand
-/// triangles each, a ball, people, the sun and four lamps.
+/// The field of a middle size league match as cameras see it: carpet with lines, goals, twelve robots of two
+/// thousand triangles each, a ball, people, the sun and four lamps.
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -1,8 +1,8 @@
 /// P3: what the rigid engine costs beyond bare ODE with the same bodies, joints, contacts and settings.
 ///
-/// The reference is the loop of ODE's own manual: one space per robot in a sweep-and-prune space, near callback,
-/// contact joints along the slip, dWorldStep. What Sandlot adds is order (sorting), State outside of ODE (canonical
-/// sub-steps), islands of its own and targets by id.
+/// The reference is the loop of ODE's own manual: one space per robot in a sweep-and-prune space, near
+/// callback, contact joints along the slip, dWorldStep. What Sandlot adds is order (sorting), State outside
+/// of ODE (canonical sub-steps), islands of its own and targets by id.
 #include <ode/ode.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
-/// P11: what recording costs. A dozen rovers with scanners drive through a flat with and without a recorder; images of
-/// a camera go through the recorder's writer and through bare lz4. Files are written where temporary files lie.
+/// P11: what recording costs. A dozen rovers with scanners drive through a flat with and without a recorder;
+/// images of a camera go through the recorder's writer and through bare lz4. Files are written where
+/// temporary files lie.
 #include <lz4frame.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 /// P4: a robot on three omni wheels of ten rollers each, against bare ODE with all its 33 bodies.
 ///
-/// The reference has the same bodies, hinges and motors, the barrels' exact contact with the ground, friction along the
-/// slip, and dWorldStep; it is spared the search for pairs.
+/// The reference has the same bodies, hinges and motors, the barrels' exact contact with the ground, friction
+/// along the slip, and dWorldStep; it is spared the search for pairs.
 #include <ode/ode.h>
 
 #include "base/check.h"

@@ -1,7 +1,8 @@
 /// P1: what a robot of a swarm costs per tick, through the scenario file that comes with Sandlot.
 ///
-/// The reference is what a hand-made program could not do without: ten steps of a disc in Chipmunk, among as many others at
-/// the same density, and its 24 rays in the bare grid. No robots, no sensors, no controllers, no State.
+/// The reference is what a hand-made program could not do without: ten steps of a disc in Chipmunk, among as
+/// many others at the same density, and its 24 rays in the bare grid. No robots, no sensors, no controllers,
+/// no State.
 #if __has_include(<chipmunk/chipmunk.h>)
 #include <chipmunk/chipmunk.h>
 #define SL_HAS_CHIPMUNK 1

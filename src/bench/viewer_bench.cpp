@@ -1,5 +1,6 @@
-/// P9: cost of a viewer of 1000 moving robots: bytes per robot and frame, and time of the simulation's thread beside the
-/// same run without anybody looking. The page's own time per frame is measured by a browser: tests/js/page_bench.mjs.
+/// P9: cost of a viewer of 1000 moving robots: bytes per robot and frame, and time of the simulation's thread
+/// beside the same run without anybody looking. The page's own time per frame is measured by a browser:
+/// tests/js/page_bench.mjs.
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>

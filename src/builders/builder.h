@@ -7,7 +7,8 @@
 ///   Result<Built> build(const Spec& spec);         // from parameters that are in range to a model
 ///   constinit const Builder builder = make_builder<Spec, build>({.name = "snake", .help = "..."});
 ///
-/// Scenario files name it as `model: {builder: snake, segments: 12}`; they and the command line as `builder:snake?segments=12`.
+/// Scenario files name it as `model: {builder: snake, segments: 12}`; they and the command line as
+/// `builder:snake?segments=12`.
 #include <span>
 #include <string_view>
 #include <vector>
@@ -53,12 +54,13 @@ Error parameter_error(const Node& config, const std::string& path, const char* k
 /// All builders, in the order of builders/kinds.h.
 std::span<const Builder* const> builder_table();
 
-/// Builds the model that a map describes: its key `builder` names the builder, the others are its parameters. The model is called after
-/// the builder and has the map's place.
+/// Builds the model that a map describes: its key `builder` names the builder, the others are its parameters.
+/// The model is called after the builder and has the map's place.
 /// Errors   with the place and the key: no such builder, unknown keys, impossible parameters.
 Result<Built> build_model(const Node& map, const std::string& path = "");
 
-/// "builder:snake?segments=12&length=40 cm" as such a map; nothing when the text does not begin with "builder:".
+/// "builder:snake?segments=12&length=40 cm" as such a map; nothing when the text does not begin with
+/// "builder:".
 /// @param place  of the text in a file; without one, errors name the text itself
 /// Errors   a part after the ? that is not key=value.
 std::optional<Result<Node>> parse_builder(std::string_view text, const Place& place = {});

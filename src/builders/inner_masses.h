@@ -1,5 +1,6 @@
 #pragma once
-/// Inner masses of a rolling shell: masses on motors that slide along rails through its middle, and so roll it.
+/// Inner masses of a rolling shell: masses on motors that slide along rails through its middle, and so roll
+/// it.
 ///
 /// Limits   the masses pass through each other: they have no geometry, and their rails no mass.
 #include "builders/builder.h"

@@ -1,5 +1,6 @@
 #pragma once
-/// The builders that come with Sandlot: one line each, the name of the folder. Nothing else knows their names.
+/// The builders that come with Sandlot: one line each, the name of the folder. Nothing else knows their
+/// names.
 // clang-format off
 #define SANDLOT_BUILDERS(builder) \
   builder(two_wheeled)            \

@@ -29,7 +29,8 @@ struct Part {
 
 /// A link without parts: no mass, which the first part with some or set_mass() gives it.
 std::uint32_t add_link(model::Model& model, std::string name, const Pose& X_ML);
-/// The link's mass, centre and inertia become those of all its parts together (homogeneous solids, overlaps counted twice).
+/// The link's mass, centre and inertia become those of all its parts together (homogeneous solids, overlaps
+/// counted twice).
 void add_part(model::Model& model, std::uint32_t link, const Part& part);
 /// A mass without geometry: that of a ball of this radius about the link's origin.
 void add_mass(model::Model& model, std::uint32_t link, double mass_kg, double radius_m);
@@ -56,10 +57,11 @@ struct KeyValue : Node {
 using Keys = std::initializer_list<std::pair<const char*, KeyValue>>;
 void add_device(model::Model& model, std::string name, const char* kind, Keys keys, std::uint32_t link = 0,
                 const Pose& X_LS = {});
-/// A joint_motor that holds its joint exactly, with what effort it takes up to the joint's: it follows angles (lengths), or
-/// speeds on joints that turn without end.
+/// A joint_motor that holds its joint exactly, with what effort it takes up to the joint's: it follows angles
+/// (lengths), or speeds on joints that turn without end.
 void add_motor(model::Model& model, std::string name, std::uint32_t joint);
-/// What a creature senses of itself: angles and speeds of the joints it has so far, and an IMU in its first link.
+/// What a creature senses of itself: angles and speeds of the joints it has so far, and an IMU in its first
+/// link.
 void add_senses(model::Model& model);
 
 /// The rotation that lays a cylinder, whose axis is z, along `axis` (unit).

@@ -28,8 +28,9 @@ struct RingSpec {
   }
 };
 
-/// Frame M: middle of the ring, its axis along y. Staves are capsules along y, joint k joins stave k to the next and the last
-/// one closes the ring; motors `hinge_k` are positive inwards [rad], `slider_k` when it pulls apart [m].
+/// Frame M: middle of the ring, its axis along y. Staves are capsules along y, joint k joins stave k to the
+/// next and the last one closes the ring; motors `hinge_k` are positive inwards [rad], `slider_k` when it
+/// pulls apart [m].
 Built build_ring(const RingSpec& spec);
 
 }  // namespace sandlot::builders

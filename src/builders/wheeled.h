@@ -1,6 +1,6 @@
 #pragma once
-/// Parts of robots on wheels: wheels, forks that steer them, and bodies with marks that show the front. The base's frame lies
-/// on the ground below its middle.
+/// Parts of robots on wheels: wheels, forks that steer them, and bodies with marks that show the front. The
+/// base's frame lies on the ground below its middle.
 #include <optional>
 
 #include "base/fields.h"

@@ -24,8 +24,8 @@ class TopicFinder {
  public:
   /// "/robot1/camera/objects"; null when there is none. Valid within the phase.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
-  /// "/robot1/camera/zoom/command", to write a command into in the actuate phase; null when there is none, or when its device
-  /// has failed. Valid within the phase.
+  /// "/robot1/camera/zoom/command", to write a command into in the actuate phase; null when there is none, or
+  /// when its device has failed. Valid within the phase.
   virtual TopicBase* find_command(std::string_view name) const = 0;
 
  protected:

@@ -83,7 +83,8 @@ struct DeviceBuild {
     topics.adopt_command(std::move(made), level);
     return slot;
   }
-  /// Error about a key of the spec: at the key's place in its file, or at the device's where the key is not written.
+  /// Error about a key of the spec: at the key's place in its file, or at the device's where the key is not
+  /// written.
   Error error(const char* spec_key, std::string what, std::string fix) const;
   /// The joint a spec names, or an error with the nearest name.
   Result<JointId> joint(std::string_view name, const char* spec_key) const;

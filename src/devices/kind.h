@@ -12,10 +12,10 @@
 ///     bool fits() const;    // only where sizes in State or messages are trusted: false refuses a snapshot
 ///   };
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
-/// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live in
-/// one pool: one call per kind and phase, not per device. A Spec with a member `errors` (noise/chain.h, errors_field)
-/// takes part in the factors that scenarios and robots put on the errors of all their devices: while a phase function runs
-/// it is the product of all factors, before and after it is the device's own.
+/// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live
+/// in one pool: one call per kind and phase, not per device. A Spec with a member `errors` (noise/chain.h,
+/// errors_field) takes part in the factors that scenarios and robots put on the errors of all their devices:
+/// while a phase function runs it is the product of all factors, before and after it is the device's own.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -42,7 +42,8 @@ namespace sandlot {
 /// Bumped when the structs below change; plugins built against another version are refused.
 inline constexpr int device_api_version = 7;
 
-/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys take precedence.
+/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
+/// take precedence.
 struct Preset {
   const char* name;  ///< "sick_lms200"
   const char* help;  ///< one sentence, with the source of the numbers
@@ -68,7 +69,8 @@ class PoolBase {
   virtual Status add(const DeviceBuild& build) = 0;
   /// Removes one device; those behind it move up by one.
   virtual void remove(std::uint32_t index) = 0;
-  /// What an actuator that goes away leaves behind (a joint set free, a base released), into context.actuation.
+  /// What an actuator that goes away leaves behind (a joint set free, a base released), into
+  /// context.actuation.
   virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
   /// For a kind: whether its devices have errors; for a device: its own factor on them.
@@ -104,11 +106,11 @@ struct Kind {
   const char* name;  ///< as scenario files spell it: "laser_scanner"
   const char* help;  ///< one sentence
   std::span<const LevelInfo> levels;
-  /// "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF and URDF. A plugin is called by its class or
-  /// by its library without "lib" and ".so".
+  /// "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF and URDF. A plugin is called by its
+  /// class or by its library without "lib" and ".so".
   std::span<const char* const> sdf_types = {};
-  /// Turns the SDF element into keys of the spec (and `level`, `link`); null when sdf_types is empty. Names what it
-  /// cannot use.
+  /// Turns the SDF element into keys of the spec (and `level`, `link`); null when sdf_types is empty. Names
+  /// what it cannot use.
   Result<Node> (*from_sdf)(const Node& element, Diagnostics& diagnostics) = nullptr;
   /// Tells elements of one type apart when several kinds answer to it; null: takes them all.
   bool (*accepts)(const Node& element) = nullptr;
@@ -266,7 +268,8 @@ constexpr Kind make_kind(Kind kind) {
 std::span<const Kind* const> device_kinds();
 /// By name, or an error with the nearest one.
 Result<const Kind*> find_device_kind(std::string_view name);
-/// The kind that answers to a name an SDF file used for this element, or null; a sensor's plugin takes precedence.
+/// The kind that answers to a name an SDF file used for this element, or null; a sensor's plugin takes
+/// precedence.
 const Kind* find_device_kind_for_sdf(const model::DeviceDecl& decl);
 
 }  // namespace sandlot

@@ -2,7 +2,8 @@
 /// Labelled objects: the instances of the world as detectors see them, by Context.
 ///
 /// Frame    B: the body of the canonical link. Sizes are those of the declared pose of all joints.
-/// Limits   what has no bounds (a ground plane) is not an object. One colour per object: that of its largest visual.
+/// Limits   what has no bounds (a ground plane) is not an object. One colour per object: that of its largest
+///          visual.
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-/// The higher levels of laser scanner, satellite receiver, inertial unit and odometry: their messages, and that they run
-/// none of the work below.
+/// The higher levels of laser scanner, satellite receiver, inertial unit and odometry: their messages, and
+/// that they run none of the work below.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -78,8 +78,8 @@ TEST(LaserSegments, AreTheStraightPiecesWithTheirCornersAndWhatTheyHide) {
   const auto& message = rig.topic<msg::LineSegmentArray>("laser/segments").message;
   EXPECT_EQ(message.header.frame_id, "robot1/laser");
   ASSERT_EQ(message.segments.size(), 5u);
-  // Between links the gap of 0.035 rad is halved five times: 1.1 mrad, of 2 m some 2.3 mm, of 1 m half of it. A corner within one
-  // link is where the chain leaves its chord by 1 cm.
+  // Between links the gap of 0.035 rad is halved five times: 1.1 mrad, of 2 m some 2.3 mm, of 1 m half of it.
+  // A corner within one link is where the chain leaves its chord by 1 cm.
   const double edge = 0.0024, near_edge = 0.0012, corner = 0.02;
   expect_segment(message.segments[0], {0, -1.5, 0}, {2, -1.5, 0}, corner);
   expect_segment(message.segments[1], {2, -1.5, 0}, {2, -0.4, 0}, corner);
@@ -88,7 +88,8 @@ TEST(LaserSegments, AreTheStraightPiecesWithTheirCornersAndWhatTheyHide) {
   EXPECT_NEAR(message.segments[3].start.y, 0.4, edge);
   expect_segment(message.segments[3], {2, 0.4, 0}, {2, 1.5, 0}, corner);
   expect_segment(message.segments[4], {2, 1.5, 0}, {0, 1.5, 0}, corner);
-  // pi / 0.035 rays and, at two corners and two edges, at most one more in each of five rounds and at its neighbours.
+  // pi / 0.035 rays and, at two corners and two edges, at most one more in each of five rounds and at its
+  // neighbours.
   EXPECT_GE(walls.rays, 91u);
   EXPECT_LE(walls.rays, 91u + 4 * 2 * 5u);
 }
@@ -108,8 +109,8 @@ TEST(LaserSegments, RoundThingsBecomePolygonsWithinTheTolerance) {
   rig.rays = &post;
   rig.sense();
   const auto& found = rig.topic<msg::LineSegmentArray>("laser/segments").message.segments;
-  // A chord whose middle is 1 cm inside a circle of 0.5 m is 0.2 m long; half the circle's edge is 1.3 m (acos(1/4) to
-  // each side).
+  // A chord whose middle is 1 cm inside a circle of 0.5 m is 0.2 m long; half the circle's edge is 1.3 m
+  // (acos(1/4) to each side).
   EXPECT_GE(found.size(), 7u);
   EXPECT_LE(found.size(), 20u);
   for (const auto& segment : found) {
@@ -137,7 +138,8 @@ TEST(LaserSegments, EndsHaveTheirErrorAndSomeAreMissed) {
     }
     return std::pair(std::sqrt(sum / count), count / 2 / 600);
   };
-  // 900 deviates: their rms has a relative deviation of 1 / sqrt(1800) = 2.4 %; the share of 3/4 one of 1.8 %. Five of them.
+  // 900 deviates: their rms has a relative deviation of 1 / sqrt(1800) = 2.4 %; the share of 3/4 one of 1.8
+  // %. Five of them.
   EXPECT_NEAR(spread("1").first, 0.1, 0.1 * 5 * 0.024);
   EXPECT_NEAR(spread("1").second, 0.75, 5 * 0.018);
   EXPECT_NEAR(spread("2").first, 0.2, 0.2 * 5 * 0.029);
@@ -223,7 +225,8 @@ TEST(LaserPose, IsLostAsOftenAndAsLongAsConfigured) {
     was = is;
   }
   // 2 s lost, 2 s not: half of the time, in 500 turns of 4 s. The share's deviation over T = 2000 s is
-  // sqrt(2 * 0.5 * 0.5 / T) = 1.6 %, the number's sqrt(500 / 2); samples 0.1 s apart stretch both by 0.05 s of 2 s.
+  // sqrt(2 * 0.5 * 0.5 / T) = 1.6 %, the number's sqrt(500 / 2); samples 0.1 s apart stretch both by 0.05 s
+  // of 2 s.
   EXPECT_NEAR(static_cast<double>(lost) / n, 0.5, 5 * 0.016 + 0.0125);
   EXPECT_NEAR(times, 500, 5 * 16 + 13);
 }
@@ -350,7 +353,8 @@ TEST(OdometryPose, ErrorsGrowWithTheWayAsTheCovarianceSays) {
   EXPECT_NEAR(std::sqrt(x2 / n), 0.1581, 0.1581 * rms + 0.01);
   EXPECT_NEAR(std::sqrt(yaw2 / n), 0.0632, 0.0632 * rms);
   EXPECT_NEAR(std::sqrt(y2 / n), 0.3651, 0.3651 * rms);
-  // The covariance is taken at each one's own heading: of one whose heading erred little it is nearly the same.
+  // The covariance is taken at each one's own heading: of one whose heading erred little it is nearly the
+  // same.
   const auto& P = rig.topic<msg::Odometry>("odo0/pose").message.pose.covariance;
   EXPECT_NEAR(P[35], 0.0004 * 10, 1e-12);
   EXPECT_NEAR(P[0] + P[7], 0.0025 * 10 + 0.0004 * 1000 / 3, 0.01);

@@ -40,7 +40,8 @@ Winding winding_for_torque(const MotorSpec& spec, double torque_Nm, double curre
   const double wanted = std::clamp(
       torque_Nm / (spec.gear_ratio * spec.gear_efficiency * spec.torque_constant), -spec.max_current_A,
       spec.max_current_A);
-  // Across winding and supply; the duty that gives it, if there is one below 1, lets the current loop hold it.
+  // Across winding and supply; the duty that gives it, if there is one below 1, lets the current loop hold
+  // it.
   const double needed = wanted * (spec.resistance_Ohm + spec.supply_resistance_Ohm) +
                         spec.torque_constant * motor_speed;
   if (std::abs(needed) <= spec.supply_voltage_V) return {.at_rest_A = wanted, .fixed = true};

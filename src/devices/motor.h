@@ -2,8 +2,9 @@
 /// Winding, gear and power stage of a brushed DC motor: what devices with motors share. The equations are in
 /// devices/joints/dc_motor/dc_motor.h.
 ///
-/// In every sub-step: winding_on_voltage() or winding_for_torque(), motor_target() to the engine, and flow_after() when the
-/// step is done. In between lies the mean current, affine in the speed that the step ends with.
+/// In every sub-step: winding_on_voltage() or winding_for_torque(), motor_target() to the engine, and
+/// flow_after() when the step is done. In between lies the mean current, affine in the speed that the step
+/// ends with.
 ///
 /// Units    V, A, Ohm, H, Nm; speeds of the motor are those of the joint times the gear ratio.
 /// Cost     one exponential per sub-step if the winding has an inductance; no allocation.
@@ -53,7 +54,8 @@ struct Winding {
 /// Sets the bridge's output to `volts` (as far as the supply reaches).
 Winding winding_on_voltage(const MotorSpec& spec, double volts, double current_A, double motor_speed,
                            double h_s);
-/// The bridge drives the current that gives this torque on the joint, as far as voltage and current limit reach.
+/// The bridge drives the current that gives this torque on the joint, as far as voltage and current limit
+/// reach.
 Winding winding_for_torque(const MotorSpec& spec, double torque_Nm, double current_A, double motor_speed,
                            double h_s);
 JointTarget motor_target(const MotorSpec& spec, const Winding& winding, JointId joint, double joint_speed);

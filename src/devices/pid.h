@@ -4,9 +4,9 @@
 ///   u* = p e + I - d dy/dt      u = clamp(u*, -limit, limit)
 ///   I += h (i e + (u - u*) / T)
 ///
-/// The derivative acts on the measurement y alone, so that a step of the reference gives no kick. While the output is
-/// limited, the last term drives I to where u* just reaches the limit, with time constant T; for h > T it does so in
-/// one step.
+/// The derivative acts on the measurement y alone, so that a step of the reference gives no kick. While the
+/// output is limited, the last term drives I to where u* just reaches the limit, with time constant T; for h
+/// > T it does so in one step.
 ///
 /// Units    e, y in the controlled unit U; u, limit, I in the output's unit V.
 /// Errors   none at run time: gains are validated once, when they are read.

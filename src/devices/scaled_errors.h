@@ -1,8 +1,9 @@
 #pragma once
-/// Factors on the errors of the devices of a pool that come from outside: the world's and the robot's sliders.
+/// Factors on the errors of the devices of a pool that come from outside: the world's and the robot's
+/// sliders.
 ///
-/// A device keeps its own factor (`errors` in its spec, tunable); while a phase runs, the product of all stands in its
-/// place. Specs that devices share are exchanged for a scaled copy meanwhile, never written.
+/// A device keeps its own factor (`errors` in its spec, tunable); while a phase runs, the product of all
+/// stands in its place. Specs that devices share are exchanged for a scaled copy meanwhile, never written.
 ///
 /// Cost     nothing while all factors are 1.
 #include <algorithm>

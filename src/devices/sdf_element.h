@@ -1,8 +1,8 @@
 #pragma once
 /// Reading the XML elements that SDF sensors and plugins arrive as, for the from_sdf functions of kinds.
 ///
-/// An element is a Node: children by name, attributes by '@name', repeated children as a sequence. An element with
-/// text and attributes is a map whose text stands under "".
+/// An element is a Node: children by name, attributes by '@name', repeated children as a sequence. An element
+/// with text and attributes is a map whose text stands under "".
 #include <initializer_list>
 #include <optional>
 #include <string>

@@ -1,10 +1,12 @@
 #pragma once
-/// SDF's <noise> as keys of noise/range_noise.h and noise/channel_noise.h; shared by the from_sdf functions of kinds.
+/// SDF's <noise> as keys of noise/range_noise.h and noise/channel_noise.h; shared by the from_sdf functions
+/// of kinds.
 ///
-/// <stddev> is the error of a sample, <mean> and <bias_mean> are constant, <bias_stddev> is drawn once at the start.
-/// <dynamic_bias_stddev> d with <dynamic_bias_correlation_time> T is a density to Gazebo: the bias settles at a
-/// deviation of d sqrt(T / 2). <precision> of type gaussian_quantized is the resolution. Gazebo turns the sign of the
-/// drawn bias at random; for a mean of zero that is the same thing, else the mean is kept as written.
+/// <stddev> is the error of a sample, <mean> and <bias_mean> are constant, <bias_stddev> is drawn once at the
+/// start. <dynamic_bias_stddev> d with <dynamic_bias_correlation_time> T is a density to Gazebo: the bias
+/// settles at a deviation of d sqrt(T / 2). <precision> of type gaussian_quantized is the resolution. Gazebo
+/// turns the sign of the drawn bias at random; for a mean of zero that is the same thing, else the mean is
+/// kept as written.
 #include "devices/sdf_element.h"
 
 namespace sandlot::sdf_element {

@@ -1,5 +1,6 @@
 #pragma once
-/// Specs that devices declared alike share, until one of them is tuned: in a swarm they are the larger part of a device.
+/// Specs that devices declared alike share, until one of them is tuned: in a swarm they are the larger part
+/// of a device.
 ///
 /// A kind opts in with `SharedSpec<Spec> spec` and create(const DeviceBuild&, SharedSpec<Spec>).
 #include <algorithm>

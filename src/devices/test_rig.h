@@ -1,9 +1,11 @@
 #pragma once
-/// For the tests of devices: an engine small enough to be computed by hand, and what builds and steps one pool in it.
+/// For the tests of devices: an engine small enough to be computed by hand, and what builds and steps one
+/// pool in it.
 ///
-/// The engine holds one instance. A joint with a velocity target has that velocity; one with an effort target obeys
-/// inertia * acceleration = effort exactly over a step. A base with a drive target moves exactly on the arc of its
-/// velocity, which follows the target with the accelerations given. `blocked` holds the base where it is.
+/// The engine holds one instance. A joint with a velocity target has that velocity; one with an effort target
+/// obeys inertia * acceleration = effort exactly over a step. A base with a drive target moves exactly on the
+/// arc of its velocity, which follows the target with the accelerations given. `blocked` holds the base where
+/// it is.
 #include <algorithm>
 #include <map>
 
@@ -252,7 +254,8 @@ inline Node config(std::initializer_list<std::pair<const char*, const char*>> en
   return node;
 }
 
-/// A base with two wheels of 0.1 m radius, 0.5 m apart, the axle's centre at (axle_x_m, axle_y_m) of the base; a passive slider, too.
+/// A base with two wheels of 0.1 m radius, 0.5 m apart, the axle's centre at (axle_x_m, axle_y_m) of the
+/// base; a passive slider, too.
 inline model::Model two_wheels(double axle_x_m = 0, double axle_y_m = 0) {
   model::Model model;
   model.name = "rover";

@@ -25,7 +25,8 @@ bool is_barrel(const Barrel& b) {
 }
 
 double radius_at_m(const Barrel& b, double z) {
-  // p - sqrt(p^2 - z^2) without its cancellation: profiles are long against z where a barrel is nearly a cylinder.
+  // p - sqrt(p^2 - z^2) without its cancellation: profiles are long against z where a barrel is nearly a
+  // cylinder.
   const double root = std::sqrt(std::max(0.0, b.profile_m * b.profile_m - z * z));
   return std::max(0.0, b.radius_m - z * z / (b.profile_m + root));
 }
@@ -59,8 +60,8 @@ BarrelSurface nearest(const Barrel& b, Vec3 p) {
 }
 
 BarrelMoments moments(const Barrel& b) {
-  // Simpson over the angle t of the arc, z = p sin(t), where everything is smooth; 128 intervals leave an error of
-  // below 1e-7 of the volume even for half a turn.
+  // Simpson over the angle t of the arc, z = p sin(t), where everything is smooth; 128 intervals leave an
+  // error of below 1e-7 of the volume even for half a turn.
   const double p = b.profile_m, half = 0.5 * b.length_m;
   const double end = math::atan2(half, std::sqrt(std::max(0.0, p * p - half * half)));
   constexpr int intervals = 128;

@@ -1,8 +1,8 @@
 #pragma once
 /// Points, directions and moments of a Barrel, in its own frame G.
 ///
-/// Source   own derivation; in the half plane (rho, z) through the axis the barrel is the part |z| <= length / 2 of a disc
-///          of radius `profile` round the point rho = radius - profile.
+/// Source   own derivation; in the half plane (rho, z) through the axis the barrel is the part |z| <= length
+///          / 2 of a disc of radius `profile` round the point rho = radius - profile.
 #include "geometry/shape.h"
 
 namespace sandlot {

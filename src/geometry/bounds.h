@@ -18,8 +18,8 @@ struct Bounds {
   double distance_m(Vec3 point) const;
 };
 
-/// The least box in frame A around a shape whose frame G stands at `X_AG`; empty for planes, which have no bounds. Of a
-/// height field: around the box it fills in G, from its lowest to its highest sample.
+/// The least box in frame A around a shape whose frame G stands at `X_AG`; empty for planes, which have no
+/// bounds. Of a height field: around the box it fills in G, from its lowest to its highest sample.
 Bounds bounds_of(const Shape& shape, const Pose& X_AG = {});
 
 }  // namespace sandlot

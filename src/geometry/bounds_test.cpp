@@ -42,7 +42,8 @@ TEST(Bounds, HoldTheTessellatedShapeAndNoMore) {
     Bounds points;
     for (const Vec3& v : tessellate(shape, segments).vertices) points.include(X * v);
     const Bounds exact = bounds_of(shape, X);
-    // Inscribed corners fall short of a circle of radius r by at most r (1 - cos(pi / n)) along each of two angles.
+    // Inscribed corners fall short of a circle of radius r by at most r (1 - cos(pi / n)) along each of two
+    // angles.
     const double tolerance = 2 * bounding_radius_m(shape) * (1 - math::cos(math::pi / (segments / 2)));
     expect_near(points.low, exact.low, tolerance + 1e-12);
     expect_near(points.high, exact.high, tolerance + 1e-12);

@@ -1,8 +1,9 @@
 /// convex_hull(): quickhull in exact arithmetic.
 ///
-/// The points are rounded to a grid of 2^30 steps over their greatest extent; there, the side of a plane on which a
-/// point lies is a 96 bit integer, so no point is ever judged differently by two faces and the surface stays a closed
-/// one, whatever lies in one plane or line. The vertices returned are the points as given.
+/// The points are rounded to a grid of 2^30 steps over their greatest extent; there, the side of a plane on
+/// which a point lies is a 96 bit integer, so no point is ever judged differently by two faces and the
+/// surface stays a closed one, whatever lies in one plane or line. The vertices returned are the points as
+/// given.
 ///
 /// Limits   what is flatter than 1e-8 of its greatest extent counts as lying in a plane.
 /// Source   C. B. Barber et al., The quickhull algorithm for convex hulls (1996).

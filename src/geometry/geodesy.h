@@ -4,11 +4,12 @@
 ///   N = a / sqrt(1 - e^2 sin^2 lat)
 ///   x = (N + h) cos lat cos lon,  y = (N + h) cos lat sin lon,  z = (N (1 - e^2) + h) sin lat
 ///
-/// Frame    ECEF: x through latitude 0, longitude 0, z through the north pole. ENU: x east, y north, z up along the normal of
-///          the ellipsoid at its origin.
+/// Frame    ECEF: x through latitude 0, longitude 0, z through the north pole. ENU: x east, y north, z up
+///          along the normal of the ellipsoid at its origin.
 /// Accuracy the inverse is good to 1e-9 m from the ellipsoid to 1000 km above it; poles included.
 /// Cost     to_geodetic: about six sine-cosine pairs.
-/// Source   NIMA TR8350.2, 3rd ed. (2000), ch. 4; inverse: B. R. Bowring, Survey Review 23 (1976) 323-327, iterated.
+/// Source   NIMA TR8350.2, 3rd ed. (2000), ch. 4; inverse: B. R. Bowring, Survey Review 23 (1976) 323-327,
+///          iterated.
 #include "geometry/pose.h"
 
 namespace sandlot::geodesy {

@@ -30,7 +30,8 @@ TEST(Geodesy, ThereAndBackAgain) {
 }
 
 TEST(Geodesy, AMetreOnTheGround) {
-  // Radii of curvature at 48 deg: N = a / sqrt(1 - e^2 s^2) across, M = N (1 - e^2) / (1 - e^2 s^2) along the meridian.
+  // Radii of curvature at 48 deg: N = a / sqrt(1 - e^2 s^2) across, M = N (1 - e^2) / (1 - e^2 s^2) along the
+  // meridian.
   const double lat = 48 * deg, s = math::sin(lat), e2 = flattening * (2 - flattening);
   const double w = 1 - e2 * s * s, n = semi_major_m / std::sqrt(w), m = n * (1 - e2) / w;
   const LocalPlane plane({lat, 9 * deg, 0});

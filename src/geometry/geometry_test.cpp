@@ -118,8 +118,9 @@ TEST(Shape, InertiaOfBoxBallAndCylinder) {
   expect_near(inertia_kg_m2(Plane{{0, 0, 1}}, 10), {});
 }
 
-// The capsule's closed form against slices: discs of mass dm add dm (r^2/4 + z^2) across and dm r^2/2 along. The
-// midpoint rule with n slices is off by O(1/n^2), and by O(1/n^1.5) at the poles where the radius has no slope.
+// The capsule's closed form against slices: discs of mass dm add dm (r^2/4 + z^2) across and dm r^2/2 along.
+// The midpoint rule with n slices is off by O(1/n^2), and by O(1/n^1.5) at the poles where the radius has no
+// slope.
 TEST(Shape, InertiaAndVolumeOfACapsuleAgainstSlices) {
   const Capsule capsule{0.3, 0.8};
   const double half = 0.5 * capsule.length_m, top = half + capsule.radius_m;

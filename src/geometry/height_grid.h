@@ -9,8 +9,9 @@
 
 namespace sandlot {
 
-/// Samples run along x first (column 0 at -size_x/2), then along y (row 0 at -size_y/2). Each cell is two triangles, split
-/// from its corner of least x and y to that of greatest x and y: rays, contacts and height_at() agree on that.
+/// Samples run along x first (column 0 at -size_x/2), then along y (row 0 at -size_y/2). Each cell is two
+/// triangles, split from its corner of least x and y to that of greatest x and y: rays, contacts and
+/// height_at() agree on that.
 struct HeightGrid {
   int columns = 0, rows = 0;          ///< samples, at least 2 each
   double size_x_m = 0, size_y_m = 0;  ///< between the first and the last sample

@@ -13,8 +13,8 @@
 namespace sandlot {
 namespace {
 
-/// Turns a profile of (radius, z) points, from the bottom to the top of the z axis, about that axis. Points on the axis
-/// become one vertex.
+/// Turns a profile of (radius, z) points, from the bottom to the top of the z axis, about that axis. Points
+/// on the axis become one vertex.
 TriangleMesh revolve(const std::vector<std::array<double, 2>>& profile, int segments) {
   TriangleMesh mesh;
   const auto n = static_cast<std::uint32_t>(segments);
@@ -185,8 +185,8 @@ TriangleMesh picked(const TriangleMesh& mesh, const std::vector<std::uint32_t>& 
 }  // namespace
 
 MassProperties mass_properties(const TriangleMesh& mesh) {
-  // Sums over tetrahedra from the origin to each triangle; the origin is a vertex of the mesh, so that a body far from
-  // its frame loses no digits.
+  // Sums over tetrahedra from the origin to each triangle; the origin is a vertex of the mesh, so that a body
+  // far from its frame loses no digits.
   MassProperties out;
   if (mesh.vertices.empty()) return out;
   const Vec3 origin = mesh.vertices.front();

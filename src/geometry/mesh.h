@@ -1,8 +1,8 @@
 #pragma once
 /// Triangle meshes: what files of meshes, polylines and tessellated primitives become.
 ///
-/// A mesh is shared by all shapes made from one file at one scale and never changes, so that engines and the ray
-/// scene may build their trees once per mesh.
+/// A mesh is shared by all shapes made from one file at one scale and never changes, so that engines and the
+/// ray scene may build their trees once per mesh.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -68,25 +68,25 @@ MassProperties mass_properties(const TriangleMesh& mesh);
 /// The same of any bounded shape; zeros for planes and height fields.
 MassProperties mass_properties(const Shape& shape);
 
-/// Every edge is shared by exactly two triangles that run along it in opposite directions. Vertices at equal places
-/// count as one.
+/// Every edge is shared by exactly two triangles that run along it in opposite directions. Vertices at equal
+/// places count as one.
 bool is_closed(const TriangleMesh& mesh);
 
 /// Smallest convex mesh around the points; empty (no triangles) when they lie in a plane.
 /// Deterministic; O(n log n) on average.
 TriangleMesh convex_hull(const std::vector<Vec3>& points);
 
-/// The pieces of a mesh that hang together by shared vertices (vertices at equal places count as one), each as a mesh of
-/// its own, the one of largest surface first.
+/// The pieces of a mesh that hang together by shared vertices (vertices at equal places count as one), each
+/// as a mesh of its own, the one of largest surface first.
 std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh);
 
 /// A bounded shape as triangles: exact for boxes, inscribed for round ones. @pre not a Plane
 /// @param segments  corners of a full circle
 TriangleMesh tessellate(const Shape& shape, int segments = 32);
 
-/// A solid from a polygon in xy, extruded from z = 0 to `height_m`; as SDF's <polyline> defines it. Further loops are
-/// holes. Empty when loops touch or cross, have no area or more than 4096 corners, when a hole lies outside, and when
-/// the height is not positive.
+/// A solid from a polygon in xy, extruded from z = 0 to `height_m`; as SDF's <polyline> defines it. Further
+/// loops are holes. Empty when loops touch or cross, have no area or more than 4096 corners, when a hole lies
+/// outside, and when the height is not positive.
 TriangleMesh extrude(const std::vector<std::vector<std::array<double, 2>>>& loops_m, double height_m);
 
 }  // namespace sandlot

@@ -81,8 +81,9 @@ TEST(MassProperties, OfAnExtrudedLByHand) {
 }
 
 TEST(MassProperties, OfATorusConvergesToPappus) {
-  // Major radius R, minor r: V = 2 pi^2 R r^2, izz = R^2 + 3/4 r^2. A profile of n and a turn of m corners: relative
-  // error of each (inscribed polygons) at most (2 pi)^2/6 (1/n^2 + 1/m^2) in area, twice that in the second moments.
+  // Major radius R, minor r: V = 2 pi^2 R r^2, izz = R^2 + 3/4 r^2. A profile of n and a turn of m corners:
+  // relative error of each (inscribed polygons) at most (2 pi)^2/6 (1/n^2 + 1/m^2) in area, twice that in the
+  // second moments.
   const double R = 2, r = 0.5;
   const std::uint32_t n = 128, m = 256;
   TriangleMesh torus;

@@ -37,8 +37,9 @@ struct Ellipsoid {
   Vec3 radii_m;
 };
 
-/// Turned from an arc: r(z) = radius - profile + sqrt(profile^2 - z^2) for |z| <= length / 2, with flat ends. Axis along z
-/// of G, centred. The roller of an omni wheel; with a profile smaller than the radius, a tyre. geometry/barrel.h.
+/// Turned from an arc: r(z) = radius - profile + sqrt(profile^2 - z^2) for |z| <= length / 2, with flat ends.
+/// Axis along z of G, centred. The roller of an omni wheel; with a profile smaller than the radius, a tyre.
+/// geometry/barrel.h.
 struct Barrel {
   double radius_m;   ///< at the thick middle
   double profile_m;  ///< radius of the arc, >= length / 2
@@ -66,8 +67,8 @@ const char* shape_name(const Shape& shape);
 double bounding_radius_m(const Shape& shape);
 double volume_m3(const Shape& shape);
 /// Diagonal of the inertia tensor about G's origin of a homogeneous solid of `mass_kg`, in G [kg m^2].
-/// Planes and height fields have none (zeros). Of a mesh or cone, whose centre of mass is elsewhere, mass_properties()
-/// (mesh.h) says all.
+/// Planes and height fields have none (zeros). Of a mesh or cone, whose centre of mass is elsewhere,
+/// mass_properties() (mesh.h) says all.
 Vec3 inertia_kg_m2(const Shape& shape, double mass_kg);
 
 }  // namespace sandlot

@@ -60,7 +60,8 @@ bool bridge(Ring& ring, const std::vector<Index>& hole, const std::vector<std::v
     double distance2;
     std::size_t outer, inner;
   };
-  // From the hole's corner of greatest x: holes farther to the right are joined already, so something is in sight.
+  // From the hole's corner of greatest x: holes farther to the right are joined already, so something is in
+  // sight.
   std::size_t start = 0;
   for (std::size_t i = 1; i < hole.size(); ++i)
     if (inner.at(i)[0] > inner.at(start)[0]) start = i;

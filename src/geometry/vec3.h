@@ -1,8 +1,8 @@
 #pragma once
 /// Vectors and quaternions as plain data.
 ///
-/// Eigen's own types are not trivially copyable, so they cannot be State (a snapshot is a copy of bytes); these
-/// are. Decompositions and anything larger than 3x3 go to Eigen.
+/// Eigen's own types are not trivially copyable, so they cannot be State (a snapshot is a copy of bytes);
+/// these are. Decompositions and anything larger than 3x3 go to Eigen.
 #include <cmath>
 #include <cstddef>
 

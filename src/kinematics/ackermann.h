@@ -1,7 +1,9 @@
 #pragma once
-/// Car-like steering: a rear axle that points ahead and two steered wheels in front, all tangential to one centre.
+/// Car-like steering: a rear axle that points ahead and two steered wheels in front, all tangential to one
+/// centre.
 ///
-/// With the wheelbase L, the track T between the steered wheels' pins, and the curvature k = w / v of the rear axle's middle:
+/// With the wheelbase L, the track T between the steered wheels' pins, and the curvature k = w / v of the
+/// rear axle's middle:
 ///
 ///   bicycle    tan(steering) = L k                      the wheel that a bicycle in the middle would have
 ///   wheels     tan(left)  = L k / (1 - k T/2)           the one inside of the turn is turned more
@@ -10,8 +12,9 @@
 /// Frame    D: middle of the rear axle, x forward, y left; w and angles counter-clockwise.
 /// Limits   no slip; |k| < 2 / T, so that the centre stays outside the axle.
 /// Cost     two arc tangents.
-/// Source   R. Siegwart, I. R. Nourbakhsh, D. Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed. (2011),
-///          sec. 3.2; P. Corke, Robotics, Vision and Control, 2nd ed. (2017), sec. 4.1.1 (bicycle and Ackermann).
+/// Source   R. Siegwart, I. R. Nourbakhsh, D. Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed.
+///          (2011), sec. 3.2; P. Corke, Robotics, Vision and Control, 2nd ed. (2017), sec. 4.1.1 (bicycle and
+///          Ackermann).
 #include "kinematics/wheels.h"
 
 namespace sandlot::kinematics {

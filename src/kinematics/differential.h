@@ -9,12 +9,12 @@
 ///             the chord has length s sin(a/2) / (a/2) and points along theta + a/2.
 ///
 /// Frame    D: centre of the axle on the ground, x forward, y left; omega counter-clockwise.
-/// Limits   no slip, no sideways motion, both wheels of one radius; several wheels on one side count as one at
-///          their mean speed.
+/// Limits   no slip, no sideways motion, both wheels of one radius; several wheels on one side count as one
+///          at their mean speed.
 /// Cost     integrate: two sine-cosine pairs; no allocation.
 /// Source   R. Siegwart, I. R. Nourbakhsh, D. Scaramuzza, Introduction to Autonomous Mobile Robots, 2nd ed.
-///          (2011), sec. 3.2.2 (forward kinematics); G. Klancar et al., Wheeled Mobile Robotics (2017), sec. 2.3.1
-///          (odometry, "exact integration").
+///          (2011), sec. 3.2.2 (forward kinematics); G. Klancar et al., Wheeled Mobile Robotics (2017), sec.
+///          2.3.1 (odometry, "exact integration").
 #include "geometry/pose.h"
 
 namespace sandlot::kinematics {

@@ -13,8 +13,8 @@ namespace {
 const Differential drive{.wheel_radius_m = 0.1, .wheel_separation_m = 0.5};
 
 TEST(Differential, WheelSpeedsByHand) {
-  // Straight at 1 m/s: 10 rad/s. On the spot at 2 rad/s: the rims run at 2 * 0.25 = 0.5 m/s. About the left wheel:
-  // v = omega d / 2.
+  // Straight at 1 m/s: 10 rad/s. On the spot at 2 rad/s: the rims run at 2 * 0.25 = 0.5 m/s. About the left
+  // wheel: v = omega d / 2.
   EXPECT_NEAR(drive.inverse({1, 0}).left_radps, 10, 1e-14);
   EXPECT_NEAR(drive.inverse({1, 0}).right_radps, 10, 1e-14);
   EXPECT_NEAR(drive.inverse({0, 2}).left_radps, -5, 1e-14);

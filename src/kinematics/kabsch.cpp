@@ -68,7 +68,8 @@ Estimate rolled(std::span<const Wheel> wheels, std::span<const double> turns) {
                                     p.y + chord * (s * w.along.x + c * w.along.y)});
     });
   }
-  // The displacement whose exact arc ends there: the chord turned back by half the turn, stretched to the arc.
+  // The displacement whose exact arc ends there: the chord turned back by half the turn, stretched to the
+  // arc.
   const double half = 0.5 * found.turn_rad, stretch = 1 / sinc(half);
   const auto [s, c] = math::sincos(half);
   return {

@@ -6,16 +6,16 @@
 ///   centre of rotation  c = (-v_cy, v_cx) / w,  |c| = |v_c| / w
 ///   a_ix = v'_cx - w v_cy - W_ix w^2 - W_iy w'       a_iy = v'_cy + w v_cx - W_iy w^2 + W_ix w'
 ///
-/// The paper prints v_iy = v_cy - W_ix w; its own equation 3 gives the plus. Its four modes follow from the command: stop, all
-/// wheels parallel (crab), turn on the spot, turn about a centre.
+/// The paper prints v_iy = v_cy - W_ix w; its own equation 3 gives the plus. Its four modes follow from the
+/// command: stop, all wheels parallel (crab), turn on the spot, turn about a centre.
 ///
-/// A wheel at psi that turns forward is the same as one at psi +- 180 degrees that turns backward. steer_towards() takes the
-/// one nearer to where the wheel is, and keeps to it until the other is nearer by `hysteresis`: a command that lies across does
-/// not make the wheel tremble.
+/// A wheel at psi that turns forward is the same as one at psi +- 180 degrees that turns backward.
+/// steer_towards() takes the one nearer to where the wheel is, and keeps to it until the other is nearer by
+/// `hysteresis`: a command that lies across does not make the wheel tremble.
 ///
 /// Frame    C: middle of the robot, x forward, y left; all angles counter-clockwise.
-/// Source   M. Sharifi, M. S. Young, X. Chen, D. Clucas, C. Pretty, modelling and simulation of the 4WD4S robot MARIO,
-///          eq. 3-13 and sec. 3.1; shortest turn and hysteresis are ours.
+/// Source   M. Sharifi, M. S. Young, X. Chen, D. Clucas, C. Pretty, modelling and simulation of the 4WD4S
+///          robot MARIO, eq. 3-13 and sec. 3.1; shortest turn and hysteresis are ours.
 #include <optional>
 
 #include "kinematics/wheels.h"

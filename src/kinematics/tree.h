@@ -1,11 +1,12 @@
 #pragma once
-/// Kinematic tree of a model: which joint connects each link to which other one, in an order with parents first.
+/// Kinematic tree of a model: which joint connects each link to which other one, in an order with parents
+/// first.
 ///
 /// Frames    P, L: parent and link of a branch. J: the joint frame of model.h, fixed in the joint's child.
-/// Pose      X_WL = X_WP * X_PJ * motion * X_JL with motion = joint_motion(joint, position); of a branch that leads from a
-///           joint's child to its parent, the inverse of that.
-/// Limits    a tree has one joint per link: of joints that form a loop, the last one is left out. Joints to the world are
-///           left out too: where the world is depends on the instance.
+/// Pose      X_WL = X_WP * X_PJ * motion * X_JL with motion = joint_motion(joint, position); of a branch that
+///           leads from a joint's child to its parent, the inverse of that.
+/// Limits    a tree has one joint per link: of joints that form a loop, the last one is left out. Joints to
+///           the world are left out too: where the world is depends on the instance.
 /// Cost      once per model; proportional to links times joints.
 #include <cstdint>
 #include <vector>
@@ -28,12 +29,12 @@ struct KinematicTree {
   std::vector<std::uint32_t> branch_of;  ///< by link
 };
 
-/// Tree with the canonical link as its only root: joints are followed both ways, breadth first in the order of the model.
-/// Links that no joint connects to it are children of the canonical link, without a joint.
+/// Tree with the canonical link as its only root: joints are followed both ways, breadth first in the order
+/// of the model. Links that no joint connects to it are children of the canonical link, without a joint.
 KinematicTree spanning_tree(const model::Model& model);
 
-/// Tree in which a link's parent is the parent of its joint: the first joint whose child it is and that closes no loop.
-/// The canonical link and links that are the child of no joint are roots.
+/// Tree in which a link's parent is the parent of its joint: the first joint whose child it is and that
+/// closes no loop. The canonical link and links that are the child of no joint are roots.
 KinematicTree forward_tree(const model::Model& model);
 
 /// Motion of a joint's child against rest, in J: a turn about, or a slide along, the axis.

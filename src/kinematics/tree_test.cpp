@@ -28,7 +28,8 @@ void join(model::Model& model, std::uint32_t parent, std::uint32_t child,
   model.joints.push_back(joint);
 }
 
-/// Poses of the links, by link, with link 0 in its declared pose; what moves no joint stays where its parent carries it.
+/// Poses of the links, by link, with link 0 in its declared pose; what moves no joint stays where its parent
+/// carries it.
 std::vector<Pose> place(const model::Model& model, const KinematicTree& tree,
                         const std::vector<double>& positions) {
   std::vector<Pose> X_ML(model.links.size());
@@ -130,8 +131,9 @@ TEST(KinematicTree, PlacesLinksByTheirJoints) {
 }
 
 TEST(KinematicTree, PlacesAParentFromItsChild) {
-  // Link 1 carries the canonical link on a hinge about z at (0, 0.5): turned by a right angle, the child stays and the
-  // parent, which stood at (1, 0), turns the other way about the hinge: (1, -0.5) off it becomes (-0.5, -1).
+  // Link 1 carries the canonical link on a hinge about z at (0, 0.5): turned by a right angle, the child
+  // stays and the parent, which stood at (1, 0), turns the other way about the hinge: (1, -0.5) off it
+  // becomes (-0.5, -1).
   model::Model model = row_of(2);
   join(model, 1, 0, JointType::revolute, {{0, 0.5, 0}, {}});
   const auto moved = place(model, spanning_tree(model), {math::pi / 2});

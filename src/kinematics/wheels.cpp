@@ -85,7 +85,8 @@ Estimate chassis_motion(std::span<const Wheel> wheels, std::span<const double> t
     yy += r.y * r.y, yt += r.y * r.turn, tt += r.turn * r.turn;
     bx += r.x * r.value, by += r.y * r.value, bt += r.turn * r.value;
   });
-  // check() has seen to it that no pivot is zero; a sum of squares that rounding makes negative is none either.
+  // check() has seen to it that no pivot is zero; a sum of squares that rounding makes negative is none
+  // either.
   const double a = std::sqrt(std::max(xx, 1e-300)), b = xy / a, c = xt / a;
   const double d = std::sqrt(std::max(yy - b * b, 1e-300)), e = (yt - b * c) / d;
   const double f = std::sqrt(std::max(tt - c * c - e * e, 1e-300));
@@ -120,7 +121,8 @@ Status check(std::span<const Wheel> wheels, std::optional<double> pivot_x_m) {
                      "move one of them: it touches the ground at (" + short_text(w.x_m) + ", " +
                          short_text(w.y_m) + ") m"};
   }
-  // Normal equations with the turn in units of the mean distance, so that its size does not depend on that of the robot.
+  // Normal equations with the turn in units of the mean distance, so that its size does not depend on that of
+  // the robot.
   double squares = 0, rows = 0;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   for (const Wheel& w : wheels) squares += w.x_m * w.x_m + w.y_m * w.y_m;

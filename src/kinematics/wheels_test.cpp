@@ -63,8 +63,9 @@ TEST(Wheels, MecanumHasTheSignsOfTheClosedFormAndASpinSpins) {
   EXPECT_NEAR(turns[2], -10, 1e-12);
   EXPECT_NEAR(turns[3], 10, 1e-12);
   expect_motion(chassis_motion(wheels, turns).motion, {0, 0, 2}, 1e-12);
-  // Four wheels, three degrees of freedom: FL + BR against FR + BL must agree; 1 rad/s too much on one of them is a
-  // misfit of 0.1 m/s sin(45) along its roller, of which a quarter in each equation cannot be explained.
+  // Four wheels, three degrees of freedom: FL + BR against FR + BL must agree; 1 rad/s too much on one of
+  // them is a misfit of 0.1 m/s sin(45) along its roller, of which a quarter in each equation cannot be
+  // explained.
   turns = {11, 10, 10, 10};
   EXPECT_NEAR(chassis_motion(wheels, turns).residual, 0.25 * 0.1 * std::sqrt(0.5), 1e-12);
 }
@@ -98,14 +99,16 @@ TEST(Wheels, ThreeOmniWheelsByHand) {
 }
 
 TEST(Wheels, LeastSquaresSpreadOneSlippingWheelOverAll) {
-  // Four omni wheels on a cross, each 1 m from the middle: w is the mean of their rims' speeds. One slips by 0.4.
+  // Four omni wheels on a cross, each 1 m from the middle: w is the mean of their rims' speeds. One slips by
+  // 0.4.
   const std::vector<Wheel> wheels = omni_wheels(4, 0.1, 1, 0);
   const std::vector<double> turns{14, 10, 10, 10};
   const Estimate e = chassis_motion(wheels, turns);
   EXPECT_NEAR(e.motion.turn, 1.1, 1e-12);
   // The wheel at (1, 0) rolls along y, against the one at (-1, 0): vy = (1.4 - 1.0) / 2.
   expect_motion(e.motion, {0, 0.2, 1.1}, 1e-12);
-  // Four equations, three unknowns: the misfit is along (1, -1, 1, -1) / 2 and has the length 0.4 / 2; rms of four.
+  // Four equations, three unknowns: the misfit is along (1, -1, 1, -1) / 2 and has the length 0.4 / 2; rms of
+  // four.
   EXPECT_NEAR(e.residual, 0.2 / 2, 1e-12);
 }
 
@@ -263,7 +266,8 @@ TEST(Swerve, SteersTheShortWayAndDoesNotTremble) {
   // A joint that has turned twice stays there.
   s = steer_towards(0.1, {2 * math::tau, false}, free);
   EXPECT_NEAR(s.angle_rad, 2 * math::tau + 0.1, 1e-12);
-  // Just across: from 0, 92 degrees forward or -88 backward. Within the hysteresis (0.1 rad) it keeps the way it rolls.
+  // Just across: from 0, 92 degrees forward or -88 backward. Within the hysteresis (0.1 rad) it keeps the way
+  // it rolls.
   s = steer_towards(math::pi * 92 / 180, {0, false}, free);
   EXPECT_FALSE(s.backward);
   s = steer_towards(math::pi * 97 / 180, {0, false}, free);
@@ -330,7 +334,8 @@ TEST(Kabsch, RolledWheelsFollowAllFourModesAndNoticeSlip) {
   const double turn = 0.008 / (8 * 0.21);
   EXPECT_NEAR(slip.motion.x, 0.012, 1e-6);  // the turn shortens the chords by its square
   EXPECT_NEAR(slip.motion.turn, turn, 2e-4);
-  // The slip d as a vector in eight coordinates, less its parts in the mean (d^2 / 4) and in the turn (turn^2 sum |p|^2).
+  // The slip d as a vector in eight coordinates, less its parts in the mean (d^2 / 4) and in the turn (turn^2
+  // sum |p|^2).
   const double rest = 0.008 * 0.008 * (1 - 0.25) - turn * turn * 8 * 0.21 * 0.21;
   EXPECT_NEAR(slip.residual, std::sqrt(rest / 4), 2e-4);
 }

@@ -1,15 +1,17 @@
 #pragma once
 /// Stages that add an error: gaussian, white, uniform, proportional, drift, bias, walk.
 ///
-/// x is what comes in, y what goes out, e the factor `errors`, dt the time since the previous sample; n ~ Normal(0, 1)
-/// and u ~ Uniform(0, 1) are independent draws. U is the channel's unit. What is not finite stays as it is.
+/// x is what comes in, y what goes out, e the factor `errors`, dt the time since the previous sample; n ~
+/// Normal(0, 1) and u ~ Uniform(0, 1) are independent draws. U is the channel's unit. What is not finite
+/// stays as it is.
 ///
-/// For many values at once (the beams of a scan) gaussian, white, uniform and proportional draw for each value separately;
-/// drift, bias and walk are one error that all values share.
+/// For many values at once (the beams of a scan) gaussian, white, uniform and proportional draw for each
+/// value separately; drift, bias and walk are one error that all values share.
 ///
 /// Cost     one draw per value or sample (bias: none after the start); no allocation.
-/// Source   P. S. Maybeck, Stochastic Models, Estimation and Control, vol. 1 (1979), sec. 4.11 (drift, walk); IEEE Std
-///          952, annex C (terms of data sheets); S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3 (gaussian).
+/// Source   P. S. Maybeck, Stochastic Models, Estimation and Control, vol. 1 (1979), sec. 4.11 (drift, walk);
+///          IEEE Std 952, annex C (terms of data sheets); S. Thrun et al., Probabilistic Robotics (2005),
+///          sec. 6.3 (gaussian).
 #include <cmath>
 
 #include "base/math.h"
@@ -103,8 +105,8 @@ struct ProportionalSpec {
 
 /// y = x + e b,   b[k] = a b[k-1] + std sqrt(1 - a^2) n,   a = exp(-dt / correlation).
 /// The exact discretisation of dB/dt = -B / tau + N_B, which it agrees with at any rate: variance e^2 std^2,
-/// autocovariance e^2 std^2 exp(-lag / tau). A density q of N_B [U/s/sqrt(Hz)] gives std = q sqrt(tau / 2). The first b
-/// is drawn from the stationary distribution, so that a run has no warm-up.
+/// autocovariance e^2 std^2 exp(-lag / tau). A density q of N_B [U/s/sqrt(Hz)] gives std = q sqrt(tau / 2).
+/// The first b is drawn from the stationary distribution, so that a run has no warm-up.
 struct DriftSpec {
   static constexpr const char* name = "drift";
   static constexpr const char* help = "Error that wanders about zero (first-order Gauss-Markov process).";

@@ -1,5 +1,6 @@
 #pragma once
-/// Errors of a vector measured by three channels, one per axis (a gyro, a force sensor): noise/channel_noise.h for each.
+/// Errors of a vector measured by three channels, one per axis (a gyro, a force sensor):
+/// noise/channel_noise.h for each.
 ///
 /// Random   the axes draw from one stream, x before y before z: the order is part of the result.
 #include <string>

@@ -1,23 +1,25 @@
 #pragma once
-/// Errors as a chain of stages in the user's order, for one channel (an axis, a height) or for many values that are
-/// measured at once (the beams of a scan):
+/// Errors as a chain of stages in the user's order, for one channel (an axis, a height) or for many values
+/// that are measured at once (the beams of a scan):
 ///
 ///   noise: [{gaussian: {std: 1 cm}}, {drift: {std: 2 cm, correlation: 10 s}}, {quantise: {step: 1 mm}}]
 ///
-/// Devices hold a ChannelNoiseSpec (noise/channel_noise.h) or a RangeNoiseSpec (noise/range_noise.h) in their Spec,
-/// which are read from a map of common keys or from such a list; those call what is here.
+/// Devices hold a ChannelNoiseSpec (noise/channel_noise.h) or a RangeNoiseSpec (noise/range_noise.h) in their
+/// Spec, which are read from a map of common keys or from such a list; those call what is here.
 ///
-/// Random   each stage draws from a stream of its own, keyed by the device, the channel, the type of stage and how many of
-///          that type come before it. Adding, changing or removing a stage moves no other stage's numbers (but those of
-///          later ones of its own type), and what comes in does not either. The stages latency and dropouts with
-///          `whole` leave the channel out, so that all channels of a device that have them agree.
-/// errors   one factor on all of a chain: 0 exact, 1 as configured, 2 twice. It multiplies amplitudes, steps of
-///          quantise, widths of dead zones, delays and their jitter, and how often values are lost or far off (never
-///          more often than always). What clip cuts at is what the device can show and stays.
+/// Random   each stage draws from a stream of its own, keyed by the device, the channel, the type of stage
+///          and how many of that type come before it. Adding, changing or removing a stage moves no other
+///          stage's numbers (but those of later ones of its own type), and what comes in does not either. The
+///          stages latency and dropouts with `whole` leave the channel out, so that all channels of a device
+///          that have them agree.
+/// errors   one factor on all of a chain: 0 exact, 1 as configured, 2 twice. It multiplies amplitudes, steps
+///          of quantise, widths of dead zones, delays and their jitter, and how often values are lost or far
+///          off (never more often than always). What clip cuts at is what the device can show and stays.
 /// Units    the channel's unit U; times in seconds.
 /// Errors   none at run time: a spec is validated once, when it is read.
 /// Cost     nothing without stages; else those of its stages and a few ns each.
-/// Source   of each stage in its own header: additive.h, response.h, faults.h, latency.h. Docs: docs/noise.md.
+/// Source   of each stage in its own header: additive.h, response.h, faults.h, latency.h. Docs:
+///          docs/noise.md.
 #include <cstdint>
 #include <span>
 #include <string>

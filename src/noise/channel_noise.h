@@ -1,16 +1,18 @@
 #pragma once
-/// Errors of one scalar channel (one axis of a gyroscope, one pressure): what data sheets and SDF's <noise> give, as a map
-/// of a few keys, and then any stages (noise/chain.h). A list in place of the map is those stages alone.
+/// Errors of one scalar channel (one axis of a gyroscope, one pressure): what data sheets and SDF's <noise>
+/// give, as a map of a few keys, and then any stages (noise/chain.h). A list in place of the map is those
+/// stages alone.
 ///
 ///   y[k] = stages(clamp(round(x[k] + e (c + b[k] + white * w[k])), -limit, limit))
 ///
-/// c = mean + mean_std * n, drawn once at the start; b is a drifting bias (noise/drifting_bias.h, with its own white
-/// density); w, n ~ Normal(0, 1). round() goes to multiples of e * `resolution`. e is the factor `errors`.
+/// c = mean + mean_std * n, drawn once at the start; b is a drifting bias (noise/drifting_bias.h, with its
+/// own white density); w, n ~ Normal(0, 1). round() goes to multiples of e * `resolution`. e is the factor
+/// `errors`.
 ///
 /// Units    the channel's unit U.
 /// Time     b depends on the time since the previous sample; w does not.
-/// Random   what the keys of the map ask for is drawn from the device's stream, one after the other; each stage has a
-///          stream of its own.
+/// Random   what the keys of the map ask for is drawn from the device's stream, one after the other; each
+///          stage has a stream of its own.
 /// Errors   none at run time: a spec is validated once, when it is read.
 /// Cost     one normal per sample for each of white and bias that is configured; nothing without any.
 /// Source   noise/drifting_bias.h, noise/white.h, noise/chain.h.

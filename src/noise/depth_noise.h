@@ -1,15 +1,18 @@
 #pragma once
-/// Errors of depth pictures as a chain of stages in the user's order: float distances [m], +inf where nothing is seen.
+/// Errors of depth pictures as a chain of stages in the user's order: float distances [m], +inf where nothing
+/// is seen.
 ///
-///   noise: [{disparity: {step: 0.125, focal_baseline: 43.5 m}}, {quadratic: {std: 1.4 mm}}, {edges: {jump: 5 cm}}]
+///   noise: [{disparity: {step: 0.125, focal_baseline: 43.5 m}}, {quadratic: {std: 1.4 mm}}, {edges: {jump: 5
+///   cm}}]
 ///
-/// z is what comes in, y what goes out, e the factor `errors`; n ~ Normal(0, 1), u ~ Uniform(0, 1). What is not finite stays
-/// as it is; what becomes negative is nothing seen.
+/// z is what comes in, y what goes out, e the factor `errors`; n ~ Normal(0, 1), u ~ Uniform(0, 1). What is
+/// not finite stays as it is; what becomes negative is nothing seen.
 ///
 /// Random, rows, cost   as noise/image_noise.h.
 /// Limits   edges are looked for along rows alone, so that rows can be done in any order.
-/// Source   K. Khoshelham, S. Oude Elberink, Accuracy and Resolution of Kinect Depth Data (2012): disparity in steps of 1/8
-///          pixel and the error that grows with the square of the distance (1.4 mm at 1 m, 3 cm at 4.6 m).
+/// Source   K. Khoshelham, S. Oude Elberink, Accuracy and Resolution of Kinect Depth Data (2012): disparity
+///          in steps of 1/8 pixel and the error that grows with the square of the distance (1.4 mm at 1 m, 3
+///          cm at 4.6 m).
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -62,8 +65,8 @@ struct Disparity {
   void corrupt(ImagePiece& piece, const Stream& random) const;
 };
 
-/// Beside a jump along its row a pixel is with the probability e rate not seen, or with `shows: mixed` somewhere between
-/// both surfaces: y = z + u (z' - z).
+/// Beside a jump along its row a pixel is with the probability e rate not seen, or with `shows: mixed`
+/// somewhere between both surfaces: y = z + u (z' - z).
 struct Edges {
   static constexpr const char* name = "edges";
   static constexpr const char* help =

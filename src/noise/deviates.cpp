@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t half = 32768;
 
-/// The positive half: the values z with P(|Z| < z) = (k + 1/2) / half. The distribution is summed up in small steps
-/// (trapezium rule, its error is below 1e-8) and looked up backwards.
+/// The positive half: the values z with P(|Z| < z) = (k + 1/2) / half. The distribution is summed up in small
+/// steps (trapezium rule, its error is below 1e-8) and looked up backwards.
 std::vector<float> make_table() {
   std::vector<double> z(half);
   constexpr double step = 1e-3;

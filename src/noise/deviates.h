@@ -1,8 +1,8 @@
 #pragma once
 /// Very many normal deviates, cheaply: each is looked up for 16 random bits.
 ///
-/// Each of the 2^16 equally probable values is the middle (by probability) of its part of the normal distribution, all of
-/// them scaled so that the variance is exactly 1. The outermost are +-4.3.
+/// Each of the 2^16 equally probable values is the middle (by probability) of its part of the normal
+/// distribution, all of them scaled so that the variance is exactly 1. The outermost are +-4.3.
 /// Cost     2 to 3 ns each. The table has 128 KB.
 #include <cstdint>
 #include <span>

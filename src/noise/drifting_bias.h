@@ -4,8 +4,8 @@
 ///   y[k] = x[k] + b[k] + white_density / sqrt(dt) * w[k]
 ///   b[k] = exp(-dt/tau) * b[k-1] + bias_std * sqrt(1 - exp(-2 dt/tau)) * v[k]
 ///
-/// w, v ~ Normal(0, 1), independent. The bias update is the exact discretisation of a first-order Gauss-Markov
-/// process, so its variance is bias_std^2 at any sample rate.
+/// w, v ~ Normal(0, 1), independent. The bias update is the exact discretisation of a first-order
+/// Gauss-Markov process, so its variance is bias_std^2 at any sample rate.
 ///
 /// Units    the channel's unit U; dt and tau in seconds.
 /// Errors   none at run time: a spec is validated once, when it is read.

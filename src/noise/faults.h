@@ -3,8 +3,8 @@
 ///
 /// Errors   a bad spec is refused when it is read.
 /// Cost     one draw per value (outliers: two where one occurs); no allocation after the first sample.
-/// Source   E. N. Gilbert, Capacity of a Burst-Noise Channel (1960); S. Thrun et al., Probabilistic Robotics (2005),
-///          sec. 6.3 (p_rand, p_max).
+/// Source   E. N. Gilbert, Capacity of a Burst-Noise Channel (1960); S. Thrun et al., Probabilistic Robotics
+///          (2005), sec. 6.3 (p_rand, p_max).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,8 +15,8 @@
 
 namespace sandlot {
 
-/// Probability that something which happens `rate` times per sample or `per_second` times per second happens in one
-/// sample.
+/// Probability that something which happens `rate` times per sample or `per_second` times per second happens
+/// in one sample.
 inline double odds_per_sample(double rate, double per_second, const NoiseSample& sample) {
   if (per_second > 0) return 1 - math::exp(-per_second * sample.errors * sample.dt_s);
   return std::min(1.0, rate * sample.errors);
@@ -25,14 +25,17 @@ inline double odds_per_sample(double rate, double per_second, const NoiseSample&
 /// Values that are not there, alone or in bursts: a two-state Markov chain, lost or not.
 ///
 /// Given per sample (`rate` p <- min(1, e p), `burst` L):   P(lost | not lost) = p,   P(lost | lost) = 1 - (1 - p) / L.
-/// Fraction lost f = p / (p + (1 - p) / L), mean length of a burst L / (1 - p). With L = 1 losses are independent, f = p.
+/// Fraction lost f = p / (p + (1 - p) / L), mean length of a burst L / (1 - p). With L = 1 losses are
+/// independent, f = p.
 ///
-/// Given per second (`per_second` r <- e r, `burst_time` T): the process that begins bursts at the rate r while nothing
-/// is lost and ends them at the rate 1 / T, sampled exactly: f = r T / (1 + r T) and correlation exp(-lag (r + 1 / T)),
-/// whatever the sample rate. T = 0 loses one sample each: f = 1 - exp(-r dt).
+/// Given per second (`per_second` r <- e r, `burst_time` T): the process that begins bursts at the rate r
+/// while nothing is lost and ends them at the rate 1 / T, sampled exactly: f = r T / (1 + r T) and
+/// correlation exp(-lag (r + 1 / T)), whatever the sample rate. T = 0 loses one sample each: f = 1 - exp(-r
+/// dt).
 ///
-/// For many values at once the chain runs along the values, one after the other, and restarts in each sample; with
-/// `whole` it runs over the samples and loses all values at once, and all channels of a device that has several. `hold` shows what the same beam showed before.
+/// For many values at once the chain runs along the values, one after the other, and restarts in each sample;
+/// with `whole` it runs over the samples and loses all values at once, and all channels of a device that has
+/// several. `hold` shows what the same beam showed before.
 struct DropoutsSpec {
   static constexpr const char* name = "dropouts";
   static constexpr const char* help = "Values that are lost, alone or in bursts.";

@@ -17,7 +17,8 @@ namespace {
 constexpr int most_channels = 4;
 constexpr std::size_t most_values = image_piece * most_channels;
 
-/// Where the numbers of a piece begin if each pixel takes so many bits. No pixel takes more than a block of 128.
+/// Where the numbers of a piece begin if each pixel takes so many bits. No pixel takes more than a block of
+/// 128.
 std::uint32_t first_block(const ImagePiece& piece, int bits_per_pixel) {
   const auto row = static_cast<std::uint32_t>(piece.y) * static_cast<std::uint32_t>(piece.width);
   return row + static_cast<std::uint32_t>(piece.x * bits_per_pixel / 128);

@@ -1,20 +1,22 @@
 #pragma once
 /// Errors of pictures as a chain of stages in the user's order (noise/image_stages.h):
 ///
-///   noise: [{shot: {full_well: 8000}}, {gaussian: {std: 2 %}}, {salt_and_pepper: {salt: 0.1 %, pepper: 0.1 %}}]
+///   noise: [{shot: {full_well: 8000}}, {gaussian: {std: 2 %}}, {salt_and_pepper: {salt: 0.1 %, pepper: 0.1
+///   %}}]
 ///
-/// A camera holds an ImageNoiseSpec in its Spec and an ImageNoise next to its State, calls reset() when it is created and
-/// corrupt() on each picture it has rendered, with its factor `errors`.
+/// A camera holds an ImageNoiseSpec in its Spec and an ImageNoise next to its State, calls reset() when it is
+/// created and corrupt() on each picture it has rendered, with its factor `errors`.
 ///
-/// Pixels   8 bits per channel, 1 to 4 channels, rows without gaps, top row first; 0 is black and 255 full scale. Between
-///          the stages values are not rounded nor cut; at the end they are.
-/// Time     pictures are independent of each other; only stages that are fixed stay as they are. Nothing is State.
-/// Random   each stage has a stream of its own, keyed by the device, the type of stage and how many of that type come
-///          before it; each row begins at a place of its own in it. So the result is the same for any split into
-///          rows over threads, and adding a stage moves no other's numbers.
+/// Pixels   8 bits per channel, 1 to 4 channels, rows without gaps, top row first; 0 is black and 255 full
+///          scale. Between the stages values are not rounded nor cut; at the end they are.
+/// Time     pictures are independent of each other; only stages that are fixed stay as they are. Nothing is
+///          State.
+/// Random   each stage has a stream of its own, keyed by the device, the type of stage and how many of that
+///          type come before it; each row begins at a place of its own in it. So the result is the same for
+///          any split into rows over threads, and adding a stage moves no other's numbers.
 /// errors   0 leaves every byte as it is.
-/// Limits   normal deviates have 2^16 values: 4.3 standard deviations are the most. No correlation between neighbours
-///          (Bayer mosaics, compression), no blooming, no temperature.
+/// Limits   normal deviates have 2^16 values: 4.3 standard deviations are the most. No correlation between
+///          neighbours (Bayer mosaics, compression), no blooming, no temperature.
 /// Cost     2 to 4 ns per deviate; about 10 ns per pixel of three channels for gaussian. No allocation.
 #include <cstdint>
 #include <optional>

@@ -142,7 +142,8 @@ TEST(ImageNoise, HundredsAndThousandsAreOfAllColours) {
     colours.insert(colours.end(), rgb, rgb + 3);
   }
   EXPECT_NEAR(hit, 0.3 * seen.count(), five_binomial(0.3, seen.count()));
-  // Uniform over 0..255: mean 127.5, variance (256^2 - 1) / 12; the variance of a uniform's square is 4/5 of its square.
+  // Uniform over 0..255: mean 127.5, variance (256^2 - 1) / 12; the variance of a uniform's square is 4/5 of
+  // its square.
   const auto n = static_cast<double>(colours.size());
   const double variance = (256.0 * 256 - 1) / 12;
   EXPECT_NEAR(moments(colours).mean, 127.5, 5 * std::sqrt(variance / n));
@@ -250,7 +251,8 @@ TEST(DepthNoise, GrowsWithTheSquareOfTheDistance) {
 }
 
 TEST(DepthNoise, DisparitiesComeInSteps) {
-  // f b = 40 pixel m in steps of 1/2: at 3 m 13.33 pixels become 13.5; what is beyond 160 m is less than half a step.
+  // f b = 40 pixel m in steps of 1/2: at 3 m 13.33 pixels become 13.5; what is beyond 160 m is less than half
+  // a step.
   const auto inf = std::numeric_limits<float>::infinity();
   const auto seen = corrupted({depth_stage::Disparity{.step = 0.5, .focal_baseline_m = 40}}, {3, 8, inf, 200},
                               4);

@@ -1,12 +1,13 @@
 #pragma once
 /// Stages of errors of a picture (noise/image_noise.h), on values from 0 (black) to 1 (full scale).
 ///
-/// x is what comes in, y what goes out, e the factor `errors`; n ~ Normal(0, 1) and u ~ Uniform(0, 1) are independent draws.
-/// A stage that is `fixed` draws once per device: the same pixels err in the same way in every picture.
+/// x is what comes in, y what goes out, e the factor `errors`; n ~ Normal(0, 1) and u ~ Uniform(0, 1) are
+/// independent draws. A stage that is `fixed` draws once per device: the same pixels err in the same way in
+/// every picture.
 ///
-/// Source   EMVA Standard 1288, Release 4.0 (2021), sec. 2 and 4 (shot noise, dark noise, fixed pattern); T. Braunl et al.,
-///          EyeSim (salt and pepper, hundreds and thousands: with the probability P a pixel is black or white, or of
-///          a random colour).
+/// Source   EMVA Standard 1288, Release 4.0 (2021), sec. 2 and 4 (shot noise, dark noise, fixed pattern); T.
+///          Braunl et al., EyeSim (salt and pepper, hundreds and thousands: with the probability P a pixel is
+///          black or white, or of a random colour).
 #include <span>
 
 #include "base/random.h"
@@ -49,8 +50,8 @@ inline std::span<const EnumName<Gaussian::Channels>> enum_names(Gaussian::Channe
   return names;
 }
 
-/// y = x + e sqrt(x / full_well) n, per channel: the Poisson noise of so many electrons, in its normal limit. The variance
-/// grows with the light.
+/// y = x + e sqrt(x / full_well) n, per channel: the Poisson noise of so many electrons, in its normal limit.
+/// The variance grows with the light.
 struct Shot {
   static constexpr const char* name = "shot";
   static constexpr const char* help = "Noise of counted light: the variance grows with the brightness.";

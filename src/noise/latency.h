@@ -3,11 +3,12 @@
 ///
 ///   y(t) = x(t_m),   t_m = the last time of a sample at or before t - d,   d = max(0, e (delay + jitter (2 u - 1)))
 ///
-/// u is drawn per sample. What is shown never goes back in time, so that of two samples the later one never shows the
-/// older value. Until a value is old enough the first one is shown. Of many values at once all are of one time.
+/// u is drawn per sample. What is shown never goes back in time, so that of two samples the later one never
+/// shows the older value. Until a value is old enough the first one is shown. Of many values at once all are
+/// of one time.
 ///
-/// Limits   what is shown changes with the device's own samples only. At most `max_held` samples are kept (of scans as
-///          many as hold `max_held_values` values): a longer delay shows the oldest of them.
+/// Limits   what is shown changes with the device's own samples only. At most `max_held` samples are kept (of
+///          scans as many as hold `max_held_values` values): a longer delay shows the oldest of them.
 /// Cost     a copy of the sample; no allocation once as many samples are kept as the delay needs.
 #include <algorithm>
 #include <span>

@@ -46,8 +46,8 @@ TEST(DriftingBias, WhiteNoiseAveragesDownWithTheSampleInterval) {
 }
 
 TEST(DriftingBias, IsCorrelatedAsItsTimeConstantSays) {
-  // Autocorrelation at lag dt: exp(-dt / tau) = exp(-0.5). Bartlett: its estimate from n samples of an AR(1) process
-  // has variance (1 - a^2) / n.
+  // Autocorrelation at lag dt: exp(-dt / tau) = exp(-0.5). Bartlett: its estimate from n samples of an AR(1)
+  // process has variance (1 - a^2) / n.
   const DriftingBiasSpec spec{.bias_std = 1, .correlation_s = 2};
   DriftingBias channel;
   double product = 0, squares = 0, previous = 0;
@@ -97,7 +97,8 @@ TEST(WhiteNoise, HasItsStatedMeanAndSpread) {
 }
 
 TEST(RangeNoise, BeamsShareTheBiasAndHaveTheirOwnWhiteError) {
-  // Error of a beam: b + w. Mean over 1000 beams estimates b to 0.1 / sqrt(1000), the spread around it is white.
+  // Error of a beam: b + w. Mean over 1000 beams estimates b to 0.1 / sqrt(1000), the spread around it is
+  // white.
   const RangeNoiseSpec spec{.white_m = 0.1, .bias = {.bias_std = 0.5, .correlation_s = 1e-3}};
   DriftingBias bias;
   double bias_squares = 0, white_squares = 0;
@@ -158,8 +159,8 @@ TEST(RangeNoise, TheConstantErrorIsAddedAndTheSumRounded) {
 }
 
 TEST(ChannelNoise, ItsPartsAddUp) {
-  // Constant 0.5 + drawn; white and the drifting bias are independent: sqrt(0.3^2 + 0.4^2) = 0.5 about it. With a
-  // correlation far below the sample interval samples are independent, too.
+  // Constant 0.5 + drawn; white and the drifting bias are independent: sqrt(0.3^2 + 0.4^2) = 0.5 about it.
+  // With a correlation far below the sample interval samples are independent, too.
   const ChannelNoiseSpec spec{
       .white = 0.3, .mean = 0.5, .mean_std = 2, .bias = {.bias_std = 0.4, .correlation_s = 1e-3}};
   ChannelNoise channel;

@@ -1,19 +1,21 @@
 #pragma once
-/// Pose estimate of a localisation, without simulating the localisation: an error that comes and goes but never grows,
-/// and now and then a wrong place.
+/// Pose estimate of a localisation, without simulating the localisation: an error that comes and goes but
+/// never grows, and now and then a wrong place.
 ///
 ///   p = p_true + e (x, y, z)         q = turn about the vertical by e a, then q_true
 ///
-/// x, y, z, a: first-order Gauss-Markov processes (noise/drifting_bias.h) of the deviations configured and one
-/// correlation time: a filter's error follows its measurements slowly. e is the factor `errors`.
-/// While it is lost, a constant offset (normal, drawn when it gets lost) is added. It gets lost as a Poisson process does,
-/// `e lost_rate` times a second, for a time that is exponentially distributed about `lost_time`; it does not know that it is
-/// lost, so the covariance shown stays what it is, as that of a filter that follows the wrong hypothesis.
+/// x, y, z, a: first-order Gauss-Markov processes (noise/drifting_bias.h) of the deviations configured and
+/// one correlation time: a filter's error follows its measurements slowly. e is the factor `errors`.
+/// While it is lost, a constant offset (normal, drawn when it gets lost) is added. It gets lost as a Poisson
+/// process does, `e lost_rate` times a second, for a time that is exponentially distributed about
+/// `lost_time`; it does not know that it is lost, so the covariance shown stays what it is, as that of a
+/// filter that follows the wrong hypothesis.
 ///
 /// Units    metres, radians, seconds.
 /// Errors   none at run time: a spec is validated once, when it is read.
 /// Cost     four normals per sample while anything is configured, no allocation.
-/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 8.1 (taxonomy: tracking, kidnapping), 8.3.
+/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 8.1 (taxonomy: tracking,
+///          kidnapping), 8.3.
 /// Not modelled   errors that depend on the place or on what is seen; roll and pitch are true.
 #include <array>
 

@@ -1,21 +1,24 @@
 #pragma once
-/// Errors of a sensor that measures many distances at once (the beams of a scan, the pixels of a depth image): a map of a
-/// few keys, and then any stages (noise/chain.h). A list in place of the map is those stages alone.
+/// Errors of a sensor that measures many distances at once (the beams of a scan, the pixels of a depth
+/// image): a map of a few keys, and then any stages (noise/chain.h). A list in place of the map is those
+/// stages alone.
 ///
 ///   y[k][i] = clamp(stages(round(x[k][i] + e (c + b[k] + white * w[k][i]))), min, max)    for finite x
 ///
-/// c is the device's own constant error: `mean` plus a draw at the start, uniform within +-systematic. round() goes to
-/// multiples of e * `resolution`. b[k] is the error that all beams of sample k share: a drifting bias
-/// (noise/drifting_bias.h, including its own white part); w[k][i] ~ Normal(0, 1) is drawn for each beam separately. e is the
-/// factor `errors`.
+/// c is the device's own constant error: `mean` plus a draw at the start, uniform within +-systematic.
+/// round() goes to multiples of e * `resolution`. b[k] is the error that all beams of sample k share: a
+/// drifting bias (noise/drifting_bias.h, including its own white part); w[k][i] ~ Normal(0, 1) is drawn for
+/// each beam separately. e is the factor `errors`.
 ///
-/// Output   distances without a hit (+inf) or too near (-inf) stay as they are: only the stages dropouts and outliers turn
-///          a hit into a miss or a miss into a hit.
+/// Output   distances without a hit (+inf) or too near (-inf) stay as they are: only the stages dropouts and
+///          outliers turn a hit into a miss or a miss into a hit.
 /// Time     b depends on the time since the previous sample; w does not.
 /// Random   as noise/channel_noise.h.
 /// Limits   no reflectance; no error that depends on the angle at which a surface is met.
-/// Cost     one normal per finite distance if `white` > 0, two more per sample if a bias is configured; the stages.
-/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 6.3.1 (the "hit" term); noise/chain.h.
+/// Cost     one normal per finite distance if `white` > 0, two more per sample if a bias is configured; the
+///          stages.
+/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 6.3.1 (the "hit" term);
+///          noise/chain.h.
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -4,9 +4,9 @@
 ///
 /// Errors   a bad spec is refused when it is read.
 /// Cost     one draw per value (short, multipath: two where one occurs); no allocation.
-/// Source   S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3.1 (p_short; its other terms are gaussian, and
-///          outliers and dropouts of noise/faults.h); C. Ye, J. Borenstein, Characterization of a 2-D Laser Scanner for Mobile
-///          Robot Obstacle Negotiation (2002) (mixed pixels).
+/// Source   S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3.1 (p_short; its other terms are
+///          gaussian, and outliers and dropouts of noise/faults.h); C. Ye, J. Borenstein, Characterization of
+///          a 2-D Laser Scanner for Mobile Robot Obstacle Negotiation (2002) (mixed pixels).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,9 +40,10 @@ struct GrowingSpec {
   }
 };
 
-/// A beam that meets an edge returns something from both sides: where the neighbours in a scan, x before x', differ by more
-/// than `jump`, with the probability e rate y = x + u (x' - x). The rate is about beam width / spacing of beams. Of both
-/// beams at an edge each is drawn for. Does nothing to single values; neighbours are those in the order of the scan.
+/// A beam that meets an edge returns something from both sides: where the neighbours in a scan, x before x',
+/// differ by more than `jump`, with the probability e rate y = x + u (x' - x). The rate is about beam width /
+/// spacing of beams. Of both beams at an edge each is drawn for. Does nothing to single values; neighbours
+/// are those in the order of the scan.
 struct MixedSpec {
   static constexpr const char* name = "mixed";
   static constexpr const char* help =
@@ -76,7 +77,8 @@ struct MixedSpec {
   }
 };
 
-/// With the probability e rate something in front is met: y = mean E, given that this is below x. Also where nothing was met.
+/// With the probability e rate something in front is met: y = mean E, given that this is below x. Also where
+/// nothing was met.
 struct ShortSpec {
   static constexpr const char* name = "short";
   static constexpr const char* help = "Occasional objects in front of what is measured: dust, rain, people.";

@@ -1,7 +1,9 @@
 #pragma once
-/// Stages that are a sensor's way to answer: scale, quantise, clip, dead_zone. Symbols as in noise/additive.h.
+/// Stages that are a sensor's way to answer: scale, quantise, clip, dead_zone. Symbols as in
+/// noise/additive.h.
 ///
-/// For many values at once scale is one factor that all share; the others work on each value. Only scale draws, once.
+/// For many values at once scale is one factor that all share; the others work on each value. Only scale
+/// draws, once.
 /// Cost     a few operations per value; no allocation.
 /// Source   B. Widrow, I. Kollar, Quantization Noise (2008), ch. 4 (variance step^2 / 12).
 #include <algorithm>

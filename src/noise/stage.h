@@ -7,7 +7,8 @@
 ///   double corrupt(x, sample, random) const                  each value by itself, no state
 ///   void advance(state, sample, random) const, double show(state, x, sample) const     once per sample, shared
 ///   corrupt(state, x, sample, random), corrupt(state, span, sample, random)            both written out
-/// and, where they mean something, reset(state, random) and variance(dt_s) about its constant part, at errors = 1.
+/// and, where they mean something, reset(state, random) and variance(dt_s) about its constant part, at errors
+/// = 1.
 #include <concepts>
 #include <optional>
 #include <string>
@@ -21,8 +22,8 @@
 
 namespace sandlot {
 
-/// Stage of one of the types of a family. The family has the name for descriptions (`described_as`) and the types
-/// as a std::variant<std::monostate, ...> `Spec`.
+/// Stage of one of the types of a family. The family has the name for descriptions (`described_as`) and the
+/// types as a std::variant<std::monostate, ...> `Spec`.
 template <class Family>
 struct StageOf {
   using StageTypes = typename Family::Spec;

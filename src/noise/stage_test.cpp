@@ -1,5 +1,6 @@
-/// Each stage against its closed form, at several sample rates. Bounds are 4.5 standard deviations of the estimator,
-/// which a correct stage leaves once in 150 000 estimates; the streams are fixed, so that a test that passes stays so.
+/// Each stage against its closed form, at several sample rates. Bounds are 4.5 standard deviations of the
+/// estimator, which a correct stage leaves once in 150 000 estimates; the streams are fixed, so that a test
+/// that passes stays so.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,8 +43,8 @@ Moments moments(const std::vector<double>& x) {
   return m;
 }
 
-/// Mean of n independent values of variance v: deviation sqrt(v / n). Their sample variance: v sqrt((kurtosis - 1) / n),
-/// kurtosis 3 for normal and 1.8 for uniform values.
+/// Mean of n independent values of variance v: deviation sqrt(v / n). Their sample variance: v sqrt((kurtosis
+/// - 1) / n), kurtosis 3 for normal and 1.8 for uniform values.
 void expect_moments(const std::vector<double>& x, double mean, double variance, double kurtosis = 3) {
   const Moments m = moments(x);
   const auto n = static_cast<double>(x.size());
@@ -81,7 +82,8 @@ TEST(Stages, UniformErrorsFillTheirIntervalAlike) {
     const auto x = run({UniformSpec{.min = -1, .max = 2}}, 10, dt_s, 40'000);
     expect_moments(x, 10.5, 9.0 / 12, 1.8);
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
-    // The extremes of n uniform values lie within width ln(150 000) / n = 12 width / n of the ends, as surely.
+    // The extremes of n uniform values lie within width ln(150 000) / n = 12 width / n of the ends, as
+    // surely.
     EXPECT_TRUE(*low >= 9 && *low < 9 + 12 * 3 / 40'000.0) << *low;
     EXPECT_TRUE(*high <= 12 && *high > 12 - 12 * 3 / 40'000.0) << *high;
   }
@@ -93,8 +95,8 @@ TEST(Stages, ProportionalErrorsGrowWithTheValueEitherSign) {
   EXPECT_EQ(run({ProportionalSpec{.std = 0.05}}, 0, 0.01, 10), std::vector<double>(10, 0.0));
 }
 
-/// Autocovariance of an AR(1) process of variance v and factor a at lag l from n samples with known mean 0 has, by
-/// Bartlett, the variance v^2 / n times sum_j (a^2|j| + a^|j+l| a^|j-l|)
+/// Autocovariance of an AR(1) process of variance v and factor a at lag l from n samples with known mean 0
+/// has, by Bartlett, the variance v^2 / n times sum_j (a^2|j| + a^|j+l| a^|j-l|)
 ///   = v^2 / n ((1 + a^2)(1 + a^2l) / (1 - a^2) + 2 l a^2l).
 double bartlett(double variance, double a, int lag, double n) {
   const double a2 = a * a, al = math::pow(a2, lag);
@@ -218,9 +220,9 @@ Runs runs_of(const std::vector<double>& x) {
   return out;
 }
 
-/// Standard deviation for a two-state chain with P(lost | not) = p and P(lost | lost) = s: the fraction f = p / (p + 1 - s) estimated from
-/// n samples has the variance f (1 - f) / n (1 + r) / (1 - r) with r = s - p. Bursts are geometric: of m of them with
-/// mean L the mean length has the deviation sqrt(L (L - 1) / m).
+/// Standard deviation for a two-state chain with P(lost | not) = p and P(lost | lost) = s: the fraction f = p
+/// / (p + 1 - s) estimated from n samples has the variance f (1 - f) / n (1 + r) / (1 - r) with r = s - p.
+/// Bursts are geometric: of m of them with mean L the mean length has the deviation sqrt(L (L - 1) / m).
 void expect_runs(const Runs& found, double p, double s) {
   const double f = p / (p + 1 - s), r = s - p, length = 1 / (1 - s);
   EXPECT_NEAR(found.fraction(), f, bound * std::sqrt(f * (1 - f) / found.n * (1 + r) / (1 - r)));
@@ -241,7 +243,8 @@ TEST(Stages, DropoutsPerSecondLoseTheSameShareOfTimeAtEveryRate) {
     const int n = static_cast<int>(4000 / dt_s);
     const auto found = runs_of(run({DropoutsSpec{.per_second = 0.5, .burst_time_s = 0.5}}, 1, dt_s, n));
     expect_runs(found, f * (1 - keep), 1 - (1 - f) * (1 - keep));
-    // The bursts themselves: 0.5 per second of the time that is not lost, 4000 s long; those between samples go unseen.
+    // The bursts themselves: 0.5 per second of the time that is not lost, 4000 s long; those between samples
+    // go unseen.
     EXPECT_NEAR(found.bursts, n * (1 - f) * f * (1 - keep), bound * std::sqrt(4000 * 0.4));
   }
 }
@@ -292,8 +295,9 @@ TEST(Stages, OutliersAreNormalOrUniformAddedOrShown) {
 }
 
 TEST(Stages, TheVarianceTheyReportIsTheOneTheyHave) {
-  // Sample variance of n values of any distribution: deviation at most sqrt(kurtosis / n); an added normal outlier of
-  // the probability p has kurtosis 3 / p, a uniform one about its distance from zero less than 3 / p.
+  // Sample variance of n values of any distribution: deviation at most sqrt(kurtosis / n); an added normal
+  // outlier of the probability p has kurtosis 3 / p, a uniform one about its distance from zero less than 3 /
+  // p.
   for (const double dt_s : rates_dt_s)
     for (const std::vector<StageSpec>& stages :
          {std::vector<StageSpec>{GaussianSpec{.std = 0.2}, UniformSpec{.min = 0, .max = 1}},

@@ -3,8 +3,8 @@
 ///
 ///   y[k] = x[k] + std * w[k],   w ~ Normal(0, 1), independent
 ///
-/// Units    the channel's unit U. The deviation holds per sample, whatever the sample rate; for noise given as a
-///          density (U/sqrt(Hz)) see noise/drifting_bias.h.
+/// Units    the channel's unit U. The deviation holds per sample, whatever the sample rate; for noise given
+///          as a density (U/sqrt(Hz)) see noise/drifting_bias.h.
 /// Errors   none at run time: a spec is validated once, when it is read.
 /// Cost     one normal per sample, no allocation.
 /// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 6.3.1 (p_hit).

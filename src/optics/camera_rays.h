@@ -1,8 +1,9 @@
 #pragma once
 /// The rays of a picture, eight at a time: pixels, samples on pixel and lens, moments of the exposure.
 ///
-/// Samples on the pixel stand in the same places in every pixel (a Hammersley set, whose mean is the centre); those on the
-/// lens are turned by an angle from the hash of key and pixel, so that blur is grain and not pattern.
+/// Samples on the pixel stand in the same places in every pixel (a Hammersley set, whose mean is the centre);
+/// those on the lens are turned by an angle from the hash of key and pixel, so that blur is grain and not
+/// pattern.
 #include <array>
 #include <vector>
 

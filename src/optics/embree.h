@@ -69,8 +69,8 @@ inline void fill_bounds(const optics::Bounds& box, double margin_m, RTCBounds& o
   out.upper_z = static_cast<float>(box.upper[2] + margin_m);
 }
 
-/// Denormal numbers count as zero while this lives. Embree recommends it, and it must not leak: physics and noise
-/// on the same thread keep IEEE arithmetic.
+/// Denormal numbers count as zero while this lives. Embree recommends it, and it must not leak: physics and
+/// noise on the same thread keep IEEE arithmetic.
 class FlushDenormals {
  public:
 #if defined(__SSE__)

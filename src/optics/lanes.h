@@ -1,8 +1,8 @@
 #pragma once
 /// SIMD lanes: eight floats, one per ray of a packet.
 ///
-/// Vector types of the compiler instead of loops that it may or may not vectorise: every lane gets the same IEEE
-/// operations in the same order at every optimisation level, so the bits are the same in all builds.
+/// Vector types of the compiler instead of loops that it may or may not vectorise: every lane gets the same
+/// IEEE operations in the same order at every optimisation level, so the bits are the same in all builds.
 #include <cstring>
 
 #if defined(__AVX__)

@@ -1,17 +1,21 @@
 #pragma once
 /// Lenses: which ray belongs to which place of an image, in closed form and in double precision.
 ///
-/// Frame    sensor frame S: x forward (the optical axis of pinhole and fisheye), y left, z up, as SDF's cameras have it.
-///          Catadioptric: z is the axis of the mirror, up, and x what lies upwards in the image; S's origin is the mirror's
-///          focus (of a spherical mirror, which has none, the centre of the sphere). The camera below looks up, so
-///          the left of the robot is on the right of the image, as in every raw picture of such a camera.
-/// Pixels   (u, v) = (column, row), u right, v down. The centre of the upper left pixel is (0, 0), as OpenCV counts, so the
-///          image reaches from -0.5 to width - 0.5 and its middle is ((width - 1) / 2, (height - 1) / 2).
-/// Errors   check(): sizes that would not fit memory, fields of view no lens of the kind has, mirrors that miss.
-/// Limits   no chromatic aberration, no vignetting; the lens below a mirror is a pinhole (parabolic: orthographic) without
-///          distortion and does not see itself in the mirror.
-/// Source   OpenCV's camera models (calib3d, fisheye); S. Baker, S. K. Nayar, A theory of single-viewpoint catadioptric
-///          image formation (1999); C. Geyer, K. Daniilidis, A unifying theory for central panoramic systems (2000).
+/// Frame    sensor frame S: x forward (the optical axis of pinhole and fisheye), y left, z up, as SDF's
+///          cameras have it. Catadioptric: z is the axis of the mirror, up, and x what lies upwards in the
+///          image; S's origin is the mirror's focus (of a spherical mirror, which has none, the centre of the
+///          sphere). The camera below looks up, so the left of the robot is on the right of the image, as in
+///          every raw picture of such a camera.
+/// Pixels   (u, v) = (column, row), u right, v down. The centre of the upper left pixel is (0, 0), as OpenCV
+///          counts, so the image reaches from -0.5 to width - 0.5 and its middle is ((width - 1) / 2, (height
+///          - 1) / 2).
+/// Errors   check(): sizes that would not fit memory, fields of view no lens of the kind has, mirrors that
+///          miss.
+/// Limits   no chromatic aberration, no vignetting; the lens below a mirror is a pinhole (parabolic:
+///          orthographic) without distortion and does not see itself in the mirror.
+/// Source   OpenCV's camera models (calib3d, fisheye); S. Baker, S. K. Nayar, A theory of single-viewpoint
+///          catadioptric image formation (1999); C. Geyer, K. Daniilidis, A unifying theory for central
+///          panoramic systems (2000).
 #include <array>
 #include <memory>
 #include <optional>
@@ -43,7 +47,8 @@ struct Fisheye {
   double max_theta_rad = 3.14159;         ///< nothing is seen beyond: half the field of view
 };
 
-/// A camera that looks up into a convex mirror of revolution. Up to `rim_m` from its axis the mirror is there.
+/// A camera that looks up into a convex mirror of revolution. Up to `rim_m` from its axis the mirror is
+/// there.
 struct Catadioptric {
   enum class Mirror : std::uint8_t {
     hyperbolic,  ///< r^2/a^2 - Z^2/b^2 = -1 about the middle between mirror's focus and camera: sqrt(a^2 + b^2) from each
@@ -60,8 +65,8 @@ struct Lens {
   std::variant<Pinhole, Fisheye, Catadioptric> model;
 };
 
-/// What the place of an image sees, in S. `direction` is a unit vector; `origin` is zero but for mirrors, where it is
-/// the point of the mirror (so that the mirror's own body is never in the way).
+/// What the place of an image sees, in S. `direction` is a unit vector; `origin` is zero but for mirrors,
+/// where it is the point of the mirror (so that the mirror's own body is never in the way).
 struct LensRay {
   Vec3 origin, direction;
 };
@@ -69,8 +74,8 @@ struct LensRay {
 /// The first thing wrong with a lens; the lens functions below want one without.
 Status check(const Lens& lens);
 
-/// None where the lens shows nothing: beyond the fisheye's circle or the mirror's rim, or where a distortion folds over.
-/// Places outside the image are answered, too.
+/// None where the lens shows nothing: beyond the fisheye's circle or the mirror's rim, or where a distortion
+/// folds over. Places outside the image are answered, too.
 std::optional<LensRay> ray_through(const Lens& lens, double u, double v);
 
 /// Where a point is seen, inside the image or not; none for what the lens cannot see (behind a pinhole ...).
@@ -84,13 +89,14 @@ std::array<double, 9> intrinsics(const Lens& lens);
 Result<Lens> pinhole_of_fov(int width, int height, double hfov_rad);
 /// The image's width spans hfov. Orthographic: at most pi; others up to 2 pi (stereographic: less).
 Result<Lens> fisheye_of_fov(int width, int height, double hfov_rad, Fisheye::Mapping mapping);
-/// The mirror's rim touches the nearer edges of the image. `lens.model` has mirror, a, b and rim; fx fy cx cy are found.
+/// The mirror's rim touches the nearer edges of the image. `lens.model` has mirror, a, b and rim; fx fy cx cy
+/// are found.
 Result<Lens> omni_that_fills(int width, int height, Catadioptric mirror);
 
 /// A lens as the renderer wants it: its rays, computed once. One table serves all cameras with the same lens.
 ///
-/// Cost     pinholes without distortion: nothing. Others: about 0.2 us per pixel once, and 12 bytes per pixel (24 with a
-///          mirror).
+/// Cost     pinholes without distortion: nothing. Others: about 0.2 us per pixel once, and 12 bytes per pixel
+///          (24 with a mirror).
 class LensTable {
  public:
   /// @pre check(lens)

@@ -22,8 +22,9 @@ double ramp(double x, double width) {
 }
 
 TEST(Motion, AMovingMeshCoversEachPixelForItsShareOfTheExposure) {
-  // A board 1 m wide at 2 m, 0.4 m to the left during the exposure: 40 px and 16 px. How long its left edge, which moves
-  // from 16 px / 2 right of its middle place to as much left, has been past a place is a ramp, and a pixel the mean of it.
+  // A board 1 m wide at 2 m, 0.4 m to the left during the exposure: 40 px and 16 px. How long its left edge,
+  // which moves from 16 px / 2 right of its middle place to as much left, has been past a place is a ramp,
+  // and a pixel the mean of it.
   Studio studio;
   studio.glow(as_mesh(Box{{0.01, 1, 1}}), {{2.005, 0, 0}, {}});
   studio.velocities = {Velocity{{0, 10, 0}, {}}};
@@ -39,14 +40,15 @@ TEST(Motion, AMovingMeshCoversEachPixelForItsShareOfTheExposure) {
   };
   for (int u = 0; u < 160; ++u) {
     const double share = past(left, u) - past(right, u);
-    // An edge crosses a pixel in 4 of the 64 slices; what each covers of the pixel is estimated by 4 samples, half of one too
-    // much or too little, and the slices at both ends of the crossing may be off as a whole.
+    // An edge crosses a pixel in 4 of the 64 slices; what each covers of the pixel is estimated by 4 samples,
+    // half of one too much or too little, and the slices at both ends of the crossing may be off as a whole.
     EXPECT_NEAR(shot.red(u, 4) / 255.0, share, (4 * 0.125 + 1) / 64 + 1 / 255.0) << u;
   }
 }
 
 TEST(Motion, ATurningMeshCoversAnAngleForItsShareOfTheExposure) {
-  // A triangle from the optical axis outwards, 0.2 rad to each side of the left-hand direction, turns by 0.8 rad.
+  // A triangle from the optical axis outwards, 0.2 rad to each side of the left-hand direction, turns by 0.8
+  // rad.
   constexpr double half = 0.2, turned = 0.8, length = 3;
   auto blade = std::make_shared<TriangleMesh>();
   blade->vertices = {{0, 0, 0},
@@ -71,7 +73,8 @@ TEST(Motion, ATurningMeshCoversAnAngleForItsShareOfTheExposure) {
     const double low = std::max(there - half, -turned / 2), high = std::min(there + half, turned / 2);
     const double share = std::max(0.0, high - low) / turned;
     seen += share > 0 && share < 0.5;
-    // An edge needs 1.4 px / 70 px = 0.02 rad = 2 slices to cross a pixel; the kinks of the share are rounded off within it.
+    // An edge needs 1.4 px / 70 px = 0.02 rad = 2 slices to cross a pixel; the kinks of the share are rounded
+    // off within it.
     EXPECT_NEAR(shot.red(u, v) / 255.0, share, 2 / 64.0 + 1 / 255.0) << angle;
   }
   EXPECT_GT(seen, 10);
@@ -109,7 +112,8 @@ struct Lamp : Studio {
 };
 
 TEST(Motion, AMovingLightLightsByTheMeanOverTheExposure) {
-  // Without attenuation the floor at y shows 1 / sqrt(1 + (y - s)^2), the light being at s; s goes from -1 m to 1 m.
+  // Without attenuation the floor at y shows 1 / sqrt(1 + (y - s)^2), the light being at s; s goes from -1 m
+  // to 1 m.
   Lamp lamp(50);
   PictureJob job;
   job.X_WS = above(0, 0, 3);
@@ -124,8 +128,8 @@ TEST(Motion, AMovingLightLightsByTheMeanOverTheExposure) {
       return math::log(x + std::sqrt(x * x + 1));
     };  // of 1 / sqrt(x^2 + 1)
     const double mean = (integral(y + 1) - integral(y - 1)) / 2;
-    // Eight slices of 0.25 m: the midpoint rule is off by 0.25^2 / 24 times the largest curvature, which is 1. A pixel is
-    // 0.05 m: the mean over it differs by less.
+    // Eight slices of 0.25 m: the midpoint rule is off by 0.25^2 / 24 times the largest curvature, which is
+    // 1. A pixel is 0.05 m: the mean over it differs by less.
     EXPECT_NEAR(shot.red(u, 60) / 255.0, mean, 0.25 * 0.25 / 24 + 0.05 * 0.05 / 24 + 0.5 / 255) << y;
   }
 }
@@ -161,8 +165,8 @@ TEST(Motion, ATurningSunLightsByTheMeanOverTheExposure) {
   job.exposure.samples = 32;
   job.exposure.slices = 32;
   const Shot shot(studio, job);
-  // The cosine's mean over a turn by `turned` about it is its value in the middle times sin(turned / 2) / (turned / 2). The
-  // midpoint rule with 32 slices is off by (1 / 32)^2 / 24.
+  // The cosine's mean over a turn by `turned` about it is its value in the middle times sin(turned / 2) /
+  // (turned / 2). The midpoint rule with 32 slices is off by (1 / 32)^2 / 24.
   const double mean = 0.8 * math::sin(turned / 2) / (turned / 2);
   EXPECT_NEAR(shot.red(4, 4) / 255.0, mean, 1 / 1024.0 / 24 + 0.5 / 255 + 1e-4);
 }

@@ -1,19 +1,26 @@
 #pragma once
 /// Picture scene: visuals and lights for cameras, drawn by rays (Embree) without a graphics card.
 ///
-/// It shows the visuals of a world; range sensors have a scene of their own with the collisions (ray_scene.h). Geometry is
-/// given once per Model revision, poses once per tick, questions in batches of PictureJobs.
+/// It shows the visuals of a world; range sensors have a scene of their own with the collisions
+/// (ray_scene.h). Geometry is given once per Model revision, poses once per tick, questions in batches of
+/// PictureJobs.
 ///
-/// Geometry   primitives are met where they are (exact silhouettes and normals), meshes and terrain as their triangles with
-///            normals smoothed across edges of less than 40 degrees. Of two visuals in one plane the later one is seen.
-/// Light      diffuse (Lambert) + specular (Blinn) + emissive + ambient, both sides of every surface; hard shadows of sun, point and spot
-///            lights. Textures are filtered along the footprint of the pixel, so far lines fade instead of breaking up.
-/// Planes     `rgb` is anti-aliased, with depth of field and motion blur where set; depth, label and instance never
-///            are: they are what the ray through the pixel's centre (and the lens's) meets in the middle of the exposure.
-/// Limits     no reflections, refractions, transparency (alpha is ignored) or indirect light beyond `ambient`.
-/// Cost       trees are built at the first render() after an update(): worlds in which nobody looks pay nothing. Then
-///            about 30 ns per pixel and sample and light on a soccer field; a time slice costs an update of all moving visuals.
-/// Determinism  pixels depend on scene and job alone: not on the thread count, grouping of jobs or earlier pictures.
+/// Geometry   primitives are met where they are (exact silhouettes and normals), meshes and terrain as their
+///            triangles with normals smoothed across edges of less than 40 degrees. Of two visuals in one
+///            plane the later one is seen.
+/// Light      diffuse (Lambert) + specular (Blinn) + emissive + ambient, both sides of every surface; hard
+///            shadows of sun, point and spot lights. Textures are filtered along the footprint of the pixel,
+///            so far lines fade instead of breaking up.
+/// Planes     `rgb` is anti-aliased, with depth of field and motion blur where set; depth, label and instance
+///            never are: they are what the ray through the pixel's centre (and the lens's) meets in the
+///            middle of the exposure.
+/// Limits     no reflections, refractions, transparency (alpha is ignored) or indirect light beyond
+///            `ambient`.
+/// Cost       trees are built at the first render() after an update(): worlds in which nobody looks pay
+///            nothing. Then about 30 ns per pixel and sample and light on a soccer field; a time slice costs
+///            an update of all moving visuals.
+/// Determinism  pixels depend on scene and job alone: not on the thread count, grouping of jobs or earlier
+///              pictures.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -52,8 +59,8 @@ struct PictureShape {
   std::uint16_t label = 0;     ///< for the label plane; 0 is "nothing"
 };
 
-/// `light.X_PLight` is the pose in the group's frame; light leaves along its -z, as in model::Light. Spot angles are those of the whole
-/// cone: half of them to each side.
+/// `light.X_PLight` is the pose in the group's frame; light leaves along its -z, as in model::Light. Spot
+/// angles are those of the whole cone: half of them to each side.
 struct PictureLight {
   std::uint32_t group = 0;
   model::Light light;
@@ -75,7 +82,8 @@ struct Exposure {
   double focus_m = 1;     ///< distance along the optical axis that is sharp
   double shutter_s = 0;   ///< how long each pixel is exposed: moving things blur
   double readout_s = 0;   ///< from the first row's exposure to the last row's; 0: all at once
-  /// Moments at which moving things are placed, with shutter or readout; 0: chosen (8 for a shutter, 16 for a readout).
+  /// Moments at which moving things are placed, with shutter or readout; 0: chosen (8 for a shutter, 16 for a
+  /// readout).
   int slices = 0;
   bool lit = true;  ///< false: surfaces show their own colour, as under even white light
 };
@@ -118,15 +126,17 @@ class PictureScene {
   void set_shapes(std::span<const PictureShape> shapes);
   void set_lights(std::span<const PictureLight> lights);
   void set_surroundings(const Surroundings& surroundings);
-  /// Takes the poses of this tick and, for shutters and rolling shutters, the velocities of the groups (or none).
+  /// Takes the poses of this tick and, for shutters and rolling shutters, the velocities of the groups (or
+  /// none).
   /// @pre frame.X_WG covers all groups; velocities too, or is empty
   void update(const SceneFrame& frame, std::span<const Velocity> velocities = {});
 
   /// Draws all pictures, on the threads of the current arena. Not to be called from two threads at once.
   void render(std::span<const PictureJob> jobs);
 
-  /// How light it is at some places: lights, attenuation, cosine and shadows as in pictures. What is nearer than 0.2 mm
-  /// casts no shadow; all else does, but for `ignore_body`. Not to be called from two threads at once.
+  /// How light it is at some places: lights, attenuation, cosine and shadows as in pictures. What is nearer
+  /// than 0.2 mm casts no shadow; all else does, but for `ignore_body`. Not to be called from two threads at
+  /// once.
   void illuminate(std::span<LightProbe> probes);
 
   const char* isa() const;

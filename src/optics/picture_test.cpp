@@ -178,7 +178,8 @@ TEST(Picture, LambertBlinnAndAmbientByHand) {
   // Where the light is reflected to: all of the highlight.
   job.X_WS = {{2 * math::sin(math::pi / 3), 0, 1}, quat_from_rpy(0, math::pi / 6, math::pi)};
   EXPECT_NEAR(Shot(studio, job).rgb[2], 255 * 0.2, 0.51);
-  // Gain multiplies, sRGB encodes: 0.2 * 2 -> 1.055 * 0.4^(1/2.4) - 0.055 (the specular colour 0.484529 is 0.2 decoded).
+  // Gain multiplies, sRGB encodes: 0.2 * 2 -> 1.055 * 0.4^(1/2.4) - 0.055 (the specular colour 0.484529 is
+  // 0.2 decoded).
   studio.shapes[0].appearance.specular = {0.484529f, 0.484529f, 0.484529f, 1};
   job.exposure.srgb = true;
   job.exposure.gain = 2;
@@ -215,7 +216,8 @@ TEST(Picture, PointAndSpotLightsFadeByTheirFormulas) {
 }
 
 TEST(Picture, ShadowsEndWhereGeometrySays) {
-  // A wall 1 m high at x = 0: the sun 45 degrees high throws 1 m; a lamp 3 m high and 2 m behind it 1 m: 2 / 2 * 1.
+  // A wall 1 m high at x = 0: the sun 45 degrees high throws 1 m; a lamp 3 m high and 2 m behind it 1 m: 2 /
+  // 2 * 1.
   for (const auto type : {model::Light::Type::directional, model::Light::Type::point}) {
     Studio studio;
     studio.add(Plane{{0, 0, 1}}, {});
@@ -277,8 +279,9 @@ TEST(Picture, ACheckerboardFadesIntoGreyTowardsTheHorizon) {
     const double mean = sum / 320;
     return std::array{mean, std::sqrt(square_sum / 320 - mean * mean)};
   };
-  // At row v a pixel is 160 / (v - 119.5)^2 m long and 1 / (v - 119.5) m wide. Five rows below the horizon that is 18 cm across,
-  // more than a square: the pattern is gone. (The rounding of each level of the pyramid may add half a grey.)
+  // At row v a pixel is 160 / (v - 119.5)^2 m long and 1 / (v - 119.5) m wide. Five rows below the horizon
+  // that is 18 cm across, more than a square: the pattern is gone. (The rounding of each level of the pyramid
+  // may add half a grey.)
   for (const int v : {120, 121, 122, 124}) {
     EXPECT_NEAR(row(v)[0], 127.5, 3) << v;
     EXPECT_LT(row(v)[1], 6) << v;
@@ -355,7 +358,8 @@ TEST(Picture, CircleOfConfusionIsThatOfAThinLens) {
   for (const double focus : {2.0, 4.0, 8.0}) {
     job.exposure.focus_m = focus;
     const Edge edge(Shot(studio, job), 0);
-    // Its diameter in pixels; an edge seen through a disc of diameter c has a variance of c^2 / 16, and a pixel adds 1 / 12.
+    // Its diameter in pixels; an edge seen through a disc of diameter c has a variance of c^2 / 16, and a
+    // pixel adds 1 / 12.
     const double c = f * 0.1 * std::abs(4 - focus) / (4 * focus);
     EXPECT_NEAR(edge.place, 99.5, 0.1);
     EXPECT_NEAR(edge.variance, c * c / 16 + 1 / 12.0, 0.05 * c * c / 16 + 0.2) << focus;

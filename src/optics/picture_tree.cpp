@@ -21,9 +21,11 @@ using lanes::select;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
-/// Surfaces whose distances differ by less lie in one plane: what single precision leaves of it at grazing angles.
+/// Surfaces whose distances differ by less lie in one plane: what single precision leaves of it at grazing
+/// angles.
 constexpr float same_distance = 4e-6f;
-/// Up to this many visuals that stand still are rebuilt with the moving ones: one tree is faster to search than two.
+/// Up to this many visuals that stand still are rebuilt with the moving ones: one tree is faster to search
+/// than two.
 constexpr std::size_t few = 256;
 
 /// Context of the callbacks in addition to the packet: Embree hands it through to them.

@@ -1,8 +1,9 @@
 #pragma once
-/// Geometry that the picture scene traces: visuals as solids, planes and trees of triangles. Not for use outside optics.
+/// Geometry that the picture scene traces: visuals as solids, planes and trees of triangles. Not for use
+/// outside optics.
 ///
-/// Rays are given relative to a base in double precision (the camera), so that what is near the camera is sharp
-/// wherever in the world it stands.
+/// Rays are given relative to a base in double precision (the camera), so that what is near the camera is
+/// sharp wherever in the world it stands.
 #include <memory>
 #include <span>
 #include <unordered_map>

@@ -45,8 +45,8 @@ constexpr int nothing = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 
-/// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the smaller
-/// body index stays, so that the answer does not depend on the order of traversal.
+/// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the
+/// smaller body index stays, so that the answer does not depend on the order of traversal.
 void keep_nearest(I valid, F t, F tnear, std::uint32_t body, F& tfar, I& bodies, I& found) {
   const I other = lanes::broadcast(static_cast<int>(body));
   const I tie_won = (found == nothing) | (other < bodies);
@@ -129,7 +129,8 @@ void Layer::bounds(const RTCBoundsFunctionArguments* arguments) {
   embree::fill_bounds(optics::bounds(layer.solids[arguments->primID]), layer.margin_m, *arguments->bounds_o);
 }
 
-/// One float beyond `far`, so that of two surfaces at equal distances both are seen and the rule for ties decides.
+/// One float beyond `far`, so that of two surfaces at equal distances both are seen and the rule for ties
+/// decides.
 F distance_to(const TriangleTree& tree, const Solid& solid, const double* origin, const optics::Rays8& rays,
               F far, I valid) {
   alignas(32) int lanes_in[lanes::width];
@@ -214,8 +215,8 @@ inline F join(F4 a, F4 b) { return F{a[0], a[1], a[2], a[3], b[0], b[1], b[2], b
 }  // namespace
 
 struct RayScene::Impl {
-  // Embree's own `threads=` option would limit oneTBB in the whole process; an arena of one builds the trees in
-  // the calling thread alone.
+  // Embree's own `threads=` option would limit oneTBB in the whole process; an arena of one builds the trees
+  // in the calling thread alone.
   tbb::task_arena arena{1};
   const char* isa = choose_isa();
   RTCDevice device = nullptr;

@@ -1,15 +1,17 @@
 #pragma once
 /// Ray scene: collision shapes for the range sensors of a 3D world (Embree).
 ///
-/// Geometry is given once per Model revision, poses once per tick (SceneFrame), questions in batches of RayJobs.
-/// All three are plain, serialisable data: threads answer now, other processes may later.
+/// Geometry is given once per Model revision, poses once per tick (SceneFrame), questions in batches of
+/// RayJobs. All three are plain, serialisable data: threads answer now, other processes may later.
 ///
-/// Geometry   analytic boxes, spheres, cylinders, capsules, cones, ellipsoids, planes: silhouettes are exact. Meshes and
-///            terrain as their triangles, hit from both sides; one tree per mesh, however many shapes show it.
+/// Geometry   analytic boxes, spheres, cylinders, capsules, cones, ellipsoids, planes: silhouettes are exact.
+///            Meshes and terrain as their triangles, hit from both sides; one tree per mesh, however many
+///            shapes show it.
 /// Precision  single precision inside; distances within 2e-6 of the size of the scene around the sensor.
 /// Limits     surfaces only: a ray that starts inside a solid sees its far side. No materials yet.
-/// Cost       update: about 0.4 us per moving solid (one tree over them is rebuilt), nothing for the others until the
-///            revision changes. A mesh: 1 us per triangle when it is first seen, then as any solid. cast: 20 ns per ray of a 2D fan on a soccer field; no allocation of ours.
+/// Cost       update: about 0.4 us per moving solid (one tree over them is rebuilt), nothing for the others
+///            until the revision changes. A mesh: 1 us per triangle when it is first seen, then as any solid.
+///            cast: 20 ns per ray of a 2D fan on a soccer field; no allocation of ours.
 /// Determinism  one answer per Embree isa (fixed, see `isa()`), for any thread count and grouping of jobs.
 #include <memory>
 #include <span>

@@ -189,8 +189,8 @@ TEST(RayScene, FarFromTheOriginItIsAsSharp) {
 }
 
 TEST(RayScene, NoEdgeIsLostFarFromTheOrigin) {
-  // 10 km away floats are 1 mm apart: bounds that are rounded to them cut up to half of it off a box, unless they have
-  // a margin. Rays 0.1 mm inside the edge show it.
+  // 10 km away floats are 1 mm apart: bounds that are rounded to them cut up to half of it off a box, unless
+  // they have a margin. Rays 0.1 mm inside the edge show it.
   const Vec3 there{10'000, 10'000, 0};
   std::vector<SceneShape> shapes;
   const auto width_m = [](int i) { return 1 + 1.3e-4 * i; };
@@ -213,7 +213,8 @@ TEST(RayScene, NothingWithinUnlimitedRangeIsNoBody) {
   EXPECT_EQ(body, no_body);
 }
 
-// --- a second opinion in double precision -------------------------------------------------------------------------
+// --- a second opinion in double precision
+// -------------------------------------------------------------------------
 
 /// Calls see(t) for all t where the line o + t d meets the surface: faces, sides and caps one by one.
 template <class See>
@@ -299,8 +300,8 @@ std::vector<SceneShape> random_shapes(Stream& r, std::uint32_t count) {
 }
 
 TEST(RayScene, AgreesWithADoublePrecisionCasterOnRandomScenes) {
-  // The line may be off sideways by a few float roundings of the scene's 20 m; so every answer must lie between those
-  // for solids that much thinner and thicker.
+  // The line may be off sideways by a few float roundings of the scene's 20 m; so every answer must lie
+  // between those for solids that much thinner and thicker.
   const double slack_m = 10 * 20 * 6e-8;
   int hits = 0, rays = 0;
   for (std::uint64_t sample = 0; sample < 60; ++sample) {

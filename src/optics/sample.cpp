@@ -13,7 +13,8 @@ using lanes::select;
 
 typedef float F4 __attribute__((vector_size(16)));
 
-/// Mean of four texels, two neighbours in each of two rows. Weights: of the right ones in 256ths, of the lower ones.
+/// Mean of four texels, two neighbours in each of two rows. Weights: of the right ones in 256ths, of the
+/// lower ones.
 inline F4 blend(const std::uint32_t* upper, const std::uint32_t* lower, int right, float down) {
 #if defined(__AVX__)
   const __m128i interleave = _mm_setr_epi8(0, -1, 4, -1, 1, -1, 5, -1, 2, -1, 6, -1, 3, -1, 7, -1);
@@ -52,10 +53,11 @@ Levels levels_of(const Texture& texture, I level) {
   return out;
 }
 
-/// Writes the colour of the lanes around which the texture has only one and returns their mask; black to the others.
+/// Writes the colour of the lanes around which the texture has only one and returns their mask; black to the
+/// others.
 ///
-/// Asked of a level where the longest footprint is at most half a texel long: with the texels that filtering would
-/// touch it stays within the eight neighbours.
+/// Asked of a level where the longest footprint is at most half a texel long: with the texels that filtering
+/// would touch it stays within the eight neighbours.
 I plain(const Texture& texture, const Footprint8& f, F longer, I usable, F3& out) {
   const float longest = lanes::horizontal_max(select(usable, longer, broadcast(0.0f)));
   std::size_t level = 1;

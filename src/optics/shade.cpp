@@ -73,7 +73,8 @@ Footprint8 footprint(const Surface8& s, const F3& direction, F width) {
           {length * dot(s.v_gradient, along), width * dot(s.v_gradient, across)}};
 }
 
-/// Surface of the plane, relative to the base of the rays; texture coordinates modulo 1, found in double precision.
+/// Surface of the plane, relative to the base of the rays; texture coordinates modulo 1, found in double
+/// precision.
 Surface8 plane_surface(const Visual& plane, const Rays& rays, const F3& relative, bool textured) {
   Surface8 s;
   s.normal = s.face_normal = broadcast(plane.normal_W);

@@ -1,11 +1,12 @@
 #pragma once
 /// The light that leaves a surface towards the camera.
 ///
-///   L = emissive + k ambient + sum over lights seen from there: (k max(0, n.l) + s max(0, n.h)^shininess) light / attenuation
+///   L = emissive + k ambient + sum over lights seen from there: (k max(0, n.l) + s max(0, n.h)^shininess)
+///   light / attenuation
 ///
 /// k = diffuse times texture, s = specular, h half way between light and camera.
-/// Source   J. Blinn, Models of light reflection for computer synthesized pictures (1977). Spots as OGRE has them: between
-///          the inner and the outer cone ((cos - cos_outer) / (cos_inner - cos_outer))^falloff.
+/// Source   J. Blinn, Models of light reflection for computer synthesized pictures (1977). Spots as OGRE has
+///          them: between the inner and the outer cone ((cos - cos_outer) / (cos_inner - cos_outer))^falloff.
 #include "optics/picture_tree.h"
 #include "optics/shadow_grid.h"
 

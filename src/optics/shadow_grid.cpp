@@ -88,7 +88,8 @@ void ShadowGrid::add(const Bounds& box, int visual, double margin_m) {
     last[k] = static_cast<int>(std::clamp(std::floor((at + reach) / cell_m_[k]), 0.0, end));
   }
   const double highest = dot(to_light_, middle) + reach_along(to_light_, box) + margin_m;
-  // A line towards the light leaves the box through one of three faces, at a distance that is linear across the grid.
+  // A line towards the light leaves the box through one of three faces, at a distance that is linear across
+  // the grid.
   struct Face {
     double at_corner, per_column, per_row;
   } faces[3];

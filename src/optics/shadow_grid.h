@@ -1,13 +1,14 @@
 #pragma once
-/// Shadow grid: places where nothing can stand between a surface and the sun, so that no shadow ray is needed.
+/// Shadow grid: places where nothing can stand between a surface and the sun, so that no shadow ray is
+/// needed.
 ///
-/// The world is seen from a directional light: a grid across its rays keeps, for each cell, how far towards the light what
-/// casts shadows there reaches at most, by its bounding boxes. A point that lies higher is lit. Never wrong, mostly enough:
-/// on a soccer field nine of ten points need no ray.
+/// The world is seen from a directional light: a grid across its rays keeps, for each cell, how far towards
+/// the light what casts shadows there reaches at most, by its bounding boxes. A point that lies higher is
+/// lit. Never wrong, mostly enough: on a soccer field nine of ten points need no ray.
 ///
 /// Cells    those at the border reach to infinity, so points and shapes may lie anywhere.
-/// Self     a convex solid throws no shadow on its outside where that faces the light; so each cell knows the highest
-///          visual, and the highest of the others.
+/// Self     a convex solid throws no shadow on its outside where that faces the light; so each cell knows the
+///          highest visual, and the highest of the others.
 /// Limits   planes are left out (PictureTree::shadowed() has them).
 /// Cost     256 to 16384 cells of 12 bytes; 10 to 100 us to make, once for each placement of the scene.
 #include <cstdint>

@@ -82,7 +82,8 @@ TEST(ShadowGrid, OnlyWhatIsBeforeTheSunIsDoubtful) {
   ShadowGrid grid;
   grid.make(tree, normalised(Vec3{1, 0, 1}));
   const double base[] = {0, 0, 0};
-  // The sphere's shadow lies around x = 3 - 2 = 1; below the one without a shadow, behind both, above, and beyond the field.
+  // The sphere's shadow lies around x = 3 - 2 = 1; below the one without a shadow, behind both, above, and
+  // beyond the field.
   const F3 at{F{1, 1, -5, 6, 1, 4.5f, 30, -40}, F{0, 3, 0, 0, 0, 0, 0, 0},
               F{0.01f, 0.01f, 0.01f, 0.01f, 4, 3.5f, 40, 60}};
   EXPECT_EQ(lanes::bits(ShadowGrid::doubtful(grid.from(base), at, broadcast(-1), I{})), 1u);

@@ -1,5 +1,5 @@
-/// Cones, ellipsoids, meshes and terrain as rays see them: against closed forms, against each other, and against
-/// height_at().
+/// Cones, ellipsoids, meshes and terrain as rays see them: against closed forms, against each other, and
+/// against height_at().
 #include <gtest/gtest.h>
 
 #include "base/math.h"
@@ -58,8 +58,8 @@ TEST(RayShapes, AConeIsWideBelowAndSharpAbove) {
   EXPECT_NEAR(world.see({5.5, 0, 0.2}, {5.5, 0, 5}), 0.8, 4 * eps_m);  // from inside up
   EXPECT_NEAR(world.see({5, 0, 0.2}, {5, 0, 5}), 1.8, eps_m);
   EXPECT_EQ(world.see({6.01, 0, 9}, {6.01, 0, 0}), inf);
-  // Parallel to the mantle's line from (4, 0, 0) to (5, 0, 2), half a metre to its right: through the base and out
-  // where the right line x = 6 - z/2 is met: x = 4.5 + z/2, so z = 1.5.
+  // Parallel to the mantle's line from (4, 0, 0) to (5, 0, 2), half a metre to its right: through the base
+  // and out where the right line x = 6 - z/2 is met: x = 4.5 + z/2, so z = 1.5.
   EXPECT_NEAR(world.see({4, 0, -1}, {4.5, 0, 0}), std::sqrt(1.25), 4 * eps_m);
   EXPECT_NEAR(world.see({4.75, 0, 0.5}, {5.25, 0, 1.5}), std::sqrt(1.25), 4 * eps_m);
   EXPECT_EQ(world.see({3, 0, -1}, {3.5, 0, 0}), inf);  // the parallel on the outside
@@ -82,8 +82,8 @@ Vec3 random_direction(Stream& r) {
   return normalised(Vec3{x, y, z});
 }
 
-/// A solid and its inscribed tessellation differ by less than `bulge_m` across the surface, so a ray that meets the
-/// solid at an angle with cosine c differs by bulge_m / c; silhouettes are left out by c > 0.2.
+/// A solid and its inscribed tessellation differ by less than `bulge_m` across the surface, so a ray that
+/// meets the solid at an angle with cosine c differs by bulge_m / c; silhouettes are left out by c > 0.2.
 void compare(const Shape& exact, double bulge_m, std::uint64_t sample) {
   Stream r(5, entity_key("shapes"), Purpose::experiment, sample);
   const Vec3 axis = random_direction(r);
@@ -188,8 +188,8 @@ TEST(RayShapes, RaysMeetTerrainAtItsHeight) {
 }
 
 TEST(RayShapes, TrianglesAreMetWhereIeeeDivisionSaysOnAnyProcessor) {
-  // Flat, with corners at powers of two: all but one division is exact. Estimates of reciprocals, which differ from
-  // processor to processor, would show in the last bit of many.
+  // Flat, with corners at powers of two: all but one division is exact. Estimates of reciprocals, which
+  // differ from processor to processor, would show in the last bit of many.
   const auto square = std::make_shared<const TriangleMesh>(TriangleMesh{
       .vertices = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
   const auto flat = std::make_shared<const HeightGrid>(HeightGrid{5, 5, 8, 8, std::vector<float>(25), {}});

@@ -24,8 +24,8 @@ struct Interval {
   F first, last;
 };
 
-/// Intersection. A NaN in `b` (a ray that runs exactly in a face) leaves the bound of `a`; in `a` it means "missed"
-/// and stays.
+/// Intersection. A NaN in `b` (a ray that runs exactly in a face) leaves the bound of `a`; in `a` it means
+/// "missed" and stays.
 Interval meet(Interval a, Interval b) { return {max(b.first, a.first), min(b.last, a.last)}; }
 
 /// Union of intervals that overlap or of which one is empty (`first` = inf, `last` = -inf).
@@ -36,7 +36,8 @@ Interval unless_empty(Interval a) {
   return {select(valid, a.first, broadcast(inf)), select(valid, a.last, broadcast(-inf))};
 }
 
-/// Between the planes -half and +half. A ray parallel to them divides by zero: +-inf puts it inside or outside.
+/// Between the planes -half and +half. A ray parallel to them divides by zero: +-inf puts it inside or
+/// outside.
 template <class O>
 Interval slab(O o, F d, float half) {
   const F towards = select(I(d) < 0, broadcast(-half),
@@ -77,8 +78,8 @@ Interval capped(const LocalRaysOf<O>& ray, float radius, float half_length) {
 /// Inside the ellipsoid with these radii about the origin.
 template <class O>
 Interval oval(const LocalRaysOf<O>& ray, const float* r) {
-  // From the point of the ray nearest to the centre, so that the squares below do not grow with the distance; then in
-  // space scaled to a unit ball.
+  // From the point of the ray nearest to the centre, so that the squares below do not grow with the distance;
+  // then in space scaled to a unit ball.
   const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);
   const F dx = ray.dx / r[0], dy = ray.dy / r[1], dz = ray.dz / r[2];
   F px = (ray.ox + along * ray.dx) / r[0], py = (ray.oy + along * ray.dy) / r[1],
@@ -92,9 +93,10 @@ Interval oval(const LocalRaysOf<O>& ray, const float* r) {
 
 /// Inside the cone whose base of `radius` lies at -half and whose apex at +half.
 ///
-/// With the apex as origin and k = radius / (2 half) the double cone is f(p, p) = x x + y y - k k z z <= 0. Along a ray
-/// f = a t^2 + 2 b t + c. Flat rays (a > 0) are inside between the roots and steep ones outside of them, below the lower
-/// root when they rise; the slab of the height takes the upper half of the double cone away.
+/// With the apex as origin and k = radius / (2 half) the double cone is f(p, p) = x x + y y - k k z z <= 0.
+/// Along a ray f = a t^2 + 2 b t + c. Flat rays (a > 0) are inside between the roots and steep ones outside
+/// of them, below the lower root when they rise; the slab of the height takes the upper half of the double
+/// cone away.
 template <class O>
 Interval pointed(const LocalRaysOf<O>& ray, float radius, float half) {
   const F along = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz);

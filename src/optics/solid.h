@@ -1,17 +1,18 @@
 #pragma once
 /// Primitive solids as rays see them: in the world, ready for eight rays at a time.
 ///
-/// Precision   the ray's origin is taken into the solid's frame in double precision, so a solid 10 km from the
-///             world's origin is as sharp as one near it; from there on single precision. Roots are taken of
-///             r^2 minus the squared distance of the ray from the centre (never of b^2 - c, which cancels), so
-///             the error of a distance stays at a few float epsilon times distance and size, divided by the
-///             cosine of incidence. Cones and ellipsoids, too, are met where they are, not where triangles would be; the
-///             discriminant of a cone is built from the minors of origin and direction (Lagrange's identity).
-///             A barrel is the spheroid through its middle and its ends, cut off there: for rollers of wheels within
-///             1 % of their radius.
-///             Triangles of meshes and terrain are held in single precision about the middle of their bounds, so
-///             their error grows with the size of the mesh, not with its place in the world.
-/// Source      E. Haines et al., Precision improvements for ray/sphere intersection, Ray Tracing Gems (2019), ch. 7.
+/// Precision   the ray's origin is taken into the solid's frame in double precision, so a solid 10 km from
+///             the world's origin is as sharp as one near it; from there on single precision. Roots are taken
+///             of r^2 minus the squared distance of the ray from the centre (never of b^2 - c, which
+///             cancels), so the error of a distance stays at a few float epsilon times distance and size,
+///             divided by the cosine of incidence. Cones and ellipsoids, too, are met where they are, not
+///             where triangles would be; the discriminant of a cone is built from the minors of origin and
+///             direction (Lagrange's identity). A barrel is the spheroid through its middle and its ends, cut
+///             off there: for rollers of wheels within 1 % of their radius.
+///             Triangles of meshes and terrain are held in single precision about the middle of their bounds,
+///             so their error grows with the size of the mesh, not with its place in the world.
+/// Source      E. Haines et al., Precision improvements for ray/sphere intersection, Ray Tracing Gems (2019),
+///             ch. 7.
 #include <cstdint>
 
 #include "geometry/pose.h"
@@ -51,7 +52,8 @@ struct Rays8 {
   lanes::F near;  ///< surfaces before it are not seen
 };
 
-/// The same rays seen from the solid's frame: one origin (float) or one for each (lanes::F), eight directions.
+/// The same rays seen from the solid's frame: one origin (float) or one for each (lanes::F), eight
+/// directions.
 template <class Origin>
 struct LocalRaysOf {
   Origin ox, oy, oz;

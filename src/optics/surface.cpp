@@ -151,8 +151,8 @@ std::vector<std::uint32_t> merged(const TriangleMesh& mesh) {
   return same;
 }
 
-/// Each corner's normal: that of all faces around the place that are within the crease of this one, weighted by their
-/// angle there.
+/// Each corner's normal: that of all faces around the place that are within the crease of this one, weighted
+/// by their angle there.
 std::vector<float> smooth_normals(const TriangleMesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   const std::vector<std::uint32_t> place = merged(mesh);

@@ -1,9 +1,10 @@
 #pragma once
 /// Surface at the point where a ray meets it: normals, and texture coordinates with their gradients.
 ///
-/// Texture   box: every face once, upright. Sphere, ellipsoid: u once around z from -x through -y to +x, v from pole to pole.
-///           Cylinder, capsule, cone, barrel: u around, v along z; their ends as seen along z. Plane: u and v along
-///           its axes, one tile per `tile_m`. Roughly as OGRE's meshes of these primitives, which Gazebo shows.
+/// Texture   box: every face once, upright. Sphere, ellipsoid: u once around z from -x through -y to +x, v
+///           from pole to pole. Cylinder, capsule, cone, barrel: u around, v along z; their ends as seen
+///           along z. Plane: u and v along its axes, one tile per `tile_m`. Roughly as OGRE's meshes of these
+///           primitives, which Gazebo shows.
 #include <memory>
 #include <vector>
 

@@ -31,7 +31,8 @@ TEST(Texture, EachLevelHasTheMeanOfTheOneBelow) {
 }
 
 TEST(Texture, PlainRegionsAreWhatFilteringWouldGive) {
-  // Grey with one white dot: wherever the footprint is, the answer lies between; and grey exactly where the dot is far.
+  // Grey with one white dot: wherever the footprint is, the answer lies between; and grey exactly where the
+  // dot is far.
   constexpr int side = 256;
   std::vector<std::uint8_t> rgb(3 * side * side, 90);
   for (std::size_t k = 0; k < 3; ++k) rgb[3 * (100 * side + 130) + k] = 255;
@@ -87,7 +88,8 @@ TEST(Surface, NormalsAndGradientsOfSolids) {
     EXPECT_NEAR(s.normal.x[0], c.normal.x, 1e-5);
     EXPECT_NEAR(s.normal.y[3], c.normal.y, 1e-5);
     EXPECT_NEAR(s.face_normal.z[7], c.normal.z, 1e-5);
-    // u and v change along the surface by their gradients: steps of 1 mm, so up to 1e-3 of curvature and rounding.
+    // u and v change along the surface by their gradients: steps of 1 mm, so up to 1e-3 of curvature and
+    // rounding.
     const Vec3 t1 = normalised(cross(c.normal, {0.3, 0.5, 0.8})), t2 = cross(c.normal, t1);
     for (const Vec3 t : {t1, t2}) {
       const double h = 1e-3;

@@ -1,5 +1,6 @@
 #pragma once
-/// Pictures on surfaces: an image and its halves, quarters ... so that far away each pixel meets about one texel.
+/// Pictures on surfaces: an image and its halves, quarters ... so that far away each pixel meets about one
+/// texel.
 ///
 /// Frame    u to the right, v upwards, the image is [0, 1) x [0, 1) and repeats; as meshes have it.
 /// Limits   opaque: no alpha. 8 bits per channel.
@@ -25,10 +26,11 @@ class Texture {
 
   int width() const { return static_cast<int>(levels_[0].width); }
   int height() const { return static_cast<int>(levels_[0].height); }
-  /// Level k + 1 has half the sides of level k, rounded up, down to 1 x 1; each texel the mean of what it covers.
+  /// Level k + 1 has half the sides of level k, rounded up, down to 1 x 1; each texel the mean of what it
+  /// covers.
   std::span<const Level> levels() const { return levels_; }
-  /// R | G << 8 | B << 16 | plain << 24. Each level has a further column and row that repeat its first ones. Plain: the image
-  /// has one colour wherever this texel and its eight neighbours cover it.
+  /// R | G << 8 | B << 16 | plain << 24. Each level has a further column and row that repeat its first ones.
+  /// Plain: the image has one colour wherever this texel and its eight neighbours cover it.
   const std::uint32_t* texels() const { return texels_.data(); }
 
  private:

@@ -85,8 +85,8 @@ void TriangleTree::add_triangles(RTCDevice device, const TriangleMesh& mesh) {
   attach(geometry);
 }
 
-/// Embree splits the squares of a grid from the second corner to the fourth, HeightGrid from the first to the third: a
-/// grid whose columns run backwards has the same diagonals.
+/// Embree splits the squares of a grid from the second corner to the fourth, HeightGrid from the first to the
+/// third: a grid whose columns run backwards has the same diagonals.
 void TriangleTree::add_grid(RTCDevice device, const HeightGrid& grid) {
   Range z;
   for (const float h : grid.height_m) z.add(static_cast<double>(h));
@@ -182,8 +182,8 @@ void TriangleTree::place_on_mesh(const Rays& rays, Hits& hits) const {
   hits.b2 = lanes::select(found & (all != 0), weight(w_c), hits.b2);
 }
 
-/// For a whole grid Embree reports only where in it the hit is, so the triangle is looked for there: first of all that
-/// the point may lie in, by more than the rounding of floats.
+/// For a whole grid Embree reports only where in it the hit is, so the triangle is looked for there: first of
+/// all that the point may lie in, by more than the rounding of floats.
 template <class Rays>
 void TriangleTree::place_on_grid(const Rays& rays, Hits& hits) const {
   const HeightGrid& grid = *std::get<Heightfield>(shape_).grid;

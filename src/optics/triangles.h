@@ -1,11 +1,12 @@
 #pragma once
 /// Meshes and terrain as rays see them: one Embree tree per mesh, shared by all solids made from it.
 ///
-/// The tree is built once, in the mesh's own frame about the middle of its bounds, and kept while any shape uses it.
-/// A ray is taken into that frame first (in double precision, solid.h), so that a tree neither moves with its body nor
-/// loses digits far from the world's origin. Triangles are hit from both sides; edges have no gaps (Embree's robust
-/// mode). Which triangle is hit is Embree's answer; where, is computed here: Embree divides by way of the processor's
-/// estimate of a reciprocal, which every maker of processors rounds in his own way.
+/// The tree is built once, in the mesh's own frame about the middle of its bounds, and kept while any shape
+/// uses it. A ray is taken into that frame first (in double precision, solid.h), so that a tree neither moves
+/// with its body nor loses digits far from the world's origin. Triangles are hit from both sides; edges have
+/// no gaps (Embree's robust mode). Which triangle is hit is Embree's answer; where, is computed here: Embree
+/// divides by way of the processor's estimate of a reciprocal, which every maker of processors rounds in his
+/// own way.
 ///
 /// Cost     a mesh: about 1 us and 100 bytes per triangle, once; terrain: about 30 bytes per sample.
 #include "geometry/shape.h"
@@ -30,8 +31,8 @@ class TriangleTree {
   /// Distance to the first triangle at or behind `near` and not behind `far`; infinite where there is none.
   lanes::F distance_to(const LocalRays8& rays, lanes::F near, lanes::F far, const int* valid) const;
 
-  /// The same, and where: the triangle's index and the weights of its second and third corner. Of a height field's grid
-  /// only the distance means something.
+  /// The same, and where: the triangle's index and the weights of its second and third corner. Of a height
+  /// field's grid only the distance means something.
   struct Hits {
     lanes::F t;
     lanes::I triangle;

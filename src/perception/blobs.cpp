@@ -51,8 +51,8 @@ void BlobFinder::find(const ImageView& image, const ColourTable& colours, int ga
   }
   row_begin_.push_back(runs_.size());
 
-  // A run is united with the ones before it: in its own row across a gap, and in the rows above within reach. Earlier
-  // runs become the roots, so that the order of patches is that of their first runs.
+  // A run is united with the ones before it: in its own row across a gap, and in the rows above within reach.
+  // Earlier runs become the roots, so that the order of patches is that of their first runs.
   const auto unite = [&](std::uint32_t a, std::uint32_t b) {
     a = root(a), b = root(b);
     if (a != b) runs_[std::max(a, b)].blob = std::min(a, b);

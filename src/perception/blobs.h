@@ -1,13 +1,15 @@
 #pragma once
 /// Connected patches of one colour in an image.
 ///
-/// Rows are cut into runs of one colour, runs that touch (diagonals count) are united. Specks of noise are bridged: up to `gap` other
-/// pixels within a row, and as many rows, do not part a patch.
+/// Rows are cut into runs of one colour, runs that touch (diagonals count) are united. Specks of noise are
+/// bridged: up to `gap` other pixels within a row, and as many rows, do not part a patch.
 ///
 /// Pixels   (column, row) from the upper left.
-/// Errors   image_view() refuses images whose sizes, step and data disagree, and encodings other than rgb8 and bgr8.
+/// Errors   image_view() refuses images whose sizes, step and data disagree, and encodings other than rgb8
+///          and bgr8.
 /// Cost     one look into a table per pixel; memory of at most 12 bytes per pixel, kept for the next image.
-/// Source   J. Bruce, T. Balch, M. Veloso, Fast and inexpensive color image segmentation for interactive robots (2000).
+/// Source   J. Bruce, T. Balch, M. Veloso, Fast and inexpensive color image segmentation for interactive
+///          robots (2000).
 #include <cstdint>
 #include <span>
 #include <vector>

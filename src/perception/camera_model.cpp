@@ -142,7 +142,8 @@ std::optional<SightRay> CameraModel::ray(double u, double v) const {
       return SightRay{{}, normalised(Vec3{c, -out * x, -out * y})};
     }
     case Kind::hyperbolic: {
-      // From the camera, one focus, under the angle alpha to the mirror at the distance s; the other focus, S, is 2 c above.
+      // From the camera, one focus, under the angle alpha to the mirror at the distance s; the other focus,
+      // S, is 2 c above.
       const double a = d_[0], b = d_[1], c = std::sqrt(a * a + b * b), tan_alpha = math::hypot(x, y);
       const double cos_alpha = 1 / math::hypot(1.0, tan_alpha), sin_alpha = tan_alpha * cos_alpha;
       const double under = c * cos_alpha - b;

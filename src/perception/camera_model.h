@@ -1,14 +1,17 @@
 #pragma once
 /// Camera model: the ray of a pixel, for cameras described by ROS's CameraInfo and for measured ones.
 ///
-/// Frame    sensor frame S: x forward (the optical axis), y left, z up; below a mirror: z up along its axis, x what is upwards
-///          in the image, and left is on the right of the image, as such cameras see it.
+/// Frame    sensor frame S: x forward (the optical axis), y left, z up; below a mirror: z up along its axis,
+///          x what is upwards in the image, and left is on the right of the image, as such cameras see it.
 /// Pixels   (u, v) = (column, row); (0, 0) is the centre of the upper left one.
-/// Known    `plumb_bob` (or no name), `equidistant` (OpenCV's fisheye), `equisolid`, `stereographic`, `orthographic`;
-///          `mirror_hyperbolic`, `mirror_parabolic`, `mirror_spherical` with D = a, b, rim of the mirror in metres.
-/// Fitted   `fit_polynomial`: no constants of the mirror are needed, only points of the ground whose places in the image are known.
-/// Source   OpenCV's camera models; S. Baker, S. K. Nayar (1999) for mirrors; D. Scaramuzza, A. Martinelli, R. Siegwart, A toolbox for easily
-///          calibrating omnidirectional cameras (2006) for the polynomial.
+/// Known    `plumb_bob` (or no name), `equidistant` (OpenCV's fisheye), `equisolid`, `stereographic`,
+///          `orthographic`;
+///          `mirror_hyperbolic`, `mirror_parabolic`, `mirror_spherical` with D = a, b, rim of the mirror in
+///          metres.
+/// Fitted   `fit_polynomial`: no constants of the mirror are needed, only points of the ground whose places
+///          in the image are known.
+/// Source   OpenCV's camera models; S. Baker, S. K. Nayar (1999) for mirrors; D. Scaramuzza, A. Martinelli,
+///          R. Siegwart, A toolbox for easily calibrating omnidirectional cameras (2006) for the polynomial.
 #include <array>
 #include <optional>
 #include <span>
@@ -35,9 +38,9 @@ class CameraModel {
  public:
   /// An error names what is wrong with the numbers.
   static Result<CameraModel> of(const msg::CameraInfo& info);
-  /// An omnidirectional camera of any lens or mirror of revolution with the axis z and the image's middle (cx, cy):
-  /// at the distance r from the middle the ray climbs by (a0 + a1 r + ... + a4 r^4) / r. Least squares over the sightings, of which at least
-  /// ten at different r are needed.
+  /// An omnidirectional camera of any lens or mirror of revolution with the axis z and the image's middle
+  /// (cx, cy): at the distance r from the middle the ray climbs by (a0 + a1 r + ... + a4 r^4) / r. Least
+  /// squares over the sightings, of which at least ten at different r are needed.
   static Result<CameraModel> fit_polynomial(int width, int height, double cx, double cy,
                                             std::span<const Sighting> sightings);
 

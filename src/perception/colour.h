@@ -1,9 +1,10 @@
 #pragma once
 /// Colour classes of objects, and the table that sorts pixels into them.
 ///
-/// A range is a box in hue, saturation and value (Smith's HSV, 1978): hue stays what it is when the light changes, so its
-/// range is narrow, and those of the other two are wide. A table of 32 x 32 x 32 cells answers for a pixel in one look, as robots of
-/// soccer have done it since Bruce, Balch and Veloso, Fast and inexpensive color image segmentation (IROS 2000).
+/// A range is a box in hue, saturation and value (Smith's HSV, 1978): hue stays what it is when the light
+/// changes, so its range is narrow, and those of the other two are wide. A table of 32 x 32 x 32 cells
+/// answers for a pixel in one look, as robots of soccer have done it since Bruce, Balch and Veloso, Fast and
+/// inexpensive color image segmentation (IROS 2000).
 ///
 /// Limits   a cell is 8 of 256 levels wide in each channel: ranges are no sharper than that.
 #include <cstdint>
@@ -39,8 +40,8 @@ struct ColourRange {
 
 /// Whites, greys and blacks have no hue worth the name: a saturation below 0.25.
 bool has_hue(const Hsv& colour);
-/// The range around a colour of a thing as its maker declares it, in whatever light; what has no hue gets a range of values
-/// instead.
+/// The range around a colour of a thing as its maker declares it, in whatever light; what has no hue gets a
+/// range of values instead.
 ColourRange range_around(double r, double g, double b);
 
 class ColourTable {

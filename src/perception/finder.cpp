@@ -20,16 +20,16 @@ std::array<float, 3> narrow(Vec3 v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// A line of pixels, at most two wide: where two surfaces meet, a pixel of both has a colour between theirs, and that between a yellow
-/// goal and a magenta robot is the ball's.
+/// A line of pixels, at most two wide: where two surfaces meet, a pixel of both has a colour between theirs,
+/// and that between a yellow goal and a magenta robot is the ball's.
 bool is_edge(const Blob& patch) {
   const int longest = std::max(patch.right - patch.left, patch.bottom - patch.top) + 1;
   const double thickness = static_cast<double>(patch.pixels) / longest;
   return thickness < 2 && longest > 4 * thickness;
 }
 
-/// Two things do not stand in one place: patches of one target nearer to each other than most of its width are pieces of one
-/// thing that a net or a post parts. The largest takes the others in.
+/// Two things do not stand in one place: patches of one target nearer to each other than most of its width
+/// are pieces of one thing that a net or a post parts. The largest takes the others in.
 void join_pieces(const FinderSpec& spec, std::vector<Found>& found) {
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.patch.pixels > b.patch.pixels; });
@@ -122,7 +122,8 @@ bool Finder::ball(const Target& target, const Sum& sum, const Blob& patch, Found
   if (is_edge(patch)) return false;
   const double radius = 0.5 * target.size_m;
   const Vec3 direction = normalised(sum.direction);
-  // A cone of half angle rho has the solid angle 2 pi (1 - cos rho), and the ball fills it: sin rho = radius / distance.
+  // A cone of half angle rho has the solid angle 2 pi (1 - cos rho), and the ball fills it: sin rho = radius
+  // / distance.
   const double cos_rho = std::max(-1.0, 1 - sum.solid_angle / (2 * math::pi));
   const double by_size = radius / std::max(1e-6, std::sqrt(std::max(0.0, 1 - cos_rho * cos_rho)));
   double distance = by_size;
@@ -144,7 +145,8 @@ bool Finder::standing(const Target& target, std::uint32_t blob, const Sum& sum, 
   if (!(sum.lowest < -1e-3)) return false;
   const Vec3 middle = normalised(sum.direction);
   const double plane = target.foot_m - spec_.base_height_m;
-  // Directions are given by the tangent of the angle to the middle, in the ground plane; +-63 degrees are enough.
+  // Directions are given by the tangent of the angle to the middle, in the ground plane; +-63 degrees are
+  // enough.
   const Vec3 ahead = normalised(Vec3{middle.x, middle.y, 0}), left{-ahead.y, ahead.x, 0};
   double widest = 0;
   const auto each_pixel = [&](auto&& f) {

@@ -1,18 +1,26 @@
 #pragma once
 /// Finder of objects of known colours in pictures: balls, goals and robots on flat ground, with their places.
 ///
-/// Frame    B: the robot's base, z up; the ground is the plane z = -base_height. Pictures come from a camera at X_BS.
-/// Ball     its middle is where the ray of the patch's middle meets the plane of its radius; rays that hardly fall (less than 1.5
-///          degrees) meet it anywhere, so there the size of the patch decides. `visible` is the size seen of that expected; patches
-///          too small or too large for their place are no balls, nor are lines of mixed colour where two surfaces meet.
-/// Standing things (goals, robots, posts) have a lower edge at a known height. In each of up to 48 directions the lowest pixel of the
-///          patch is a point of it; those near the nearest one are averaged, and `depth` leads on to the middle.
-/// Pieces   patches of one target nearer to each other than 0.8 of its size are one thing, separated by what stands before it.
+/// Frame    B: the robot's base, z up; the ground is the plane z = -base_height. Pictures come from a camera
+///          at X_BS.
+/// Ball     its middle is where the ray of the patch's middle meets the plane of its radius; rays that hardly
+///          fall (less than 1.5 degrees) meet it anywhere, so there the size of the patch decides. `visible`
+///          is the size seen of that expected; patches too small or too large for their place are no balls,
+///          nor are lines of mixed colour where two surfaces meet.
+/// Standing things (goals, robots, posts) have a lower edge at a known height. In each of up to 48 directions
+/// the lowest pixel of the
+///          patch is a point of it; those near the nearest one are averaged, and `depth` leads on to the
+///          middle.
+/// Pieces   patches of one target nearer to each other than 0.8 of its size are one thing, separated by what
+///          stands before it.
 /// Horizon  patches of standing things without a pixel below the horizon are none of them.
 /// Noise    specks are bridged (`gap`) and small patches dropped (`min_pixels`).
-/// Limits   no tracking from picture to picture; one thing behind another of the same colour becomes one thing.
-/// Cost     one look into a table per pixel, 16 bytes of memory per pixel of the camera, no allocation after the first picture.
-/// Source   the vision of soccer robots of the Middle Size League: M. Lauer, S. Lange, M. Riedmiller, Calculating the perfect match (2005), sec. 2.
+/// Limits   no tracking from picture to picture; one thing behind another of the same colour becomes one
+///          thing.
+/// Cost     one look into a table per pixel, 16 bytes of memory per pixel of the camera, no allocation after
+///          the first picture.
+/// Source   the vision of soccer robots of the Middle Size League: M. Lauer, S. Lange, M. Riedmiller,
+///          Calculating the perfect match (2005), sec. 2.
 #include <string>
 #include <vector>
 

@@ -42,7 +42,8 @@ msg::CameraInfo mirror(std::uint32_t side) {
   return info;
 }
 
-/// A camera on a robot whose pictures are painted: each pixel by what its ray, from the middle of the lens, meets.
+/// A camera on a robot whose pictures are painted: each pixel by what its ray, from the middle of the lens,
+/// meets.
 struct Painter {
   const char* name;
   CameraModel model;
@@ -191,7 +192,8 @@ TEST(Perception, RaysOfLensesByHand) {
 }
 
 TEST(Perception, AMirrorIsFittedFromPointsOfTheGround) {
-  // Points every 25 cm on the ground 0.6 m below, where the mirror itself shows them; one in a thousand of noise on the places.
+  // Points every 25 cm on the ground 0.6 m below, where the mirror itself shows them; one in a thousand of
+  // noise on the places.
   const CameraModel truth = *CameraModel::of(mirror(400));
   std::vector<Sighting> seen;
   Stream random(1, 2, Purpose::noise, 3);
@@ -230,8 +232,9 @@ TEST(Perception, BallsAreWhereTheyAre) {
       std::vector<Found> found;
       ASSERT_TRUE(finder.find(*image_view(image), found));
       ASSERT_EQ(found.size(), 1u) << c.name << " " << at.x;
-      // The middle of a patch of n pixels lies within about 1 / sqrt(12 n) of a pixel, whatever its edge. At 3 m a pixel of the mirror is
-      // 0.4 degrees, which over a height of 0.6 m is 10 cm along the ground, and n is 100 or more: 5 sigma are 1.5 cm.
+      // The middle of a patch of n pixels lies within about 1 / sqrt(12 n) of a pixel, whatever its edge. At
+      // 3 m a pixel of the mirror is 0.4 degrees, which over a height of 0.6 m is 10 cm along the ground, and
+      // n is 100 or more: 5 sigma are 1.5 cm.
       EXPECT_NEAR(found[0].position_B.x, at.x, 0.02) << c.name;
       EXPECT_NEAR(found[0].position_B.y, at.y, 0.01) << c.name;
       EXPECT_NEAR(found[0].position_B.z, 0.11, 1e-6);
@@ -255,7 +258,8 @@ TEST(Perception, RobotsAndPostsStandWhereTheyStand) {
     std::vector<Found> found;
     ASSERT_TRUE(finder.find(*image_view(image), found));
     ASSERT_EQ(found.size(), 2u) << c.name;
-    // The front is an arc: its mean lies up to a third of the radius behind its nearest point; and a pixel of the mirror is 8 cm long at 2.4 m.
+    // The front is an arc: its mean lies up to a third of the radius behind its nearest point; and a pixel of
+    // the mirror is 8 cm long at 2.4 m.
     EXPECT_NEAR(found[0].position_B.x, b.x, 0.1) << c.name;
     EXPECT_NEAR(found[0].position_B.y, b.y, 0.05) << c.name;
     EXPECT_NEAR(found[1].position_B.x, a.x, 0.12) << c.name;
@@ -282,8 +286,8 @@ TEST(Perception, WhatCannotBeABallIsNone) {
 }
 
 TEST(Perception, AnEdgeOfMixedColourIsNoBall) {
-  // Row 85 looks down by 15 - atan(35 / 260) = 7.4 degrees, at a ball 3 m away: 19 pixels wide, 285 in all. A line of 36 has more
-  // than the 26 that would be enough for a ball that is hidden for the most part.
+  // Row 85 looks down by 15 - atan(35 / 260) = 7.4 degrees, at a ball 3 m away: 19 pixels wide, 285 in all. A
+  // line of 36 has more than the 26 that would be enough for a ball that is hidden for the most part.
   const Painter& c = painters()[0];
   Finder finder({.targets = {Target{.colour = range_around(1, 0.47, 0.04)}}}, c.model, c.X_BS);
   const auto balls_in = [&](std::uint32_t width, std::uint32_t height) {
@@ -314,7 +318,8 @@ TEST(Perception, ABallBehindANetIsOne) {
     std::vector<Found> found;
     ASSERT_TRUE(finder.find(*image_view(c.paint(colour)), found));
     ASSERT_EQ(found.size(), 2u) << c.name;
-    // Half a pixel of the mirror, 0.4 degrees, is 0.5 cm at 1.5 m across and 1.5 cm along; each half is symmetric to the other.
+    // Half a pixel of the mirror, 0.4 degrees, is 0.5 cm at 1.5 m across and 1.5 cm along; each half is
+    // symmetric to the other.
     EXPECT_NEAR(found[0].position_B.y, 0.1, 0.015) << c.name;
     EXPECT_NEAR(found[0].position_B.x, 1.5, 0.03) << c.name;
     EXPECT_NEAR(found[1].position_B.y, 0.45, 0.015) << c.name;
@@ -384,7 +389,8 @@ TEST(Perception, AScanTellsWhereItWasTaken) {
   EXPECT_NEAR(match.pose.y, truth.y, 1e-4);
   EXPECT_NEAR(match.pose.theta, truth.theta, 1e-4);
   EXPECT_GT(match.points, 170);
-  // Noise of 2 cm on about 60 beams across each wall's direction: 2 cm / sqrt(60), five of them. Somebody stands in eight beams.
+  // Noise of 2 cm on about 60 beams across each wall's direction: 2 cm / sqrt(60), five of them. Somebody
+  // stands in eight beams.
   Stream random(1, 2, Purpose::noise, 3);
   scan = scan_of(room, truth, &random);
   for (std::size_t i = 40; i < 48; ++i) scan.ranges[i] = 0.5f;

@@ -1,12 +1,13 @@
 #pragma once
 /// Pose of a robot from one laser scan and a map of walls.
 ///
-/// Point to line: each point of the scan belongs to the wall nearest to it, if one is within `reach`; the pose that makes the sum of squared
-/// distances least is found by Gauss-Newton steps, and walls are chosen again until nothing moves.
+/// Point to line: each point of the scan belongs to the wall nearest to it, if one is within `reach`; the
+/// pose that makes the sum of squared distances least is found by Gauss-Newton steps, and walls are chosen
+/// again until nothing moves.
 ///
 /// Frame    the map's. Scans are in the laser's frame, X_BL is the laser's pose on the robot.
-/// Limits   finds the place near a first guess (half a metre, 20 degrees in rooms); directions in which the walls give no information (a
-///          corridor's length) keep the guess.
+/// Limits   finds the place near a first guess (half a metre, 20 degrees in rooms); directions in which the
+///          walls give no information (a corridor's length) keep the guess.
 /// Source   A. Censi, An ICP variant using a point-to-line metric (2008).
 #include <array>
 #include <span>

@@ -1,8 +1,8 @@
 #pragma once
 /// Exceptions from the contact law, as a function of the user's: who touches whom, and what shall come of it.
 ///
-/// The simulator calls it for every point where two shapes touch, in every sub-step. It has to be a pure function of what it
-/// is given and of constants: its own state would be no part of a snapshot.
+/// The simulator calls it for every point where two shapes touch, in every sub-step. It has to be a pure
+/// function of what it is given and of constants: its own state would be no part of a snapshot.
 #include <functional>
 #include <optional>
 #include <string_view>

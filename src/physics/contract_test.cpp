@@ -1,5 +1,5 @@
-/// Contract of the engines (physics/engine.h), tested on each of them. A part that an engine does not claim in its
-/// capabilities() is left out by a condition, so that no test is ever skipped.
+/// Contract of the engines (physics/engine.h), tested on each of them. A part that an engine does not claim
+/// in its capabilities() is left out by a condition, so that no test is ever skipped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,8 +97,8 @@ TEST_P(EngineContract, IdealDriveReachesItsVelocityAtTheGivenAcceleration) {
   world.drive(id, {.vx_mps = 0.5, .max_accel_mps2 = 1.0});
   for (int i = 1; i <= 60; ++i) {
     world.run(1);
-    // v = a t until v reaches the target; rounding of some 1e-16 per sub-step, and in 3D the tilt of a body that
-    // rests on the ground (1e-6 rad at most, which enters squared).
+    // v = a t until v reaches the target; rounding of some 1e-16 per sub-step, and in 3D the tilt of a body
+    // that rests on the ground (1e-6 rad at most, which enters squared).
     const Velocity v = world.state(id).V_WB;
     EXPECT_NEAR(v.linear.x * std::sqrt(1 - 0.29552020666133955 * 0.29552020666133955) +
                     v.linear.y * 0.29552020666133955,
@@ -115,8 +115,9 @@ TEST_P(EngineContract, IdealDriveStaysOnItsArc) {
   const double yaw = yaw_of(world.state(id).X_WB.q);
   world.drive(id, {.vx_mps = 0.5, .wz_radps = 1.0});
   world.run(100);
-  // One second at 1 rad/s: an arc of radius 0.5 by 1 rad. A 3D body that has settled is tilted by some 1e-5 rad, so the
-  // ground pushes it along its own plane with g * 1e-5, of which each sub-step corrects all but g * 1e-5 * h: 1e-6 m/s.
+  // One second at 1 rad/s: an arc of radius 0.5 by 1 rad. A 3D body that has settled is tilted by some 1e-5
+  // rad, so the ground pushes it along its own plane with g * 1e-5, of which each sub-step corrects all but g
+  // * 1e-5 * h: 1e-6 m/s.
   const auto [s, c] = math::sincos(1.0);
   const Vec3 p = world.state(id).X_WB.p - start;
   const auto [sy, cy] = math::sincos(yaw);
@@ -267,8 +268,8 @@ TEST_P(EngineContract, ContactsComeInTheOrderOfCreation) {
   World world(kind);
   world.add(ground());
   const InstanceId wall = world.add(static_of("wall", Box{{0.2, 4, 0.5}}, {{0, 0, 0.25}, {}}));
-  // Made in an order that is neither that of their places nor its reverse; each pushes against the wall, from x > 0 or
-  // from x < 0.
+  // Made in an order that is neither that of their places nor its reverse; each pushes against the wall, from
+  // x > 0 or from x < 0.
   std::vector<InstanceId> robots;
   const std::vector<std::pair<double, double>> places{
       {0.3, 1.0}, {-0.3, -1.0}, {0.3, 0.0}, {-0.3, 0.5}, {0.3, -0.5}};
@@ -338,8 +339,8 @@ TEST_P(EngineContract, JointsTurnAtTheirTarget) {
   EXPECT_EQ(world.engine->joints(id).size(), 1u);
   world.target(id, 0, {.mode = JointTarget::Mode::velocity, .velocity = 10, .max_effort = 1});
   world.run(100);
-  // An engine with joints reaches the target within a sub-step (the wheel's inertia is 4.5e-5) and then turns 10 rad in
-  // one second; one without must not pretend.
+  // An engine with joints reaches the target within a sub-step (the wheel's inertia is 4.5e-5) and then turns
+  // 10 rad in one second; one without must not pretend.
   if (world.engine->capabilities().joints) {
     EXPECT_NEAR(world.joint(id).velocity, 10, 1e-3);
     EXPECT_NEAR(world.joint(id).position, 10, 0.2);

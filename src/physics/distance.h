@@ -1,9 +1,10 @@
 #pragma once
-/// Distance between a point and a solid: primitives in closed form (an ellipsoid by bisection, to rounding), meshes and
-/// terrain by their triangles.
+/// Distance between a point and a solid: primitives in closed form (an ellipsoid by bisection, to rounding),
+/// meshes and terrain by their triangles.
 ///
-/// Meshes   inside is where the surface winds around the point at least half a turn of the sphere, so small holes do
-///          no harm. Cost: 10 ns per triangle of the mesh, 100 ns where the bounds contain the point.
+/// Meshes   inside is where the surface winds around the point at least half a turn of the sphere, so small
+///          holes do no harm. Cost: 10 ns per triangle of the mesh, 100 ns where the bounds contain the
+///          point.
 /// Terrain  the ground below the grid is solid without end. Cost: the cells within the distance or the limit.
 #include <limits>
 

@@ -1,13 +1,14 @@
 #pragma once
 /// The border to physics: batched, one call for all bodies, the same for the 3D and the planar engine.
 ///
-/// A "body" here is a link of an instance: an engine may join links that are fixed to each other, but every link has a
-/// BodyId and a BodyState. Ids are index + generation: an index is used again after a removal, an id never.
-/// A call takes effect in the next step(); apply() and the targets it was given are consumed as described there.
+/// A "body" here is a link of an instance: an engine may join links that are fixed to each other, but every
+/// link has a BodyId and a BodyState. Ids are index + generation: an index is used again after a removal, an
+/// id never. A call takes effect in the next step(); apply() and the targets it was given are consumed as
+/// described there.
 ///
-/// Determinism: the result of step() depends on State and inputs alone, never on addresses, thread timing or on
-/// instances that touch nothing (each island of touching bodies is solved as if it were alone). Processing order
-/// is creation order.
+/// Determinism: the result of step() depends on State and inputs alone, never on addresses, thread timing or
+/// on instances that touch nothing (each island of touching bodies is solved as if it were alone). Processing
+/// order is creation order.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -58,8 +59,9 @@ struct Wrench {
 
 /// What a joint's motor shall do; holds until the next target for this joint.
 ///
-/// A motor (mode effort) may be given its own properties in addition to its effort. All of it acts implicitly, on the velocity
-/// that the sub-step ends with, so it is stable whatever its size and that of the load:
+/// A motor (mode effort) may be given its own properties in addition to its effort. All of it acts
+/// implicitly, on the velocity that the sub-step ends with, so it is stable whatever its size and that of the
+/// load:
 ///
 ///   effort - damping * v - inertia * dv/dt, and Coulomb friction of at most `friction`
 struct JointTarget {
@@ -78,9 +80,10 @@ struct JointTarget {
   double friction = 0;  ///< [Nm] or [N], >= 0
 };
 
-/// Closed-form drive of a whole instance (level `ideal`): its base moves at a velocity in its own plane as if it
-/// ran on rails, reached with limited acceleration; while it holds, the instance's contacts have no friction.
-/// Obstacles still stop it: the push is limited to mass * max_accel. Holds until the next target for this base.
+/// Closed-form drive of a whole instance (level `ideal`): its base moves at a velocity in its own plane as if
+/// it ran on rails, reached with limited acceleration; while it holds, the instance's contacts have no
+/// friction. Obstacles still stop it: the push is limited to mass * max_accel. Holds until the next target
+/// for this base.
 struct DriveTarget {
   BodyId base;
   bool active = true;                           ///< false: release the instance to its own wheels
@@ -88,8 +91,9 @@ struct DriveTarget {
   double max_accel_mps2 = 1e9, max_angular_accel_radps2 = 1e9;
 };
 
-/// A wheel of an ideally driven base that turns as if it rolled: by the integral of what the base's true velocity, in its
-/// own frame, makes of it. Holds while the drive does, until the next target of either sort for this joint.
+/// A wheel of an ideally driven base that turns as if it rolled: by the integral of what the base's true
+/// velocity, in its own frame, makes of it. Holds while the drive does, until the next target of either sort
+/// for this joint.
 struct RollTarget {
   JointId wheel;
   BodyId base;
@@ -97,17 +101,18 @@ struct RollTarget {
   double per_vx = 0, per_vy = 0, per_wz = 0;
 };
 
-/// Whether a wheel with rollers (model::RollerWheel) runs on its rollers, each a body of its own, or as one body whose
-/// contact grips along the axis of the roller on the ground alone. The second is how it begins. Holds until the next
-/// target for this wheel. A change keeps velocities.
+/// Whether a wheel with rollers (model::RollerWheel) runs on its rollers, each a body of its own, or as one
+/// body whose contact grips along the axis of the roller on the ground alone. The second is how it begins.
+/// Holds until the next target for this wheel. A change keeps velocities.
 struct WheelTarget {
   JointId wheel;
   bool rollers = false;
 };
 
-/// Holds two bodies together as they stand to each other now, or lets go again: a gripper. Both may belong to any instance;
-/// what stands still counts as the world, and two of those cannot hold each other. Who holds each other does not collide.
-/// Removing one or setting its pose lets go. Holds until the next target for this pair.
+/// Holds two bodies together as they stand to each other now, or lets go again: a gripper. Both may belong to
+/// any instance; what stands still counts as the world, and two of those cannot hold each other. Who holds
+/// each other does not collide. Removing one or setting its pose lets go. Holds until the next target for
+/// this pair.
 struct GripTarget {
   BodyId a, b;
   bool hold = true;
@@ -137,8 +142,8 @@ struct BodyName {
   bool moves = false;                 ///< forces move it
 };
 
-/// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the motor's part
-/// is in it. Along the axes of the joint frame J as the child carries it.
+/// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the
+/// motor's part is in it. Along the axes of the joint frame J as the child carries it.
 struct JointLoad {
   Vec3 force_N, torque_Nm;
 };
@@ -187,8 +192,8 @@ class Engine {
   virtual ~Engine() = default;
   virtual Capabilities capabilities() const = 0;
 
-  /// Adds all links and joints of a model at instance.X_WM. One with a motion is moved by guide() alone: its joints
-  /// hold, and nothing pushes it. An error names what this engine cannot express.
+  /// Adds all links and joints of a model at instance.X_WM. One with a motion is moved by guide() alone: its
+  /// joints hold, and nothing pushes it. An error names what this engine cannot express.
   virtual Result<InstanceId> add(const model::Instance& instance) = 0;
   /// Removes an instance and wakes what rested on it. @pre id is alive
   virtual void remove(InstanceId id) = 0;
@@ -197,8 +202,9 @@ class Engine {
   virtual std::span<const JointId> joints(InstanceId id) const = 0;
   /// Moves a whole instance to a pose, at rest, its joints as they are; wakes it and what rested on it.
   virtual void set_pose(InstanceId id, const Pose& X_WM) = 0;
-  /// Pose of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the model frame's
-  /// origin) during it, whatever is in its way; contacts feel that velocity. Without a call it stands still.
+  /// Pose of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the
+  /// model frame's origin) during it, whatever is in its way; contacts feel that velocity. Without a call it
+  /// stands still.
   /// @pre it was added with a motion
   virtual void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) = 0;
   /// The instance is a robot from now on, as if it had been added as one: it does not sleep.
@@ -211,7 +217,8 @@ class Engine {
 
   /// Indexed by BodyId::index; entries of dead ids hold rubbish. Valid until the next non-const call.
   virtual std::span<const BodyState> states() const = 0;
-  /// The same of some bodies alone, by their indices: an engine that does not keep the states of all saves the rest.
+  /// The same of some bodies alone, by their indices: an engine that does not keep the states of all saves
+  /// the rest.
   /// @pre they live; `out` is as long as `bodies`
   virtual void states_of(std::span<const std::uint32_t> bodies, std::span<BodyState> out) const {
     const auto all = states();
@@ -220,7 +227,8 @@ class Engine {
   virtual std::span<const JointState> joint_states() const = 0;
   /// Contacts of the last step, ordered by creation of the two bodies.
   virtual std::span<const Contact> contacts() const = 0;
-  /// Indices of bodies that overlap each ball, ascending; appended to `out`, one span end per query in `ends`.
+  /// Indices of bodies that overlap each ball, ascending; appended to `out`, one span end per query in
+  /// `ends`.
   virtual void overlaps(std::span<const OverlapQuery> queries, std::vector<std::uint32_t>& out,
                         std::vector<std::uint32_t>& ends) const = 0;
   /// The engine's own ray casting, or null when it has none (then the ray scene answers).
@@ -237,10 +245,11 @@ class Engine {
   /// The ground's zones, and the user's exceptions (null: none). Before the first step.
   virtual void set_zones(std::span<const model::SurfaceZone>) {}
   virtual void set_contact_rule(ContactRule) {}
-  /// Asks for forces of the next step. Comes before the wrenches of that step. An engine may round differently when it
-  /// is watched, so watching is an input like the others.
+  /// Asks for forces of the next step. Comes before the wrenches of that step. An engine may round
+  /// differently when it is watched, so watching is an input like the others.
   virtual void watch(const Watch&) {}
-  /// Indexed by JointId::index; valid for the joints whose loads were watched in the last step. Empty without the capability.
+  /// Indexed by JointId::index; valid for the joints whose loads were watched in the last step. Empty without
+  /// the capability.
   virtual std::span<const JointLoad> joint_loads() const { return {}; }
 
   /// Advances by h seconds: one sub-step. `stream_key` seeds what the solver draws in this sub-step.

@@ -49,8 +49,8 @@ TEST_P(GripContract, TwoThatHoldEachOtherAreOne) {
   EXPECT_EQ(world.engine->grips()[0].b, world.engine->bodies(world.b)[0]);
   world.push(world.a, {0, 100, 0});
   world.run(1);
-  // One body of 2 kg with I = 2 (0.1^2 / 6 + 0.15^2), hit 0.15 from its middle by 1 Ns: v = 1/2, w = -0.15 / I. The grip
-  // brings what b has to it. ODE's compliance (1e-6) yields 1e-6 of that and more.
+  // One body of 2 kg with I = 2 (0.1^2 / 6 + 0.15^2), hit 0.15 from its middle by 1 Ns: v = 1/2, w = -0.15 /
+  // I. The grip brings what b has to it. ODE's compliance (1e-6) yields 1e-6 of that and more.
   const double inertia = 2 * (0.01 / 6 + 0.0225), w = -0.15 / inertia;
   EXPECT_NEAR(world.state(world.a).V_WB.angular.z, w, 1e-3);
   EXPECT_NEAR(world.state(world.b).V_WB.angular.z, w, 1e-3);
@@ -59,8 +59,8 @@ TEST_P(GripContract, TwoThatHoldEachOtherAreOne) {
   for (int i = 0; i < 200; ++i) {
     world.run(1);
     const Vec3 apart = world.state(world.b).X_WB.p - world.state(world.a).X_WB.p;
-    // It turns by 0.03 in a step, of which a joint that looks ahead along the tangent is off by the square, 0.3 mm / 2,
-    // and what ODE's error reduction of 0.2 leaves of that standing: five times.
+    // It turns by 0.03 in a step, of which a joint that looks ahead along the tangent is off by the square,
+    // 0.3 mm / 2, and what ODE's error reduction of 0.2 leaves of that standing: five times.
     ASSERT_NEAR(norm(apart), 0.3, 1e-3) << i;
     ASSERT_NEAR(world.state(world.a).V_WB.linear.y + world.state(world.b).V_WB.linear.y, 1, 1e-6);
   }

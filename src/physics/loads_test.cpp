@@ -1,4 +1,5 @@
-/// Forces of contacts, loads of joints, and motors that bring inertia and friction: predicted by Newton and Euler.
+/// Forces of contacts, loads of joints, and motors that bring inertia and friction: predicted by Newton and
+/// Euler.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,8 +124,8 @@ TEST_P(EngineLoads, AJointBearsTheWeightBeyondItWithItsLeverArm) {
     if (type != model::JointType::fixed)
       world.target(id, 1, {.mode = JointTarget::Mode::velocity, .max_effort = 1e4});
     world.run(200, h);
-    // In J, whose x points along the arm: m g upwards; r x F = (0.3,0,0) x (0,0,mg) = (0, -0.3 mg, 0). The rows of ODE
-    // yield by CFM * force = 2e-5 m/s, and the load is that of a body that has come to rest so.
+    // In J, whose x points along the arm: m g upwards; r x F = (0.3,0,0) x (0,0,mg) = (0, -0.3 mg, 0). The
+    // rows of ODE yield by CFM * force = 2e-5 m/s, and the load is that of a body that has come to rest so.
     const JointLoad shoulder = world.load(id, 1);
     expect_near(shoulder.force_N, {0, 0, 2 * g}, 1e-3);
     expect_near(shoulder.torque_Nm, {0, -0.3 * 2 * g, 0}, 1e-3);
@@ -140,7 +141,8 @@ TEST_P(EngineLoads, APushedJointBearsTheEffortToo) {
   Watched world(kind, {}, {0, 0, 0});
   const InstanceId id = world.add(instance_of("a", arm(model::JointType::revolute), {}, true));
   world.target(id, 1, {.mode = JointTarget::Mode::effort, .effort = 0.5});
-  // From rest: torque about the axis is the effort, and the centre's acceleration alpha r needs a force across the arm.
+  // From rest: torque about the axis is the effort, and the centre's acceleration alpha r needs a force
+  // across the arm.
   const Vec3 moments = inertia_kg_m2(Box{{0.2, 0.05, 0.05}}, 2);
   const double alpha = 0.5 / (moments.y + 2 * 0.09);
   const JointLoad load = world.load(id, 1);
@@ -156,7 +158,8 @@ TEST_P(EngineLoads, FreeFallLoadsNothingAndAPushLoadsByInertia) {
   Watched world(kind);
   const InstanceId id = world.add(instance_of("a", m, {{0, 0, 50}, {}}, true));
   expect_near(world.load(id, 0).force_N, {}, 1e-9);
-  // A push at the base's centre. Its line lies off the common centre of mass by 0.2 m (of 0.3, masses 1 and 2).
+  // A push at the base's centre. Its line lies off the common centre of mass by 0.2 m (of 0.3, masses 1 and
+  // 2).
   Watch watch;
   watch.loads.push_back(world.engine->joints(id)[0]);
   world.engine->watch(watch);
@@ -175,12 +178,14 @@ TEST_P(EngineLoads, FreeFallLoadsNothingAndAPushLoadsByInertia) {
   const Wrench on_arm{world.engine->bodies(id)[1], {0, 6, 0}, {}};
   world.engine->apply(std::span(&on_arm, 1));
   world.run(1, h);
-  // What the joint passes on to the base accelerates the base alone: the arm's a is 2 + 0.1 alpha, the base's 2 - 0.2 alpha.
+  // What the joint passes on to the base accelerates the base alone: the arm's a is 2 + 0.1 alpha, the base's
+  // 2 - 0.2 alpha.
   const double alpha2 = 0.1 * 6 / I;
   EXPECT_NEAR(world.engine->joint_loads()[watch.loads[0].index].force_N.y, -(2 - 0.2 * alpha2), 1e-2);
 }
 
-/// A hub that turns about z with, fixed to it, a tip of 0.5 kg whose centre is 0.4 m from the axis; J is at 0.25 m.
+/// A hub that turns about z with, fixed to it, a tip of 0.5 kg whose centre is 0.4 m from the axis; J is at
+/// 0.25 m.
 model::Model rotor() {
   model::Model m;
   m.links = {link_of("base", Box{{0.1, 0.1, 0.1}}, 1), link_of("hub", Box{{0.2, 0.05, 0.05}}, 1),
@@ -198,8 +203,8 @@ TEST_P(EngineLoads, ASpinningTipIsHeldTowardsTheAxis) {
   const InstanceId id = world.add(instance_of("a", rotor(), {}, true));
   world.target(id, 1, {.mode = JointTarget::Mode::velocity, .velocity = 8, .max_effort = 100});
   world.run(500, h);
-  // m w^2 r towards the axis, which is +y of the tip's own frame (its x points along the hub's y, its y inwards), and
-  // so it is in every position. w h = 0.008: a step's chord differs by (w h)^2 / 24.
+  // m w^2 r towards the axis, which is +y of the tip's own frame (its x points along the hub's y, its y
+  // inwards), and so it is in every position. w h = 0.008: a step's chord differs by (w h)^2 / 24.
   const double force = 0.5 * 64 * 0.4;
   for (int i = 0; i < 5; ++i) {
     const JointLoad tip = world.load(id, 2);
@@ -210,12 +215,14 @@ TEST_P(EngineLoads, ASpinningTipIsHeldTowardsTheAxis) {
     expect_near(axle.force_N, {-force, 0, 0}, 1e-3 * force);
     world.run(37, h);
   }
-  // Braking with 2 Nm: alpha = -2 / I; the tip needs m r alpha across, and that has the lever arm of 0.15 m about J.
+  // Braking with 2 Nm: alpha = -2 / I; the tip needs m r alpha across, and that has the lever arm of 0.15 m
+  // about J.
   world.target(id, 1, {.mode = JointTarget::Mode::effort, .effort = -2});
   const double tip_I = inertia_kg_m2(Box{{0.05, 0.05, 0.05}}, 0.5).z;
   const double I = inertia_kg_m2(Box{{0.2, 0.05, 0.05}}, 1).z + tip_I + 0.5 * 0.16, alpha = -2 / I;
   const JointLoad tip = world.load(id, 2);
-  // The tip is turned by 90 deg: the hub's y is its x. In this step the turning rate has already sunk by 1.5e-3 of it.
+  // The tip is turned by 90 deg: the hub's y is its x. In this step the turning rate has already sunk by
+  // 1.5e-3 of it.
   expect_near(tip.force_N, {0.5 * 0.4 * alpha, force, 0}, 5e-3 * force);
   EXPECT_NEAR(tip.torque_Nm.z, tip_I * alpha + 0.15 * 0.5 * 0.4 * alpha, 1e-3);
 }
@@ -253,7 +260,8 @@ TEST_P(EngineLoads, WhatHangsOnAFixedLinkIsBorneByItsJoint) {
   world.run(200, h);
   const JointLoad glue = world.load(id, 2);
   expect_near(glue.force_N, {0, 0, 0.8 * g}, 1e-3);
-  // J lies 0.15 m inwards of the tip's centre: along +y of the tip. r = (0, -0.15, 0): r x (0,0,F) = (-0.15 F, 0, 0).
+  // J lies 0.15 m inwards of the tip's centre: along +y of the tip. r = (0, -0.15, 0): r x (0,0,F) = (-0.15
+  // F, 0, 0).
   expect_near(glue.torque_Nm, {-0.15 * 0.8 * g, 0, 0}, 1e-3);
 }
 

@@ -13,7 +13,8 @@ bool is_directed(const model::Surface& s) { return dot(s.fdir1, s.fdir1) > 0; }
 double mu2(const model::Surface& s) { return is_directed(s) ? s.mu2 : s.mu; }
 double slip2(const model::Surface& s) { return is_directed(s) ? s.slip2 : s.slip1; }
 
-/// Whose fdir1 counts; null: neither has one that does. Of two the more slippery surface decides: it gives way first.
+/// Whose fdir1 counts; null: neither has one that does. Of two the more slippery surface decides: it gives
+/// way first.
 const model::Surface* directed(const model::Surface& a, const model::Surface& b) {
   if (a.substance && b.substance) return nullptr;
   const bool of_a = is_directed(a), of_b = is_directed(b);

@@ -3,11 +3,12 @@
 ///
 /// Substances  where both have one, physics/substance.h decides.
 /// Friction    else: Coulomb, pairs combine by min(). A surface with fdir1 brings its two directions along.
-/// Skin        multiplies what either law gives, along its axis. Where both have a skin, that with the smaller ratio counts.
-///             Where the axis stands up from the surface (more than 71 deg) there is no direction along: the value across holds both ways.
+/// Skin        multiplies what either law gives, along its axis. Where both have a skin, that with the
+///             smaller ratio counts. Where the axis stands up from the surface (more than 71 deg) there is no
+///             direction along: the value across holds both ways.
 /// Bounce      the larger restitution counts, above the threshold of the surface it came from.
-/// Softness    springs in series, dampers add; slip and soft_cfm are compliances in series: they add. soft_erp and the
-///             fastest correction: the smaller.
+/// Softness    springs in series, dampers add; slip and soft_cfm are compliances in series: they add.
+///             soft_erp and the fastest correction: the smaller.
 /// Rolling     resistances add. Belts: the difference of their velocities.
 #include "physics/contact_rule.h"
 
@@ -29,8 +30,8 @@ class ZoneMap {
   ZoneMap() = default;
   explicit ZoneMap(std::span<const model::SurfaceZone> zones);
   bool empty() const { return zones_.empty(); }
-  /// The last zone that holds the point, seen from above; null: none. Of a polygon's border the left and lower part
-  /// belong to it, so that two polygons with a common side share no point and leave none out.
+  /// The last zone that holds the point, seen from above; null: none. Of a polygon's border the left and
+  /// lower part belong to it, so that two polygons with a common side share no point and leave none out.
   const model::SurfaceZone* find(Vec3 point_W) const;
 
  private:

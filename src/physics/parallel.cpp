@@ -19,8 +19,8 @@ void parallel_for(std::size_t count, std::size_t grain, const void* closure,
   if (count == 0) return;
   if (count <= grain) return body(closure, 0, count);
 #ifdef __SANITIZE_THREAD__
-  // The sanitizer cannot see how libtbb hands work over and would call every hand-over a race. Plain threads it
-  // understands, so there the bodies run on those and real races between them show.
+  // The sanitizer cannot see how libtbb hands work over and would call every hand-over a race. Plain threads
+  // it understands, so there the bodies run on those and real races between them show.
   const auto most = static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
   const std::size_t workers = std::min(most, (count + grain - 1) / grain);
   std::vector<std::thread> threads;

@@ -47,9 +47,10 @@ std::optional<Twist> by_friction(const Vehicle& vehicle, const Robot& robot, boo
                            {slow.wz_radps * slow.vy_mps / g_mps2, -slow.wz_radps * slow.vx_mps / g_mps2});
 }
 
-/// What a wheel with two edges makes of a turn. Its middle cannot roll: the edges run at other speeds than the rim. Of all
-/// motions the one comes about that loses least to friction, here: the outer edge of the wheel farthest from the centre of
-/// rotation rolls. Two wheels on one axle do not fix that centre: then it is the one that changes, and the speed is met.
+/// What a wheel with two edges makes of a turn. Its middle cannot roll: the edges run at other speeds than
+/// the rim. Of all motions the one comes about that loses least to friction, here: the outer edge of the
+/// wheel farthest from the centre of rotation rolls. Two wheels on one axle do not fix that centre: then it
+/// is the one that changes, and the speed is met.
 Twist with_edges(const Vehicle& vehicle, Twist command) {
   if (vehicle.half_width_m == 0 || vehicle.skid_radius_m > 0 || command.wz_radps == 0) return command;
   const double radius_m = command.vx_mps / command.wz_radps;

@@ -71,7 +71,8 @@ void bouncing(Section& s) {
     }
     tops_m.resize(2);
     const std::string where = fmt::format("rigid, {:g} ms", 1000 * h_s);
-    // The ball hits within a step: up to g h of its speed is a matter of phase, 2 g h / v of its energy per impact.
+    // The ball hits within a step: up to g h of its speed is a matter of phase, 2 g h / v of its energy per
+    // impact.
     const double phase = 2 * g_mps2 * h_s / std::sqrt(2 * g_mps2);
     s.rows.push_back({"dropped from 1 m, e 0.8: first rebound", where, "m", tops_m[0], e * e, phase});
     s.rows.push_back(

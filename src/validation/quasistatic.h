@@ -1,21 +1,25 @@
 #pragma once
-/// Quasistatic motion of a vehicle whose wheels turn at given speeds on ground with dry friction, found without any engine.
+/// Quasistatic motion of a vehicle whose wheels turn at given speeds on ground with dry friction, found
+/// without any engine.
 ///
-/// Without inertia, of all velocities (v, w) of the chassis the one comes about at which friction dissipates least,
+/// Without inertia, of all velocities (v, w) of the chassis the one comes about at which friction dissipates
+/// least,
 ///
 ///   P(v, w) = sum_i N_i |d_i|,   d_i = v + w z x p_i - s_i,
 ///
-/// which means that the forces of friction balance each other. Contact i, at p_i and loaded with N_i, slips by d_i against a
-/// surface of the vehicle that runs over the ground with -s_i; of a contact on a roller only the part of d_i along the roller's
-/// axis e_i counts. P is convex; it is minimised by least squares with weights N_i / |d_i| (Weiszfeld's iteration).
+/// which means that the forces of friction balance each other. Contact i, at p_i and loaded with N_i, slips
+/// by d_i against a surface of the vehicle that runs over the ground with -s_i; of a contact on a roller only
+/// the part of d_i along the roller's axis e_i counts. P is convex; it is minimised by least squares with
+/// weights N_i / |d_i| (Weiszfeld's iteration).
 ///
-/// A force F on the middle (the centrifugal one) adds -F . (v, w); `push` is F as a share of the most that friction can hold.
+/// A force F on the middle (the centrifugal one) adds -F . (v, w); `push` is F as a share of the most that
+/// friction can hold.
 ///
 /// Units    m, m/s, rad/s; N in any unit: friction coefficient and weight do not matter.
 /// Limits   loads are given, not found: no transfer of load. Where several (v, w) dissipate equally
 ///          little, one of them.
-/// Source   M. A. Peshkin, A. C. Sanderson, The principle of minimum power, IEEE Trans. Robotics and Automation 5 (1989);
-///          E. Weiszfeld, Tohoku Math. J. 43 (1937) 355-386.
+/// Source   M. A. Peshkin, A. C. Sanderson, The principle of minimum power, IEEE Trans. Robotics and
+///          Automation 5 (1989); E. Weiszfeld, Tohoku Math. J. 43 (1937) 355-386.
 #include <span>
 #include <vector>
 
@@ -42,11 +46,12 @@ Twist least_dissipation(std::span<const Patch> patches, Push push = {});
 void add_wheel(std::vector<Patch>& patches, double x_m, double y_m, double half_width_m, double rim_mps,
                double load = 1);
 
-/// The roller on which a Mecanum wheel of joint angle `turned_rad` stands, as builders/mecanum_robot makes it: its axis is tilted by
+/// The roller on which a Mecanum wheel of joint angle `turned_rad` stands, as builders/mecanum_robot makes
+/// it: its axis is tilted by
 /// `angle_rad`, and it touches where that axis passes over the lowest line of the rim.
 ///
-/// A roller f past the bottom stands (R - r) tan f / tan(angle) to the side of the wheel's middle, and its axis lies on the
-/// ground along (sin(angle) cos f, cos(angle)).
+/// A roller f past the bottom stands (R - r) tan f / tan(angle) to the side of the wheel's middle, and its
+/// axis lies on the ground along (sin(angle) cos f, cos(angle)).
 void add_mecanum_wheel(std::vector<Patch>& patches, double x_m, double y_m, double radius_m,
                        double roller_radius_m, int rollers, double angle_rad, double turned_rad,
                        double speed_radps);

@@ -1,9 +1,10 @@
 #pragma once
 /// Validations: simulations whose result theory predicts. `sandlot validate` runs them and writes the page.
 ///
-/// Each measures through the engines' public border, with the settings a scenario has by default, and sets next to the
-/// measured number the one that follows from a formula, and the bound within which it has to lie. Bounds that are no
-/// rounding are those of the method (a time step, an iterative solver), and the text states which.
+/// Each measures through the engines' public border, with the settings a scenario has by default, and sets
+/// next to the measured number the one that follows from a formula, and the bound within which it has to lie.
+/// Bounds that are no rounding are those of the method (a time step, an iterative solver), and the text
+/// states which.
 #include <string>
 #include <vector>
 

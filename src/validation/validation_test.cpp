@@ -18,8 +18,8 @@ TEST(SlowValidation, EverythingLiesWithinItsBounds) {
   }
 }
 
-/// Four wheels skid round their middle at the rate where moments balance: kinematics/skid.h has it in closed form. Along an
-/// arc the solution is where no other dissipates less.
+/// Four wheels skid round their middle at the rate where moments balance: kinematics/skid.h has it in closed
+/// form. Along an arc the solution is where no other dissipates less.
 TEST(Validation, FrictionTurnsFourWheelsAsTheBalanceOfMomentsSays) {
   const double length = 0.34, track = 0.44, rim = 0.3;
   const auto wheels = [&](double left, double right) {
@@ -48,7 +48,8 @@ TEST(Validation, FrictionTurnsFourWheelsAsTheBalanceOfMomentsSays) {
   }
 }
 
-/// With a roller right below, a Mecanum wheel is what the closed form thinks; at a third of the pitch its axis has turned.
+/// With a roller right below, a Mecanum wheel is what the closed form thinks; at a third of the pitch its
+/// axis has turned.
 TEST(Validation, AMecanumWheelStandsOnTheRollerThatIsLowest) {
   std::vector<Patch> patches;
   const double pitch = math::tau / 8;  // a roller ahead at zero, so one below

@@ -5,7 +5,8 @@
 
 namespace {
 
-/// Turns on the spot, faster with every step, until it has made `steps` of them; then it throws if it was told to.
+/// Turns on the spot, faster with every step, until it has made `steps` of them; then it throws if it was
+/// told to.
 struct Spinner {
   enum class End { rest, exception, number };
   friend std::span<const sandlot::EnumName<End>> enum_names(End) {

@@ -122,8 +122,8 @@ TEST(Vision, AChessboardsPoseIsFound) {
   cv::Vec3d turn, place;
   ASSERT_TRUE(cv::solvePnP(chessboard_points(), corners, matrix(lens),
                            cv::Vec<double, 5>{bent.k1, bent.k2, bent.p1, bent.p2, 0}, turn, place));
-  // 54 corners, each known to 0.1 px of 420: across the view 0.6 m * 0.1 / 420 = 0.14 mm each; along it the board's size,
-  // 0.27 m, is known to 0.2 mm, which is 0.5 mm in 0.6 m; its tilt to about 0.2 mm / 0.13 m.
+  // 54 corners, each known to 0.1 px of 420: across the view 0.6 m * 0.1 / 420 = 0.14 mm each; along it the
+  // board's size, 0.27 m, is known to 0.2 mm, which is 0.5 mm in 0.6 m; its tilt to about 0.2 mm / 0.13 m.
   const cv::Vec3d p = optical(studio.frame.X_WG[0].p);
   EXPECT_NEAR(place[0], p[0], 0.0005);
   EXPECT_NEAR(place[1], p[1], 0.0005);
@@ -225,7 +225,8 @@ TEST(Vision, UndistortedPicturesAreThoseOfAStraightLens) {
   cv::Mat undone;
   cv::undistort(studio.shoot(lens, {}, 9).gray, undone, matrix(lens), cv::Vec4d{-0.3, 0.1, 0, 0});
   const cv::Mat plain = studio.shoot(straight, {}, 9).gray;
-  // What differs is the blur of undistort's interpolation at edges, on few pixels. A shift by one pixel differs much more.
+  // What differs is the blur of undistort's interpolation at edges, on few pixels. A shift by one pixel
+  // differs much more.
   const cv::Rect middle(40, 30, 240, 180);
   const double difference = cv::mean(
       cv::abs(cv::Mat(undone(middle) - plain(middle)) + cv::Mat(plain(middle) - undone(middle))))[0];
@@ -266,7 +267,8 @@ TEST(Vision, TrackedFeaturesMoveAsTheCameraDoes) {
   }
   ASSERT_GT(off.size(), 100u);
   EXPECT_GT(median(way), 2);
-  // Corners where a near edge crosses a far one move as neither does: the median and three quarters are asked.
+  // Corners where a near edge crosses a far one move as neither does: the median and three quarters are
+  // asked.
   EXPECT_LT(median(off), 0.2);
   EXPECT_GT(std::count_if(off.begin(), off.end(), [](double x) { return x < 0.7; }),
             0.75 * static_cast<double>(off.size()));

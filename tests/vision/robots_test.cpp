@@ -1,4 +1,5 @@
-/// Software of robots on what the simulator gives them: colours in pictures, OpenCV on the same pictures, the laser, whole programs.
+/// Software of robots on what the simulator gives them: colours in pictures, OpenCV on the same pictures, the
+/// laser, whole programs.
 #include <opencv2/imgproc.hpp>
 
 #include "app/verbs/calibrate.h"
@@ -15,7 +16,8 @@ namespace {
 
 constexpr double degree = math::pi / 180;
 
-/// A ball, goals and two robots on a lit field with shadows; all that stands is 0.5 m from its front to its middle or as given.
+/// A ball, goals and two robots on a lit field with shadows; all that stands is 0.5 m from its front to its
+/// middle or as given.
 struct Field : Studio {
   Vec3 ball{1.8, 0.5, 0.11}, magenta{2.6, -0.7, 0}, cyan{-1.5, 1.2, 0}, blue{4.5, 0.2, 0}, yellow{-4.5, 0, 0};
   Field() {
@@ -91,8 +93,9 @@ TEST(Vision, ColoursAreFoundInADirectedPicture) {
   perception::Finder finder(Field::spec(), *perception::CameraModel::of(info), X_BS);
   Studio::Shot shot = field.shoot(lens, X_BS, 2);
   std::vector<perception::Found> found;
-  // A pixel is 4 mrad. The ground at 1.8 m is seen at 10 degrees: 4 mrad are 4 cm along it, and the ball's middle is known to some tenths of that.
-  // Feet are known to half a pixel: at 2.4 m 3 cm, at 4.3 m 10 cm; of the arc of a round one 4 cm more.
+  // A pixel is 4 mrad. The ground at 1.8 m is seen at 10 degrees: 4 mrad are 4 cm along it, and the ball's
+  // middle is known to some tenths of that. Feet are known to half a pixel: at 2.4 m 3 cm, at 4.3 m 10 cm; of
+  // the arc of a round one 4 cm more.
   const std::vector<Wanted> wanted{{"ball", field.ball, 0.01, 0.04},
                                    {"magenta", field.magenta, 0.01, 0.1},
                                    {"blue", field.blue, 0.03, 0.25}};
@@ -132,7 +135,8 @@ TEST(SlowVision, ColoursAreFoundAllAround) {
   cameras::fill_info(info, lens, "omni");
   Studio::Shot shot = field.shoot(lens, X_BS, 2);
   add_noise(shot.rgb, 6);
-  // A pixel is half a degree: at 1.9 m the ground is seen at 17 degrees, half a pixel is 3 cm of it; at 2.7 m 6 cm; at 4.3 m 14 cm.
+  // A pixel is half a degree: at 1.9 m the ground is seen at 17 degrees, half a pixel is 3 cm of it; at 2.7 m
+  // 6 cm; at 4.3 m 14 cm.
   const std::vector<Wanted> wanted{{"ball", field.ball, 0.02, 0.06},
                                    {"magenta", field.magenta, 0.02, 0.15},
                                    {"cyan", field.cyan, 0.02, 0.12},
@@ -143,7 +147,8 @@ TEST(SlowVision, ColoursAreFoundAllAround) {
   ASSERT_TRUE(finder.find(view_of(shot.rgb), found));
   expect_found(found, Field::spec(), wanted);
 
-  // The same with a mirror of which nothing is known: measured by balls laid out on the ground, whose pixels are counted.
+  // The same with a mirror of which nothing is known: measured by balls laid out on the ground, whose pixels
+  // are counted.
   std::vector<perception::Sighting> laid;
   Studio plain;
   plain.surroundings = {{0, 0, 0, 1}, {1, 1, 1, 1}};
@@ -214,7 +219,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Eyes{"picture", {}, true}, Eyes{"objects", {{"level", "objects"}}, false},
                     Eyes{"mirror", {{"eye", "omni"}, {"level", "objects"}, {"omni_level", "image"}}, true}));
 
-/// The ball lies 2.8 m off, outside the view of the directed camera. The same program gets there with whatever it sees by.
+/// The ball lies 2.8 m off, outside the view of the directed camera. The same program gets there with
+/// whatever it sees by.
 TEST_P(SlowVisionSeeks, AndFindsTheBall) {
   auto set = GetParam().set;
   for (const char* small : {"robots[0].devices.eye.width=160", "robots[0].devices.eye.height=120",
@@ -295,8 +301,8 @@ robots:
   }
   EXPECT_GT(driven, 10);
   EXPECT_GT(matched, 500);
-  // 271 beams with 1 cm of noise: a third of them on each pair of walls, 1 cm / sqrt(90), five of them and as much for the pillar's corners;
-  // and the robot moves up to 1 cm between the scan and the end of a tick.
+  // 271 beams with 1 cm of noise: a third of them on each pair of walls, 1 cm / sqrt(90), five of them and as
+  // much for the pillar's corners; and the robot moves up to 1 cm between the scan and the end of a tick.
   EXPECT_LT(worst, 0.02);
   EXPECT_LT(worst_turn, 0.01);
   EXPECT_GT(nearest, 0.175);  // its radius: it touched nothing

@@ -56,7 +56,8 @@ struct Studio {
   }
 };
 
-/// 10 x 7 squares of 30 mm with a white rim, in group `group`; frame K as OpenCV has it: corners at (30 mm i, 30 mm j, 0), i < 9, j < 6.
+/// 10 x 7 squares of 30 mm with a white rim, in group `group`; frame K as OpenCV has it: corners at (30 mm i,
+/// 30 mm j, 0), i < 9, j < 6.
 inline void add_chessboard(Studio& studio, std::uint32_t group) {
   constexpr double side = 0.03;
   studio.add(Box{{0.42, 0.33, 0.01}}, {{0.12, 0.075, 0.00505}, {}}, {0.95f, 0.95f, 0.95f, 1}, group);
@@ -73,7 +74,8 @@ inline std::vector<cv::Point3f> chessboard_points() {
       points.emplace_back(0.03f * static_cast<float>(i), 0.03f * static_cast<float>(j), 0.0f);
   return points;
 }
-/// K such that the board's middle is at `p` and its axes are those of an image seen from S, turned by rpy about S's axes.
+/// K such that the board's middle is at `p` and its axes are those of an image seen from S, turned by rpy
+/// about S's axes.
 inline Pose board_at(Vec3 p, Vec3 rpy) {
   const Pose X_WM{p, quat_from_rpy(rpy.x, rpy.y, rpy.z) * q_S_optical};
   return X_WM * Pose{{-0.12, -0.075, 0}, {}};

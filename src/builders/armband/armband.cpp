@@ -1,5 +1,5 @@
-/// A closed band of staves on hinges, like an arm band laid on its edge: it rolls like a caterpillar's track. After the
-/// arm band that LpzRobots guides by cross-motor teaching.
+/// A closed band of staves on hinges, like an arm band laid on its edge: it rolls like a caterpillar's track.
+/// After the arm band that LpzRobots guides by cross-motor teaching.
 ///
 /// Frame    M: middle of the ring, its axis along y; it stands on stave 1, the yellow one, and rolls along x.
 /// Moves    motors `hinge_1`, `hinge_2` ...: builders/ring.h.

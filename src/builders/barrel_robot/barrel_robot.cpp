@@ -1,7 +1,8 @@
-/// A barrel that rolls because two masses inside of it slide across its axis. After the barrel2masses of LpzRobots:
-/// diameter 1, shell 0.3 kg, masses of 1 kg, range 0.25, power 150.
+/// A barrel that rolls because two masses inside of it slide across its axis. After the barrel2masses of
+/// LpzRobots: diameter 1, shell 0.3 kg, masses of 1 kg, range 0.25, power 150.
 ///
-/// Frame    M: middle of the barrel, its axis along y; it stands half a diameter above the ground and rolls along x.
+/// Frame    M: middle of the barrel, its axis along y; it stands half a diameter above the ground and rolls
+///          along x.
 /// Moves    motors `x` and `z` move the masses along those axes of the barrel [m].
 /// Senses   `joints`, `imu`.
 /// Limits   the masses pass through each other: they have no geometry, and their rails no mass.

@@ -1,8 +1,9 @@
 /// Loose boxes of random sizes in layers, which settle into a pile. After LpzRobots' BoxPile.
 ///
 /// Frame    M: middle of the pile, on the ground.
-/// Layout   as many boxes as there is room for side by side in `length` by `width`, then the next layer; each is drawn from
-///          the seed between the smallest and the largest edge, and stands clear of its neighbours at the start.
+/// Layout   as many boxes as there is room for side by side in `length` by `width`, then the next layer; each
+///          is drawn from the seed between the smallest and the largest edge, and stands clear of its
+///          neighbours at the start.
 #include <algorithm>
 #include <cmath>
 

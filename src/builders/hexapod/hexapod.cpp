@@ -1,9 +1,10 @@
-/// Six legs on two servo joints each. After the hexapod of LpzRobots: size 1, mass 1, legs 0.6, motor power 1, joints to
-/// 45 deg to front and back and 22.5 deg up and down; with `knees` a third joint of power 1.2.
+/// Six legs on two servo joints each. After the hexapod of LpzRobots: size 1, mass 1, legs 0.6, motor power
+/// 1, joints to 45 deg to front and back and 22.5 deg up and down; with `knees` a third joint of power 1.2.
 ///
 /// Frame    M: middle of the body, x forward, y left; it stands on its six feet.
-/// Moves    motors leg by leg, left front, middle, rear, then right: `left_front_swing` (positive moves the foot backwards),
-///          `left_front_lift` (positive lifts it) and with knees `left_front_knee` (positive stretches outwards) [rad].
+/// Moves    motors leg by leg, left front, middle, rear, then right: `left_front_swing` (positive moves the
+///          foot backwards), `left_front_lift` (positive lifts it) and with knees `left_front_knee` (positive
+///          stretches outwards) [rad].
 /// Senses   `joints`, `imu`.
 /// Limits   legs do not touch each other; a swing axis is a light link without geometry.
 #include "base/math.h"

@@ -1,12 +1,12 @@
-/// A robot of the RoboCup Middle Size League: three or four omni wheels, a tower in its team's colour with a number, a
-/// mirror on top, room for a scanner and a camera head.
+/// A robot of the RoboCup Middle Size League: three or four omni wheels, a tower in its team's colour with a
+/// number, a mirror on top, room for a scanner and a camera head.
 ///
-/// Frame    M: on the ground below the middle, x forward, y left. Wheels stand on a circle, symmetric to x with none in front, their axes
-///          radial.
+/// Frame    M: on the ground below the middle, x forward, y left. Wheels stand on a circle, symmetric to x
+///          with none in front, their axes radial.
 /// Moves    `drive`, an omni_drive.
 /// Senses   `joints`, `imu`, `truth` (a ground_truth: where it really is).
-/// Links    `mirror` has its origin at the focus of the mirror, z up: an omni camera belongs there, and sees all but that link.
-///          A SICK LD fits at (0.12, 0, 0.37), a Sony D100 at (0.135, 0, 0.525).
+/// Links    `mirror` has its origin at the focus of the mirror, z up: an omni camera belongs there, and sees
+///          all but that link. A SICK LD fits at (0.12, 0, 0.37), a Sony D100 at (0.135, 0, 0.525).
 /// Size     0.49 x 0.44 m, 0.79 m high, as the league allows (at most 0.5 x 0.5 x 0.8 m, 40 kg).
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-/// Walls along a regular polygon, eight corners by default, that lies on the ground. After LpzRobots' OctaPlayground: 7 across,
-/// walls 0.2 thick, 0.5 high.
+/// Walls along a regular polygon, eight corners by default, that lies on the ground. After LpzRobots'
+/// OctaPlayground: 7 across, walls 0.2 thick, 0.5 high.
 ///
 /// Frame    M: middle of the yard, on the ground; the first wall stands across x.
 #include "base/math.h"

@@ -1,7 +1,7 @@
 /// A round robot on omni wheels: rollers around their rims let them slide along their axes.
 ///
-/// Frame    M: on the ground below the middle, x forward, y left. Wheels stand on a circle, symmetric to x with none in front, their axes
-///          radial.
+/// Frame    M: on the ground below the middle, x forward, y left. Wheels stand on a circle, symmetric to x
+///          with none in front, their axes radial.
 /// Moves    `drive`, an omni_drive.
 /// Senses   `joints`, `imu`.
 /// Rollers  in two rows that are turned by half a pitch, as long as it takes to leave no gap between both.

@@ -1,5 +1,5 @@
-/// A ring of staves whose joints are hinges and sliders by turns: it rolls by changing its shape. After the sliderwheelie of
-/// LpzRobots: 8 segments, 0.4 long, 0.2 thick, 0.4 kg, power 5, hinges to 60 deg inwards.
+/// A ring of staves whose joints are hinges and sliders by turns: it rolls by changing its shape. After the
+/// sliderwheelie of LpzRobots: 8 segments, 0.4 long, 0.2 thick, 0.4 kg, power 5, hinges to 60 deg inwards.
 ///
 /// Frame    M: middle of the ring, its axis along y; it stands on stave 1, the yellow one, and rolls along x.
 /// Moves    motors `hinge_1`, `slider_2`, `hinge_3` ...: builders/ring.h.

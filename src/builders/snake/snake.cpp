@@ -1,12 +1,15 @@
-/// A chain of segments on servo joints. After the snakes (schlange...) of LpzRobots: 10 segments, 0.8 long, 0.2 thick,
-/// 0.1 kg, motor power 1, joints to 45 deg.
+/// A chain of segments on servo joints. After the snakes (schlange...) of LpzRobots: 10 segments, 0.8 long,
+/// 0.2 thick, 0.1 kg, motor power 1, joints to 45 deg.
 ///
-/// Frame    M: middle of the head, which is the first segment and looks along x; it lies half a diameter above the ground.
-/// Moves    motors `joint_1` ... from the head on, angles [rad]; on universal joints `joint_1_yaw`, `joint_1_pitch`.
+/// Frame    M: middle of the head, which is the first segment and looks along x; it lies half a diameter
+///          above the ground.
+/// Moves    motors `joint_1` ... from the head on, angles [rad]; on universal joints `joint_1_yaw`,
+///          `joint_1_pitch`.
 /// Senses   `joints`, `imu` in the head.
-/// Skin     `friction_along` its segments and `friction_across`: with less along than across, waves from the head to the
-///          tail drive it forward.
-/// Limits   neighbours do not touch each other; a universal joint is two hinges with a light link between them.
+/// Skin     `friction_along` its segments and `friction_across`: with less along than across, waves from the
+///          head to the tail drive it forward.
+/// Limits   neighbours do not touch each other; a universal joint is two hinges with a light link between
+///          them.
 #include "builders/builder.h"
 #include "builders/parts.h"
 

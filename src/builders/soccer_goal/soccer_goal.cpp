@@ -1,7 +1,9 @@
 /// A goal with a net: posts, crossbar, and walls of net behind.
 ///
-/// Frame    M: on the ground in the middle of the goal line's outer edge, x out of the field: the front of the posts is at x = 0.
-/// Size     inside, between the posts and below the bar. Default: the Middle Size League's, rule book of 2023.
+/// Frame    M: on the ground in the middle of the goal line's outer edge, x out of the field: the front of
+///          the posts is at x = 0.
+/// Size     inside, between the posts and below the bar. Default: the Middle Size League's, rule book of
+///          2023.
 /// Touches  as whole walls, so that neither balls nor lasers pass the net; one sees its cords.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-/// A hollow ball that rolls because three masses inside of it slide along its axes. After the sphererobot3masses of
-/// LpzRobots: diameter 1, shell 0.3 kg, masses of 1 kg, range 0.2, power 100.
+/// A hollow ball that rolls because three masses inside of it slide along its axes. After the
+/// sphererobot3masses of LpzRobots: diameter 1, shell 0.3 kg, masses of 1 kg, range 0.2, power 100.
 ///
 /// Frame    M: centre of the shell; it stands half a diameter above the ground.
 /// Moves    motors `x`, `y`, `z` move the masses along those axes of the shell [m].

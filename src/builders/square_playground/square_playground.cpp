@@ -1,4 +1,5 @@
-/// Four walls around a yard that lies on the ground. After LpzRobots' Playground: 7 long, walls 0.2 thick, 0.5 high.
+/// Four walls around a yard that lies on the ground. After LpzRobots' Playground: 7 long, walls 0.2 thick,
+/// 0.5 high.
 ///
 /// Frame    M: middle of the yard, on the ground.
 #include "builders/builder.h"

@@ -3,8 +3,8 @@
 /// Frame    M: on the ground below the middle of the wheels, x forward, y left.
 /// Moves    `drive`, a swerve_drive.
 /// Senses   `joints`, `imu`.
-/// Source   size of the base: Sharifi et al., the paper on MARIO (0.52 x 0.52 x 0.33 m). It does not give the wheels' places, size
-///          they are, what they weigh and how far they steer: those numbers are ours.
+/// Source   size of the base: Sharifi et al., the paper on MARIO (0.52 x 0.52 x 0.33 m). It does not give the
+///          wheels' places, size they are, what they weigh and how far they steer: those numbers are ours.
 #include "base/math.h"
 #include "builders/builder.h"
 #include "builders/wheeled.h"

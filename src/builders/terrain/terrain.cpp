@@ -1,8 +1,8 @@
 /// Hills that follow from a seed, for driving over. After LpzRobots' TerrainGround.
 ///
 /// Frame    M: middle of the terrain, at its lowest possible height.
-/// Heights  three octaves of smooth noise between random heights on grids of cells `hill` wide, half of it and a quarter;
-///          towards the edge they sink to 0, so that it can be driven onto from the ground.
+/// Heights  three octaves of smooth noise between random heights on grids of cells `hill` wide, half of it
+///          and a quarter; towards the edge they sink to 0, so that it can be driven onto from the ground.
 /// Limits   no file: `sandlot convert` writes a mesh of it. Snapshots and recordings carry its heights.
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
-/// Two driven wheels on one axle and a round body between them that all but touches the ground: it nods when it speeds
-/// up. After the nimm2 of LpzRobots: size 1, force 5, speed 12, balls for wheels.
+/// Two driven wheels on one axle and a round body between them that all but touches the ground: it nods when
+/// it speeds up. After the nimm2 of LpzRobots: size 1, force 5, speed 12, balls for wheels.
 ///
-/// Frame    M: middle of the axle, x forward, y left; it stands one wheel radius (size/4 + size/600) above the ground.
+/// Frame    M: middle of the axle, x forward, y left; it stands one wheel radius (size/4 + size/600) above
+///          the ground.
 /// Moves    motors `left` and `right` follow speeds [rad/s].
 /// Senses   `joints`, `imu`; with `range` two range finders, `ir_left` and `ir_right`, in the nose.
 /// Source   proportions chosen after the pictures of LpzRobots; force, speed and range are its defaults.

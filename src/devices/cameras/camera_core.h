@@ -1,13 +1,15 @@
 #pragma once
 /// Core of the cameras with levels: the directed one and the one below a mirror.
 ///
-/// Levels   `image` (the default): sensor_msgs/Image on <device>/image, CameraInfo on <device>/camera_info, with `compressed`
-///          CompressedImage on <device>/image/compressed. `objects`:
-///          sandlot_msgs/ObjectArray in the sensor's frame. `world`: sandlot_msgs/ObjectPoseArray in `world`. See
-///          devices/cameras/detector.h. Any of them together; what is not active costs nothing: without `image` no picture is drawn.
+/// Levels   `image` (the default): sensor_msgs/Image on <device>/image, CameraInfo on <device>/camera_info,
+///          with `compressed` CompressedImage on <device>/image/compressed. `objects`:
+///          sandlot_msgs/ObjectArray in the sensor's frame. `world`: sandlot_msgs/ObjectPoseArray in `world`.
+///          See devices/cameras/detector.h. Any of them together; what is not active costs nothing: without
+///          `image` no picture is drawn.
 /// Zoom     with `zoom`: devices/cameras/zoom.h. All levels look through the zoomed lens.
 /// Switch   zoom and numbers of samples go on; the topics of a level that is left keep their last message.
-/// Time     everything is as it is at the end of the tick (with a shutter: the middle of the first row's exposure).
+/// Time     everything is as it is at the end of the tick (with a shutter: the middle of the first row's
+///          exposure).
 #include <optional>
 
 #include "devices/cameras/detector.h"

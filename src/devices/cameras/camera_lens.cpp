@@ -80,8 +80,8 @@ Result<Lens> lens_of(const LensKeys& keys, const DeviceBuild& build) {
 }
 
 std::shared_ptr<const optics::LensTable> shared_table(const Lens& lens) {
-  // Twelve robots with the same mirror would else compute and keep twelve tables. Tables are constant: who shares
-  // one cannot tell.
+  // Twelve robots with the same mirror would else compute and keep twelve tables. Tables are constant: who
+  // shares one cannot tell.
   struct Known {
     std::vector<double> numbers;
     std::weak_ptr<const optics::LensTable> table;

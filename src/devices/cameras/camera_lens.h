@@ -1,8 +1,8 @@
 #pragma once
 /// Keys of a lens, shared by the specs of all cameras, and its CameraInfo.
 ///
-/// Frames   S, the sensor's: x forward, y left, z up. `<device>_optical`: z forward, x right, y down, as ROS has images'
-///          (REP 103). Pictures and CameraInfo are stamped with the latter, detections with S.
+/// Frames   S, the sensor's: x forward, y left, z up. `<device>_optical`: z forward, x right, y down, as ROS
+///          has images' (REP 103). Pictures and CameraInfo are stamped with the latter, detections with S.
 /// Errors   of optics::check(), at the key that is to blame.
 #include <memory>
 #include <numbers>

@@ -67,8 +67,8 @@ Status copy_distortion(const Node& camera, Node& config) {
   return {};
 }
 
-/// How a wide-angle lens maps angles, r = c1 f fun(theta / c2): written with slope 1 at 0 as c2 fun(theta / c2), and what
-/// that has to be multiplied by.
+/// How a wide-angle lens maps angles, r = c1 f fun(theta / c2): written with slope 1 at 0 as c2 fun(theta /
+/// c2), and what that has to be multiplied by.
 struct Curve {
   enum class Function : std::uint8_t { id, sin, tan } function;
   double c2, scale;
@@ -117,8 +117,8 @@ Result<Curve> custom_curve(const Node& lens, Diagnostics& diagnostics) {
   return Curve{fun == "sin" ? Curve::Function::sin : Curve::Function::tan, c2, c1 * f / c2};
 }
 
-/// The polynomial of a fisheye (kannala_brandt) through four places of the curve: those of Chebyshev in theta^2, so that
-/// what it errs by between them is spread evenly.
+/// The polynomial of a fisheye (kannala_brandt) through four places of the curve: those of Chebyshev in
+/// theta^2, so that what it errs by between them is spread evenly.
 Node polynomial_of(const Curve& curve, double up_to_rad, const Place& place) {
   constexpr int n = 4;
   double x[n], p[n];
@@ -139,8 +139,8 @@ Node polynomial_of(const Curve& curve, double up_to_rad, const Place& place) {
   return keys;
 }
 
-/// The lens of a wide-angle camera. The image ends at <horizontal_fov> (or has the scale of the lens' own function), the
-/// picture in it at <cutoff_angle>.
+/// The lens of a wide-angle camera. The image ends at <horizontal_fov> (or has the scale of the lens' own
+/// function), the picture in it at <cutoff_angle>.
 Status copy_lens(const Node& camera, Node& config, Diagnostics& diagnostics) {
   const Node* const lens = find(camera, "lens");
   if (!lens) return {};

@@ -1,9 +1,10 @@
 #pragma once
 /// SDF's <camera> as keys of the kinds of cameras; shared by their from_sdf functions.
 ///
-/// <horizontal_fov>, <image>, <clip>, <noise> (gaussian), <distortion>, <lens> with <type>, <scale_to_hfov>, <cutoff_angle>
-/// and <intrinsics>, <depth_camera><clip>, <anti_aliasing>. SDF's defaults hold where they are not ours: 1.047 rad, 320 x 240,
-/// clip from 0.1 to 100 m. Bayer and 16 bit formats become the nearest that we have, with a warning.
+/// <horizontal_fov>, <image>, <clip>, <noise> (gaussian), <distortion>, <lens> with <type>, <scale_to_hfov>,
+/// <cutoff_angle> and <intrinsics>, <depth_camera><clip>, <anti_aliasing>. SDF's defaults hold where they are
+/// not ours: 1.047 rad, 320 x 240, clip from 0.1 to 100 m. Bayer and 16 bit formats become the nearest that
+/// we have, with a warning.
 #include "devices/sdf_element.h"
 
 namespace sandlot::sdf_element {

@@ -143,7 +143,8 @@ TEST(Cameras, APointIsSeenWhereThePinholeFormulaSays) {
   EXPECT_EQ(image.encoding, "rgb8");
   EXPECT_EQ(image.step, 240u);
   EXPECT_EQ(image.header.frame_id, "robot1/eye_optical");
-  // u = 39.5 - 40 * 0.5 / 2, v = 29.5 + 40 * 0.25 / 2; a disc of 2 pixels' radius between pixels is symmetric.
+  // u = 39.5 - 40 * 0.5 / 2, v = 29.5 + 40 * 0.25 / 2; a disc of 2 pixels' radius between pixels is
+  // symmetric.
   const auto [u, v, n] = red(image);
   EXPECT_NEAR(u, 29.5, 0.2);
   EXPECT_NEAR(v, 34.5, 0.2);
@@ -303,7 +304,8 @@ TEST(Cameras, DetectorErrorsHaveTheirStatistics) {
       ASSERT_NEAR(object.confidence, 0.7, 1e-12);
     }
   }
-  // A miss has the probability 0.1 + 0.05 * 4 = 0.3; the range a deviation of 0.1 + 0.05 * 4 = 0.3 m. Five deviations each.
+  // A miss has the probability 0.1 + 0.05 * 4 = 0.3; the range a deviation of 0.1 + 0.05 * 4 = 0.3 m. Five
+  // deviations each.
   EXPECT_NEAR(found / samples, 0.7, 5 * std::sqrt(0.21 / samples));
   EXPECT_NEAR(goals / found, 0.2, 5 * std::sqrt(0.16 / found));
   EXPECT_NEAR(std::sqrt(bearing2 / found), 0.02, 0.02 * 5 / std::sqrt(2 * found));

@@ -1,9 +1,11 @@
 #pragma once
 /// Depth images and point clouds, shared by the cameras that measure distances.
 ///
-/// Depth    of pinholes along the optical axis, of others the distance. 32FC1: metres, +inf beyond `far`, -inf nearer than `near`,
-///          NaN where errors took it away (REP 118). 16UC1: millimetres, 0 for all of those and beyond 65.5 m.
-/// Points   in `<device>_optical`, one per pixel in rows (NaN where there is no depth): x y z, with a colour image also rgb.
+/// Depth    of pinholes along the optical axis, of others the distance. 32FC1: metres, +inf beyond `far`,
+///          -inf nearer than `near`, NaN where errors took it away (REP 118). 16UC1: millimetres, 0 for all
+///          of those and beyond 65.5 m.
+/// Points   in `<device>_optical`, one per pixel in rows (NaN where there is no depth): x y z, with a colour
+///          image also rgb.
 #include "devices/cameras/camera_picture.h"
 #include "noise/depth_noise.h"
 

@@ -1,19 +1,23 @@
 #pragma once
 /// Detector of the cameras' higher levels: labelled objects instead of pixels, with the errors of a detector.
 ///
-/// Seen     an object (devices/labelled_object.h) of a wanted label within max_range of which a part is in the picture and not hidden. Rays go
-///          to 3 x 3 places of its bounds: `visible` is the part of those that hit it among those that something hides, the
-///          picture's edge too. What is seen by less than min_visible is not reported, nor is the robot itself.
+/// Seen     an object (devices/labelled_object.h) of a wanted label within max_range of which a part is in
+///          the picture and not hidden. Rays go to 3 x 3 places of its bounds: `visible` is the part of those
+///          that hit it among those that something hides, the picture's edge too. What is seen by less than
+///          min_visible is not reported, nor is the robot itself.
 /// Objects  bearing, elevation and range of the middle of its bounds, in S. Errors, all scaled by `errors`:
-///          missed with the probability miss_rate + miss_rate_per_m * range + miss_rate_hidden * (1 - visible);
-///          angles + bearing_std n, range + (range_std + range_std_per_m * range) n; with the probability confusion
-///          another wanted label. Ghosts come ghost_rate times a second, anywhere in the picture. Confidence:
-///          (1 - probability of a miss) * visible; of ghosts anything up to 1/2.
-/// World    poses of bodies in W, of the same objects at the same time: x and y + (position_std + position_std_per_m *
-///          range) n, heading + heading_std n. `everything: true`: of all wanted objects, wherever they are, none missed.
-/// Random   one stream per sample and object, keyed by its name: errors of one object do not depend on the others.
-/// Limits   rays meet collision shapes, not visuals. What has none, or is open in the middle like a goal, is seen if nothing stands
-///          before its middle. On the engine planar, objects are upright prisms to rays.
+///          missed with the probability miss_rate + miss_rate_per_m * range + miss_rate_hidden * (1 -
+///          visible); angles + bearing_std n, range + (range_std + range_std_per_m * range) n; with the
+///          probability confusion another wanted label. Ghosts come ghost_rate times a second, anywhere in
+///          the picture. Confidence: (1 - probability of a miss) * visible; of ghosts anything up to 1/2.
+/// World    poses of bodies in W, of the same objects at the same time: x and y + (position_std +
+///          position_std_per_m * range) n, heading + heading_std n. `everything: true`: of all wanted
+///          objects, wherever they are, none missed.
+/// Random   one stream per sample and object, keyed by its name: errors of one object do not depend on the
+///          others.
+/// Limits   rays meet collision shapes, not visuals. What has none, or is open in the middle like a goal, is
+///          seen if nothing stands before its middle. On the engine planar, objects are upright prisms to
+///          rays.
 /// Cost     nine rays per object in range and picture; no pictures are drawn.
 #include <array>
 #include <string>

@@ -7,7 +7,8 @@
 
 namespace sandlot::cameras {
 
-/// Object of an instance number, or null. Objects are in the order of their creation, and so of their numbers.
+/// Object of an instance number, or null. Objects are in the order of their creation, and so of their
+/// numbers.
 inline const LabelledObject* labelled_object(std::span<const LabelledObject> objects,
                                              std::uint32_t instance) {
   const auto found = std::lower_bound(

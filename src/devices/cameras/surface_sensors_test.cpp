@@ -302,7 +302,8 @@ TEST(OverheadCamera, ErrsAndMissesAsConfiguredThingByThing) {
     x2 += off.x * off.x + off.y * off.y;
     ++seen;
   }
-  // 0.6 of 2000: deviation sqrt(0.24 / 2000) = 1.1 %; rms of 2400 deviates: 1 / sqrt(4800) = 1.4 %. Five of them.
+  // 0.6 of 2000: deviation sqrt(0.24 / 2000) = 1.1 %; rms of 2400 deviates: 1 / sqrt(4800) = 1.4 %. Five of
+  // them.
   EXPECT_NEAR(seen / 2000, 0.6, 5 * 0.011);
   EXPECT_NEAR(std::sqrt(x2 / (2 * seen)), 0.1, 0.1 * 5 * 0.0145);
 }

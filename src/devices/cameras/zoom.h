@@ -1,10 +1,13 @@
 #pragma once
 /// Zoom lens of a camera: its keys and topics, shared by cameras and pan-tilt units.
 ///
-/// Command  <camera>/zoom/command: std_msgs/Float64, the focal length wanted in those of the spec, cut to 1 ... `max`.
+/// Command  <camera>/zoom/command: std_msgs/Float64, the focal length wanted in those of the spec, cut to 1
+///          ... `max`.
 /// Output   <camera>/zoom: std_msgs/Float64, the focal length now, with every sample at any level.
-/// Speed    the lens gets there by at most the factor `rate` per second, so all of it takes log(max) / log(rate) seconds.
-/// Picture  the tangent of half the field of view is divided by the zoom; the distortion of a pinhole and the pixels stay.
+/// Speed    the lens gets there by at most the factor `rate` per second, so all of it takes log(max) /
+///          log(rate) seconds.
+/// Picture  the tangent of half the field of view is divided by the zoom; the distortion of a pinhole and the
+///          pixels stay.
 #include "base/fields.h"
 
 namespace sandlot {

@@ -38,7 +38,8 @@ void add_joint(model::Model& m, const std::string& name, std::uint32_t parent, s
       {.name = name, .type = model::JointType::continuous, .parent = parent, .child = child, .axis_J = axis});
 }
 
-/// A flat box of 10 kg on four balls of 0.5 kg at (+-0.3, +-0.2); front and back on upright joints "s<name>" or not.
+/// A flat box of 10 kg on four balls of 0.5 kg at (+-0.3, +-0.2); front and back on upright joints "s<name>"
+/// or not.
 model::Model robot(bool steered_front, bool steered_back) {
   model::Model m;
   m.name = "robot";
@@ -320,7 +321,8 @@ TEST(DrivesOnRigid, ASwitchInMidRunKeepsPoseVelocityAndOdometry) {
       EXPECT_NEAR(world.base().X_WB.p.y, at.y, 5e-4);
       EXPECT_NEAR(world.base().V_WB.linear.x, v.x, 0.02);
       EXPECT_NEAR(world.odometry().p.x, counted.p.x + 0.005, 1e-3);
-      // The command is still in force. In the mean: rollers with gaps between them jolt at each change from one to the next.
+      // The command is still in force. In the mean: rollers with gaps between them jolt at each change from
+      // one to the next.
       const double from = world.base().X_WB.p.x;
       world.run(40);
       EXPECT_NEAR((world.base().X_WB.p.x - from) / 0.4, 0.5, 0.005);
@@ -329,8 +331,8 @@ TEST(DrivesOnRigid, ASwitchInMidRunKeepsPoseVelocityAndOdometry) {
 }
 
 TEST(DrivesOnRigid, SlipShowsInTheResidualAndPowerInTheEnergy) {
-  // On the spot a skid drive slides: its wheels agree, so least squares do not see it; a swerve drive whose wheels are told
-  // to contradict each other does.
+  // On the spot a skid drive slides: its wheels agree, so least squares do not see it; a swerve drive whose
+  // wheels are told to contradict each other does.
   World world("rigid", swerve.kind, robot(true, true), map(swerve.keys), contact);
   world.command(0.3, 0, 0);
   world.run(100);
@@ -347,8 +349,8 @@ TEST(DrivesOnRigid, SlipShowsInTheResidualAndPowerInTheEnergy) {
   // Friction's power: the slipping wheel drags against the others.
   EXPECT_GT(world.state("power"), 1);
 
-  // From rest to 0.5 m/s: kinetic energy of 13.2 kg and of the balls' rotation, 2/5 of 2 kg; friction at the contacts takes a
-  // few percent more.
+  // From rest to 0.5 m/s: kinetic energy of 13.2 kg and of the balls' rotation, 2/5 of 2 kg; friction at the
+  // contacts takes a few percent more.
   World start("rigid", swerve.kind, robot(true, true), map(swerve.keys), contact);
   start.run(20);
   const double before = start.state("energy");

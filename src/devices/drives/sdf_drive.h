@@ -13,8 +13,8 @@ inline constexpr const char* unlimited = "1e9";
 void copy_joints(const Node& element, std::initializer_list<const char*> names, Node& config,
                  const char* key);
 
-/// <min_linear_velocity>, <max_acceleration> ... as max_linear_speed and so on. Limits given as a minimum and a maximum are
-/// symmetrical here: the larger magnitude counts.
+/// <min_linear_velocity>, <max_acceleration> ... as max_linear_speed and so on. Limits given as a minimum and
+/// a maximum are symmetrical here: the larger magnitude counts.
 Status copy_limits(const Node& element, Node& config, Diagnostics& diagnostics);
 
 /// warn_unknown for a drive plugin: names of topics and frames and the limits of copy_limits are known.

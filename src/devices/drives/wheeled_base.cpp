@@ -16,10 +16,11 @@ using kinematics::motion_of_point;
 using kinematics::PlanarMotion;
 using Joints = std::span<const JointState>;
 
-/// A velocity motor this strong reaches its speed in one step whatever hangs on it: wheels on the ideal level carry no
-/// load, so the value has no other meaning.
+/// A velocity motor this strong reaches its speed in one step whatever hangs on it: wheels on the ideal level
+/// carry no load, so the value has no other meaning.
 constexpr double kinematic_effort_Nm = 1e6;
-/// On rails the steering only has to look right, and its reaction must not shake the base: it is turned gently.
+/// On rails the steering only has to look right, and its reaction must not shake the base: it is turned
+/// gently.
 constexpr double ideal_steering_radps2 = 200, ideal_steering_gain = 20;
 /// Slower than this a wheel's direction of motion is rounding.
 constexpr double standing_mps = 1e-3;
@@ -404,15 +405,16 @@ void move_ideal_wheels(Drive drive, const Context& context, double h_s) {
   const Joints joints = context.engine.joint_states();
   Base& base = drive.base;
   std::vector<JointTarget>& targets = context.actuation.joints;
-  // The wheels follow what the base really does, so that a robot held by a wall does not count turns. They lag by one
-  // sub-step; the angle they are behind by does not grow and is made up when the base stops.
+  // The wheels follow what the base really does, so that a robot held by a wall does not count turns. They
+  // lag by one sub-step; the angle they are behind by does not grow and is made up when the base stops.
   const bool by_engine = engine_rolls(base);
   if (by_engine &&
       std::all_of(base.wheels.begin(), base.wheels.end(), [](const Wheel& w) { return w.has_joint; }))
     return;
   const PlanarMotion moving = true_velocity(drive, context);
   if (!base.pivots.empty()) {
-    // The steering follows what the rails aim for: the base feels it turn, so following the truth would be a loop.
+    // The steering follows what the rails aim for: the base feels it turn, so following the truth would be a
+    // loop.
     ramp(drive, goal(drive, context), h_s);
     if (!drive.state.by_wheels) aim_all(drive, drive.state.setpoint, {}, joints);
     turn_pivots(drive, true, h_s, joints, targets);

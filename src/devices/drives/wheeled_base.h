@@ -1,38 +1,45 @@
 #pragma once
 /// Base of the drives with wheels of several kinds: skid, track, Ackermann, omni, Mecanum and swerve drive.
 ///
-/// A kind brings a spec (the names of its joints), the wheels they are (kinematics/wheels.h) and what the chassis cannot do.
+/// A kind brings a spec (the names of its joints), the wheels they are (kinematics/wheels.h) and what the
+/// chassis cannot do.
 ///
 /// Frame    B: the canonical link. D: the drive's own frame, axes as B, at (dx, dy) of B: see each kind.
-/// Levels   `ideal` (the default): the base moves on rails at the commanded velocity with limited acceleration, on every
-///          engine; wheels turn as if they rolled where the base goes. They count as steered at once; their joints follow
-///          gently, since the base feels them turn. `contact`: motors turn the wheels and friction decides; a wheel with
-///          rollers is one body that grips along the roller's axis. `rollers` (omni and Mecanum): every roller is a body.
-///          Exactly one level is active. A switch keeps pose, velocity, odometry and command.
-/// Commands <device>/<level>/command: geometry_msgs/Twist, velocity of D in D; what the drive cannot do of it is left out.
-///          <device>/<level>/wheels/command: sensor_msgs/JointState for single wheels: `velocity` [rad/s], or `effort` (a
-///          torque [Nm]; with `motor:` the share of the battery's voltage, -1 to 1), `position` [rad] steers. Names of joints
-///          say whose, in any order; without names they are those of the wheels, then of the steering, in the spec's order.
-///          Wheels that a message leaves out keep their last command. Whatever kind of command came last counts; of two in
-///          one tick the wheels'. On level `ideal` an effort has no effect.
-/// Output   <device>/<level>: nav_msgs/Odometry of B from the joints alone, as diff_drive's. <device>/<level>/wheels:
-///          sensor_msgs/JointState of wheels and steering, angles as the encoders show them. With `encoder_ticks`
-///          <device>/<level>/ticks: std_msgs/Int64MultiArray. State: `residual` [m] of the last step's odometry (the wheels
-///          contradict each other: slip), `power` [W] and `energy` [J].
-/// Motors   by default each wheel reaches its speed with at most max_wheel_effort. `motor:` limits that to what winding and
-///          battery give at its speed. `control:` puts PI loops on v and w in its place (RoBIOS' VWStartControl): each puts
-///          out vv (e + integral e / tv), a share of max_wheel_effort, or with `motor:` of the voltage; vv and tv serve
-///          forward and sideways, vw and tw the turn. Rotor inertia, friction and inductance of `motor:` count where the
-///          voltage is set: with `control:` and with effort commands.
-/// Power    sum of torque times speed of all joints, negative while they brake; with `motor:` plus the copper losses. None
-///          on level `ideal`.
-/// Time     a command acts from its tick on; after `command_timeout` without a new one wheels and base stop. Odometry counts in
-///          every tick, on exact arcs.
-/// Limits   even ground; steering axes through the wheel's middle; no play. The twist of the odometry is from exact speeds.
-/// Cost     a dozen operations per wheel and sub-step, a 3 x 3 system per tick; a sine-cosine pair per steered wheel. No
-///          allocation after the first messages.
-/// Errors   joints that are not there, do not turn or lie wrongly; wheels without size or at one place, that cannot drive; a level
-///          that engine or drive lack.
+/// Levels   `ideal` (the default): the base moves on rails at the commanded velocity with limited
+///          acceleration, on every engine; wheels turn as if they rolled where the base goes. They count as
+///          steered at once; their joints follow gently, since the base feels them turn. `contact`: motors
+///          turn the wheels and friction decides; a wheel with rollers is one body that grips along the
+///          roller's axis. `rollers` (omni and Mecanum): every roller is a body. Exactly one level is active.
+///          A switch keeps pose, velocity, odometry and command.
+/// Commands <device>/<level>/command: geometry_msgs/Twist, velocity of D in D; what the drive cannot do of it
+/// is left out.
+///          <device>/<level>/wheels/command: sensor_msgs/JointState for single wheels: `velocity` [rad/s], or
+///          `effort` (a torque [Nm]; with `motor:` the share of the battery's voltage, -1 to 1), `position`
+///          [rad] steers. Names of joints say whose, in any order; without names they are those of the
+///          wheels, then of the steering, in the spec's order. Wheels that a message leaves out keep their
+///          last command. Whatever kind of command came last counts; of two in one tick the wheels'. On level
+///          `ideal` an effort has no effect.
+/// Output   <device>/<level>: nav_msgs/Odometry of B from the joints alone, as diff_drive's.
+///          <device>/<level>/wheels: sensor_msgs/JointState of wheels and steering, angles as the encoders
+///          show them. With `encoder_ticks` <device>/<level>/ticks: std_msgs/Int64MultiArray. State:
+///          `residual` [m] of the last step's odometry (the wheels contradict each other: slip), `power` [W]
+///          and `energy` [J].
+/// Motors   by default each wheel reaches its speed with at most max_wheel_effort. `motor:` limits that to
+///          what winding and battery give at its speed. `control:` puts PI loops on v and w in its place
+///          (RoBIOS' VWStartControl): each puts out vv (e + integral e / tv), a share of max_wheel_effort, or
+///          with `motor:` of the voltage; vv and tv serve forward and sideways, vw and tw the turn. Rotor
+///          inertia, friction and inductance of `motor:` count where the voltage is set: with `control:` and
+///          with effort commands.
+/// Power    sum of torque times speed of all joints, negative while they brake; with `motor:` plus the copper
+///          losses. None on level `ideal`.
+/// Time     a command acts from its tick on; after `command_timeout` without a new one wheels and base stop.
+///          Odometry counts in every tick, on exact arcs.
+/// Limits   even ground; steering axes through the wheel's middle; no play. The twist of the odometry is from
+///          exact speeds.
+/// Cost     a dozen operations per wheel and sub-step, a 3 x 3 system per tick; a sine-cosine pair per
+///          steered wheel. No allocation after the first messages.
+/// Errors   joints that are not there, do not turn or lie wrongly; wheels without size or at one place, that
+///          cannot drive; a level that engine or drive lack.
 #include <array>
 #include <optional>
 

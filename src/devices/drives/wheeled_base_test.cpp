@@ -170,7 +170,8 @@ TEST(Drives, RollersOfTheModelDecideOverTheKeys) {
   EXPECT_NEAR(told(rig, 1), (-0.2 - (0.3 - 0.2)) / 0.08, 1e-12);
 }
 
-/// A drive that moves as commanded ends where the exact arc of its velocity does; on rails its odometry agrees.
+/// A drive that moves as commanded ends where the exact arc of its velocity does; on rails its odometry
+/// agrees.
 struct Course {
   const char* name;
   const Kind* kind;
@@ -220,8 +221,8 @@ TEST(Drives, EachRunsItsArcOnRailsAndOnWheels) {
       const Pose X_BD{{c.dx, c.dy, 0}, {}};
       const Pose want = X_BD * kinematics::to_pose(arc) * inverse(X_BD);
       const Pose got = inverse(start) * end;
-      // The steering approaches its end exponentially (50/s, for 1 s: e^-50); the ideal wheels lag by the same sub-step at
-      // both ends. Kabsch: 200 steps of 8 mrad to the seventh.
+      // The steering approaches its end exponentially (50/s, for 1 s: e^-50); the ideal wheels lag by the
+      // same sub-step at both ends. Kabsch: 200 steps of 8 mrad to the seventh.
       expect_pose(got, want.p.x, want.p.y, yaw_of(want.q), 1e-9);
       if (level == ideal_bit) {
         const Pose moved = inverse(truth_start) * rig.engine->body[0].X_WB;

@@ -1,6 +1,7 @@
 #pragma once
 /// The pool device of a drive: devices/drives/wheeled_base.h for a kind K with
-///   struct K { using Spec = ...;  static constexpr bool has_rollers;  static Result<Base> build(const DeviceBuild&, const Spec&); };
+///   struct K { using Spec = ...;  static constexpr bool has_rollers;  static Result<Base> build(const
+///   DeviceBuild&, const Spec&); };
 #include "devices/drives/wheeled_base.h"
 
 namespace sandlot::wheeled {

@@ -9,9 +9,9 @@
 
 namespace sandlot {
 
-/// For each device that is due: casts what `distances_of(device)` has room for along its `directions_S`, from its place on
-/// its link, up to its `max_range_m`; then calls `finish(device, sample, since, context)`, on any thread, each device once.
-/// The link that carries the device is not seen. No allocation of its own.
+/// For each device that is due: casts what `distances_of(device)` has room for along its `directions_S`, from
+/// its place on its link, up to its `max_range_m`; then calls `finish(device, sample, since, context)`, on
+/// any thread, each device once. The link that carries the device is not seen. No allocation of its own.
 template <class Device, class DistancesOf, class Finish>
 void cast_due(PoolView<Device> pool, const Context& context, const DistancesOf& distances_of,
               const Finish& finish) {

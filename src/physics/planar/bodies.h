@@ -1,5 +1,6 @@
 #pragma once
-/// Bodies of the planar engine, their constraints and drives: state and scratch shared by the engine's sources.
+/// Bodies of the planar engine, their constraints and drives: state and scratch shared by the engine's
+/// sources.
 #include <limits>
 #include <memory>
 #include <string>
@@ -157,14 +158,14 @@ struct alignas(64) Drive {
   double accel = 0, angular_accel = 0;
   Vec2 arm;    ///< of that link's origin from the centre of mass, in its frame
   Turn frame;  ///< of its x axis there
-  /// Integrals of the true velocity of the centre of mass and of the turning rate, in the group's frame, over all steps
-  /// in which the drive was active.
+  /// Integrals of the true velocity of the centre of mass and of the turning rate, in the group's frame, over
+  /// all steps in which the drive was active.
   Vec2 way_m;
   double turned_rad = 0;
 };
 
-/// A wheel that turns as its base moves: its position is `offset` and so much for each part of the drive's integrals. So it
-/// takes no step to turn it, and it does not matter how often it is looked at.
+/// A wheel that turns as its base moves: its position is `offset` and so much for each part of the drive's
+/// integrals. So it takes no step to turn it, and it does not matter how often it is looked at.
 struct Roll {
   RollTarget target;
   std::uint32_t slot = none;

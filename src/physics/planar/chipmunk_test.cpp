@@ -1,8 +1,9 @@
-/// The planar engine against Chipmunk 7 (S. Lembcke), an engine by others for the same bodies: what both compute from the
-/// same start has to agree, and with the closed form where there is one.
+/// The planar engine against Chipmunk 7 (S. Lembcke), an engine by others for the same bodies: what both
+/// compute from the same start has to agree, and with the closed form where there is one.
 ///
-/// Neither finds a collision at its exact time: each looks at most one sub-step's way v h too early or too late, so
-/// directions and arms of an oblique hit are off by v h / (distance of centres). The bounds say so at each place.
+/// Neither finds a collision at its exact time: each looks at most one sub-step's way v h too early or too
+/// late, so directions and arms of an oblique hit are off by v h / (distance of centres). The bounds say so
+/// at each place.
 #include <chipmunk/chipmunk.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +57,8 @@ class Ours {
     const Shape shape = t.y_m == 0 ? Shape(Cylinder{t.x_m, 0.2}) : Shape(Box{{t.x_m, t.y_m, 0.2}});
     ids.push_back(world.add(body_of("b" + std::to_string(ids.size()), shape, t.mass_kg,
                                     {{t.at.x, t.at.y, 0}, quat_from_rpy(0, 0, t.heading_rad)}, surface)));
-    // The velocity comes by an impulse in the first sub-step, which moves the body with it at once, as Chipmunk does.
+    // The velocity comes by an impulse in the first sub-step, which moves the body with it at once, as
+    // Chipmunk does.
     const double per_s = 1 / h_s;
     world.push(ids.back(), {per_s * t.mass_kg * t.v.x, per_s * t.mass_kg * t.v.y, 0},
                {0, 0, per_s * t.inertia_kgm2() * t.w_radps});
@@ -190,7 +192,8 @@ TEST(AgainstChipmunk, HeadOnDiscsOfUnequalMass) {
     SCOPED_TRACE(e);
     const std::vector<Thing> things{{1, 0.1, 0, {-0.3, 0}, 0, {1, 0}}, {3, 0.1, 0, {0.3, 0}, 0, {-0.5, 0}}};
     const Law law{.restitution = e};
-    // v' = centre's velocity -+ e (share of the other) times the approach; what is lost is the reduced mass's part.
+    // v' = centre's velocity -+ e (share of the other) times the approach; what is lost is the reduced mass's
+    // part.
     const double centre = (1 * 1.0 + 3 * -0.5) / 4, v0 = centre - e * 0.75 * 1.5,
                  v1 = centre + e * 0.25 * 1.5;
     const double lost = 0.5 * 0.75 * 1.5 * 1.5 * (1 - e * e);
@@ -211,8 +214,8 @@ TEST(AgainstChipmunk, ObliqueDiscsWithFrictionSpin) {
     // They meet with the line of centres turned by 30 degrees: y = 0.2 sin 30.
     const std::vector<Thing> things{{1, 0.08, 0, {-0.4, 0}, 0, {1, 0}}, {2.5, 0.12, 0, {0.1, 0.1}, 0, {}, 3}};
     const Law law{.restitution = 0.6, .mu = mu};
-    // Closed form: normal impulse (1 + e) m vn; along the surface what makes it stick, m vt / 3 for two discs (each
-    // weighs 1/3 at its rim), or mu times the normal one. vt counts the rim's spin.
+    // Closed form: normal impulse (1 + e) m vn; along the surface what makes it stick, m vt / 3 for two discs
+    // (each weighs 1/3 at its rim), or mu times the normal one. vt counts the rim's spin.
     const Vec2 n{std::sqrt(0.75), 0.5}, t{-0.5, std::sqrt(0.75)};
     const double reduced = 1 * 2.5 / 3.5;
     const double normal = 1.6 * reduced * n.x;
@@ -222,7 +225,8 @@ TEST(AgainstChipmunk, ObliqueDiscsWithFrictionSpin) {
     const Vec2 va = Vec2{1, 0} - normal * n + along * t, vb = (1 / 2.5) * (normal * n - along * t);
     const double wa = 0.08 * along / things[0].inertia_kgm2(),
                  wb = 3 + 0.12 * along / things[1].inertia_kgm2();
-    // The line of centres is off by v h / 0.2 / cos 30 = 6e-4 at most; spins feel that divided by a radius' share.
+    // The line of centres is off by v h / 0.2 / cos 30 = 6e-4 at most; spins feel that divided by a radius'
+    // share.
     const double off = 1.5e-3;
     for (const auto& motions : {after<Ours>(law, things, 0.5, h_s), after<Theirs>(law, things, 0.5, h_s)}) {
       EXPECT_NEAR(motions[0].v.x, va.x, off);
@@ -239,8 +243,9 @@ TEST(AgainstChipmunk, ObliqueDiscsWithFrictionSpin) {
 
 TEST(AgainstChipmunk, ACornerThatHitsAFaceSpinsBothBoxes) {
   const double h_s = 1e-4, s = 0.2;
-  // The corner of a square that is turned by 60 degrees, (0.1 + 0.1 sqrt 3) / 2 ahead and (0.1 sqrt 3 - 0.1) / 2 aside of its
-  // middle (its corner (0.1, -0.1) turned), hits the face of another, 0.05 below the middle of that.
+  // The corner of a square that is turned by 60 degrees, (0.1 + 0.1 sqrt 3) / 2 ahead and (0.1 sqrt 3 - 0.1)
+  // / 2 aside of its middle (its corner (0.1, -0.1) turned), hits the face of another, 0.05 below the middle
+  // of that.
   const double ahead = 0.05 + 0.1 * std::sqrt(0.75), aside = 0.1 * std::sqrt(0.75) - 0.05;
   const std::vector<Thing> things{{1, s, s, {-0.5, -0.05 - aside}, math::pi / 3, {1, 0}},
                                   {2, s, s, {0, 0}, 0, {}}};
@@ -249,7 +254,8 @@ TEST(AgainstChipmunk, ACornerThatHitsAFaceSpinsBothBoxes) {
   const double ia = things[0].inertia_kgm2(), ib = things[1].inertia_kgm2();
   const double j = 1.7 / (1 + 0.5 + aside * aside / ia + 0.05 * 0.05 / ib);
   for (const auto& motions : {after<Ours>(law, things, 0.45, h_s), after<Theirs>(law, things, 0.45, h_s)}) {
-    // The first box does not turn on its way and the face is flat, so arms do not depend on the time of the hit.
+    // The first box does not turn on its way and the face is flat, so arms do not depend on the time of the
+    // hit.
     EXPECT_NEAR(motions[0].v.x, 1 - j, 1e-9);
     EXPECT_NEAR(motions[0].v.y, 0, 1e-9);
     EXPECT_NEAR(motions[0].w_radps, aside * j / ia, 1e-7);
@@ -276,9 +282,10 @@ TEST(AgainstChipmunk, ARackIsBroken) {
     apart = std::max(apart, std::sqrt(dot(d, d)));
     moved = std::max(moved, std::sqrt(dot(way, way)));
   }
-  // The balls have met some 30 times and fly apart, the last has left the rack. Each hit turns an error of the place, v h =
-  // 6e-5 of either engine, into one of direction of that over 2 r = 1e-3, and through the gaps of 2 mm the next inherits it
-  // almost unchanged: 1e-3 of the way of 0.23 m. With gaps as wide as the balls it would double at each hit.
+  // The balls have met some 30 times and fly apart, the last has left the rack. Each hit turns an error of
+  // the place, v h = 6e-5 of either engine, into one of direction of that over 2 r = 1e-3, and through the
+  // gaps of 2 mm the next inherits it almost unchanged: 1e-3 of the way of 0.23 m. With gaps as wide as the
+  // balls it would double at each hit.
   EXPECT_GT(moved, 0.2);
   EXPECT_LT(apart, 0.001);
   const Sums a = sums(things, ours), b = sums(things, theirs);
@@ -304,8 +311,8 @@ TEST(AgainstChipmunk, ABoxSlidesAlongAWallUntilFrictionHasStoppedIt) {
     }
     return engine.of(0);
   };
-  // m a = mu N: it stops after m v / (mu N) = 0.667 s and half that way; a sub-step more or less at full speed, and the
-  // 0.1 mm to the wall, which it falls through in sqrt(2 * 1e-4 / 5) = 6 ms without friction.
+  // m a = mu N: it stops after m v / (mu N) = 0.667 s and half that way; a sub-step more or less at full
+  // speed, and the 0.1 mm to the wall, which it falls through in sqrt(2 * 1e-4 / 5) = 6 ms without friction.
   const double stop_m = mass * v * v / (2 * mu * press_N);
   for (const Motion& m : {run(Ours(law), 1.0), run(Theirs(law), 1.0)}) {
     EXPECT_NEAR(m.at.x, stop_m, v * (h_s + 0.0064));
@@ -315,8 +322,9 @@ TEST(AgainstChipmunk, ABoxSlidesAlongAWallUntilFrictionHasStoppedIt) {
 }
 
 TEST(AgainstChipmunk, APileIsPressedByAPivotedArm) {
-  // A lever of 1 m along x, hinged at its left end to a base that nothing moves (1e6 kg), pressed down at its right end by
-  // 10 N; 0.25 m from the hinge it lies on a pile of three discs in a shaft without friction: 40 N go down the pile.
+  // A lever of 1 m along x, hinged at its left end to a base that nothing moves (1e6 kg), pressed down at its
+  // right end by 10 N; 0.25 m from the hinge it lies on a pile of three discs in a shaft without friction: 40
+  // N go down the pile.
   const double h_s = 0.001, r = 0.05, force_N = 10, arm = 0.25;
   const double heavy = 1e6, top = 6 * r;
   const Thing base{heavy, 0.1, 0.1, {-0.05, top + 0.025}};
@@ -363,7 +371,8 @@ TEST(AgainstChipmunk, APileIsPressedByAPivotedArm) {
     theirs.push(4, {0, -force_N}, -0.5 * force_N);
     theirs.step(h_s);
   }
-  // 10 N at 1 m against arm m. Overlap of 0.1 mm at each of four contacts is allowed, and turns the lever by 0.4 mm / arm.
+  // 10 N at 1 m against arm m. Overlap of 0.1 mm at each of four contacts is allowed, and turns the lever by
+  // 0.4 mm / arm.
   const double expected = force_N / arm;
   EXPECT_NEAR(pressed, expected, 0.01 * expected);
   EXPECT_NEAR(theirs.force_below(0, h_s).y, expected, 0.01 * expected);

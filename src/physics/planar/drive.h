@@ -1,11 +1,12 @@
 #pragma once
 /// Ideal drives: a base that moves in its plane as if it ran on rails.
 ///
-/// The velocity approaches its target at no more than the allowed acceleration. Linear velocity is limited as a
-/// vector, so a robot that changes direction does not turn sharper than it may. Within a step the ramp is followed
-/// exactly and then replaced by its mean velocity, with which the base runs on an arc.
+/// The velocity approaches its target at no more than the allowed acceleration. Linear velocity is limited as
+/// a vector, so a robot that changes direction does not turn sharper than it may. Within a step the ramp is
+/// followed exactly and then replaced by its mean velocity, with which the base runs on an arc.
 ///
-/// Exact    constant velocities (the base stays on its circle for ever), accelerating on a line or on the spot.
+/// Exact    constant velocities (the base stays on its circle for ever), accelerating on a line or on the
+///          spot.
 /// Limits   accelerating and turning at once: the shape of the arc has an error of order h^3.
 #include <cmath>
 
@@ -36,7 +37,8 @@ inline Vec2 ramp(Vec2& velocity, Vec2 target, double accel, double h_s) {
   return size > 0 ? target - (0.5 * size / reach) * missing : target;
 }
 
-/// Moves a frame along the arc of constant velocity (dp = R v h sinc, source: closed form of the planar twist).
+/// Moves a frame along the arc of constant velocity (dp = R v h sinc, source: closed form of the planar
+/// twist).
 inline void advance(Vec2& p, Turn& heading, Twist mean, double h_s) {
   const double half = 0.5 * mean.w_radps * h_s;
   if (half == 0) {

@@ -155,7 +155,8 @@ TEST(PlanarContact, ARobotPushesARowOfBoxesUpToAWallAndStops) {
     boxes.push_back(w.add(solid(Box{{0.2, 0.2, 0.2}}, 1, 0, 0.3, 0.1), at(0.5 + 0.3 * i, 0)));
   w.drive(robot, 0.5, 0, 0, 5);
   w.run(600);
-  // Wall at 2, three boxes of 0.2, the robot's radius 0.2; each of four contacts yields by the slop and a little.
+  // Wall at 2, three boxes of 0.2, the robot's radius 0.2; each of four contacts yields by the slop and a
+  // little.
   EXPECT_NEAR(w.p(robot).x, 2 - 0.6 - 0.2, 2e-3);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(w.p(boxes[i]).x, 2 - 0.1 - 0.2 * static_cast<double>(2 - i), 2e-3);

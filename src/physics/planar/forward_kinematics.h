@@ -1,8 +1,9 @@
 #pragma once
-/// Forward kinematics of an instance: poses and velocities of its links from those of the canonical link and its joints.
+/// Forward kinematics of an instance: poses and velocities of its links from those of the canonical link and
+/// its joints.
 ///
-/// Limits   joints are kinematic; a ball joint holds its declared pose. Links that no joint connects ride on the
-///          canonical link. Of a loop of joints one is left out (kinematics/tree.h).
+/// Limits   joints are kinematic; a ball joint holds its declared pose. Links that no joint connects ride on
+///          the canonical link. Of a loop of joints one is left out (kinematics/tree.h).
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,11 +1,11 @@
 // What the ground does to bodies that stand on it otherwise than on wheels.
 //
-// Friction of a patch with even pressure on its supports: F = mu N against the sliding of the centre of mass, and
-// T = mu N times the mean distance of the patch from it against turning, bound together by the ellipsoid
-// (F / F_max)^2 + (T / T_max)^2 <= 1, with the sliding along its normal (S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding
-// with dry friction, 1991; the ellipsoid after I. Kao, M. Cutkosky, 1992). Each step solves it for the velocities it ends
-// with, so what comes to rest stays at rest. Exact for pure sliding and pure turning; between them the ellipsoid is off
-// by at most 10 % for a disc.
+// Friction of a patch with even pressure on its supports: F = mu N against the sliding of the centre of mass,
+// and T = mu N times the mean distance of the patch from it against turning, bound together by the ellipsoid
+// (F / F_max)^2 + (T / T_max)^2 <= 1, with the sliding along its normal (S. Goyal, A. Ruina, J. Papadopoulos,
+// Planar sliding with dry friction, 1991; the ellipsoid after I. Kao, M. Cutkosky, 1992). Each step solves it
+// for the velocities it ends with, so what comes to rest stays at rest. Exact for pure sliding and pure
+// turning; between them the ellipsoid is off by at most 10 % for a disc.
 #include <algorithm>
 #include <cmath>
 
@@ -31,8 +31,8 @@ const PlanarEngine::Floor* PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W)
   return best;
 }
 
-/// What a foot and the ground make together at a place of the group's frame; the belt is that of the ground as the foot
-/// sees it.
+/// What a foot and the ground make together at a place of the group's frame; the belt is that of the ground
+/// as the foot sees it.
 PairSurface PlanarEngine::on_ground(std::uint32_t k, ContactFace foot, Vec2 at) const {
   const RigidGroup& group = groups_[k];
   const Instance& instance = instances_[group.slot];
@@ -134,8 +134,8 @@ void PlanarEngine::rub(std::uint32_t k, double h_s) {
     for (Way& way : ways)
       if (way.limit > 0) way.speed = 0;
   } else {
-    // Impulses -x L^2 u' with u' = u + impulse / m, along each way: find x so that the ellipsoid holds. The left side below
-    // grows with x and bends down, so Newton's steps from 0 never pass the root.
+    // Impulses -x L^2 u' with u' = u + impulse / m, along each way: find x so that the ellipsoid holds. The
+    // left side below grows with x and bends down, so Newton's steps from 0 never pass the root.
     double x = 0;
     for (int i = 0; i < 50; ++i) {
       double sum = 0, slower = 0;

@@ -1,10 +1,13 @@
 #pragma once
-/// A uniform grid over the whole plane in a table of fixed size: cell (i, j) lies in slot (i mod columns, j mod rows).
+/// A uniform grid over the whole plane in a table of fixed size: cell (i, j) lies in slot (i mod columns, j
+/// mod rows).
 ///
-/// The grid has no edge that a body could cross, and a body that flies off costs the others nothing. Cells that share a
-/// slot share their lists, so a list may name things that are elsewhere: callers test what they find.
+/// The grid has no edge that a body could cross, and a body that flies off costs the others nothing. Cells
+/// that share a slot share their lists, so a list may name things that are elsewhere: callers test what they
+/// find.
 ///
-/// Cost     building: two passes over the things and one over the slots (counting sort), no heap after warm-up.
+/// Cost     building: two passes over the things and one over the slots (counting sort), no heap after
+///          warm-up.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -49,8 +52,8 @@ class HashGrid {
   std::uint32_t slot(std::int64_t i, std::int64_t j) const {
     return (static_cast<std::uint32_t>(j) & mask_y_) * columns_ + (static_cast<std::uint32_t>(i) & mask_x_);
   }
-  /// A walk from cell to cell. Whole rows are counted in slots, so that finding a list takes no product; and the
-  /// compiler can keep a copy in registers, as it cannot the vectors.
+  /// A walk from cell to cell. Whole rows are counted in slots, so that finding a list takes no product; and
+  /// the compiler can keep a copy in registers, as it cannot the vectors.
   struct Walk {
     const std::uint32_t *start, *things;
     std::uint32_t mask_x, mask_rows, columns;

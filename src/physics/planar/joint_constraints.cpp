@@ -1,8 +1,8 @@
 // Pivots and sliders between the groups of an instance, and grips between instances.
 //
-// Rows of sequential impulses with warm start: two that hold the anchor (a slider: across its axis and the angle), one along
-// the joint's own freedom for each of spring with damping (implicit), motor, friction and limits. What is left of the
-// anchor's error after the step is taken back by moving the bodies.
+// Rows of sequential impulses with warm start: two that hold the anchor (a slider: across its axis and the
+// angle), one along the joint's own freedom for each of spring with damping (implicit), motor, friction and
+// limits. What is left of the anchor's error after the step is taken back by moving the bodies.
 #include <algorithm>
 #include <cmath>
 

@@ -37,15 +37,17 @@ struct Free : World {
 };
 
 TEST(PlanarPivot, ABlowMovesBothAsNewtonSays) {
-  // Two free rods with a pin between them, hit at the middle of the first, across: the pin's impulse makes the velocities
-  // at the pin equal: (J - j) / m - j b^2 / I' = j / m + j b^2 / I'  with b = 1/2, I = m (1 + 0.05^2) / 12.
+  // Two free rods with a pin between them, hit at the middle of the first, across: the pin's impulse makes
+  // the velocities at the pin equal: (J - j) / m - j b^2 / I' = j / m + j b^2 / I'  with b = 1/2, I = m (1 +
+  // 0.05^2) / 12.
   Free w;
   const InstanceId id = w.add(flail({.type = model::JointType::continuous}), at(0, 0));
   w.push(id, 0, {0, 1 / h_s, 0});
   w.run(1);
   const double inertia = (1 + 0.0025) / 12, j = 1 / (2 + 0.5 / inertia);
   EXPECT_NEAR(w.V(id, 0).linear.y, 1 - j, 1e-6);
-  // The tail is reported as the joint holds it after the step, in which the rods have turned by w h: (w h)^2 (w b) / 2 for each.
+  // The tail is reported as the joint holds it after the step, in which the rods have turned by w h: (w h)^2
+  // (w b) / 2 for each.
   EXPECT_NEAR(w.V(id, 1).linear.y, j, 2.2e-5);
   EXPECT_NEAR(w.V(id, 0).angular.z, -0.5 * j / inertia, 1e-5);
   for (int i = 0; i < 300; ++i) {
@@ -53,7 +55,8 @@ TEST(PlanarPivot, ABlowMovesBothAsNewtonSays) {
     const Vec3 end = w.engine.states()[w.engine.bodies(id)[0].index].X_WB * Vec3{0.5, 0, 0};
     const Vec3 begin = w.engine.states()[w.engine.bodies(id)[1].index].X_WB * Vec3{-0.5, 0, 0};
     ASSERT_NEAR(norm(end - begin), 0, 1e-4) << i;
-    // Momentum stays; and the reported velocity at the joint is off by h b (w0^2 + w1^2), w = 0.75 for each at first.
+    // Momentum stays; and the reported velocity at the joint is off by h b (w0^2 + w1^2), w = 0.75 for each
+    // at first.
     ASSERT_NEAR(w.V(id, 0).linear.y + w.V(id, 1).linear.y, 1, h_s * 0.5 * 2 * 0.75 * 0.75) << i;
   }
 }
@@ -78,7 +81,8 @@ TEST(PlanarSlider, ASpringSwingsWithItsPeriod) {
   joint.spring_stiffness = 50;
   joint.spring_reference = 0.1;
   const InstanceId id = w.add(flail(joint), at(0, 0, 0.4));
-  // Reduced mass 1/2: omega = sqrt(50 / 0.5) = 10, from 0 about 0.1; implicit, so it loses a little each period.
+  // Reduced mass 1/2: omega = sqrt(50 / 0.5) = 10, from 0 about 0.1; implicit, so it loses a little each
+  // period.
   double most = 0;
   for (int i = 0; i < 63; ++i) {
     w.engine.step(0.005, 0);

@@ -30,7 +30,8 @@ Area area_of(const Wall& wall, std::span<const Edge> edges) {
   return area;
 }
 
-/// Columns or rows for things spread over `length_m`: one cell each up to a limit, beyond which cells share slots.
+/// Columns or rows for things spread over `length_m`: one cell each up to a limit, beyond which cells share
+/// slots.
 std::uint32_t slots_for(double length_m, double cell_m) {
   const double cells = length_m / cell_m + 2;
   return cells >= 16 ? std::bit_ceil(static_cast<std::uint32_t>(std::min(cells, 1024.0))) : 16;
@@ -206,7 +207,8 @@ void Map::meet_silhouette(const Ray& ray, std::uint32_t index, Hit& hit) const {
   }
 }
 
-/// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly share it.
+/// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly
+/// share it.
 struct Map::Start {
   std::int64_t i, j;
   Vec2 low, high;

@@ -1,12 +1,13 @@
 #pragma once
-/// Map of the plane for rays and overlap queries: discs and silhouettes of moving bodies and outlines of static ones,
-/// in grids of cells.
+/// Map of the plane for rays and overlap queries: discs and silhouettes of moving bodies and outlines of
+/// static ones, in grids of cells.
 ///
-/// A thing here is an upright prism: its outline over its heights, with a lid and a bottom. Answers do not depend on
-/// the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
+/// A thing here is an upright prism: its outline over its heights, with a lid and a bottom. Answers do not
+/// depend on the size of the cells: a ray's distance to a thing is computed from the ray and the thing alone.
 ///
 /// Limits   a ray parallel to z hits nothing.
-/// Cost     360 rays of 5 m among discs, one per 2 m^2: 85 ns each; 24 rays of 0.1 m: 6 ns each. No allocation.
+/// Cost     360 rays of 5 m among discs, one per 2 m^2: 85 ns each; 24 rays of 0.1 m: 6 ns each. No
+///          allocation.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,7 +19,8 @@
 
 namespace sandlot::planar {
 
-/// The footprint of one moving group, or a circle around its silhouette; `body` is what rays and contacts call it.
+/// The footprint of one moving group, or a circle around its silhouette; `body` is what rays and contacts
+/// call it.
 struct alignas(64) Disc {
   Vec2 centre;
   double radius_m = 0;  ///< 0: nothing to meet
@@ -87,7 +89,8 @@ class Map {
   std::vector<Disc> discs_;
   std::vector<Silhouette> silhouettes_;
   HashGrid wall_cells_, disc_cells_;
-  /// By slot of wall_cells_: whether there is any. A hundredth of its size: rays of a swarm mostly are where none is.
+  /// By slot of wall_cells_: whether there is any. A hundredth of its size: rays of a swarm mostly are where
+  /// none is.
   std::vector<bool> walled_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
   Area wall_area_, area_;                  ///< of the walls, and of all there is

@@ -320,8 +320,8 @@ struct Builder {
     return sum / (rings * rays);
   }
 
-  /// Centroid of a polygon, and the mean distances of its points from there and from the origin, by triangles cut into
-  /// small ones.
+  /// Centroid of a polygon, and the mean distances of its points from there and from the origin, by triangles
+  /// cut into small ones.
   struct Means {
     Vec2 centroid;
     double about_centroid, about_origin;
@@ -482,7 +482,8 @@ struct Builder {
 void share_weight(double weight_kg, std::span<const Vec2> points, std::span<double> shares) {
   std::vector<bool> used(points.size(), true);
   for (std::size_t round = 0; round < points.size(); ++round) {
-    // N_i = a + b x_i + c y_i, from sums over the points; a little regularised, because they may lie on a line.
+    // N_i = a + b x_i + c y_i, from sums over the points; a little regularised, because they may lie on a
+    // line.
     double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!used[i]) continue;

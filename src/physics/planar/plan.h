@@ -1,17 +1,22 @@
 #pragma once
-/// Plan of a model for the planar engine, at a height and tilt: rigid groups with outlines, wheels, joints and supports.
+/// Plan of a model for the planar engine, at a height and tilt: rigid groups with outlines, wheels, joints
+/// and supports.
 ///
-/// Frame H   heading frame: origin on the canonical link's x and y, z of the world, turned by the instance's heading.
-///           All joints are at 0. The frame of a group has its origin in the group's centre of mass and the axes of H.
-/// Groups     links that move as one in the plane. Joints that separate them: vertical revolute and continuous ones
-///           (pivots) and horizontal prismatic ones (sliders). Whatever hangs on another joint belongs to its parent.
-/// Outlines  those of outline.h; of a mesh its convex hull. A shape above and below a circle that hides it from above
-///           is merged into the circle when it begins no lower below it than the circle's shape is thick, and ends no
-///           higher above it than twice that: a robot's wheels, casters and mast. So most robots are one circle.
-/// Wheels    links on a horizontal axle whose sphere, cylinder or capsule lies on it and reaches the ground. A vertical
-///           joint that carries nothing but a wheel and its fork steers it.
-/// Weight    shared among the supports (wheels, and shapes that reach the ground) by equilibrium of force and moments at
-///           rest, with the smallest sum of squares; none pulls.
+/// Frame H   heading frame: origin on the canonical link's x and y, z of the world, turned by the instance's
+///           heading. All joints are at 0. The frame of a group has its origin in the group's centre of mass
+///           and the axes of H.
+/// Groups     links that move as one in the plane. Joints that separate them: vertical revolute and
+///            continuous ones
+///           (pivots) and horizontal prismatic ones (sliders). Whatever hangs on another joint belongs to its
+///           parent.
+/// Outlines  those of outline.h; of a mesh its convex hull. A shape above and below a circle that hides it
+///           from above is merged into the circle when it begins no lower below it than the circle's shape is
+///           thick, and ends no higher above it than twice that: a robot's wheels, casters and mast. So most
+///           robots are one circle.
+/// Wheels    links on a horizontal axle whose sphere, cylinder or capsule lies on it and reaches the ground.
+///           A vertical joint that carries nothing but a wheel and its fork steers it.
+/// Weight    shared among the supports (wheels, and shapes that reach the ground) by equilibrium of force and
+///           moments at rest, with the smallest sum of squares; none pulls.
 /// Limits    moving arms shift neither outline nor weight; accelerating does not shift weight.
 #include <memory>
 #include <vector>
@@ -104,8 +109,8 @@ struct Plan {
 /// @param tilt, z_m  of the canonical link at heading 0
 Plan make_plan(const model::Model& model, Quat tilt, double z_m);
 
-/// Shares `weight_kg` among points so that its moments about the origin vanish: the least sum of squares without pull.
-/// Where that cannot be (the origin lies outside), what comes nearest.
+/// Shares `weight_kg` among points so that its moments about the origin vanish: the least sum of squares
+/// without pull. Where that cannot be (the origin lies outside), what comes nearest.
 void share_weight(double weight_kg, std::span<const Vec2> points, std::span<double> shares);
 
 }  // namespace sandlot::planar

@@ -1,33 +1,41 @@
 #pragma once
 /// The planar engine: bodies with three degrees of freedom on a ground, among walls.
 ///
-/// Frame    a moving instance has three degrees of freedom: x, y and heading. Height, roll and pitch stay as placed.
-/// Bodies   rigid groups of links, circles or convex polygons over heights (plan.h). A static instance, or one with a joint to
-///          the world, is its shapes' outlines (outline.h). Horizontal planes and flat tops are the ground.
+/// Frame    a moving instance has three degrees of freedom: x, y and heading. Height, roll and pitch stay as
+///          placed.
+/// Bodies   rigid groups of links, circles or convex polygons over heights (plan.h). A static instance, or
+///          one with a joint to the world, is its shapes' outlines (outline.h). Horizontal planes and flat
+///          tops are the ground.
 /// Paths    an instance with a motion pushes and is not pushed, not even by walls.
-/// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's cradle
-///          works), then sequential impulses with warm start hold bodies apart with Coulomb friction; overlap beyond
-///          0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp).
-/// Surface  combined by the law of all engines (pair_surface.h), zones and the user's rule included; the rule may be called
-///          by several threads at once, and sees all joints at 0. Of a pair count: friction along the tangent, belts,
-///          restitution, and on the ground the two directions of friction and rolling resistance. Slip, softness and
-///          correction have no meaning: bodies are hard. So of a substance only the roughness counts (mu = r1 r2), and it
-///          does not bounce. A support stands on the zone or belt below its middle; several belts pull at their mean.
-/// Fast     a body that could pass something in a step, or turn into it, moves in pieces from impact to impact; the rest of
-///          the step is lost after 24 of them.
-/// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an ellipsoidal limit
-///          surface; one sphere rolls, held by rolling resistance alone (ground.cpp). Without a floor: a surface with mu 1.
-/// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along and across
-///          within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis alone (wheels.cpp).
-/// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of at most
-///          what brings the robot to its velocity within the step at the acceleration it may have. Their wheels turn by
-///          the way that the base went, on demand (rolls.cpp).
-/// Joints   pivots and sliders between groups of an instance, with motor, limits, friction and spring; steering. All
-///          others are kinematic: a velocity target is reached at once and ends at the joint's limits.
-/// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor does
-///          accelerating shift weight.
-///          Steering does not feel the ground. Kinematic joints do not change outlines. A lying cylinder slides.
-/// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads there are.
+/// Contact  semi-implicit Euler; collisions with restitution are passed on one after the other (so Newton's
+///          cradle works), then sequential impulses with warm start hold bodies apart with Coulomb friction;
+///          overlap beyond 0.1 mm is taken back by moving bodies, which adds no energy (solve.cpp).
+/// Surface  combined by the law of all engines (pair_surface.h), zones and the user's rule included; the rule
+///          may be called by several threads at once, and sees all joints at 0. Of a pair count: friction
+///          along the tangent, belts, restitution, and on the ground the two directions of friction and
+///          rolling resistance. Slip, softness and correction have no meaning: bodies are hard. So of a
+///          substance only the roughness counts (mu = r1 r2), and it does not bounce. A support stands on the
+///          zone or belt below its middle; several belts pull at their mean.
+/// Fast     a body that could pass something in a step, or turn into it, moves in pieces from impact to
+///          impact; the rest of the step is lost after 24 of them.
+/// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an
+///          ellipsoidal limit surface; one sphere rolls, held by rolling resistance alone (ground.cpp).
+///          Without a floor: a surface with mu 1.
+/// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along
+///          and across within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis
+///          alone (wheels.cpp).
+/// Drives   ideal drives run on rails (drive.h): an exact arc where nothing touches, and in contact a push of
+///          at most what brings the robot to its velocity within the step at the acceleration it may have.
+///          Their wheels turn by the way that the base went, on demand (rolls.cpp).
+/// Joints   pivots and sliders between groups of an instance, with motor, limits, friction and spring;
+///          steering. All others are kinematic: a velocity target is reached at once and ends at the joint's
+///          limits.
+/// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor
+///          does accelerating shift weight.
+///          Steering does not feel the ground. Kinematic joints do not change outlines. A lying cylinder
+///          slides.
+/// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads
+///          there are.
 #include <array>
 #include <atomic>
 #include <mutex>

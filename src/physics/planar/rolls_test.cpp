@@ -11,7 +11,8 @@ namespace {
 using namespace test;
 
 constexpr double wheel_m = 0.05;
-/// At 1e9 m/s^2 a base is v^2 / 2a behind one that moved at once: 1.25e-10 m at 0.5 m/s, and so is what it turned.
+/// At 1e9 m/s^2 a base is v^2 / 2a behind one that moved at once: 1.25e-10 m at 0.5 m/s, and so is what it
+/// turned.
 constexpr double ramped = 5e-9;
 
 /// A disc of radius 0.2 whose centre of mass lies 0.1 before its origin, with a wheel of its own to the left.
@@ -113,7 +114,8 @@ TEST(PlanarRoll, ARobotHeldByAWallTurnsItsWheelsToTheWallAndNoFurther) {
 }
 
 TEST(PlanarRoll, AlongAWallItsAngleIsThatOfTheArcItWent) {
-  // Pushed obliquely along a wall the base turns and slides at once. A free wheel with per_wz alone tells its heading.
+  // Pushed obliquely along a wall the base turns and slides at once. A free wheel with per_wz alone tells its
+  // heading.
   Rolling w;
   w.add(model_of(Box{{1, 40, 2}}, true), at(0.75, 0));  // its face at x = 0.25
   w.drive(w.id, 0.3, 0.4, 0.5, 2.0, 2.0);

@@ -1,4 +1,5 @@
-/// Random scenes: nothing passes a wall, overlaps for long, gains energy, or depends on the number of threads.
+/// Random scenes: nothing passes a wall, overlaps for long, gains energy, or depends on the number of
+/// threads.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -81,7 +82,8 @@ void run_scene(std::uint64_t sample) {
     scene.w.run(1);
     ASSERT_TRUE(scene.w.engine.check_finite()) << sample << " " << step;
     const double now = scene.energy();
-    // Each impulse takes energy or keeps it; friction at contacts that bounce is put in after the normal impulse.
+    // Each impulse takes energy or keeps it; friction at contacts that bounce is put in after the normal
+    // impulse.
     ASSERT_LE(now, energy * (1 + 1e-9) + 1e-9) << sample << " " << step;
     energy = now;
     for (const Scene::Thing& t : scene.things) {

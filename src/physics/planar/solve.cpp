@@ -1,12 +1,15 @@
-// An island of bodies that touch or hold each other: velocities, then motion from impact to impact, then what overlap is
-// left.
+// An island of bodies that touch or hold each other: velocities, then motion from impact to impact, then what
+// overlap is left.
 //
-//   bounce    contacts with restitution that close within the step pass their impulse on one after the other, -e times the
-//             closing velocity each, until none closes: exact for two, and for a row of balls. A face on a face takes both
-//             points at once. Energy is never gained: each impulse is a collision of its own.
-//   apart     v_n >= -gap / h and |friction| <= mu * normal, by sequential impulses with those of the last step to begin
-//             with (E. Catto, Iterative Dynamics with Temporal Coherence, 2005). So nobody enters anybody.
-//   back      overlap beyond the slop is taken back by moving the bodies, not by velocities (nonlinear Gauss-Seidel).
+//   bounce    contacts with restitution that close within the step pass their impulse on one after the other,
+//             -e times the closing velocity each, until none closes: exact for two, and for a row of balls. A
+//             face on a face takes both points at once. Energy is never gained: each impulse is a collision
+//             of its own.
+//   apart     v_n >= -gap / h and |friction| <= mu * normal, by sequential impulses with those of the last
+//             step to begin with (E. Catto, Iterative Dynamics with Temporal Coherence, 2005). So nobody
+//             enters anybody.
+//   back      overlap beyond the slop is taken back by moving the bodies, not by velocities (nonlinear
+//             Gauss-Seidel).
 #include <algorithm>
 #include <cmath>
 
@@ -16,8 +19,8 @@ namespace sandlot::planar {
 namespace {
 
 constexpr double slop_m = 1e-4, most_back_m = 2e-3, share_back = 0.3;
-/// Passes go on while one of them still changes by more than this how far somebody comes in the step, but not for ever: a
-/// heavy body takes many to hold a light one against a wall.
+/// Passes go on while one of them still changes by more than this how far somebody comes in the step, but not
+/// for ever: a heavy body takes many to hold a light one against a wall.
 constexpr double settled_m = 1e-5;
 constexpr int most_times_passes = 20;
 constexpr int bounce_passes = 200, back_passes = 4, most_impacts = 24;

@@ -165,8 +165,8 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   return load_contact_points(id.index, r);
 }
 
-/// Contacts and grips with instances that are older: each is saved once. Others are named by their place in the order of
-/// creation, which a new engine with the same instances has too.
+/// Contacts and grips with instances that are older: each is saved once. Others are named by their place in
+/// the order of creation, which a new engine with the same instances has too.
 void PlanarEngine::save_contact_points(std::uint32_t slot, ByteWriter& w) const {
   const Instance& instance = instances_[slot];
   const auto rank = [&](std::uint64_t created) {

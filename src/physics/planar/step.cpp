@@ -178,7 +178,8 @@ double PlanarEngine::reach(const RigidGroup& group, double h_s) const {
   return group.plan->reach_share_m + 2 * h_s * std::sqrt(dot(group.v, group.v));
 }
 
-// --- broad phase ----------------------------------------------------------------------------------------------------
+// --- broad phase
+// ----------------------------------------------------------------------------------------------------
 
 void PlanarEngine::file(double) {
   const auto count = static_cast<std::uint32_t>(groups_.size());
@@ -261,7 +262,8 @@ void PlanarEngine::file(double) {
   filed_ = true;
 }
 
-// --- islands --------------------------------------------------------------------------------------------------------
+// --- islands
+// --------------------------------------------------------------------------------------------------------
 
 void PlanarEngine::find_contact_points(double h_s) {
   found_.clear();
@@ -358,7 +360,8 @@ void PlanarEngine::find_islands(double h_s) {
     if (a != none && island_of_[a] != none) return island_of_[a];
     return b != none ? island_of_[b] : none;
   };
-  // Two islands that are near each other but slow do not look at each other: they are solved at the same time.
+  // Two islands that are near each other but slow do not look at each other: they are solved at the same
+  // time.
   const auto island_of_pair = [&](const Candidate& c) {
     const bool apart = c.a != none && c.b != none && island_of_[c.a] != none && island_of_[c.b] != none &&
                        island_of_[c.a] != island_of_[c.b];
@@ -394,7 +397,8 @@ void PlanarEngine::find_islands(double h_s) {
     if (const std::uint32_t i = island_at(t.a, t.b); i != none) islands_[i].contact_points.push_back(t);
 }
 
-// --- afterwards -----------------------------------------------------------------------------------------------------
+// --- afterwards
+// -----------------------------------------------------------------------------------------------------
 
 /// Joints that follow their targets exactly.
 void PlanarEngine::turn_joints(double h_s) {

@@ -62,7 +62,8 @@ void PlanarEngine::set_contact_rule(ContactRule rule) {
   ground_fresh_ = false;
 }
 
-// --- explosions -----------------------------------------------------------------------------------------------------
+// --- explosions
+// -----------------------------------------------------------------------------------------------------
 
 /// Speed as a multiple of the largest allowed one; infinite where it is not a number.
 double PlanarEngine::excess(Vec2 v, double w) const {
@@ -71,7 +72,8 @@ double PlanarEngine::excess(Vec2 v, double w) const {
   return dot(v, v) < 1e300 && w * w < 1e300 ? most : std::numeric_limits<double>::infinity();
 }
 
-/// Notes that this step cannot be made. Of several bodies the worst is named, of equals that with the smallest index.
+/// Notes that this step cannot be made. Of several bodies the worst is named, of equals that with the
+/// smallest index.
 void PlanarEngine::explode(std::uint32_t k, Vec2 v, double w) {
   const std::lock_guard lock(refreshing_);
   const double mine = excess(v, w);

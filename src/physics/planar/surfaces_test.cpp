@@ -1,5 +1,5 @@
-/// Surfaces in the plane, against closed forms: substances, belts, skins, zones, rolling resistance, the user's rule; and
-/// bodies that explode.
+/// Surfaces in the plane, against closed forms: substances, belts, skins, zones, rolling resistance, the
+/// user's rule; and bodies that explode.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -97,8 +97,8 @@ TEST(PlanarSurface, ASkinSlidesAlongItsAxisAndHoldsAcross) {
     w.run(200);
     EXPECT_NEAR(w.p(id).x, 1 / (2 * (yaw == 0 ? 0.1 : 0.5) * g), one_step(1)) << yaw;
   }
-  // Pushed obliquely it is turned aside: friction is normal to the ellipse at its end, so in one implicit step the velocities
-  // lost are as mu_i^2 times those that are left: 25 to 1.
+  // Pushed obliquely it is turned aside: friction is normal to the ellipse at its end, so in one implicit
+  // step the velocities lost are as mu_i^2 times those that are left: 25 to 1.
   Surfaces w;
   w.add(floor(rubbing(2)), at(0, 0));
   const InstanceId id = w.add(box(fur), at(0, 0));

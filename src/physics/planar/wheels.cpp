@@ -1,18 +1,19 @@
 // Wheels on the ground.
 //
-// A wheel of radius r on an axle `a` (unit, level) that spins at s rolls along e = a x z. Where it touches the ground the
-// slip is
+// A wheel of radius r on an axle `a` (unit, level) that spins at s rolls along e = a x z. Where it touches
+// the ground the slip is
 //
 //   u = v + w x arm - r s e          along e and along a;  with rollers along the roller's axis g alone: u . g
 //
-// (less the velocity of a belt below) and the ground answers with an impulse j, |j| <= mu N h: the one that makes u vanish, or on the cone against the u that
-// is left. For one wheel this is exact: (K + x I) j = -u with K what velocity an impulse brings, x = 0 for a wheel that
-// grips, else the x that puts j on the cone (J. More, D. Sorensen, Computing a trust region step, 1983). The spin is
-// eliminated: it follows from j and the motor, damping and friction of its axle, all acting on the spin at the end of the
-// step. The wheels of a robot, and its contacts, are passed over until they agree.
+// (less the velocity of a belt below) and the ground answers with an impulse j, |j| <= mu N h: the one that
+// makes u vanish, or on the cone against the u that is left. For one wheel this is exact: (K + x I) j = -u
+// with K what velocity an impulse brings, x = 0 for a wheel that grips, else the x that puts j on the cone
+// (J. More, D. Sorensen, Computing a trust region step, 1983). The spin is eliminated: it follows from j and
+// the motor, damping and friction of its axle, all acting on the spin at the end of the step. The wheels of a
+// robot, and its contacts, are passed over until they agree.
 //
-// Directions are those half way through the step; the impulses of the last step are put in along those at its beginning,
-// half way between the old and the new directions. So a robot in a bend keeps its speed.
+// Directions are those half way through the step; the impulses of the last step are put in along those at its
+// beginning, half way between the old and the new directions. So a robot in a bend keeps its speed.
 #include <algorithm>
 #include <cmath>
 
@@ -23,11 +24,12 @@ namespace {
 
 constexpr double kept = 0.9;  ///< from step to step, of the part of the impulses that moves nothing
 
-/// Wheels that work against each other without moving anything would do so for ever, and near the cone it takes many
-/// passes to agree on such. So it fades: of all impulses with the same sum and moment, those with the least squares come
-/// in by a little.
+/// Wheels that work against each other without moving anything would do so for ever, and near the cone it
+/// takes many passes to agree on such. So it fades: of all impulses with the same sum and moment, those with
+/// the least squares come in by a little.
 void ease(std::span<Wheel> wheels) {
-  // G x = b for the sum and the moment b, G the sum of d d^T over all directions d = (x, y, moment); then j = d . x.
+  // G x = b for the sum and the moment b, G the sum of d d^T over all directions d = (x, y, moment); then j =
+  // d . x.
   double G[3][3] = {}, b[3] = {};
   const auto each = [&](auto&& visit) {
     for (Wheel& w : wheels) {
@@ -66,8 +68,8 @@ struct Spin {
   double per_impulse = 0;  ///< what it gains per angular impulse: 0 while motor or friction hold it
 };
 
-/// The spin after the step when the ground gives `impulse`: slope * s = start + impulse + motor + friction, where the motor
-/// gives at most so much towards the speed it wants, and friction towards rest.
+/// The spin after the step when the ground gives `impulse`: slope * s = start + impulse + motor + friction,
+/// where the motor gives at most so much towards the speed it wants, and friction towards rest.
 Spin spin_after(Wheel::Axle& axle, double impulse) {
   const double x = axle.start + impulse;
   const auto friction_at = [&](double s) { return s > 0 ? -axle.friction : s < 0 ? axle.friction : 0.0; };

@@ -202,8 +202,9 @@ TEST(PlanarWheel, OmniWheelsMoveItAnyWay) {
 }
 
 TEST(PlanarWheel, MecanumWheelsGoSidewaysAndSpin) {
-  // Rollers at +-45 degrees so that they meet the ground as an X seen from above: with the roller's axis along
-  // (cos, -sin) of the angle from the axle, front left and rear right share one sign, the others the other.
+  // Rollers at +-45 degrees so that they meet the ground as an X seen from above: with the roller's axis
+  // along (cos, -sin) of the angle from the axle, front left and rear right share one sign, the others the
+  // other.
   const double q = math::pi / 4;
   World w;
   const InstanceId id = w.add(

@@ -13,8 +13,8 @@ namespace {
 /// A flat end within this angle [rad] of a surface lies on it.
 constexpr double flat = 0.02;
 
-/// The point of a-b that lies deepest in (or nearest to) the barrel, all in its frame. Distance from a convex body falls
-/// and then rises along a line, so halving by the golden section finds it.
+/// The point of a-b that lies deepest in (or nearest to) the barrel, all in its frame. Distance from a convex
+/// body falls and then rises along a line, so halving by the golden section finds it.
 struct Deepest {
   Vec3 point;
   BarrelSurface surface;

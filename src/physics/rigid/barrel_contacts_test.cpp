@@ -52,8 +52,8 @@ std::vector<Ground> flat_grounds() {
           {"terrain", valley(0), {}}};
 }
 
-/// The lowest point of the arc is where its normal points down: profile * sin(lean) along the axis from the middle, and
-/// the barrel is one millimetre deep there.
+/// The lowest point of the arc is where its normal points down: profile * sin(lean) along the axis from the
+/// middle, and the barrel is one millimetre deep there.
 TEST(BarrelContacts, OnFlatGroundIsOnePoint) {
   for (const Ground& g : flat_grounds())
     for (const double lean : {0.0, 0.2}) {
@@ -85,8 +85,8 @@ TEST(BarrelContacts, OnItsFlatEndStandsOnFourPoints) {
 }
 
 TEST(BarrelContacts, OfEdgesPointAwayFromThem) {
-  // Its middle right over the edge of a box or mesh (x = 0, ground at x < 0), lying along the edge: the corner of the
-  // ground points at the axis from below and from the side, at 45 degrees.
+  // Its middle right over the edge of a box or mesh (x = 0, ground at x < 0), lying along the edge: the
+  // corner of the ground points at the axis from below and from the side, at 45 degrees.
   const double off = (0.01 - 5e-4) / std::sqrt(2.0);
   const Pose X{{off, 0.01, off}, quat_from_rpy(math::pi / 2, 0, 0)};
   for (const bool mesh : {false, true}) {
@@ -159,7 +159,8 @@ TEST(BarrelContacts, RollsLikeTheBallThatItIs) {
     const InstanceId barrel = world.add(
         instance_of("barrel", m, {{0, 0, 0.05}, quat_from_rpy(math::pi / 2, 0, 0)}));
     world.run(500, 1e-3);
-    // 5/7 of the slide: g sin(angle) * 5/7 after half a second; within the half per cent that contacts give way.
+    // 5/7 of the slide: g sin(angle) * 5/7 after half a second; within the half per cent that contacts give
+    // way.
     const double v = 9.81 * math::sin(angle) * 5 / 7 * 0.5;
     EXPECT_NEAR(world.state(barrel).V_WB.linear.x, v, 5e-3 * v);
   }

@@ -219,7 +219,8 @@ void RigidEngine::make_bodies(Instance& instance, const RigidGroups& groups) {
     dMassSetParameters(&mass, body.mass_kg, 0, 0, 0, t.xx, t.yy, t.zz, t.xy, t.xz, t.yz);
     dBodySetMass(body.ode, &mass);
     dBodySetGravityMode(body.ode, !body.weighs_partly);
-    // The joints are made in the declared pose at the origin, so that their constants do not depend on the place.
+    // The joints are made in the declared pose at the origin, so that their constants do not depend on the
+    // place.
     body.p = body.X_MB.p;
     body.q = body.X_MB.q;
     put(body);
@@ -270,8 +271,8 @@ void RigidEngine::make_geoms(Instance& instance) {
   }
   count += instance.wheels.size();
   moving += instance.wheels.size();
-  // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one by one,
-  // because the box around a house is no bound for its walls.
+  // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one
+  // by one, because the box around a house is no bound for its walls.
   if (moving > 1) {
     instance.space = dSimpleSpaceCreate(space_);
     dSpaceSetCleanup(instance.space, 0);

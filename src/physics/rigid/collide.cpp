@@ -208,8 +208,8 @@ void RigidEngine::collide() {
   woke_ = unordered_ = false;
   for (const Pair& pair : pairs_) collide_pair(pair);
   if (!woke_ && !unordered_) return;
-  // Who was woken meets its neighbours in this very sub-step, else it would fall through what it lies on; they may
-  // wake in turn. The set that is awake in the end does not depend on the order of the search.
+  // Who was woken meets its neighbours in this very sub-step, else it would fall through what it lies on;
+  // they may wake in turn. The set that is awake in the end does not depend on the order of the search.
   while (woke_) {
     woke_ = false;
     std::erase_if(dormant_, [&](const Pair& pair) {
@@ -223,8 +223,8 @@ void RigidEngine::collide() {
   });
 }
 
-/// What the surfaces at a contact point make together: those of the shapes, a zone in place of what stands still, and at
-/// last the result of the user's rule.
+/// What the surfaces at a contact point make together: those of the shapes, a zone in place of what stands
+/// still, and at last the result of the user's rule.
 PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   const Vec3 point = vec(hit.contact.geom.pos), normal = -vec(hit.contact.geom.normal);
   const auto side = [&](const Geom& g) -> SurfaceSide {
@@ -242,7 +242,8 @@ PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   return pair;
 }
 
-/// Where zones or a rule may give each point another surface: finds them all, and drops the points that do not touch.
+/// Where zones or a rule may give each point another surface: finds them all, and drops the points that do
+/// not touch.
 void RigidEngine::ask_surfaces() {
   surfaces_.clear();
   std::size_t kept = 0;
@@ -267,12 +268,14 @@ const Body* roller_of(const Geom& a, const Geom& b) {
 
 }  // namespace
 
-/// ODE's inputs in addition to the parameters of the surfaces: the direction of friction, and that a surface moves.
+/// ODE's inputs in addition to the parameters of the surfaces: the direction of friction, and that a surface
+/// moves.
 ///
-/// A roller on its hinge is held along its axis alone: whatever slips across, it soon turns along with. Its axis is thus the
-/// direction of the force, sliding or not; that of its slip is not, since the point of contact wanders on the barrel to where
-/// that is thinner, and that little slip across would pass for the whole of it (the box of friction then lies askew, and a
-/// spinning Mecanum robot goes by whichever wheels it went by before).
+/// A roller on its hinge is held along its axis alone: whatever slips across, it soon turns along with. Its
+/// axis is thus the direction of the force, sliding or not; that of its slip is not, since the point of
+/// contact wanders on the barrel to where that is thinner, and that little slip across would pass for the
+/// whole of it (the box of friction then lies askew, and a spinning Mecanum robot goes by whichever wheels it
+/// went by before).
 void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   const Geom &a = *hit.a, &b = *hit.b;
   dContact& contact = hit.contact;
@@ -297,8 +300,8 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
     if (b.body) wanted -= b.body->pull_mps;
   }
   if (!directed && pair.rolling_resistance_m > 0) {
-    // The box around the torque against rolling is right along its two directions too: what rolls more than it slips
-    // has the first one along its way.
+    // The box around the torque against rolling is right along its two directions too: what rolls more than
+    // it slips has the first one along its way.
     const Vec3 turning = cross(spin(a) - spin(b), normal);
     const double rolling_mps = 0.1 * norm(turning) * std::min(a.size_m, b.size_m);
     if (rolling_mps > 0 && norm(slip - dot(slip, normal) * normal) < rolling_mps) wanted = turning, slip = {};
@@ -317,8 +320,9 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   const Geom& mover = a.body ? b : a;
   const bool moves = !mover.body && mover.instance->is_moving(), runs = belt != Vec3{};
   if (!moves && !runs) return;
-  // To ODE surfaces stand still; that one moves, it takes as velocities at which the contact comes to rest. They are
-  // those of the first body, or the only one, along ODE's three directions with its normal into that body.
+  // To ODE surfaces stand still; that one moves, it takes as velocities at which the contact comes to rest.
+  // They are those of the first body, or the only one, along ODE's three directions with its normal into that
+  // body.
   const Vec3 into = a.body ? normal : -normal;
   Vec3 v = a.body ? belt : -belt;
   if (moves) {
@@ -338,16 +342,18 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
 
 /// Contact joints for all hits.
 ///
-/// ODE bounds friction by a box along two directions. The first is that of the slip the bodies would have after this
-/// sub-step without any friction: while they slide that is the slip, and at rest the way in which gravity and forces
-/// pull. A body held by friction creeps (CFM) along the force that pulls it, so pushes through other bodies show too.
+/// ODE bounds friction by a box along two directions. The first is that of the slip the bodies would have
+/// after this sub-step without any friction: while they slide that is the slip, and at rest the way in which
+/// gravity and forces pull. A body held by friction creeps (CFM) along the force that pulls it, so pushes
+/// through other bodies show too.
 ///
-/// Across the slip Coulomb's law is, to first order, viscous: a slip s that turns by a small s' meets mu N s' / |s|. ODE
-/// would stop s' instead, and so resist the turning of whatever slides in a curve (a skid-steered robot would turn 3 %
-/// too slowly). Therefore the second direction gets the compliance |s| / (mu N); N as if each contact point of the
-/// lighter side carried an equal share of its weight. The force across is small, so N need not be exact. A body that
-/// merely creeps, by CFM or by the slip of its surface, gets none: there equal compliance both ways is what turns the first direction into that of the force
-/// (a softer second one makes it overshoot, from side to side, sub-step by sub-step).
+/// Across the slip Coulomb's law is, to first order, viscous: a slip s that turns by a small s' meets mu N s'
+/// / |s|. ODE would stop s' instead, and so resist the turning of whatever slides in a curve (a skid-steered
+/// robot would turn 3 % too slowly). Therefore the second direction gets the compliance |s| / (mu N); N as if
+/// each contact point of the lighter side carried an equal share of its weight. The force across is small, so
+/// N need not be exact. A body that merely creeps, by CFM or by the slip of its surface, gets none: there
+/// equal compliance both ways is what turns the first direction into that of the force (a softer second one
+/// makes it overshoot, from side to side, sub-step by sub-step).
 void RigidEngine::attach_contacts(double h) {
   contacts_.clear();
   const bool each_asked = rule_ || !zones_.empty();
@@ -378,8 +384,8 @@ void RigidEngine::attach_contacts(double h) {
       parameters = parameters_of(pair, h, spec_.cfm, slippery);
     }
     contact.surface = parameters;
-    // Equal limits of symmetric contacts are reached at the same moment, and the direct solver, which follows them one
-    // by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to tell them apart.
+    // Equal limits of symmetric contacts are reached at the same moment, and the direct solver, which follows
+    // them one by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to tell them apart.
     std::uint32_t number = 0;
     for (const Geom* g : {&a, &b})
       if (g->body) number += g->instance->contacts_seen++;

@@ -110,7 +110,8 @@ struct Face {
 };
 
 Face face(const Round& x, Vec3 n) {
-  // Within 0.02 rad faces count as flat: their points get their own depths, and those that are apart are dropped.
+  // Within 0.02 rad faces count as flat: their points get their own depths, and those that are apart are
+  // dropped.
   constexpr double flat = 0.02;
   const double c = dot(n, x.a), s = std::sqrt(std::max(0.0, 1 - c * c));
   const Vec3 end = x.p + (c < 0 ? -x.h : x.h) * x.a;

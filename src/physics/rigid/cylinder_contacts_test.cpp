@@ -94,8 +94,8 @@ double support(const Shape& shape, const Pose& X, Vec3 n) {
 }
 
 TEST(Round, NoDirectionPartsThemWithLess) {
-  // Against brute force: 20,000 directions spread evenly. The best of them is within 0.02 rad of the true minimum, whose
-  // overlap it exceeds by at most 0.02 times the extent (kinks) of some 0.6.
+  // Against brute force: 20,000 directions spread evenly. The best of them is within 0.02 rad of the true
+  // minimum, whose overlap it exceeds by at most 0.02 times the extent (kinks) of some 0.6.
   constexpr int directions = 20000;
   std::vector<Vec3> sphere;
   for (int i = 0; i < directions; ++i) {

@@ -15,8 +15,8 @@ void push_drive(Instance& instance, Vec3 gravity, double h) {
   const Vec3 z = rotate(q, {0, 0, 1}), x = rotate(q, {1, 0, 0}), y = rotate(q, {0, 1, 0});
   const Vec3 arm = -rotate(chassis.q, base.X_BL.p);  // from the base's origin to the chassis' centre of mass
 
-  // `ahead(a, v)`: v turned by a about z. Velocity of the origin as the last sub-step moved it: the chassis' own, less
-  // what the turning of `arm` by w h took of it.
+  // `ahead(a, v)`: v turned by a about z. Velocity of the origin as the last sub-step moved it: the chassis'
+  // own, less what the turning of `arm` by w h took of it.
   const auto ahead = [&](double angle, Vec3 v) {
     const auto [s, c] = math::sincos(angle);
     return c * v + s * cross(z, v) + (1 - c) * dot(z, v) * z;
@@ -35,7 +35,8 @@ void push_drive(Instance& instance, Vec3 gravity, double h) {
   const double w_new = w + dw;
   const Vec3 v_new = ahead(0.5 * w_new * h, (ux + dx) * x + (uy + dy) * y);
 
-  // The chassis' centre moves so that the origin ends where it should; the other bodies follow as one with it.
+  // The chassis' centre moves so that the origin ends where it should; the other bodies follow as one with
+  // it.
   const Vec3 dv_arm = v_new + (ahead(w_new * h, arm) - arm) / h - chassis.v;
   const Vec3 dv_chassis = dv_arm - dot(dv_arm, z) * z;
   const Vec3 weight = gravity - dot(gravity, z) * z;

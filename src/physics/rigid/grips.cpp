@@ -1,5 +1,5 @@
-/// Grips: fixed joints between links of any two instances. They live for one sub-step, like contacts, in the order of
-/// creation of what they hold, so that a restored engine solves the same rows in the same order.
+/// Grips: fixed joints between links of any two instances. They live for one sub-step, like contacts, in the
+/// order of creation of what they hold, so that a restored engine solves the same rows in the same order.
 #include <algorithm>
 #include <tuple>
 
@@ -29,7 +29,8 @@ std::uint64_t RigidEngine::rank(const Instance& instance) const {
   return static_cast<std::uint64_t>(std::find(order_.begin(), order_.end(), &instance) - order_.begin());
 }
 
-/// A grip of two as they stand now; of two that cannot hold each other, or do so anyway, a and b are the same.
+/// A grip of two as they stand now; of two that cannot hold each other, or do so anyway, a and b are the
+/// same.
 Held RigidEngine::grip_of(BodyId one, BodyId other) const {
   const auto slot_of = [&](BodyId id) -> const LinkSlot& {
     SL_CHECK(id.index < link_slots_.size());
@@ -117,8 +118,8 @@ void RigidEngine::attach_grips() {
     grip.load = {};
     if (!awake(grip.a) && !awake(grip.b)) continue;
     const dJointID joint = dJointCreateFixed(world_, contact_joints_);
-    // ODE takes the pose to be held from that of the bodies, so they stand so for a moment: with A at the origin, where
-    // ODE's arithmetic is exact.
+    // ODE takes the pose to be held from that of the bodies, so they stand so for a moment: with A at the
+    // origin, where ODE's arithmetic is exact.
     if (grip.a) put_at(grip.a->ode, {});
     if (grip.b) put_at(grip.b->ode, grip.X_AB);
     dJointAttach(joint, grip.a ? grip.a->ode : grip.b->ode, grip.a && grip.b ? grip.b->ode : nullptr);
@@ -157,8 +158,8 @@ bool RigidEngine::hold_each_other(const Geom& a, const Geom& b) const {
   });
 }
 
-/// A grip is State of the younger. The older is named by its place in the order of creation, which a new engine with the
-/// same instances has too.
+/// A grip is State of the younger. The older is named by its place in the order of creation, which a new
+/// engine with the same instances has too.
 std::size_t RigidEngine::grips_of(const Instance& instance) const {
   return static_cast<std::size_t>(std::count_if(
       grips_.begin(), grips_.end(), [&](const Held& grip) { return grip.instance_b == &instance; }));

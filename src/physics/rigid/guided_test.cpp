@@ -12,8 +12,8 @@ using namespace test;
 
 constexpr double h = 0.01;
 
-/// A platform, top at z = 0, with a box on it, 0.5 m off its centre. Which of the two was made first decides which is
-/// which in the contact.
+/// A platform, top at z = 0, with a box on it, 0.5 m off its centre. Which of the two was made first decides
+/// which is which in the contact.
 struct Platform : World, ::testing::TestWithParam<bool> {
   InstanceId platform, box;
   Pose at{{0, 0, -0.1}, {}};

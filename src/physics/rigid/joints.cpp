@@ -20,14 +20,16 @@ Pose frame_on_parent(const Joint& j, const Pose& X_WM) {
   return (j.parent ? j.parent->pose() : X_WM) * j.X_parent;
 }
 
-/// ODE measures from its second body to its first. The first is the child, or the parent where the child is the world.
+/// ODE measures from its second body to its first. The first is the child, or the parent where the child is
+/// the world.
 bool reversed(const Joint& j) { return !j.child; }
 Body& first_body(const Joint& j) { return j.child ? *j.child : *j.parent; }
 Body* second_body(const Joint& j) { return j.child ? j.parent : nullptr; }
 
 const Pose& model_pose(const Joint& j) { return first_body(j).instance->X_WM; }
 
-/// In the first body, so that it turns with it; of a universal joint in the parent, of its second axis in the child.
+/// In the first body, so that it turns with it; of a universal joint in the parent, of its second axis in the
+/// child.
 Vec3 axis_W(const Joint& j) {
   if (j.is(model::JointType::universal)) return rotate(frame_on_parent(j, model_pose(j)).q, j.decl->axis_J);
   const Pose& X = j.child ? j.X_child : j.X_parent;
@@ -185,9 +187,9 @@ void anchor_joint(Joint& j, const Pose& X_WM) {
   }
 }
 
-/// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's normal force,
-/// is an equation between velocities at a point: with the point at radius c = pitch / (2 pi) from the axis and the
-/// direction half along the axis, half round it, it is slide - c turn = 0.
+/// ODE has no joint with a thread. The friction row of a contact, without bound and without the contact's
+/// normal force, is an equation between velocities at a point: with the point at radius c = pitch / (2 pi)
+/// from the axis and the direction half along the axis, half round it, it is slide - c turn = 0.
 void add_thread_row(dWorldID world, dJointGroupID group, Joint& j, double erp, double h) {
   const Pose &X_WM = model_pose(j), on_child = frame_on_child(j, X_WM), on_parent = frame_on_parent(j, X_WM);
   const Vec3 axis = axis_W(j), radial = rotate(on_parent.q, second_to(j.decl->axis_J));
@@ -202,7 +204,8 @@ void add_thread_row(dWorldID world, dJointGroupID group, Joint& j, double erp, d
   contact.surface.mu = dInfinity;
   contact.surface.mu2 = 0;
   contact.surface.motion1 = reversed(j) ? -wanted : wanted;
-  // The normal row carries next to nothing at this, and is not so soft that ODE loses its other rows in rounding.
+  // The normal row carries next to nothing at this, and is not so soft that ODE loses its other rows in
+  // rounding.
   contact.surface.soft_cfm = 1e3;
   for (std::size_t k = 0; k < 3; ++k) {
     contact.geom.pos[k] = at[k];
@@ -328,7 +331,8 @@ void measure_effort(Joint& j) {
   const Vec3 axis = reversed(j) ? -axis_W(j) : axis_W(j);
   const Vec3 force{f.f1[0], f.f1[1], f.f1[2]};
   if (j.turns()) {
-    // ODE gives the whole torque about the first body's centre; what the anchor's force makes of it is not the motor's.
+    // ODE gives the whole torque about the first body's centre; what the anchor's force makes of it is not
+    // the motor's.
     const Body& body = first_body(j);
     const Vec3 arm = rotate(body.q, (j.child ? j.X_child : j.X_parent).p);
     j.effort = dot(Vec3{f.t1[0], f.t1[1], f.t1[2]} - cross(arm, force), axis);

@@ -209,9 +209,9 @@ TEST(RigidJoints, AFastWheelCountsItsTurns) {
 }
 
 TEST(RigidJoints, AWheelsAxisTurnsWithItsRobot) {
-  // Yawing at 2 rad/s with wheels at 40 rad/s, in opposite senses so that nothing turns the base. In 10 ms the axis
-  // turns by 0.02 rad and the wheel by 0.4: adding both up as one rotation would tilt the axis by half their product,
-  // 4e-3 rad per sub-step, which ERP could only bound to 5 times that.
+  // Yawing at 2 rad/s with wheels at 40 rad/s, in opposite senses so that nothing turns the base. In 10 ms
+  // the axis turns by 0.02 rad and the wheel by 0.4: adding both up as one rotation would tilt the axis by
+  // half their product, 4e-3 rad per sub-step, which ERP could only bound to 5 times that.
   World world(rigid::engine, {}, Vec3{});
   model::Model m;
   m.links.push_back(link_of("base", Box{{0.4, 0.3, 0.1}}, 5));
@@ -236,7 +236,8 @@ TEST(RigidJoints, AWheelsAxisTurnsWithItsRobot) {
   }
   EXPECT_LT(worst, 1e-4);
   EXPECT_NEAR(world.state(id).V_WB.angular.z, 2, 1e-5);
-  // Measured about the axis as it stands after the sub-step, 0.02 rad from the one that the motor turned about.
+  // Measured about the axis as it stands after the sub-step, 0.02 rad from the one that the motor turned
+  // about.
   EXPECT_NEAR(world.joint(id).velocity, 40 * math::cos(0.02), 1e-5);
   EXPECT_NEAR(world.joint(id, 1).velocity, -40 * math::cos(0.02), 1e-5);
 }
@@ -259,7 +260,8 @@ TEST(RigidJoints, ASpinningWheelDoesNotTiltADrivenRobot) {
   world.run(1, h);
   EXPECT_NEAR(world.joint(id).velocity, 40, 1e-6);
   world.drive(id, {.wz_radps = 2});
-  // A free body would answer the turning of the axis with L w = 0.2 Nm, and roll back and forth with L / I = 0.012 rad/s.
+  // A free body would answer the turning of the axis with L w = 0.2 Nm, and roll back and forth with L / I =
+  // 0.012 rad/s.
   double roll = 0;
   for (int i = 0; i < 300; ++i) {
     world.run(1, h);
@@ -351,7 +353,8 @@ TEST(RigidJoints, ABallJointsFrictionHolds) {
 }
 
 TEST(RigidJoints, ALoopOfJointsWorks) {
-  // A four-bar parallelogram in the vertical plane: crank and rocker are equal, so the coupler keeps its attitude.
+  // A four-bar parallelogram in the vertical plane: crank and rocker are equal, so the coupler keeps its
+  // attitude.
   World world(rigid::engine, {}, Vec3{0, 0, -9.81});
   model::Model m;
   const auto bar = [&](const char* name, Vec3 at, Vec3 size) {

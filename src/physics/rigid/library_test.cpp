@@ -22,7 +22,8 @@ TEST(RigidLibrary, OdeDrawsFromUs) {
     ++spread[10 * x / n];
   }
   EXPECT_EQ(counts().draws, before + 2000);
-  // Uniform over [0, n): a tenth falls into each tenth; the small n make it uneven by a few, five deviations are 47.
+  // Uniform over [0, n): a tenth falls into each tenth; the small n make it uneven by a few, five deviations
+  // are 47.
   for (const int count : spread) EXPECT_NEAR(count, 100, 50);
   const int first = dRandInt(1'000'000);
   seed(2);

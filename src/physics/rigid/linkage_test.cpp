@@ -35,7 +35,8 @@ model::Link bare(const std::string& name, double mass_kg, Pose X_ML = {}, Vec3 m
   return link;
 }
 
-/// A body of 2 kg, 0.05 kg m^2, 1 m along x from its joint to the world: once as the joint's child, once as its parent.
+/// A body of 2 kg, 0.05 kg m^2, 1 m along x from its joint to the world: once as the joint's child, once as
+/// its parent.
 struct OnWorld : ::testing::TestWithParam<bool> {
   bool reversed = GetParam();
   double sign = reversed ? -1 : 1;  ///< of the body's motion for a positive position
@@ -136,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Sides, OnWorld, ::testing::Values(false, true),
                          [](const auto& suite) { return suite.param ? "reversed" : "forwards"; });
 
 TEST(Universal, DrivesAShaftUnevenly) {
-  // Two shafts at an angle b: tan(c) = tan(a) cos(b), so c' / a' = cos(b) / (1 - sin(b)^2 sin(a)^2) where the driving
-  // pin stands across the plane of the shafts at a = 0.
+  // Two shafts at an angle b: tan(c) = tan(a) cos(b), so c' / a' = cos(b) / (1 - sin(b)^2 sin(a)^2) where the
+  // driving pin stands across the plane of the shafts at a = 0.
   const double b = 0.6;
   model::Model m;
   m.links = {bare("in", 1), bare("out", 1)};

@@ -1,15 +1,17 @@
 /// Forces of contacts and loads of joints, for those requested before the sub-step.
 ///
-/// A contact, and a joint that moves, are rows of ODE, which reports the force of each row on demand. A fixed joint is no
-/// joint to ODE: what it joins is one body. Its load follows from Newton and Euler over the links behind it (those that
-/// hang on the child by fixed joints alone), with the acceleration that the sub-step gave their common body:
+/// A contact, and a joint that moves, are rows of ODE, which reports the force of each row on demand. A fixed
+/// joint is no joint to ODE: what it joins is one body. Its load follows from Newton and Euler over the links
+/// behind it (those that hang on the child by fixed joints alone), with the acceleration that the sub-step
+/// gave their common body:
 ///
 ///   force  = sum m (a - g) - contacts - loads of the moving joints that end there - wrenches from outside
 ///   torque = the moments of the same about J's origin + sum (I dw/dt + w x I w)
 ///
-/// That is exact for a tree, and the motion is the same whether or not somebody measures; cutting the body in two with
-/// ODE's soft fixed joint would be neither. In a ring of fixed joints the load is not determined: all of the ring lies
-/// behind the joint. What ends on the world at both sides, without motion, is statics by the same sums.
+/// That is exact for a tree, and the motion is the same whether or not somebody measures; cutting the body in
+/// two with ODE's soft fixed joint would be neither. In a ring of fixed joints the load is not determined:
+/// all of the ring lies behind the joint. What ends on the world at both sides, without motion, is statics by
+/// the same sums.
 #include "base/check.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/ode_vector.h"

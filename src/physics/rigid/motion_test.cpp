@@ -91,8 +91,8 @@ TEST(RigidMotion, AForceOnALinkOfARigidGroupActsThere) {
 }
 
 TEST(RigidMotion, WhereTheDirectSolverGivesUpNothingJumps) {
-  // Box against box, both aligned: with ODE 0.16.2 the direct solver fails here in some sub-steps. Left at that, the box
-  // would lose its friction and start with 5 cm/s.
+  // Box against box, both aligned: with ODE 0.16.2 the direct solver fails here in some sub-steps. Left at
+  // that, the box would lose its friction and start with 5 cm/s.
   Rigid world;
   world.add(ground());
   model::Surface rough, smooth;
@@ -135,7 +135,8 @@ TEST_P(Slope, ABoxSticksBelowTheFrictionAngleAndSlidesAboveIt) {
     Rigid world({}, slope(angle, direction));
     model::Surface surface;
     surface.mu = surface.mu2 = mu;
-    // A little deep, so that all corners touch from the start. Made before the ground or after it: either shape may be the first of the pair.
+    // A little deep, so that all corners touch from the start. Made before the ground or after it: either
+    // shape may be the first of the pair.
     if (share < 1.2) world.add(ground(surface));
     const InstanceId id = world.add(
         body_of("box", Box{{0.2, 0.2, 0.1}}, 1, {{0, 0, 0.05 - 1e-7}, {}}, surface, true));
@@ -151,12 +152,13 @@ TEST_P(Slope, ABoxSticksBelowTheFrictionAngleAndSlidesAboveIt) {
     const Vec3 p = world.state(id).X_WB.p;
     const auto [sd, cd] = math::sincos(direction);
     if (share < 1) {
-      // Held by friction it creeps with CFM * force: at most 1e-6 * 4.4 N / 4 contact points, plus the settling.
+      // Held by friction it creeps with CFM * force: at most 1e-6 * 4.4 N / 4 contact points, plus the
+      // settling.
       EXPECT_LT(norm(v.linear), 2e-6) << share;
       EXPECT_LT(std::sqrt(p.x * p.x + p.y * p.y), 2e-6) << share;
     } else {
-      // v = g (sin a - mu cos a) t, all of it down the slope. The box sinks in by CFM * N * h / ERP = 2.5e-7 m first;
-      // the impulse of that changes the normal force, and mu of it shows: below 1e-4 m/s.
+      // v = g (sin a - mu cos a) t, all of it down the slope. The box sinks in by CFM * N * h / ERP = 2.5e-7
+      // m first; the impulse of that changes the normal force, and mu of it shows: below 1e-4 m/s.
       const auto [s, c] = math::sincos(angle);
       EXPECT_NEAR(v.linear.x * cd + v.linear.y * sd, g * (s - mu * c), 1e-4) << share;
       EXPECT_NEAR(-v.linear.x * sd + v.linear.y * cd, 0, 1e-4) << share;
@@ -185,8 +187,8 @@ TEST(RigidMotion, SymmetricContactsDoNotEndTheDirectSolver) {
 }
 
 TEST(RigidMotion, APushThroughAnotherBodyMeetsTheSameThreshold) {
-  // A slippery pusher presses a rough box diagonally: the way in which friction must hold is known to the solver only.
-  // 0.98 of the limit holds, 1.02 moves; ODE's own friction box would hold up to 1.41.
+  // A slippery pusher presses a rough box diagonally: the way in which friction must hold is known to the
+  // solver only. 0.98 of the limit holds, 1.02 moves; ODE's own friction box would hold up to 1.41.
   for (const double share : {0.98, 1.02}) {
     Rigid world;
     world.add(ground());
@@ -204,7 +206,8 @@ TEST(RigidMotion, APushThroughAnotherBodyMeetsTheSameThreshold) {
       world.run(1, 0.005);
     }
     const Vec3 p = world.state(box).X_WB.p;
-    // Creep as above; or 0.02 mu g accelerating 2 kg for one second: 0.025 m, give or take the first sub-steps.
+    // Creep as above; or 0.02 mu g accelerating 2 kg for one second: 0.025 m, give or take the first
+    // sub-steps.
     EXPECT_NEAR(norm(Vec3{p.x, p.y, 0}), share < 1 ? 0 : 0.5 * 0.02 * 0.5 * g / 2, share < 1 ? 1e-5 : 5e-4);
   }
 }
@@ -254,11 +257,12 @@ TEST(RigidMotion, ABallBouncesToItsRestitution) {
     if (v > 0.3 * -before && before < 0) in.push_back(-before), out.push_back(v);
     before = v;
   }
-  // Impacts at 3.1, 1.9, 1.1, 0.67 m/s; then 0.40 is below the threshold and ends the bouncing (what comes out of the
-  // ground then has at most ERP * depth / h, a fifth of the speed).
+  // Impacts at 3.1, 1.9, 1.1, 0.67 m/s; then 0.40 is below the threshold and ends the bouncing (what comes
+  // out of the ground then has at most ERP * depth / h, a fifth of the speed).
   ASSERT_EQ(out.size(), 4u);
   for (std::size_t i = 0; i < in.size(); ++i) {
-    // The solver aims at e times the velocity of the step before; compliance yields CFM * m ((1 + e) v / h + g).
+    // The solver aims at e times the velocity of the step before; compliance yields CFM * m ((1 + e) v / h +
+    // g).
     EXPECT_LE(out[i], e * in[i] + 1e-12);
     EXPECT_GE(out[i], e * in[i] - 1.001 * 1e-6 * mass * ((1 + e) * in[i] / h + g));
   }
@@ -300,8 +304,9 @@ TEST(RigidMotion, APendulumKeepsItsPeriod) {
   }
   ASSERT_GE(crossings.size(), 10u);
   const double measured = (crossings[9] - crossings[0]) / 9;
-  // Semi-implicit Euler shifts the period by (w h)^2 / 24 = 8e-7 of it; the joint's compliance lengthens the rod by CFM *
-  // force / ERP * h, less still. What the solver loses in amplitude (bounded below) acts through a^2 / 16.
+  // Semi-implicit Euler shifts the period by (w h)^2 / 24 = 8e-7 of it; the joint's compliance lengthens the
+  // rod by CFM * force / ERP * h, less still. What the solver loses in amplitude (bounded below) acts through
+  // a^2 / 16.
   EXPECT_NEAR(measured, period, 2e-4 * period);
   EXPECT_NEAR(largest, amplitude, 0.01 * amplitude);
   EXPECT_NEAR(norm(world.state(id).X_WB.p - Vec3{0, 0, 2}), 0, 1e-4);
@@ -329,8 +334,9 @@ model::Model skid_robot(double length, double width, double radius) {
 
 TEST(RigidMotion, ASkidSteeredRobotTurnsAsIsotropicFrictionSays) {
   const double length = 0.4, width = 0.5, radius = 0.1, rim = 0.5;
-  // Wheel i at (x, y) slips with (s rim - w (-y) .., w x): in place, by symmetry, all four slip at the same speed, so the
-  // friction moments balance where sum x (w x) + (W/2) (w W/2 - rim) = 0: w = 2 rim W / (L^2 + W^2) = 1.2195 rad/s.
+  // Wheel i at (x, y) slips with (s rim - w (-y) .., w x): in place, by symmetry, all four slip at the same
+  // speed, so the friction moments balance where sum x (w x) + (W/2) (w W/2 - rim) = 0: w = 2 rim W / (L^2 +
+  // W^2) = 1.2195 rad/s.
   const double theory = 2 * rim * width / (length * length + width * width);
   for (const double h : {0.001, 0.004})
     for (const char* solver : {"direct", "quick"}) {

@@ -86,7 +86,8 @@ struct Joint {
   dJointID second = nullptr;      ///< the same rows about the second axis of a universal joint
   const Joint* leader = nullptr;  ///< whom it follows (mimic)
   std::unique_ptr<dJointFeedback> feedback;
-  /// Feedback of main, motor, extra, second and the rows that live for one sub-step; made when the joint is watched first.
+  /// Feedback of main, motor, extra, second and the rows that live for one sub-step; made when the joint is
+  /// watched first.
   std::unique_ptr<std::array<dJointFeedback, 6>> watched_rows;
   bool limited = false;
   bool soft_motor = false;  ///< the motor's row has a compliance of its own now; follows from the target
@@ -138,7 +139,8 @@ struct Wheel {
   std::vector<Vec3> touched_B;  ///< scratch of one sub-step: unit, across the axis
 };
 
-/// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed to.
+/// One model in the world. Its vectors never grow after add(), so that Geom, Body and Joint can be pointed
+/// to.
 struct Instance {
   InstanceId id;
   std::string name;

@@ -16,8 +16,8 @@ void RigidEngine::put(Body& body) {
   put_orientation(body);
 }
 
-/// ODE normalises the orientation once more, so this must happen in every sub-step, restored or not, for both to compute
-/// with the same bits. The other quantities ODE holds as they are.
+/// ODE normalises the orientation once more, so this must happen in every sub-step, restored or not, for both
+/// to compute with the same bits. The other quantities ODE holds as they are.
 void RigidEngine::put_orientation(Body& body) {
   const dQuaternion q = {body.q.w, body.q.x, body.q.y, body.q.z};
   dBodySetQuaternion(body.ode, q);

@@ -1,5 +1,5 @@
-/// A restored engine continues with the same bits: piles, joints, drives, sleepers, with both solvers and with bodies
-/// that came and went.
+/// A restored engine continues with the same bits: piles, joints, drives, sleepers, with both solvers and
+/// with bodies that came and went.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -197,8 +197,9 @@ TEST(RigidRestore, SleepersContinueToSleepAndWakeAlike) {
 }
 
 TEST(RigidRestore, TheChoiceOfTheSolverIsRememberedWhereItMatters) {
-  // A plate on balls has two contact points per ball. With 10 balls there are 20, solved quickly because that is above
-  // 16; once quick, an island stays so down to 13. With 8 balls the choice therefore depends on what was before.
+  // A plate on balls has two contact points per ball. With 10 balls there are 20, solved quickly because that
+  // is above 16; once quick, an island stays so down to 13. With 8 balls the choice therefore depends on what
+  // was before.
   const auto drew = [](Recorded& world) {
     const std::uint64_t before = library::counts().draws;
     world.run(1);

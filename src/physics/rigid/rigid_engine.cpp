@@ -38,8 +38,8 @@ RigidEngine::~RigidEngine() {
   for (Instance* instance : order_) destroy(*instance);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
-  // A step that ODE broke off leaves jobs behind, and ODE insists that there are none: its complaint, thrown out of a
-  // destructor, would end the process. The few bytes are not worth that.
+  // A step that ODE broke off leaves jobs behind, and ODE insists that there are none: its complaint, thrown
+  // out of a destructor, would end the process. The few bytes are not worth that.
   if (fault_.empty()) dThreadingFreeImplementation(threading_);
   else library::abandon(threading_);
 }
@@ -84,7 +84,8 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
             remedy});
       return;
     }
-    // At the link's own centre of mass, which is not the body's where fixed joints make several links one body.
+    // At the link's own centre of mass, which is not the body's where fixed joints make several links one
+    // body.
     const Vec3 com_L = slot.instance->model->links[slot.link].inertial.X_LCo.p;
     const Vec3 arm = rotate(body->q, slot.instance->links[slot.link].X_BL * com_L);
     body->force_N += wrench.force_N;
@@ -145,7 +146,8 @@ void RigidEngine::set_gyroscopic(Instance& instance) {
 
 Status RigidEngine::check_finite() const { return failure_ ? Status(*failure_) : Status(); }
 
-/// The run is over. What was to act in this sub-step is forgotten, so that the State can be saved and looked at.
+/// The run is over. What was to act in this sub-step is forgotten, so that the State can be saved and looked
+/// at.
 void RigidEngine::fail(Error error) {
   if (failure_) return;
   failure_ = std::move(error);

@@ -2,17 +2,20 @@
 /// Rigid bodies in three dimensions, on the Open Dynamics Engine (double precision).
 ///
 /// Frame    W: z up where gravity points down; everything in SI.
-/// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation advances by the
-///          exact rotation of the new angular velocity, spin about the own joint axis first.
-/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see cylinder_contacts.h; meshes,
+/// Time     semi-implicit Euler: velocities first, then positions with the new velocities. Orientation
+///          advances by the exact rotation of the new angular velocity, spin about the own joint axis first.
+/// Contacts spheres, boxes, cylinders, capsules, planes; cylinders against cylinders and capsules: see
+/// cylinder_contacts.h; meshes,
 ///          terrain, cones and ellipsoids: see triangles.h; barrels: see barrel_contacts.h.
 /// Wheels   with rollers: see wheels.h.
-/// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in save(). Every
-///          sub-step builds what ODE needs from that State, so that a restored run continues with the same bits.
+/// State    positions, velocities, joint angles, motors, drives, sleep and solver choice, all of it in
+///          save(). Every sub-step builds what ODE needs from that State, so that a restored run continues
+///          with the same bits.
 /// Limits   planes and terrain are static; no continuous collision: a body faster than its
 ///          size per sub-step passes through walls. Limits and motors act with ODE's compliance.
 /// Cost     direct solver cubic, quick solver linear in the contacts of an island.
-/// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite() reports.
+/// Errors   add() names the link or joint that cannot be expressed; step() never fails, check_finite()
+///          reports.
 /// Source   R. Smith, Open Dynamics Engine 0.16.2; settings: docs of the fields in spec.h.
 #include <ode/ode.h>
 

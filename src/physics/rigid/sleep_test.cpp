@@ -20,7 +20,8 @@ struct Tower : World {
 
 TEST(RigidSleep, AnIslandSleepsAfterItsTimeAndCostsNoContacts) {
   Tower world(Settings{{"sleep_time", "0.3"}});
-  // Rests from the first sub-steps on: 30 of them make 0.3 s, one more begins without it. Settling takes a few.
+  // Rests from the first sub-steps on: 30 of them make 0.3 s, one more begins without it. Settling takes a
+  // few.
   world.run(30);
   EXPECT_EQ(world.awake(), 3u);
   EXPECT_GE(world.engine->contacts().size(), 12u);

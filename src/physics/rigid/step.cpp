@@ -1,5 +1,5 @@
-/// The sub-step. Between sub-steps the State is in Body, Joint and Instance alone; ODE gets what it needs from there,
-/// so nothing that a restored engine could not know takes part:
+/// The sub-step. Between sub-steps the State is in Body, Joint and Instance alone; ODE gets what it needs
+/// from there, so nothing that a restored engine could not know takes part:
 ///
 ///   1 forces      from outside, of joints and drives, into ODE; orientations written again
 ///   2 contacts    found, put in order of creation, attached
@@ -27,8 +27,8 @@ namespace {
 inline Quat rotation(Vec3 turn) {
   const double x = 0.25 * dot(turn, turn);  // square of the half angle
   if (x < 0.01) {
-    // The series of cos and of sin(a)/a to a^10: below a = 0.1 their error is under 1e-20. Cheaper than a sine, and
-    // multiplied out because a division costs as much as four products.
+    // The series of cos and of sin(a)/a to a^10: below a = 0.1 their error is under 1e-20. Cheaper than a
+    // sine, and multiplied out because a division costs as much as four products.
     const double c = 1 + x * (-1.0 / 2 +
                               x * (1.0 / 24 + x * (-1.0 / 720 + x * (1.0 / 40320 + x * (-1.0 / 3628800)))));
     const double s = 1 + x * (-1.0 / 6 + x * (1.0 / 120 + x * (-1.0 / 5040 +
@@ -47,8 +47,8 @@ inline Quat trimmed(Quat q) {
   return {s * q.w, s * q.x, s * q.y, s * q.z};
 }
 
-/// Orientation after h seconds at angular velocity w. Spin about the body's own joint axis comes first, the rest turns
-/// the result: a fast wheel on a turning robot thus keeps its axis where the robot holds it.
+/// Orientation after h seconds at angular velocity w. Spin about the body's own joint axis comes first, the
+/// rest turns the result: a fast wheel on a turning robot thus keeps its axis where the robot holds it.
 inline Quat turned(Quat q, Vec3 w, Vec3 spin_axis_B, double h) {
   if (spin_axis_B == Vec3{}) return trimmed(rotation(h * w) * q);
   const Vec3 axis = rotate(q, spin_axis_B);
@@ -120,7 +120,8 @@ void RigidEngine::push_forces(double h) {
   }
 }
 
-/// Rails push every body of the instance; who measures loads takes what they do to the base's body as done to the base.
+/// Rails push every body of the instance; who measures loads takes what they do to the base's body as done to
+/// the base.
 void RigidEngine::drive(Instance& instance, double h) {
   const Body* const base = instance.links[instance.drive_link].body;
   const Vec3 force = base ? base->force_N : Vec3{}, torque = base ? base->torque_Nm : Vec3{};
@@ -215,8 +216,9 @@ void RigidEngine::enable(Choose&& choose) {
     }
 }
 
-/// The direct solver gave up on some island, which leaves that one without most of its friction. Every island is tried
-/// by itself, with the same result where it had one, and what fails is solved quickly for this sub-step.
+/// The direct solver gave up on some island, which leaves that one without most of its friction. Every island
+/// is tried by itself, with the same result where it had one, and what fails is solved quickly for this
+/// sub-step.
 void RigidEngine::solve_again(double h) {
   const auto reset = [&](std::uint32_t island) {
     for (Instance* instance : order_)
@@ -253,8 +255,8 @@ std::string RigidEngine::fastest_body() const {
   return fastest;
 }
 
-/// Looks at what ODE has computed before anything takes it over: a body that has no finite state any more, or is faster
-/// than any should be, ends the run with the State of before. The worst is named.
+/// Looks at what ODE has computed before anything takes it over: a body that has no finite state any more, or
+/// is faster than any should be, ends the run with the State of before. The worst is named.
 bool RigidEngine::nobody_exploded() {
   const Body* worst = nullptr;
   double worst_excess = 1, speed = 0, spin = 0;

@@ -1,5 +1,5 @@
-/// Surfaces against formulas: substances, belts, skins, resistance against rolling, zones, the user's rule; and
-/// bodies that explode.
+/// Surfaces against formulas: substances, belts, skins, resistance against rolling, zones, the user's rule;
+/// and bodies that explode.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -88,7 +88,8 @@ TEST(Matter, ABallRestsWeightOverStiffnessDeep) {
 }
 
 TEST(Matter, ABallBouncesAsTheSpringAndDamperOfItsContact) {
-  // The reference is the same spring integrated by hand: v' = v + h (f / m - g), f = max(0, kp (d - h v') - kd v').
+  // The reference is the same spring integrated by hand: v' = v + h (f / m - g), f = max(0, kp (d - h v') -
+  // kd v').
   const double mass = 0.3, kp = 100 * 40 * 200 / 240.0, kd = 50 * (0.5 * 200 + 0.2 * 40) / 240;
   Rigid world;
   world.add(ground(of("plastic")));
@@ -113,8 +114,9 @@ TEST(Matter, HowFastItBouncesOffIsTheClosedFormOfASpringThatDoesNotPull) {
   const InstanceId id = world.add(body_of("ball", Sphere{0.1}, mass, {{0, 0, 0.1}, {}}, of("metal(0.5)")));
   world.push(id, {0, 0, -1 / step});
   world.run(5000, step);
-  // Two metals: kp 10000 N/m; kd 10 N s/m, to which the implicit step adds kp h. With b = kd / 2m and w^2 = kp / m - b^2
-  // the force ends before the depth does: e = exp(-b/w (pi - atan2(2 b w, w^2 - b^2))) (Schwager and Poschel 2007).
+  // Two metals: kp 10000 N/m; kd 10 N s/m, to which the implicit step adds kp h. With b = kd / 2m and w^2 =
+  // kp / m - b^2 the force ends before the depth does: e = exp(-b/w (pi - atan2(2 b w, w^2 - b^2))) (Schwager
+  // and Poschel 2007).
   const double b = (10 + 1e4 * step) / 2, w = std::sqrt(1e4 - b * b);
   const double e = math::exp(-b / w * (math::pi - math::atan2(2 * b * w, w * w - b * b)));
   EXPECT_NEAR(world.state(id).V_WB.linear.z, e, 1e-3);
@@ -261,8 +263,9 @@ TEST(Matter, AZoneHoldsFromItsBorderOn) {
   world.run(800, h);
   const double x = world.state(id).X_WB.p.x, v = world.state(id).V_WB.linear.x;
   ASSERT_GT(x, 1);
-  // The two front corners cross before the two others, each with its half of the weight: the middle counts. A step of
-  // h more or less of carpet is 0.6 g h = 0.006 m/s, and the load shifts between the corners while they differ.
+  // The two front corners cross before the two others, each with its half of the weight: the middle counts. A
+  // step of h more or less of carpet is 0.6 g h = 0.006 m/s, and the load shifts between the corners while
+  // they differ.
   EXPECT_NEAR(v, std::sqrt(9 - 2 * g * (0.6 * 0.5 + 0.05 * (x - 0.5))), 0.01);
   EXPECT_GT(world.state(rider).V_WB.linear.x - world.state(cart).V_WB.linear.x, 0.9);
   EXPECT_NEAR(world.state(carried).V_WB.linear.y, 0.4, 1e-6);

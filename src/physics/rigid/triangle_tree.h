@@ -1,5 +1,6 @@
 #pragma once
-/// Tree of the bounding boxes of a mesh's triangles, to find those in a box; double precision, in the mesh's own frame.
+/// Tree of the bounding boxes of a mesh's triangles, to find those in a box; double precision, in the mesh's
+/// own frame.
 #include <cstdint>
 #include <vector>
 
@@ -12,8 +13,8 @@ class TriangleTree {
   /// @pre the mesh outlives the tree
   explicit TriangleTree(const TriangleMesh& mesh);
 
-  /// Calls each(a, b, c) for every triangle whose bounding box meets that of low and high, its front facing out of the
-  /// solid; in an order that depends on the mesh alone.
+  /// Calls each(a, b, c) for every triangle whose bounding box meets that of low and high, its front facing
+  /// out of the solid; in an order that depends on the mesh alone.
   template <class Each>
   void visit(Vec3 low, Vec3 high, Each&& each) const {
     for (std::size_t n = 0; n < nodes_.size();) {

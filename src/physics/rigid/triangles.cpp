@@ -24,8 +24,8 @@ bool is_of_triangles(const Shape& shape) {
 
 Triangles::Triangles(const Shape& shape) {
   if (const auto* field = std::get_if<Heightfield>(&shape)) {
-    // A quarter turn about x takes ODE's (x, y up, z) to (x, -z, y up): its rows run along -y, ours along +y. That also
-    // turns ODE's diagonals into those of HeightGrid.
+    // A quarter turn about x takes ODE's (x, y up, z) to (x, -z, y up): its rows run along -y, ours along +y.
+    // That also turns ODE's diagonals into those of HeightGrid.
     const HeightGrid& g = *field->grid;
     const double r = std::sqrt(0.5);
     q_CO_ = {r, r, 0, 0};

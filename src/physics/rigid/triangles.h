@@ -3,13 +3,15 @@
 ///
 /// Mesh       ODE's trimesh on the mesh's own arrays; one tree for all shapes of a mesh.
 /// Terrain    ODE's height field; the same diagonals as HeightGrid. Static only.
-/// Cone       trimesh of 64 segments: the surface lies up to 0.12 % of the radius inside; exact against planes.
+/// Cone       trimesh of 64 segments: the surface lies up to 0.12 % of the radius inside; exact against
+///            planes.
 /// Ellipsoid  trimesh of 48 segments: up to 0.22 % of the radius inside; exact against planes.
-/// Contacts   ODE's points, of which duplicates are dropped and, where there are more than `max_contacts`, the deepest
-///            is kept and then those farthest from the ones kept (in place and normal), in ODE's order.
-/// Limits     triangles are a skin: what sinks deeper than its own half, or is thinner than its path in a sub-step,
-///            comes out on either side. Triangles against triangles: see mesh_contacts.h. ODE searches trees in single
-///            precision: keep a mesh and its place within some kilometres.
+/// Contacts   ODE's points, of which duplicates are dropped and, where there are more than `max_contacts`,
+///            the deepest is kept and then those farthest from the ones kept (in place and normal), in ODE's
+///            order.
+/// Limits     triangles are a skin: what sinks deeper than its own half, or is thinner than its path in a
+///            sub-step, comes out on either side. Triangles against triangles: see mesh_contacts.h. ODE
+///            searches trees in single precision: keep a mesh and its place within some kilometres.
 /// Cost       building: 1 us per triangle, once per mesh and engine.
 #include <ode/ode.h>
 

@@ -67,8 +67,9 @@ std::vector<Mount> mecanum_mounts() {
   return mounts;
 }
 
-/// What the wheel must turn at so that the base moves at (vx, vy) and turns at wz: the point of the wheel on the ground
-/// rests along the axis of the roller there. With a the wheel's axis, d = cos(angle) a + sin(angle) (-z x a):
+/// What the wheel must turn at so that the base moves at (vx, vy) and turns at wz: the point of the wheel on
+/// the ground rests along the axis of the roller there. With a the wheel's axis, d = cos(angle) a +
+/// sin(angle) (-z x a):
 ///   (v + wz z x r) . d = w R (a x z) . d
 double wheel_speed(const Mount& m, double vx, double vy, double wz) {
   const Vec3 z{0, 0, 1}, v = Vec3{vx, vy, 0} + cross(wz * z, m.at);
@@ -133,10 +134,11 @@ struct Case {
 };
 class Drives : public testing::TestWithParam<Case> {};
 
-/// The tolerances on rollers are those of the project's budget P4. A Mecanum wheel is slower than the closed form but for
-/// straight ahead: with its middle p off the lowest point of the wheel a roller's axis is no longer level, and seen from
-/// above it lies along (sin a cos p, cos a), so that the speed across is that of the closed form times cos p. Over all p
-/// within half a pitch of 9 rollers (20 deg) that is 2 % less in the mean; which wheel gives way decides friction.
+/// The tolerances on rollers are those of the project's budget P4. A Mecanum wheel is slower than the closed
+/// form but for straight ahead: with its middle p off the lowest point of the wheel a roller's axis is no
+/// longer level, and seen from above it lies along (sin a cos p, cos a), so that the speed across is that of
+/// the closed form times cos p. Over all p within half a pitch of 9 rollers (20 deg) that is 2 % less in the
+/// mean; which wheel gives way decides friction.
 TEST_P(Drives, MoveAsTheClosedFormSays) {
   const Case& c = GetParam();
   const auto mounts = c.mecanum ? mecanum_mounts() : omni_mounts();
@@ -176,8 +178,8 @@ struct Floor {
 };
 class OnGround : public testing::TestWithParam<int> {};
 
-/// The same robot on four kinds of ground that lean by 0.2 rad about y, so that it climbs. Free rollers point down the
-/// slope for one of the wheels only, so the motors hold it; its speed is that on level ground.
+/// The same robot on four kinds of ground that lean by 0.2 rad about y, so that it climbs. Free rollers point
+/// down the slope for one of the wheels only, so the motors hold it; its speed is that on level ground.
 TEST_P(OnGround, AnOmniRobotClimbsASlope) {
   const double lean = 0.2;
   const Quat q = quat_from_rpy(0, -lean, 0);
@@ -199,7 +201,8 @@ TEST_P(OnGround, AnOmniRobotClimbsASlope) {
     const Pose from = rig.state(rig.robot).X_WB;  // its heading slipped while it started
     rig.run_s(0.5);
     const Vec3 moved = rotate_inverse(from.q, rig.state(rig.robot).X_WB.p - from.p);
-    // Friction creeps by 100 CFM per newton of the weight's part along the slope: 1e-6 * 23 N and rollers' slip below.
+    // Friction creeps by 100 CFM per newton of the weight's part along the slope: 1e-6 * 23 N and rollers'
+    // slip below.
     EXPECT_NEAR(moved.x, 0.2, 0.004) << on_rollers;
     EXPECT_NEAR(moved.y, 0, 0.004) << on_rollers;
     EXPECT_NEAR(moved.z, 0, 5e-4) << on_rollers;
@@ -246,8 +249,8 @@ TEST(Wheels, RollersRollOnAWallAsOnTheGround) {
     rig.push(rig.robot, {20, 5, 0});
     rig.run(1, 1e-3);
   }
-  // Rollers that turn without slip weigh half of theirs more (I / r^2), two or so of 10 g; pushed at the base the robot
-  // yaws a little, as its wheels lie before it.
+  // Rollers that turn without slip weigh half of theirs more (I / r^2), two or so of 10 g; pushed at the base
+  // the robot yaws a little, as its wheels lie before it.
   const double mass = 10 + 2 * 0.3 + 20 * 0.01;
   const BodyState& s = rig.state(rig.robot);
   EXPECT_NEAR(s.V_WB.linear.y, 5 * 0.2 / mass, 0.05 * 5 * 0.2 / mass);
@@ -301,7 +304,8 @@ TEST(Wheels, KeepMomentumWhenRollersWakeAndFreeze) {
                        rotate(s.X_WB.q, {i.x * w.x, i.y * w.y, i.z * w.z});
     }
   }
-  // What rollers and wheels moved against each other by the compliance of their hinges is gone: 1e-5 of the whole.
+  // What rollers and wheels moved against each other by the compliance of their hinges is gone: 1e-5 of the
+  // whole.
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(after[k], before[k], 1e-4 * norm(before));
     EXPECT_NEAR(after_angular[k], before_angular[k], 2e-3 * norm(before_angular));

@@ -2,9 +2,10 @@
 /// Camera that draws boxes around the things it sees.
 ///
 /// Frame, lens   as camera.
-/// Output   <device>/boxes: vision_msgs/Detection2DArray, one detection per thing of which at least min_pixels are seen, in the order
-///          of their creation: class_id its label, score 1, id its name, bbox in pixels around the part that is seen (its edges lie
-///          on edges of pixels, (0, 0) being the centre of the upper left one). <device>/camera_info.
+/// Output   <device>/boxes: vision_msgs/Detection2DArray, one detection per thing of which at least
+///          min_pixels are seen, in the order of their creation: class_id its label, score 1, id its name,
+///          bbox in pixels around the part that is seen (its edges lie on edges of pixels, (0, 0) being the
+///          centre of the upper left one). <device>/camera_info.
 /// Noise    none: this is truth, for training and comparing.
 /// Limits   boxes of what is seen, not of what is hidden; no 3D boxes.
 /// Cost     one ray per pixel.

@@ -2,12 +2,13 @@
 /// Colour sensor: the colour of the surface right before it.
 ///
 /// Frame    sensor frame S: it looks along x, through a square cone of `fov`.
-/// Output   level `color`: std_msgs/ColorRGBA, red, green and blue 0..1 in steps of 1/255, a = 1; all 0, a too, when nothing
-///          lies within `range`.
-/// Lamp     with its own lamp (the default), which drowns all other light, it sees the surface's own colour; without, the
-///          light that the surface sends back, shadows of its robot included.
+/// Output   level `color`: std_msgs/ColorRGBA, red, green and blue 0..1 in steps of 1/255, a = 1; all 0, a
+///          too, when nothing lies within `range`.
+/// Lamp     with its own lamp (the default), which drowns all other light, it sees the surface's own colour;
+///          without, the light that the surface sends back, shadows of its robot included.
 /// Time     the end of the tick.
-/// Noise    a chain of stages (noise/chain.h) on red, green and blue; then cut to 0..1. None while nothing is there.
+/// Noise    a chain of stages (noise/chain.h) on red, green and blue; then cut to 0..1. None while nothing is
+///          there.
 /// Housing  the link that carries it is not seen.
 /// Limits   the mean of `samples` rays, not of the whole cone; no gloss, no fall-off with the distance.
 /// Cost     one pixel of `samples` rays and one of depth.

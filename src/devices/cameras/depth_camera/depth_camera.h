@@ -2,8 +2,10 @@
 /// Depth camera: the distance of every pixel, and the points they are.
 ///
 /// Frame, lens   as camera. Depth and points: devices/cameras/depth_image.h; noise: noise/depth_noise.h.
-/// Output   <device>/depth: Image; <device>/camera_info; with `points: true` <device>/points: PointCloud2, organised.
-/// Limits   no projector: nothing depends on material, light or the second eye of a real one but through the noise.
+/// Output   <device>/depth: Image; <device>/camera_info; with `points: true` <device>/points: PointCloud2,
+///          organised.
+/// Limits   no projector: nothing depends on material, light or the second eye of a real one but through the
+///          noise.
 /// Cost     one ray per pixel. No allocation after the first picture.
 /// Source   ROS REP 118.
 #include "devices/cameras/depth_image.h"

@@ -2,14 +2,15 @@
 /// Ground sensor: how bright the floor is below a few spots, for following lines and telling zones.
 ///
 /// Frame    sensor frame S: x forward, y left, z up. Spot i looks down, along -z, from (x, y, 0) of `spots`.
-/// Output   level `reflectance`: std_msgs/Float32MultiArray, one value per spot in the order of `spots`: 0 black, 1 white, in
-///          steps of 1/255; 0 where nothing lies within `range`, from where no light comes back. Red, green and blue
-///          count with 0.2126, 0.7152, 0.0722. Each spot has its own lamp: it sees the floor's own colour, whatever light
-///          and shadow there is.
+/// Output   level `reflectance`: std_msgs/Float32MultiArray, one value per spot in the order of `spots`: 0
+///          black, 1 white, in steps of 1/255; 0 where nothing lies within `range`, from where no light comes
+///          back. Red, green and blue count with 0.2126, 0.7152, 0.0722. Each spot has its own lamp: it sees
+///          the floor's own colour, whatever light and shadow there is.
 /// Time     the end of the tick.
 /// Noise    a chain of stages (noise/chain.h) on all spots at once; then cut to 0..1.
 /// Housing  the link that carries it is not seen.
-/// Limits   infra-red sensors weigh colours in other ways; no fall-off with the height, no light from elsewhere.
+/// Limits   infra-red sensors weigh colours in other ways; no fall-off with the height, no light from
+///          elsewhere.
 /// Cost     one pixel of `samples` rays and one of depth per spot.
 /// Errors   a bad spec: place and path of the key.
 #include "devices/kind.h"

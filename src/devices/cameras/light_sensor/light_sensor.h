@@ -4,14 +4,15 @@
 ///   E = lux (ambient + sum of the lights: max(0, n.l) colour / attenuation, where no shadow lies)
 ///
 /// Frame    sensor frame S: it faces along x and sees the half space before it, with the cosine.
-/// Output   level `illuminance`: sensor_msgs/Illuminance [lx]. Red, green and blue count with 0.2126, 0.7152, 0.0722, as the
-///          eye weighs them. World files give light without a unit: `lux` is the illuminance that light of strength 1, falling
-///          straight on it, is worth.
+/// Output   level `illuminance`: sensor_msgs/Illuminance [lx]. Red, green and blue count with 0.2126, 0.7152,
+///          0.0722, as the eye weighs them. World files give light without a unit: `lux` is the illuminance
+///          that light of strength 1, falling straight on it, is worth.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h; never below 0.
-/// Limits   direct light and the world's ambient alone, nothing reflected or emitted by surfaces. Visuals throw shadows, its own
-///          robot's too, but the link that carries the sensor does so only with `own_shadow`: it is its housing, which light
-///          comes through a window of. Lights with cast_shadows off shine through all.
+/// Limits   direct light and the world's ambient alone, nothing reflected or emitted by surfaces. Visuals
+///          throw shadows, its own robot's too, but the link that carries the sensor does so only with
+///          `own_shadow`: it is its housing, which light comes through a window of. Lights with cast_shadows
+///          off shine through all.
 /// Cost     one shadow ray per light, no allocation by this kind.
 /// Errors   a bad spec: place and path of the key.
 /// Source   J. H. Lambert's cosine law; ITU-R BT.709 (weights); attenuation as in pictures: optics/shade.h.

@@ -2,13 +2,14 @@
 /// Line camera: one row of pixels, such as a linear sensor array for following lines.
 ///
 /// Frame    sensor frame S: it looks along x, through a pinhole; the first pixel is the leftmost one (y).
-/// Output   level `image`: sensor_msgs/Image of one row, mono8 (red, green and blue count with 0.2126, 0.7152, 0.0722) or
-///          rgb8. Frame: S itself, not an optical frame.
+/// Output   level `image`: sensor_msgs/Image of one row, mono8 (red, green and blue count with 0.2126,
+///          0.7152, 0.0722) or rgb8. Frame: S itself, not an optical frame.
 /// Time     all pixels at the end of the tick.
-/// Noise    a chain of stages (noise/chain.h) on all values at once, U = 1/255 (mono8: pixels; rgb8: their channels, too); then
-///          rounded and cut to 0..255.
+/// Noise    a chain of stages (noise/chain.h) on all values at once, U = 1/255 (mono8: pixels; rgb8: their
+///          channels, too); then rounded and cut to 0..255.
 /// Housing  the link that carries it is not seen.
-/// Limits   a pinhole without distortion; no motion blur. Pixels are square: `fov` across and fov / pixels along the line.
+/// Limits   a pinhole without distortion; no motion blur. Pixels are square: `fov` across and fov / pixels
+///          along the line.
 /// Cost     `pixels` times `samples` rays and the shadow rays of the lights.
 /// Errors   a bad spec: place and path of the key.
 #include "devices/kind.h"

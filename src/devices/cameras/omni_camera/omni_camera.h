@@ -1,16 +1,19 @@
 #pragma once
 /// Camera that looks up into a convex mirror and sees all around.
 ///
-/// Frame    sensor frame S: the mirror's focus (of a sphere: its centre), z up along its axis, x what lies upwards in the image. It is seen
-///          mirrored: left of the robot is right in the image. `<device>_optical` (/tf_static): x right and y down in the image, z up
-///          as S's. Image and CameraInfo are stamped with it; D holds a, b and rim.
+/// Frame    sensor frame S: the mirror's focus (of a sphere: its centre), z up along its axis, x what lies
+///          upwards in the image. It is seen mirrored: left of the robot is right in the image.
+///          `<device>_optical` (/tf_static): x right and y down in the image, z up as S's. Image and
+///          CameraInfo are stamped with it; D holds a, b and rim.
 /// Levels   devices/cameras/camera_core.h: `image` | `objects` | `world`.
-/// Mirror   hyperbolic and parabolic ones have a single viewpoint, spherical ones do not: optics/lens.h. Without `focal_length` the
-///          rim fills the height of the image. The default is a VStone's curve, five times as large: horizon at 34 mm of
-///          radius, 18 degrees above it at 50 mm.
+/// Mirror   hyperbolic and parabolic ones have a single viewpoint, spherical ones do not: optics/lens.h.
+///          Without `focal_length` the rim fills the height of the image. The default is a VStone's curve,
+///          five times as large: horizon at 34 mm of radius, 18 degrees above it at 50 mm.
 /// Picture, Cost, Limits   as of camera; the mirror's own shape is not seen.
-/// Errors   mirrors that miss the image, that the camera is inside of, without a size: place and path of the key.
-/// Source   S. Baker, S. K. Nayar (1999); C. Geyer, K. Daniilidis (2000); VStone's a^2 = 233.3, b^2 = 1135.7 mm^2 (literature).
+/// Errors   mirrors that miss the image, that the camera is inside of, without a size: place and path of the
+///          key.
+/// Source   S. Baker, S. K. Nayar (1999); C. Geyer, K. Daniilidis (2000); VStone's a^2 = 233.3, b^2 = 1135.7
+///          mm^2 (literature).
 #include "devices/cameras/camera_core.h"
 
 namespace sandlot::omni_camera {

@@ -1,18 +1,21 @@
 #pragma once
-/// Camera above the field that reports the approximate places of all objects to all robots: the global video camera of robot
-/// soccer's small leagues and of the first simulators of swarms.
+/// Camera above the field that reports the approximate places of all objects to all robots: the global video
+/// camera of robot soccer's small leagues and of the first simulators of swarms.
 ///
 /// Frame    `world`. Its own place does not matter: it sees everything from far above.
-/// Output   level `world`: sandlot_msgs/ObjectPoseArray: name, label, colour and pose of every thing that moves, or of every
-///          thing with `fixed`; those of the labels in `labels` alone, if there are any. In order of creation.
+/// Output   level `world`: sandlot_msgs/ObjectPoseArray: name, label, colour and pose of every thing that
+///          moves, or of every thing with `fixed`; those of the labels in `labels` alone, if there are any.
+///          In order of creation.
 /// Time     the end of the tick.
-/// Noise    x and y: normal, `position_std` each; heading: normal, `yaw_std`; a thing is missed in a sample with the probability
-///          `miss`. All times `errors`. Each thing's errors depend on its name, not on what else is there.
-/// Limits   nothing is hidden, confused or mistaken; the height, roll and pitch are true. No latency: what a robot does with
-///          an old picture is its software's affair.
+/// Noise    x and y: normal, `position_std` each; heading: normal, `yaw_std`; a thing is missed in a sample
+///          with the probability `miss`. All times `errors`. Each thing's errors depend on its name, not on
+///          what else is there.
+/// Limits   nothing is hidden, confused or mistaken; the height, roll and pitch are true. No latency: what a
+///          robot does with an old picture is its software's affair.
 /// Cost     four normals per thing; nothing is drawn and no ray is cast. It drains no robot's energy.
 /// Errors   a bad spec: place and path of the key.
-/// Source   the list of sensors (global video camera) in a simulator for cooperation and competition of mobile robots.
+/// Source   the list of sensors (global video camera) in a simulator for cooperation and competition of
+///          mobile robots.
 #include "devices/kind.h"
 #include "messages/messages.h"
 #include "noise/chain.h"

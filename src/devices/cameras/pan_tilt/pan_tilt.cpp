@@ -106,8 +106,9 @@ std::array<double, 2> zoom_of(const Unit& unit, const Context& context) {
   return {zoom, told && told->count > 0 ? std::clamp(told->message.data, 1.0, unit.longest_zoom) : zoom};
 }
 
-/// Turns both joints so that the eye's x axis comes to the point. In the frame F of the axes (y: tilt, z: pan) the two
-/// angles are azimuth and elevation; the camera moves a little as it turns, so this is done again in every tick.
+/// Turns both joints so that the eye's x axis comes to the point. In the frame F of the axes (y: tilt, z:
+/// pan) the two angles are azimuth and elevation; the camera moves a little as it turns, so this is done
+/// again in every tick.
 void look_at(Unit& unit, Vec3 point_W, const Context& context) {
   const Pose X_WE = eye_pose(unit, context);
   const Vec3 ahead = rotate(X_WE.q, {1, 0, 0});
@@ -125,7 +126,8 @@ void look_at(Unit& unit, Vec3 point_W, const Context& context) {
   // Straight above or below there is no azimuth: pan stays.
   if (std::abs(dot(wanted, z)) > 1 - 1e-9) turn = 0;
   const bool pan = aim(unit.pan, joint_of(unit.pan, context), turn, unit.state.pan);
-  // A turn about y lowers what lies along x and raises what lies behind: with a pan axis that points down, the eye does.
+  // A turn about y lowers what lies along x and raises what lies behind: with a pan axis that points down,
+  // the eye does.
   const double down = dot(ahead, x) < 0 ? -1 : 1;
   const bool tilt = aim(unit.tilt, joint_of(unit.tilt, context),
                         down * (elevation(ahead) - elevation(wanted)), unit.state.tilt);
@@ -192,7 +194,8 @@ void take_text(Unit& unit, const Context& context) {
   state.row = 0;
 }
 
-/// Place of the labelled object, if the camera has a new message; of several objects the one nearest to the last.
+/// Place of the labelled object, if the camera has a new message; of several objects the one nearest to the
+/// last.
 std::optional<Vec3> sighting(Unit& unit, const Context& context) {
   if (unit.objects_topic.empty() || !context.topics) return std::nullopt;
   const auto* const topic = topic_cast<msg::ObjectArray>(context.topics->find_topic(unit.objects_topic));

@@ -1,26 +1,33 @@
 #pragma once
 /// Pan-tilt unit: turns a camera about two joints, or one, to angles, to a point, or after a thing.
 ///
-/// Levels   `joints` (the default): sensor_msgs/JointState; `position` [rad] turns there, else `velocity` [rad/s] goes on turning.
-///          Joints by name; without names pan comes first. `view`: geometry_msgs/PointStamped: look at a point in
-///          `world` (or ""), or in the frame of a link of the own robot ("robot1/base_link"; "robot1": its canonical link).
-///          std_msgs/String: "search ball" scans from limit to limit, one row of `search_tilts` after the other, until the
-///          camera's objects hold a ball, and looks at it; "track ball" keeps it in the middle, and searches when it was
-///          lost for `lost_after`; "stop". Exactly one level is active.
-/// Camera   `camera` names a camera of the robot on the tilted link: its x axis is what is turned to the point, and its level
-///          `objects` must be active for search and track. Without it the child link's x axis is turned.
-/// Zoom     of a camera with a zoom lens (devices/cameras/zoom.h), whose speed and limits hold. std_msgs/Float64 at either level goes on to the
-///          camera. At level `view` the unit zooms by itself where set: to `search_zoom` while it searches, and to
-///          `zoom_per_m` times the distance of what it looks at or tracks, which then keeps its size in the picture.
+/// Levels   `joints` (the default): sensor_msgs/JointState; `position` [rad] turns there, else `velocity`
+///          [rad/s] goes on turning. Joints by name; without names pan comes first. `view`:
+///          geometry_msgs/PointStamped: look at a point in
+///          `world` (or ""), or in the frame of a link of the own robot ("robot1/base_link"; "robot1": its
+///          canonical link). std_msgs/String: "search ball" scans from limit to limit, one row of
+///          `search_tilts` after the other, until the camera's objects hold a ball, and looks at it; "track
+///          ball" keeps it in the middle, and searches when it was lost for `lost_after`; "stop". Exactly one
+///          level is active.
+/// Camera   `camera` names a camera of the robot on the tilted link: its x axis is what is turned to the
+///          point, and its level `objects` must be active for search and track. Without it the child link's x
+///          axis is turned.
+/// Zoom     of a camera with a zoom lens (devices/cameras/zoom.h), whose speed and limits hold.
+///          std_msgs/Float64 at either level goes on to the camera. At level `view` the unit zooms by itself
+///          where set: to `search_zoom` while it searches, and to `zoom_per_m` times the distance of what it
+///          looks at or tracks, which then keeps its size in the picture.
 /// Output   <device>/state: sensor_msgs/JointState; <device>/status: sandlot_msgs/PanTiltState. Every tick.
-/// Control  once per sub-step: each joint's speed follows sqrt(2 a |error|), at most its largest speed, with at most its largest
-///          acceleration; the engine holds the joint to that speed. Angles are cut to the joint's limits; a joint that can turn all
-///          around takes the shorter way.
-/// Engines  both. On planar a vertical pan joint is a pivot, a tilt joint kinematic: it follows its command exactly.
+/// Control  once per sub-step: each joint's speed follows sqrt(2 a |error|), at most its largest speed, with
+///          at most its largest acceleration; the engine holds the joint to that speed. Angles are cut to the
+///          joint's limits; a joint that can turn all around takes the shorter way.
+/// Engines  both. On planar a vertical pan joint is a pivot, a tilt joint kinematic: it follows its command
+///          exactly.
 /// Switch   what was turned to last is held. Before the first command it holds where it is.
-/// Limits   one thing at a time: of several of a label the one nearest to the last is tracked. Aiming takes the axes as perpendicular.
+/// Limits   one thing at a time: of several of a label the one nearest to the last is tracked. Aiming takes
+///          the axes as perpendicular.
 /// Cost     a few dozen operations per tick; no allocation after the first messages.
-/// Errors   joints that are not there or do not turn, no joint at all, a camera that is not there, zoom keys without a zoom lens.
+/// Errors   joints that are not there or do not turn, no joint at all, a camera that is not there, zoom keys
+///          without a zoom lens.
 #include <array>
 
 #include "devices/kind.h"

@@ -15,7 +15,8 @@ using S = msg::PanTiltState;
 
 constexpr std::uint32_t joints_bit = 1, view_bit = 2;
 
-/// A base with a neck that turns about z at 1 m and a head on it that turns about y; the head's joint may point the other way.
+/// A base with a neck that turns about z at 1 m and a head on it that turns about y; the head's joint may
+/// point the other way.
 model::Model owl(double pan_up = 1, double tilt_left = 1) {
   model::Model model;
   model.name = "owl";
@@ -226,7 +227,8 @@ TEST(PanTilt, SearchesTracksAndLoses) {
   EXPECT_EQ(owl.status(), S::idle);
 }
 
-/// The owl with a zoom lens that gets to 8 by at most a factor of 2 a second, as a camera that samples in every tick turns it.
+/// The owl with a zoom lens that gets to 8 by at most a factor of 2 a second, as a camera that samples in
+/// every tick turns it.
 class ZoomingOwl : public Owl {
  public:
   ZoomingOwl() {

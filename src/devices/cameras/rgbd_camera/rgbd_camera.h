@@ -2,8 +2,8 @@
 /// Colour and depth of the same pixels, and their points.
 ///
 /// Frame, lens, picture   as camera; depth and points as depth_camera.
-/// Output   <device>/image, <device>/depth: Image; <device>/camera_info; with `points: true` <device>/points: PointCloud2 with
-///          colours, organised.
+/// Output   <device>/image, <device>/depth: Image; <device>/camera_info; with `points: true` <device>/points:
+///          PointCloud2 with colours, organised.
 /// Limits   both are seen through one lens, at one moment: the registered pictures of a real one.
 /// Cost     of camera and depth_camera together.
 #include "devices/cameras/depth_image.h"

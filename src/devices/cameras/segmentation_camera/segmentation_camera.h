@@ -2,12 +2,14 @@
 /// Camera that knows what it sees: for every pixel the class and the instance.
 ///
 /// Frame, lens   as camera.
-/// Output   <device>/labels: mono8, the place of the thing's label in `labels` counted from 1 (without them the number that the label
-///          is, as in Gazebo's worlds), or 0 for everything else.
-///          <device>/instances: 32SC1, a number per thing that is never given twice in a run, or 0. <device>/colored: rgb8, a
-///          colour per label (`color_by: instance`: per instance), black for 0. <device>/camera_info.
+/// Output   <device>/labels: mono8, the place of the thing's label in `labels` counted from 1 (without them
+///          the number that the label is, as in Gazebo's worlds), or 0 for everything else.
+///          <device>/instances: 32SC1, a number per thing that is never given twice in a run, or 0.
+///          <device>/colored: rgb8, a colour per label (`color_by: instance`: per instance), black for 0.
+///          <device>/camera_info.
 /// Noise    none: this is truth, for training and comparing.
-/// Limits   things without bounds, such as a ground plane, are 0. Instances are those of the model: a robot is one.
+/// Limits   things without bounds, such as a ground plane, are 0. Instances are those of the model: a robot
+///          is one.
 /// Cost     one ray per pixel.
 /// Source   Gazebo's segmentation camera (semantic and panoptic).
 #include "devices/cameras/camera_picture.h"

@@ -1,14 +1,16 @@
 #pragma once
 /// Car: a fixed axle and two steered wheels, whose axes meet in one point.
 ///
-/// Frame    D: middle of the fixed axle, axes as the canonical link's. It moves along x on curves of at least the radius that
-///          the steering allows; a turning rate without a speed moves nothing.
+/// Frame    D: middle of the fixed axle, axes as the canonical link's. It moves along x on curves of at least
+///          the radius that the steering allows; a turning rate without a speed moves nothing.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
-///          The steering follows the requested curvature at max_steering_speed while the speed follows with its
-///          acceleration; the wheels turn as the steering stands now.
-/// Geometry wheels are those of left_joint and right_joint (with motors) and passive_joint (without); those that hang on a steering
+///          The steering follows the requested curvature at max_steering_speed while the speed follows with
+///          its acceleration; the wheels turn as the steering stands now.
+/// Geometry wheels are those of left_joint and right_joint (with motors) and passive_joint (without); those
+/// that hang on a steering
 ///          joint are steered by it. All others stand on one axle.
-/// Limits   angles of the two steered wheels are set, not a linkage; the differential is ideal (each wheel its speed).
+/// Limits   angles of the two steered wheels are set, not a linkage; the differential is ideal (each wheel
+///          its speed).
 /// Errors   in addition to those of wheeled_base.h: a fixed wheel off the axle; no wheelbase.
 /// Source   kinematics/ackermann.h.
 #include "devices/drives/wheeled_drive.h"

@@ -2,11 +2,11 @@
 /// Moves a whole robot at a commanded velocity, without wheels: what Gazebo calls velocity control.
 ///
 /// Output   none; see ground_truth.
-/// Command  level `ideal`: geometry_msgs/Twist in the frame of the model's first link; linear x and y and angular z
-///          count, the robot stays on the plane it stands on.
+/// Command  level `ideal`: geometry_msgs/Twist in the frame of the model's first link; linear x and y and
+///          angular z count, the robot stays on the plane it stands on.
 /// Time     a command acts from the tick it arrives in, until the next one or for `command_timeout`.
-/// Limits   in the plane only: z, roll and pitch are physics' own. Obstacles stop it with a force of mass times
-///          max_acceleration.
+/// Limits   in the plane only: z, roll and pitch are physics' own. Obstacles stop it with a force of mass
+///          times max_acceleration.
 /// Noise    none.
 /// Cost     one target per tick, no allocation.
 /// Errors   an engine without ideal drives.

@@ -11,8 +11,8 @@ namespace {
 using kinematics::DriveVelocity;
 using kinematics::WheelSpeeds;
 
-/// A velocity motor this strong reaches its speed in one step whatever hangs on it: wheels on the ideal level carry
-/// no load, so the value has no other meaning.
+/// A velocity motor this strong reaches its speed in one step whatever hangs on it: wheels on the ideal level
+/// carry no load, so the value has no other meaning.
 constexpr double kinematic_effort_Nm = 1e6;
 
 double mean(std::span<const Wheel> wheels, std::span<const JointState> joints, double JointState::*what) {
@@ -142,7 +142,8 @@ void Drive::pre_substep(PoolView<Drive> pool, const Context& context, double h_s
     Drive& drive = pool.all[index];
     if (is_ideal(pool.levels[index])) {
       if (drive.engine.rolls) continue;
-      // They lag by one sub-step; the angle they are behind by does not grow and is made up when the base stops.
+      // They lag by one sub-step; the angle they are behind by does not grow and is made up when the base
+      // stops.
       drive_wheels(drive, drive.geometry.inverse(velocity_of_axle(drive, context)), true,
                    context.actuation.joints);
       continue;

@@ -3,18 +3,19 @@
 ///
 /// Frame    B: the canonical link. D: centre of the axle, the mean of the wheel joints' origins, axes as B.
 ///          Commands are velocities of D in D; other components of the Twist are ignored.
-/// Levels   `ideal` (the default): the base moves on rails at the commanded velocity with limited acceleration, on
-///          every engine; the wheels turn as if they rolled. `contact`: the wheels are driven with at most
-///          max_wheel_effort each, and friction decides the motion; needs an engine with contact_drives.
-///          Exactly one level is active. A switch keeps odometry, command and velocity.
+/// Levels   `ideal` (the default): the base moves on rails at the commanded velocity with limited
+///          acceleration, on every engine; the wheels turn as if they rolled. `contact`: the wheels are
+///          driven with at most max_wheel_effort each, and friction decides the motion; needs an engine with
+///          contact_drives. Exactly one level is active. A switch keeps odometry, command and velocity.
 /// Output   nav_msgs/Odometry of B on both levels, from the angles of the wheel joints alone: frame
-///          "<robot>/odom", child "<robot>/<canonical link>". Pose: from where B stood when the drive was built.
-///          Twist: velocity of B in B. Slip on level `contact` makes it wrong, as on a real robot.
-/// Time     odometry is integrated in every tick on exact arcs (kinematics/differential.h) and published at `rate`.
-///          A command acts from the tick it arrives in; after `command_timeout` without a new one the drive stops.
+///          "<robot>/odom", child "<robot>/<canonical link>". Pose: from where B stood when the drive was
+///          built. Twist: velocity of B in B. Slip on level `contact` makes it wrong, as on a real robot.
+/// Time     odometry is integrated in every tick on exact arcs (kinematics/differential.h) and published at
+///          `rate`. A command acts from the tick it arrives in; after `command_timeout` without a new one the
+///          drive stops.
 /// Limits   no motor model, no systematic errors of radius and separation, no covariance (zeros).
-/// Cost     one arc per tick and drive, none without odometry; no allocation. On an engine that rolls wheels itself
-///          (Capabilities::rolls) the level `ideal` costs nothing per sub-step.
+/// Cost     one arc per tick and drive, none without odometry; no allocation. On an engine that rolls wheels
+///          itself (Capabilities::rolls) the level `ideal` costs nothing per sub-step.
 /// Errors   joints that are not there, do not turn or lie along the robot; a level the engine lacks.
 /// Source   kinematics/differential.h.
 #include <array>

@@ -56,7 +56,8 @@ TEST(DiffDrive, OnContactTheWheelsGetTheSpeedsOfTheInverseKinematics) {
 }
 
 TEST(DiffDrive, AnEngineThatRollsWheelsIsToldHow) {
-  // The axle's centre lies 0.05 m to the left: with the hubs at y = 0.05 +- 0.25 m, wheel speed = (vx - wz y) / 0.1 m.
+  // The axle's centre lies 0.05 m to the left: with the hubs at y = 0.05 +- 0.25 m, wheel speed = (vx - wz y)
+  // / 0.1 m.
   Rig rig(kind, test::two_wheels(0, 0.05));
   rig.engine->what.rolls = true;
   ASSERT_TRUE(rig.add("drive", drive(), ideal_bit));
@@ -84,7 +85,8 @@ TEST(DiffDrive, WithoutOdometryItDrivesAndTellsNothing) {
 }
 
 TEST(DiffDrive, OdometryRunsOnExactArcs) {
-  // Wheels that turn as commanded: a straight of 2 m, a quarter circle of radius 1 m, a half turn on the spot.
+  // Wheels that turn as commanded: a straight of 2 m, a quarter circle of radius 1 m, a half turn on the
+  // spot.
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("drive", drive(), contact_bit));
   const auto run = [&](double v, double omega, int ticks) {
@@ -107,7 +109,8 @@ TEST(DiffDrive, OdometryRunsOnExactArcs) {
 }
 
 TEST(DiffDrive, OdometryIsOfTheBaseEvenWhenTheAxleIsElsewhere) {
-  // The axle 0.4 m ahead of the base: turning on the spot, the base runs on a circle of 0.4 m about the axle's centre.
+  // The axle 0.4 m ahead of the base: turning on the spot, the base runs on a circle of 0.4 m about the
+  // axle's centre.
   Rig rig(kind, test::two_wheels(0.4));
   ASSERT_TRUE(rig.add("drive", drive(), contact_bit));
   rig.command("drive/contact", twist(0, math::pi / 2));
@@ -127,7 +130,8 @@ TEST(DiffDrive, IdealMovesTheBaseAndItsOdometryFollowsTheTruth) {
     rig.command("drive/ideal", twist(0, 0));
     rig.act();
     rig.act();  // the wheels lag by one sub-step: now they have made up for it
-    // D runs on a circle of radius r = 0.5/0.8 from its start at (dx, dy); the base is at R(angle) (-dx, -dy) from it.
+    // D runs on a circle of radius r = 0.5/0.8 from its start at (dx, dy); the base is at R(angle) (-dx, -dy)
+    // from it.
     const double angle = 0.8 * 3, r = 0.5 / 0.8, sine = math::sin(angle), cosine = math::cos(angle);
     const double x = dx + r * sine - (dx * cosine - dy * sine);
     const double y = dy + r * (1 - cosine) - (dx * sine + dy * cosine);

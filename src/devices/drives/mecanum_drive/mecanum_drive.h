@@ -3,10 +3,12 @@
 ///
 /// Frame    D: middle of the wheel joints, axes as the canonical link's. It moves along x and y and turns.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
-/// Geometry r phi' = vx -+ vy -+ (wheelbase + track) / 2 w, with the signs FL (-,-), FR (+,+), BL (+,-), BR (-,+): rollers that,
-///          seen from above, point to the middle. Where the model has rollers, their angles count (model/wheel.h).
-/// Errors   in addition to those of wheeled_base.h: a wheel that is not in the corner of its name; rollers the wrong way round on a
-///          square chassis, which cannot turn.
+/// Geometry r phi' = vx -+ vy -+ (wheelbase + track) / 2 w, with the signs FL (-,-), FR (+,+), BL (+,-), BR
+/// (-,+): rollers that,
+///          seen from above, point to the middle. Where the model has rollers, their angles count
+///          (model/wheel.h).
+/// Errors   in addition to those of wheeled_base.h: a wheel that is not in the corner of its name; rollers
+///          the wrong way round on a square chassis, which cannot turn.
 /// Source   kinematics/wheels.h.
 #include "devices/drives/wheeled_drive.h"
 

@@ -3,7 +3,8 @@
 ///
 /// Frame    D: middle of the wheel joints, axes as the canonical link's. It moves along x and y and turns.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
-/// Geometry from the joints: wheel i rolls across its joint's axis, wherever that points. The rollers' angle is the model's
+/// Geometry from the joints: wheel i rolls across its joint's axis, wherever that points. The rollers' angle
+/// is the model's
 ///          (model/wheel.h), else roller_angle for all: 90 degrees, rollers that roll across the wheel.
 /// Errors   in addition to those of wheeled_base.h: wheels that together cannot move or turn the drive.
 /// Source   kinematics/wheels.h.

@@ -3,9 +3,10 @@
 ///
 /// Frame    D: middle of the wheel joints, axes as the canonical link's. It moves along x and turns.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
-/// Geometry the track ratio is the factor by which it turns slower than its wheels. Not given, it is that of isotropic friction while
-///          turning in place, 1 + (wheelbase / track)^2 for four wheels (kinematics/skid.h). On level `ideal` the wheels turn
-///          as on the ground, by the same ratio.
+/// Geometry the track ratio is the factor by which it turns slower than its wheels. Not given, it is that of
+/// isotropic friction while
+///          turning in place, 1 + (wheelbase / track)^2 for four wheels (kinematics/skid.h). On level `ideal`
+///          the wheels turn as on the ground, by the same ratio.
 /// Source   kinematics/skid.h.
 #include "devices/drives/wheeled_drive.h"
 

@@ -1,11 +1,11 @@
 #pragma once
 /// Swerve drive (4WD4S): every wheel is driven and steered by itself.
 ///
-/// Frame    D: middle of the wheel joints, axes as the canonical link's. It moves along x and y and turns: stop, crab, turn on the
-///          spot and turn about a centre follow from the command.
+/// Frame    D: middle of the wheel joints, axes as the canonical link's. It moves along x and y and turns:
+///          stop, crab, turn on the spot and turn about a centre follow from the command.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
-///          A wheel takes the shorter way: it turns backward rather than round (kinematics/swerve.h). While it is being steered
-///          it is driven at the part of its speed that lies along it.
+///          A wheel takes the shorter way: it turns backward rather than round (kinematics/swerve.h). While
+///          it is being steered it is driven at the part of its speed that lies along it.
 /// Geometry from the joints; wheel_joint i hangs on steering_joint i.
 /// Errors   in addition to those of wheeled_base.h: a wheel that hangs on no steering joint.
 /// Source   kinematics/swerve.h, kinematics/kabsch.h.

@@ -1,4 +1,5 @@
-/// Gazebo's TrackedVehicle as keys of our spec. Its tracks are links whose surface moves, not joints: two tracks in thought.
+/// Gazebo's TrackedVehicle as keys of our spec. Its tracks are links whose surface moves, not joints: two
+/// tracks in thought.
 #include "devices/drives/sdf_drive.h"
 #include "devices/drives/track_drive/track_drive.h"
 #include "devices/sdf_noise.h"

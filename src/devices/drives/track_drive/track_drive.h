@@ -1,10 +1,12 @@
 #pragma once
 /// Tracked drive: two tracks; it turns because they slide sideways.
 ///
-/// A track is the wheels that it runs over (sprockets and road wheels, all driven at one speed). Without joints there are two
-/// tracks in thought that run on level `ideal` alone: what becomes of Gazebo's tracked vehicles.
+/// A track is the wheels that it runs over (sprockets and road wheels, all driven at one speed). Without
+/// joints there are two tracks in thought that run on level `ideal` alone: what becomes of Gazebo's tracked
+/// vehicles.
 ///
-/// Frame    D: middle between the tracks, or the canonical link's origin without joints. It moves along x and turns.
+/// Frame    D: middle between the tracks, or the canonical link's origin without joints. It moves along x and
+///          turns.
 /// Levels, commands, output, motors, power and odometry: devices/drives/wheeled_base.h.
 /// Geometry as the skid drive's. Two tracks in thought have the ratio 1 if none is given.
 /// Limits   no belt between the wheels: friction acts under the wheels.

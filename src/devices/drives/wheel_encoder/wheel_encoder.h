@@ -1,12 +1,12 @@
 #pragma once
 /// Incremental encoder on a turning joint.
 ///
-/// Output   level `ticks`: floor(angle * ticks_per_turn / 2 pi), counting on over turns and below zero, 0 in the
-///          declared pose of the model. Level `joint`: the exact angle, speed and effort, without quantisation.
-///          Both may be active at once.
+/// Output   level `ticks`: floor(angle * ticks_per_turn / 2 pi), counting on over turns and below zero, 0 in
+///          the declared pose of the model. Level `joint`: the exact angle, speed and effort, without
+///          quantisation. Both may be active at once.
 /// Time     the end of the tick.
-/// Noise    level `ticks`: noise/chain.h on the angle [rad], then counting. An angle that is not a number (a drop-out)
-///          leaves the count as it was.
+/// Noise    level `ticks`: noise/chain.h on the angle [rad], then counting. An angle that is not a number (a
+///          drop-out) leaves the count as it was.
 /// Limits   no index pulse, missed edges, counter width, or play between wheel and encoder.
 /// Cost     one division per sample, no allocation.
 /// Errors   a joint that is not there or does not turn.

@@ -3,28 +3,32 @@
 ///
 /// Frame    B: the canonical link. D: centre of the axle, the mean of the wheel joints' origins, axes as B.
 /// Levels   `odometry` (the default) and `pose`, one or both.
-/// Output   level `odometry`: nav_msgs/Odometry of B: frame "<robot>/odom", child "<robot>/<canonical link>". The pose counts from
-///          where B stood when the device was built. Covariances: of the random errors alone, propagated.
-///          Level `pose`: the same message and frames from B's true motion in the plane, with errors that grow as those of a
-///          well calibrated odometry do: std of the distance `distance_walk` sqrt(way), of the heading `heading_walk`
-///          sqrt(way) and `turn_walk` sqrt(turn). No wheel is looked at, so slip does not show. A level that becomes
-///          active alone takes over the other's pose and covariance.
+/// Output   level `odometry`: nav_msgs/Odometry of B: frame "<robot>/odom", child "<robot>/<canonical link>".
+///          The pose counts from where B stood when the device was built. Covariances: of the random errors
+///          alone, propagated. Level `pose`: the same message and frames from B's true motion in the plane,
+///          with errors that grow as those of a well calibrated odometry do: std of the distance
+///          `distance_walk` sqrt(way), of the heading `heading_walk` sqrt(way) and `turn_walk` sqrt(turn). No
+///          wheel is looked at, so slip does not show. A level that becomes active alone takes over the
+///          other's pose and covariance.
 /// Time     one exact arc per sample (kinematics/differential.h); the twist is the mean over the interval.
-/// Noise    systematic: the robot believes in `wheel_radius` and `wheel_separation`, while its wheels have the radii and the
-///          distance that its model gives them; `left_error`, `right_error` and `separation_error` are the relative errors of
-///          what it believes, on top. Random: over an interval with the distance d and the turn a
+/// Noise    systematic: the robot believes in `wheel_radius` and `wheel_separation`, while its wheels have
+///          the radii and the distance that its model gives them; `left_error`, `right_error` and
+///          `separation_error` are the relative errors of what it believes, on top. Random: over an interval
+///          with the distance d and the turn a
 ///
 ///            var(d) = alpha_3 |d| + alpha_4 |a|      var(a) = alpha_1 |a| + alpha_2 |d|
 ///
-///          so that the error of a way does not depend on the sample rate: variances add up. Covariance: P' = F P F^T + G Q G^T
-///          with the Jacobians of the arc's chord. `errors` multiplies relative errors (no wheel and no distance gets below
-///          half its size by that) and, squared, the variances. Slip of the wheels shows by itself: the wheels' joints turn.
+///          so that the error of a way does not depend on the sample rate: variances add up. Covariance: P' =
+///          F P F^T + G Q G^T with the Jacobians of the arc's chord. `errors` multiplies relative errors (no
+///          wheel and no distance gets below half its size by that) and, squared, the variances. Slip of the
+///          wheels shows by itself: the wheels' joints turn.
 /// Limits   wheels that roll; play and width of the tyres are not there.
 /// Cost     one arc, two normals and two products of 3x3 matrices per sample; no allocation.
 /// Errors   joints that are not there, do not turn, or whose axes do not lie across the robot.
-/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 5.4 (alphas; here variances, linear in the way);
-///          J. Borenstein, L. Feng, IEEE Trans. Robotics and Automation 12 (1996) 869-880 (UMBmark: unequal wheel diameters,
-///          wrong wheelbase); R. Siegwart et al., Introduction to Autonomous Mobile Robots, 2nd ed. (2011), sec. 5.2.4.
+/// Source   S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics (2005), sec. 5.4 (alphas; here variances,
+///          linear in the way); J. Borenstein, L. Feng, IEEE Trans. Robotics and Automation 12 (1996) 869-880
+///          (UMBmark: unequal wheel diameters, wrong wheelbase); R. Siegwart et al., Introduction to
+///          Autonomous Mobile Robots, 2nd ed. (2011), sec. 5.2.4.
 #include <array>
 
 #include "devices/kind.h"

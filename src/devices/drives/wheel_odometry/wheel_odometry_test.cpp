@@ -40,7 +40,8 @@ TEST(WheelOdometry, GoesStraightAndRoundAsTheWheelsTurn) {
   msg::Odometry at = bench.roll(10, 10);
   EXPECT_NEAR(at.pose.pose.p.x, 1, 1e-14);
   EXPECT_NEAR(at.twist.twist.linear.x, 10, 1e-12);  // in one tick of 0.1 s
-  // On the spot by 90 degrees: 0.25 m * pi / 2 = 0.1 m * 3.927 rad of each wheel. The origin goes round the axle.
+  // On the spot by 90 degrees: 0.25 m * pi / 2 = 0.1 m * 3.927 rad of each wheel. The origin goes round the
+  // axle.
   const double turn = 0.25 * math::pi / 2 / 0.1;
   at = bench.roll(-turn, turn);
   EXPECT_NEAR(yaw_of(at.pose.pose.q), math::pi / 2, 1e-14);
@@ -81,7 +82,8 @@ TEST(WheelOdometry, OneFactorScalesAllOfItsErrors) {
 }
 
 TEST(WheelOdometry, RandomErrorsGrowWithTheWayWhateverTheRateAndAsTheCovarianceSays) {
-  // 4 m straight on: var(x) = alpha_3 d; heading alpha_2 d; y: the heading's random walk integrated, alpha_2 d^3 / 3.
+  // 4 m straight on: var(x) = alpha_3 d; heading alpha_2 d; y: the heading's random walk integrated, alpha_2
+  // d^3 / 3.
   for (const int samples : {40, 160}) {
     double xx = 0, yy = 0, tt = 0;
     std::array<double, 36> said{};
@@ -95,7 +97,8 @@ TEST(WheelOdometry, RandomErrorsGrowWithTheWayWhateverTheRateAndAsTheCovarianceS
       tt += yaw_of(at.pose.pose.q) * yaw_of(at.pose.pose.q);
       said = at.pose.covariance;
     }
-    // Variances of 2000 runs are good to sqrt(2 / 2000) = 3.2 %; five of them. Bending shortens x by 1e-4 * 4 * ... = 2e-4 m^2.
+    // Variances of 2000 runs are good to sqrt(2 / 2000) = 3.2 %; five of them. Bending shortens x by 1e-4 * 4
+    // * ... = 2e-4 m^2.
     EXPECT_NEAR(xx / runs, 4e-3, 4e-3 * 0.16);
     EXPECT_NEAR(yy / runs, 1e-4 * 64 / 3, 1e-4 * 64 / 3 * 0.17);
     EXPECT_NEAR(tt / runs, 4e-4, 4e-4 * 0.16);

@@ -2,8 +2,8 @@
 /// Altimeter: height above where it started, and how fast that changes.
 ///
 /// Frame    the origin of the device's own pose on its link.
-/// Output   level `height`: sandlot_msgs/Altimeter. vertical_reference is the height of that point in the world when the device
-///          was built, in the declared pose of its model.
+/// Output   level `height`: sandlot_msgs/Altimeter. vertical_reference is the height of that point in the
+///          world when the device was built, in the declared pose of its model.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h on position and velocity.
 /// Limits   no weather, no delay; for what pressure does see the barometer.

@@ -8,8 +8,8 @@
 /// Output   level `pressure`: sensor_msgs/FluidPressure [Pa]; variance of the noise configured.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h. Weather is its drifting bias: 100 Pa over hours.
-/// Limits   standard atmosphere up to 11 km, no wind pressure. Sea level is `reference_altitude` below the world's z = 0; not
-///          given, the world's elevation on the Earth, or 0 where it has none.
+/// Limits   standard atmosphere up to 11 km, no wind pressure. Sea level is `reference_altitude` below the
+///          world's z = 0; not given, the world's elevation on the Earth, or 0 where it has none.
 /// Cost     one power per sample, no allocation.
 /// Source   ISO 2533 (standard atmosphere), troposphere; SDF 1.9 <air_pressure>.
 #include <optional>

@@ -1,23 +1,25 @@
 #pragma once
 /// Satellite receiver (GPS): latitude, longitude, altitude and velocity.
 ///
-/// Frame    the antenna is the origin of the device's own pose on its link. The world's origin and heading on the Earth come from
-///          the world file (<spherical_coordinates>) or the scenario; the world's plane touches the WGS 84 ellipsoid there,
-///          exactly (geometry/geodesy.h).
-/// Levels   `fix` (the default): sensor_msgs/NavSatFix; covariance diagonal, of the errors configured. `velocity`:
-///          geometry_msgs/TwistStamped, east, north, up [m/s]. `pose`: geometry_msgs/PoseWithCovarianceStamped of the
-///          canonical link in `world`, as estimated by a filter that has the receiver and a compass; errors of its own: `pose:`
-///          (noise/pose_estimate.h), roll and pitch true. Any of them at once; `pose` alone computes no fix.
+/// Frame    the antenna is the origin of the device's own pose on its link. The world's origin and heading on
+///          the Earth come from the world file (<spherical_coordinates>) or the scenario; the world's plane
+///          touches the WGS 84 ellipsoid there, exactly (geometry/geodesy.h).
+/// Levels   `fix` (the default): sensor_msgs/NavSatFix; covariance diagonal, of the errors configured.
+///          `velocity`: geometry_msgs/TwistStamped, east, north, up [m/s]. `pose`:
+///          geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as estimated by a
+///          filter that has the receiver and a compass; errors of its own: `pose:` (noise/pose_estimate.h),
+///          roll and pitch true. Any of them at once; `pose` alone computes no fix.
 /// Time     the end of the tick.
-/// Noise    noise/channel_noise.h on east and north (`horizontal`, each with its own draw), up (`vertical`) and the three
-///          velocities (`speed`). The drifting bias is a first-order Gauss-Markov process: the error that atmosphere,
-///          orbits and multipath make is correlated over minutes, and averaging over seconds does not help.
-/// Limits   no satellites, so no dilution of precision, shadowing, loss of fix or jumps between float and fixed; errors of
-///          two receivers are independent, so they do not cancel between neighbours.
+/// Noise    noise/channel_noise.h on east and north (`horizontal`, each with its own draw), up (`vertical`)
+///          and the three velocities (`speed`). The drifting bias is a first-order Gauss-Markov process: the
+///          error that atmosphere, orbits and multipath make is correlated over minutes, and averaging over
+///          seconds does not help.
+/// Limits   no satellites, so no dilution of precision, shadowing, loss of fix or jumps between float and
+///          fixed; errors of two receivers are independent, so they do not cancel between neighbours.
 /// Cost     six channels and six sine-cosine pairs per sample, no allocation.
 /// Errors   a world without a place on the Earth.
-/// Source   P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd ed. (2013),
-///          sec. 9.3, 9.5 (error sources, correlation times); presets: their help.
+/// Source   P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd
+///          ed. (2013), sec. 9.3, 9.5 (error sources, correlation times); presets: their help.
 #include <optional>
 
 #include "devices/kind.h"

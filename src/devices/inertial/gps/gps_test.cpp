@@ -80,7 +80,8 @@ TEST(Gps, ErrorsHaveTheirSizeAndTheirCorrelation) {
     cross += up * north;
     before = up;
   }
-  // Squares decorrelate in tau / 2 = 10 samples: n / 20 independent ones, so 3.2 % of the variance; five of them.
+  // Squares decorrelate in tau / 2 = 10 samples: n / 20 independent ones, so 3.2 % of the variance; five of
+  // them.
   EXPECT_NEAR(up2 / n, 9, 9 * 5 * 0.032);
   EXPECT_NEAR(north2 / n, 4, 4 * 5 * 0.032);
   EXPECT_NEAR(up_lag / up2, math::exp(-1.0 / 20), 5 * std::sqrt((1 - 0.905) / n) + 0.01);

@@ -1,14 +1,14 @@
 #pragma once
-/// The pose and velocity of a point on a link: exact, what no real sensor knows, or with errors, as a camera above the
-/// field or a motion capture system tells it.
+/// The pose and velocity of a point on a link: exact, what no real sensor knows, or with errors, as a camera
+/// above the field or a motion capture system tells it.
 ///
 /// Frame    sensor frame S: the link's frame moved by the device's own pose.
-/// Output   level `pose`: nav_msgs/Odometry. Pose of S in the world (frame "world"); velocity of S's origin and
-///          angular velocity of the link, relative to the world, expressed in S. Covariances are zero.
+/// Output   level `pose`: nav_msgs/Odometry. Pose of S in the world (frame "world"); velocity of S's origin
+///          and angular velocity of the link, relative to the world, expressed in S. Covariances are zero.
 /// Time     the end of the tick.
-/// Noise    none by default; else noise/chain.h on each of x, y, z, of roll, pitch, yaw and of the components of the
-///          velocities, one chain for three of them. A latency or drop-outs with `whole` that all parts shall share
-///          must be given to all of them.
+/// Noise    none by default; else noise/chain.h on each of x, y, z, of roll, pitch, yaw and of the components
+///          of the velocities, one chain for three of them. A latency or drop-outs with `whole` that all
+///          parts shall share must be given to all of them.
 /// Limits   none.
 /// Cost     a few multiplications per sample, no allocation.
 #include "devices/kind.h"

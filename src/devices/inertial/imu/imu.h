@@ -1,33 +1,37 @@
 #pragma once
 /// Inertial measurement unit: three gyroscopes, three accelerometers and the orientation computed from them.
 ///
-/// Frame    sensor frame S: the link's frame moved by the device's own pose. Rates and accelerations are given in S.
+/// Frame    sensor frame S: the link's frame moved by the device's own pose. Rates and accelerations are
+///          given in S.
 /// Levels   `imu` (the default) and `pose`, one or both.
-/// Output   level `imu`: sensor_msgs/Imu. angular_velocity [rad/s]. linear_acceleration: the specific force [m/s^2],
-///          acceleration of S's origin less gravity, so (0, 0, 9.81) at rest. orientation of S in the frame that
-///          `reference` names. Covariances are those of the noise configured,
+/// Output   level `imu`: sensor_msgs/Imu. angular_velocity [rad/s]. linear_acceleration: the specific force
+///          [m/s^2], acceleration of S's origin less gravity, so (0, 0, 9.81) at rest. orientation of S in
+///          the frame that `reference` names. Covariances are those of the noise configured,
 ///          at the factor `errors` of the start.
-///          Level `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as estimated by an inertial navigation
-///          that was right when the level became active and has had nothing but its sensors since:
+///          Level `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as
+///          estimated by an inertial navigation that was right when the level became active and has had
+///          nothing but its sensors since:
 ///
 ///            dv = velocity_walk sqrt(dt) n,  dp = v dt + its integral        std(p) = velocity_walk sqrt(t^3 / 3)
 ///            turn about the vertical: std = yaw_walk sqrt(t)
 ///
-///          for each of x, y, z; roll and pitch, which gravity keeps right, are true. No sub-step is integrated for it.
-/// Time     rates and forces are means over the interval since the previous sample, as integrating sensors show them:
-///          per sub-step h the velocity of S's origin changes by dv and S turns by dq;
+///          for each of x, y, z; roll and pitch, which gravity keeps right, are true. No sub-step is
+///          integrated for it.
+/// Time     rates and forces are means over the interval since the previous sample, as integrating sensors
+///          show them: per sub-step h the velocity of S's origin changes by dv and S turns by dq;
 ///
 ///            f = 1/T sum R_m^T (dv - g h)        w = 1/T sum rotation_vector(dq)
 ///
-///          with R_m the orientation half way. The orientation is that at the end of the tick. The first sample of a
-///          device has no interval: it shows the present rate and a force without acceleration.
+///          with R_m the orientation half way. The orientation is that at the end of the tick. The first
+///          sample of a device has no interval: it shows the present rate and a force without acceleration.
 /// Noise    noise/channel_noise.h, for each axis of gyro and accel. The orientation is exact.
-/// Limits   no errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East is the world's x
-///          axis. Setting a robot's pose while it moves shows as a blow in the sample that covers it.
+/// Limits   no errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East
+///          is the world's x axis. Setting a robot's pose while it moves shows as a blow in the sample that
+///          covers it.
 /// Cost     a few rotations and one arc tangent per sub-step; six noise channels per sample; no allocation.
 /// Errors   a bad spec: place and path of the key.
-/// Source   D. Titterton, J. Weston, Strapdown Inertial Navigation Technology, 2nd ed. (2004), sec. 3.5 (specific
-///          force), ch. 11 (increments of velocity and angle). REP 145.
+/// Source   D. Titterton, J. Weston, Strapdown Inertial Navigation Technology, 2nd ed. (2004), sec. 3.5
+///          (specific force), ch. 11 (increments of velocity and angle). REP 145.
 #include <array>
 
 #include "devices/kind.h"

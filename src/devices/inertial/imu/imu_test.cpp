@@ -84,8 +84,8 @@ TEST(Imu, AKnownAccelerationComesThroughInTheSensorsFrame) {
 }
 
 TEST(Imu, OffTheCentreOfATurntableItShowsTheCentripetalForce) {
-  // At radius r the velocity turns by w h per sub-step: |dv| = 2 w r sin(w h / 2), towards the centre half way. So the
-  // mean is -w^2 r sinc(w h / 2) along x, exactly.
+  // At radius r the velocity turns by w h per sub-step: |dv| = 2 w r sin(w h / 2), towards the centre half
+  // way. So the mean is -w^2 r sinc(w h / 2) along x, exactly.
   const double w = 3, r = 0.4;
   constexpr int substeps = 4;
   Rig rig(kind, test::two_wheels(), 0.02);
@@ -182,7 +182,8 @@ TEST(Imu, EachAxisHasItsOwnNoise) {
   }
   EXPECT_NEAR(sum / n, 0.3, 5 * 0.02 / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(squares / n), 0.02, 5 * 0.02 / std::sqrt(2.0 * n));
-  // Samples 10 ms apart at a correlation of 1 ms are independent: about the drawn constant with a deviation of 0.2.
+  // Samples 10 ms apart at a correlation of 1 ms are independent: about the drawn constant with a deviation
+  // of 0.2.
   const double constant = accel / n;
   EXPECT_NE(constant, 0);
   EXPECT_LT(std::abs(constant), 5 * 0.5);

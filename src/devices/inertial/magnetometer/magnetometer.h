@@ -3,17 +3,19 @@
 ///
 ///   reading = M (R^T B + hard)     M: soft iron, symmetric; R: orientation of the sensor; B: the world's field
 ///
-/// Frame    sensor frame S: the link's frame moved by the device's own pose. B is the world's <magnetic_field>.
-/// Levels   `field` (the default): sensor_msgs/MagneticField [T] in S. `heading`: std_msgs/Float64, the direction of S's x axis
-///          about the vertical [rad], counter-clockwise from the world's x, in (-pi, pi]: computed from the reading, with
-///          exact roll and pitch. Both may be active.
+/// Frame    sensor frame S: the link's frame moved by the device's own pose. B is the world's
+///          <magnetic_field>.
+/// Levels   `field` (the default): sensor_msgs/MagneticField [T] in S. `heading`: std_msgs/Float64, the
+///          direction of S's x axis about the vertical [rad], counter-clockwise from the world's x, in (-pi,
+///          pi]: computed from the reading, with exact roll and pitch. Both may be active.
 /// Time     the end of the tick.
 /// Noise    noise/channel_noise.h for each axis.
-/// Limits   one field for the whole world: no fields of motors, currents or walls; the heading knows the declination.
+/// Limits   one field for the whole world: no fields of motors, currents or walls; the heading knows the
+///          declination.
 /// Cost     three channels per sample, one arc tangent for the heading, no allocation.
 /// Errors   a heading where the field has no horizontal part.
-/// Source   P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd ed. (2013),
-///          sec. 6.1.1 (hard and soft iron, heading from a levelled reading).
+/// Source   P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd
+///          ed. (2013), sec. 6.1.1 (hard and soft iron, heading from a levelled reading).
 #include "devices/kind.h"
 #include "messages/messages.h"
 #include "noise/channel_noise.h"

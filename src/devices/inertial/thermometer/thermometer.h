@@ -3,12 +3,13 @@
 ///
 ///   T = ambient - 6.5 K/km (z - 0)      z: height in the world
 ///
-/// Output   level `temperature`: sensor_msgs/Temperature [degC], as ROS has it; variance of the noise configured.
-/// Time     follows the air with the time constant `response`: T' = (T_air - T) / response, exact over each interval; the first
-///          sample shows the air.
+/// Output   level `temperature`: sensor_msgs/Temperature [degC], as ROS has it; variance of the noise
+///          configured.
+/// Time     follows the air with the time constant `response`: T' = (T_air - T) / response, exact over each
+///          interval; the first sample shows the air.
 /// Noise    noise/channel_noise.h.
-/// Limits   the air alone: nothing in the world is warm, there is no wind, sun or weather. Give each thermometer of a world the
-///          same `ambient`.
+/// Limits   the air alone: nothing in the world is warm, there is no wind, sun or weather. Give each
+///          thermometer of a world the same `ambient`.
 /// Cost     one exponential per sample, no allocation.
 /// Source   ISO 2533 (standard atmosphere): 15 degC, 6.5 K/km.
 #include "devices/kind.h"

@@ -4,29 +4,33 @@
 ///   winding   L di/dt = V - R i - k N w          k: torque constant [Nm/A] = back-EMF constant [V s/rad]
 ///   shaft     torque on the joint = N eta k i - N^2 (J dw/dt + b w) - N c sign(w)
 ///
-/// with the gear ratio N, the joint's speed w, rotor inertia J, viscous friction b and Coulomb friction c, the last three on
-/// the motor's side of the gear. eta is the gear's efficiency; where the load drives the motor it counts as 1 / eta.
+/// with the gear ratio N, the joint's speed w, rotor inertia J, viscous friction b and Coulomb friction c,
+/// the last three on the motor's side of the gear. eta is the gear's efficiency; where the load drives the
+/// motor it counts as 1 / eta.
 ///
-/// Levels   `velocity` (the default): a PID loop to a speed [rad/s]. `position`: to an angle [rad]. Both put out a voltage;
-///          they run at `loop_rate` and see what the encoder shows: counts, and the counts since the last run. `voltage`
-///          [V] and `pwm` [-1, 1] drive the power stage directly; `effort` [Nm on the joint] drives the current that
-///          gives this torque, as far as voltage and current limit reach. Each takes a std_msgs/Float64. Exactly one
-///          level is active; a switch keeps the electrical state and the voltage, and the loop starts again.
-/// Output   sandlot_msgs/MotorState on each level: target, true speed of the joint, torque on the joint before Coulomb
-///          friction, mean voltage at the terminals and current in the winding over the last sub-step.
-/// Power    the power stage is an ideal bridge on a supply of `supply_voltage` behind `supply_resistance`: at duty d the motor
-///          sees d V_s behind R + d^2 R_s. More than `max_current` is chopped. Until its first command it is open: the
-///          motor coasts, with its friction and inertia.
-/// Time     the winding is integrated exactly over each sub-step for constant voltage and speed (L = 0: at once), with the speed
-///          that the sub-step ends with: the mean current is affine in it, so back-EMF is an implicit damping and no
-///          step is too long. Inertia and friction are the engine's (physics/engine.h, JointTarget).
+/// Levels   `velocity` (the default): a PID loop to a speed [rad/s]. `position`: to an angle [rad]. Both put
+///          out a voltage; they run at `loop_rate` and see what the encoder shows: counts, and the counts
+///          since the last run. `voltage` [V] and `pwm` [-1, 1] drive the power stage directly; `effort` [Nm
+///          on the joint] drives the current that gives this torque, as far as voltage and current limit
+///          reach. Each takes a std_msgs/Float64. Exactly one level is active; a switch keeps the electrical
+///          state and the voltage, and the loop starts again.
+/// Output   sandlot_msgs/MotorState on each level: target, true speed of the joint, torque on the joint
+///          before Coulomb friction, mean voltage at the terminals and current in the winding over the last
+///          sub-step.
+/// Power    the power stage is an ideal bridge on a supply of `supply_voltage` behind `supply_resistance`: at
+///          duty d the motor sees d V_s behind R + d^2 R_s. More than `max_current` is chopped. Until its
+///          first command it is open: the motor coasts, with its friction and inertia.
+/// Time     the winding is integrated exactly over each sub-step for constant voltage and speed (L = 0: at
+///          once), with the speed that the sub-step ends with: the mean current is affine in it, so back-EMF
+///          is an implicit damping and no step is too long. Inertia and friction are the engine's
+///          (physics/engine.h, JointTarget).
 /// Noise    quantisation by the encoder.
-/// Limits   no iron losses, saturation, temperature, commutation ripple, gear play or elasticity; regenerated current flows
-///          back into the supply.
+/// Limits   no iron losses, saturation, temperature, commutation ripple, gear play or elasticity; regenerated
+///          current flows back into the supply.
 /// Cost     one exponential per sub-step if L > 0, no allocation.
 /// Errors   a joint that is not there or does not turn; an engine without simulated joints.
-/// Source   P. Corke, Robotics, Vision and Control (2011), sec. 9.1 (motor, gear, friction, reflected inertia); controller:
-///          devices/pid.h. Figures: docs/motors.md.
+/// Source   P. Corke, Robotics, Vision and Control (2011), sec. 9.1 (motor, gear, friction, reflected
+///          inertia); controller: devices/pid.h. Figures: docs/motors.md.
 #include <array>
 
 #include "devices/kind.h"

@@ -189,8 +189,8 @@ TEST(DcMotor, TheLoopRunsAtItsRateOnWhatTheEncoderShows) {
     if (i % 10 == 0) continue;
     EXPECT_EQ(volts[i], volts[i - 1]) << i;
   }
-  // p = 1, i = 10 per second. First run: no count yet, so rate 0: 8 V; the integral grows by 0.01 * 10 * 8. After 10 ms
-  // the joint turned by 0.05 rad: 7 counts (7.96) are 4.398 rad/s.
+  // p = 1, i = 10 per second. First run: no count yet, so rate 0: 8 V; the integral grows by 0.01 * 10 * 8.
+  // After 10 ms the joint turned by 0.05 rad: 7 counts (7.96) are 4.398 rad/s.
   const double count = math::tau / 1000;
   EXPECT_NEAR(volts[0], 8, 1e-9);
   EXPECT_NEAR(volts[10], 8 - 7 * count / 0.01 + 0.8, 1e-9);

@@ -1,17 +1,22 @@
 #pragma once
-/// Gripper: holds the nearest thing in its reach, as it stands, until a command opens it or the object is torn off.
+/// Gripper: holds the nearest thing in its reach, as it stands, until a command opens it or the object is
+/// torn off.
 ///
 /// Frame    the grasping point is the origin of the device's frame S on its link.
-/// Command  level `hold`: std_msgs/Bool. True closes: of all bodies that forces can move, the robot's own left out, the one
-///          whose shapes are nearest to the grasping point is held, if it is within `reach`; of equals the first by name.
-///          False opens. True while it holds something changes nothing; true while it holds nothing is another try.
-/// Output   sandlot_msgs/GripperState: closed, what is held ("can::body", empty: nothing), and the force on it in S.
-/// Time     a command acts from the tick it arrives in. The force is the mean over the last physics step. When it was above
+/// Command  level `hold`: std_msgs/Bool. True closes: of all bodies that forces can move, the robot's own
+///          left out, the one whose shapes are nearest to the grasping point is held, if it is within
+///          `reach`; of equals the first by name. False opens. True while it holds something changes nothing;
+///          true while it holds nothing is another try.
+/// Output   sandlot_msgs/GripperState: closed, what is held ("can::body", empty: nothing), and the force on
+///          it in S.
+/// Time     a command acts from the tick it arrives in. The force is the mean over the last physics step.
+///          When it was above
 ///          `max_force`, what is held comes free before the next one.
 /// Noise    none.
-/// Limits   the grip is a weld between two links: no fingers, no squeezing, no slip; torque does not tear it. On the planar
-///          engine nothing is lifted: what is held goes on rubbing on the ground, and no weight is in the force. The mechanics of
-///          closing and its time are not modelled; for fingers use joints and friction.
+/// Limits   the grip is a weld between two links: no fingers, no squeezing, no slip; torque does not tear it.
+///          On the planar engine nothing is lifted: what is held goes on rubbing on the ground, and no weight
+///          is in the force. The mechanics of closing and its time are not modelled; for fingers use joints
+///          and friction.
 /// Cost     a look at the list of grips per physics step while it holds; a query of a ball at each try.
 /// Errors   an engine without grips; a robot that moves along a path.
 /// Source   physics/engine.h (GripTarget); names after Gazebo's vacuum gripper.

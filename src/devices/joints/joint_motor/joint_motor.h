@@ -1,28 +1,30 @@
 #pragma once
 /// Motor with a servo loop on one joint.
 ///
-/// Levels   `velocity` (the default): follows a speed. `position`: follows an angle (prismatic: a length). `effort`:
-///          applies a torque (force). Each takes a std_msgs/Float64. Exactly one level is active.
-/// Control  servo `pid`: PID (devices/pid.h) from the error to an effort, once per physics sub-step. Servo `exact`: the engine
-///          holds the joint to the speed with what effort it takes up to the limit; on level position that speed
-///          closes a fifth of the error in each sub-step. The reference moves towards the command at no more than
-///          max_velocity; position commands are cut to the joint's limits, efforts to the smaller of max_effort and
-///          the joint's own.
-/// Scale    `commands: si` (the default) takes rad, m, rad/s, Nm ... `share` takes -1 to 1 of the limit on that side (0 stays 0;
-///          LpzRobots' OneAxisServo), `centred` of the way from the middle between the joint's limits to them; of speeds and
-///          efforts both are shares of max_velocity and max_effort. What lies beyond is cut.
+/// Levels   `velocity` (the default): follows a speed. `position`: follows an angle (prismatic: a length).
+///          `effort`: applies a torque (force). Each takes a std_msgs/Float64. Exactly one level is active.
+/// Control  servo `pid`: PID (devices/pid.h) from the error to an effort, once per physics sub-step. Servo
+///          `exact`: the engine holds the joint to the speed with what effort it takes up to the limit; on
+///          level position that speed closes a fifth of the error in each sub-step. The reference moves
+///          towards the command at no more than max_velocity; position commands are cut to the joint's
+///          limits, efforts to the smaller of max_effort and the joint's own.
+/// Scale    `commands: si` (the default) takes rad, m, rad/s, Nm ... `share` takes -1 to 1 of the limit on
+///          that side (0 stays 0; LpzRobots' OneAxisServo), `centred` of the way from the middle between the
+///          joint's limits to them; of speeds and efforts both are shares of max_velocity and max_effort.
+///          What lies beyond is cut.
 /// Output   none; a wheel_encoder shows the joint's state.
-/// Time     a command acts from the tick it arrives in. Before the first one the joint is free, unless there is an
-///          `initial_command`.
-/// Stopping the tunable `active: false` sets the joint free; commands that come then are dropped. When it is started
+/// Time     a command acts from the tick it arrives in. Before the first one the joint is free, unless there
+///          is an `initial_command`.
+/// Stopping the tunable `active: false` sets the joint free; commands that come then are dropped. When it is
+/// started
 ///          again it holds the angle, speed (level effort: nothing) it finds, until its next command.
-/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command; an
-///          integral (if the gains have one) starts where the effort continues without a jump.
+/// Switch   the new level starts at the present angle, speed or effort and holds it until its first command;
+///          an integral (if the gains have one) starts where the effort continues without a jump.
 /// Noise    none: the loop sees the true angle and speed.
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.
-/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints; shares of a
-///          limit that there is not.
+/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints;
+///          shares of a limit that there is not.
 /// Source   devices/pid.h.
 #include <array>
 

@@ -22,9 +22,10 @@ Node gains(const char* which, std::initializer_list<std::pair<const char*, const
 }
 
 TEST(JointMotor, APositionStepFollowsTheSecondOrderSystem) {
-  // Inertia 1, u = p (r - y) - d y': w = sqrt(p) = 4, zeta = d / (2 w) = 0.5. Closed form of the step response:
-  // y = 1 - exp(-zeta w t) (cos(wd t) + zeta/sqrt(1-zeta^2) sin(wd t)), wd = w sqrt(1 - zeta^2).
-  // Holding u over h delays it by h/2 on average: an error of about w h / 2 = 0.002 in phase at the steepest slope.
+  // Inertia 1, u = p (r - y) - d y': w = sqrt(p) = 4, zeta = d / (2 w) = 0.5. Closed form of the step
+  // response: y = 1 - exp(-zeta w t) (cos(wd t) + zeta/sqrt(1-zeta^2) sin(wd t)), wd = w sqrt(1 - zeta^2).
+  // Holding u over h delays it by h/2 on average: an error of about w h / 2 = 0.002 in phase at the steepest
+  // slope.
   const double w = 4, zeta = 0.5, wd = w * std::sqrt(1 - zeta * zeta);
   Rig rig(kind, test::two_wheels(), 0.001);
   ASSERT_TRUE(rig.add("motor", gains("position", {{"p", "16"}, {"d", "4"}}), position_bit));
@@ -44,7 +45,8 @@ TEST(JointMotor, APositionStepFollowsTheSecondOrderSystem) {
 }
 
 TEST(JointMotor, AVelocityStepFollowsTheFirstOrderSystem) {
-  // u = p (r - v), inertia J: v = r (1 - exp(-p t / J)); with u held over h, exactly v_k = r (1 - (1 - p h / J)^k).
+  // u = p (r - v), inertia J: v = r (1 - exp(-p t / J)); with u held over h, exactly v_k = r (1 - (1 - p h /
+  // J)^k).
   Rig rig(kind, test::two_wheels());
   rig.engine->inertia[0] = 0.5;
   ASSERT_TRUE(rig.add("motor", gains("velocity", {{"p", "2"}}), velocity_bit));
@@ -69,8 +71,8 @@ TEST(JointMotor, TheIntegralRemovesALastingError) {
 }
 
 TEST(JointMotor, AntiWindupForgetsWhatTheLimitPrevented) {
-  // Held by a limit of 1 Nm the joint turns for 2 s; without unwinding the integral would grow to i * error * 2 s.
-  // It may not exceed what makes the output just reach its limit: |I| <= limit + p |e| + d |v|.
+  // Held by a limit of 1 Nm the joint turns for 2 s; without unwinding the integral would grow to i * error *
+  // 2 s. It may not exceed what makes the output just reach its limit: |I| <= limit + p |e| + d |v|.
   Pid pid;
   const Gains g{.p = 1, .i = 10, .d = 0, .anti_windup_s = 0.05};
   for (int k = 0; k < 2000; ++k) EXPECT_LE(pid.step(g, 5.0, 0.0, 1.0, 0.001), 1.0);
@@ -303,7 +305,8 @@ TEST(JointMotor, RefusesWhatItCannotDrive) {
 }
 
 TEST(JointMotor, CommandsCanBeSharesOfTheLimits) {
-  // Limits of -0.3 and 0.5 m. Servo `exact` closes a fifth of the error in each step: after 200 there is none.
+  // Limits of -0.3 and 0.5 m. Servo `exact` closes a fifth of the error in each step: after 200 there is
+  // none.
   model::Model model = test::two_wheels();
   model.joints[2].lower = -0.3;
   const auto reached_m = [&](const char* commands, const char* given) {

@@ -1,16 +1,16 @@
 #pragma once
 /// Joint states of a robot: angle, speed and effort of some or all of its joints.
 ///
-/// Output   level `joints`: sensor_msgs/JointState, one entry per joint in the order named (all: the model's order).
-///          Angles [rad] (prismatic: [m]) count from the model's declared pose and do not wrap; the effort is what
-///          motors put in, without limits, friction and springs.
+/// Output   level `joints`: sensor_msgs/JointState, one entry per joint in the order named (all: the model's
+///          order). Angles [rad] (prismatic: [m]) count from the model's declared pose and do not wrap; the
+///          effort is what motors put in, without limits, friction and springs.
 /// Time     the end of the tick.
-/// Noise    noise/chain.h for angles, speeds and efforts, each joint by itself; none by default. See wheel_encoder for
-///          a counting sensor.
+/// Noise    noise/chain.h for angles, speeds and efforts, each joint by itself; none by default. See
+///          wheel_encoder for a counting sensor.
 /// Limits   joints with one degree of freedom only; of a universal joint nothing.
 /// Cost     three copies per joint and sample, no allocation.
-/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints is none:
-///          its joints show what they are turned by.
+/// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints
+///          is none: its joints show what they are turned by.
 #include <vector>
 
 #include "devices/kind.h"

@@ -42,8 +42,8 @@ void hold(Trajectory& device, std::span<const JointState> states) {
   state.pids.assign(device.joints.size(), {});
 }
 
-/// A message may hold anything: true when it is a path for joints of this device. `order` then has the place of
-/// each joint it names.
+/// A message may hold anything: true when it is a path for joints of this device. `order` then has the place
+/// of each joint it names.
 bool is_path(const Trajectory& device, const msg::JointTrajectory& message, std::vector<std::size_t>& order) {
   if (message.points.empty() || message.points.size() > max_points || message.joint_names.empty())
     return false;

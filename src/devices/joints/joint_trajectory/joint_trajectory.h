@@ -1,21 +1,25 @@
 #pragma once
 /// Moves several joints along a trajectory of timed points.
 ///
-/// Command  level `trajectory`: trajectory_msgs/JointTrajectory for some or all of its joints. It starts at its stamp, or
-///          in the tick it arrives in when the stamp is 0, from where the references are then; a new one replaces the
-///          old. Between points with velocities the path is a cubic (Hermite), else a straight line; after the last it
-///          stays there. Joints that it does not name stay where they are. A trajectory with a fault (a joint that is
-///          not its own, times that do not grow, a number that is none) is dropped whole.
-/// Control  once per sub-step. Without gains the engine holds each joint to the speed of the path plus a fifth of the
-///          error per sub-step; with gains a PID loop (devices/pid.h) on the position, its derivative on the error.
-///          The joint's limits of range and effort hold.
+/// Command  level `trajectory`: trajectory_msgs/JointTrajectory for some or all of its joints. It starts at
+///          its stamp, or in the tick it arrives in when the stamp is 0, from where the references are then;
+///          a new one replaces the old. Between points with velocities the path is a cubic (Hermite), else a
+///          straight line; after the last it stays there. Joints that it does not name stay where they are. A
+///          trajectory with a fault (a joint that is not its own, times that do not grow, a number that is
+///          none) is dropped whole.
+/// Control  once per sub-step. Without gains the engine holds each joint to the speed of the path plus a
+///          fifth of the error per sub-step; with gains a PID loop (devices/pid.h) on the position, its
+///          derivative on the error. The joint's limits of range and effort hold.
 /// Output   none; joint_state shows the joints.
-/// Time     before the first trajectory the joints are held where they are. `active: false` leaves them free; started
-///          again they are held where they are.
+/// Time     before the first trajectory the joints are held where they are. `active: false` leaves them free;
+///          started again they are held where they are.
 /// Noise    none.
-/// Limits   accelerations and efforts of points are not used; no tolerances, no feedback or result of an action.
-/// Cost     one binary search and one cubic per joint and sub-step; no allocation but when a trajectory is taken.
-/// Errors   a joint that is not there or has no single degree of freedom; a number of gains other than that of joints.
+/// Limits   accelerations and efforts of points are not used; no tolerances, no feedback or result of an
+///          action.
+/// Cost     one binary search and one cubic per joint and sub-step; no allocation but when a trajectory is
+///          taken.
+/// Errors   a joint that is not there or has no single degree of freedom; a number of gains other than that
+///          of joints.
 /// Source   devices/pid.h; cubic Hermite interpolation.
 #include <vector>
 

@@ -1,26 +1,34 @@
 #pragma once
 /// Planar scanning range finder (2D lidar).
 ///
-/// Frame    sensor frame S: x forward, y left, z up; the beams lie in its xy plane. Beam i leaves S's origin at
-///          min_angle + i (max_angle - min_angle) / (beams - 1), counter-clockwise positive. A single beam points
-///          to the middle of the two angles.
+/// Frame    sensor frame S: x forward, y left, z up; the beams lie in its xy plane. Beam i leaves S's origin
+///          at min_angle + i (max_angle - min_angle) / (beams - 1), counter-clockwise positive. A single beam
+///          points to the middle of the two angles.
 /// Levels   any of them at once; each runs alone what it needs.
-///          `ranges` (the default): sensor_msgs/LaserScan, `beams` distances [m] in beam order. +inf: nothing within
-///          max_range. -inf: nearer than min_range. Never NaN. Convention of ROS REP 117.
-///          `segments`: sandlot_msgs/LineSegmentArray in S, the straight pieces of what lies within reach, from few rays
-///          of their own (segments.h). Errors: `segments:`; each end moves by a normal in x and y, some are missed.
-///          `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as a localisation in a known
-///          map tells it. No ray is cast. Errors: `pose:` (noise/pose_estimate.h); height, roll and pitch are true.
-/// Time     all beams are sampled at the same instant, the end of the tick. A real scanner sweeps; see Limits.
-/// Noise    of `ranges`: noise/range_noise.h: white noise per beam, a bias that all beams of a scan share, a constant error and a
-///          resolution; added to finite distances only, then clamped to [min_range, max_range].
-/// Housing  rays start at S's origin, so that what touches the sensor reads -inf and not whatever lies behind it.
-///          The link that carries the sensor is its housing and is never seen; other links of the robot are.
-/// Limits   no intensities, reflectance (mixed beams as a stage of noise), motion distortion, cross-talk, beam divergence.
-/// Cost     `ranges`: `beams` ray casts per sample, no allocation after the device was built; scanners run in parallel.
+///          `ranges` (the default): sensor_msgs/LaserScan, `beams` distances [m] in beam order. +inf: nothing
+///          within max_range. -inf: nearer than min_range. Never NaN. Convention of ROS REP 117.
+///          `segments`: sandlot_msgs/LineSegmentArray in S, the straight pieces of what lies within reach,
+///          from few rays of their own (segments.h). Errors: `segments:`; each end moves by a normal in x and
+///          y, some are missed.
+///          `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as a
+///          localisation in a known map tells it. No ray is cast. Errors: `pose:` (noise/pose_estimate.h);
+///          height, roll and pitch are true.
+/// Time     all beams are sampled at the same instant, the end of the tick. A real scanner sweeps; see
+///          Limits.
+/// Noise    of `ranges`: noise/range_noise.h: white noise per beam, a bias that all beams of a scan share, a
+///          constant error and a resolution; added to finite distances only, then clamped to [min_range,
+///          max_range].
+/// Housing  rays start at S's origin, so that what touches the sensor reads -inf and not whatever lies behind
+///          it. The link that carries the sensor is its housing and is never seen; other links of the robot
+///          are.
+/// Limits   no intensities, reflectance (mixed beams as a stage of noise), motion distortion, cross-talk,
+///          beam divergence.
+/// Cost     `ranges`: `beams` ray casts per sample, no allocation after the device was built; scanners run in
+///          parallel.
 ///          `segments`: see segments.h. `pose`: a few normals.
 /// Errors   a bad spec: place and path of the key.
-/// Source   ROS REP 117; noise: S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3 (the "hit" term only).
+/// Source   ROS REP 117; noise: S. Thrun et al., Probabilistic Robotics (2005), sec. 6.3 (the "hit" term
+///          only).
 #include <numbers>
 #include <vector>
 

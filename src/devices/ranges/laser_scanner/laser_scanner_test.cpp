@@ -44,7 +44,8 @@ class Caster final : public RayCaster {
 
 /// The plane x = 2 m.
 double wall(Vec3 o, Vec3 d) { return d.x > 1e-12 && o.x < 2 ? (2 - o.x) / d.x : HUGE_VAL; }
-/// A ball (or, without z, an upright cylinder) of radius r about (4, 0, 0): the smaller root of |o + t d - c| = r.
+/// A ball (or, without z, an upright cylinder) of radius r about (4, 0, 0): the smaller root of |o + t d - c|
+/// = r.
 double ball(Vec3 o, Vec3 d, double r, bool upright) {
   Vec3 oc = o - Vec3{4, 0, 0};
   if (upright) oc.z = d.z = 0;
@@ -69,8 +70,8 @@ TEST(LaserScanner, AWallReadsItsDistanceOverTheCosineBeamZeroRightmost) {
   EXPECT_NEAR(r[2], 1.5, float_m);
   EXPECT_NEAR(r[3], 1.5 * std::sqrt(2.0), float_m);
   EXPECT_EQ(r[4], inf);
-  // The link turned left by 45 degrees about its origin: the rightmost but one beam meets the wall squarely, from
-  // x = 0.5 cos 45.
+  // The link turned left by 45 degrees about its origin: the rightmost but one beam meets the wall squarely,
+  // from x = 0.5 cos 45.
   rig.engine->body[3].X_WB.q = quat_from_rpy(0, 0, math::pi / 4);
   const auto& turned = scan(rig, Caster(wall));
   EXPECT_NEAR(turned[1], 2 - 0.5 / std::sqrt(2.0), float_m);
@@ -185,8 +186,8 @@ TEST(LaserScanner, ABiasIsSharedByTheBeamsOfAScan) {
 }
 
 TEST(LaserScanner, AConstantErrorIsDrawnOncePerDeviceWithinItsBound) {
-  // Uniform within +-0.3: of 400 devices the mean has a deviation of 0.3 / sqrt(3 * 400), the mean square (0.03) one of
-  // 0.09 sqrt(4 / 45 / 400).
+  // Uniform within +-0.3: of 400 devices the mean has a deviation of 0.3 / sqrt(3 * 400), the mean square
+  // (0.03) one of 0.09 sqrt(4 / 45 / 400).
   Rig rig(kind, test::two_wheels());
   constexpr int devices = 400;
   for (int i = 0; i < devices; ++i)

@@ -42,7 +42,8 @@ void SegmentFinder::cast(const RayCaster& rays, RayJob job, double min_m) {
   }
 }
 
-/// For each pair of neighbours: whether the line through one of them and its own neighbour leads to the other.
+/// For each pair of neighbours: whether the line through one of them and its own neighbour leads to the
+/// other.
 void SegmentFinder::link(double tolerance_m) {
   const auto leads = [&](std::size_t from, std::size_t over, std::size_t to) {
     const Echo &a = echoes_[from], &b = echoes_[over], &c = echoes_[to];

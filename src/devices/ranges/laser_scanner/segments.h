@@ -1,17 +1,19 @@
 #pragma once
 /// The straight pieces of what a planar scanner would see, from far fewer rays than a scan has.
 ///
-/// A fan of rays `step` apart comes first. Between neighbours that do not lie on one straight line of one link (an edge, a
-/// corner) further rays halve the gap, five times at most, so edges are found within step / 32. Rays are exact, so
-/// straight pieces are straight: a chain of points is cut where it leaves its chord by more than `tolerance`, at the
-/// farthest point (Ramer, Douglas, Peucker), so round things become polygons that close to them.
+/// A fan of rays `step` apart comes first. Between neighbours that do not lie on one straight line of one
+/// link (an edge, a corner) further rays halve the gap, five times at most, so edges are found within step /
+/// 32. Rays are exact, so straight pieces are straight: a chain of points is cut where it leaves its chord by
+/// more than `tolerance`, at the farthest point (Ramer, Douglas, Peucker), so round things become polygons
+/// that close to them.
 ///
 /// Frame    S, angles as the scan's.
-/// Limits   a thing between two rays of the first fan is missed; a full turn's seam cuts what lies there; two walls of one
-///          link in one line, with a gap narrower than step, are one.
-/// Cost     1 + fov / step rays and at most four times as many for edges; no allocation after the first samples.
-/// Source   D. Douglas, T. Peucker, Cartographica 10 (1973) 112-122; V. Nguyen et al., A comparison of line extraction
-///          algorithms using 2D laser rangefinder (IROS 2005): split and merge.
+/// Limits   a thing between two rays of the first fan is missed; a full turn's seam cuts what lies there; two
+///          walls of one link in one line, with a gap narrower than step, are one.
+/// Cost     1 + fov / step rays and at most four times as many for edges; no allocation after the first
+///          samples.
+/// Source   D. Douglas, T. Peucker, Cartographica 10 (1973) 112-122; V. Nguyen et al., A comparison of line
+///          extraction algorithms using 2D laser rangefinder (IROS 2005): split and merge.
 #include <vector>
 
 #include "geometry/rays.h"

@@ -3,16 +3,19 @@
 ///
 /// Frame    sensor frame S: x forward, y left, z up. Beam (plane p, column c) leaves S's origin at azimuth
 ///          min_angle + c (max_angle - min_angle) / (columns - 1), counter-clockwise, and elevation
-///          min_elevation + p (max_elevation - min_elevation) / (planes - 1), upwards. A single column or plane lies in
-///          the middle of its two angles.
-/// Output   level `points`: sensor_msgs/PointCloud2 in S with x y z intensity (float32) and ring (uint16, the plane,
-///          lowest first), 20 bytes per point. `organised: true`: `planes` rows of `columns` points, NaN where nothing
-///          was hit between min_range and max_range. `organised: false`: one row of the points that were hit.
+///          min_elevation + p (max_elevation - min_elevation) / (planes - 1), upwards. A single column or
+///          plane lies in the middle of its two angles.
+/// Output   level `points`: sensor_msgs/PointCloud2 in S with x y z intensity (float32) and ring (uint16, the
+///          plane, lowest first), 20 bytes per point. `organised: true`: `planes` rows of `columns` points,
+///          NaN where nothing was hit between min_range and max_range. `organised: false`: one row of the
+///          points that were hit.
 /// Time     all beams are sampled at the same instant, the end of the tick. A real scanner turns; see Limits.
 /// Noise    noise/range_noise.h, along the beam.
 /// Housing  as laser_scanner: the link that carries it is never seen.
-/// Limits   intensity is always 0; no motion distortion, reflectance, mixed pixels, cross-talk, second returns.
-/// Cost     columns * planes ray casts per sample; no allocation after the first sample. Planes run in parallel.
+/// Limits   intensity is always 0; no motion distortion, reflectance, mixed pixels, cross-talk, second
+///          returns.
+/// Cost     columns * planes ray casts per sample; no allocation after the first sample. Planes run in
+///          parallel.
 /// Errors   a bad spec, more than a million beams: place and path of the key.
 /// Source   ROS REP 117; noise/range_noise.h.
 #include <numbers>

@@ -33,7 +33,8 @@ void finish(Ring& ring, std::uint64_t sample, Time since, const Context& context
   ring.scan->publish(context.now);
 }
 
-/// Directions of a ring: those of the ring made before this one if they are the same, which in a swarm they are.
+/// Directions of a ring: those of the ring made before this one if they are the same, which in a swarm they
+/// are.
 std::shared_ptr<const std::vector<Vec3>> directions(std::size_t sensors, double first_rad,
                                                     double spacing_rad) {
   std::vector<Vec3> made(sensors);

@@ -1,17 +1,21 @@
 #pragma once
 /// Ring of short-range infra-red proximity sensors about a small robot.
 ///
-/// Frame    sensor frame S: x forward, y left, z up, in the middle of the ring. Sensor i sits on a circle of `radius` in S's
-///          xy plane at the angle first_angle + i * spacing, counter-clockwise positive, and looks straight outwards.
-/// Output   level `proximity`: sensor_msgs/LaserScan, one beam per sensor. `intensities`: the readings, 0 nothing in reach,
-///          1 as near as can be. `ranges`: distances from S's origin as everybody draws them, so from `radius` to
-///          radius + range; +inf: nothing in reach. With d the distance from the sensor, `response`
+/// Frame    sensor frame S: x forward, y left, z up, in the middle of the ring. Sensor i sits on a circle of
+///          `radius` in S's xy plane at the angle first_angle + i * spacing, counter-clockwise positive, and
+///          looks straight outwards.
+/// Output   level `proximity`: sensor_msgs/LaserScan, one beam per sensor. `intensities`: the readings, 0
+///          nothing in reach, 1 as near as can be. `ranges`: distances from S's origin as everybody draws
+///          them, so from `radius` to radius + range; +inf: nothing in reach. With d the distance from the
+///          sensor, `response`
 ///            linear          reading = 1 - d / range
 ///            inverse_square  reading = min(1, (saturation / d)^2), as reflected light falls off
 /// Time     the end of the tick, all sensors at once.
 /// Noise    noise/range_noise.h on d; the reading follows from the distance that was shown.
-/// Housing  rays start at the sensors, so what lies within the ring is not seen; nor is the link that carries it.
-/// Limits   a ray per sensor: no beam width, colour, ambient light or cross-talk. Sensors sit at even spacings.
+/// Housing  rays start at the sensors, so what lies within the ring is not seen; nor is the link that carries
+///          it.
+/// Limits   a ray per sensor: no beam width, colour, ambient light or cross-talk. Sensors sit at even
+///          spacings.
 /// Cost     `sensors` ray casts per sample, all rings of a world in batches, in parallel; no allocation.
 /// Errors   a bad spec: place and path of the key.
 /// Source   the reading's form: general knowledge of reflective infra-red sensors; noise/range_noise.h.

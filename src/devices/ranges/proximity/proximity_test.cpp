@@ -52,8 +52,8 @@ TEST(Proximity, ReadingsAndDistancesFollowFromTheGeometry) {
   const Wall wall;
   ASSERT_TRUE(rig.add("ring", config({{"sensors", "8"}, {"radius", "0.08"}, {"range", "0.1"}})));
   const msg::LaserScan& message = scan(rig, wall);
-  // Straight ahead: 0.15 m from the middle, 0.07 m from the sensor. At 45 degrees 0.15 sqrt(2) = 0.2121 m is out of
-  // the reach of 0.18 m; behind there is nothing.
+  // Straight ahead: 0.15 m from the middle, 0.07 m from the sensor. At 45 degrees 0.15 sqrt(2) = 0.2121 m is
+  // out of the reach of 0.18 m; behind there is nothing.
   ASSERT_EQ(message.ranges.size(), 8u);
   EXPECT_NEAR(message.ranges[0], 0.15, float_m);
   EXPECT_NEAR(message.intensities[0], 1 - 0.07 / 0.1, float_reading);
@@ -79,7 +79,8 @@ TEST(Proximity, SensorsStandWhereFirstAngleAndSpacingSay) {
   // 0.15 / cos(60 deg) = 0.3 m: just the reach; 0.15 m ahead.
   EXPECT_NEAR(message.ranges[1], 0.15, float_m);
   EXPECT_NEAR(message.intensities[1], 0.75, float_reading);
-  // A step to the wall, so that the outer ones see it well within their reach: (0.15 - 0.02) / cos(60 deg) = 0.26 m.
+  // A step to the wall, so that the outer ones see it well within their reach: (0.15 - 0.02) / cos(60 deg) =
+  // 0.26 m.
   rig.engine->body[0].X_WB.p.x = 0.02;
   const msg::LaserScan& nearer = scan(rig, wall);
   for (const std::size_t i : {0u, 2u}) {

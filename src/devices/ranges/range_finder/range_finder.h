@@ -1,15 +1,15 @@
 #pragma once
 /// Range finder that measures one distance: an infra-red beam or the cone of a sonar.
 ///
-/// Frame    sensor frame S: it looks along x. Rays leave S's origin: one along x, and on ring k of `rings` 6 k rays,
-///          evenly about x, at the angle k / rings * fov / 2 from it.
+/// Frame    sensor frame S: it looks along x. Rays leave S's origin: one along x, and on ring k of `rings` 6
+///          k rays, evenly about x, at the angle k / rings * fov / 2 from it.
 /// Output   level `range`: sensor_msgs/Range, the nearest distance that any ray met [m]. +inf: nothing within
 ///          max_range. -inf: nearer than min_range. Never NaN. Convention of ROS REP 117.
 /// Time     the end of the tick.
 /// Noise    noise/range_noise.h, on the distance shown.
 /// Housing  as laser_scanner: the link that carries it is never seen.
-/// Limits   no echo from grazing faces that a real sonar would lose, no cross-talk, no dependence on colour or
-///          temperature; a thing thinner than the gap between two rays may be missed.
+/// Limits   no echo from grazing faces that a real sonar would lose, no cross-talk, no dependence on colour
+///          or temperature; a thing thinner than the gap between two rays may be missed.
 /// Cost     1 + 3 rings (rings + 1) ray casts per sample, no allocation.
 /// Errors   a bad spec: place and path of the key.
 /// Source   ROS REP 117; noise/range_noise.h.

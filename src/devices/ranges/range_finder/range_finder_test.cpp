@@ -48,8 +48,8 @@ float measure(Rig& rig, const Caster& caster) {
 double floor_below(Vec3 o, Vec3 d) { return d.z < -1e-12 ? (-1 - o.z) / d.z : HUGE_VAL; }
 
 TEST(RangeFinder, TheEdgeOfTheConeMeetsTheFloorFirst) {
-  // The lowest ray of the outermost ring leaves at fov / 2 below the axis (6 rings rays: one at 270 degrees when 6 k is
-  // a multiple of 4, so for two rings): distance 1 / sin(fov / 2).
+  // The lowest ray of the outermost ring leaves at fov / 2 below the axis (6 rings rays: one at 270 degrees
+  // when 6 k is a multiple of 4, so for two rings): distance 1 / sin(fov / 2).
   Rig rig(kind, test::two_wheels());
   ASSERT_TRUE(rig.add("sonar", config({{"fov", "40 deg"}, {"rings", "2"}, {"max_range", "10"}}), 1, 3));
   const Caster caster(floor_below);

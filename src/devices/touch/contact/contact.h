@@ -2,16 +2,17 @@
 /// Contact sensor: what touches the shapes of a link, where and how hard; and the bumper switch made of it.
 ///
 /// Frame    points, normals and forces in the world.
-/// Levels   `contacts` (the default): sandlot_msgs/ContactsState, one entry per pair of shapes: points, normals towards the
-///          own shape, depths, and the force on the own shape at each point. `bumper`: std_msgs/Bool. Both may be active.
-/// Time     contacts are those of the last physics step of the tick, forces means over it. The bumper shows whether the force
-///          on it was at least `threshold` in any physics step since its previous sample: a blow between two samples
-///          is not lost.
+/// Levels   `contacts` (the default): sandlot_msgs/ContactsState, one entry per pair of shapes: points,
+///          normals towards the own shape, depths, and the force on the own shape at each point. `bumper`:
+///          std_msgs/Bool. Both may be active.
+/// Time     contacts are those of the last physics step of the tick, forces means over it. The bumper shows
+///          whether the force on it was at least `threshold` in any physics step since its previous sample: a
+///          blow between two samples is not lost.
 /// Noise    none.
-/// Limits   the planar engine merges the shapes of a robot into one disc, which stands for all its links, and reports no forces:
-///          they read zero. Names are "<robot>::<link>::<collision>".
-/// Cost     nothing but a look at the list of contacts where nothing touches; the engine measures the forces of this link
-///          only. Strings of names are written when something touches; capacity is reused.
+/// Limits   the planar engine merges the shapes of a robot into one disc, which stands for all its links, and
+///          reports no forces: they read zero. Names are "<robot>::<link>::<collision>".
+/// Cost     nothing but a look at the list of contacts where nothing touches; the engine measures the forces
+///          of this link only. Strings of names are written when something touches; capacity is reused.
 /// Errors   a collision that the link does not have; a threshold on an engine that reports no forces.
 /// Source   SDF 1.9 <sensor type="contact">; message after gazebo_msgs/ContactsState.
 #include "devices/kind.h"

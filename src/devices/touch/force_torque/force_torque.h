@@ -1,16 +1,17 @@
 #pragma once
 /// Force-torque sensor in a joint: force and torque that the two links exert on each other through it.
 ///
-/// Frame    acts at the joint's origin. Axes by `frame`: `child` (the default) those of the child link, `parent` of the parent
-///          link, `sensor` of the device's own pose on the child link.
-/// Output   level `wrench`: geometry_msgs/WrenchStamped [N, Nm]. `direction`: child_to_parent (the default): what the child
-///          does to the parent, so a sensor that carries a load at rest reads its weight, downwards;
-///          parent_to_child: the opposite.
+/// Frame    acts at the joint's origin. Axes by `frame`: `child` (the default) those of the child link,
+///          `parent` of the parent link, `sensor` of the device's own pose on the child link.
+/// Output   level `wrench`: geometry_msgs/WrenchStamped [N, Nm]. `direction`: child_to_parent (the default):
+///          what the child does to the parent, so a sensor that carries a load at rest reads its weight,
+///          downwards; parent_to_child: the opposite.
 /// Time     means over the interval since the previous sample, as the filter of a real sensor gives.
 /// Noise    noise/channel_noise.h for each axis of force and torque.
-/// Limits   no cross-talk between axes, hysteresis or overload. What the motor of the joint puts in is part of the load, as in a
-///          real joint. On a base that moves on rails (a drive's level ideal) joints that move carry only what the rails
-///          leave to them. Of a fixed joint in a ring of fixed joints the load is not determined.
+/// Limits   no cross-talk between axes, hysteresis or overload. What the motor of the joint puts in is part
+///          of the load, as in a real joint. On a base that moves on rails (a drive's level ideal) joints
+///          that move carry only what the rails leave to them. Of a fixed joint in a ring of fixed joints the
+///          load is not determined.
 /// Cost     the engine's: physics/rigid/loads.cpp; two rotations per sub-step.
 /// Errors   a joint that is not there; an engine that does not report loads.
 /// Source   SDF 1.9 <force_torque>.
