@@ -201,7 +201,7 @@ Section drives() {
   Section s{
       "drives",
       "Drives",
-      "Each drive at each of its levels on each engine is told a velocity; two seconds later the mean "
+      "Each drive at each of its levels on each engine is given a velocity; two seconds later the mean "
       "velocity over two seconds is measured from the true poses, as the constant twist that leads "
       "from the first pose to the last.\n\n"
       "What theory says is the command; of wheels with two edges what is left of it when the outer edge "

@@ -105,7 +105,7 @@ void special(Section& s) {
     s.rows.push_back({"puck on a zone of ice, friction 0.05: speed lost in 0.1 s",
                       fmt::format("{}, 2 ms", engine), "m/s", 2 - w.state(on_ice).V_WB.linear.x,
                       0.05 * g_mps2 * 51 * h_s, 0.005});
-    s.rows.push_back({"puck beside it, friction 0.4: speed lost in 0.1 s", fmt::format("{}, 2 ms", engine),
+    s.rows.push_back({"puck next to it, friction 0.4: speed lost in 0.1 s", fmt::format("{}, 2 ms", engine),
                       "m/s", 2 - w.state(on_floor).V_WB.linear.x, 0.4 * g_mps2 * 51 * h_s, 0.005});
   }
 }

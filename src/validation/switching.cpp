@@ -25,7 +25,7 @@ Section switching() {
   Section s{
       "switching",
       "Levels switched on the way",
-      "A Mecanum robot drives an arc of 0.3 m/s and 0.5 rad/s and is told another level every second, with "
+      "A Mecanum robot drives an arc of 0.3 m/s and 0.5 rad/s and is switched to another level every second, with "
       "no new "
       "command. In the tick of the switch (10 ms) it goes on by what its velocity makes of it, so does its "
       "odometry, and its velocity stays: each column is the difference to that. On rollers the velocity "
