@@ -20,7 +20,7 @@ spdlog::logger& logger() {
 std::mutex listener_mutex;
 std::function<void(Level, std::string_view)> listener;
 
-void tell(Level level, std::string_view text) {
+void notify(Level level, std::string_view text) {
   const std::lock_guard lock(listener_mutex);
   if (listener) listener(level, text);
 }
@@ -43,15 +43,15 @@ void set_level(Level level) {
 
 void info(std::string_view text) {
   logger().info("{}", text);
-  tell(Level::info, text);
+  notify(Level::info, text);
 }
 void warning(std::string_view text) {
   logger().warn("{}", text);
-  tell(Level::warning, text);
+  notify(Level::warning, text);
 }
 void debug(std::string_view text) {
   logger().debug("{}", text);
-  tell(Level::debug, text);
+  notify(Level::debug, text);
 }
 
 }  // namespace sandlot::log

@@ -55,8 +55,8 @@ struct Course {
   double end_error_m = 0, end_turn_rad = 0;            ///< of the odometry against the truth
   double foreseen_error_m = 0, foreseen_turn_rad = 0;  ///< by the slip of the wheels
   double slipped_m = 0;                                ///< mean way of the wheels' slip
-  double largest_m = 0, largest_share = 0;  ///< error, and its largest ratio to its bound
-  double steady_m = 0;                      ///< error that a second at constant velocity adds
+  double largest_m = 0, largest_share = 0;             ///< error, and its largest ratio to its bound
+  double steady_m = 0;                                 ///< error that a second at constant velocity adds
 };
 
 Course drive(const char* engine, const char* level, const char* odometry, bool slippery) {
@@ -69,7 +69,7 @@ Course drive(const char* engine, const char* level, const char* odometry, bool s
   auto started = Robot::start(trial);
   SL_CHECK_MSG(started, started ? "" : started.error().text().c_str());
   Robot& robot = *started;
-  const PlanarPose truth0 = planar(robot.pose()), told0 = read_odometry(robot);
+  const PlanarPose truth0 = planar(robot.pose()), measured0 = read_odometry(robot);
   PlanarPose foreseen = truth0;  // where the wheels' slip takes an odometry by least squares
   Pose before = robot.pose();
   Turned wheel_before = read_joints(robot);
@@ -77,7 +77,7 @@ Course drive(const char* engine, const char* level, const char* odometry, bool s
   double mean_slip_m = 0, turn_bound_rad = 0, bound_m = 0;
   for (const Twist& command : path) {
     robot.command(command);
-    PlanarPose steady_truth, steady_told;
+    PlanarPose steady_truth, steady_measured;
     for (int i = 0; i < 200; ++i) {
       if (i == 150 && !slippery) robot.command({});
       robot.tick();
@@ -108,17 +108,18 @@ Course drive(const char* engine, const char* level, const char* odometry, bool s
       mean_slip_m += slip_m;
       before = now, wheel_before = wheel_now;
 
-      const PlanarPose truth = seen_from(truth0, planar(now)), told = seen_from(told0, read_odometry(robot)),
+      const PlanarPose truth = seen_from(truth0, planar(now)),
+                       measured = seen_from(measured0, read_odometry(robot)),
                        thought = seen_from(truth0, foreseen);
       const auto off = [&](const PlanarPose& p) { return math::hypot(p.x_m - truth.x_m, p.y_m - truth.y_m); };
-      if (i == 49) steady_truth = planar(now), steady_told = read_odometry(robot);
+      if (i == 49) steady_truth = planar(now), steady_measured = read_odometry(robot);
       if (i == 149) {
         const PlanarPose a = seen_from(steady_truth, planar(now)),
-                         b = seen_from(steady_told, read_odometry(robot));
+                         b = seen_from(steady_measured, read_odometry(robot));
         c.steady_m = std::max(c.steady_m, math::hypot(a.x_m - b.x_m, a.y_m - b.y_m));
       }
-      c.end_error_m = off(told), c.foreseen_error_m = off(thought);
-      c.end_turn_rad = math::wrap_angle(told.theta_rad - truth.theta_rad);
+      c.end_error_m = off(measured), c.foreseen_error_m = off(thought);
+      c.end_turn_rad = math::wrap_angle(measured.theta_rad - truth.theta_rad);
       c.foreseen_turn_rad = math::wrap_angle(thought.theta_rad - truth.theta_rad);
       c.largest_m = std::max(c.largest_m, c.end_error_m);
       if (bound_m > 1e-3) c.largest_share = std::max(c.largest_share, c.end_error_m / bound_m);
@@ -146,7 +147,8 @@ Section odometry() {
       "place and h w of heading while it moves, and the rigid engine moves bodies along chords, v w h / 2 "
       "per second off "
       "the arc. At "
-      "`contact` on wet ground (friction 0.12), told to accelerate with 4 m/s^2, wheels spin and slide: the "
+      "`contact` on wet ground (friction 0.12), commanded to accelerate with 4 m/s^2, wheels spin and slide: "
+      "the "
       "slip of each wheel in each tick is its middle's true way less what it rolled. To least squares over a "
       "square of wheels the mean of these slips is an error of place and their moment one of heading, from "
       "which the error along the whole path follows; Kabsch gives the same to first order in the turn per "

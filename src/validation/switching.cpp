@@ -25,7 +25,8 @@ Section switching() {
   Section s{
       "switching",
       "Levels switched on the way",
-      "A Mecanum robot drives an arc of 0.3 m/s and 0.5 rad/s and is switched to another level every second, with "
+      "A Mecanum robot drives an arc of 0.3 m/s and 0.5 rad/s and is switched to another level every second, "
+      "with "
       "no new "
       "command. In the tick of the switch (10 ms) it goes on by what its velocity makes of it, so does its "
       "odometry, and its velocity stays: each column is the difference to that. On rollers the velocity "
@@ -49,16 +50,16 @@ Section switching() {
       const std::string what = fmt::format("{} to {}", robot.level, to);
       const std::string where = fmt::format("{}, 1 ms", engine);
       const bool rolls = what.find("rollers") != std::string::npos;
-      const Pose pose = robot.pose(), told = odometry_of(robot);
+      const Pose pose = robot.pose(), measured = odometry_of(robot);
       const Twist velocity = robot.velocity();
       robot.switch_level(to);
       robot.tick();
       const double dt = robot.tick_s();
       const Twist moved = between(pose, robot.pose(),
                                   math::wrap_angle(yaw_of(robot.pose().q) - yaw_of(pose.q)), dt);
-      const Pose told_now = odometry_of(robot);
-      const Twist counted = between(told, told_now, math::wrap_angle(yaw_of(told_now.q) - yaw_of(told.q)),
-                                    dt);
+      const Pose measured_now = odometry_of(robot);
+      const Twist counted = between(measured, measured_now,
+                                    math::wrap_angle(yaw_of(measured_now.q) - yaw_of(measured.q)), dt);
       const Twist jump = robot.velocity() - velocity;
       s.rows.push_back({what + ": jump of place", where, "mm", 1e3 * dt * length(moved - velocity), 0,
                         rolls ? 0.2 : 0.005, false});

@@ -56,7 +56,7 @@ void point_wheels(Base& base, Steering&& steering) {
 }
 /// On rails the wheels stand as commanded, wherever their joints are on the way there.
 double steering_of(const Drive& drive, std::size_t p, Level level, Joints joints) {
-  return level == ideal ? drive.state.pivots[p].told_rad : angle_of(drive.base.pivots[p], joints);
+  return level == ideal ? drive.state.pivots[p].target_rad : angle_of(drive.base.pivots[p], joints);
 }
 void point_wheels_as_they_stand(Drive drive, Level level, Joints joints) {
   point_wheels(drive.base, [&](std::size_t p) { return steering_of(drive, p, level, joints); });
@@ -129,9 +129,9 @@ void take_wheel_command(Drive drive, const msg::JointState& message, Joints join
   Base& base = drive.base;
   State& state = drive.state;
   if (!state.by_wheels) {  // what the message leaves out begins at rest
-    for (WheelState& wheel : state.wheels) wheel.told = 0, wheel.by_effort = 0;
+    for (WheelState& wheel : state.wheels) wheel.command = 0, wheel.by_effort = 0;
     for (std::size_t p = 0; p < base.pivots.size(); ++p)
-      state.pivots[p].told_rad = angle_of(base.pivots[p], joints);
+      state.pivots[p].target_rad = angle_of(base.pivots[p], joints);
   }
   state.by_wheels = 1;
   const std::size_t all = base.wheels.size() + base.pivots.size();
@@ -142,15 +142,15 @@ void take_wheel_command(Drive drive, const msg::JointState& message, Joints join
     if (at >= base.wheels.size()) {
       const Pivot& pivot = base.pivots[at - base.wheels.size()];
       if (const double angle = element(message.position, k); !std::isnan(angle))
-        state.pivots[at - base.wheels.size()].told_rad = std::clamp(angle * pivot.sign, pivot.lower,
-                                                                    pivot.upper);
+        state.pivots[at - base.wheels.size()].target_rad = std::clamp(angle * pivot.sign, pivot.lower,
+                                                                      pivot.upper);
       continue;
     }
     WheelState& wheel = state.wheels[at];
     const double speed = element(message.velocity, k), effort = element(message.effort, k);
     if (std::isnan(speed) && std::isnan(effort)) continue;
     wheel.by_effort = std::isnan(speed) ? 1 : 0;
-    wheel.told = base.wheels[at].sign * (wheel.by_effort ? effort : speed);
+    wheel.command = base.wheels[at].sign * (wheel.by_effort ? effort : speed);
   }
 }
 
@@ -204,9 +204,9 @@ PlanarMotion goal(Drive drive, const Context& context) {
   if (timed_out(drive, context)) return {};
   PlanarMotion m = drive.state.command;
   if (drive.state.by_wheels) {
-    point_wheels(base, [&](std::size_t p) { return drive.state.pivots[p].told_rad; });
+    point_wheels(base, [&](std::size_t p) { return drive.state.pivots[p].target_rad; });
     for (std::size_t i = 0; i < base.wheels.size(); ++i)
-      base.turns[i] = drive.state.wheels[i].by_effort ? 0 : drive.state.wheels[i].told;
+      base.turns[i] = drive.state.wheels[i].by_effort ? 0 : drive.state.wheels[i].command;
     m = kinematics::chassis_motion(base.geometry, base.turns, base.pivot_x_m).motion;
   }
   if (base.car) m = base.car->possible(m);
@@ -246,7 +246,7 @@ void aim(Drive drive, std::size_t p, Direction u, Joints joints) {
   const kinematics::Steering to = kinematics::steer_towards(math::atan2(u.y, u.x) - heading_of(drive.base, p),
                                                             {angle_of(pivot, joints), state.backward != 0},
                                                             limits);
-  state.told_rad = to.angle_rad;
+  state.target_rad = to.angle_rad;
   state.backward = to.backward;
 }
 
@@ -266,7 +266,7 @@ void turn_pivots(const Drive& drive, bool kinematic, double h_s, Joints joints,
                  std::vector<JointTarget>& targets) {
   for (std::size_t p = 0; p < drive.base.pivots.size(); ++p) {
     const Pivot& pivot = drive.base.pivots[p];
-    const double error = drive.state.pivots[p].told_rad - angle_of(pivot, joints);
+    const double error = drive.state.pivots[p].target_rad - angle_of(pivot, joints);
     const double most = std::min(drive.spec.max_steering_speed_radps, pivot.max_speed);
     const double gain = std::min(kinematic ? ideal_steering_gain : steering_gain, 0.5 / h_s);
     double speed = std::clamp(gain * error, -most, most);
@@ -295,7 +295,8 @@ double full_effort(const Drive& drive, const Wheel& wheel) {
   return std::min(drive.spec.max_wheel_effort_Nm, wheel.max_effort);
 }
 
-void ask_speed(Drive drive, std::size_t i, double radps, Joints joints, std::vector<JointTarget>& targets) {
+void request_speed(Drive drive, std::size_t i, double radps, Joints joints,
+                   std::vector<JointTarget>& targets) {
   const Wheel& wheel = drive.base.wheels[i];
   radps = std::clamp(radps, -wheel.max_speed, wheel.max_speed);
   double most = full_effort(drive, wheel);
@@ -316,8 +317,8 @@ void ask_speed(Drive drive, std::size_t i, double radps, Joints joints, std::vec
 }
 
 /// @param effort  a torque, or with a motor the share of the voltage
-void ask_effort(Drive drive, std::size_t i, double effort, double h_s, Joints joints,
-                std::vector<JointTarget>& targets) {
+void request_effort(Drive drive, std::size_t i, double effort, double h_s, Joints joints,
+                    std::vector<JointTarget>& targets) {
   const Wheel& wheel = drive.base.wheels[i];
   Base::Running& running = drive.base.running[i];
   running.on_voltage = drive.spec.motor.has_value();
@@ -355,7 +356,7 @@ void run_loops(Drive drive, double h_s, Joints joints, std::vector<JointTarget>&
     const kinematics::Wheel& w = base.geometry[i];
     const double share = std::clamp(w.radius_m * kinematics::wheel_turn(w, push), -1.0, 1.0);
     const double full = drive.spec.motor ? 1 : full_effort(drive, base.wheels[i]);
-    ask_effort(drive, i, share * full, h_s, joints, targets);
+    request_effort(drive, i, share * full, h_s, joints, targets);
   }
 }
 
@@ -471,9 +472,9 @@ void pre_substep(Drive drive, std::uint32_t levels, const Context& context, doub
     const bool stop = timed_out(drive, context);
     for (std::size_t i = 0; i < base.wheels.size(); ++i) {
       if (!base.wheels[i].driven) continue;
-      const double told = stop ? 0 : state.wheels[i].told;
-      if (state.wheels[i].by_effort) ask_effort(drive, i, told, h_s, joints, targets);
-      else ask_speed(drive, i, told, joints, targets);
+      const double command = stop ? 0 : state.wheels[i].command;
+      if (state.wheels[i].by_effort) request_effort(drive, i, command, h_s, joints, targets);
+      else request_speed(drive, i, command, joints, targets);
     }
     // A velocity command that comes next begins where the wheels are.
     state.setpoint = measured(drive, contact, joints);
@@ -486,7 +487,7 @@ void pre_substep(Drive drive, std::uint32_t levels, const Context& context, doub
     point_wheels_as_they_stand(drive, contact, joints);
     for (std::size_t i = 0; i < base.wheels.size(); ++i)
       if (base.wheels[i].driven)
-        ask_speed(drive, i, kinematics::wheel_turn(base.geometry[i], state.setpoint), joints, targets);
+        request_speed(drive, i, kinematics::wheel_turn(base.geometry[i], state.setpoint), joints, targets);
   }
   turn_pivots(drive, false, h_s, joints, targets);
 }

@@ -133,13 +133,13 @@ struct Common {
 
 /// Per wheel.
 struct WheelState {
-  double told = 0;                            ///< by a command of its own: speed or effort
+  double command = 0;                         ///< speed or effort commanded for this wheel alone
   std::uint8_t by_effort = 0;                 ///< 1: its last command was an effort
   double counted_rad = 0;                     ///< angle that the odometry has counted
   double virtual_rad = 0, virtual_radps = 0;  ///< of a wheel without a joint
   double current_A = 0;                       ///< in its motor
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"told", "", "Command of this wheel alone."}, s.told);
+    visit(Field{"told", "", "Command of this wheel alone."}, s.command);
     visit(Field{"by_effort", "1", "Whether the wheel's own command is an effort (1)."}, s.by_effort);
     visit(Field{"counted", "rad", "Angle counted by the odometry."}, s.counted_rad);
     visit(Field{"virtual_angle", "rad", "Angle of a wheel without a joint."}, s.virtual_rad);
@@ -149,11 +149,11 @@ struct WheelState {
 };
 /// Per steering joint.
 struct PivotState {
-  double told_rad = 0;        ///< where it is to go
+  double target_rad = 0;      ///< commanded steering angle
   double counted_rad = 0;     ///< angle at the odometry's last step
   std::uint8_t backward = 0;  ///< 1: its wheels turn backward to roll in the requested direction
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"told", "rad", "Commanded steering angle."}, s.told_rad);
+    visit(Field{"told", "rad", "Commanded steering angle."}, s.target_rad);
     visit(Field{"counted", "rad", "Angle at the odometry's last step."}, s.counted_rad);
     visit(Field{"backward", "1", "Whether the wheels turn backward to roll forward (1)."}, s.backward);
   }

@@ -407,10 +407,10 @@ void PlanarEngine::turn_joints(double h_s) {
     JointState& joint = joint_states_[k];
     const bool moved = motor.role == Motor::Role::kinematic ||
                        (motor.role == Motor::Role::wheel && drives_[motor.slot].active);
-    const bool asked = motor.slot != none && motor.target.mode == JointTarget::Mode::velocity;
+    const bool driven = motor.slot != none && motor.target.mode == JointTarget::Mode::velocity;
     if (moved && motor.roll == none) {
       joint.velocity = joint.effort = 0;
-      if (asked && motor.target.max_effort > 0) {
+      if (driven && motor.target.max_effort > 0) {
         const double before = joint.position;
         const double velocity = std::clamp(motor.target.velocity, -motor.max_velocity(),
                                            motor.max_velocity());
@@ -419,8 +419,8 @@ void PlanarEngine::turn_joints(double h_s) {
         joint.velocity = joint.position == goal ? velocity : (joint.position - before) / h_s;
       }
     }
-    motor.listed = asked;
-    return !asked;
+    motor.listed = driven;
+    return !driven;
   });
 }
 

@@ -40,11 +40,11 @@ PairSurface PlanarEngine::surfaces_at(const ContactFace& a, const ContactFace& b
   };
   PairSurface pair = combine(side(a), side(b), normal);
   if (rule_ && a.collision && b.collision) {
-    const auto told = [&](const ContactFace& f) -> ContactSide {
+    const auto side_of = [&](const ContactFace& f) -> ContactSide {
       const Instance& instance = instances_[f.slot];
       return {instance.name, instance.model->links[f.link], *f.collision, pose_of(f)};
     };
-    rule_(told(a), told(b), point, normal, pair);
+    rule_(side_of(a), side_of(b), point, normal, pair);
   }
   // A rule may return anything.
   for (double* x : {&pair.mu, &pair.mu2, &pair.restitution, &pair.rolling_resistance_m})

@@ -234,11 +234,11 @@ PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   };
   PairSurface pair = combine(side(*hit.a), side(*hit.b), normal);
   if (!rule_) return pair;
-  const auto told = [&](const Geom& g) -> ContactSide {
+  const auto side_of = [&](const Geom& g) -> ContactSide {
     const model::Link& link = g.instance->model->links[link_slots_[g.link.index].link];
     return {g.instance->name, link, *g.decl, g.pose()};
   };
-  rule_(told(*hit.a), told(*hit.b), point, normal, pair);
+  rule_(side_of(*hit.a), side_of(*hit.b), point, normal, pair);
   return pair;
 }
 
@@ -356,8 +356,8 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
 /// makes it overshoot, from side to side, sub-step by sub-step).
 void RigidEngine::attach_contacts(double h) {
   contacts_.clear();
-  const bool each_asked = rule_ || !zones_.empty();
-  if (each_asked) ask_surfaces();
+  const bool per_point = rule_ || !zones_.empty();
+  if (per_point) ask_surfaces();
   for (const Hit& hit : hits()) {
     ++hit.a->instance->contact_points;
     ++hit.b->instance->contact_points;
@@ -376,16 +376,16 @@ void RigidEngine::attach_contacts(double h) {
   for (Hit& hit : hits()) {
     const Geom &a = *hit.a, &b = *hit.b;
     dContact& contact = hit.contact;
-    if (each_asked || hit.index == 0 || a.decl->surface.skin || b.decl->surface.skin) {
-      pair = each_asked ? surfaces_[number_of_hit++]
-                        : combine({a.decl->surface, a.pose().q}, {b.decl->surface, b.pose().q},
-                                  -vec(contact.geom.normal));
+    if (per_point || hit.index == 0 || a.decl->surface.skin || b.decl->surface.skin) {
+      pair = per_point ? surfaces_[number_of_hit++]
+                       : combine({a.decl->surface, a.pose().q}, {b.decl->surface, b.pose().q},
+                                 -vec(contact.geom.normal));
       const bool slippery = a.instance->drive.active || b.instance->drive.active;
       parameters = parameters_of(pair, h, spec_.cfm, slippery);
     }
     contact.surface = parameters;
     // Equal limits of symmetric contacts are reached at the same moment, and the direct solver, which follows
-    // them one by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to tell them apart.
+    // them one by one, then gives up ("s <= 0"). A part in 10^7 between them is enough to distinguish them.
     std::uint32_t number = 0;
     for (const Geom* g : {&a, &b})
       if (g->body) number += g->instance->contacts_seen++;
@@ -403,7 +403,7 @@ void RigidEngine::attach_contacts(double h) {
                          {},
                          a.number_in_link,
                          b.number_in_link});
-    // ODE has one fastest correction for all contacts of a world; ours come into the depth that it is told.
+    // ODE has one fastest correction for all contacts of a world; ours come into the depth that it gets.
     const double erp = contact.surface.mode & dContactSoftERP ? contact.surface.soft_erp : spec_.erp;
     const double fastest = pair.max_correction_mps.value_or(spec_.contact_correction_mps);
     if (const double share = 1 / h * erp; share * contact.geom.depth > fastest)

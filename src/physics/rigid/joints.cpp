@@ -341,7 +341,7 @@ void measure_effort(Joint& j) {
   }
 }
 
-void tell(Joint& j) {
+void watch_load(Joint& j) {
   if (!j.watched_rows) j.watched_rows = std::make_unique<std::array<dJointFeedback, 6>>();
   auto& rows = *j.watched_rows;
   rows.fill({});
@@ -357,8 +357,8 @@ void silence(Joint& j) {
   const auto& rows = *j.watched_rows;
   // The last two live no longer than the sub-step.
   for (const dJointID ode : {j.main, j.motor, j.extra, j.second}) {
-    const dJointFeedback* const told = ode ? dJointGetFeedback(ode) : nullptr;
-    if (told >= rows.data() && told < rows.data() + rows.size()) dJointSetFeedback(ode, nullptr);
+    const dJointFeedback* const feedback = ode ? dJointGetFeedback(ode) : nullptr;
+    if (feedback >= rows.data() && feedback < rows.data() + rows.size()) dJointSetFeedback(ode, nullptr);
   }
 }
 
@@ -366,10 +366,10 @@ Transmitted transmitted(const Joint& j) {
   Vec3 force, torque;  // on the first body, about its centre
   for (const dJointID ode : {j.main, j.motor, j.extra, j.second, j.thread_row, j.friction_row}) {
     if (!ode) continue;
-    const dJointFeedback* const told = dJointGetFeedback(ode);
-    if (!told) continue;
-    force += Vec3{told->f1[0], told->f1[1], told->f1[2]};
-    torque += Vec3{told->t1[0], told->t1[1], told->t1[2]};
+    const dJointFeedback* const feedback = dJointGetFeedback(ode);
+    if (!feedback) continue;
+    force += Vec3{feedback->f1[0], feedback->f1[1], feedback->f1[2]};
+    torque += Vec3{feedback->t1[0], feedback->t1[1], feedback->t1[2]};
   }
   const Body& body = first_body(j);
   const Vec3 point = (body.pose() * (j.child ? j.X_child : j.X_parent)).p;

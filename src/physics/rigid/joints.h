@@ -46,10 +46,10 @@ void prepare_joint(Joint& joint, double erp, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);
 /// Lets ODE report the forces of all rows of this joint in this sub-step. @pre prepared
-void tell(Joint& joint);
+void watch_load(Joint& joint);
 /// No longer.
 void silence(Joint& joint);
-/// Sum of what tell() asked for. @pre solved, and the bodies have not moved yet
+/// Sum of the forces that watch_load() requested. @pre solved, and the bodies have not moved yet
 struct Transmitted {
   Vec3 point_W;             ///< origin of J
   Vec3 force_N, torque_Nm;  ///< on the child, the torque about that point, in W

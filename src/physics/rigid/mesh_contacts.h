@@ -5,11 +5,11 @@
 /// Method   a mesh is sampled once: at its vertices and along its edges, at least every eighth of its size,
 ///          thinned to one point (the outermost) per cell of a sixteenth. In each sub-step a short ray runs
 ///          to every point from below the surface; where it meets the other surface first, the point lies
-///          behind that surface. Both meshes are asked in turn. Against terrain the height at the point
+///          behind that surface. Both meshes are searched in turn. Against terrain the height at the point
 ///          decides.
 /// Limits   what touches between points is not seen: edges that cross within an eighth of the size, a peak of
 ///          the terrain under a flat face. Depths up to a tenth of the mesh's size; static meshes of more
-///          than 4000 points are not asked for theirs.
+///          than 4000 points are not searched for theirs.
 /// Cost     about 1 us per point inside the other's bounding box, 30 ns against terrain.
 #include <ode/ode.h>
 

@@ -230,7 +230,7 @@ class RigidEngine final : public Engine {
   std::vector<Push> pushes_;                                   ///< wrenches on links, while loads are watched
   std::vector<dJointFeedback> contact_feedback_;
   std::vector<std::uint8_t>
-      watched_contacts_;              ///< per contact: 0 not watched, 1 the force told is on b, 2 on a
+      watched_contacts_;              ///< per contact: 0 not watched, 1 the force reported is on b, 2 on a
   std::vector<std::uint8_t> behind_;  ///< per link: beyond the fixed joint in question
   std::vector<std::uint32_t> frontier_;
 };

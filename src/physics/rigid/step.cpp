@@ -103,7 +103,7 @@ void RigidEngine::push_forces(double h) {
       if (joint.main && joint.target.friction > 0 && !joint.leader && !joint.is(model::JointType::ball) &&
           joint.target.mode == JointTarget::Mode::effort && mover->active())
         add_friction_row(world_, contact_joints_, joint);
-      if (joint.load_watched && joint.main) tell(joint);
+      if (joint.load_watched && joint.main) watch_load(joint);
     }
     if (instance->drive.active) drive(*instance, h);
     for (Body& b : instance->bodies) {

@@ -7,7 +7,7 @@
 namespace sandlot::overhead_camera {
 namespace {
 
-bool tells(const Spec& spec, const LabelledObject& target) {
+bool reports(const Spec& spec, const LabelledObject& target) {
   return (target.moves || spec.fixed) &&
          (spec.labels.empty() ||
           std::find(spec.labels.begin(), spec.labels.end(), target.label) != spec.labels.end());
@@ -19,14 +19,15 @@ void observe(OverheadCamera& camera, std::uint64_t sample, const Context& contex
   const double yaw_std_rad = spec.errors * spec.yaw_std_rad, miss = std::min(1.0, spec.errors * spec.miss);
   const Stream stream(context.seed, camera.key, Purpose::noise, sample);
   const auto states = context.engine.states();
-  std::vector<msg::ObjectPose>& told = camera.world->message.objects;
+  std::vector<msg::ObjectPose>& reported = camera.world->message.objects;
   std::size_t count = 0;
   for (const LabelledObject& target : context.labelled_objects) {
-    if (!tells(spec, target)) continue;
+    if (!reports(spec, target)) continue;
     Stream random = stream.fork(entity_key(target.name));
     if (random.uniform() < miss) continue;
-    if (count == told.size()) told.emplace_back();  // else: the place of an earlier sample and its memory
-    msg::ObjectPose& object = told[count++];
+    if (count == reported.size())
+      reported.emplace_back();  // else: the place of an earlier sample and its memory
+    msg::ObjectPose& object = reported[count++];
     object.label = target.label;
     object.name = spec.names ? target.name : std::string();
     object.color = {target.color.r, target.color.g, target.color.b, target.color.a};
@@ -38,7 +39,7 @@ void observe(OverheadCamera& camera, std::uint64_t sample, const Context& contex
     object.position_std = position_std_m;
     object.confidence = 1;
   }
-  told.resize(count);
+  reported.resize(count);
   camera.world->publish(context.now);
 }
 

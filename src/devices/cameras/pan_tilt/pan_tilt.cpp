@@ -83,13 +83,13 @@ Pose eye_pose(const Unit& unit, const Context& context) {
 }
 
 /// Command slot of the camera's zoom; null: it has none, is gone or has failed.
-Topic<msg::Float64>* told_zoom(const Unit& unit, const Context& context) {
+Topic<msg::Float64>* zoom_command(const Unit& unit, const Context& context) {
   if (unit.zoom_command_topic.empty() || !context.topics) return nullptr;
   return topic_cast<msg::Float64>(context.topics->find_command(unit.zoom_command_topic));
 }
 
 void zoom_to(const Unit& unit, double wanted, const Context& context) {
-  Topic<msg::Float64>* const slot = told_zoom(unit, context);
+  Topic<msg::Float64>* const slot = zoom_command(unit, context);
   wanted = std::clamp(wanted, 1.0, unit.longest_zoom);
   if (!slot || (slot->count > 0 && slot->message.data == wanted)) return;
   slot->message.data = wanted;
@@ -102,8 +102,9 @@ std::array<double, 2> zoom_of(const Unit& unit, const Context& context) {
   if (unit.zoom_topic.empty() || !context.topics) return {1, 1};
   const auto* const now = topic_cast<msg::Float64>(context.topics->find_topic(unit.zoom_topic));
   const double zoom = now && now->count > 0 ? now->message.data : 1;
-  const Topic<msg::Float64>* const told = told_zoom(unit, context);
-  return {zoom, told && told->count > 0 ? std::clamp(told->message.data, 1.0, unit.longest_zoom) : zoom};
+  const Topic<msg::Float64>* const command = zoom_command(unit, context);
+  return {zoom,
+          command && command->count > 0 ? std::clamp(command->message.data, 1.0, unit.longest_zoom) : zoom};
 }
 
 /// Turns both joints so that the eye's x axis comes to the point. In the frame F of the axes (y: tilt, z:

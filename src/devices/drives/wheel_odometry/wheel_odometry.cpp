@@ -69,7 +69,7 @@ kinematics::PlanarPose base_of(const Odometer& o, const kinematics::PlanarPose& 
 }
 
 /// Reckons with B's true motion since the previous sample.
-void tell_pose(Odometer& o, std::uint64_t sample, Time since, const Context& context) {
+void publish_pose(Odometer& o, std::uint64_t sample, Time since, const Context& context) {
   const PoseSpec& spec = o.spec.pose;
   PoseState& state = o.state.pose;
   const Pose& X_WB = context.engine.states()[o.base].X_WB;
@@ -89,20 +89,20 @@ void tell_pose(Odometer& o, std::uint64_t sample, Time since, const Context& con
   double stretch = 1, bend = 0;
   // The way's own direction in B: robots that move sideways have errors along it, too.
   const double course = way > 0 ? math::atan2(dy, dx) : 0;
-  propagate(state.covariance, way, state.told_O.theta_rad + course, var_d, var_a);
+  propagate(state.covariance, way, state.reported_O.theta_rad + course, var_d, var_a);
   if (var_d > 0 || var_a > 0) {
     Stream random = Stream(context.seed, o.key, Purpose::noise, sample).fork(pose_use);
     const double along = std::sqrt(var_d) * random.normal();
     bend = std::sqrt(var_a) * random.normal();
     if (way > 0) stretch += along / way;
   }
-  const auto [s, c] = math::sincos(state.told_O.theta_rad + 0.5 * bend);
-  state.told_O.x_m += stretch * (c * dx - s * dy);
-  state.told_O.y_m += stretch * (s * dx + c * dy);
-  state.told_O.theta_rad += turn + bend;
+  const auto [s, c] = math::sincos(state.reported_O.theta_rad + 0.5 * bend);
+  state.reported_O.x_m += stretch * (c * dx - s * dy);
+  state.reported_O.y_m += stretch * (s * dx + c * dy);
+  state.reported_O.theta_rad += turn + bend;
 
   msg::Odometry& message = o.pose->message;
-  message.pose.pose = kinematics::to_pose(state.told_O);
+  message.pose.pose = kinematics::to_pose(state.reported_O);
   set_covariance(message.pose.covariance, state.covariance);
   // As means over the interval, in B half way.
   const double dt_s = since.s();
@@ -141,7 +141,7 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
   const auto joints = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
     Odometer& o = pool.all[index];
-    if (pool.levels[index] >> pose_level & 1) tell_pose(o, pool.sample[index], pool.since[index], context);
+    if (pool.levels[index] >> pose_level & 1) publish_pose(o, pool.sample[index], pool.since[index], context);
     if (!(pool.levels[index] >> odometry_level & 1)) continue;
     const Spec& spec = o.spec;
     State& state = o.state;
@@ -184,16 +184,16 @@ Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const C
     state.left_rad = mean_angle(left, joints);
     state.right_rad = mean_angle(right, joints);
     if (had_pose && state.pose.begun) {
-      const auto [s, c] = math::sincos(state.pose.told_O.theta_rad);
-      state.X_OD = {state.pose.told_O.x_m + c * dx_m - s * dy_m, state.pose.told_O.y_m + s * dx_m + c * dy_m,
-                    state.pose.told_O.theta_rad};
+      const auto [s, c] = math::sincos(state.pose.reported_O.theta_rad);
+      state.X_OD = {state.pose.reported_O.x_m + c * dx_m - s * dy_m,
+                    state.pose.reported_O.y_m + s * dx_m + c * dy_m, state.pose.reported_O.theta_rad};
       state.covariance = state.pose.covariance;
     }
   }
   if (fresh >> pose_level & 1) {
     state.pose.begun = false;
     if (had_odometry) {
-      state.pose.told_O = base_of(*this, state.X_OD);
+      state.pose.reported_O = base_of(*this, state.X_OD);
       state.pose.covariance = state.covariance;
     }
   }

@@ -86,13 +86,13 @@ struct Spec {
 
 struct PoseState {
   kinematics::PlanarPose seen_W;       ///< where B was at the previous sample
-  kinematics::PlanarPose told_O;       ///< where it is said to be
+  kinematics::PlanarPose reported_O;   ///< reported pose
   std::array<double, 6> covariance{};  ///< as below
   bool begun = false;                  ///< false: nothing has been seen since the level became active
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"seen", "m", "True pose at the last sample."}, s.seen_W);
-    visit(Field{"told", "m", "Reported pose."}, s.told_O);
+    visit(Field{"told", "m", "Reported pose."}, s.reported_O);
     visit(Field{"covariance", "", "Covariance of x, y and heading."}, s.covariance);
     visit(Field{"begun", "", "Whether a pose has been reported."}, s.begun);
   }

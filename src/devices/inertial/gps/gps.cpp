@@ -87,10 +87,10 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
     Stream random(context.seed, gps.key, Purpose::noise, pool.sample[index]);
     const double dt_s = pool.since[index].s();
     if (pool.levels[index] >> pose_level & 1) {
-      msg::PoseWithCovariance& told = gps.pose->message.pose;
-      told.pose = state.pose.corrupt(spec.pose, states[gps.base].X_WB, dt_s, random.fork(pose_use),
+      msg::PoseWithCovariance& pose = gps.pose->message.pose;
+      pose.pose = state.pose.corrupt(spec.pose, states[gps.base].X_WB, dt_s, random.fork(pose_use),
                                      spec.errors);
-      told.covariance = covariance_of(spec.pose, spec.errors);
+      pose.covariance = covariance_of(spec.pose, spec.errors);
       gps.pose->publish(context.now);
     }
     if (!(pool.levels[index] & (1u << fix_level | 1u << velocity_level))) continue;

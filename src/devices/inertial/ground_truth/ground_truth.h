@@ -1,6 +1,6 @@
 #pragma once
 /// The pose and velocity of a point on a link: exact, what no real sensor knows, or with errors, as a camera
-/// above the field or a motion capture system tells it.
+/// above the field or a motion capture system measures it.
 ///
 /// Frame    sensor frame S: the link's frame moved by the device's own pose.
 /// Output   level `pose`: nav_msgs/Odometry. Pose of S in the world (frame "world"); velocity of S's origin

@@ -60,17 +60,17 @@ void walk(const PoseSpec& spec, PoseState& state, double dt_s, double errors, St
   yaw += errors * errors * spec.yaw_walk * spec.yaw_walk * dt_s;
 }
 
-void tell_pose(Imu& imu, std::uint64_t sample, Time since, const Context& context) {
+void publish_pose(Imu& imu, std::uint64_t sample, Time since, const Context& context) {
   PoseState& state = imu.state.pose;
   const Stream random = Stream(context.seed, imu.key, Purpose::noise, sample).fork(pose_use);
   if (state.begun) walk(imu.spec.pose, state, since.s(), imu.spec.errors, random);
   state.begun = true;
-  msg::PoseWithCovariance& told = imu.pose->message.pose;
+  msg::PoseWithCovariance& pose = imu.pose->message.pose;
   const Pose& X_WB = context.engine.states()[imu.base].X_WB;
-  told.pose = {X_WB.p + state.position_m,
+  pose.pose = {X_WB.p + state.position_m,
                normalised(quat_from_axis_angle({0, 0, 1}, state.yaw_rad) * X_WB.q)};
-  for (const std::size_t i : {0u, 7u, 14u}) told.covariance[i] = state.variance[1];
-  told.covariance[35] = state.variance[2];
+  for (const std::size_t i : {0u, 7u, 14u}) pose.covariance[i] = state.variance[1];
+  pose.covariance[35] = state.variance[2];
   imu.pose->publish(context.now);
 }
 
@@ -224,7 +224,8 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
   const auto states = context.engine.states();
   for (const std::uint32_t index : pool.due) {
     Imu& imu = pool.all[index];
-    if (pool.levels[index] >> pose_level & 1) tell_pose(imu, pool.sample[index], pool.since[index], context);
+    if (pool.levels[index] >> pose_level & 1)
+      publish_pose(imu, pool.sample[index], pool.since[index], context);
     if (!(pool.levels[index] >> imu_level & 1)) continue;
     State& state = imu.state;
     const Motion now = motion_of(imu, states[imu.body]);

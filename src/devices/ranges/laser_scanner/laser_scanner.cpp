@@ -54,7 +54,7 @@ void find_segments(Scanner& scanner, std::uint64_t sample, const Context& contex
   scanner.segments->publish(context.now);
 }
 
-void tell_pose(Scanner& scanner, std::uint64_t sample, Time since, const Context& context) {
+void publish_pose(Scanner& scanner, std::uint64_t sample, Time since, const Context& context) {
   const Spec& spec = scanner.spec;
   const Stream random = Stream(context.seed, scanner.key, Purpose::noise, sample).fork(pose_use);
   msg::PoseWithCovariance& pose = scanner.pose->message.pose;
@@ -149,7 +149,7 @@ void Scanner::sense(PoolView<Scanner> pool, const Context& context) {
       find_segments(pool.all[lines[i]], pool.sample[lines[i]], context);
   });
   for (const std::uint32_t index : at(pose_level, chosen))
-    tell_pose(pool.all[index], pool.sample[index], pool.since[index], context);
+    publish_pose(pool.all[index], pool.sample[index], pool.since[index], context);
 }
 
 namespace {
