@@ -5,7 +5,8 @@
 
 namespace sandlot {
 
-/// Indented by two. Bytes that are not UTF-8 become U+FFFD: names of files and damaged recordings may hold any.
+/// Indented by two. Bytes that are not UTF-8 become U+FFFD: names of files and damaged recordings may hold
+/// any.
 template <class Json>
 std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

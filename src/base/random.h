@@ -16,7 +16,7 @@
 
 namespace sandlot {
 
-/// What a stream is for: one enumerator per independent use of randomness by one entity.
+/// Purpose of a stream: one enumerator per independent use of randomness by one entity.
 enum class Purpose : std::uint32_t {
   noise = 1,       ///< sensor errors, drawn for each sample
   initial = 2,     ///< values drawn once when an entity is created (biases)
@@ -53,8 +53,7 @@ class Stream {
   /// Normal deviate with mean 0 and standard deviation 1.
   double normal();
   /// A stream of its own for one use among several of this one's: it depends on the stream's key and sample
-  /// and on
-  /// `use`, not on how many numbers were drawn.
+  /// and on `use`, not on how many numbers were drawn.
   Stream fork(std::uint64_t use) const;
   /// The words (as of bits32) from the block of four number `block` on, for those who draw very many and not
   /// in one order, such as the rows of a picture. Moves nothing and does not depend on how many numbers were

@@ -24,7 +24,7 @@ Result<bool> read_bool(const Node& node, const std::string& path);
 /// The error for a node of the wrong type.
 Error wrong_type(const Node& node, const std::string& expected, const std::string& path);
 
-/// What the templates below call, each with the tables of its type.
+/// Functions behind the templates below, which pass the tables of their type.
 namespace read_detail {
 Status value(const Node& node, const Field& field, const TypeEdit& type, void* out, const std::string& path);
 Status fields(const Node& node, const TypeEdit& type, void* spec, const std::string& path,

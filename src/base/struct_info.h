@@ -120,7 +120,7 @@ inline constexpr TypeInfo type_info = make_type_info<T>();
 template <class T>
 inline constexpr TypeEdit type_edit = make_type_edit<T>();
 
-/// What is generated for each struct with fields. A struct that many use may have it compiled in one place:
+/// Code generated for each struct with fields. A struct that many use may have it compiled in one place:
 /// SL_EXTERN_FIELDS in its header, SL_COMPILE_FIELDS in its source.
 template <class T>
 struct StructAccess {

@@ -26,7 +26,7 @@ using ValuePath = std::vector<ValueStep>;
 Result<ValuePath> parse_value_path(std::string_view text);
 std::string to_string(std::span<const ValueStep> path);
 
-/// What is at the end of a path.
+/// Value, struct or list at the end of a path.
 struct ValueFound {
   enum class Is : std::uint8_t {
     unknown,  ///< nothing has this path

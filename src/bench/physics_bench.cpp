@@ -27,7 +27,7 @@ Vec3 piled_box(int i) {
   return {0.32 * (i % 5) + 0.03 * (layer % 3), 0.22 * (i / 5 % 5) + 0.02 * (layer % 2), 0.1 + 0.201 * layer};
 }
 
-/// What both run.
+/// Scene that both run.
 struct Scene {
   int robots = 0, boxes = 0;
   Vec3 (*box_place)(int) = lone_box;

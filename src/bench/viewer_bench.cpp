@@ -22,7 +22,7 @@ namespace {
 
 constexpr int robots = 1000;
 constexpr double run_s = 5;
-/// What a viewer receives once, when it connects (world, channels), is not part of the cost of frames.
+/// Data that a viewer receives once, when it connects (world, channels), are not part of the cost of frames.
 constexpr std::uint64_t first_tick = 150;
 
 /// A link with two wheels that turn, and a drive that goes round in circles of its own.

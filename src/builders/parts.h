@@ -60,7 +60,7 @@ void add_device(model::Model& model, std::string name, const char* kind, Keys ke
 /// A joint_motor that holds its joint exactly, with what effort it takes up to the joint's: it follows angles
 /// (lengths), or speeds on joints that turn without end.
 void add_motor(model::Model& model, std::string name, std::uint32_t joint);
-/// What a creature senses of itself: angles and speeds of the joints it has so far, and an IMU in its first
+/// Own senses of a creature: angles and speeds of the joints it has so far, and an IMU in its first
 /// link.
 void add_senses(model::Model& model);
 

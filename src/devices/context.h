@@ -49,7 +49,7 @@ struct Actuation {
   }
 };
 
-/// What a kind's phase functions may see and touch.
+/// Interface of a kind's phase functions to the simulation.
 struct Context {
   Time now;   ///< end of the tick that is being computed
   Time tick;  ///< its length

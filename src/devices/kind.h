@@ -69,14 +69,14 @@ class PoolBase {
   virtual Status add(const DeviceBuild& build) = 0;
   /// Removes one device; those behind it move up by one.
   virtual void remove(std::uint32_t index) = 0;
-  /// What an actuator that goes away leaves behind (a joint set free, a base released), into
+  /// Writes what an actuator that is removed leaves behind (a joint set free, a base released) to
   /// context.actuation.
   virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
   /// For a kind: whether its devices have errors; for a device: its own factor on them.
   virtual bool has_errors() const = 0;
   virtual double errors(std::uint32_t index) const = 0;
-  /// What multiplies a device's own factor `errors` in the phases; 1 at first.
+  /// Multiplier of a device's own factor `errors` in the phases; 1 at first.
   virtual void scale_errors(std::uint32_t index, double factor) = 0;
   struct Due {
     std::span<const std::uint32_t> due;

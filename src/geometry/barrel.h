@@ -13,7 +13,7 @@ bool is_barrel(const Barrel& barrel);
 double radius_at_m(const Barrel& barrel, double z_m);
 inline double end_radius_m(const Barrel& barrel) { return radius_at_m(barrel, 0.5 * barrel.length_m); }
 
-/// How far it reaches from G's origin along a unit direction whose part along the axis is `axial`.
+/// Extent from G's origin along a unit direction whose part along the axis is `axial`.
 double reach_m(const Barrel& barrel, double axial);
 /// The point that lies farthest along a unit direction; of a flat end a point of its rim.
 Vec3 farthest(const Barrel& barrel, Vec3 direction);

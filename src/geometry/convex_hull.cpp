@@ -110,7 +110,7 @@ class Hull {
     Index eye = faces_[f].outside.front();
     for (const Index i : faces_[f].outside)
       if (height(faces_[f], i) > height(faces_[f], eye)) eye = i;
-    // What the eye sees hangs together; its rim is one ring, for the arithmetic is exact.
+    // The visible faces are connected; their rim is one ring, for the arithmetic is exact.
     std::vector<Index> seen{f}, orphans, made;
     std::map<Index, Index> made_at;  // by the corner its edge of the rim begins at
     faces_[f].alive = false;

@@ -6,7 +6,7 @@
 namespace sandlot {
 namespace {
 
-/// Where a point lies: the cell and the place in it, 0..1 both ways.
+/// Position of a point: the cell and the place in it, 0..1 both ways.
 struct InCell {
   int column, row;
   double u, v;

@@ -36,7 +36,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::vector<std::array<float, 2>> texture_uv;         ///< one per vertex, or none at all; v runs upwards
   std::vector<MeshPart> parts;                          ///< cover all triangles in order; none: one look
-  /// Where it came from, so that it can be named again and in messages; "" for made ones.
+  /// Source file, for messages and for writing it again; "" for made ones.
   std::string source;           ///< file
   Vec3 source_scale{1, 1, 1};   ///< applied to the file's own vertices
   std::string source_part;      ///< the only part of the file that was taken; "" for all
@@ -57,7 +57,7 @@ struct TriangleMesh {
   }
 };
 
-/// What a homogeneous solid bounded by the mesh weighs, from integrals over its triangles.
+/// Mass properties of a homogeneous solid bounded by the mesh, from integrals over its triangles.
 /// Source   D. Eberly, Polyhedral mass properties (2002).
 struct MassProperties {
   double volume_m3 = 0;    ///< signed: negative when the triangles face inwards

@@ -77,7 +77,7 @@ Quat quat_from_rpy(double roll_rad, double pitch_rad, double yaw_rad);
 Vec3 rpy_from_quat(Quat q);
 /// Heading about world z of a body's x axis.
 double yaw_of(Quat q);
-/// What the numbers are called in addresses: x y z of a vector; w x y z and roll pitch yaw of a rotation.
+/// Names of the components in addresses: x y z of a vector; w x y z and roll pitch yaw of a rotation.
 std::span<const Component> components(const Vec3& v);
 std::span<const Component> components(const Quat& q);
 double component(const Vec3& v, std::size_t i);

@@ -36,7 +36,8 @@ struct Ackermann {
   /// The curvature that angles of the wheels belong to; of two that do not fit, the mean.
   double curvature(SteeringAngles angles) const;
   double curvature_of_bicycle(double steering_rad) const;
-  /// What this car can do of a velocity: v stays, w is cut to the tightest turn; it does not move sideways.
+  /// Nearest velocity that this car can follow: v stays, w is cut to the tightest turn; it does not move
+  /// sideways.
   PlanarMotion possible(const PlanarMotion& wanted) const;
 };
 

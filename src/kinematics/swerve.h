@@ -25,7 +25,7 @@ namespace sandlot::kinematics {
 enum class SteeringMode { stop, crab, spin, turn };
 SteeringMode steering_mode(const PlanarMotion& velocity);
 
-/// Where the chassis turns about, in its frame; nothing while it does not turn.
+/// Centre of rotation of the chassis, in its frame; nothing while it does not turn.
 std::optional<Direction> centre_of_rotation(const PlanarMotion& velocity);
 
 /// Speed and direction of a wheel's point of contact.

@@ -84,7 +84,7 @@ double wheel_turn(const Wheel& wheel, const PlanarMotion& motion);
 /// All of them. @pre sizes agree
 void wheel_turns(std::span<const Wheel> wheels, const PlanarMotion& motion, std::span<double> turns);
 
-/// What least squares make of wheels that turned.
+/// Motion that fits wheels that turned, by least squares.
 struct Estimate {
   PlanarMotion motion;
   double residual = 0;  ///< root mean square of what the equations of motion miss by [m/s or m]: wheels slip

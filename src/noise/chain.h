@@ -74,7 +74,7 @@ std::vector<StageType> types_of(const char* unit) {
 /// proportional and lost values have none).
 double variance_of(std::span<const StageSpec> stages, double dt_s, double errors = 1);
 
-/// What a chain is at, and which streams it draws from.
+/// State of a chain, and the streams it draws from.
 struct ChannelChain {
   std::vector<StageState> stages;
   std::vector<std::uint64_t> keys;  ///< per stage: which fork of the device's stream is its own; no State
@@ -101,7 +101,7 @@ struct ChannelChain {
                double errors = 1);
 };
 
-// What the field lists of all stages make is compiled once, not with every kind of device.
+// Code from the field lists of all stages is compiled once, not with every kind of device.
 SL_EXTERN_FIELDS(StageSpec);
 extern template void write_tunables(ByteWriter&, const StageSpec&);
 extern template void read_tunables(ByteReader&, StageSpec&);

@@ -17,8 +17,8 @@ namespace {
 constexpr int most_channels = 4;
 constexpr std::size_t most_values = image_piece * most_channels;
 
-/// Where the numbers of a piece begin if each pixel takes so many bits. No pixel takes more than a block of
-/// 128.
+/// Place where the numbers of a piece begin if each pixel takes so many bits. No pixel takes more than a
+/// block of 128.
 std::uint32_t first_block(const ImagePiece& piece, int bits_per_pixel) {
   const auto row = static_cast<std::uint32_t>(piece.y) * static_cast<std::uint32_t>(piece.width);
   return row + static_cast<std::uint32_t>(piece.x * bits_per_pixel / 128);
@@ -27,7 +27,7 @@ std::size_t pixels(const ImagePiece& piece) {
   return piece.values.size() / static_cast<std::size_t>(piece.channels);
 }
 
-/// What one of the stages draws for a piece.
+/// Draws of one stage for a piece.
 class Draws {
  public:
   std::span<const float> normals_per_value(const ImagePiece& piece, const Stream& random) {

@@ -52,7 +52,8 @@ inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& 
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(valid, scene, &context, &rays);
 }
-/// What is hit has tfar < 0. Never coherent: with that flag Embree 3.13 does not come back from some packets.
+/// Rays that hit have tfar < 0. Never coherent: with that flag Embree 3.13 does not come back from some
+/// packets.
 inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &context, &rays);

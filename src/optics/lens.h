@@ -65,7 +65,7 @@ struct Lens {
   std::variant<Pinhole, Fisheye, Catadioptric> model;
 };
 
-/// What the place of an image sees, in S. `direction` is a unit vector; `origin` is zero but for mirrors,
+/// Ray of a place of the image, in S. `direction` is a unit vector; `origin` is zero but for mirrors,
 /// where it is the point of the mirror (so that the mirror's own body is never in the way).
 struct LensRay {
   Vec3 origin, direction;
@@ -78,7 +78,7 @@ Status check(const Lens& lens);
 /// folds over. Places outside the image are answered, too.
 std::optional<LensRay> ray_through(const Lens& lens, double u, double v);
 
-/// Where a point is seen, inside the image or not; none for what the lens cannot see (behind a pinhole ...).
+/// Image place of a point, inside the image or not; none for what the lens cannot see (behind a pinhole ...).
 std::optional<std::array<double, 2>> project(const Lens& lens, Vec3 point_S);
 
 /// ROS CameraInfo's K, row by row.

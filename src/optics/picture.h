@@ -71,7 +71,7 @@ struct Surroundings {
   Color ambient{0.4f, 0.4f, 0.4f, 1};
 };
 
-/// How a camera takes its pictures.
+/// Exposure and rendering options of a camera.
 struct Exposure {
   int samples = 1;      ///< per pixel, 1 to 256; 1 looks through pixel centres
   bool shadows = true;  ///< false: lights shine through everything
@@ -134,7 +134,7 @@ class PictureScene {
   /// Draws all pictures, on the threads of the current arena. Not to be called from two threads at once.
   void render(std::span<const PictureJob> jobs);
 
-  /// How light it is at some places: lights, attenuation, cosine and shadows as in pictures. What is nearer
+  /// Illuminance at some places: lights, attenuation, cosine and shadows as in pictures. What is nearer
   /// than 0.2 mm casts no shadow; all else does, but for `ignore_body`. Not to be called from two threads at
   /// once.
   void illuminate(std::span<LightProbe> probes);

@@ -32,7 +32,7 @@ struct Visual {
   Vec3 point_W, normal_W, u_W, v_W;
 };
 
-/// Where eight rays lead.
+/// Eight rays.
 struct Rays {
   const double* base;      ///< in W
   lanes::F3 from;          ///< relative to base

@@ -213,8 +213,7 @@ TEST(RayScene, NothingWithinUnlimitedRangeIsNoBody) {
   EXPECT_EQ(body, no_body);
 }
 
-// --- a second opinion in double precision
-// -------------------------------------------------------------------------
+// --- a second opinion in double precision ------------------------------------------------------------------
 
 /// Calls see(t) for all t where the line o + t d meets the surface: faces, sides and caps one by one.
 template <class See>

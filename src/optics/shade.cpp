@@ -18,7 +18,7 @@ using lanes::I;
 using lanes::max;
 using lanes::select;
 
-/// What the packet's rays met, gathered visual by visual.
+/// Hits of the packet's rays, gathered visual by visual.
 struct Met {
   F3 normal, face_normal;  ///< in W
   F3 diffuse, specular, emissive;

@@ -37,7 +37,7 @@ struct Scenery {
 /// @param cone  width of the pixel as seen from the camera [rad]
 lanes::F3 shade(const Scenery& scenery, const Rays& rays, const Hits& hits, lanes::F cone);
 
-/// What a white matt surface would send on from each place, of all lights and `ambient`.
+/// Light that a white matt surface would reflect at each place, from all lights and `ambient`.
 /// @param at, normal  relative to `base`, in W
 lanes::F3 light_at(const Scenery& scenery, const double* base, const lanes::F3& at, const lanes::F3& normal,
                    lanes::I valid);

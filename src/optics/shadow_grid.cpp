@@ -19,7 +19,7 @@ Vec3 middle_of(const Bounds& b) {
   return {(b.lower[0] + b.upper[0]) / 2, (b.lower[1] + b.upper[1]) / 2, (b.lower[2] + b.upper[2]) / 2};
 }
 
-/// How far the box reaches along a unit vector, to each side of its middle.
+/// Extent of the box along a unit vector, to each side of its middle.
 double reach_along(Vec3 axis, const Bounds& b) {
   return 0.5 * (std::abs(axis.x) * (b.upper[0] - b.lower[0]) + std::abs(axis.y) * (b.upper[1] - b.lower[1]) +
                 std::abs(axis.z) * (b.upper[2] - b.lower[2]));

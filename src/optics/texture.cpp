@@ -13,7 +13,7 @@ using Channels = std::array<std::uint32_t, 3>;
 Channels split(std::uint32_t texel) { return {texel & 255, texel >> 8 & 255, texel >> 16 & 255}; }
 std::uint32_t join(Channels c) { return c[0] | c[1] << 8 | c[2] << 16; }
 
-/// Where texel `i` of a row of (n + 1) / 2 lies in a row of n, in units of 1 / (2 * wide) of a texel: three
+/// Place of texel `i` of a row of (n + 1) / 2 in a row of n, in units of 1 / (2 * wide) of a texel: three
 /// weights that add up to 2 n. An even row has two texels with equal weight; an odd one shares every second
 /// between neighbours.
 struct Footprint {

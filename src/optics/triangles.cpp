@@ -175,7 +175,7 @@ void TriangleTree::place_on_mesh(const Rays& rays, Hits& hits) const {
           w_a = dot(cross(opposite_a, b + c), direction), all = w_a + w_b + w_c;
   const F3 normal = cross(opposite_b, opposite_c);
   const F across = dot(normal, direction), t = dot(normal, a) / across;
-  // What is too thin for this (t may be no number) stays as it is.
+  // Triangles too thin for this (t may not be a number) stay as they are.
   hits.t = lanes::select(found & (across != 0) & (lanes::abs(t) < largest), t, hits.t);
   const auto weight = [&](F w) { return lanes::min(lanes::max(w / all, F{}), lanes::broadcast(1.0f)); };
   hits.b1 = lanes::select(found & (all != 0), weight(w_b), hits.b1);

@@ -60,7 +60,7 @@ class TriangleTree {
   Vec3 centre_, half_size_;
 };
 
-/// What two shapes share that are made from one mesh or grid; null of every other shape.
+/// Identity of the mesh or grid from which shapes are made; null for every other shape.
 const void* triangles_of(const Shape& shape);
 
 }  // namespace sandlot::optics

@@ -94,7 +94,7 @@ class Finder {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// What is in the picture, the nearest first. An error when the picture has another size than the camera.
+  /// Objects in the picture, the nearest first. An error when the picture has another size than the camera.
   Status find(const ImageView& picture, std::vector<Found>& out);
 
  private:
@@ -104,7 +104,7 @@ class Finder {
   };
   bool ball(const Target& target, const Sum& sum, const Blob& patch, Found& out) const;
   bool standing(const Target& target, std::uint32_t blob, const Sum& sum, Found& out);
-  /// Where the lower edge of a pixel meets the plane.
+  /// Point where the lower edge of a pixel meets the plane.
   Vec3 foot_on(std::size_t pixel, double height_B) const;
 
   FinderSpec spec_;

@@ -20,7 +20,7 @@ struct ContactSide {
   Pose X_WC;
 };
 
-/// What two touching surfaces make together.
+/// Contact parameters of two touching surfaces.
 struct PairSurface {
   bool touches = true;          ///< false: they pass through each other
   double mu = 1, mu2 = 1;       ///< along fdir1_W and across

@@ -57,7 +57,7 @@ struct Wrench {
   Vec3 torque_Nm;
 };
 
-/// What a joint's motor shall do; holds until the next target for this joint.
+/// Target of a joint's motor; holds until the next target for this joint.
 ///
 /// A motor (mode effort) may be given its own properties in addition to its effort. All of it acts
 /// implicitly, on the velocity that the sub-step ends with, so it is stable whatever its size and that of the
@@ -135,15 +135,15 @@ struct Contact {
   static constexpr std::uint32_t no_shape = ~0u;
 };
 
-/// What a BodyId stands for. Valid as long as its instance is.
+/// Body behind a BodyId. Valid as long as its instance is.
 struct BodyName {
   std::string_view instance;
   const model::Link* link = nullptr;  ///< null: there is no such body
   bool moves = false;                 ///< forces move it
 };
 
-/// What the parent exerts on the child through a joint, at the joint's origin, mean over the sub-step; the
-/// motor's part is in it. Along the axes of the joint frame J as the child carries it.
+/// Load of a joint: force and torque of the parent on the child, at the joint's origin, mean over the
+/// sub-step; the motor's part is in it. Along the axes of the joint frame J as the child carries it.
 struct JointLoad {
   Vec3 force_N, torque_Nm;
 };
@@ -159,7 +159,7 @@ struct Watch {
   }
 };
 
-/// What lies in a ball: the cheap question behind proximity, spawning and markers.
+/// Bodies in a ball: the cheap query behind proximity, spawning and markers.
 struct OverlapQuery {
   Vec3 centre_W;
   double radius_m = 0;

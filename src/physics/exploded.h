@@ -8,7 +8,7 @@
 
 namespace sandlot {
 
-/// What to do about it.
+/// Remedy in those errors.
 inline constexpr const char* remedy = "a smaller time step, or less extreme masses, forces and speeds";
 
 /// @param body  instance/link

@@ -16,7 +16,7 @@
 ///   ERP = h stiffness / (h stiffness + damping),   CFM = 1 / (h stiffness + damping)
 ///
 /// which is the spring integrated implicitly: stable at any step, and the more damped the longer the step.
-/// How high a ball bounces follows from its mass, the stiffness and the damping: elasticity is not a
+/// The height of a bounce follows from its mass, the stiffness and the damping: elasticity is not a
 /// coefficient of restitution.
 ///
 /// Source   G. Martius (2010), eq. 2.2, 2.3; the factors: LpzRobots, ode_robots.

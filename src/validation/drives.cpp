@@ -25,7 +25,7 @@ struct Vehicle {
   int mecanum_rollers = 0;        ///< per wheel
 };
 
-/// What friction makes of the wheels' present angles and speeds, where it decides; else nothing.
+/// Motion that friction makes of the wheels' present angles and speeds, where it decides; else nothing.
 std::optional<Twist> by_friction(const Vehicle& vehicle, const Robot& robot, bool edges) {
   std::vector<Patch> patches;
   for (std::size_t k = 0; k < vehicle.wheels.size(); ++k) {
@@ -47,7 +47,7 @@ std::optional<Twist> by_friction(const Vehicle& vehicle, const Robot& robot, boo
                            {slow.wz_radps * slow.vy_mps / g_mps2, -slow.wz_radps * slow.vx_mps / g_mps2});
 }
 
-/// What a wheel with two edges makes of a turn. Its middle cannot roll: the edges run at other speeds than
+/// Turn of a robot on wheels with two edges. A wheel's middle cannot roll: the edges run at other speeds than
 /// the rim. Of all motions the one comes about that loses least to friction, here: the outer edge of the
 /// wheel farthest from the centre of rotation rolls. Two wheels on one axle do not fix that centre: then it
 /// is the one that changes, and the speed is met.

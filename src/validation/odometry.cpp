@@ -39,7 +39,7 @@ PlanarPose seen_from(const PlanarPose& start, const PlanarPose& pose) {
 }
 PlanarPose planar(const Pose& pose) { return {pose.p.x, pose.p.y, yaw_of(pose.q)}; }
 
-/// What wheels did in a tick: angle turned and mean steering.
+/// Motion of the wheels in a tick: angle turned and mean steering.
 struct Turned {
   double angle_rad[4], steering_rad[4];
 };

@@ -42,13 +42,13 @@ struct Push {
 };
 Twist least_dissipation(std::span<const Patch> patches, Push push = {});
 
-/// Where a cylinder of this half width touches: with its two edges, or its middle where it has none.
+/// Adds the contacts of a cylinder of this half width: its two edges, or its middle where it has none.
 void add_wheel(std::vector<Patch>& patches, double x_m, double y_m, double half_width_m, double rim_mps,
                double load = 1);
 
 /// The roller on which a Mecanum wheel of joint angle `turned_rad` stands, as builders/mecanum_robot makes
-/// it: its axis is tilted by
-/// `angle_rad`, and it touches where that axis passes over the lowest line of the rim.
+/// it: its axis is tilted by `angle_rad`, and it touches where that axis passes over the lowest line of the
+/// rim.
 ///
 /// A roller f past the bottom stands (R - r) tan f / tan(angle) to the side of the wheel's middle, and its
 /// axis lies on the ground along (sin(angle) cos f, cos(angle)).

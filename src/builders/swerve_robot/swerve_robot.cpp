@@ -49,7 +49,7 @@ Result<Built> build(const Spec& s) {
   const std::uint32_t base = add_link(m, "base", {});
   add_box_body(m, base, {s.wheelbase_m + 0.1, s.track_m + 0.1, s.height_m - low}, low, 0.72 * s.mass_kg,
                colors::yellow);
-  // What makes it heavy below: the batteries, between the wheels.
+  // Batteries between the wheels, which put the weight low.
   add_part(m, base,
            {Box{{0.5 * s.wheelbase_m, 0.5 * s.track_m, r}},
             {{0, 0, 1.5 * r}, {}},

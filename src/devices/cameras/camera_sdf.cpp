@@ -67,8 +67,8 @@ Status copy_distortion(const Node& camera, Node& config) {
   return {};
 }
 
-/// How a wide-angle lens maps angles, r = c1 f fun(theta / c2): written with slope 1 at 0 as c2 fun(theta /
-/// c2), and what that has to be multiplied by.
+/// Mapping of angles by a wide-angle lens, r = c1 f fun(theta / c2): written with slope 1 at 0 as c2
+/// fun(theta / c2), and what that has to be multiplied by.
 struct Curve {
   enum class Function : std::uint8_t { id, sin, tan } function;
   double c2, scale;
@@ -81,7 +81,7 @@ struct Curve {
     }
     return theta;
   }
-  /// Where it ends: the sine falls again, and of the tangent an image of some size takes in no more.
+  /// Its largest angle: beyond, the sine falls again, and the tangent leaves any image.
   double largest_theta() const {
     const double half_turn = std::numbers::pi;
     if (function == Function::sin) return std::min(half_turn, 0.5 * half_turn * c2);

@@ -100,7 +100,7 @@ void put(msg::Object& out, const Measured& m) {
   out.position = direction_of(m.bearing, m.elevation) * m.range;
 }
 
-/// How often something that comes `mean` times on average does.
+/// Number of events in a sample for a mean of `mean` (Poisson).
 int poisson(double mean, Stream& random) {
   const double limit = math::exp(-std::min(mean, 20.0));
   double product = random.uniform();

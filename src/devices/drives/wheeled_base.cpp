@@ -114,7 +114,7 @@ double element(const std::vector<double>& list, std::size_t k) {
   return k < list.size() && std::isfinite(list[k]) ? list[k] : std::nan("");
 }
 
-/// Where joint number k of a message stands among wheels and pivots; past their end when nowhere.
+/// Index of joint number k of a message among wheels and pivots; past their end when there is none.
 std::size_t place_of(const Base& base, const msg::JointState& message, std::size_t k) {
   if (message.name.empty()) return k;
   const std::string& name = message.name[k];
@@ -179,7 +179,7 @@ bool timed_out(const Drive& drive, const Context& context) {
   return drive.spec.command_timeout_s > 0 && age.s() > drive.spec.command_timeout_s;
 }
 
-/// How much faster than they can the wheels would have to turn; at most 1 when they can.
+/// Ratio of the wheels' needed speed to their largest one; at most 1 when they can follow.
 double overload(const Base& base, const PlanarMotion& motion) {
   double most = 0;
   for (std::size_t i = 0; i < base.wheels.size(); ++i) {
@@ -197,7 +197,7 @@ double overload(const Base& base, const PlanarMotion& motion) {
   return most;
 }
 
-/// What the drive aims for in this tick: the command within all limits.
+/// Setpoint of the drive in this tick: the command within all limits.
 PlanarMotion goal(Drive drive, const Context& context) {
   const Common& spec = drive.spec;
   Base& base = drive.base;
@@ -301,7 +301,8 @@ void request_speed(Drive drive, std::size_t i, double radps, Joints joints,
   radps = std::clamp(radps, -wheel.max_speed, wheel.max_speed);
   double most = full_effort(drive, wheel);
   if (const auto& motor = drive.spec.motor) {
-    // What battery and winding give at this speed, in the direction in which the wheel is to be pushed.
+    // Torque that battery and winding give at this speed, in the direction in which the wheel is to be
+    // pushed.
     const double now = speed_of(drive, i, joints), sign = radps >= now ? 1 : -1;
     const double back_emf = motor->torque_constant * motor->gear_ratio * now;
     const double current = std::clamp(

@@ -216,7 +216,7 @@ struct Pivot {
   std::string name;
 };
 
-/// What create() resolved; and scratch that every call fills before it reads.
+/// Results of create(), and scratch that every call fills before it reads.
 struct Base {
   const char* noun = "";  ///< "a Mecanum drive", for errors
   BodyId body;

@@ -143,7 +143,7 @@ struct ContactPoint {
   double z_m = 0;
 };
 
-/// What a group that goes where it is driven to would do without contacts.
+/// Motion of a driven group without contacts.
 struct Planned {
   Vec2 v;  ///< mean over the step, of the centre of mass
   double w_radps = 0;

@@ -73,7 +73,7 @@ void take_side(Side& side, std::uint32_t k, const Candidate& c, const std::vecto
   side.edges = silhouette.edges;
 }
 
-/// How far a group's outline can move in h.
+/// Largest way of a group's outline in h.
 double way(const Side& side, double h_s) {
   if (!side.moving) return 0;
   return h_s * (std::sqrt(dot(side.moving->v, side.moving->v)) +
@@ -192,7 +192,7 @@ double PlanarEngine::impact(const Candidate& c, double h_s) const {
   for_parts(a, b, length + turned, spec_.clearance_m,
             [&](std::uint32_t, std::uint32_t, ConvexOutline x, ConvexOutline y) {
               if (length > least) first = std::min(first, time_of_impact(x, y, path, impact_gap_m));
-              // Who turns fast comes no farther than the gap at a time, or than what contacts look ahead.
+              // A body that turns fast moves at most by the gap at a time, or by the contacts' look-ahead.
               if (turned > least)
                 first = std::min(first, std::max(separation(x, y).gap_m, least) / (length + turned));
             });

@@ -42,7 +42,7 @@ void PlanarEngine::let_go(std::uint32_t slot) {
   list_grips();
 }
 
-/// What grips() shows; forces are those of the last step where there was one.
+/// State of the grips for grips(); forces are those of the last step where there was one.
 void PlanarEngine::list_grips() {
   std::vector<Grip> before;
   swap(before, published_grips_);

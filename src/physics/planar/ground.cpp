@@ -1,4 +1,4 @@
-// What the ground does to bodies that stand on it otherwise than on wheels.
+// Friction of the ground on bodies that stand on it otherwise than on wheels.
 //
 // Friction of a patch with even pressure on its supports: F = mu N against the sliding of the centre of mass,
 // and T = mu N times the mean distance of the patch from it against turning, bound together by the ellipsoid
@@ -31,8 +31,8 @@ const PlanarEngine::Floor* PlanarEngine::floor_under(std::uint32_t k, Vec2 at_W)
   return best;
 }
 
-/// What a foot and the ground make together at a place of the group's frame; the belt is that of the ground
-/// as the foot sees it.
+/// Contact parameters of a foot and the ground at a place of the group's frame; the belt is that of the
+/// ground as the foot sees it.
 PairSurface PlanarEngine::on_ground(std::uint32_t k, ContactFace foot, Vec2 at) const {
   const RigidGroup& group = groups_[k];
   const Instance& instance = instances_[group.slot];

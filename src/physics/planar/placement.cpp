@@ -1,4 +1,4 @@
-// Where instances of the planar engine are put: from poses of models to groups, and back.
+// Placement of the planar engine's instances: from poses of models to groups, and back.
 #include <algorithm>
 #include <cmath>
 
@@ -79,7 +79,7 @@ void PlanarEngine::free_groups(Instance& instance) {
   linked_fresh_ = false;
 }
 
-/// What follows from attitude and height: groups, outlines and wheels.
+/// Makes the parts that follow from attitude and height: groups, outlines and wheels.
 void PlanarEngine::shape(std::uint32_t slot) {
   Instance& instance = instances_[slot];
   if (!last_plan_ || last_model_ != instance.model || !same(last_tilt_, instance.tilt) ||

@@ -1,4 +1,4 @@
-// What the planar engine saves of an instance: everything that step() changes and targets that hold.
+// Saved state of the planar engine's instances: everything that step() changes and targets that hold.
 #include <algorithm>
 
 #include "physics/planar/planar.h"

@@ -151,7 +151,7 @@ void PlanarEngine::plan_drive(std::uint32_t slot, RigidGroup& group, double h_s)
   group.w_radps = mean.w_radps;
 }
 
-/// What a drive has reached, after its group has moved as planned.
+/// Takes over the motion of a drive after its group has moved as planned.
 void PlanarEngine::finish_drive(std::uint32_t slot, RigidGroup& group, double h_s) {
   Drive& drive = drives_[slot];
   const Vec2 v = rotate(drive.frame, drive.now.v_mps) - drive.now.w_radps * left_of(drive.arm);
@@ -173,13 +173,12 @@ void PlanarEngine::finish_hindered(std::uint32_t slot, RigidGroup& group, const 
                group.w_radps};
 }
 
-/// How far a group can come in a step at most: what comes of a collision has to wait for the next.
+/// Largest way of a group in a step: what follows from a collision has to wait for the next.
 double PlanarEngine::reach(const RigidGroup& group, double h_s) const {
   return group.plan->reach_share_m + 2 * h_s * std::sqrt(dot(group.v, group.v));
 }
 
-// --- broad phase
-// ----------------------------------------------------------------------------------------------------
+// --- broad phase -------------------------------------------------------------------------------------------
 
 void PlanarEngine::file(double) {
   const auto count = static_cast<std::uint32_t>(groups_.size());
@@ -262,8 +261,7 @@ void PlanarEngine::file(double) {
   filed_ = true;
 }
 
-// --- islands
-// --------------------------------------------------------------------------------------------------------
+// --- islands -----------------------------------------------------------------------------------------------
 
 void PlanarEngine::find_contact_points(double h_s) {
   found_.clear();
@@ -397,8 +395,7 @@ void PlanarEngine::find_islands(double h_s) {
     if (const std::uint32_t i = island_at(t.a, t.b); i != none) islands_[i].contact_points.push_back(t);
 }
 
-// --- afterwards
-// -----------------------------------------------------------------------------------------------------
+// --- afterwards --------------------------------------------------------------------------------------------
 
 /// Joints that follow their targets exactly.
 void PlanarEngine::turn_joints(double h_s) {

@@ -1,4 +1,4 @@
-// What touching surfaces make together, and bodies that move as nothing should.
+// Contact parameters of touching surfaces, and errors about bodies that move impossibly fast.
 #include <algorithm>
 #include <cmath>
 
@@ -62,8 +62,7 @@ void PlanarEngine::set_contact_rule(ContactRule rule) {
   ground_fresh_ = false;
 }
 
-// --- explosions
-// -----------------------------------------------------------------------------------------------------
+// --- explosions --------------------------------------------------------------------------------------------
 
 /// Speed as a multiple of the largest allowed one; infinite where it is not a number.
 double PlanarEngine::excess(Vec2 v, double w) const {

@@ -88,7 +88,7 @@ Spin spin_after(Wheel::Axle& axle, double impulse) {
   return {(pushed - std::copysign(axle.friction, pushed)) / axle.slope, 1 / axle.slope};
 }
 
-/// What a joint's motor, damping, friction and spring do to an axle in this step.
+/// Effect of a joint's motor, damping, friction and spring on an axle in this step.
 Wheel::Axle axle_of(const Motor& motor, const JointState& state, double inertia, double h_s) {
   const JointTarget& t = motor.target;
   Wheel::Axle axle;

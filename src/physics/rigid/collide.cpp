@@ -16,7 +16,7 @@ namespace {
 double load_on(const Geom& g) {
   return g.body ? g.instance->load_N : std::numeric_limits<double>::infinity();
 }
-/// What moves along a path wakes whom it meets.
+/// Bodies on a path wake the ones they meet.
 bool is_awake(const Geom& g) { return g.body ? g.body->awake : g.instance->is_moving(); }
 
 constexpr std::size_t most_points = 512;  ///< of one pair, before they are thinned out
@@ -119,7 +119,7 @@ int RigidEngine::collide_barrels(const Pair& pair, Hit* found) {
   return n;
 }
 
-/// Where the wheels of a pair, a little thicker than they are, touch: rollers there must be awake.
+/// Finds where the wheels of a pair, a little thickened, touch: rollers there must be awake.
 void RigidEngine::sense_wheels(const Pair& pair) {
   points_.resize(most_points);
   for (const auto& [own, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
@@ -208,7 +208,7 @@ void RigidEngine::collide() {
   woke_ = unordered_ = false;
   for (const Pair& pair : pairs_) collide_pair(pair);
   if (!woke_ && !unordered_) return;
-  // Who was woken meets its neighbours in this very sub-step, else it would fall through what it lies on;
+  // A woken body meets its neighbours in this very sub-step, else it would fall through what it lies on;
   // they may wake in turn. The set that is awake in the end does not depend on the order of the search.
   while (woke_) {
     woke_ = false;
@@ -223,7 +223,7 @@ void RigidEngine::collide() {
   });
 }
 
-/// What the surfaces at a contact point make together: those of the shapes, a zone in place of what stands
+/// Contact parameters of the surfaces at a contact point: those of the shapes, a zone in place of what stands
 /// still, and at last the result of the user's rule.
 PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   const Vec3 point = vec(hit.contact.geom.pos), normal = -vec(hit.contact.geom.normal);
@@ -242,8 +242,8 @@ PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
   return pair;
 }
 
-/// Where zones or a rule may give each point another surface: finds them all, and drops the points that do
-/// not touch.
+/// Surfaces of all points where zones or a rule may give each point another one: finds them all, and drops
+/// the points that do not touch.
 void RigidEngine::ask_surfaces() {
   surfaces_.clear();
   std::size_t kept = 0;
@@ -335,7 +335,7 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
   contact.surface.motion1 = dot(direction, v);
   contact.surface.motion2 = dot(cross(into, direction), v);
   if (!runs) return;
-  // Who is held back on a belt does not fall asleep: it has to notice when it is let go.
+  // A body held back on a belt does not fall asleep: it has to notice when it is let go.
   for (const Geom* g : {&a, &b})
     if (g->body) g->body->quiet_s = 0;
 }

@@ -137,7 +137,7 @@ struct Manifold {
   std::array<Point, 4> points{};
   std::size_t count = 0;
 
-  /// How far along n the face lies above `x`.
+  /// Height of the face above `x`, along n.
   double height(const Face& f, Vec3 x) const {
     if (f.kind == Face::disc) return dot(f.p - x, f.a) / dot(n, f.a);
     if (f.kind == Face::line) {
@@ -189,7 +189,7 @@ struct Manifold {
       if (high > low) add(A.p + high * A.a);
       return;
     }
-    // Where they cross, seen along n.
+    // Their crossing, seen along n.
     const double s = dot(B.p - A.p, B.a);
     add(A.p + std::clamp((t - c * s) / (1 - c * c), -A.size, A.size) * A.a);
   }

@@ -43,7 +43,7 @@ void push_drive(Instance& instance, Vec3 gravity, double h) {
   for (Body& body : instance.bodies) {
     if (body.frozen) continue;
     const Vec3 dv = dv_chassis + cross(dw * z, body.p - chassis.p);
-    // What turns relative to the chassis (a wheel) has its axis carried round by the last turn.
+    // A body that turns relative to the chassis (a wheel) has its axis carried round by the last turn.
     const Vec3 spin = body.w - chassis.w;
     const Vec3 dw_body = dw * z + (ahead(w * h, spin) - spin);
     body.force_N += body.mass_kg / h * dv - body.gravity_mass_kg * weight;

@@ -90,7 +90,7 @@ void RigidEngine::let_go(const Instance& instance) {
   list_grips();
 }
 
-/// What grips() shows; forces are those of the last sub-step where there was one.
+/// State of the grips for grips(); forces are those of the last sub-step where there was one.
 void RigidEngine::list_grips() {
   std::vector<Grip> before;
   swap(before, published_grips_);
@@ -101,7 +101,7 @@ void RigidEngine::list_grips() {
   }
 }
 
-/// Who is held wakes with its holder.
+/// A held body wakes with its holder.
 void RigidEngine::wake_held() {
   for (const Held& grip : grips_)
     for (Body* const body : {grip.a, grip.b}) {

@@ -41,7 +41,7 @@ void add_friction_row(dWorldID world, dJointGroupID group, Joint& joint);
 
 /// Tells ODE about joint.target.
 void set_motor(Joint& joint);
-/// What depends on the state and the sub-step: limits, spring, effort, followers.
+/// Rows that depend on the state and the sub-step: limits, spring, effort, followers.
 void prepare_joint(Joint& joint, double erp, double h_s);
 /// After the solver: the effort of a velocity motor.
 void measure_effort(Joint& joint);

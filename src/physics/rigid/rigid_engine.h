@@ -220,7 +220,7 @@ class RigidEngine final : public Engine {
   std::vector<Island> islands_;
   bool woke_ = false;
   bool unordered_ = false;  ///< hits are not in the order of their shapes yet
-  // What is watched in the next sub-step: see loads.cpp.
+  // Contacts and joints watched in the next sub-step: see loads.cpp.
   struct Push {
     const Instance* instance;
     std::uint32_t link;

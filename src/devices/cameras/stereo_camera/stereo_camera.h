@@ -2,8 +2,8 @@
 /// Two cameras side by side whose pictures are rectified: a point is seen in the same row of both.
 ///
 /// Frame    S: the left eye's; x forward, y left, z up. The right eye stands at y = -baseline. All messages
-///          are stamped with
-///          `<device>_optical`, the left eye's optical frame, as ROS' image_geometry wants it.
+///          are stamped with `<device>_optical`, the left eye's optical frame, as ROS' image_geometry wants
+///          it.
 /// Output   <device>/left/image, <device>/left/camera_info, the same of right. P of the right one holds -fx *
 ///          baseline. A point at depth z has the disparity u_left - u_right = fx * baseline / z. Disparities
 ///          are not computed.

@@ -53,7 +53,7 @@ void take_command(Drive& drive, Level level) {
   state.command_radps = sane(slot.message.angular.z);
 }
 
-/// What the drive aims for in this tick: the command within all limits.
+/// Setpoint of the drive in this tick: the command within all limits.
 DriveVelocity goal(const Drive& drive, const Context& context) {
   const Spec& spec = *drive.spec;
   const Time age = context.now - context.tick - drive.state.command_time;

@@ -175,7 +175,7 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
   }
 }
 
-/// Who takes over alone goes on from where the other is.
+/// A level that takes over alone goes on from where the other one is.
 Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   const std::uint32_t fresh = after & ~before;
   const bool had_odometry = before >> odometry_level & 1, had_pose = before >> pose_level & 1;

@@ -17,7 +17,7 @@ Status check_levels(std::uint32_t levels) {
 
 Level active(std::uint32_t levels) { return static_cast<Level>(std::countr_zero(levels)); }
 
-/// What the controller sees of the joint's angle.
+/// Joint angle as the controller measures it.
 double seen_angle(const Spec& spec, double angle_rad) {
   if (spec.encoder_counts == 0) return angle_rad;
   const double per_rad = spec.encoder_counts * spec.gear_ratio / math::tau;

@@ -10,8 +10,7 @@
 /// Output   sandlot_msgs/GripperState: closed, what is held ("can::body", empty: nothing), and the force on
 ///          it in S.
 /// Time     a command acts from the tick it arrives in. The force is the mean over the last physics step.
-///          When it was above
-///          `max_force`, what is held comes free before the next one.
+///          When it was above `max_force`, what is held comes free before the next one.
 /// Noise    none.
 /// Limits   the grip is a weld between two links: no fingers, no squeezing, no slip; torque does not tear it.
 ///          On the planar engine nothing is lifted: what is held goes on rubbing on the ground, and no weight

@@ -14,7 +14,7 @@ Status check_levels(std::uint32_t levels) {
 
 Level active(std::uint32_t levels) { return static_cast<Level>(std::countr_zero(levels)); }
 
-/// Where the reference starts when `level` takes over.
+/// Start of the reference when `level` takes over.
 double present(Level level, const JointState& joint) {
   return level == velocity ? joint.velocity : level == position ? joint.position : joint.effort;
 }

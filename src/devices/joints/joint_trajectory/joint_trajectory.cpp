@@ -12,7 +12,7 @@ struct Reference {
   double position, velocity;
 };
 
-/// Where joint `j` shall be at time t of the path.
+/// Target of joint `j` at time t of the path.
 Reference reference(const State& s, std::size_t joints, std::size_t j, double t_s) {
   const auto at = [&](std::size_t point) { return s.position[point * joints + j]; };
   const std::size_t last = s.time_s.size() - 1;

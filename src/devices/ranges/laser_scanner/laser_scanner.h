@@ -11,8 +11,8 @@
 ///          from few rays of their own (segments.h). Errors: `segments:`; each end moves by a normal in x and
 ///          y, some are missed.
 ///          `pose`: geometry_msgs/PoseWithCovarianceStamped of the canonical link in `world`, as a
-///          localisation in a known map estimates it. No ray is cast. Errors: `pose:` (noise/pose_estimate.h);
-///          height, roll and pitch are true.
+///          localisation in a known map estimates it. No ray is cast. Errors: `pose:`
+///          (noise/pose_estimate.h); height, roll and pitch are true.
 /// Time     all beams are sampled at the same instant, the end of the tick. A real scanner sweeps; see
 ///          Limits.
 /// Noise    of `ranges`: noise/range_noise.h: white noise per beam, a bias that all beams of a scan share, a

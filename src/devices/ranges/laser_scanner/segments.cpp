@@ -12,7 +12,7 @@ constexpr int halvings = 5;
 
 double cross_z(Vec3 a, Vec3 b) { return a.x * b.y - a.y * b.x; }
 
-/// Where a ray from S's origin meets the line through two points; negative for nowhere ahead.
+/// Distance at which a ray from S's origin meets the line through two points; negative: not ahead.
 double along(Vec3 direction, Vec3 a, Vec3 b) {
   const double across = cross_z(direction, b - a);
   return std::abs(across) > 1e-12 ? cross_z(a, b - a) / across : -1;
