@@ -98,6 +98,17 @@ bool has_planes(const Node& sensor) {
   return planes && planes->value_or(1) > 1;
 }
 
+Result<Node> axes_noise(const Node& group, Diagnostics& diagnostics) {
+  Node keys = Node::map(group.place());
+  for (const char* axis : {"x", "y", "z"}) {
+    const Node* const noise = find(group, std::string(axis) + "/noise");
+    if (!noise) continue;
+    SL_ASSIGN(Node errors, channel_noise(*noise, diagnostics));
+    if (!errors.entries().empty()) keys.set(axis, std::move(errors));
+  }
+  return keys;
+}
+
 Status copy_scan(const Node& sensor, const Node& scan, Node& config, Diagnostics& diagnostics) {
   copy(scan, "scan/horizontal/min_angle", config, "min_angle");
   copy(scan, "scan/horizontal/max_angle", config, "max_angle");

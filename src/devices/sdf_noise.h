@@ -1,5 +1,5 @@
 #pragma once
-/// SDF's <noise> as keys of noise/range_noise.h and noise/channel_noise.h; shared by the from_sdf functions
+/// SDF's <noise> as keys of noise/range_noise.h, noise/channel_noise.h and noise/axes_noise.h; shared by the from_sdf functions
 /// of kinds.
 ///
 /// <stddev> is the error of a sample, <mean> and <bias_mean> are constant, <bias_stddev> is drawn once at the
@@ -15,6 +15,9 @@ namespace sandlot::sdf_element {
 Result<Node> range_noise(const Node& noise, Diagnostics& diagnostics);
 /// Keys of a ChannelNoiseSpec.
 Result<Node> channel_noise(const Node& noise, Diagnostics& diagnostics);
+
+/// Keys of an AxesNoiseSpec from a group of x, y, z with a <noise> each.
+Result<Node> axes_noise(const Node& group, Diagnostics& diagnostics);
 
 /// A <lidar> or <ray> of a sensor, or null.
 const Node* lidar(const Node& sensor);

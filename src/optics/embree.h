@@ -60,6 +60,16 @@ inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, R
 }
 #endif
 
+/// The widest instruction set that most machines have: one isa for all of them means one answer.
+inline const char* choose_isa() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+      __builtin_cpu_supports("bmi2"))
+    return "avx2";
+#endif
+  return "sse4.2";
+}
+
 /// Bounds of a user geometry, enlarged by a margin on all sides.
 inline void fill_bounds(const optics::Bounds& box, double margin_m, RTCBounds& out) {
   out.lower_x = static_cast<float>(box.lower[0] - margin_m);

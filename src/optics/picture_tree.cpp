@@ -55,15 +55,6 @@ void keep_nearest(I valid, F t, const Rays& rays, int visual, Hits& hits) {
   hits.visual = select(take, broadcast(visual), hits.visual);
 }
 
-const char* choose_isa() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-      __builtin_cpu_supports("bmi2"))
-    return "avx2";
-#endif
-  return "sse4.2";
-}
-
 LocalSpread8 spread_over(const Solid& solid, const Rays& rays) {
   const Rays8 directions{rays.direction.x, rays.direction.y, rays.direction.z, rays.near};
   return to_local(solid, rays.base, Spread8{rays.from.x, rays.from.y, rays.from.z}, directions);
@@ -121,7 +112,8 @@ void PictureTree::Layer::attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQ
   rtcAttachGeometry(scene, geometry);
 }
 
-PictureTree::PictureTree() : isa_(choose_isa()), device_(rtcNewDevice((std::string("isa=") + isa_).c_str())) {
+PictureTree::PictureTree()
+    : isa_(embree::choose_isa()), device_(rtcNewDevice((std::string("isa=") + isa_).c_str())) {
   SL_CHECK_MSG(device_, "Embree refuses to start");
   fixed_.owner = moving_.owner = this;
 }

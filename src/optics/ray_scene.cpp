@@ -179,16 +179,6 @@ struct WorldPlane {
   }
 };
 
-/// The widest instruction set that most machines have: one isa for all of them means one answer.
-const char* choose_isa() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-      __builtin_cpu_supports("bmi2"))
-    return "avx2";
-#endif
-  return "sse4.2";
-}
-
 /// Rotation as a matrix: cheaper than the quaternion from the second direction on.
 struct Rotation {
   Vec3 x, y, z;  ///< columns
@@ -218,7 +208,7 @@ struct RayScene::Impl {
   // Embree's own `threads=` option would limit oneTBB in the whole process; an arena of one builds the trees
   // in the calling thread alone.
   tbb::task_arena arena{1};
-  const char* isa = choose_isa();
+  const char* isa = embree::choose_isa();
   RTCDevice device = nullptr;
   Layer fixed, moving;
   /// By triangles_of(); looked up only, so its order does not matter.

@@ -82,19 +82,6 @@ std::array<double, 9> covariance(const AxesNoiseSpec& spec, double dt_s, double 
   return out;
 }
 
-/// <angular_velocity> or <linear_acceleration> of SDF: x, y, z with a <noise> each.
-Result<Node> axes_keys(const Node& group, Diagnostics& diagnostics) {
-  using namespace sdf_element;
-  Node keys = Node::map(group.place());
-  for (const char* axis : {"x", "y", "z"}) {
-    const Node* const noise = find(group, std::string(axis) + "/noise");
-    if (!noise) continue;
-    SL_ASSIGN(Node errors, channel_noise(*noise, diagnostics));
-    if (!errors.entries().empty()) keys.set(axis, std::move(errors));
-  }
-  return keys;
-}
-
 /// The older form: <noise><type/><rate>...</rate><accel>...</accel></noise>, alike for all axes.
 Status old_noise(const Node& noise, Node& config, Diagnostics& diagnostics) {
   using namespace sdf_element;
@@ -164,11 +151,11 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
                 "enable_orientation"},
                "<imu>", diagnostics);
   if (const Node* const group = find(*imu, "angular_velocity")) {
-    SL_ASSIGN(Node keys, axes_keys(*group, diagnostics));
+    SL_ASSIGN(Node keys, axes_noise(*group, diagnostics));
     config.set("gyro", std::move(keys));
   }
   if (const Node* const group = find(*imu, "linear_acceleration")) {
-    SL_ASSIGN(Node keys, axes_keys(*group, diagnostics));
+    SL_ASSIGN(Node keys, axes_noise(*group, diagnostics));
     config.set("accel", std::move(keys));
   }
   if (const Node* const noise = find(*imu, "noise")) SL_TRY(old_noise(*noise, config, diagnostics));

@@ -6,6 +6,7 @@
 
 #include "base/math.h"
 #include "devices/ranges/cast_due.h"
+#include "devices/ranges/scan_limits.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::laser_scanner {
@@ -83,15 +84,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
 }  // namespace
 
 Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
-  if (spec.max_range_m <= spec.min_range_m)
-    return build.error("max_range", "max_range must be greater than min_range",
-                       "min_range is " + number_text(spec.min_range_m) + " m");
-  if (spec.max_angle_rad < spec.min_angle_rad)
-    return build.error("max_angle", "max_angle must not be less than min_angle",
-                       "angles grow counter-clockwise");
-  if (spec.max_angle_rad - spec.min_angle_rad > math::tau + 1e-6)
-    return build.error("max_angle", "the beams cover more than a full turn",
-                       "max_angle - min_angle is at most 360 deg");
+  SL_TRY(check_scan_limits(build, spec));
 
   Scanner scanner{spec};
   scanner.key = build.key;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/math.h"
+#include "devices/ranges/scan_limits.h"
 #include "devices/sdf_noise.h"
 #include "physics/parallel.h"
 
@@ -73,15 +74,7 @@ Result<Scanner> Scanner::create(const DeviceBuild& build, Spec spec) {
   if (static_cast<std::int64_t>(spec.columns) * spec.planes > max_beams)
     return build.error("columns", "the scanner has more than a million beams",
                        "columns * planes is at most " + std::to_string(max_beams));
-  if (spec.max_range_m <= spec.min_range_m)
-    return build.error("max_range", "max_range must be greater than min_range",
-                       "min_range is " + number_text(spec.min_range_m) + " m");
-  if (spec.max_angle_rad < spec.min_angle_rad)
-    return build.error("max_angle", "max_angle must not be less than min_angle",
-                       "angles grow counter-clockwise");
-  if (spec.max_angle_rad - spec.min_angle_rad > math::tau + 1e-6)
-    return build.error("max_angle", "the beams cover more than a full turn",
-                       "max_angle - min_angle is at most 360 deg");
+  SL_TRY(check_scan_limits(build, spec));
   if (spec.max_elevation_rad < spec.min_elevation_rad)
     return build.error("max_elevation", "max_elevation must not be less than min_elevation",
                        "elevations grow upwards");

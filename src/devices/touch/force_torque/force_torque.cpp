@@ -5,18 +5,6 @@
 namespace sandlot::force_torque {
 namespace {
 
-Result<Node> noise_keys(const Node& group, Diagnostics& diagnostics) {
-  using namespace sdf_element;
-  Node keys = Node::map(group.place());
-  for (const char* axis : {"x", "y", "z"}) {
-    const Node* const noise = find(group, std::string(axis) + "/noise");
-    if (!noise) continue;
-    SL_ASSIGN(Node errors, channel_noise(*noise, diagnostics));
-    if (!errors.entries().empty()) keys.set(axis, std::move(errors));
-  }
-  return keys;
-}
-
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   using namespace sdf_element;
   Node config = Node::map(element.place());
@@ -31,7 +19,7 @@ Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
   copy(*own, "measure_direction", config, "direction");
   for (const char* part : {"force", "torque"})
     if (const Node* const group = find(*own, part)) {
-      SL_ASSIGN(Node keys, noise_keys(*group, diagnostics));
+      SL_ASSIGN(Node keys, axes_noise(*group, diagnostics));
       config.set(part, std::move(keys));
     }
   return config;
