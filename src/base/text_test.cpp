@@ -112,5 +112,18 @@ TEST(Units, WhatDoesNotFitIsRefused) {
   EXPECT_NE(complaint(std::string(1'000'000, 'a'), "m"), "");
 }
 
+TEST(Text, FirstPartEndsBeforeTheFirstSlash) {
+  EXPECT_EQ(first_part("robot1/laser/ranges"), "robot1");
+  EXPECT_EQ(first_part("robot1"), "robot1");
+  EXPECT_EQ(first_part("/robot1"), "");
+  EXPECT_EQ(first_part(""), "");
+}
+
+TEST(Text, IsOneOfComparesWholeTexts) {
+  EXPECT_TRUE(is_one_of("joint", {"link", "joint"}));
+  EXPECT_FALSE(is_one_of("join", {"link", "joint"}));
+  EXPECT_FALSE(is_one_of("", {"link"}));
+}
+
 }  // namespace
 }  // namespace sandlot
