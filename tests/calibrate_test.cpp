@@ -1,4 +1,4 @@
-/// From pictures to error parameters of the level `objects`, and back.
+/// Calibration: from pictures to error parameters of the level `objects`, and back.
 #include <gtest/gtest.h>
 
 #include <cmath>

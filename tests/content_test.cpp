@@ -1,4 +1,4 @@
-/// What models/, worlds/ and scenarios/ promise in their comments.
+/// Promises of models/, worlds/ and scenarios/ in their comments.
 #include <gtest/gtest.h>
 
 #include <cmath>

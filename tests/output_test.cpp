@@ -1,4 +1,4 @@
-/// What the command writes, and what it says when that does not arrive.
+/// Output of the command, and its errors when the output cannot be written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-/// How the last word of a line may go on.
+/// Completion of the last word of a line.
 #include <algorithm>
 
 #include "base/text.h"

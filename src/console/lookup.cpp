@@ -1,4 +1,4 @@
-/// What words mean: things, devices, parameters, files.
+/// Meaning of words: entities, devices, parameters, files.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
 #pragma once
-/// What a shared library of controllers exports, and how it proves that it fits.
+/// Exports of a shared library of controllers, and the proof that it fits this program.
 ///
 ///   namespace {
 ///   struct Wall { ... };                                       // as in control/controller.h

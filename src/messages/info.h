@@ -1,5 +1,5 @@
 #pragma once
-/// What is known of a message type at run time: its fields, where they are in memory, and the types it is made of.
+/// Type information of messages at run time: fields, their places in memory, and the types they are made of.
 ///
 /// message_info<M>() makes it from M's field list, once; messages/dynamic.h makes one from the text of a schema, for
 /// recordings of others. Codecs (cdr.h, json.h, cbor.h) and the schema (schema.h) work on it alone, so they are written

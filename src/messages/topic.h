@@ -1,5 +1,5 @@
 #pragma once
-/// Where messages live between the one that fills them and those that read them.
+/// Topic: the place of messages between the one that fills them and those that read them.
 ///
 /// A Topic holds the latest message of one device level and its stamp; a CommandSlot holds the latest command.
 /// Both are State: they are hashed and saved. Neither knows who reads it.

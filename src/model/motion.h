@@ -1,5 +1,5 @@
 #pragma once
-/// Where an instance on a path is: a pure function of time, so that nothing of it needs saving.
+/// Motion of an instance along a path: a pure function of time, so that nothing of it needs saving.
 ///
 /// Between two keys the position runs straight and the orientation turns the short way about one axis, both evenly.
 /// Limits   no smoothing: the velocity jumps at keys.

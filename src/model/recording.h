@@ -1,5 +1,5 @@
 #pragma once
-/// What a scenario says under `record:`; the command line may change it.
+/// Keys of a scenario's `record:`; the command line may change them.
 #include <span>
 #include <string>
 #include <vector>

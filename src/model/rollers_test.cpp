@@ -1,4 +1,4 @@
-/// Where rollers lie on a wheel, and which wheels cannot be built.
+/// Places of rollers on a wheel, and wheels that cannot be built.
 #include "model/rollers.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// What surfaces do when they touch.
+/// Surface properties for contacts.
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-/// What a recorder writes of a run, and that the run does not notice.
+/// Recordings of a run, and that recording does not change it.
 #include "record/recorder.h"
 
 #include <fcntl.h>

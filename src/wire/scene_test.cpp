@@ -1,4 +1,5 @@
-/// What viewers draw, read back as a viewer reads it: by docs/viewer_protocol.md alone, from the JSON of the world and the bytes.
+/// Scene for viewers, read back as a viewer reads it: by docs/viewer_protocol.md alone, from the JSON of the
+/// world and the bytes.
 #include "wire/scene.h"
 
 #include <gmock/gmock.h>

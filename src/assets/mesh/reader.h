@@ -1,5 +1,5 @@
 #pragma once
-/// What the readers of the mesh formats share. Not for use outside this folder.
+/// Shared parts of the readers of mesh formats. Not for use outside this folder.
 #include <array>
 #include <cstdint>
 #include <cstring>

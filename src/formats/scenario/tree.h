@@ -1,5 +1,6 @@
 #pragma once
-/// What happens to the Nodes of a scenario before its keys are read: includes, --set, ${var}; and parts of the reader.
+/// Preparation of a scenario's Nodes before its keys are read: includes, --set, ${var}; and parts of the
+/// reader.
 #include <span>
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// From the <model> elements of a document to model::Model.
+/// Reader of the <model> elements of a document, to model::Model.
 #include <memory>
 
 #include "formats/sdf/reading.h"

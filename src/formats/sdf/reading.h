@@ -1,5 +1,5 @@
 #pragma once
-/// What goes along while one document is read: the options, the warnings, the resolved frames.
+/// State of reading one document: the options, the warnings, the resolved frames.
 #include "formats/sdf/frames.h"
 #include "formats/sdf/sdf.h"
 #include "formats/sdf/values.h"

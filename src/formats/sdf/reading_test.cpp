@@ -1,4 +1,4 @@
-/// What the parts of a document become, each worked out by hand.
+/// Reading of the parts of a document, each result worked out by hand.
 #include <filesystem>
 #include <fstream>
 

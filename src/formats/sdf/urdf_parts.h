@@ -1,5 +1,5 @@
 #pragma once
-/// What the parts of the URDF translation share; for formats/sdf/urdf*.cpp only.
+/// Shared declarations of the URDF translation; for formats/sdf/urdf*.cpp only.
 #include <map>
 #include <set>
 #include <string>

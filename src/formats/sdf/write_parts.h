@@ -1,5 +1,5 @@
 #pragma once
-/// What the writers of SDF and URDF share; for formats/sdf/write*.cpp only.
+/// Shared parts of the writers of SDF and URDF; for formats/sdf/write*.cpp only.
 #include <optional>
 #include <string>
 

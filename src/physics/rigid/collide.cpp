@@ -244,7 +244,7 @@ PairSurface RigidEngine::surfaces_at(const Hit& hit) const {
 
 /// Surfaces of all points where zones or a rule may give each point another one: finds them all, and drops
 /// the points that do not touch.
-void RigidEngine::ask_surfaces() {
+void RigidEngine::find_surfaces() {
   surfaces_.clear();
   std::size_t kept = 0;
   for (Hit& hit : hits()) {
@@ -357,7 +357,7 @@ void RigidEngine::direct_contact(Hit& hit, const PairSurface& pair) {
 void RigidEngine::attach_contacts(double h) {
   contacts_.clear();
   const bool per_point = rule_ || !zones_.empty();
-  if (per_point) ask_surfaces();
+  if (per_point) find_surfaces();
   for (const Hit& hit : hits()) {
     ++hit.a->instance->contact_points;
     ++hit.b->instance->contact_points;

@@ -132,7 +132,7 @@ class RigidEngine final : public Engine {
   void sense_wheels(const Pair& pair);
   void collide_rollers(const Pair& pair);
   PairSurface surfaces_at(const Hit& hit) const;
-  void ask_surfaces();
+  void find_surfaces();
   void direct_contact(Hit& hit, const PairSurface& pair);
   void attach_contacts(double h_s);
   static void near(void* engine, dGeomID a, dGeomID b);

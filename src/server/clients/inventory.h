@@ -1,5 +1,6 @@
 #pragma once
-/// What a world has to offer, copied once per revision so that the transport's thread can look things up by itself.
+/// Inventory of a world's topics and parameters, copied once per revision so that the transport's thread can
+/// look them up by itself.
 #include <memory>
 #include <string>
 #include <unordered_map>

@@ -1,4 +1,5 @@
-/// What must not change a run or end it: many viewers, viewers that do not read, and nonsense.
+/// Hostile clients, which must not change a run or end it: many viewers, viewers that do not read, and
+/// nonsense.
 #include "server/test_viewer.h"
 
 namespace sandlot::server::test {

@@ -1,5 +1,5 @@
 #pragma once
-/// What of HTTP needs no socket: who may connect, what a request's target means, how an answer begins.
+/// HTTP without sockets: admission of connections, meaning of a request's target, head of an answer.
 ///
 /// Errors    a sentence that goes back to the client.
 /// Cost      nothing here allocates more than a few times what it reads.

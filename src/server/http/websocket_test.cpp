@@ -1,4 +1,4 @@
-/// What goes over WebSockets, and how they end: raw frames against the transport, and our own client.
+/// WebSocket connections and their ends: raw frames against the transport, and our own client.
 #include <gtest/gtest.h>
 
 #include <atomic>

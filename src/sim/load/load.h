@@ -1,5 +1,5 @@
 #pragma once
-/// From files to a Setup: a scenario with the world and models it names, or a bare world.
+/// Loading of files into a Setup: a scenario with the world and models it names, or a bare world.
 #include <optional>
 #include <span>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
-/// What transport.cpp (the port, the interface) and peer.cpp (a connection, all that needs Beast) share. Not for others to include.
+/// Shared declarations of transport.cpp (the port, the interface) and peer.cpp (a connection, all that needs
+/// Beast). Not for others to include.
 ///
 /// Everything here belongs to the one thread that runs `io`, but for the atomic counters and what Impl::mutex guards.
 #ifdef __SANITIZE_THREAD__
