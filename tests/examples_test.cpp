@@ -12,9 +12,9 @@ TEST(Examples, EachFolderStandsAlone) {
   int checked = 0;
   for (const auto& folder : fs::directory_iterator("examples")) {
     ASSERT_TRUE(folder.is_directory()) << folder.path() << " belongs to no example";
-    const Scratch scratch;
-    fs::copy(folder, scratch.folder, fs::copy_options::recursive);
-    for (const auto& file : fs::directory_iterator(scratch.folder)) {
+    const TestFolder scratch;
+    fs::copy(folder, scratch.path, fs::copy_options::recursive);
+    for (const auto& file : fs::directory_iterator(scratch.path)) {
       if (file.path().extension() != ".yaml") continue;
       ++checked;
       std::ifstream in(file.path());
