@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -169,15 +168,14 @@ std::string summary(const FieldInfo& field) {
   return out;
 }
 
-/// "Worlds and models in .sdf, .world files"
+/// "Files: .sdf, .world."
 std::string files_text(const Item& item, const char* mark = "") {
-  std::string contents = item.contents, names;
-  contents[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(contents[0])));
+  std::string names;
   for (const std::string& each : item.extensions) names += (names.empty() ? "" : ", ") + (mark + each + mark);
-  return contents + " in " + names + " files" + (item.written ? ", also written by `sandlot convert`" : "");
+  return "Files: " + names + (item.written ? "; `sandlot convert` writes them too." : ".");
 }
 
-/// What is to be said of a level in addition to its kind: a kind with one level often says the same of both.
+/// Help of a level, unless it is that of its kind: those with one level often have the same.
 std::string own_help(const Item& item, const LevelInfo& level) {
   return item.help == level.help ? "" : level.help;
 }
@@ -200,7 +198,7 @@ void print_text(const Section& section, bool verbose) {
       for (const LevelInfo& level : item.levels) more += (more.empty() ? "" : ", ") + std::string(level.name);
       more = " Levels: " + more + ".";
     }
-    if (!item.extensions.empty()) more = " " + files_text(item) + ".";
+    if (!item.extensions.empty()) more = " " + files_text(item);
     fmt::print("  {:<{}}  {}{}\n", item.name, width, item.help, more);
     if (!verbose) continue;
     for (const LevelInfo& level : item.levels) {
@@ -376,7 +374,7 @@ void print_markdown(const std::vector<Section>& all) {
         for (const std::string& name : item.sdf_names) names += (names.empty() ? "`" : ", `") + name + "`";
         fmt::print("\nIn SDF files: {}.\n", names);
       }
-      if (!item.extensions.empty()) fmt::print("\n{}.\n", files_text(item, "`"));
+      if (!item.extensions.empty()) fmt::print("\n{}\n", files_text(item, "`"));
       if (!item.levels.empty()) {
         fmt::print("\n| level | publishes | takes | meaning |\n|---|---|---|---|\n");
         for (const LevelInfo& level : item.levels)

@@ -132,14 +132,14 @@ constexpr std::string_view collada[] = {".dae"}, stl[] = {".stl"}, obj[] = {".ob
 
 /// The mesh formats there are: one entry each.
 constexpr MeshFormat formats[] = {
-    {"collada", "COLLADA: parts with colours and textures.", collada, mesh::read_collada},
-    {"stl", "STL, text or binary: triangles alone.", stl,
+    {"collada", "COLLADA meshes with colours and textures.", collada, mesh::read_collada},
+    {"stl", "STL meshes, text or binary: triangles alone.", stl,
      [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_stl(bytes, out); }},
-    {"obj", "Wavefront OBJ with its MTL file.", obj, mesh::read_obj},
-    {"gltf", "glTF 2, text or binary.", gltf, mesh::read_gltf},
-    {"ms3d", "MilkShape 3D.", ms3d,
+    {"obj", "Wavefront OBJ meshes with their MTL file.", obj, mesh::read_obj},
+    {"gltf", "glTF 2 meshes, text or binary.", gltf, mesh::read_gltf},
+    {"ms3d", "MilkShape 3D meshes.", ms3d,
      [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_ms3d(bytes, out); }},
-    {"ply", "PLY, text or binary.", ply,
+    {"ply", "PLY meshes, text or binary.", ply,
      [](std::string_view bytes, mesh::Builder& out, Diagnostics&) { return mesh::read_ply(bytes, out); }},
 };
 

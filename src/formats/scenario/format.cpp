@@ -8,7 +8,7 @@ constexpr std::string_view scenario_extensions[] = {".yaml", ".yml"};
 extern const FormatKind scenario_format;
 constinit const FormatKind scenario_format{
     .name = "scenario",
-    .help = "Scenarios of Sandlot (YAML): a world, robots, controllers, how time runs.",
+    .help = "Scenarios (YAML): a world, robots, controllers, clock.",
     .contents = "scenarios",
     .extensions = scenario_extensions,
     .max_bytes = TextLimits{}.max_bytes,

@@ -31,7 +31,7 @@ extern const FormatKind sdf_format, urdf_format;
 
 constinit const FormatKind sdf_format{
     .name = "sdf",
-    .help = "SDFormat, as Gazebo has it: versions 1.2 to 1.12.",
+    .help = "Worlds and models of Gazebo: SDFormat 1.2 to 1.12.",
     .contents = "worlds and models",
     .extensions = sdf_extensions,
     .max_bytes = XmlLimits{}.max_bytes,
@@ -43,7 +43,7 @@ constinit const FormatKind sdf_format{
 
 constinit const FormatKind urdf_format{
     .name = "urdf",
-    .help = "Robots of ROS, with <gazebo> and <ros2_control>; xacro has to be expanded first.",
+    .help = "Robots of ROS, with <gazebo> and <ros2_control>; xacro must be expanded first.",
     .contents = "robots",
     .extensions = urdf_extensions,
     .max_bytes = XmlLimits{}.max_bytes,
