@@ -249,6 +249,24 @@ TEST(Cli, ListShowsEveryKindAndTheSchemaIsJson) {
   EXPECT_THAT(wrong.out, HasSubstr("did you mean 'devices'?"));
 }
 
+TEST(Cli, ListShowsFileFormatsWithTheirExtensions) {
+  const std::string text = sandlot("list formats").out;
+  for (const char* part : {"formats\n", "  sdf ", ".sdf, .world", ".urdf", ".yaml", ".dae"})
+    EXPECT_THAT(text, HasSubstr(part));
+  const auto json = nlohmann::json::parse(sandlot("list formats --json").out);
+  EXPECT_EQ(json["formats"][0]["name"], "scenario");
+  EXPECT_EQ(json["formats"][0]["contents"], "scenarios");
+  EXPECT_EQ(json["formats"][0]["extensions"], nlohmann::json({".yaml", ".yml"}));
+  EXPECT_EQ(json["formats"][0]["written"], true);
+}
+
+TEST(Cli, ListGivesTheNameOfAKindOnceAndAlignsItsColumns) {
+  const std::string text = "\n" + sandlot("list levels").out;
+  EXPECT_THAT(text, HasSubstr("\n  camera               image "));
+  EXPECT_THAT(text, HasSubstr("\n                       objects "));
+  EXPECT_THAT(sandlot("list devices").out, Not(HasSubstr("Levels: height")));
+}
+
 TEST(Cli, InfoPrintsTheTree) {
   const Printed text = sandlot("info scenarios/indoor.yaml");
   EXPECT_EQ(text.exit_code, 0);

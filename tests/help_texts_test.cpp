@@ -8,11 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "assets/mesh/mesh.h"
 #include "base/describe.h"
 #include "builders/builder.h"
 #include "console/command.h"
 #include "controllers/controllers.h"
 #include "devices/kind.h"
+#include "formats/kind.h"
 #include "formats/scenario/scenario.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
@@ -129,6 +131,15 @@ TEST(HelpTexts, OfControllersStandAlone) {
     add_fields(kind->name, kind->describe(), texts);
   }
   EXPECT_GT(texts.size(), 40u);
+  EXPECT_EQ(faults_of(texts), "");
+}
+
+TEST(HelpTexts, OfFileFormatsStandAlone) {
+  std::vector<HelpText> texts;
+  for (const formats::FormatKind* const kind : formats::format_kinds())
+    texts.push_back({kind->name, kind->help});
+  for (const assets::MeshFormat& format : assets::mesh_formats()) texts.push_back({format.name, format.help});
+  EXPECT_GT(texts.size(), 8u);
   EXPECT_EQ(faults_of(texts), "");
 }
 
