@@ -8,7 +8,7 @@
 namespace sandlot::assets::image {
 namespace {
 
-/// Progressive files may hold any number of scans, each as dear as the whole image.
+/// Progressive files may hold any number of scans, each as expensive as the whole image.
 constexpr int max_scans = 200;
 
 struct Job {
@@ -30,7 +30,7 @@ Job& job_of(j_common_ptr jpeg) { return *static_cast<Job*>(jpeg->client_data); }
   }
   std::longjmp(job.back, 1);  // NOLINT(cert-err52-cpp): libjpeg knows no other way
 }
-/// Warnings are patched up damage: nobody wants half a terrain.
+/// Warnings stand for repaired damage, such as half a terrain: they are errors here.
 void on_message(j_common_ptr jpeg, int level) {
   if (level < 0) give_up(jpeg);
 }

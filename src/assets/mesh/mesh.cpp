@@ -42,7 +42,7 @@ struct TextureFile {
   std::string path;
   bool is_there = false;
 };
-/// Where a texture lies, or would lie by what the mesh says.
+/// File of a texture: where it is, or where it would be by its name in the mesh.
 TextureFile find_texture(const std::string& name, const std::string& mesh_path) {
   const std::string folder = folder_of(mesh_path), file = decoded(name),
                     bare = fs::path(file).filename().string();
@@ -203,7 +203,7 @@ Result<Parsed> parse(std::string_view bytes, const std::string& path, const Mesh
   return parsed;
 }
 
-/// Meshes that somebody holds, by file and options.
+/// Meshes in use, by file and options.
 class Cache {
  public:
   struct Entry {
@@ -282,7 +282,7 @@ HullCache& hull_cache() {
   return the_cache;
 }
 
-/// Empty when the file cannot be looked at; reading it then says why.
+/// Empty when the file cannot be looked at; the error comes from reading it.
 std::string cache_key(const std::string& path, const MeshOptions& o) {
   std::error_code failed;
   const auto size = fs::file_size(path, failed);
@@ -299,7 +299,7 @@ std::string cache_key(const std::string& path, const MeshOptions& o) {
   return key + '\n' + o.submesh;
 }
 
-/// Robots share meshes: each warning is said once.
+/// Robots share meshes: each warning is given once.
 void pass_on(const std::vector<Error>& warnings, Diagnostics& diagnostics) {
   for (const Error& warning : warnings) {
     const std::string text = warning.text();

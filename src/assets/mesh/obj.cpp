@@ -112,7 +112,7 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
   Words in(bytes);
   std::string_view line;
   std::string joined;
-  std::set<std::string> libraries;  // that were asked for
+  std::set<std::string> libraries;  // already read
   while (true) {
     const int here = in.line();
     if (!in.next_line(line)) break;

@@ -80,7 +80,7 @@ Status read_ascii(std::string_view bytes, Builder& out) {
 }  // namespace
 
 Status read_stl(std::string_view bytes, Builder& out) {
-  // Binary files may begin with "solid" too. Their size says what they are; a cut off one has bytes that no text has.
+  // Binary files may begin with "solid" too. Their size tells them apart; a cut off one has bytes that no text has.
   const bool solid = lower(bytes.substr(0, 5)) == "solid";
   if (bytes.size() >= header_bytes) {
     Bytes in(bytes.substr(80));
