@@ -22,27 +22,6 @@ void write_color(JsonWriter& w, Color c) {
   });
 }
 
-const char* name_of(model::JointType type) {
-  switch (type) {
-    case model::JointType::revolute: return "revolute";
-    case model::JointType::continuous: return "continuous";
-    case model::JointType::prismatic: return "prismatic";
-    case model::JointType::ball: return "ball";
-    case model::JointType::universal: return "universal";
-    case model::JointType::screw: return "screw";
-    case model::JointType::fixed: break;
-  }
-  return "fixed";
-}
-const char* name_of(model::Light::Type type) {
-  switch (type) {
-    case model::Light::Type::point: return "point";
-    case model::Light::Type::spot: return "spot";
-    case model::Light::Type::directional: break;
-  }
-  return "directional";
-}
-
 struct ShapeWriter {
   JsonWriter& w;
   AssetTable& assets;
@@ -96,7 +75,7 @@ void write_visual(JsonWriter& w, AssetTable& assets, const model::Visual& visual
 
 void write_light(JsonWriter& w, const model::Light& light) {
   w.object([&] {
-    w.key("type").text(name_of(light.type));
+    w.key("type").text(sandlot::name_of(light.type));
     w.key("name").text(light.name);
     write_pose(w.key("pose"), light.X_PLight);
     write_color(w.key("color"), light.color);
@@ -156,7 +135,7 @@ void write_link(JsonWriter& w, AssetTable& assets, const model::Model& model, co
 void write_joint(JsonWriter& w, const model::Joint& joint) {
   w.object([&] {
     w.key("name").text(joint.name);
-    w.key("type").text(name_of(joint.type));
+    w.key("type").text(sandlot::name_of(joint.type));
     write_index(w.key("parent"), joint.parent);
     write_index(w.key("child"), joint.child);
     write_pose(w.key("pose"), joint.X_CJ);

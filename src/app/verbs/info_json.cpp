@@ -65,7 +65,7 @@ Json of(const model::Link& link) {
 
 Json of(const model::Joint& joint, const model::Model& model) {
   Json out{{"name", joint.name},
-           {"type", name_of(joint.type)},
+           {"type", sandlot::name_of(joint.type)},
            {"parent", joint.parent == model::world_link ? "world" : model.links[joint.parent].name},
            {"child", model.links[joint.child].name},
            {"axis", of(joint.axis_J)}};
@@ -91,7 +91,7 @@ Json of(const model::Joint& joint, const model::Model& model) {
 
 Json of(const model::Light& light) {
   return {{"name", light.name},
-          {"type", name_of(light.type)},
+          {"type", sandlot::name_of(light.type)},
           {"pose", of(light.X_PLight)},
           {"color", of(light.color)},
           {"cast_shadows", light.cast_shadows}};

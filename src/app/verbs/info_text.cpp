@@ -169,7 +169,7 @@ void add_joints(const model::Model& model, Table& table) {
     if (joint.mimic)
       more += fmt::format("{}follows {:.4g} x {}", more.empty() ? "" : ", ", joint.mimic->multiplier,
                           model.joints[joint.mimic->joint].name);
-    table.add({"joint", joint.name, name_of(joint.type),
+    table.add({"joint", joint.name, sandlot::name_of(joint.type),
                (joint.parent == model::world_link ? "world" : model.links[joint.parent].name) + " -> " +
                    model.links[joint.child].name,
                axes, more});
@@ -214,7 +214,7 @@ std::string parts_text(const Simulation& simulation, const Simulation::Entity& e
     others.add({"frame", frame.name, "on " + model.links[frame.link].name, "at " + pose_text(frame.X_LF)});
   for (const model::LinkLight& light : model.lights)
     others.add({"light", light.light.name, "on " + model.links[light.link].name,
-                std::string(name_of(light.light.type)) + " at " + pose_text(light.light.X_PLight)});
+                std::string(sandlot::name_of(light.light.type)) + " at " + pose_text(light.light.X_PLight)});
   add_devices(simulation, entity, shown, devices);
   for (const model::ControllerDecl& controller : instance.controllers)
     others.add({"controller", controller.name, controller.kind,
@@ -371,7 +371,7 @@ std::string info_text(const std::string& file, const Simulation& simulation, con
   }
   Table lights;
   for (const model::Light& light : simulation.setup().lights)
-    lights.add({"light", light.name, name_of(light.type), "at " + pose_text(light.X_PLight)});
+    lights.add({"light", light.name, sandlot::name_of(light.type), "at " + pose_text(light.X_PLight)});
   if (any) out += "\n" + simple.text("");
   const std::string light_text = lights.text("");
   if (!light_text.empty()) out += "\n" + light_text;

@@ -197,7 +197,7 @@ class ModelWriter {
   Result<Xml> joint_of_model(const model::Joint& joint, const std::string& scope) {
     Xml out = element("joint");
     out.set_attribute("name", *within(scope, joint.name));
-    out.set_attribute("type", name_of(joint.type));
+    out.set_attribute("type", sandlot::name_of(joint.type));
     const bool to_world = joint.parent == model::world_link;
     const auto child = within(scope, model_.links[joint.child].name);
     const auto parent = to_world ? std::string("world") : within(scope, model_.links[joint.parent].name);
