@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "sim/test_world.h"
 
 namespace sandlot::test {
@@ -28,7 +30,7 @@ TEST(Parameters, AddressesNameTheFieldsOfRequests) {
 TEST(Parameters, AreListedWithTheirValuesAndJudged) {
   const auto simulation = build(arena("rigid", 1));
   Parameters parameters(*simulation);
-  const Simulation::Entity& rover = *simulation->find_entity("rover1");
+  const Simulation::Entity& rover = *std::as_const(*simulation).find_entity("rover1");
   bool found = false;
   for (const Parameter& parameter : parameters.list(rover, "rover1/laser")) {
     EXPECT_NE(parameters.value(parameter).index(), 0u) << parameter.address();
