@@ -1,12 +1,11 @@
 /// Meshes, grids and textures as viewers fetch them, against bytes written by hand from docs/viewer_protocol.md.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/test_folder.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
 #include "sim/test_world.h"
@@ -22,17 +21,6 @@ std::vector<std::byte> bytes_of(auto... values) {
   (write(w, values), ...);
   return std::move(w.buffer());
 }
-
-struct Folder {
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string file(const char* name, std::string_view content) const {
-    std::ofstream(path / name, std::ios::binary) << content;
-    return (path / name).string();
-  }
-  std::filesystem::path path = std::filesystem::temp_directory_path() /
-                               ("sandlot-assets-" + std::to_string(getpid()));
-};
 
 TriangleMesh square() {
   TriangleMesh mesh;
@@ -112,13 +100,13 @@ TEST(Assets, GridsComeAsBytes) {
 }
 
 TEST(Assets, TexturesAreFilesThatAModelNamesAndNothingElse) {
-  const Folder folder;
+  const test::TestFolder folder;
   const std::string png = "\x89PNG\r\n\x1a\nand so on", jpeg = "\xff\xd8\xff\xe0 and so on";
   model::Visual visual{"v", {}, Box{{1, 1, 1}}, {}, true, {}};
   std::vector<model::Visual> visuals;
   for (const std::string& file :
-       {folder.file("a.png", png), folder.file("b.any", jpeg), folder.file("c.png", "text"),
-        folder.path.string(), std::string("/etc/passwd"), folder.file("empty.png", "")}) {
+       {folder.write("a.png", png), folder.write("b.any", jpeg), folder.write("c.png", "text"),
+        folder.path.string(), std::string("/etc/passwd"), folder.write("empty.png", "")}) {
     visual.material.texture = file;
     visuals.push_back(visual);
   }
