@@ -25,7 +25,7 @@ inline Row row(std::string name, std::string unit, double value, double referenc
   return {std::move(name), value, std::move(unit), reference, ratio, budget, ratio <= budget};
 }
 
-// The suites; src/app runs them by name.
+// The suites; entry.cpp runs them by name.
 std::vector<Row> swarm();      ///< P1: the swarm's scenario, robot by robot
 std::vector<Row> rays();       ///< P2, P5: rays of both kinds of world
 std::vector<Row> images();     ///< P5: pictures against their depth alone
