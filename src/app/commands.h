@@ -121,7 +121,8 @@ struct PlotFilesOptions {
 int plot(const PlotFilesOptions& options);
 
 struct BenchOptions {
-  std::string name;  ///< "" for all
+  std::string suite;   ///< "" for all
+  bool guard = false;  ///< fail at twice a budget
   bool json = false;
 };
 int bench(const BenchOptions& options);

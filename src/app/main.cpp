@@ -525,9 +525,15 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   BenchOptions bench_options;
   CLI::App* const bench_verb = app.add_subcommand("bench",
                                                   "Measure Sandlot against references in the same run");
-  bench_verb->add_option("name", bench_options.name, "Rows whose name contains this; all when left out");
+  bench_verb->add_option(
+      "suite", bench_options.suite,
+      "physics, wheels, pile, swarm, rays, images, loading, recording, viewer, rollers or levels; all when "
+      "left out");
+  bench_verb->add_flag(
+      "--guard", bench_options.guard,
+      "Fail when a ratio is over twice its budget, twice in a row; for machines that test changes");
   add_json(*bench_verb, bench_options.json);
-  bench_verb->footer("Example: sandlot bench ranges --json");
+  bench_verb->footer("Example: sandlot bench rays --json");
   bench_verb->callback([&] { result = bench(bench_options); });
 
   ValidateOptions validate_options;

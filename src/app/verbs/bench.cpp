@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
 #include "app/commands.h"
 #include "base/program.h"
@@ -20,13 +21,15 @@ int bench(const BenchOptions& options) {
   if (program.empty())
     return complain({"bench: there is no program sandlot-bench beside this one",
                      "`./dev bench` builds it, in a copy of the source"});
-  std::string first = program, name = options.name, json = "--json";
-  char* arguments[4] = {first.data()};
-  int n = 1;
-  if (!name.empty()) arguments[n++] = name.data();
-  if (options.json) arguments[n++] = json.data();
+  std::vector<std::string> words = {program};
+  if (!options.suite.empty()) words.push_back(options.suite);
+  if (options.guard) words.emplace_back("--guard");
+  if (options.json) words.emplace_back("--json");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   std::fflush(nullptr);
-  execv(program.c_str(), arguments);
+  execv(program.c_str(), arguments.data());
   return complain({"bench: cannot start '" + program + "': " + std::strerror(errno), ""});
 }
 
