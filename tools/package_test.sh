@@ -94,7 +94,10 @@ done
 while read -r library; do
   package=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "${library#/usr}" 2>/dev/null ||
     dpkg-query -S "/usr$library") || die "$library is of no package"
-  [[ ", $depends," =~ ,\ ${package%%:*}[\ ,] ]] || die "the .deb does not depend on ${package%%:*}: $depends"
+  package=${package%%:*}
+  # Under its own name, or one that it provides: libspdlog1.10 is asked for as libspdlog1.10-fmt9.
+  names=$(dpkg-query -W -f '${Package}, ${Provides}' "$package" | sed -E 's/ *\([^)]*\)//g; s/, *$//; s/, */|/g; s/[.+]/\\&/g')
+  [[ ", $depends," =~ ,\ ($names)[\ ,] ]] || die "the .deb does not depend on $package: $depends"
 done < <(readelf -dW "$scratch"/deb/usr/lib/libsandlot.so.*.*.* | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -v ld-linux |
   while read -r name; do /sbin/ldconfig -p | awk -v name="$name" '$1 == name && /x86-64|aarch64/ {print $NF; exit}'; done)
 check_program "$scratch/deb/usr/bin/sandlot" "$scratch/deb/usr"
