@@ -27,6 +27,8 @@ target_link_options(sandlot_library PRIVATE LINKER:-Bsymbolic-functions)
 # sandlot-bench, which `sandlot bench` runs: it carries the engines that ours are measured against.
 add_executable(sandlot_bench_command src/bench/entry.cpp $<TARGET_OBJECTS:sandlot_bench>)
 set_target_properties(sandlot_bench_command PROPERTIES OUTPUT_NAME sandlot-bench)
+# Only `./dev bench` builds it.
+set_target_properties(sandlot_bench sandlot_bench_command PROPERTIES EXCLUDE_FROM_ALL ON)
 target_link_libraries(sandlot_bench_command PRIVATE sandlot_library sandlot_sdformat)
 foreach(name IN LISTS names)
   target_link_libraries(sandlot_bench_command PRIVATE ${${name}})

@@ -64,6 +64,7 @@ endforeach()
 target_compile_options(plugin_other_build PRIVATE -ffast-math)
 file(GLOB sources CONFIGURE_DEPENDS tests/*_test.cpp)
 set(libraries ${sandlot_layers})
+list(REMOVE_ITEM libraries bench)  # a program of its own
 list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")

@@ -130,10 +130,10 @@ TEST(SlowSnapshotFiles, EveryScenarioGoesOnFromHalfTimeToTheSameHash) {
     const std::string scenario = entry.path().string();
     const TestFolder scratch;
     const std::string half = scratch.file("half.snapshot");
-    const auto whole = summary_of(scenario + " --duration 4s --snapshot-at 2s --snapshot " + half);
+    const auto whole = summary_of(scenario + " --duration 2s --snapshot-at 1s --snapshot " + half);
     ASSERT_FALSE(whole.contains("failed")) << scenario << whole["failed"];
     for (const int threads : {1, 2, 4}) {
-      const auto rest = summary_of("--from " + half + " --duration 2s --threads " + std::to_string(threads));
+      const auto rest = summary_of("--from " + half + " --duration 1s --threads " + std::to_string(threads));
       EXPECT_EQ(rest["end_tick"], whole["end_tick"]) << scenario;
       EXPECT_EQ(rest["state_hash"], whole["state_hash"]) << scenario << ", " << threads << " threads";
     }
