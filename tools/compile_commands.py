@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Lists the sources of a compile database, or compiles each of them alone as far as its syntax and types go, warnings aside.
+"""Lists the sources of a compile database, or compiles those of the program alone, as far as syntax and types go.
 
 Usage: compile_commands.py BUILD --list
-       compile_commands.py BUILD --syntax JOBS      exits 1 and prints what the compiler says of those that fail
+       compile_commands.py BUILD --syntax JOBS      exits 1 and prints what the compiler says of those that fail; warnings
+                                                    and tests are left out (`./dev test debug` compiles tests alone)
 """
 import concurrent.futures
 import json
@@ -27,6 +28,7 @@ def main():
     if sys.argv[2] == "--list":
         print("\n".join(entry["file"] for entry in entries))
         return 0
+    entries = [entry for entry in entries if "/src/" in entry["file"] and not entry["file"].endswith("_test.cpp")]
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(int(sys.argv[3])) as pool:
         for file, code, said in pool.map(check, entries):
