@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "console/command.h"
 #include "console/line_parsing.h"
+#include "files/text.h"
 #include "sim/world/snapshot.h"
 
 namespace sandlot::console {
@@ -50,7 +51,7 @@ Status set_speed(CommandCall& call, std::string text) {
 Result<std::vector<std::byte>> read_snapshot(const std::string& file) {
   constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30;
   std::error_code failed;
-  if (!fs::is_regular_file(file, failed)) return Error{"there is no file '" + file + "'"};
+  if (!fs::is_regular_file(file, failed)) return Error{"there is no file '" + file + "'", nearest_file(file)};
   const std::uintmax_t size = fs::file_size(file, failed);
   if (failed || size > most_bytes) return Error{"'" + file + "' has more than 4 GiB"};
   std::vector<std::byte> bytes(static_cast<std::size_t>(size));

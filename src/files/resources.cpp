@@ -1,8 +1,11 @@
 #include "files/resources.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <vector>
 
 #include "base/program.h"
 #include "base/text.h"
@@ -76,6 +79,25 @@ std::string lower(std::string text) {
   return text;
 }
 
+/// Names of the files and folders in a folder, sorted.
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, failed);
+  for (; !failed && entry != fs::directory_iterator(); entry.increment(failed))
+    names.push_back(entry->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The file of a model's folder: model.sdf, or the first robot in URDF; "" when it has neither.
+std::string model_in(const std::string& folder) {
+  if (is_there(folder + "/model.sdf")) return folder + "/model.sdf";
+  for (const std::string& name : names_in(folder))
+    if (fs::path(name).extension() == ".urdf") return beside(folder, name);
+  return "";
+}
+
 /// The newest version folder in Gazebo's cache.
 void add_cached(const Fuel& fuel, std::vector<std::string>& tried) {
   const char* const home = std::getenv("HOME");
@@ -93,6 +115,18 @@ void add_cached(const Fuel& fuel, std::vector<std::string>& tried) {
     }
     if (!newest.empty()) tried.push_back(newest + fuel.rest);
   }
+}
+
+/// `uri` with the last part replaced by the nearest name in one of the folders that were searched; "" when none is near.
+std::string nearest_name(const std::string& uri, std::span<const std::string> tried) {
+  constexpr std::size_t shortest = 3;           // almost every name is near to a shorter one
+  const std::size_t last = uri.rfind('/') + 1;  // 0 where there is no '/'
+  if (uri.size() - last < shortest) return "";
+  for (const std::string& each : tried) {
+    const std::string near = nearest(uri.substr(last), names_in(folder_of(each)));
+    if (!near.empty()) return uri.substr(0, last) + near;
+  }
+  return "";
 }
 
 Result<std::string> find_fuel(const std::string& uri, const SearchPath& path, const Place& place) {
@@ -153,13 +187,40 @@ Result<std::string> find_resource(const std::string& uri, const std::string& fol
   }
   for (const std::string& each : tried)
     if (is_there(each)) return each;
-  std::string list;
+  std::string list = nearest_name(uri, tried);
+  if (!list.empty()) list = "did you mean '" + list + "'? ";
+  list += tried.empty() ? "nothing was searched" : "looked for ";
   for (std::size_t i = 0; i < tried.size() && i < 4; ++i) list += (i ? ", " : "") + tried[i];
   if (tried.size() > 4) list += " and " + std::to_string(tried.size() - 4) + " more places";
   return Error{"'" + uri.substr(0, 160) + "' is not there",
-               (list.empty() ? "nothing was searched" : "looked for " + list) +
-                   (searched ? "; --path FOLDER or SANDLOT_PATH name more folders" : ""),
-               place};
+               list + (searched ? "; --path FOLDER or SANDLOT_PATH name more folders" : ""), place};
+}
+
+std::string nearest_resource(const std::string& written, const SearchPath& path) {
+  const std::string first(first_part(written));
+  if (first.size() < written.size()) {  // "scenarios/indoor.yaml", from another folder than Sandlot's own
+    const std::string own = first.empty() ? "" : own_folder(first);
+    const std::string file = own + written.substr(first.size());
+    if (!own.empty() && is_there(file)) return "Sandlot's own is '" + file + "'";
+    return nearest_file(own.empty() || is_there(folder_of(written)) ? written : file);
+  }
+  // One word: a model of the search path, or one of Sandlot's scenarios.
+  std::map<std::string, std::string> files;
+  for (const std::string& folder : path.folders)
+    for (const std::string& name : names_in(folder))
+      if (const std::string file = model_in(beside(folder, name)); !file.empty()) files.emplace(name, file);
+  if (const std::string own = own_folder("scenarios"); !own.empty())
+    for (const std::string& name : names_in(own)) {
+      files.emplace(name, beside(own, name));
+      files.emplace(fs::path(name).stem().string(), beside(own, name));
+    }
+  if (const auto file = files.find(written); file != files.end())
+    return "the file of that name is '" + file->second + "'";
+  if (std::string here = nearest_file(written); !here.empty()) return here;
+  std::vector<std::string> names;
+  for (const auto& [name, file] : files) names.push_back(name);
+  const std::string near = nearest(written, names);
+  return near.empty() ? "" : "did you mean '" + files[near] + "'?";
 }
 
 void warn_of_texture(const std::string& file, Error problem, Diagnostics& diagnostics) {

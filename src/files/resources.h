@@ -32,6 +32,10 @@ SearchPath search_path(std::span<const std::string> asked_for = {});
 Result<std::string> find_resource(const std::string& uri, const std::string& folder, const SearchPath& path,
                                   const Place& place);
 
+/// Remedy for a file or model on the command line that does not exist: Sandlot's own scenario, world or model that the words
+/// name, or the nearest name; "" when nothing is near.
+std::string nearest_resource(const std::string& written, const SearchPath& path);
+
 /// Says that a texture cannot be used and that cameras show a checker in its place: once per file, whoever names it, and of
 /// no more than twenty files.
 /// @param file     as the model keeps it

@@ -1,7 +1,11 @@
 #include "files/text.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <vector>
+
+#include "base/text.h"
 
 namespace sandlot {
 namespace {
@@ -38,7 +42,7 @@ Result<std::string> read_text_file(const std::string& path, std::size_t max_byte
     return Error{"the file name is empty or has a NUL in it"};
   std::error_code failed;
   const fs::file_status status = fs::status(path, failed);
-  if (status.type() == fs::file_type::not_found) return refuse("no such file");
+  if (status.type() == fs::file_type::not_found) return refuse("no such file", nearest_file(path));
   if (failed) return refuse("cannot be opened: " + failed.message());
   if (fs::is_directory(status)) return refuse("is a folder", "name a file in it");
   if (!fs::is_regular_file(status)) return refuse("is not a regular file");
@@ -53,6 +57,21 @@ Result<std::string> read_text_file(const std::string& path, std::size_t max_byte
   if (in.bad() || static_cast<std::size_t>(in.gcount()) != text.size())
     return refuse("changed while it was read");
   return text;
+}
+
+std::string nearest_file(const std::string& path) {
+  constexpr std::size_t most = 10'000;  // entries of a folder that are compared
+  const fs::path wanted(path), folder = wanted.parent_path();
+  std::error_code failed;
+  if (!folder.empty() && !fs::is_directory(folder, failed))
+    return "there is no folder '" + folder.string() + "'";
+  std::vector<std::string> names;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, failed);
+  for (; !failed && entry != fs::directory_iterator() && names.size() < most; entry.increment(failed))
+    names.push_back(entry->path().filename().string());
+  std::sort(names.begin(), names.end());  // of equally near names the same one on every machine
+  const std::string near = nearest(wanted.filename().string(), names);
+  return near.empty() ? "" : "did you mean '" + (folder / near).string() + "'?";
 }
 
 Status check_text(std::string_view text, const std::string& file) {

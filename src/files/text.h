@@ -16,6 +16,10 @@ Result<std::string> read_text_file(const std::string& path, std::size_t max_byte
 /// Refuses bytes that no text has (NUL, control characters, invalid UTF-8), with the line of the first one.
 Status check_text(std::string_view text, const std::string& file);
 
+/// Remedy for a file that does not exist: the nearest name in its folder, or the folder that does not exist; "" when no
+/// name is near.
+std::string nearest_file(const std::string& path);
+
 /// The folder of a file: "worlds" for "worlds/indoor.sdf", "" for "indoor.sdf".
 std::string folder_of(std::string_view path);
 /// `path` as seen from `folder`; absolute paths stay what they are.

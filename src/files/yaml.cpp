@@ -226,10 +226,14 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
     const bool known = !e.mark.is_null();
     // What most likely happened: {when: a/laser.ranges[3] < 1}.
     const bool in_flow = e.msg.starts_with("end of map flow") || e.msg.starts_with("end of sequence flow");
-    return Error{
-        show_variables(e.msg),
-        in_flow ? "close the bracket; within {} and [], a text with brackets or commas needs quotes" : "",
-        {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
+    const bool in_block = e.msg == "end of sequence not found" || e.msg == "end of map not found" ||
+                          e.msg.starts_with("illegal ");
+    return Error{show_variables(e.msg),
+                 in_flow ? "close the bracket; within {} and [], a text with brackets or commas needs quotes"
+                 : in_block ? "indent with blanks, not tabs, and the elements of a list or map equally far; "
+                              "a text with ': ' needs quotes"
+                            : "",
+                 {name, known ? e.mark.line + 1 : 0, known ? e.mark.column + 1 : 0}};
   } catch (const std::exception& e) { return Error{std::string("is not YAML: ") + e.what(), "", {name}}; }
   return builder.take();
 }

@@ -55,6 +55,8 @@ TEST(Yaml, AliasesStandForCopies) {
 
 TEST(Yaml, RefusesWhatItCannotMean) {
   EXPECT_EQ(error_of("a: 1\nb: 2\na: 3\n"), "f.yaml:3:1: key 'a' is given twice; it is already in line 1");
+  EXPECT_NE(error_of("a:\n\t- 1\n").find("; indent with blanks, not tabs"), std::string::npos);
+  EXPECT_NE(error_of("a:\n  - b: 1\n   c: 2\n").find("equally far"), std::string::npos);
   EXPECT_EQ(error_of("? [a]\n: 1\n"), "f.yaml:1:3: a key must be a plain word");
   EXPECT_EQ(error_of("a: !thing 1\n").substr(0, 24), "f.yaml:1:4: tag '!thing'");
   EXPECT_EQ(error_of("a: 1\n---\nb: 2\n").substr(0, 34), "f.yaml:2:1: a second document begi");
@@ -111,6 +113,9 @@ TEST(TextFile, EachObstacleHasItsOwnError) {
   const std::string file = folder + "/file";
   std::ofstream(file) << "hello";
   EXPECT_EQ(*read_text_file(file, 5), "hello");
+  EXPECT_EQ(error(folder + "/fiel", 10), folder + "/fiel: no such file; did you mean '" + file + "'?");
+  EXPECT_EQ(error(folder + "/none/file", 10),
+            folder + "/none/file: no such file; there is no folder '" + folder + "/none'");
   // A sparse file of 1 GiB: refused by its size, so without reading it.
   std::filesystem::resize_file(file, 1u << 30);
   EXPECT_EQ(error(file, 16u << 20), file + ": is too large: 1024 MiB; at most 16 MiB are read");

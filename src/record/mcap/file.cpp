@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "files/text.h"
+
 namespace sandlot::mcap {
 namespace {
 
@@ -75,7 +77,12 @@ Status OutputFile::close() {
 
 Result<InputFile> InputFile::open(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0) return failed("cannot read", path);
+  if (fd < 0) {
+    const bool missing = errno == ENOENT;
+    Error error = failed("cannot read", path);
+    if (missing) error.fix = nearest_file(path);
+    return error;
+  }
   InputFile file(fd, 0, path);
   struct stat info {};
   if (::fstat(fd, &info) != 0) return failed("cannot read", path);

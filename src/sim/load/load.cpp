@@ -9,6 +9,8 @@
 #include "base/text.h"
 #include "builders/builder.h"
 #include "devices/scaled_errors.h"
+#include "files/resources.h"
+#include "files/text.h"
 #include "formats/kind.h"
 #include "geometry/bounds.h"
 #include "sim/load/instance.h"
@@ -56,10 +58,20 @@ Result<model::Setup> load_bare_world(const std::string& path, const formats::Rea
   return setup;
 }
 
+/// Error of a file that does not exist; its remedy is the nearest file or model.
+Error no_such_file(const std::string& path, const LoadOptions& options) {
+  const std::string near = nearest_resource(path, search_path(options.paths));
+  return {"no such file", near.empty() ? "files that are read end in " + formats::known_extensions() : near,
+          place_in(path)};
+}
+
 /// Loads a file by its format, or a model with parameters.
 Result<model::Setup> load_file(const std::string& path, const LoadOptions& options,
                                Diagnostics& diagnostics) {
   const auto words = parse_builder(path);
+  std::error_code ignored;
+  if (!words && !options.text && !path.empty() && !fs::exists(path, ignored))
+    return no_such_file(path, options);
   const formats::FormatKind* const format = words ? nullptr : formats::find_format(path);
   if (format && format->scenario) {
     SL_ASSIGN(formats::Scenario scenario,
@@ -80,8 +92,7 @@ Result<model::Setup> load_file(const std::string& path, const LoadOptions& optio
                    "write a scenario that names this world"};
     return load_bare_world(path, {search_path(options.paths), options.skip_missing}, diagnostics);
   }
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return Error{"'" + path + "' is not there"};
+  if (fs::is_directory(path, ignored)) return Error{"is a folder", "name a file in it", place_in(path)};
   return Error{"'" + path + "' is neither a scenario nor a world or robot",
                "files that are read end in " + formats::known_extensions()};
 }

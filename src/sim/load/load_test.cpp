@@ -58,6 +58,26 @@ TEST_F(Files, AFolderStandsForItsModelAndTheSearchPathIsUsed) {
   unsetenv("SANDLOT_PATH");
 }
 
+TEST_F(Files, AMissingFileIsAnsweredWithTheNearestFileOrModel) {
+  const std::string models = (folder / "models").string();
+  const std::string scenario = write("yard.yaml", "version: 1\nname: yard\n");
+  const auto error = [&](const std::string& path) {
+    const std::vector<std::string> paths{models};
+    const auto setup = load(path, {.paths = paths}, diagnostics);
+    return setup ? "" : setup.error().text();
+  };
+  EXPECT_EQ(error(folder / "yrad.yaml"),
+            (folder / "yrad.yaml").string() + ": no such file; did you mean '" + scenario + "'?");
+  EXPECT_EQ(error("bot"), "bot: no such file; the file of that name is '" + models + "/bot/model.sdf'");
+  EXPECT_EQ(error("bott"), "bott: no such file; did you mean '" + models + "/bot/model.sdf'?");
+  EXPECT_THAT(error("nothing_like_it"), HasSubstr("; files that are read end in .yaml"));
+  EXPECT_EQ(error(models), models + ": is a folder; name a file in it");
+  setenv("SANDLOT_PATH", models.c_str(), 1);
+  EXPECT_THAT(error_of("robots: [{name: a, model: bott}]\n"),
+              HasSubstr("'bott' is not there; did you mean 'bot'? looked for "));
+  unsetenv("SANDLOT_PATH");
+}
+
 TEST_F(Files, APresetGoesBeforeTheModelsKeysAndAfterThoseBesideIt) {
   const auto setup = load_text(
       "robots:\n- name: a\n  model: models/bot\n  devices:\n    eye: {preset: sick_lms200, rate: 5}\n"
