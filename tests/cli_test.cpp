@@ -19,6 +19,11 @@ TEST(Cli, EveryVerbExplainsItselfWithAnExample) {
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.out, HasSubstr("Example: sandlot")) << verb;
   }
+  EXPECT_THAT(sandlot("--help").out, HasSubstr("Usage: sandlot [OPTIONS] VERB\n"));
+  EXPECT_THAT(sandlot("render --help").out, HasSubstr("--shadows,--no-shadows "));
+  const std::string help = sandlot("run --help").out;
+  EXPECT_THAT(help, HasSubstr("--threads INT (0 to 1024; 1 if left out)\n"));
+  EXPECT_THAT(help, HasSubstr("--port INT (0 to 65535; not with --headless)\n"));
   EXPECT_EQ(sandlot("").exit_code, 2);
   EXPECT_EQ(sandlot("fly").exit_code, 2);
   EXPECT_EQ(sandlot("run scenarios/indoor.yaml --sed 3").exit_code, 2);
@@ -37,10 +42,38 @@ TEST(Cli, WrongOptionsNameTheOptionAndExit2) {
   refused("scenarios/indoor.yaml --set phisics=planar", "physics");
   refused("scenarios/indoor.yaml --snapshot-at 3s", "--snapshot");
   refused("scenarios/nowhere.yaml", "nowhere.yaml");
+  refused("scenarios/indor.yaml", "did you mean 'scenarios/indoor.yaml'?");
+  refused("rover", "models/rover/model.sdf");
   refused("README.md", "neither a scenario");
   refused("", "needs either a file or --from");
   refused("--from README.md", "no Sandlot snapshot");
   refused("--from nowhere.snap", "cannot read");
+}
+
+TEST(Cli, AMisspeltVerbOrOptionIsAnsweredWithTheNearest) {
+  const auto refused = [](const std::string& arguments, const std::string& error) {
+    const Printed printed = sandlot(arguments);
+    EXPECT_EQ(printed.exit_code, 2) << arguments;
+    EXPECT_EQ(printed.out, "error: " + error + "\n") << arguments;
+  };
+  refused("", "a verb is needed; sandlot --help lists the verbs");
+  refused("chek scenarios/indoor.yaml", "there is no verb 'chek'; did you mean 'check'?");
+  refused("topic lst run.mcap", "there is no verb 'lst'; did you mean 'list'?");
+  refused("fly", "there is no verb 'fly'; sandlot --help lists the verbs");
+  refused("run scenarios/indoor.yaml --duraton 3s",
+          "there is no option '--duraton'; did you mean '--duration'?");
+  refused("render scenarios/indoor.yaml --sze=8x8", "there is no option '--sze'; did you mean '--size'?");
+  refused("run scenarios/indoor.yaml --colour",
+          "there is no option '--colour'; sandlot run --help lists the options");
+  refused("list devices camera", "'camera' is one word too many; sandlot list --help lists the options");
+  refused("run scenarios/indoor.yaml --duration",
+          "--duration needs a value; sandlot run --help lists the options");
+  refused("run scenarios/indoor.yaml --seed x",
+          "--seed: 'x' is not a number; sandlot run --help lists the options");
+  refused("run scenarios/indoor.yaml --errors -1", "--errors: must be in [0, 1000], is -1");
+  refused("run scenarios/indoor.yaml --seed 1 --seed 2",
+          "--seed is given more than once; sandlot run --help lists the options");
+  refused("demo indor", "there is no demo 'indor'; did you mean 'indoor'?");
 }
 
 TEST(Cli, ARunLeavesASummaryWithWhatTheDocsPromise) {

@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "base/program.h"
+#include "base/text.h"
 
 namespace sandlot::app {
 namespace {
@@ -50,10 +51,9 @@ Result<std::string> demo_file(const std::string& name) {
   for (const auto& folder : scenario_folders())
     if (std::filesystem::is_regular_file(folder / (name + ".yaml"), error))
       return (folder / (name + ".yaml")).lexically_normal().string();
-  std::string known;
-  for (const std::string& each : demo_names()) known += (known.empty() ? "" : ", ") + each;
+  const std::vector<std::string> known = demo_names();
   return Error{"there is no demo '" + name + "'",
-               known.empty() ? "no folder 'scenarios' was found near the program" : "there are: " + known};
+               known.empty() ? "no folder 'scenarios' was found near the program" : suggestion(name, known)};
 }
 
 }  // namespace sandlot::app
