@@ -8,6 +8,7 @@
 #include "base/json_text.h"
 #include "formats/kind.h"
 #include "sim/lint/lint.h"
+#include "sim/watch/csv_log.h"
 
 namespace sandlot::app {
 namespace {
@@ -66,7 +67,10 @@ int check(const FileOptions& options) {
   int result = exit_ok;
   for (const std::string& file : options.files) {
     Diagnostics diagnostics;
-    const auto built = build(file, options, diagnostics);
+    auto built = build(file, options, diagnostics);
+    if (built && (*built)->setup().log)
+      if (Status status = CsvLog::check(**built, *(*built)->setup().log); !status)
+        built = std::move(status.error());
     std::vector<Finding> findings;
     for (const Error& warning : diagnostics.warnings) findings.push_back({"", warning});
     if (built)

@@ -44,8 +44,7 @@ CsvLog::~CsvLog() {
   if (created_ && !begun_) ::unlink(path_.c_str());
 }
 
-Result<std::unique_ptr<CsvLog>> CsvLog::open(const Simulation& simulation, const model::LogDecl& decl) {
-  auto log = std::unique_ptr<CsvLog>(new CsvLog(simulation, decl.file, decl.rate_hz));
+Status CsvLog::check(const Simulation& simulation, const model::LogDecl& decl) {
   if (decl.file.empty()) return Error{"the log has no file", "name one, such as run.csv", decl.place};
   if (decl.values.empty()) return Error{"the log has no values", "list addresses or expressions", decl.place};
   const double tick_hz = 1e9 / static_cast<double>(simulation.setup().step.ns);
@@ -54,6 +53,14 @@ Result<std::unique_ptr<CsvLog>> CsvLog::open(const Simulation& simulation, const
     return Error{"the log's rate of " + number_text(decl.rate_hz) + " Hz is above the tick rate of " +
                      number_text(tick_hz) + " Hz",
                  "lower the rate or make time.step smaller", decl.place};
+  for (const model::LogDecl::Column& column : decl.values)
+    SL_TRY(ValueExpression::compile(simulation, column.expression, column.place));
+  return {};
+}
+
+Result<std::unique_ptr<CsvLog>> CsvLog::open(const Simulation& simulation, const model::LogDecl& decl) {
+  SL_TRY(check(simulation, decl));
+  auto log = std::unique_ptr<CsvLog>(new CsvLog(simulation, decl.file, decl.rate_hz));
   for (const model::LogDecl::Column& column : decl.values) {
     SL_ASSIGN(ValueExpression expression,
               ValueExpression::compile(simulation, column.expression, column.place));

@@ -17,6 +17,8 @@ namespace sandlot {
 
 class CsvLog final : public Observer {
  public:
+  /// Checks everything but the file.
+  static Status check(const Simulation& simulation, const model::LogDecl& decl);
   static Result<std::unique_ptr<CsvLog>> open(const Simulation& simulation, const model::LogDecl& decl);
   ~CsvLog() override;
   CsvLog(const CsvLog&) = delete;
