@@ -103,7 +103,12 @@ Result<std::optional<model::LogDecl>> log_declaration(const RunSpec& spec, const
 Result<std::optional<RecordOptions>> record_options(const RunSpec& spec, const Simulation& simulation) {
   RecordOptions out;
   if (simulation.setup().record) out.recording = *simulation.setup().record;
-  else if (spec.record_file.empty()) return std::optional<RecordOptions>();
+  else if (spec.record_file.empty()) {
+    if (!spec.record_topics.empty() || !spec.record_compression.empty())
+      return Error{"--record-topics and --record-compression say how to record, but not where to",
+                   "add --record FILE"};
+    return std::optional<RecordOptions>();
+  }
   if (!spec.record_file.empty()) out.recording.file = spec.record_file;
   if (!spec.record_topics.empty()) out.recording.topics = spec.record_topics;
   if (!spec.record_compression.empty()) {

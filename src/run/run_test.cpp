@@ -173,6 +173,7 @@ TEST_F(RunTest, ARefusedRunLeavesNothing) {
   EXPECT_THAT(refusal({.file = file, .commands = {"at 1s fly"}}), HasSubstr("fly"));
   EXPECT_THAT(refusal({.file = file, .summary_file = file}), HasSubstr("overwrite the scenario"));
   EXPECT_THAT(refusal({.file = file, .log_file = folder + "l.csv"}), HasSubstr("--log-values"));
+  EXPECT_THAT(refusal({.file = file, .record_topics = {"/clock"}}), HasSubstr("add --record FILE"));
   EXPECT_THAT(refusal({.file = file, .record_file = folder + "r.mcap", .record_compression = "zip"}),
               HasSubstr("known are: none, lz4, zstd"));
   EXPECT_THAT(refusal({.file = file, .record_file = folder + "r.mcap"},
