@@ -332,6 +332,14 @@ TEST(Sdf, NamesWhatIsNotUsedOnce) {
   EXPECT_EQ(r.warnings, expected);
 }
 
+TEST(Sdf, AMisspeltElementIsAnsweredWithTheNearest) {
+  const Read r = parse(
+      world("<model name='m'><static>1</static>\n<pse>1 0 0 0 0 0</pse><link name='l'/></model>"));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_EQ(r.warnings,
+            std::vector<std::string>{"f.sdf:3: <pse> in <model> is not used; did you mean <pose>?"});
+}
+
 TEST(Sdf, OlderVersionsMeanTheSame) {
   const Read r = parse(
       "<sdf version='1.5'><world name='w'><physics><gravity>0 0 -5</gravity></physics><model name='m'>" +

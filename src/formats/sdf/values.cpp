@@ -95,7 +95,11 @@ void Notes::unused(const Xml& element, std::string_view used, std::string_view s
       if (!several && !seen.insert(child.name).second)
         warn(child, "a second <" + child.name + "> is not used", "the first one counts");
     } else if (!listed(silent, child.name, nullptr) && child.name.find(':') == std::string::npos) {
-      warn(child, "<" + child.name.substr(0, 60) + "> in <" + element.name + "> is not used");
+      std::vector<std::string> known;
+      for (const std::string_view each : split(used, ' ')) known.emplace_back(each.substr(0, each.find('*')));
+      const std::string near = nearest(child.name, known);
+      warn(child, "<" + child.name.substr(0, 60) + "> in <" + element.name + "> is not used",
+           near.empty() ? "" : "did you mean <" + near + ">?");
     }
   }
 }
