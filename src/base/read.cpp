@@ -195,7 +195,9 @@ Status fields(const Node& node, const TypeEdit& type, void* spec, const std::str
   for (const Node::Entry& entry : node.entries()) {
     if (std::ranges::find(map.known, entry.key) != map.known.end()) continue;
     Error error = unknown_key(entry, map.known, path);
-    if (list_key) error.fix += std::string("; ") + list_key + " are written as a list: [{name: {...}}, ...]";
+    if (list_key)
+      error.fix += (error.fix.ends_with('?') ? std::string(" ") : "; ") + list_key +
+                   " are written as a list: [{name: {...}}, ...]";
     return error;
   }
   if (!map.status) return std::move(map.status);

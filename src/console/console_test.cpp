@@ -213,7 +213,8 @@ TEST(Console, CommandsADevice) {
   // 2 s at 0.3 m/s, less the time to get there; the drive's own limits make that well under half a second.
   EXPECT_NEAR(norm(talk.place("rover1") - before), 0.6, 0.15);
   EXPECT_TRUE(has(talk.refused("command rover1/drive Twist {\"linear\": 3}"), "linear"));
-  EXPECT_TRUE(has(talk.refused("command rover1/drive Image {}"), "takes no Image"));
+  EXPECT_TRUE(has(talk.refused("command rover1/drive Image {}"),
+                  "takes no Image; known are: geometry_msgs/msg/Twist"));
   EXPECT_TRUE(has(talk.refused("command rover1/drve Twist {}"), "did you mean 'rover1/drive'"));
 }
 

@@ -156,9 +156,12 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
       }
     }
   if (found.slot) return found;
-  if (there)
+  if (there) {
+    std::sort(takes.begin(), takes.end());
+    takes.erase(std::unique(takes.begin(), takes.end()), takes.end());  // several levels take one type
     return Error{"'" + std::string(target) + "' takes no " + std::string(type.substr(0, 60)),
                  suggestion(type, takes)};
+  }
   call.unknown_thing = true;
   return Error{"there is no device '" + std::string(target.substr(0, 100)) + "' that takes commands",
                suggestion(target, known)};

@@ -8,7 +8,7 @@
 ///     Spec spec; State state;
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
-///     static void sense(Pool<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
+///     static void sense(PoolView<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
 ///     bool fits() const;    // only where sizes in State or messages are trusted: false refuses a snapshot
 ///   };
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while

@@ -243,7 +243,7 @@ struct Root {
   Node include;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"version", "1", "Version of the scenario format.", 1, 1, Field::required}, s.version);
+    visit(Field{"version", "1", "Version of the scenario format: 1.", 1, 1, Field::required}, s.version);
     visit(Field{"name", "", "Name of the scenario.", 0, 0, Field::none, 200}, s.setup.name);
     visit(
         Field{"world", "", "World file (SDF), relative to this file; an empty plane in sunlight if left out.",
