@@ -86,6 +86,10 @@ TEST(Time, SecondsRoundToTheNearestNanosecond) {
   EXPECT_EQ(Time::from_s(1e-9 * 0.6).ns, 1);
   EXPECT_EQ((Time::from_s(1.5) - Time::from_s(0.25)).ns, 1'250'000'000);
   EXPECT_EQ((Time::from_s(0.001) * 1000).s(), 1.0);
+  // Forged numbers of seconds are the greatest time there is, not an overflow.
+  EXPECT_EQ(Time::from_s(1e300).ns, 9'200'000'000'000'000'000);
+  EXPECT_EQ(Time::from_s(-1e300).ns, -9'200'000'000'000'000'000);
+  EXPECT_GT(due_time({}, 1, 1e-300), Time::from_s(3e9));
   EXPECT_LT(Time::from_ns(1), Time::from_ns(2));
 }
 

@@ -11,9 +11,12 @@ struct Time {
 
   static constexpr std::int64_t per_s = 1'000'000'000;
   static constexpr Time from_ns(std::int64_t n) { return {n}; }
-  /// @param s  seconds, rounded to the nearest nanosecond; |s| < 9.2e9
+  /// @param s  seconds, rounded to the nearest nanosecond; beyond 9.2e9 s the greatest time there is
   static constexpr Time from_s(double s) {
-    return {static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
+    constexpr double most_ns = 9.2e18;
+    const double ns = s * 1e9 + (s < 0 ? -0.5 : 0.5);
+    if (ns < most_ns && ns > -most_ns) return {static_cast<std::int64_t>(ns)};
+    return {static_cast<std::int64_t>(s > 0 ? most_ns : -most_ns)};
   }
   constexpr double s() const {
     return static_cast<double>(ns) / 1e9;
@@ -26,10 +29,11 @@ struct Time {
 };
 
 /// Due time of sample k of something that runs at `rate_hz` from `start`: start + floor(k * 1e9 / rate).
-/// Computed from k, never accumulated, so that 3 Hz does not drift.
+/// Computed from k, never accumulated, so that 3 Hz does not drift. After more than 127 years it never comes.
 constexpr Time due_time(Time start, std::int64_t k, double rate_hz) {
+  constexpr long double most_ns = 4e18L;
   const long double ns = static_cast<long double>(k) * 1e9L / static_cast<long double>(rate_hz);
-  return {start.ns + static_cast<std::int64_t>(ns)};
+  return {start.ns + static_cast<std::int64_t>(ns < most_ns ? ns : most_ns)};
 }
 
 }  // namespace sandlot

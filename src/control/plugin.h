@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/sanitizers.h"
 #include "control/border.h"  // made by the build: sandlot::border_hash
 #include "control/controller.h"
 
@@ -65,9 +66,9 @@ extern "C" using PluginEntry = const PluginTable * ();
 #else
 #define SL_MATH ""
 #endif
-#if defined(__SANITIZE_ADDRESS__)
+#if SL_ADDRESS_SANITIZER
 #define SL_SANITIZER " asan"
-#elif defined(__SANITIZE_THREAD__)
+#elif SL_THREAD_SANITIZER
 #define SL_SANITIZER " tsan"
 #else
 #define SL_SANITIZER ""

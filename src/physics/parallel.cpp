@@ -4,7 +4,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 
-#ifdef __SANITIZE_THREAD__
+#include "base/sanitizers.h"
+#if SL_THREAD_SANITIZER
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ void parallel_for(std::size_t count, std::size_t grain, const void* closure,
                   void (*body)(const void* closure, std::size_t begin, std::size_t end)) {
   if (count == 0) return;
   if (count <= grain) return body(closure, 0, count);
-#ifdef __SANITIZE_THREAD__
+#if SL_THREAD_SANITIZER
   // The sanitizer cannot see how libtbb hands work over and would call every hand-over a race. Plain threads
   // it understands, so there the bodies run on those and real races between them show.
   const auto most = static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));

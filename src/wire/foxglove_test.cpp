@@ -309,7 +309,7 @@ TEST(Foxglove, DamagedMessagesAreRefusedOrReadButNothingWorse) {
     std::string text = seeds[round % 3];
     for (int i = 0; i < 1 + round % 4; ++i)
       text[static_cast<std::size_t>(stream.uniform() * static_cast<double>(text.size()))] = static_cast<char>(
-          stream.uniform() * 256);
+          static_cast<std::uint8_t>(stream.uniform() * 256));
     const auto as_text = read_text(text);
     const auto as_bytes = read_binary(std::as_bytes(std::span(text)));
     EXPECT_TRUE(as_text || !as_text.error().what.empty());

@@ -1,7 +1,8 @@
 // unity: alone (it replaces operator new)
 /// No heap allocation of ours per tick once everything has reached its size.
 // Sanitizers bring their own operator new, which must stay in place and hides who asked: there this test is not built.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#include "base/sanitizers.h"
+#if !SL_ADDRESS_SANITIZER && !SL_THREAD_SANITIZER
 
 #include <dlfcn.h>
 #include <execinfo.h>

@@ -1,5 +1,6 @@
 /// The WebSocketClient of server/http/transport.h: a Beast stream that a thread of its own reads, so that pings are answered while nobody waits.
-#ifdef __SANITIZE_THREAD__
+#include "base/sanitizers.h"
+#if SL_THREAD_SANITIZER
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
 #endif
 #define BOOST_BEAST_USE_STD_STRING_VIEW

@@ -3,7 +3,8 @@
 /// Beast). Not for others to include.
 ///
 /// Everything here belongs to the one thread that runs `io`, but for the atomic counters and what Impl::mutex guards.
-#ifdef __SANITIZE_THREAD__
+#include "base/sanitizers.h"
+#if SL_THREAD_SANITIZER
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
 #endif
 #include <atomic>
