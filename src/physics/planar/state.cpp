@@ -47,6 +47,13 @@ std::uint32_t link_of(const Instance& i, BodyId body) {
 constexpr std::uint32_t rolling_mode = 3;  ///< in place of a motor's
 constexpr std::uint32_t most_contact_points = 1u << 24;
 
+// Bytes of a snapshot may be forged. What these let through, step() computes with; all are false for NaN.
+bool in_range(double x) { return std::abs(x) < 1e300; }
+bool in_range(Vec2 v) { return dot(v, v) < 1e24; }
+bool is_unit(Turn t) { return std::abs(t.c * t.c + t.s * t.s - 1) < 1e-6; }
+/// An attitude is kept as the model gave it, so it need not have length 1.
+bool is_rotation(Quat q) { return norm(q) > 1e-6 && norm(q) < 1e6; }
+
 }  // namespace
 
 void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
@@ -82,7 +89,10 @@ void PlanarEngine::save(InstanceId id, ByteWriter& w) const {
 bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   get(id);
   Instance& instance = instances_[id.index];
-  const auto take = [&](auto& x) { read(r, x); };
+  const auto take = [&](auto& x) {
+    read(r, x);
+    if (!in_range(static_cast<double>(x))) r.fail();
+  };
   Quat q, tilt;
   Vec2 still_at;
   double z_m = 0;
@@ -91,9 +101,15 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   read(r, tilt);
   take(z_m), take(still_at.x), take(still_at.y);
   visit_drive(drive, take);
-  if (!r.ok() || drive.link >= instance.bodies.size()) return false;
+  if (!r.ok() || drive.link >= instance.bodies.size() || !is_rotation(q) || !is_rotation(tilt) ||
+      !in_range(still_at) || !(std::abs(z_m) < 1e12) || drive.accel < 0 || drive.angular_accel < 0)
+    return false;
   std::vector<RigidGroup> groups(instance.groups.size());
-  for (RigidGroup& l : groups) visit_group(l, take);
+  for (RigidGroup& l : groups) {
+    visit_group(l, take);
+    if (!r.ok() || !in_range(l.p) || !in_range(l.v) || !is_unit(l.heading) || !in_range(l.force_N))
+      return false;
+  }
   struct SavedJoint {
     JointState state;
     JointTarget target;
@@ -213,7 +229,7 @@ bool PlanarEngine::load_contact_points(std::uint32_t slot, ByteReader& r) {
     for (std::uint32_t* x : {&t.key.groups, &t.key.part_a, &t.key.part_b, &t.key.feature}) read(r, *x);
     read(r, t.normal_Ns);
     read(r, t.tangent_Ns);
-    if (!r.ok() || rank >= order_.size()) return false;
+    if (!r.ok() || rank >= order_.size() || !in_range(t.normal_Ns) || !in_range(t.tangent_Ns)) return false;
     t.key.pair = instances_[order_[rank]].created << 32 | (instance.created & 0xffffffffu);
     contact_points_.push_back(t);
   }
@@ -232,7 +248,13 @@ bool PlanarEngine::load_contact_points(std::uint32_t slot, ByteReader& r) {
     const GripTarget grip{other.bodies[link_a], instance.bodies[link_b]};
     set_grips({&grip, 1});
     for (JointConstraint& l : grips_)
-      if (l.body_a == grip.a && l.body_b == grip.b) visit_grip(l, [&](double& x) { read(r, x); });
+      if (l.body_a == grip.a && l.body_b == grip.b) {
+        visit_grip(l, [&](double& x) {
+          read(r, x);
+          if (!in_range(x)) r.fail();
+        });
+        if (!is_unit(l.apart)) r.fail();
+      }
     if (!r.ok()) return false;
   }
   return r.ok();

@@ -25,6 +25,8 @@ void PlanarEngine::step(double h_s, std::uint64_t) {
   for_each(order_.size(), 512, [&](std::size_t i) { begin(order_[i], h_s); });
   if (explosion_.group != none) {
     failure_ = exploded(explosion_.group, explosion_.v, explosion_.w_radps);
+    // Forgotten, so that the State can be saved, looked at and read back.
+    for (RigidGroup& group : groups_) group.force_N = {}, group.torque_Nm = 0;
     return;
   }
   if (!ground_fresh_ || ground_varies_) {

@@ -15,7 +15,12 @@ namespace {
 // ODE tests pairs of shapes whose bits meet: what stands never meets what stands.
 constexpr unsigned long standing_bit = 1, moving_bit = 2;
 
-constexpr bool positive(double x) { return x > 0 && x < 1e12; }
+constexpr bool positive(double x) { return x > 1e-12 && x < 1e12; }
+
+/// A coefficient that is divided by where it is not 0.
+constexpr bool is_coefficient(double x) { return x == 0 || (x >= 1e-30 && x <= 1e30); }
+/// A limit; 1e16 is none (model/joint.h).
+constexpr bool is_limit(double x) { return x >= 0 && x <= 1e16; }
 
 bool has_size(const Shape& shape) {
   struct {
@@ -124,9 +129,9 @@ Status RigidEngine::check(const model::Instance& instance) const {
       if (!(joint.second->lower <= joint.second->upper))
         return Error{"joint '" + joint.name + "' has its lower limit above its upper one", "exchange them",
                      joint.place};
-      if (!(joint.second->damping >= 0) || !(joint.second->friction >= 0))
-        return Error{"joint '" + joint.name + "' has a negative damping or friction", "0 switches it off",
-                     joint.place};
+      if (!is_coefficient(joint.second->damping) || !is_coefficient(joint.second->friction))
+        return Error{"joint '" + joint.name + "' has a negative damping or friction, or one beyond 1e30",
+                     "0 switches it off", joint.place};
     }
     if (!(std::abs(joint.thread_pitch_m) < 1e6))
       return Error{"the thread pitch of joint '" + joint.name + "' is no length",
@@ -157,9 +162,16 @@ Status RigidEngine::check(const model::Instance& instance) const {
     if (bounded && !(joint.lower <= joint.upper))
       return Error{"joint '" + joint.name + "' has its lower limit above its upper one", "exchange them",
                    joint.place};
-    if (!(joint.damping >= 0) || !(joint.friction >= 0) || !(joint.spring_stiffness >= 0))
-      return Error{"joint '" + joint.name + "' has a negative damping, friction or stiffness",
-                   "0 switches it off", joint.place};
+    if (!is_coefficient(joint.damping) || !is_coefficient(joint.friction) ||
+        !is_coefficient(joint.spring_stiffness))
+      return Error{
+          "joint '" + joint.name + "' has a negative damping, friction or stiffness, or one beyond 1e30",
+          "0 switches it off", joint.place};
+    if (!is_limit(joint.max_effort) || !is_limit(joint.max_velocity) ||
+        !(std::abs(joint.spring_reference) <= 1e16))
+      return Error{"the largest effort or velocity of joint '" + joint.name +
+                       "', or the reference of its spring, is no sound number",
+                   "limits are from 0 to 1e16", joint.place};
   }
   return {};
 }

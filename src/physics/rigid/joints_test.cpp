@@ -434,6 +434,11 @@ TEST(RigidJoints, WhatCannotBeBuiltIsNamed) {
   bad = two;
   bad.joints[0].damping = -1;
   EXPECT_NE(complaint(bad).find("negative"), std::string::npos);
+  bad.joints[0].damping = 1e-310;  // the library would divide by it
+  EXPECT_NE(complaint(bad).find("beyond 1e30"), std::string::npos);
+  bad = two;
+  bad.joints[0].max_effort = std::nan("");
+  EXPECT_NE(complaint(bad).find("effort"), std::string::npos);
   bad = two;
   bad.joints[0].type = model::JointType::revolute;
   bad.joints[0].lower = 1, bad.joints[0].upper = 0;
@@ -450,6 +455,25 @@ TEST(RigidJoints, WhatCannotBeBuiltIsNamed) {
   bad = two;
   bad.links[0].collisions[0].shape = Box{{1, 0, 1}};
   EXPECT_NE(complaint(bad).find("size"), std::string::npos);
+}
+
+TEST(JointTarget, OneThatIsNotFiniteEndsTheRunBeforeTheLibraryMeetsIt) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   inf = std::numeric_limits<double>::infinity();
+  for (const JointTarget& bad :
+       {JointTarget{.mode = JointTarget::Mode::velocity, .velocity = nan, .max_effort = 1},
+        JointTarget{.mode = JointTarget::Mode::effort, .effort = inf},
+        JointTarget{.mode = JointTarget::Mode::effort, .damping = nan}}) {
+    OneJoint world(joint_of(model::JointType::revolute), true);
+    world.run(2, h);
+    const auto before = world.bytes(world.id);
+    world.target(world.id, 0, bad);
+    world.run(2, h);
+    const Status status = world.engine->check_finite();
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().what.find("/joint' is not finite"), std::string::npos) << status.error().what;
+    EXPECT_EQ(world.bytes(world.id), before) << "the state of before is kept";
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "physics/rigid/rigid_engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/check.h"
@@ -11,6 +12,12 @@
 #include "physics/rigid/wheels.h"
 
 namespace sandlot::rigid {
+namespace {
+
+/// What the library may meet: squares of this over the least inertia are far from an overflow. False for NaN.
+bool is_computable(Vec3 force) { return dot(force, force) < 1e200; }
+
+}  // namespace
 
 RigidEngine::RigidEngine(const Spec& spec, Vec3 gravity_mps2) : spec_(spec), gravity_(gravity_mps2) {
   library::prepare_thread();
@@ -78,9 +85,9 @@ void RigidEngine::apply(std::span<const Wrench> wrenches) {
     Body* const body = slot.instance->links[slot.link].body;
     if (!body) continue;
     wake(*body);
-    if (!is_finite(wrench.force_N) || !is_finite(wrench.torque_Nm)) {  // kept away from ODE
+    if (!is_computable(wrench.force_N) || !is_computable(wrench.torque_Nm)) {  // kept away from ODE
       fail({"the force on '" + slot.instance->name + "/" + slot.instance->model->links[slot.link].name +
-                "' is no longer finite",
+                "' is not finite, or beyond all bounds",
             remedy});
       return;
     }
@@ -101,6 +108,13 @@ void RigidEngine::set_targets(std::span<const JointTarget> targets) {
     const JointSlot& slot = joint_slots_[target.joint.index];
     SL_CHECK_MSG(slot.instance && slot.generation == target.joint.generation, "no such joint");
     Joint& joint = slot.instance->joints[slot.joint];
+    for (const double x :
+         {target.velocity, target.max_effort, target.effort, target.damping, target.inertia, target.friction})
+      if (!std::isfinite(x)) {
+        fail({"the target of joint '" + slot.instance->name + "/" + joint.decl->name + "' is not finite",
+              remedy});
+        return;
+      }
     joint.target = target;
     set_motor(joint);
     if (target.mode != JointTarget::Mode::free) wake_instance(*slot.instance);
@@ -132,6 +146,12 @@ void RigidEngine::set_drive_targets(std::span<const DriveTarget> targets) {
     SL_CHECK(target.base.index < link_slots_.size());
     const LinkSlot& slot = link_slots_[target.base.index];
     SL_CHECK_MSG(slot.instance && slot.generation == target.base.generation, "no such body");
+    for (const double x : {target.vx_mps, target.vy_mps, target.wz_radps, target.max_accel_mps2,
+                           target.max_angular_accel_radps2})
+      if (!std::isfinite(x)) {
+        fail({"the velocity ordered of '" + slot.instance->name + "' is not finite", remedy});
+        return;
+      }
     slot.instance->drive = target;
     slot.instance->drive_link = slot.link;
     set_gyroscopic(*slot.instance);

@@ -4,6 +4,12 @@
 #include <numeric>
 
 namespace sandlot::rigid {
+namespace {
+
+// Beyond these the library divides by what is next to nothing, and the first step ends with an infinite velocity.
+constexpr double least_mass_kg = 1e-40, most_mass_kg = 1e40, least_inertia_kgm2 = 1e-40;
+
+}  // namespace
 
 Symmetric3& Symmetric3::operator+=(const Symmetric3& b) {
   xx += b.xx, yy += b.yy, zz += b.zz, xy += b.xy, xz += b.xz, yz += b.yz;
@@ -31,7 +37,9 @@ bool is_positive_definite(const Symmetric3& m) {
   // Sylvester: all leading minors positive. NaN fails every comparison.
   const double minor2 = m.xx * m.yy - m.xy * m.xy;
   const double det = m.zz * minor2 - m.xx * m.yz * m.yz - m.yy * m.xz * m.xz + 2 * m.xy * m.xz * m.yz;
-  return m.xx > 0 && minor2 > 0 && det > 0 && std::isfinite(det);
+  const double trace = m.xx + m.yy + m.zz;
+  // det / trace^2 is below the smallest principal moment, so that the inverse stays far from an overflow.
+  return m.xx > 0 && minor2 > 0 && det > least_inertia_kgm2 * trace * trace && std::isfinite(det);
 }
 
 namespace {
@@ -108,12 +116,13 @@ Result<RigidGroups> group_links(const model::Model& model, bool held) {
       continue;
     }
     add_masses(model, group);
-    if (!(group.mass_kg > 0) || !std::isfinite(group.mass_kg))
-      return Error{"the mass of link '" + first.name + "' is not positive",
+    if (!(group.mass_kg >= least_mass_kg && group.mass_kg <= most_mass_kg))
+      return Error{"the mass of link '" + first.name + "' is not between 1e-40 and 1e40 kg",
                    "give it a mass, or make the model static", first.place};
     if (!is_positive_definite(group.inertia_B))
       return Error{"the inertia of link '" + first.name + "' is not positive definite",
-                   "ixx, iyy, izz must be positive and the products small against them", first.place};
+                   "ixx, iyy, izz must be positive, above 1e-39, and the products small against them",
+                   first.place};
   }
   return result;
 }

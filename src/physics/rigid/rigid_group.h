@@ -23,6 +23,7 @@ struct Symmetric3 {
 Symmetric3 rotated(Quat q, const Symmetric3& m);
 /// Inertia about a point at offset `r` from the centre of mass, minus that about the centre of mass.
 Symmetric3 steiner(double mass_kg, Vec3 r_m);
+/// Positive definite, and its smallest principal moment large enough to divide by.
 bool is_positive_definite(const Symmetric3& m);
 
 /// Links joined rigidly. Frame B: origin in the common centre of mass, axes of the first link.
@@ -42,7 +43,8 @@ struct RigidGroups {
   std::vector<std::uint32_t> of_link;  ///< index into groups
 };
 
-/// Errors   a movable group whose mass or inertia is not positive, with the place of its first link.
+/// Errors   a movable group whose mass or inertia is not positive, or too small or large to compute with, with the
+///          place of its first link.
 /// @param held  all links stand as if the model were static
 Result<RigidGroups> group_links(const model::Model& model, bool held = false);
 

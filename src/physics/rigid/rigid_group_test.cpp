@@ -56,6 +56,20 @@ TEST(RigidGroup, ProductsOfInertiaTurnWithTheirFrame) {
   EXPECT_TRUE(is_positive_definite(m));
   EXPECT_FALSE(is_positive_definite({1, 1, 1, 2, 0, 0}));
   EXPECT_FALSE(is_positive_definite({1, 1, -1, 0, 0, 0}));
+  EXPECT_TRUE(is_positive_definite({1e-12, 1e-12, 1e-14, 0, 0, 0})) << "a grain of dust";
+  EXPECT_FALSE(is_positive_definite({1, 1, 1e-300, 0, 0, 0})) << "its inverse is next to infinite";
+}
+
+TEST(RigidGroup, AMassThatCannotBeDividedByIsRefused) {
+  model::Model m;
+  m.links.push_back(link_of("dust", Sphere{0.1}, 1e-20));
+  EXPECT_TRUE(group_links(m));
+  for (const double mass : {0.0, 1e-310, 1e-41, 1e41, std::nan("")}) {
+    m.links[0].inertial.mass_kg = mass;
+    const auto groups = group_links(m);
+    ASSERT_FALSE(groups) << mass;
+    EXPECT_EQ(groups.error().what, "the mass of link 'dust' is not between 1e-40 and 1e40 kg");
+  }
 }
 
 TEST(RigidGroup, FixedJointsJoinAndTheWorldHolds) {

@@ -324,7 +324,7 @@ bool DevicePools::takes_commands(const Device& device, Time now) {
 void DevicePools::sense_faulty(Pool& pool, const Context& context) const {
   const Time now = context.now;
   for (const std::uint32_t index : pool.due) {
-    const Device& device = *pool.devices[index];
+    Device& device = *pool.devices[index];
     if (!device.faults) continue;
     const Failing failing = device.faults->at(now);
     if (failing.factor != 1) pool.pool->scale_errors(index, device.errors * failing.factor);
@@ -336,7 +336,7 @@ void DevicePools::sense_faulty(Pool& pool, const Context& context) const {
   }
   pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
   for (const std::uint32_t index : pool.due) {
-    const Device& device = *pool.devices[index];
+    Device& device = *pool.devices[index];
     if (!device.faults) continue;
     const FaultsSpec& spec = device.faults->spec;
     const Failing failing = device.faults->at(now);
@@ -353,7 +353,7 @@ void DevicePools::sense_faulty(Pool& pool, const Context& context) const {
     const double errors = std::min(max_errors, pool.pool->errors(index) * device.errors * failing.factor);
     const Stream random(setup_.seed, device.key, Purpose::noise, pool.sample[index]);
     const Time shown = clock_at(*spec.clock, now, errors, random);
-    for (const Slot& slot : device.topics)
+    for (Slot& slot : device.topics)
       if (slot.topic->count > 0 && slot.topic->stamp == now) slot.topic->restamp(shown);
   }
 }
@@ -409,7 +409,11 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
       when.sample > most_samples)
     return r.fail();
   for (Slot& slot : device.topics) slot.topic->load(r);
-  for (Slot& slot : device.commands) slot.topic->load(r);
+  for (Slot& slot : device.commands) {
+    slot.topic->load(r);
+    // What assign() refuses does not come in by another door.
+    if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
+  }
   pools_[device.kind].pool->load(device.index, r);
   if (r.ok()) plan_next_sample(device);
 }

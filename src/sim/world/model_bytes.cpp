@@ -1,6 +1,7 @@
 #include "sim/world/model_bytes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
@@ -9,6 +10,22 @@ namespace sandlot {
 namespace {
 
 constexpr int max_node_depth = 64;
+
+/// Numbers of a model are finite: readers of files take 1e16 for "no limit".
+template <class T>
+bool is_finite_value(const T& x) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::abs(x) <= T(1e16);  // false for NaN
+  } else if constexpr (FixedVector<T>) {
+    bool all = true;
+    for (std::size_t i = 0; i < T::extent; ++i) all = all && is_finite_value(x[i]);
+    return all;
+  } else if constexpr (is_array<T>::value || is_vector<T>::value) {
+    return std::all_of(x.begin(), x.end(), [](const auto& each) { return is_finite_value(each); });
+  } else {
+    return true;
+  }
+}
 
 /// Both directions are one walk over the lists of fields: `io` is a Save or a Load.
 struct Save {
@@ -30,6 +47,7 @@ struct Load {
   template <class T>
   void value(T& x) {
     read(r, x);
+    if (!is_finite_value(x)) r.fail();
   }
   bool ok() const { return r.ok(); }
 };

@@ -170,8 +170,8 @@ TEST(ModelBytes, EveryTruncationIsRefused) {
   }
 }
 
-TEST(ModelBytes, IndicesOutOfTheModelAndPosesThatAreNoneAreRefused) {
-  for (int broken = 0; broken < 13; ++broken) {
+TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
+  for (int broken = 0; broken < 17; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -191,6 +191,10 @@ TEST(ModelBytes, IndicesOutOfTheModelAndPosesThatAreNoneAreRefused) {
     if (broken == 10) changed->links[0].X_ML.p.x = std::numeric_limits<double>::infinity();
     if (broken == 11) setup.control_interval = 0;
     if (broken == 12) setup.substeps = 0;
+    if (broken == 13) changed->joints[0].damping = std::numeric_limits<double>::quiet_NaN();
+    if (broken == 14) setup.gravity.y = -std::numeric_limits<double>::infinity();
+    if (broken == 15) changed->links[0].collisions[0].surface.mu = 1e300;
+    if (broken == 16) setup.zones[0].outline_W[1].x = 1e17;
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;
