@@ -25,12 +25,6 @@ Status check_length(std::string_view pattern) {
   return Error{"an address has " + std::to_string(most_pattern) + " letters at most"};
 }
 
-std::vector<std::string> names_of_things(const Simulation& simulation) {
-  std::vector<std::string> out;
-  for (const auto& entity : simulation.entities()) out.push_back(entity->instance.name);
-  return out;
-}
-
 }  // namespace
 
 Result<const Simulation::Entity*> find_thing(CommandCall& call, std::string_view name) {
@@ -55,7 +49,7 @@ Result<std::vector<const Simulation::Entity*>> match_things(CommandCall& call, s
   call.unknown_thing = out.empty();
   if (out.empty())
     return Error{"no name fits '" + std::string(pattern) + "'",
-                 suggestion(pattern, names_of_things(call.simulation()))};
+                 suggestion(pattern, entity_names(call.simulation()))};
   return out;
 }
 

@@ -48,8 +48,8 @@ Color color_of(const model::Model& model) {
 
 }  // namespace
 
-std::vector<LabelledObject> labelled_objects_of(
-    std::span<const std::unique_ptr<SimulationParts::Entity>> entities, const Engine& engine) {
+std::vector<LabelledObject> labelled_objects_of(std::span<const Owned<SimulationParts::Entity>> entities,
+                                                const Engine& engine) {
   std::vector<LabelledObject> things;
   for (const auto& entity : entities) {
     const model::Instance& instance = entity->instance;

@@ -10,8 +10,8 @@
 namespace sandlot {
 
 /// In creation order, without those that have no bounds.
-std::vector<LabelledObject> labelled_objects_of(
-    std::span<const std::unique_ptr<SimulationParts::Entity>> entities, const Engine& engine);
+std::vector<LabelledObject> labelled_objects_of(std::span<const Owned<SimulationParts::Entity>> entities,
+                                                const Engine& engine);
 
 /// As images name it.
 inline std::uint32_t picture_instance(const SimulationParts::Entity& entity) {

@@ -48,8 +48,8 @@ optics::SurfaceAppearance RenderScene::look_of(const model::Visual& visual, Diag
   return appearance;
 }
 
-void RenderScene::rebuild(std::span<const std::unique_ptr<SimulationParts::Entity>> entities,
-                          const Engine& engine, const model::Setup& setup, Diagnostics& diagnostics) {
+void RenderScene::rebuild(std::span<const Owned<SimulationParts::Entity>> entities, const Engine& engine,
+                          const model::Setup& setup, Diagnostics& diagnostics) {
   std::vector<optics::PictureShape> shapes;
   std::vector<optics::PictureLight> lights;
   for (const auto& entity : entities) {

@@ -20,7 +20,7 @@ class RenderScene {
   std::vector<LabelledObject> labelled_objects;
 
   /// Takes over what stands in the world now. A texture that cannot be read is a warning and a checker.
-  void rebuild(std::span<const std::unique_ptr<SimulationParts::Entity>> entities, const Engine& engine,
+  void rebuild(std::span<const Owned<SimulationParts::Entity>> entities, const Engine& engine,
                const model::Setup& setup, Diagnostics& diagnostics);
   /// The poses and velocities of this tick.
   void update(const Engine& engine, std::uint64_t tick, std::uint64_t revision);

@@ -180,10 +180,10 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
 
 TopicBase* Simulation::find_command(std::string_view name) const {
   const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
-  const Entity* const entity = find_entity(name.substr(begin, name.find('/', begin) - begin));
-  if (!entity) return nullptr;
-  for (const auto& device : entity->devices)
-    for (const Slot& slot : device->commands)
+  const auto found = by_name_.find(name.substr(begin, name.find('/', begin) - begin));
+  if (found == by_name_.end()) return nullptr;
+  for (auto& device : found->second->devices)
+    for (Slot& slot : device->commands)
       if (slot.topic->name() == name)
         return DevicePools::takes_commands(*device, now_) ? slot.topic.get() : nullptr;
   return nullptr;

@@ -82,9 +82,9 @@ Time clock_at(const ClockSpec& spec, Time now, double errors, const Stream& rand
 }
 
 /// A clock needs times to be wrong about.
-Status Faults::check(std::span<const SimulationParts::Slot> topics) const {
+Status Faults::check(std::span<SimulationParts::Slot> topics) const {
   if (!spec.clock) return {};
-  for (const SimulationParts::Slot& slot : topics)
+  for (SimulationParts::Slot& slot : topics)
     if (slot.topic->restamp(slot.topic->stamp)) return {};
   return Error{"this device publishes no messages with a time in them", "leave the clock out", clock_place,
                "/clock"};
@@ -100,7 +100,7 @@ Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std:
   }
   device.faults->order = order;
   if (device.faults->idle()) {
-    device.faults.reset();
+    device.faults = nullptr;
     --faulty;
   }
   return {};

@@ -120,7 +120,7 @@ struct Faults {
   Failing at(Time now) const;
   /// Nothing is planned, ordered or wrong with its clock.
   bool idle() const;
-  Status check(std::span<const SimulationParts::Slot> topics) const;
+  Status check(std::span<SimulationParts::Slot> topics) const;
 };
 
 inline bool is_ordered(const SimulationParts::Device& device) {

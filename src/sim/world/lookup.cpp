@@ -17,12 +17,20 @@ Error no_device(std::string_view path) {
   return {"there is no device '" + std::string(path.substr(0, most_letters)) + "'"};
 }
 
+Error no_device_or_program(std::string_view path) {
+  return {"there is no device or program '" + std::string(path.substr(0, most_letters)) + "'"};
+}
+
+std::vector<std::string> entity_names(const Simulation& simulation) {
+  std::vector<std::string> names;
+  for (const auto& each : simulation.entities()) names.push_back(each->instance.name);
+  return names;
+}
+
 Result<const Simulation::Entity*> entity_named(const Simulation& simulation, std::string_view name) {
   if (const Simulation::Entity* const entity = simulation.find_entity(name)) return entity;
-  std::vector<std::string> known;
-  for (const auto& each : simulation.entities()) known.push_back(each->instance.name);
   Error error = no_entity(name);
-  error.fix = suggestion(name, known);
+  error.fix = suggestion(name, entity_names(simulation));
   return error;
 }
 

@@ -1,5 +1,6 @@
 #include "sim/world/lookup.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "sim/test_world.h"
@@ -19,6 +20,25 @@ TEST(Lookup, FindsByNameOrSuggestsTheNearest) {
   const auto device = device_named(*simulation, "rover2/lasser");
   EXPECT_EQ(what(device), "there is no device 'rover2/lasser'");
   EXPECT_NE(device.error().fix.find("rover2/laser"), std::string::npos);
+}
+
+/// A viewer that has a const simulation cannot change what it finds there.
+TEST(Lookup, WhatIsFoundIsConstThroughAndThrough) {
+  using Entity = decltype(*std::declval<const Simulation&>().entities()[0]);
+  static_assert(std::is_same_v<Entity, const Simulation::Entity&>);
+  using Device = decltype(*std::declval<Entity>().devices[0]);
+  static_assert(std::is_same_v<Device, const Simulation::Device&>);
+  static_assert(std::is_same_v<decltype(*std::declval<Device>().topics[0].topic), const TopicBase&>);
+  static_assert(std::is_same_v<decltype(*std::declval<Device>().commands[0].topic), const TopicBase&>);
+  static_assert(std::is_same_v<decltype(*std::declval<Device>().faults), const Faults&>);
+  using ProgramEntry = decltype(*std::declval<Entity>().programs[0]);
+  static_assert(std::is_same_v<ProgramEntry, const Simulation::ProgramEntry&>);
+  static_assert(std::is_same_v<decltype(*std::declval<ProgramEntry>().program), const Program&>);
+  static_assert(std::is_same_v<decltype(*std::declval<ProgramEntry>().routes[0].device), Device>);
+  static_assert(
+      std::is_same_v<decltype(*std::declval<ProgramEntry>().routes[0].slot), const Simulation::Slot&>);
+  const auto simulation = build(arena("planar", 1));
+  EXPECT_THAT(entity_names(*simulation), testing::Contains("rover1"));
 }
 
 }  // namespace

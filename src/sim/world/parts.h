@@ -1,10 +1,12 @@
 #pragma once
-/// Parts of a Simulation: entities with their devices and programs, for the files of sim/ and for readers by address.
+/// Parts of a Simulation: entities with their devices and programs, for the files of sim/ and for readers by address. Those
+/// of a const entity are const through and through.
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/deep_const.h"
 #include "devices/kind.h"
 #include "sim/world/program.h"
 
@@ -14,7 +16,7 @@ struct Faults;  // sim/world/faults.h
 
 struct SimulationParts {
   struct Slot {
-    std::unique_ptr<TopicBase> topic;
+    Owned<TopicBase> topic;
     std::uint32_t level = 0;
   };
   struct Device {
@@ -30,7 +32,7 @@ struct SimulationParts {
     std::vector<Slot> topics, commands;
     std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
     double errors = 1;                                 ///< the world's factor on errors times the robot's
-    std::shared_ptr<Faults> faults;                    ///< null: it has none
+    DeepConst<std::shared_ptr<Faults>> faults;         ///< null: it has none
   };
   /// Sampling times of a device. Read in every tick, so those of a pool lie side by side.
   struct Timing {
@@ -43,8 +45,8 @@ struct SimulationParts {
   };
   /// Destination of an order of a program at the active levels.
   struct Route {
-    Device* device = nullptr;
-    Slot* slot = nullptr;  ///< null: nothing takes it
+    DeepConst<Device*> device;
+    DeepConst<Slot*> slot;  ///< null: nothing takes it
   };
   struct ProgramEntry {
     explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
@@ -54,8 +56,8 @@ struct SimulationParts {
     std::string path;
     std::uint64_t key = 0;
     const ControllerKind* kind = nullptr;
-    std::unique_ptr<Program> program;
-    Controller* controller = nullptr;  ///< the program's, where it is no more than a controller
+    Owned<Program> program;
+    DeepConst<Controller*> controller;  ///< the program's, where it is no more than a controller
     /// One object for robots with equal devices: its `robot` is the first of them.
     std::shared_ptr<const Description> description;
     std::vector<Route> routes;             ///< per actuator of the description
@@ -71,17 +73,17 @@ struct SimulationParts {
     InstanceId id;
     std::uint64_t key = 0;
     std::uint64_t serial = 0;  ///< creation order over the whole run
-    std::vector<std::unique_ptr<Device>> devices;
-    std::vector<std::unique_ptr<ProgramEntry>> programs;
+    std::vector<Owned<Device>> devices;
+    std::vector<Owned<ProgramEntry>> programs;
 
     /// By path, "rover/laser"; null when there is none.
     Device* find_device(std::string_view path) {
-      for (const auto& device : devices)
+      for (auto& device : devices)
         if (device->path == path) return device.get();
       return nullptr;
     }
     ProgramEntry* find_program(std::string_view path) {
-      for (const auto& program : programs)
+      for (auto& program : programs)
         if (program->path == path) return program.get();
       return nullptr;
     }

@@ -33,7 +33,7 @@ void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
     __builtin_prefetch(&entry->steps);
   }
   for (const SimulationParts::ProgramEntry* const entry : programs) {
-    __builtin_prefetch(entry->controller);
+    __builtin_prefetch(entry->controller.get());
     __builtin_prefetch(entry->topics.data());
     __builtin_prefetch(entry->seen.data());
     __builtin_prefetch(entry->command.orders().data(), 1);
@@ -177,7 +177,7 @@ std::shared_ptr<const Description> Programs::describe(const Entity& entity) {
 }
 
 void Programs::follow_levels(Entity& entity) {
-  for (const auto& program : entity.programs) {
+  for (auto& program : entity.programs) {
     for (const Description::Entry& entry : program->description->readings) {
       const TopicBase* first = nullptr;
       const TopicBase* chosen = nullptr;
@@ -198,7 +198,7 @@ void Programs::follow_levels(Entity& entity) {
     for (const Description::Entry& entry : program->description->actuators) {
       SimulationParts::Route& route = program->routes[entry.index];
       route = {};
-      for (const auto& device : entity.devices)
+      for (auto& device : entity.devices)
         if (device->decl.name == entry.device)
           route = {device.get(), devices_.command_slot(*device, entry.type, entry.level)};
     }
@@ -206,7 +206,7 @@ void Programs::follow_levels(Entity& entity) {
 }
 
 Status Programs::describe_again(Entity& entity) {
-  std::vector<std::unique_ptr<ProgramEntry>> fresh;
+  std::vector<Owned<ProgramEntry>> fresh;
   std::uint64_t refused = 0;
   for (const auto& old : entity.programs) {
     SL_ASSIGN(auto program, make(entity, old->shared_decl));
@@ -249,8 +249,8 @@ void Programs::gather(Entities entities) {
   all_.clear();
   owners_.clear();
   running_.clear();
-  for (const auto& entity : entities)
-    for (const auto& program : entity->programs) {
+  for (auto& entity : entities)
+    for (auto& program : entity->programs) {
       all_.push_back(program.get());
       owners_.push_back(entity.get());
       if (!program->ended) running_.push_back(program.get());
@@ -272,7 +272,7 @@ void Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const 
     entry.command.clear();
     seen[i].emplace(now, entry.topics, entry.seen,
                     Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
-    turns[i] = {entry.controller, &*seen[i], &entry.command};
+    turns[i] = {entry.controller.get(), &*seen[i], &entry.command};
   }
   if (kind.step_all) kind.step_all({turns.data(), batch.size()});
   for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -325,10 +325,10 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
       __builtin_prefetch(next.command.orders().data());
     }
     for (const Command::Order& order : program.command.orders()) {
-      const SimulationParts::Route& route = program.routes[order.slot];
+      SimulationParts::Route& route = program.routes[order.slot];
       const bool taken = route.slot && !commands_.is_overridden(*route.device) &&
                          DevicePools::takes_commands(*route.device, now);
-      SimulationParts::Slot* const slot = taken ? route.slot : nullptr;
+      SimulationParts::Slot* const slot = taken ? route.slot.get() : nullptr;
       const std::span<const std::byte> bytes = program.command.bytes(order);
       // Orders for a level that was switched off meanwhile, or for a device under manual override, are refused and counted.
       const bool refused = !slot || !Commands::deliver(*slot, bytes, now);

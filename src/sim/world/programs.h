@@ -23,7 +23,7 @@ class Programs {
  public:
   using Entity = SimulationParts::Entity;
   using ProgramEntry = SimulationParts::ProgramEntry;
-  using Entities = std::span<const std::unique_ptr<Entity>>;
+  using Entities = std::span<Owned<Entity>>;
 
   /// All must outlive the programs.
   Programs(const model::Setup& setup, const DevicePools& devices, Commands& commands)

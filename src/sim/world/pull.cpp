@@ -50,7 +50,7 @@ void Pulls::remove(const Entity& entity) {
   std::erase_if(pulls_, [&](const Pull& pull) { return pull.serial == entity.serial; });
 }
 
-void Pulls::add_wrenches(std::span<const std::unique_ptr<Entity>> entities, const Engine& engine, Time begin,
+void Pulls::add_wrenches(std::span<const Owned<Entity>> entities, const Engine& engine, Time begin,
                          Actuation& actuation) {
   std::erase_if(pulls_, [&](const Pull& pull) { return pull.until <= begin; });
   for (const Pull& pull : pulls_)
@@ -67,7 +67,7 @@ void Pulls::save(ByteWriter& w) const {
   for (const Pull& pull : pulls_) Pull::state(pull, [&](const auto& member) { write(w, member); });
 }
 
-bool Pulls::load(std::span<const std::unique_ptr<Entity>> entities, ByteReader& r) {
+bool Pulls::load(std::span<const Owned<Entity>> entities, ByteReader& r) {
   while (r.ok() && r.remaining() > 0) {
     Pull pull;
     Pull::state(pull, [&](auto& member) { read(r, member); });

@@ -55,13 +55,13 @@ class Pulls {
   /// Ends the pull at an entity that is removed.
   void remove(const Entity& entity);
   /// Adds the forces of all pulls to a sub-step's wrenches. @param begin  of the tick
-  void add_wrenches(std::span<const std::unique_ptr<Entity>> entities, const Engine& engine, Time begin,
+  void add_wrenches(std::span<const Owned<Entity>> entities, const Engine& engine, Time begin,
                     Actuation& actuation);
 
   bool empty() const { return pulls_.empty(); }
   void save(ByteWriter& w) const;
   /// Reads to the end. @return false: the bytes do not fit these entities
-  bool load(std::span<const std::unique_ptr<Entity>> entities, ByteReader& r);
+  bool load(std::span<const Owned<Entity>> entities, ByteReader& r);
 
  private:
   std::vector<Pull> pulls_;  ///< those that are over stay until the next tick

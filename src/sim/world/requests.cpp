@@ -92,7 +92,7 @@ Status Simulation::Processor::operator()(const ParameterRequest& request) {
   if (request.target == "sim") return set_errors(nullptr, request.field, request.value);
   if (Entity* const entity = sim.find_entity(request.target))
     return set_errors(entity, request.field, request.value);
-  return Error{"there is no device or program '" + request.target + "'"};
+  return no_device_or_program(request.target);
 }
 
 /// Sets the factor on the errors of all devices of an entity, or of the world (null).
@@ -103,8 +103,8 @@ Status Simulation::Processor::set_errors(Entity* entity, std::string_view field,
   SL_ASSIGN(const double factor,
             read_number(value, errors_field, errors_field.min, errors_field.max, false, "/errors"));
   (entity ? entity->instance.errors : sim.setup_.errors) = factor;
-  for (const auto& each : sim.entities_)
-    for (const auto& device : each->devices)
+  for (auto& each : sim.entities_)
+    for (auto& device : each->devices)
       sim.devices_.scale_errors(*device, sim.setup_.errors * each->instance.errors);
   return {};
 }
@@ -187,7 +187,7 @@ Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   const auto place = std::find_if(entity.devices.begin(), entity.devices.end(),
                                   [&](const auto& each) { return each.get() == device; });
   const std::ptrdiff_t index = place - entity.devices.begin();
-  std::unique_ptr<Device> taken = std::move(*place);
+  Owned<Device> taken = std::move(*place);
   entity.devices.erase(place);
   if (Status described = sim.programs_.describe_again(entity); !described) {
     entity.devices.insert(entity.devices.begin() + index, std::move(taken));

@@ -12,7 +12,7 @@ class RenderScene;
 
 class Scenes {
  public:
-  using Entities = std::span<const std::unique_ptr<SimulationParts::Entity>>;
+  using Entities = std::span<const Owned<SimulationParts::Entity>>;
 
   /// `setup` must outlive the scenes.
   explicit Scenes(const model::Setup& setup);

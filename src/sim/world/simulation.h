@@ -104,7 +104,6 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::optional<InstanceId> find_instance(std::string_view name) const;
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
   const TopicBase* find_topic(std::string_view name) const override;
-  TopicBase* find_command(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
   /// The instances of the world now, in creation order.
   std::vector<const model::Instance*> instances() const;
@@ -128,7 +127,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
 
   // --- the parts, for the files of sim/ ---
   /// The entities of the world, in creation order. Valid until the next tick.
-  std::span<const std::unique_ptr<Entity>> entities() const { return entities_; }
+  std::span<const Owned<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
   const PoolBase& pool(const Device& device) const { return devices_.pool(device); }
   const Kind& kind(const Device& device) const { return devices_.kind(device); }
@@ -165,6 +164,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
   void publish();
   Context context();
   void fail(Error error);
+  /// For devices alone: viewers write into nothing.
+  TopicBase* find_command(std::string_view name) const override;
 
   // requests.cpp
   struct Processor;
@@ -187,7 +188,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::unique_ptr<Engine> engine_;
   Scenes scenes_{setup_};
 
-  std::vector<std::unique_ptr<Entity>> entities_;
+  std::vector<Owned<Entity>> entities_;
   std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
   DevicePools devices_{setup_};

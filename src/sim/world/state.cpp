@@ -286,12 +286,12 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
     ByteReader bodies = read_block(r);
     if (!sim->engine_->load(entity.id, bodies) || !whole(bodies))
       return damaged("the bodies of '" + entity.instance.name + "' cannot be read");
-    for (const auto& device : entity.devices) {
+    for (auto& device : entity.devices) {
       ByteReader state = read_block(r);
       sim->devices_.load(*device, state, sim->now_);
       if (!whole(state)) return damaged("the device '" + device->path + "' cannot be read");
     }
-    for (const auto& program : entity.programs) {
+    for (auto& program : entity.programs) {
       ByteReader state = read_block(r);
       if (!Programs::load(*program, state) || !whole(state))
         return damaged("the program '" + program->path + "' cannot be read");
