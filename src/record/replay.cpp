@@ -131,14 +131,14 @@ Result<std::optional<Time>> Replay::submit(const RecordedTick& recorded) {
       return damaged_entry(recorded, entry, "has no known source");
     if (of_program(entry) && options_.programs == Programs::recompute) continue;
     if (entry.kind == LogEntry::command) {
-      simulation_->submit(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
+      simulation_->repeat(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
       continue;
     }
     ByteReader r(entry.bytes);
     Request request;
     if (!read_request(r, request) || request.index() != entry.kind || request_target(request) != entry.target)
       return damaged_entry(recorded, entry, "cannot be read");
-    simulation_->submit(std::move(request), entry.source);
+    simulation_->repeat(std::move(request), entry.source);
   }
   return measured;
 }

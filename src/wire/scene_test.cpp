@@ -529,7 +529,7 @@ TEST(Commands, SayWhatCameFromOutside) {
   EXPECT_EQ(noise["tick"], camera.frame.tick);
   EXPECT_EQ(noise["time_s"], camera.frame.now.s());
   EXPECT_EQ(noise["source"], "robot");
-  EXPECT_EQ(noise["id"], 3);
+  EXPECT_EQ(noise["id"], serial_of(*simulation, "rover1")) << "the robot that it drives";
   EXPECT_EQ(noise["kind"], "parameter");
   EXPECT_EQ(noise["target"], "rover1/laser");
   EXPECT_EQ(noise["text"], "noise/white = 0.02");

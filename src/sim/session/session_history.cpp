@@ -39,11 +39,11 @@ std::optional<Time> Session::feed_input_log() {
       read(r, length.ns);
       if (r.ok() && length.ns > 0) measured = length;
     } else if (entry.kind == LogEntry::command) {
-      simulation_->submit(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
+      simulation_->repeat(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
     } else {
       ByteReader r(entry.bytes);
       Request request;
-      if (read_request(r, request)) simulation_->submit(std::move(request), entry.source);
+      if (read_request(r, request)) simulation_->repeat(std::move(request), entry.source);
     }
   }
   return measured;

@@ -5,7 +5,9 @@
 /// Threads   submit() from any; everything else on the simulation's.
 /// State     manual overrides and the number of refused commands.
 #include <algorithm>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,13 +36,20 @@ class Commands {
     Source source;
     std::uint64_t sequence;
     Request request;
+    bool logged = false;  ///< of the log of another run
   };
 
   /// Queues a request for the next tick. @return its sequence number
-  std::uint64_t submit(Request request, Source source);
-  /// The requests queued until now, in the order of their execution: kind of source, source, sequence number. Valid until
-  /// the next call.
-  std::span<Pending> take();
+  std::uint64_t submit(Request request, Source source) { return queue(std::move(request), source, false); }
+  /// Queues a request of a log: those are carried out before all others, in the order in which they are queued.
+  std::uint64_t repeat(Request request, Source source) { return queue(std::move(request), source, true); }
+  /// Creation order of the entity that a target belongs to; nothing when there is none.
+  using SerialOf = std::function<std::optional<std::uint64_t>(std::string_view target)>;
+  /// The requests queued until now, in the order of their execution, which does not depend on who connected or sent first:
+  /// by kind of source; clients that drive robots by the creation order of their first robot; clients that are alike in
+  /// this by the bytes of what they request. Those of one client stay together, in the order in which it sent them. A
+  /// client that drives a robot is named by that robot from here on. Valid until the next call.
+  std::span<Pending> take(const SerialOf& serial_of);
 
   /// Forgets the outcomes of the tick before, and overrides that are over.
   void begin_tick(Time now);
@@ -61,7 +70,7 @@ class Commands {
   const std::vector<ManualOverride>& overrides() const { return overrides_; }
   /// From a snapshot.
   void restore(std::uint64_t refused) { refused_ = refused; }
-  void restore(std::vector<ManualOverride> overrides) { overrides_ = std::move(overrides); }
+  void restore(std::vector<ManualOverride> overrides);
 
   /// A new entry of the tick's log, empty but for these.
   LogEntry& log_entry(std::uint8_t kind, const Source& source, std::uint64_t sequence);
@@ -69,6 +78,8 @@ class Commands {
   void clear_log();
 
  private:
+  std::uint64_t queue(Request request, Source source, bool logged);
+  void order_clients(std::size_t begin, const SerialOf& serial_of);
   void log_request(const Request& request, const Outcome& outcome);
 
   std::mutex mutex_;  ///< of the next two
@@ -77,7 +88,7 @@ class Commands {
 
   std::vector<Pending> taken_;
   std::vector<Outcome> outcomes_;
-  std::vector<ManualOverride> overrides_;
+  std::vector<ManualOverride> overrides_;  ///< by device, so that it does not matter which came first
   std::uint64_t refused_ = 0;
   std::vector<LogEntry> log_, spare_log_;  ///< spare: entries to use again, with their memory
 };

@@ -1,8 +1,8 @@
 #pragma once
 /// Request: any change of a running simulation from outside, as one variant.
 ///
-/// Requests take effect at the beginning of the next tick, in a fixed order (administrators first, then robots by
-/// creation, then sequence), and are logged: the log plus the seed is the replay.
+/// Requests take effect at the beginning of the next tick, in an order that does not depend on who connected first
+/// (Commands::take()), and are logged: the log plus the seed is the replay.
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -22,7 +22,8 @@ struct Source {
     robot,    ///< a client that drives a robot
     program,  ///< a controller in this process; its orders act after all others
   } kind = Kind::admin;
-  std::uint64_t id = 0;  ///< a client's own number; of a program, its robot's creation order
+  /// A client's own number. Of a program, and in the log of a client that drives a robot: the robot's creation order.
+  std::uint64_t id = 0;
 };
 
 /// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".

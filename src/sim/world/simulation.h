@@ -75,6 +75,10 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::uint64_t submit(Request request, Source source = {}) {
     return commands_.submit(std::move(request), source);
   }
+  /// Queues a request of a log for the next tick, behind those queued so before it and ahead of all others.
+  std::uint64_t repeat(Request request, Source source) {
+    return commands_.repeat(std::move(request), source);
+  }
   /// Outcomes of the requests that the last tick carried out.
   std::span<const Outcome> outcomes() const { return commands_.outcomes(); }
 

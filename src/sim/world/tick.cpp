@@ -70,7 +70,11 @@ void Simulation::set_step(std::optional<Time> measured) {
 void Simulation::process_commands() {
   const PhaseTimer timer(phase_times_, Phase::commands);
   commands_.begin_tick(now_);
-  for (Commands::Pending& pending : commands_.take()) {
+  const auto serial_of = [this](std::string_view target) {
+    const Entity* const entity = find_entity(first_part(target));
+    return entity ? std::optional(entity->serial) : std::nullopt;
+  };
+  for (Commands::Pending& pending : commands_.take(serial_of)) {
     Status status = process(pending.request, pending.source);
     commands_.conclude(pending, std::move(status), publisher_.wants().input);
   }
