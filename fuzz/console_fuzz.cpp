@@ -1,34 +1,38 @@
-/// Any lines, said to a small session: each is answered exactly once, whatever it does to the run, and none does harm to a
+/// Any lines, sent to a small session: each is answered exactly once, whatever it does to the run, and none does harm to a
 /// file. They are completed and scheduled too.
-#include "base/check.h"
 #include "base/text.h"
 #include "console/console.h"
-#include "files/resources.h"
-#include "sim/load/load.h"
+#include "small_worlds.h"
 
 namespace {
 
 using namespace sandlot;
 
-const std::vector<std::byte>& first_state() {
-  static const std::vector<std::byte> state = [] {
-    Diagnostics diagnostics;
-    auto setup = load(own_folder("scenarios") + "/indoor.yaml", {}, diagnostics);
-    SL_CHECK_MSG(setup, setup ? "" : setup.error().what.c_str());
-    auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
-    SL_CHECK(simulation);
-    return (*simulation)->snapshot();
-  }();
-  return state;
+constexpr fuzz::SmallWorld world{"console", "planar", R"(
+things: [{name: box1, model: msl_ball, pose: [0.4, 0, 0.11]}]
+robots:
+  - name: rover1
+    model: scout
+    devices: {laser: {kind: laser_scanner, beams: 4, noise: {white: 0.01}}}
+    controller: {kind: sequence, steps: [{at: 0 s, orders: {drive: [0.1, 0, 0.2]}}]}
+)"};
+
+/// Ticks are so short that a slow run does not wait for the wall clock.
+std::vector<std::byte> first_state() {
+  Diagnostics diagnostics;
+  auto simulation = Simulation::create(fuzz::small_setup(world, "10 us"), {}, diagnostics);
+  SL_CHECK(simulation);
+  return (*simulation)->snapshot();
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t most_lines = 20;
+  constexpr std::size_t most_lines = 8;
+  static const std::vector<std::byte> state = first_state();
   const auto lines = split({reinterpret_cast<const char*>(data), size}, '\n');
   Diagnostics diagnostics;
-  auto simulation = Simulation::restore(first_state(), {}, diagnostics);
+  auto simulation = Simulation::restore(state, {}, diagnostics);
   SL_CHECK(simulation);
   Session session(std::move(*simulation), {.history_mb = 1});
   Console console(session, {.folder = "a folder that is not there"});

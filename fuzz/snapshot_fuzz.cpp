@@ -1,71 +1,30 @@
-/// Forged snapshots: those of real scenarios with bytes changed and the checksum made right again, so that everything
-/// behind it is reached. The first byte chooses the scenario, the second whether the input itself is the snapshot;
-/// then come changes of 5 bytes: where (24 bits), what, and with which value.
+/// Forged snapshots: those of small worlds with bytes changed and the checksum made right again, so that everything behind
+/// it is reached. The first byte chooses the world, the second whether the input itself is the snapshot; then come changes
+/// of 5 bytes: where (24 bits), what, and with which value.
 #include <cstring>
 #include <limits>
+#include <set>
 
-#include "base/check.h"
 #include "base/hash.h"
-#include "files/resources.h"
-#include "sim/load/load.h"
-#include "sim/world/simulation.h"
+#include "devices/kinds.h"
 #include "sim/world/snapshot.h"
+#include "small_worlds.h"
 
 namespace {
 
 using sandlot::Diagnostics;
 using sandlot::Simulation;
 
-/// Devices and chains of noise that the scenarios leave out, and what watches them.
-constexpr std::string_view devices_scenario = R"(version: 1
-name: devices
-physics: rigid
-time: {step: 10 ms}
-values:
-  turn: abs(cart/joints.position[0])
-events:
-  - {name: turned, when: turn > 0.1, for: 0.1 s}
-robots:
-  - name: cart
-    model: ../models/cart/model.sdf
-    devices:
-      compass: {kind: magnetometer}
-      height:
-        kind: altimeter
-        position:
-          - drift: {std: 0.1, correlation: 10 s}
-          - latency: {delay: 30 ms, jitter: 10 ms}
-          - dropouts: {rate: 2 %}
-      joints: {kind: joint_state, noise: {position: [{quantise: {step: 0.01}}, {walk: {density: 0.1}}]}}
-      odometry:
-        {kind: wheel_odometry, left_joint: left_wheel_joint, right_joint: right_wheel_joint, wheel_radius: 0.1,
-         wheel_separation: 0.4}
-      touch: {kind: contact}
-    controller:
-      kind: sequence
-      steps:
-        - {at: 0.1 s, orders: {left_motor: 20, right_motor: 10}}
-)";
-
 std::vector<std::vector<std::byte>> real_snapshots() {
   std::vector<std::vector<std::byte>> out;
-  const std::string folder = sandlot::own_folder("scenarios");
-  for (const auto& [file, engine] :
-       {std::pair{"/indoor.yaml", "planar"}, std::pair{"/indoor.yaml", "rigid"},
-        std::pair{"/fig1_robot.yaml", "rigid"}, std::pair{"/mario.yaml", "rigid"},
-        std::pair{"/../tests/scenarios/all_devices.yaml", "rigid"}, std::pair{"/motor_ramp.yaml", "rigid"},
-        std::pair{"/devices.yaml", "rigid"}}) {
-    Diagnostics diagnostics;
-    const sandlot::formats::Override overrides[] = {{"physics", engine}};
-    sandlot::LoadOptions options{.overrides = overrides};
-    if (std::string_view(file) == "/devices.yaml") options.text = devices_scenario;
-    auto setup = sandlot::load(folder + file, options, diagnostics);
-    SL_CHECK_MSG(setup, setup.error().text().c_str());
-    auto simulation = Simulation::create(std::move(*setup), {}, diagnostics);
-    SL_CHECK(simulation);
-    for (int i = 0; i < 30; ++i) SL_CHECK((*simulation)->tick());
-    out.push_back((*simulation)->snapshot());
+  std::set<std::string> kinds;
+  for (const auto& world : sandlot::fuzz::small_worlds) {
+    out.push_back(sandlot::fuzz::small_snapshot(world));
+    for (const sandlot::model::Instance& instance : sandlot::examine_snapshot(out.back())->setup.instances)
+      for (const sandlot::model::DeviceDecl& device : instance.devices) kinds.insert(device.kind);
   }
+  for (const sandlot::Kind* const kind : sandlot::device_kinds())
+    SL_CHECK_MSG(kinds.contains(kind->name), kind->name);  // a new kind needs a place in a small world
   return out;
 }
 

@@ -1,0 +1,246 @@
+#pragma once
+/// Small worlds for the fuzzers of State: few bodies, few rays, pictures of a dozen pixels, one thread. Together they hold
+/// every kind of device on both engines, and what a run keeps in addition: events, failures, pulls, manual overrides.
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/check.h"
+#include "files/resources.h"
+#include "geometry/height_grid.h"
+#include "geometry/mesh.h"
+#include "sim/load/load.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot::fuzz {
+
+struct SmallWorld {
+  const char* name;
+  const char* engine;
+  const char* scenario;  ///< without version, name, physics and time
+};
+
+inline constexpr SmallWorld small_worlds[] = {
+    {"motors", "rigid", R"(
+values:
+  turn: abs(cart/joints.position[0])
+events: [{name: turned, when: turn > 0.1, for: 0.1 s}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      joints: {kind: joint_state, noise: {position: [{quantise: {step: 0.01}}, {walk: {density: 0.1}}]}}
+      ticks: {kind: wheel_encoder, joint: left_wheel_joint, ticks_per_turn: 100, levels: [ticks, joint]}
+      odometry: {kind: wheel_odometry, left_joint: left_wheel_joint, right_joint: right_wheel_joint, wheel_radius: 0.05,
+                 wheel_separation: 0.24, alpha_1: 0.01, levels: [odometry, pose], pose_error: {distance_walk: 0.02}}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {left_motor: 20, right_motor: 10}}]}
+)"},
+    {"inertial", "rigid", R"(
+vars:
+  noise: [{gaussian: {std: 0.01}}, {drift: {std: 0.02, correlation: 1 s}}, {latency: {delay: 30 ms, jitter: 10 ms}},
+          {dropouts: {rate: 0.1, burst: 3, shows: hold}}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      imu: {kind: imu, levels: [imu, pose], pose_error: {velocity_walk: 0.01}}
+      gps: {kind: gps, levels: [fix, velocity, pose], vertical: "${noise}", pose_error: {position_std: 1, lost_rate: 1}}
+      compass: {kind: magnetometer, levels: [field, heading]}
+      height: {kind: altimeter, position: "${noise}"}
+      air: {kind: barometer, noise: "${noise}"}
+      heat: {kind: thermometer, response: 1, failures: [{from: 0.1 s, to: 1 s, kind: stuck}], clock: {jitter: 1 ms}}
+      truth: {kind: ground_truth}
+)"},
+    {"touch", "rigid", R"(
+things: [{name: ball, model: msl_ball, pose: [0.24, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      touch: {kind: contact, link: base_link, collision: body, levels: [contacts, bumper]}
+      wheel: {kind: force_torque, joint: left_wheel_joint, force: {x: [{gaussian: {std: 0.1}}]}}
+      hand: {kind: gripper, link: base_link, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 10 cm, closed: true}
+)"},
+    {"ranges", "rigid", R"(
+things: [{name: ball, model: msl_ball, pose: [0.6, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      scan: {kind: laser_scanner, beams: 4, levels: [ranges, segments, pose], noise: [{drift: {std: 0.1, correlation: 1 s}}],
+             pose_error: {position_std: 0.05, lost_rate: 1}}
+      points: {kind: laser_scanner_3d, columns: 4, planes: 2}
+      ring: {kind: proximity, sensors: 4, radius: 0.2, range: 0.5}
+      sonar: {kind: range_finder, rings: 1, noise: {white: 0.01}}
+)"},
+    {"pictures", "rigid", R"(
+vars: {at: [0.14, 0, 0.1, 0, 0, 0]}
+things: [{name: ball, model: msl_ball, label: ball, pose: [0.5, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      eye: {kind: camera, width: 4, height: 3, levels: [image, objects, world], pose: "${at}"}
+      depth: {kind: depth_camera, width: 4, height: 3, pose: "${at}"}
+      rgbd: {kind: rgbd_camera, width: 4, height: 3, pose: "${at}"}
+      labels: {kind: segmentation_camera, width: 4, height: 3, pose: "${at}"}
+      boxes: {kind: boundingbox_camera, width: 4, height: 3, pose: "${at}"}
+)"},
+    {"surfaces", "planar", R"(
+things: [{name: ball, model: msl_ball, label: ball, pose: [0.5, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      eyes: {kind: stereo_camera, width: 4, height: 3, pose: [0.14, 0, 0.1, 0, 0, 0]}
+      omni: {kind: omni_camera, width: 6, height: 6, levels: [image, objects], pose: [0, 0, 0.3, 0, 0, 0]}
+      sun: {kind: light_sensor}
+      paint: {kind: color_sensor, range: 5}
+      floor: {kind: ground_sensor, range: 5, spots: [{y: 0.01}]}
+      row: {kind: line_camera, pixels: 4}
+      above: {kind: overhead_camera, position_std: 0.01, miss: 0.1}
+)"},
+    {"head", "planar", R"(
+things: [{name: ball, model: msl_ball, label: ball, pose: [1, 0.3, 0.11]}]
+robots:
+  - name: guard
+    model: rcbot
+    modules: [{id: head, model: ptz_camera, pose: [0.1, 0, 0.325, 0, 0, 0]}]
+    devices:
+      head_eye: {width: 4, height: 3, levels: [image, objects]}
+      head_unit: {level: view, zoom_per_m: 1}
+)"},
+    {"swarm", "planar", R"(
+things: [{name: ball, model: msl_ball, pose: [0.2, 0, 0.11]}]
+robots: [{name: scout, model: scout, controller: {kind: diffusion}}]
+)"},
+    {"rollers", "rigid", R"(
+robots:
+  - name: robot
+    model: {builder: omni_robot, rollers: 4}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: rollers}}
+)"},
+    {"mecanum", "planar", R"(
+robots:
+  - name: robot
+    model: {builder: mecanum_robot, rollers: 6}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: contact}}
+)"},
+    {"car", "planar", R"(
+robots:
+  - name: robot
+    model: {builder: ackermann_robot}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: contact}}
+)"},
+    {"skid", "rigid", R"(
+robots:
+  - name: robot
+    model: {builder: skid_robot}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: contact}}
+)"},
+    {"swerve", "planar", R"(
+robots:
+  - name: robot
+    model: {builder: swerve_robot}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: ideal}}
+)"},
+    {"tracks", "planar", R"(
+robots:
+  - name: robot
+    model: {builder: tracked_robot, wheels: 2}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: ideal}}
+)"},
+    {"round", "rigid", R"(
+robots:
+  - name: robot
+    model: {builder: diff_robot}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: [0.3, 0, 0.5]}}]}
+    devices: {drive: {level: ideal}}
+)"},
+    {"snake", "rigid", R"(
+robots: [{name: snake, model: {builder: snake, segments: 3}, controller: sine}]
+)"},
+    {"grip", "planar", R"(
+things: [{name: ball, model: msl_ball, pose: [0.24, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      path: {kind: joint_trajectory}
+      hand: {kind: gripper, link: base_link, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 10 cm, closed: true}
+)"},
+    {"mover", "rigid", R"(
+robots: [{name: cart, model: cart, devices: {mover: {kind: body_velocity, initial_linear: [0.2, 0, 0]}}}]
+)"},
+    {"shapes", "rigid", R"(
+things: [{name: ball, model: msl_ball, pose: [0, 0, 0.5]}]
+)"},
+};
+
+/// A tetrahedron that a path guides, and terrain.
+inline void add_shapes(model::Setup& setup) {
+  const auto add = [&](const char* name, Shape shape, bool is_static) {
+    auto made = std::make_shared<model::Model>();
+    made->name = name;
+    made->is_static = is_static;
+    made->links.emplace_back().name = "link";
+    made->links.front().collisions.push_back({"collision", {}, std::move(shape), {}, {}});
+    model::Instance& instance = setup.instances.emplace_back();
+    instance.name = instance.original_name = name;
+    instance.model = std::move(made);
+    return &instance;
+  };
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->vertices = {{0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}, {0, 0, 0.2}};
+  mesh->triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  model::Motion motion;
+  motion.keys = {{0, {{0, 1, 1}, {}}}, {1, {{1, 0, 1}, {}}}};
+  add("tetrahedron", Mesh{mesh}, false)->motion = motion;
+  auto grid = std::make_shared<HeightGrid>();
+  grid->columns = grid->rows = 3;
+  grid->size_x_m = grid->size_y_m = 4;
+  grid->height_m = {0, 0, 0, 0, 0.2f, 0, 0, 0.1f, 0};
+  add("terrain", Heightfield{grid}, true);
+}
+
+inline model::Setup small_setup(const SmallWorld& world, std::string_view step = "10 ms") {
+  const std::string text = std::string("version: 1\nname: ") + world.name + "\nphysics: " + world.engine +
+                           "\ntime: {step: " + std::string(step) + "}\n" + world.scenario;
+  Diagnostics diagnostics;
+  auto setup = load(own_folder("scenarios") + "/" + world.name + ".yaml", {.text = text}, diagnostics);
+  SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
+  setup->geography.emplace();
+  if (std::string_view(world.name) == "shapes") add_shapes(*setup);
+  return std::move(*setup);
+}
+
+/// Its snapshot after a few ticks, with a pull, a command from outside, a failure and a factor on errors.
+inline std::vector<std::byte> small_snapshot(const SmallWorld& world) {
+  Diagnostics diagnostics;
+  auto made = Simulation::create(small_setup(world), {}, diagnostics);
+  SL_CHECK_MSG(made, made ? "" : made.error().text().c_str());
+  Simulation& simulation = **made;
+  for (int i = 0; i < 30; ++i) SL_CHECK(simulation.tick());
+  // What does not fit a world is refused.
+  simulation.submit(PullRequest{"ball", "", {}, {0, 0, 1}, Time::from_s(5)});
+  simulation.submit(ParameterRequest{"cart", "errors", Node::scalar("2")});
+  simulation.submit(ParameterRequest{"cart/touch", "failure", Node::scalar("dead")});
+  for (const auto& entity : simulation.entities())
+    for (const auto& device : entity->devices)
+      for (const Simulation::Slot& slot : device->commands) {
+        ByteWriter w;
+        slot.topic->save_message(w);
+        simulation.submit(CommandRequest{device->path, slot.topic->type(), w.buffer()});
+      }
+  SL_CHECK(simulation.tick());
+  return simulation.snapshot();
+}
+
+}  // namespace sandlot::fuzz
