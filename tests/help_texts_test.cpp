@@ -21,6 +21,7 @@
 #include "noise/depth_noise.h"
 #include "noise/image_noise.h"
 #include "physics/engine.h"
+#include "programs/programs.h"
 #include "sim/world/faults.h"
 
 namespace sandlot {
@@ -127,6 +128,10 @@ TEST(HelpTexts, OfDevicesStandAlone) {
 TEST(HelpTexts, OfControllersStandAlone) {
   std::vector<HelpText> texts;
   for (const ControllerKind* const kind : controller_kinds()) {
+    texts.push_back({kind->name, kind->help});
+    add_fields(kind->name, kind->describe(), texts);
+  }
+  for (const ProgramKind* const kind : program_kinds()) {
     texts.push_back({kind->name, kind->help});
     add_fields(kind->name, kind->describe(), texts);
   }

@@ -345,6 +345,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                        "Scenario, world or robot: " + formats::known_extensions());
   run_verb->add_option("--from", run_flags.options.spec.from_file,
                        "Continue from a snapshot instead of a file");
+  run_verb->add_flag("--allow-programs", run_flags.options.spec.allow_programs,
+                     "With --from: start the programs that the snapshot names, in processes of their own");
   run_flags.add_to(*run_verb);
   run_flags.options.hooks = hooks;
   run_verb->footer(
@@ -586,10 +588,11 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   CLI::App* const list_verb = app.add_subcommand("list",
                                                  "List the kinds of devices, controllers, engines, noise and "
                                                  "file formats, message types, and Gazebo plugins");
-  list_verb->add_option("what", list_options.what,
-                        "devices, controllers, engines, noise, image_noise, depth_noise, faults, builders, "
-                        "formats (all of these if left "
-                        "out), levels, messages or plugins");
+  list_verb->add_option(
+      "what", list_options.what,
+      "devices, controllers, programs, engines, noise, image_noise, depth_noise, faults, builders, "
+      "formats (all of these if left "
+      "out), levels, messages or plugins");
   list_verb->add_flag("--verbose", list_options.verbose,
                       "Print every field with unit, range, default and meaning");
   add_json(*list_verb, list_options.json);

@@ -137,7 +137,7 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
       complete_addresses(simulation, out, slash_if_devices, [&](const Entity& entity) {
         Parameters parameters(simulation);
         for (const std::string& path : device_paths(entity, true))
-          for (const Parameter& parameter : parameters.list(entity, path)) out.add(parameter.address());
+          for (const Parameter& parameter : parameters.list(path)) out.add(parameter.address());
         for (const auto& device : entity.devices) out.add(device->path + "." + failure_field);
       });
       break;

@@ -300,10 +300,10 @@ CommandResult cmd_set(CommandCall& call) {
   std::vector<Parameter> matching;
   std::vector<std::string> near;
   bool met_thing = false;
-  const auto look = [&](const Simulation::Entity& entity, const std::string& target) {
+  const auto look = [&](const std::string& target) {
     if (plain ? target != thing : !fits(thing, target)) return;
     met_thing = true;
-    for (Parameter& parameter : parameters.list(entity, target)) {
+    for (Parameter& parameter : parameters.list(target)) {
       const std::string whole = parameter.address();
       const std::string_view own = std::string_view(whole).substr(target.size() + 1);
       if (plain ? own == path : fits(path, own, true)) matching.push_back(std::move(parameter));
@@ -314,13 +314,16 @@ CommandResult cmd_set(CommandCall& call) {
   for (const auto& entity : simulation.entities()) {
     const std::string& name = entity->instance.name;
     if (plain ? name != robot : robot.find("**") == std::string_view::npos && !fits(robot, name)) continue;
-    for (const auto& device : entity->devices) look(*entity, device->path);
-    for (const auto& program : entity->programs) look(*entity, program->path);
+    for (const auto& device : entity->devices) look(device->path);
+    for (const auto& program : entity->programs) look(program->path);
     if (matching.size() > most_matches)
       return Error{
           "'" + std::string(address) + "' meets more than " + std::to_string(most_matches) + " parameters",
           "narrow it down"};
   }
+  for (const Simulation::Team& team : simulation.teams())
+    if (plain ? team.decl.name == robot : fits(robot, team.decl.name))
+      for (const auto& program : team.programs) look(program->path);
   if (matching.empty()) {
     if (!met_thing) {
       call.unknown_thing = true;
@@ -475,8 +478,8 @@ CommandResult list_parameters(CommandCall& call) {
   std::size_t count = 0;
   const Simulation& simulation = call.simulation();
   Parameters parameters(simulation);
-  const auto add = [&](const Simulation::Entity& entity, const std::string& target) {
-    for (const Parameter& parameter : parameters.list(entity, target)) {
+  const auto add = [&](const std::string& target) {
+    for (const Parameter& parameter : parameters.list(target)) {
       if (++count > most_matches) return;
       auto found = NamedValue::find(simulation,
                                     target + ".parameter." + parameter.address().substr(target.size() + 1));
@@ -491,9 +494,11 @@ CommandResult list_parameters(CommandCall& call) {
     }
   };
   for (const auto& entity : simulation.entities()) {
-    for (const auto& device : entity->devices) add(*entity, device->path);
-    for (const auto& program : entity->programs) add(*entity, program->path);
+    for (const auto& device : entity->devices) add(device->path);
+    for (const auto& program : entity->programs) add(program->path);
   }
+  for (const Simulation::Team& team : simulation.teams())
+    for (const auto& program : team.programs) add(program->path);
   return std::optional(call.json ? std::move(rows).take() : text);
 }
 

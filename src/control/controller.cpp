@@ -1,5 +1,6 @@
 #include "control/controller.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include "base/text.h"
@@ -19,9 +20,15 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
                                                     const char* what) const {
   const Entry* found = nullptr;
   std::vector<std::string> names;
+  // Without a name, devices precede topics of programs: an estimator that comes later changes nothing for those that read a
+  // drive's own odometry.
+  const bool has_device = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
+    return entry.type == type && !entry.program;
+  });
   for (const Entry& entry : entries) {
     if (entry.type != type) continue;
     names.push_back(entry.device);
+    if (device.empty() && entry.program && has_device) continue;
     const bool match = device.empty() || device == entry.device || device == entry.device + "/" + entry.level;
     if (match && found && found->device != entry.device)
       return Error{"robot '" + robot + "' has several " + what + "s of type " + type,

@@ -7,7 +7,8 @@
 ///   struct Wander {
 ///     using Spec = ...;  using State = ...;           // with field lists; State is saved and hashed
 ///     Spec spec; State state;
-///     Status init(const Description& robot);          // resolves names to handles
+///     Status init(const Description& robot);          // resolves names to handles; or, for topics of its own,
+///     Status init(const Description& robot, Outputs& out);
 ///     void step(const Observation& obs, Command& cmd);
 ///     bool fits() const;                              // only where sizes or indices in State are trusted: asked after
 ///                                                     // it was restored from a file, false refuses the snapshot
@@ -16,6 +17,8 @@
 ///
 /// All controllers of a kind step in few calls (ControllerKind::step_all), in which the compiler sees through step(); a
 /// class derived from Controller with a kind of its own, without step_all, is stepped one by one. Both give the same.
+///
+/// A team's controller drives all robots of the team: see Description::members.
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -28,12 +31,13 @@
 #include "base/describe.h"
 #include "base/random.h"
 #include "base/read.h"
+#include "control/outputs.h"
 #include "messages/messages.h"
 #include "messages/topic.h"
 
 namespace sandlot {
 
-inline constexpr int controller_api_version = 3;
+inline constexpr int controller_api_version = 4;
 
 /// Handle of a device's message of type M, resolved once.
 template <class M>
@@ -45,23 +49,27 @@ template <class M>
 struct Actuator {
   std::uint32_t slot = ~0u;
 };
-
 /// What a controller may know of the robot it drives: names and types, no ground truth.
 class Description {
  public:
   struct Entry {
-    std::string device;   ///< "laser"
-    std::string level;    ///< "ranges"
-    std::string type;     ///< "sensor_msgs/msg/LaserScan"
-    std::uint32_t index;  ///< into the observation's topics or the command's slots
-    Pose X_BS;            ///< sensor frame in the robot's base link
+    std::string device;    ///< "laser"
+    std::string level;     ///< "ranges"
+    std::string type;      ///< "sensor_msgs/msg/LaserScan"
+    std::uint32_t index;   ///< into the observation's topics or the command's slots
+    Pose X_BS;             ///< sensor frame in the robot's base link
+    bool program = false;  ///< a topic of another program: `device` is "estimator/estimate"
   };
-  std::string robot;
+  std::string robot;  ///< its name, or that of the team
   double control_period_s = 0;
   std::vector<Entry> readings;
   std::vector<Entry> actuators;
+  /// Of a team's controller: each robot of the team in creation order, with handles that are valid for the team's controller.
+  /// `readings` and `actuators` list the same devices with the robot's name in front: "red1/laser".
+  std::vector<Description> members;
 
-  /// `device` or `device/level`; "" takes the only one of that type. Errors name what there is.
+  /// `device` or `device/level`, or `program/topic` of a program that is listed before this one; "" takes the only device
+  /// of that type or, without one, the only topic. Errors name what there is.
   template <class M>
   Result<Reading<M>> reading(std::string_view device) const {
     SL_ASSIGN(const Entry* entry, find(readings, device, M::ros_type, "reading"));
@@ -109,6 +117,11 @@ class Observation {
     SL_CHECK(topic != nullptr);
     return {topic->message, topic->stamp, topic->count > seen_[handle.topic], topic->count > 0};
   }
+  /// For those that know a message by its type alone. @param reading  index in the description
+  const TopicBase& topic(std::uint32_t reading) const {
+    SL_CHECK(reading < topics_.size());
+    return *topics_[reading];
+  }
   /// This controller's own random numbers for this step.
   Stream random() const { return random_; }
 
@@ -119,13 +132,18 @@ class Observation {
   Stream random_;
 };
 
-/// What a controller orders in one step; acts at the beginning of the next tick.
+/// What a controller orders in one step; acts at the beginning of the next tick. What it publishes is there for others from
+/// the end of the step on.
 class Command {
  public:
   struct Order {
-    std::uint32_t slot;
+    std::uint32_t slot;         ///< an actuator's index; for a sample, that of the reading with `sample_bit`
     std::uint32_t begin, size;  ///< bytes of the message in `bytes`
+    bool is_sample() const { return (slot & sample_bit) != 0; }
+    std::uint32_t reading() const { return slot & ~sample_bit; }
   };
+  static constexpr std::uint32_t sample_bit = 1u << 31;
+
   template <class M>
   void set(Actuator<M> handle, const M& message) {
     const auto begin = static_cast<std::uint32_t>(bytes_.size());
@@ -138,6 +156,21 @@ class Command {
         {slot, static_cast<std::uint32_t>(bytes_.size()), static_cast<std::uint32_t>(message.size())});
     bytes_.raw(message.data(), message.size());
   }
+  /// Asks the device behind a reading for a sample at the end of the next tick, although none is due. A topic of another
+  /// program has no device: the request is refused and counted.
+  template <class M>
+  void request_sample(Reading<M> handle) {
+    request_sample_of(handle.topic);
+  }
+  void request_sample_of(std::uint32_t reading) { orders_.push_back({reading | sample_bit, 0, 0}); }
+  /// Publishes a message on a topic of the program's own. Of several in one step the last counts.
+  template <class M>
+  void publish(Publication<M> handle, const M& message) {
+    SL_CHECK_MSG(outputs_ != nullptr, "the program has no topics");
+    outputs_->set(handle, message);
+  }
+  /// Where publish() puts messages: the object that init() filled. It must outlive the command.
+  void bind(Outputs* outputs) { outputs_ = outputs; }
   void clear() {
     orders_.clear();
     bytes_.clear();
@@ -150,14 +183,15 @@ class Command {
  private:
   std::vector<Order> orders_;
   ByteWriter bytes_;
+  Outputs* outputs_ = nullptr;
 };
 
 /// A controller of any kind.
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// Reads the configuration and resolves names. Called once, before the first step.
-  virtual Status init(const Description& robot, const Node& config) = 0;
+  /// Reads the configuration, resolves names and makes topics. Called once, before the first step.
+  virtual Status init(const Description& robot, const Node& config, Outputs& out) = 0;
   virtual void step(const Observation& obs, Command& cmd) = 0;
   virtual Status set_parameter(std::string_view path, const Node& value) = 0;
   /// A number of the spec or the state by its path, and all of them.
@@ -201,9 +235,15 @@ struct ControllerKind {
 template <class C>
 class ControllerAdapter final : public Controller {
  public:
-  Status init(const Description& robot, const Node& config) override {
+  Status init(const Description& robot, const Node& config, Outputs& out) override {
     SL_ASSIGN(controller_.spec, read_spec<typename C::Spec>(config));
-    return controller_.init(robot);
+    if constexpr (requires { controller_.init(robot, out); }) return controller_.init(robot, out);
+    else return controller_.init(robot);
+  }
+  /// For a controller without topics.
+  Status init(const Description& robot, const Node& config) {
+    Outputs none(robot.robot);
+    return init(robot, config, none);
   }
   void step(const Observation& obs, Command& cmd) override { controller_.step(obs, cmd); }
   static void step_all(std::span<ControllerTurn> turns) {

@@ -7,6 +7,7 @@
 
 #include "base/fields.h"
 #include "base/node.h"
+#include "base/shared_list.h"
 #include "base/time.h"
 #include "geometry/pose.h"
 
@@ -44,11 +45,27 @@ struct ControllerDecl {
   std::string kind;
   Node config;
   Place place;
+  double rate_hz = 0;  ///< the robot's rate; a `rate` in `config` precedes it. 0: the run's control steps
+  Place rate_place;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the controller; unique within its robot."}, s.name);
     visit(Field{"kind", "", "Kind of the controller."}, s.kind);
     visit(Field{"config", "", "Keys of the kind."}, s.config);
+    visit(Field{"rate", "Hz", "Control steps per second where the keys give none; 0: those of the run."},
+          s.rate_hz);
+  }
+};
+
+/// Robots that programs of their own drive together. A robot names its team.
+struct TeamDecl {
+  std::string name;  ///< address: unique among teams and instances
+  SharedList<ControllerDecl> controllers;
+  Place place;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the team."}, s.name);
+    visit(Field{"controllers", "", "Control programs of the team."}, s.controllers);
   }
 };
 

@@ -180,6 +180,7 @@ struct Setup : Environment {
   std::optional<Time> stop;
   std::optional<Recording> record;
   std::vector<PluginDecl> plugins;
+  std::vector<TeamDecl> teams;
   std::vector<Instance> instances;
   std::vector<ValueDecl> values;
   std::vector<EventDecl> events;
@@ -202,6 +203,7 @@ struct Setup : Environment {
     visit(Field{"errors", "1", "Factor on the errors of all devices.", 0, 1000}, s.errors);
     visit(Field{"stop", "s", "Simulated time at which the run ends by itself."}, s.stop);
     visit(Field{"plugins", "", "Shared libraries with controllers."}, s.plugins);
+    visit(Field{"teams", "", "Teams of robots."}, s.teams);
     visit(Field{"zones", "", "Parts of the ground with a surface of their own."}, s.zones);
     visit(Field{"lights", "", "Lights of the world."}, s.lights);
     visit(Field{"ambient", "1", "Light that comes from everywhere."}, s.ambient);

@@ -175,10 +175,14 @@ void Replay::compare_state(const RecordedTick& recorded, Difference& difference)
   static const std::vector<std::string> none;
   const auto& theirs = recorded.part_names ? *recorded.part_names : none;
   std::vector<std::string> ignored;
-  if (options_.programs == Programs::logged)
+  if (options_.programs == Programs::logged) {
     for (const auto& entity : simulation_->entities())
       for (const auto& program : entity->programs) ignored.push_back(program->path);
-  else if (frame.hash == recorded.hash && frame.parts == recorded.parts) return;
+    for (const auto& team : simulation_->teams())
+      for (const auto& program : team.programs) ignored.push_back(program->path);
+  } else if (frame.hash == recorded.hash && frame.parts == recorded.parts) {
+    return;
+  }
   difference.parts = differing_parts(theirs, recorded.parts, *frame.part_names, frame.parts, ignored);
   // A recording that contradicts itself: no part differs, the whole does.
   if (difference.parts.empty() && options_.programs == Programs::recompute && frame.hash != recorded.hash)

@@ -42,6 +42,9 @@ Status check_spec(const RunSpec& spec) {
     if (spec.errors) return refuse("--errors");
     if (!spec.overrides.empty()) return refuse("--set");
   }
+  if (spec.from_file.empty() && spec.allow_programs)
+    return Error{"--allow-programs belongs to --from",
+                 "a scenario that is run may start its programs anyway"};
   if (spec.duration_s && !(*spec.duration_s >= 0 && *spec.duration_s <= 1e9))
     return Error{"--duration: must be in [0, 1e9] s, is " + number_text(*spec.duration_s)};
   if (spec.rate && !(*spec.rate > 0 && *spec.rate <= 1e6))
@@ -137,6 +140,8 @@ Result<PreparedRun> prepare(const RunSpec& spec, std::span<const ControllerKind*
   PreparedRun out;
   out.options = {.threads = spec.threads, .paths = spec.paths};
   out.options.extra_controllers = controllers;
+  // A scenario that somebody runs may start its programs. A snapshot carries command lines, too, but is often another's.
+  out.options.start_programs = spec.from_file.empty() || spec.allow_programs;
   SL_ASSIGN(out.simulation, make_world(spec, out.options, diagnostics));
   SL_TRY(configure(*out.simulation, spec));
   SL_ASSIGN(out.log, log_declaration(spec, *out.simulation));

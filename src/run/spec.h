@@ -33,6 +33,7 @@ struct RunSpec {
   std::string from_file;  ///< snapshot to continue from
   std::vector<formats::Override> overrides;
   std::vector<std::string> paths;  ///< folders to search first for models and other files
+  bool allow_programs = false;     ///< with `from_file`: start programs that run in processes of their own
   bool skip_missing = false;       ///< leave out, with a warning, models and meshes that are not found
   std::optional<std::uint64_t> seed;
   std::optional<double> errors;  ///< factor on the errors of all devices

@@ -66,6 +66,10 @@ Result<std::unique_ptr<Simulation>> restore_simulation(std::span<const std::byte
 }
 
 Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view name, const char* type) {
+  // A topic of a program: "rover/estimator/estimate".
+  if (const TopicBase* const topic = sim.find_topic(name);
+      topic && topic->name() == "/" + std::string(name) && std::string_view(topic->type()) == type)
+    return topic;
   const auto [path, level] = split_level(name);
   SL_ASSIGN(const Simulation::Device* const device, device_named(sim, path));
   const TopicBase* found = nullptr;

@@ -46,8 +46,8 @@ Result<std::unique_ptr<Simulation>> restore_simulation(std::span<const std::byte
                                                        const SimulationOptions& options = {},
                                                        Diagnostics* diagnostics = nullptr);
 
-/// The topic of a device ("rover/laser": its active level; "rover/laser/ranges": that one) that carries
-/// `type`.
+/// The topic of a device ("rover/laser": its active level; "rover/laser/ranges": that one) or of a program
+/// ("rover/estimator/estimate") that carries `type`.
 Result<const TopicBase*> find_reading(const Simulation& sim, std::string_view device, const char* type);
 
 /// The latest message of a device. `valid`: there is one; `fresh`: it came in the latest tick.

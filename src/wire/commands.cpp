@@ -72,6 +72,12 @@ struct RequestText {
     if (x.hold.ns <= 0) return "pull off";
     return "pull " + (x.link.empty() ? "" : x.link + " ") + text_of(x.point_L) + " " + text_of(x.target_W);
   }
+  std::string operator()(const AnswerRequest& x) const {
+    const std::vector<std::byte>& bytes = x.answer.bytes;
+    if (x.answer.kind == OutsideAnswer::Kind::missed) return "no answer in time";
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return (x.answer.kind == OutsideAnswer::Kind::gone ? "gone: " : "answer ") + text;
+  }
 };
 
 /// The numbers of those commands that people give by hand; the type alone of others.

@@ -171,6 +171,14 @@ Json info_json(const Simulation& simulation, const Diagnostics& diagnostics) {
     if (instance.motion) entry["motion_keys"] = instance.motion->keys.size();
     instances.push_back(std::move(entry));
   }
+  if (!simulation.setup().teams.empty()) root["teams"] = Json::array();
+  for (const model::TeamDecl& team : simulation.setup().teams) {
+    Json controllers = Json::array();
+    for (const model::ControllerDecl& controller : team.controllers.get())
+      controllers.push_back(
+          {{"name", controller.name}, {"kind", controller.kind}, {"place", of(controller.place)}});
+    root["teams"].push_back({{"name", team.name}, {"controllers", std::move(controllers)}});
+  }
   Json& ignored = root["warnings"] = Json::array();
   for (const Error& warning : diagnostics.warnings)
     ignored.push_back({{"what", warning.what}, {"fix", warning.fix}, {"place", of(warning.place)}});

@@ -386,6 +386,14 @@ std::string info_text(const std::string& file, const Simulation& simulation, con
     if (instance.model->place.file) out += ", model of " + to_string(instance.model->place);
     out += "\n" + parts_text(simulation, first, {group.members.size() == 1 ? instance.name : "*", true});
   }
+  for (const model::TeamDecl& team : simulation.setup().teams) {
+    out += "\nteam " + team.name + "\n";
+    Table controllers;
+    for (const model::ControllerDecl& controller : team.controllers.get())
+      controllers.add({"controller", controller.name, controller.kind,
+                       controller.place.file ? to_string(controller.place) : ""});
+    out += controllers.text("  ");
+  }
   if (!diagnostics.warnings.empty()) {
     out += "\n" + counted(diagnostics.warnings.size(), "warning") + "\n";
     for (const Error& warning : diagnostics.warnings) out += "  " + warning.text() + "\n";

@@ -21,6 +21,7 @@
 #include "noise/depth_noise.h"
 #include "noise/image_noise.h"
 #include "physics/engine.h"
+#include "programs/programs.h"
 #include "sim/load/plugin.h"
 #include "sim/world/faults.h"
 
@@ -98,6 +99,14 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
       "controllers", "Controllers", "Programs that decide: `controller:` of a robot in a scenario.", {}};
   for (const ControllerKind* kind : controller_table)
     controllers.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
+  Section programs{
+      "programs",
+      "Programs",
+      "Programs outside this process that decide, in the place of a controller: `controller:` of a "
+      "robot or a team in a scenario.",
+      {}};
+  for (const ProgramKind* kind : program_kinds())
+    programs.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
     engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
@@ -115,7 +124,7 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
                           {}});
   faults.items.push_back(
       {"clock", "Errors of the times in its messages.", describe_fields<ClockSpec>(), {}, {}, {}});
-  std::vector<Section> out{devices, controllers, engines};
+  std::vector<Section> out{devices, controllers, programs, engines};
   for (const StageFamily& family : stage_families()) {
     out.push_back({family.key, family.title, family.intro, {}});
     for (const StageType& type : family.types)
@@ -462,6 +471,7 @@ int list(const ListOptions& options) {
       devices.back().second.push_back(std::move(preset));
     }
     for (const ControllerKind* kind : *known) controllers.emplace_back(kind->name, kind->describe());
+    for (const ProgramKind* kind : program_kinds()) controllers.emplace_back(kind->name, kind->describe());
     std::vector<formats::StageFields> stages;
     for (StageFamily& family : stage_families()) {
       stages.push_back({family.key, {}});

@@ -90,8 +90,9 @@ Result<model::ControllerDecl> read_controller(const Node& node, const std::strin
   return decl;
 }
 
-Result<std::vector<model::ControllerDecl>> read_controllers(const spec::Robot& robot,
-                                                            const std::string& path) {
+/// The controllers of a robot or a team.
+template <class Keys>
+Result<std::vector<model::ControllerDecl>> read_controllers(const Keys& robot, const std::string& path) {
   std::vector<model::ControllerDecl> out;
   if (!robot.controller.is_null() && !robot.controllers.is_null())
     return robot.controllers.error("'controller' and 'controllers' are both given", "keep one of them", path);
@@ -201,10 +202,45 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   SL_ASSIGN(group.instance.controllers, read_controllers(robot, path));
   SL_TRY(check_devices(robot.devices, path + "/devices"));
   group.devices = std::move(robot.devices);
+  if (robot.rate_hz) {
+    group.rate_hz = *robot.rate_hz;
+    group.rate_place = node.find("rate")->place();
+    for (model::ControllerDecl& decl : group.instance.controllers.edit()) {
+      decl.rate_hz = group.rate_hz;
+      decl.rate_place = group.rate_place;
+    }
+  }
   group.joint_controllers = std::move(robot.joint_controllers);
   if (const Node* const files = node.find("joint_controllers"))
     group.joint_controllers_place = files->place();
   return group;
+}
+
+/// Teams, and that each robot's team is one of them.
+Status read_teams(const Node& node, const spec::Root& root, model::Setup& out) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < root.teams.size(); ++i) {
+    const spec::Team& keys = root.teams[i];
+    const Node& each = node.find("teams")->items()[i];
+    const std::string path = "/teams/" + std::to_string(i);
+    const Place& place = each.find("name")->place();
+    if (sanitised(keys.name) != keys.name || keys.name.empty())
+      return Error{"'" + keys.name + "' cannot be the name of a team", "letters, digits, _ and -", place,
+                   path + "/name"};
+    if (std::find(names.begin(), names.end(), keys.name) != names.end())
+      return Error{"two teams are called '" + keys.name + "'", "give one of them another name", place,
+                   path + "/name"};
+    names.push_back(keys.name);
+    SL_ASSIGN(auto controllers, read_controllers(keys, path));
+    out.teams.push_back({keys.name, std::move(controllers), place});
+  }
+  for (std::size_t i = 0; i < root.robots.size() && !names.empty(); ++i) {
+    const std::string& team = root.robots[i].instance.team;
+    if (team.empty() || std::find(names.begin(), names.end(), team) != names.end()) continue;
+    return node.find("robots")->items()[i].find("team")->error(
+        "there is no team '" + team + "'", suggestion(team, names), "/robots/" + std::to_string(i) + "/team");
+  }
+  return {};
 }
 
 /// Two groups that would make robots of one address. A group of n stands for stem1 ... stemn.
@@ -357,6 +393,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
     out.robots.push_back(std::move(group));
   }
   SL_TRY(check_names(out.robots));
+  SL_TRY(read_teams(node, root, setup));
   SL_TRY(read_watch(node, root, setup));
   SL_TRY(read_zones(node, root.zones, setup.zones, diagnostics));
   return out;

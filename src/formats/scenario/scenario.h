@@ -55,7 +55,8 @@ struct RobotGroup {
   std::vector<std::string> joint_controllers;  ///< files as written (see base_folder), formats/ros2_control
   Place joint_controllers_place;
   Node devices;  ///< map: device name -> {kind, link, pose, level(s), keys...}; merged onto the model's own
-  Place model_place;
+  double rate_hz = 0;  ///< of devices that have a rate and were given none; 0: their kind's default
+  Place model_place, rate_place;
 };
 
 /// The part of a Setup that a scenario gives, and the files that sim/load adds to it.

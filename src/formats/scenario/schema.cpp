@@ -96,7 +96,9 @@ Json kinds_of(std::span<const KindFields> kinds, const Json& common, bool kind_n
   for (const auto& [name, fields] : kinds) {
     names.push_back(name);
     Json properties = object_of(fields)["properties"];
-    for (const auto& [key, value] : common.items()) properties[key] = value;
+    // `rate` of a controller's own kind is the kind's.
+    for (const auto& [key, value] : common.items())
+      if (key != "rate" || !properties.contains(key)) properties[key] = value;
     properties[word] = {{"const", name}};
     choices.push_back({{"if", {{"properties", {{word, {{"const", name}}}}}, {"required", {word}}}},
                        {"then", {{"properties", properties}, {"additionalProperties", false}}}});
@@ -162,10 +164,19 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   describe_as(thing["model"], model);
   describe_as(thing["pose"], pose_schema(""));
   const Json named = {
-      {"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}}};
+      {"name", {{"type", "string"}, {"description", "Name of the controller."}, {"default", "controller"}}},
+      {"rate",
+       {{"type", {"number", "string"}},
+        {"minimum", 1e-3},
+        {"maximum", 1e6},
+        {"description", "Control steps per second; the robot's rate or the run's control steps by default."},
+        {"x-unit", "Hz"}}}};
   const Json controller = kinds_of(controllers, named, true);
-  describe_as(robot["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
-  describe_as(robot["controllers"], {{"type", "array"}, {"items", controller}});
+  Json& team = keys["teams"]["items"]["properties"];
+  for (Json* const owner : {&robot, &team}) {
+    describe_as((*owner)["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
+    describe_as((*owner)["controllers"], {{"type", "array"}, {"items", controller}});
+  }
   Json mounted = {
       {"link",
        {{"type", "string"}, {"description", "Link it is mounted on; the model's first one by default."}}},

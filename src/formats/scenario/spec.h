@@ -7,6 +7,7 @@
 
 #include "base/fields.h"
 #include "base/node.h"
+#include "formats/scenario/team_spec.h"
 #include "formats/scenario/zone_spec.h"
 #include "geometry/vec3.h"
 #include "model/model.h"
@@ -156,6 +157,7 @@ struct Robot {
   Node controllers;
   std::vector<std::string> joint_controllers;
   Node devices;
+  std::optional<double> rate_hz;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -191,6 +193,11 @@ struct Robot {
     visit(Field{"errors", "1", "Factor on the errors of all devices of the robot: 0 none, 1 as configured.",
                 0, 1000},
           s.instance.errors);
+    visit(Field{"rate", "Hz",
+                "Control steps per second of the robot's programs, and samples per second of its devices, "
+                "where neither the scenario nor the model gives a rate.",
+                1e-3, 1e5},
+          s.rate_hz);
   }
 };
 
@@ -234,6 +241,7 @@ struct Root {
   Time time;
   Node vars;
   std::vector<std::string> plugins;
+  std::vector<Team> teams;
   std::vector<Robot> robots;
   std::vector<LabelledObject> things;
   Node values;
@@ -259,6 +267,12 @@ struct Root {
                 "Shared libraries with controllers: files relative to this one, or names in the search path.",
                 0, 0, Field::none, 100},
           s.plugins);
+    visit(
+        Field{"teams", "",
+              "Teams with controllers that drive all robots of the team; where given, a robot's team is one "
+              "of them.",
+              0, 0, Field::none, 1000},
+        s.teams);
     visit(Field{"robots", "", "Robots of the scenario.", 0, 0, Field::none, 100'000}, s.robots);
     visit(Field{"things", "", "Models in the world that are not robots: walls, ramps, things to push.", 0, 0,
                 Field::none, 100'000},
@@ -280,6 +294,6 @@ struct Root {
 };
 
 /// Keys of the root that later versions of Sandlot read.
-inline constexpr const char* later_keys[] = {"teams", "media", "markers", "rules"};
+inline constexpr const char* later_keys[] = {"media", "markers", "rules"};
 
 }  // namespace sandlot::formats::scenario_spec

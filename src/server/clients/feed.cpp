@@ -66,9 +66,8 @@ void Feed::find_topics() {
   previews_ = 0;
   if (subscribed_->topics.empty()) return;
   std::unordered_map<std::string_view, const TopicBase*> by_name;
-  for (const auto& entity : session_.simulation().entities())
-    for (const auto& device : entity->devices)
-      for (const Simulation::Slot& slot : device->topics) by_name[slot.topic->name()] = slot.topic.get();
+  session_.simulation().for_each_topic(
+      [&](const TopicBase& topic, const std::string&) { by_name[topic.name()] = &topic; });
   for (const auto& [channel, name] : subscribed_->topics) {
     auto found = by_name.find(name);
     const bool preview = found == by_name.end() && name.ends_with(preview_suffix);

@@ -23,6 +23,7 @@ template <class Slots>
 void add_name(const Simulation& simulation, const Simulation::Entity& entity, const Description::Entry& entry,
               Slots slots, std::vector<std::string>& out) {
   if (!entry.level.empty()) return;  // the description lists each level too
+  if (entry.program) return out.push_back("/" + entity.instance.name + "/" + entry.device);
   for (const auto& device : entity.devices) {
     if (device->decl.name != entry.device) continue;
     for (const Simulation::Slot& slot : slots(*device)) {
@@ -40,6 +41,12 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
   out->epoch = epoch;
   out->revision = simulation.revision();
   std::map<std::string_view, std::shared_ptr<const TopicBase>> blanks;
+  const auto add_published = [&](const Simulation::ProgramEntries& programs) {
+    for (const auto& program : programs)
+      if (program->outputs)
+        for (const Outputs::Output& output : program->outputs->all())
+          out->topics.push_back({output.topic->name(), &output.topic->info(), program->path});
+  };
   for (const auto& entity : simulation.entities()) {
     if (entity->instance.is_robot) out->robots.push_back(entity->instance.name);
     for (const auto& device : entity->devices) {
@@ -58,6 +65,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
         out->slots.push_back({slot.topic->name(), device->path, level, active, &slot.topic->info(), blank});
       }
     }
+    add_published(entity->programs);
     for (const auto& program : entity->programs) {
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;
@@ -69,6 +77,27 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
         add_name(
             simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
             made.orders);
+    }
+  }
+  for (const Simulation::Team& team : simulation.teams()) {
+    add_published(team.programs);
+    for (const auto& program : team.programs) {
+      Inventory::Program& made = out->programs.emplace_back();
+      made.path = program->path;
+      for (const auto& entity : simulation.entities()) {
+        if (!entity->instance.is_robot || entity->instance.team != team.decl.name) continue;
+        for (const Description& member : program->description->members) {
+          if (member.robot != entity->instance.name) continue;
+          for (const Description::Entry& entry : member.readings)
+            add_name(
+                simulation, *entity, entry,
+                [](const Simulation::Device& d) -> const auto& { return d.topics; }, made.reads);
+          for (const Description::Entry& entry : member.actuators)
+            add_name(
+                simulation, *entity, entry,
+                [](const Simulation::Device& d) -> const auto& { return d.commands; }, made.orders);
+        }
+      }
     }
   }
   return out;

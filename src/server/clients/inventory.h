@@ -16,7 +16,7 @@ struct Inventory {
   struct Topic {
     std::string name;  ///< "/rover/laser/ranges"
     const MessageInfo* info = nullptr;
-    std::string device;  ///< "rover/laser"
+    std::string device;  ///< that publishes it: "rover/laser", or a program, "rover/estimator"
   };
   struct Slot {
     std::string name;    ///< "/rover/drive/ideal/command"

@@ -30,15 +30,17 @@ bool list_parameters(const Simulation& simulation, std::vector<foxglove::Paramet
   add({"sim", "errors"});
   for (const auto& entity : simulation.entities())
     if (!entity->devices.empty() && out.size() < most_parameters) add({entity->instance.name, "errors"});
-  const auto add_part = [&](const Simulation::Entity& entity, const std::string& path) {
+  const auto add_part = [&](const std::string& path) {
     if (!all) return;
-    for (const Parameter& parameter : parameters.list(entity, path))
+    for (const Parameter& parameter : parameters.list(path))
       if (!parameter.in_list) add(parameter);
   };
   for (const auto& entity : simulation.entities()) {
-    for (const auto& device : entity->devices) add_part(*entity, device->path);
-    for (const auto& program : entity->programs) add_part(*entity, program->path);
+    for (const auto& device : entity->devices) add_part(device->path);
+    for (const auto& program : entity->programs) add_part(program->path);
   }
+  for (const auto& team : simulation.teams())
+    for (const auto& program : team.programs) add_part(program->path);
   return all;
 }
 

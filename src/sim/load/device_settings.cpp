@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/text.h"
 #include "base/units.h"
 #include "devices/kind.h"
+#include "sim/load/presets.h"
 
 namespace sandlot {
 
@@ -37,6 +39,26 @@ std::optional<double> setting(const model::DeviceDecl& device, std::string_view 
     return value ? std::optional(*value) : std::nullopt;
   }
   return std::nullopt;
+}
+
+void set_default_rate(model::DeviceDecl& device, double rate_hz, const Place& place) {
+  const std::vector<FieldInfo>* const fields = fields_of(device.kind);
+  // An element of SDF without a rate has been translated into "every tick", at the element's own place.
+  const auto given = [](const Node& config) {
+    const Node* const rate = config.find("rate");
+    const Place &a = rate ? rate->place() : config.place(), &b = config.place();
+    return rate && !(rate->text() == "0" && a.line > 0 && a.line == b.line && a.column == b.column &&
+                     a.file && b.file && *a.file == *b.file);
+  };
+  if (!fields || given(device.config)) return;
+  if (std::none_of(fields->begin(), fields->end(),
+                   [](const FieldInfo& field) { return field.path == "rate"; }))
+    return;
+  Node with_preset = device.config;
+  // An unknown preset is an error where the device is built.
+  if (!lay_preset(with_preset, device.kind) || given(with_preset)) return;
+  if (device.config.is_null()) device.config = Node::map(device.place);
+  device.config.set("rate", Node::scalar(number_text(rate_hz), place));
 }
 
 std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model) {

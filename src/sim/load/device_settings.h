@@ -13,6 +13,9 @@ namespace sandlot {
 /// kind has no such number, or it is optional and not given.
 std::optional<double> setting(const model::DeviceDecl& device, std::string_view path);
 
+/// Gives a device a rate, unless its keys or those of its preset give one, or its kind has none.
+void set_default_rate(model::DeviceDecl& device, double rate_hz, const Place& place);
+
 /// Joints that a device names in keys that end in "joint" or "joints", as indices of the model, in file order.
 std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const model::Model& model);
 

@@ -1,5 +1,6 @@
 #include "sim/load/scenario.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -9,8 +10,10 @@
 #include "formats/kind.h"
 #include "formats/ros2_control/ros2_control.h"
 #include "physics/engine.h"
+#include "programs/programs.h"
 #include "sim/load/attach.h"
 #include "sim/load/declared_devices.h"
+#include "sim/load/device_settings.h"
 #include "sim/load/instance.h"
 #include "sim/load/joint_controllers.h"
 #include "sim/load/placement.h"
@@ -38,6 +41,7 @@ class ScenarioLoader {
     SL_TRY(add_plugins());
     SL_TRY(add_things());  // before the robots, which find their places between them
     SL_TRY(add_robots());
+    for (model::TeamDecl& team : setup_.teams) set_program_folders(team.controllers);
     return std::move(setup_);
   }
 
@@ -85,12 +89,37 @@ class ScenarioLoader {
       const formats::RobotGroup& group = scenario_.robots[i];
       SL_ASSIGN(model::Instance robot, instance_of(group, "/robots/" + std::to_string(i)));
       robot.is_robot = true;
+      set_program_folders(robot.controllers);
       SL_TRY(attach_modules(robot, group));
       SL_TRY(add_joint_controllers(robot, group));
       SL_TRY(merge_devices(robot, group.devices));
+      if (group.rate_hz > 0)
+        for (model::DeviceDecl& device : robot.devices.edit())
+          set_default_rate(device, group.rate_hz, group.rate_place);
       SL_TRY(place_copies(group, robot, placer));
     }
     return {};
+  }
+
+  /// Programs in processes of their own work in the scenario's folder, also after a restore from elsewhere.
+  void set_program_folders(SharedList<model::ControllerDecl>& controllers) const {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+      const model::ControllerDecl& decl = controllers.get()[i];
+      const auto kinds = program_kinds();
+      const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                     [&](const ProgramKind* each) { return decl.kind == each->name; });
+      if (kind == kinds.end()) continue;
+      const std::vector<FieldInfo> fields = (*kind)->describe();
+      if (std::none_of(fields.begin(), fields.end(), [](const FieldInfo& f) { return f.path == "folder"; }))
+        continue;
+      const Node* const given = decl.config.find("folder");
+      const fs::path written = given ? given->text() : "";
+      const Place place = given ? given->place() : decl.place;
+      Node& config = controllers.edit()[i].config;
+      const std::string folder =
+          fs::absolute(fs::path(folder_at(place)) / written).lexically_normal().string();
+      config.set("folder", Node::scalar(folder, place));
+    }
   }
 
   /// One instance of a group, at the model's own pose: what the scenario declares of it, with the model of its file.

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "control/program.h"
 #include "sim/watch/monitor.h"
-#include "sim/world/program.h"
 
 namespace sandlot {
 namespace {

@@ -154,6 +154,8 @@ Status Session::load_last(std::vector<Load> loads) {
     if (other.done) other.done(Error{"another one was asked for meanwhile"});
   Status status = may_rewind();
   if (status && options_.input_log) status = Error{"this is a recording: nothing can be loaded into it"};
+  // The snapshot may be anybody's: it starts no process, nor does a reset to it.
+  if (status) options_.simulation.start_programs = false;
   if (status) status = replace(load.bytes, "loaded");
   if (status) {
     past_ = {};
@@ -286,6 +288,8 @@ void Session::run_tick(Pacer& pacer, RunReport& report, std::optional<Time> meas
 
 Status Session::advance(std::optional<Time> measured, RunReport& report) {
   const bool rerun = rerunning();
+  // What ran outside is in the log as far as that goes; then it begins again.
+  if (!options_.input_log && !rerun) simulation_->connect_programs();
   if (options_.input_log || rerun)
     if (const std::optional<Time> logged = feed_input_log()) measured = logged;
   const Time before = simulation_->now();

@@ -4,6 +4,7 @@
 
 #include "base/read.h"
 #include "base/text.h"
+#include "programs/programs.h"
 #include "sim/world/faults.h"
 
 namespace sandlot {
@@ -60,8 +61,11 @@ const std::vector<FieldInfo>& Parameters::describe(const void* kind, std::vector
   return found->second;
 }
 
-std::optional<Parameters::Part> Parameters::find(const Simulation::Entity& entity, std::string_view target) {
-  for (const auto& each : entity.devices) {
+std::optional<Parameters::Part> Parameters::find(std::string_view target) {
+  static const std::vector<Owned<Simulation::Device>> no_devices;
+  static const Simulation::ProgramEntries no_programs;
+  const Simulation::Entity* const entity = simulation_.find_entity(first_part(target));
+  for (const auto& each : entity ? entity->devices : no_devices) {
     if (each->path != target) continue;
     const Simulation::Device& device = *each;
     const Kind& kind = simulation_.kind(device);
@@ -71,22 +75,26 @@ std::optional<Parameters::Part> Parameters::find(const Simulation::Entity& entit
         [&](std::span<const ValueStep> path) { return pool.value(device.index, ValuePart::parameter, path); },
         [&](const ValueVisit& visit) { pool.list_values(device.index, ValuePart::parameter, visit); }};
   }
-  for (const auto& each : entity.programs) {
+  const Simulation::ProgramEntries* const programs = simulation_.programs_of(first_part(target));
+  for (const auto& each : programs ? *programs : no_programs) {
     if (each->path != target) continue;
     const ControllerKind* kind = nullptr;
     for (const ControllerKind* known : simulation_.controller_kinds())
       if (each->decl.kind == known->name) kind = known;
+    const ProgramKind* other = nullptr;
+    for (const ProgramKind* known : program_kinds())
+      if (each->decl.kind == known->name) other = known;
     const auto& program = *each->program;
-    return Part{&describe(kind, kind ? kind->describe : nullptr),
+    return Part{kind ? &describe(kind, kind->describe) : &describe(other, other ? other->describe : nullptr),
                 [&](std::span<const ValueStep> path) { return program.value(ValuePart::parameter, path); },
                 [&](const ValueVisit& visit) { program.list_values(ValuePart::parameter, visit); }};
   }
   return std::nullopt;
 }
 
-std::vector<Parameter> Parameters::list(const Simulation::Entity& entity, std::string_view target) {
+std::vector<Parameter> Parameters::list(std::string_view target) {
   std::vector<Parameter> out;
-  const std::optional<Part> part = find(entity, target);
+  const std::optional<Part> part = find(target);
   if (!part) return out;
   std::map<std::string, std::string, std::less<>> present;  // paths that have a value now, with their units
   part->list([&](const ValueEntry& entry) {
@@ -115,16 +123,14 @@ std::vector<Parameter> Parameters::list(const Simulation::Entity& entity, std::s
 ParameterValue Parameters::value(const Parameter& parameter) {
   const auto& [target, field, unit, in_list] = parameter;
   if (target == "sim" && field == "errors") return simulation_.setup().errors;
-  const Simulation::Entity* const entity = simulation_.find_entity(
-      std::string_view(target).substr(0, target.find('/')));
-  if (!entity) return {};
-  if (target == entity->instance.name && field == "errors") return entity->instance.errors;
-  if (field == failure_field) {
+  const Simulation::Entity* const entity = simulation_.find_entity(first_part(target));
+  if (entity && target == entity->instance.name && field == "errors") return entity->instance.errors;
+  if (entity && field == failure_field) {
     for (const auto& device : entity->devices)
       if (device->path == target) return failure_of(*device);
     return {};
   }
-  const std::optional<Part> part = find(*entity, target);
+  const std::optional<Part> part = find(target);
   auto steps = parse_value_path(value_path(field));
   if (!part || !steps) return {};
   const FieldInfo* known = nullptr;
@@ -147,9 +153,7 @@ ParameterValue Parameters::value(const Parameter& parameter) {
 }
 
 Status Parameters::check(const Parameter& parameter, const Node& value) {
-  const Simulation::Entity* const entity = simulation_.find_entity(
-      std::string_view(parameter.target).substr(0, parameter.target.find('/')));
-  const std::optional<Part> part = entity ? find(*entity, parameter.target) : std::nullopt;
+  const std::optional<Part> part = find(parameter.target);
   if (!part) return {};
   for (const FieldInfo& info : *part->fields) {
     if (info.path != parameter.field) continue;

@@ -42,8 +42,8 @@ using ParameterValue = std::variant<std::monostate, bool, double, std::string, s
 class Parameters {
  public:
   explicit Parameters(const Simulation& simulation) : simulation_(simulation) {}
-  /// What can be set now of a device or program of `entity`.
-  std::vector<Parameter> list(const Simulation::Entity& entity, std::string_view target);
+  /// What can be set now of a device or program, by its path.
+  std::vector<Parameter> list(std::string_view target);
   /// @param parameter  or one of the others above
   ParameterValue value(const Parameter& parameter);
   /// Judges a value as far as that is possible without the device: by type, unit and range. Parameters that are not
@@ -57,7 +57,7 @@ class Parameters {
     ValueReader read;
     std::function<void(const ValueVisit&)> list;
   };
-  std::optional<Part> find(const Simulation::Entity& entity, std::string_view target);
+  std::optional<Part> find(std::string_view target);
   const std::vector<FieldInfo>& describe(const void* kind, std::vector<FieldInfo> (*describe)());
 
   const Simulation& simulation_;

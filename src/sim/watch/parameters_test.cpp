@@ -30,14 +30,13 @@ TEST(Parameters, AddressesNameTheFieldsOfRequests) {
 TEST(Parameters, AreListedWithTheirValuesAndJudged) {
   const auto simulation = build(arena("rigid", 1));
   Parameters parameters(*simulation);
-  const Simulation::Entity& rover = *std::as_const(*simulation).find_entity("rover1");
   bool found = false;
-  for (const Parameter& parameter : parameters.list(rover, "rover1/laser")) {
+  for (const Parameter& parameter : parameters.list("rover1/laser")) {
     EXPECT_NE(parameters.value(parameter).index(), 0u) << parameter.address();
     found = found || parameter.address() == "rover1/laser.noise.white";
   }
   EXPECT_TRUE(found);
-  EXPECT_TRUE(parameters.list(rover, "rover1/nothing").empty());
+  EXPECT_TRUE(parameters.list("rover1/nothing").empty());
   EXPECT_EQ(parameters.value({"sim", "errors"}), ParameterValue(1.0));
   EXPECT_EQ(parameters.value({"rover1", "errors"}), ParameterValue(1.0));
   EXPECT_EQ(parameters.value({"rover1/laser", "failure"}), ParameterValue(std::string("planned")));

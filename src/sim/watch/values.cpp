@@ -68,7 +68,10 @@ bool NamedValue::resolve() {
     return take(What::named, 1, number(0, ""));
   }
   const Simulation::Entity* const entity = simulation_->find_entity(first_part(thing));
-  if (!entity) return false;
+  if (!entity) {
+    const auto* const of_team = simulation_->programs_of(first_part(thing));
+    return of_team && resolve_programs(*of_team, thing);
+  }
   entity_ = entity;
   if (entity->instance.name == thing) return resolve_thing(*entity);
   for (const auto& device : entity->devices) {
@@ -76,15 +79,28 @@ bool NamedValue::resolve() {
     for (const auto* slots : {&device->topics, &device->commands})
       for (const Simulation::Slot& slot : *slots) {
         if (std::string_view(slot.topic->name()).substr(1) != thing) continue;
-        topic_ = slot.topic.get();
-        if (take(What::topic, 0, topic_->value(path_))) return true;
-        if (path_.size() != 1) return false;
-        if (first == "count") return take(What::topic_count, 1, number(0, "1"));
-        return first == "stamp" && take(What::topic_stamp, 1, number(0, "s"));
+        return resolve_topic(*slot.topic);
       }
   }
-  for (const auto& program : entity->programs)
+  return resolve_programs(entity->programs, thing);
+}
+
+bool NamedValue::resolve_topic(const TopicBase& topic) {
+  topic_ = &topic;
+  if (take(What::topic, 0, topic.value(path_))) return true;
+  if (path_.size() != 1) return false;
+  const std::string& first = path_.front().key;
+  if (first == "count") return take(What::topic_count, 1, number(0, "1"));
+  return first == "stamp" && take(What::topic_stamp, 1, number(0, "s"));
+}
+
+bool NamedValue::resolve_programs(const Simulation::ProgramEntries& programs, std::string_view thing) {
+  for (const auto& program : programs) {
     if (program->path == thing) return resolve_program(*program);
+    if (!program->outputs) continue;
+    for (const Outputs::Output& output : program->outputs->all())
+      if (std::string_view(output.topic->name()).substr(1) == thing) return resolve_topic(*output.topic);
+  }
   return false;
 }
 
@@ -284,6 +300,22 @@ ValueVisit given(ValueVisit visit) {
   };
 }
 
+void list_programs(const Simulation::ProgramEntries& programs, Lister& lister) {
+  for (const auto& program : programs) {
+    program->program->list_values(ValuePart::parameter, given(lister.under(program->path, "parameter")));
+    program->program->list_values(ValuePart::state, lister.under(program->path, "state"));
+    if (lister.fresh(program->path + ".steps"))
+      lister.one(program->path + ".steps", "1", "Control steps so far.", static_cast<double>(program->steps));
+    if (!program->outputs) continue;
+    for (const Outputs::Output& output : program->outputs->all()) {
+      const std::string topic = output.topic->name().substr(1);
+      list_topic(*output.topic, lister.under(topic, "reading"));
+      if (lister.fresh(topic + ".count"))
+        lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(output.topic->count));
+    }
+  }
+}
+
 void list_entity(const Simulation& simulation, const Simulation::Entity& entity, const ValueVisit& visit) {
   list_thing(simulation, entity, visit);
   Lister lister(visit);
@@ -304,12 +336,7 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
           lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(slot.topic->count));
       }
   }
-  for (const auto& program : entity.programs) {
-    program->program->list_values(ValuePart::parameter, given(lister.under(program->path, "parameter")));
-    program->program->list_values(ValuePart::state, lister.under(program->path, "state"));
-    if (lister.fresh(program->path + ".steps"))
-      lister.one(program->path + ".steps", "1", "Control steps so far.", static_cast<double>(program->steps));
-  }
+  list_programs(entity.programs, lister);
 }
 
 /// What an unknown address was meant to be.
@@ -328,20 +355,30 @@ Error no_such(const Simulation& simulation, std::string_view address) {
       for (const auto* slots : {&device->topics, &device->commands})
         for (const Simulation::Slot& slot : *slots) things.push_back(slot.topic->name().substr(1));
     }
-    for (const auto& program : entity->programs) things.push_back(program->path);
-    for (const std::string& each : things) known = known || each == thing;
   } else {
     for (const auto& each : simulation.entities()) things.push_back(each->instance.name);
+  }
+  const Simulation::ProgramEntries* const programs = simulation.programs_of(first_part(thing));
+  if (programs) {
+    for (const auto& program : *programs) {
+      things.push_back(program->path);
+      if (program->outputs)
+        for (const Outputs::Output& output : program->outputs->all())
+          things.push_back(output.topic->name().substr(1));
+    }
+    for (const std::string& each : things) known = known || each == thing;
   }
   if (!known) return {"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, things)};
   std::vector<std::string> addresses;
   if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision", "sim.errors"};
   if (thing == "values")
     for (const std::string& name : simulation.monitor().value_names()) addresses.push_back("values." + name);
-  if (entity)
-    list_entity(simulation, *entity, [&, wanted = std::string_view(thing)](const ValueEntry& entry) {
-      if (cut(entry.path).first == wanted) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
-    });
+  const ValueVisit take = [&, wanted = std::string_view(thing)](const ValueEntry& entry) {
+    if (cut(entry.path).first == wanted) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
+  };
+  Lister lister(take);
+  if (entity) list_entity(simulation, *entity, take);
+  else if (programs) list_programs(*programs, lister);
   if (rest.empty()) {
     std::string example;
     if (!addresses.empty()) example = "name one of its values, such as " + addresses.front();
@@ -424,6 +461,9 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
     const bool is_static = each->instance.model->is_static && !each->instance.motion && each->devices.empty();
     if (entity.empty() ? !is_static : each->instance.name == entity) list_entity(simulation, *each, visit);
   }
+  Lister lister(visit);
+  for (const Simulation::Team& team : simulation.teams())
+    if (entity.empty() || team.decl.name == entity) list_programs(team.programs, lister);
 }
 
 Result<ValueExpression> ValueExpression::compile(const Simulation& simulation, std::string_view text,

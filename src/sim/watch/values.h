@@ -13,6 +13,8 @@
 ///   rover/laser.reading.PATH, .parameter.PATH, .state.PATH      where one hides another
 ///   rover/laser/ranges.PATH                         the message of one level, by the topic's name; also commands
 ///   rover/controller.PATH                           a program: a parameter, else its state, else steps
+///   rover/controller/estimate.PATH                  a message that the program publishes, by the topic's name
+///   red/coach.PATH                                  a program of team red, and its topics, likewise
 ///
 /// Reading changes nothing. An address once found follows its thing through spawns, deletions and level changes; what
 /// is gone, has not been measured yet or lies beyond the end of a list has no value.
@@ -72,6 +74,9 @@ class NamedValue {
   bool resolve_thing(const Simulation::Entity& entity);
   bool resolve_device(const Simulation::Device& device);
   bool resolve_program(const Simulation::ProgramEntry& program);
+  /// A topic by its name, or a program by its path.
+  bool resolve_topic(const TopicBase& topic);
+  bool resolve_programs(const Simulation::ProgramEntries& programs, std::string_view thing);
   bool take(What what, std::size_t skip, const ValueFound& found);
   ValueFound look() const;
 

@@ -31,6 +31,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
                                                        Diagnostics& diagnostics) {
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
   SL_TRY(sim->build(diagnostics));
+  if (options.start_programs && options.run_programs)
+    SL_TRY(sim->programs_.connect(sim->entities_, true, false));
   // Tick 0: nothing has moved yet, but sensors whose first sample is due now take it and programs see it.
   sim->arena_->execute([&] {
     sim->update_scene();
@@ -39,7 +41,14 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
     sim->judge();
     sim->control();
   });
+  sim->programs_.await_answers();
   return sim;
+}
+
+void Simulation::connect_programs() {
+  if (!options_.run_programs) return;
+  const Status status = programs_.connect(entities_, options_.start_programs, true);
+  SL_CHECK(status);  // of a world that is there all failures are warnings
 }
 
 Status Simulation::build(Diagnostics& diagnostics) {
@@ -62,6 +71,7 @@ Status Simulation::build(Diagnostics& diagnostics) {
   // The instances live in the entities from here on; one copy is enough.
   for (model::Instance& instance : std::exchange(setup_.instances, {}))
     SL_TRY(add_entity(std::move(instance), diagnostics));
+  SL_TRY(programs_.add_teams(entities_, now_, diagnostics));
   scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
@@ -84,6 +94,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   if (find_entity(instance.name))
     return Error{"there are two things named '" + instance.name + "'", "give one of them another name",
                  instance.place};
+  SL_TRY(check_team(instance));
   const Pose X_WM = instance.X_WM;
   if (instance.motion) instance.X_WM = model::pose_at(*instance.motion, now_.s());
   auto id = engine_->add(instance);
@@ -105,9 +116,26 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = devices_.add(added, decl, *engine_, now_, diagnostics);
   for (std::size_t i = 0; i < added.instance.controllers.size(); ++i)
-    if (status) status = programs_.add(added, added.instance.controllers.share(i));
+    if (status) status = programs_.add(added, added.instance.controllers.share(i), now_, diagnostics);
+  // Of a world that is being built the teams come last.
+  if (status && added.instance.is_robot) status = programs_.describe_team(entities_, added.instance.team);
   if (!status) remove_entity(entities_.size() - 1);
   return status;
+}
+
+/// Where there are teams, a robot's is one of them, and nothing else has the name of one.
+Status Simulation::check_team(const model::Instance& instance) const {
+  if (setup_.teams.empty()) return {};
+  std::vector<std::string> names;
+  for (const model::TeamDecl& team : setup_.teams) {
+    if (team.name == instance.name)
+      return Error{"'" + instance.name + "' is the name of a team", "give one of the two another name",
+                   instance.place};
+    names.push_back(team.name);
+  }
+  if (instance.team.empty() || std::find(names.begin(), names.end(), instance.team) != names.end()) return {};
+  return Error{"'" + instance.name + "' is of team '" + instance.team + "', which is not there",
+               suggestion(instance.team, names), instance.place};
 }
 
 void Simulation::remove_entity(std::size_t index) {
@@ -159,8 +187,19 @@ Simulation::Device* Simulation::find_device(std::string_view path) {
 }
 
 Simulation::ProgramEntry* Simulation::find_program(std::string_view path) {
-  Entity* const entity = find_entity(first_part(path));
-  return entity ? entity->find_program(path) : nullptr;
+  const std::string_view owner = first_part(path);
+  if (Entity* const entity = find_entity(owner)) return entity->find_program(path);
+  if (Team* const team = programs_.find_team(owner))
+    for (auto& program : team->programs)
+      if (program->path == path) return program.get();
+  return nullptr;
+}
+
+const Simulation::ProgramEntries* Simulation::programs_of(std::string_view owner) const {
+  if (const Entity* const entity = find_entity(owner)) return &entity->programs;
+  for (const Team& team : teams())
+    if (team.decl.name == owner) return &team.programs;
+  return nullptr;
 }
 
 std::optional<InstanceId> Simulation::find_instance(std::string_view name) const {
@@ -170,11 +209,17 @@ std::optional<InstanceId> Simulation::find_instance(std::string_view name) const
 
 const TopicBase* Simulation::find_topic(std::string_view name) const {
   const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
-  const Entity* const entity = find_entity(name.substr(begin, name.find('/', begin) - begin));
-  if (!entity) return nullptr;
-  for (const auto& device : entity->devices)
-    for (const Slot& slot : device->topics)
-      if (slot.topic->name() == name || device->path == name) return slot.topic.get();
+  const std::string_view owner = name.substr(begin, name.find('/', begin) - begin);
+  if (const Entity* const entity = find_entity(owner))
+    for (const auto& device : entity->devices)
+      for (const Slot& slot : device->topics)
+        if (slot.topic->name() == name || device->path == name) return slot.topic.get();
+  if (const ProgramEntries* const programs = programs_of(owner))
+    for (const auto& program : *programs)
+      if (program->outputs)
+        for (const Outputs::Output& output : program->outputs->all())
+          if (std::string_view(output.topic->name()).substr(1) == name.substr(begin))
+            return output.topic.get();
   return nullptr;
 }
 
@@ -191,9 +236,7 @@ TopicBase* Simulation::find_command(std::string_view name) const {
 
 std::vector<const TopicBase*> Simulation::topics() const {
   std::vector<const TopicBase*> all;
-  for (const auto& entity : entities_)
-    for (const auto& device : entity->devices)
-      for (const Slot& slot : device->topics) all.push_back(slot.topic.get());
+  for_each_topic([&](const TopicBase& topic, const std::string&) { all.push_back(&topic); });
   return all;
 }
 

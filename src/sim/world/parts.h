@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/deep_const.h"
+#include "control/program.h"
 #include "devices/kind.h"
-#include "sim/world/program.h"
 
 namespace sandlot {
 
@@ -48,6 +48,19 @@ struct SimulationParts {
     DeepConst<Device*> device;
     DeepConst<Slot*> slot;  ///< null: nothing takes it
   };
+  /// When a program with a `rate` of its own steps: as devices do, see Timing.
+  struct Schedule {
+    double rate_hz = 0;
+    Time start;
+    std::uint64_t step = 0;  ///< index of the next step
+    Time due;                ///< of it; follows from the others
+  };
+  /// What a program waits for, where it is not simply its next control step.
+  struct Wait {
+    Program::Waiting waiting_for = Program::Waiting::control_step;
+    Time until;
+    std::uint32_t reading = 0;
+  };
   struct ProgramEntry {
     explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
         : shared_decl(std::move(declared)), decl(*shared_decl) {}
@@ -55,7 +68,7 @@ struct SimulationParts {
     const model::ControllerDecl& decl;
     std::string path;
     std::uint64_t key = 0;
-    const ControllerKind* kind = nullptr;
+    const ControllerKind* kind = nullptr;  ///< null: not a controller, but a kind of programs/
     Owned<Program> program;
     DeepConst<Controller*> controller;  ///< the program's, where it is no more than a controller
     /// One object for robots with equal devices: its `robot` is the first of them.
@@ -65,16 +78,21 @@ struct SimulationParts {
     std::vector<std::uint64_t> seen;       ///< message counts at its previous step
     Command command;
     std::uint64_t steps = 0;
+    Owned<Schedule> schedule;  ///< null: it steps at the run's control steps
     bool ended = false;
-    std::optional<std::string> failure;  ///< in its last step; ends the run
+    std::optional<std::string> failure;       ///< in its last step; ends the run
+    Owned<Outputs> outputs;                   ///< null: it has no topics
+    Owned<Wait> wait;                         ///< null: it is a controller
+    std::vector<DeepConst<Device*>> sources;  ///< devices of its readings; null: a topic of a program
   };
+  using ProgramEntries = std::vector<Owned<ProgramEntry>>;
   struct Entity {
     model::Instance instance;
     InstanceId id;
     std::uint64_t key = 0;
     std::uint64_t serial = 0;  ///< creation order over the whole run
     std::vector<Owned<Device>> devices;
-    std::vector<Owned<ProgramEntry>> programs;
+    ProgramEntries programs;
 
     /// By path, "rover/laser"; null when there is none.
     Device* find_device(std::string_view path) {
@@ -87,6 +105,11 @@ struct SimulationParts {
         if (program->path == path) return program.get();
       return nullptr;
     }
+  };
+  /// Team: robots that programs of their own drive together.
+  struct Team {
+    model::TeamDecl decl;
+    ProgramEntries programs;
   };
 };
 

@@ -1,4 +1,4 @@
-/// Control programs: how they are made, stepped and heard.
+/// Control programs in the phases of a tick: how they step, and how their orders are delivered.
 #include "sim/world/programs.h"
 
 #include <algorithm>
@@ -6,20 +6,11 @@
 #include <map>
 
 #include "base/text.h"
-#include "control/kinds_with.h"
-#include "controllers/controllers.h"
 #include "physics/parallel.h"
-#include "sim/load/device_settings.h"
-#include "sim/load/plugin.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
 namespace {
-
-/// Name of a topic relative to its device's path: "right/image".
-std::string_view part_of(const SimulationParts::Device& device, const TopicBase& topic) {
-  return std::string_view(topic.name()).substr(device.path.size() + 2);
-}
 
 /// Few enough to stay on the stack, enough for a kind to run warm.
 constexpr std::size_t most_in_batch = 16;
@@ -45,200 +36,10 @@ void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
     }
 }
 
+/// Sources of orders of teams come after those of robots, whose sources are their creation order.
+constexpr std::uint64_t first_team = std::uint64_t{1} << 63;
+
 }  // namespace
-
-// --------------------------------------------------------------------------------------- how programs come to be
-
-Status Programs::gather_kinds(std::vector<model::PluginDecl>& plugins, const SimulationOptions& options,
-                              Diagnostics& diagnostics) {
-  std::map<std::string, std::string, std::less<>> owners;
-  const auto add = [&](const ControllerKind* kind, const std::string& owner, const Place& place) -> Status {
-    const auto [known, fresh] = owners.emplace(kind->name, owner);
-    if (!fresh)
-      return Error{owner + " brings a controller '" + kind->name + "', and so does " + known->second,
-                   "give it another name", place, "/plugins"};
-    kinds_.push_back(kind);
-    return {};
-  };
-  for (const ControllerKind* kind : sandlot::controller_kinds()) SL_TRY(add(kind, "Sandlot", {}));
-  for (const ControllerKind* kind : options.extra_controllers) SL_TRY(add(kind, "this program", {}));
-  for (model::PluginDecl& decl : plugins) {
-    SL_ASSIGN(const Plugin* const plugin, load_plugin(decl, options.paths, diagnostics));
-    decl = {plugin->file, plugin->name, plugin->hash, decl.place};
-    for (const ControllerKind* kind : plugin->controllers)
-      SL_TRY(add(kind, "plugin '" + plugin->file + "'", decl.place));
-  }
-  return {};
-}
-
-Status Programs::add(Entity& entity, std::shared_ptr<const model::ControllerDecl> declared) {
-  SL_ASSIGN(auto program, make(entity, declared));
-  if (entity.find_device(program->path) || entity.find_program(program->path))
-    return Error{"'" + program->path + "' names two things", "give the controller another name",
-                 declared->place};
-  entity.programs.push_back(std::move(program));
-  changed_ = true;
-  follow_levels(entity);
-  return {};
-}
-
-Result<std::unique_ptr<Programs::ProgramEntry>> Programs::make(
-    const Entity& entity, std::shared_ptr<const model::ControllerDecl> declared) {
-  const model::ControllerDecl& decl = *declared;
-  const auto at = [&](Error error) {
-    if (!error.place.file) error.place = decl.place;
-    return error;
-  };
-  const ControllerKind* kind = nullptr;
-  std::vector<std::string> names;
-  for (const ControllerKind* each : kinds_) {
-    names.emplace_back(each->name);
-    if (decl.kind == each->name) kind = each;
-  }
-  if (!kind) return at({"no controller '" + decl.kind + "'", suggestion(decl.kind, names)});
-  auto program = std::make_unique<ProgramEntry>(std::move(declared));
-  program->path = entity.instance.name + "/" + sanitised(decl.name);
-  program->key = entity_key(program->path);
-
-  std::unique_ptr<Controller> controller;
-  Status status;
-  const auto thrown = caught([&] {
-    controller = kind->create();
-    program->description = describe(entity);
-    if (program->description->robot == entity.instance.name) {
-      status = controller->init(*program->description, decl.config);
-    } else {
-      Description own = *program->description;
-      own.robot = entity.instance.name;
-      status = controller->init(own, decl.config);
-    }
-  });
-  if (thrown)
-    return at({"controller '" + program->path + "' (" + decl.kind + ") threw while it began: " + *thrown});
-  if (!status) return at(std::move(status.error()));
-  program->kind = kind;
-  program->controller = controller.get();
-  program->program = std::make_unique<ControllerProgram>(std::move(controller));
-  program->topics.resize(program->description->readings.size());
-  program->seen.resize(program->description->readings.size(), 0);
-  program->routes.resize(program->description->actuators.size());
-  return program;
-}
-
-/// Description of a robot for its programs: the same object as for the robot before it, if they have the same devices.
-std::shared_ptr<const Description> Programs::describe(const Entity& entity) {
-  Description description;
-  description.robot = entity.instance.name;
-  set_kinds_with(kinds_with);
-  description.control_period_s = (setup_.step * setup_.control_interval).s();
-  const model::Model& model = *entity.instance.model;
-  for (const auto& device : entity.devices) {
-    const Pose X_BS = inverse(model.links.front().X_ML) * model.links[device->decl.link].X_ML *
-                      device->decl.X_LS;
-    // One entry per type that follows the device's active level, then one per level.
-    const auto describe = [&](const std::vector<SimulationParts::Slot>& slots,
-                              std::vector<Description::Entry>& entries) {
-      std::vector<std::string> types;
-      for (const SimulationParts::Slot& slot : slots) {
-        if (std::find(types.begin(), types.end(), slot.topic->type()) != types.end()) continue;
-        types.emplace_back(slot.topic->type());
-        entries.push_back(
-            {device->decl.name, "", slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
-      }
-      for (const SimulationParts::Slot& slot : slots) {
-        const auto& levels = devices_.kind(*device).levels;
-        const std::string level = slot.level < levels.size() ? levels[slot.level].name : "";
-        if (!level.empty())
-          entries.push_back({device->decl.name, level, slot.topic->type(),
-                             static_cast<std::uint32_t>(entries.size()), X_BS});
-        // Of several of one type at one level, such as the pictures of a pair of eyes, each has its own name, too.
-        const auto alike = std::count_if(slots.begin(), slots.end(), [&](const SimulationParts::Slot& other) {
-          return other.level == slot.level && std::string_view(other.topic->type()) == slot.topic->type();
-        });
-        if (alike > 1)
-          entries.push_back({device->decl.name, std::string(part_of(*device, *slot.topic)),
-                             slot.topic->type(), static_cast<std::uint32_t>(entries.size()), X_BS});
-      }
-    };
-    describe(device->topics, description.readings);
-    describe(device->commands, description.actuators);
-  }
-  const auto same = [](const Description::Entry& a, const Description::Entry& b) {
-    return a.device == b.device && a.level == b.level && a.type == b.type && a.X_BS == b.X_BS;
-  };
-  const auto all_same = [&](const std::vector<Description::Entry>& a,
-                            const std::vector<Description::Entry>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
-  };
-  if (!described_ || !all_same(described_->readings, description.readings) ||
-      !all_same(described_->actuators, description.actuators))
-    described_ = std::make_shared<const Description>(std::move(description));
-  return described_;
-}
-
-void Programs::follow_levels(Entity& entity) {
-  for (auto& program : entity.programs) {
-    for (const Description::Entry& entry : program->description->readings) {
-      const TopicBase* first = nullptr;
-      const TopicBase* chosen = nullptr;
-      for (const auto& device : entity.devices) {
-        if (device->decl.name != entry.device) continue;
-        const auto& levels = devices_.kind(*device).levels;
-        for (const SimulationParts::Slot& slot : device->topics) {
-          if (entry.type != slot.topic->type()) continue;
-          const bool always = slot.level >= levels.size();
-          const bool named = entry.level == part_of(*device, *slot.topic);
-          if (!entry.level.empty() && !named && (always || entry.level != levels[slot.level].name)) continue;
-          if (!first) first = slot.topic.get();
-          if (!chosen && (always || (device->levels >> slot.level & 1))) chosen = slot.topic.get();
-        }
-      }
-      program->topics[entry.index] = chosen ? chosen : first;
-    }
-    for (const Description::Entry& entry : program->description->actuators) {
-      SimulationParts::Route& route = program->routes[entry.index];
-      route = {};
-      for (auto& device : entity.devices)
-        if (device->decl.name == entry.device)
-          route = {device.get(), devices_.command_slot(*device, entry.type, entry.level)};
-    }
-  }
-}
-
-Status Programs::describe_again(Entity& entity) {
-  std::vector<Owned<ProgramEntry>> fresh;
-  std::uint64_t refused = 0;
-  for (const auto& old : entity.programs) {
-    SL_ASSIGN(auto program, make(entity, old->shared_decl));
-    program->steps = old->steps;
-    program->ended = old->ended;
-    ByteWriter w;
-    old->program->save(w);
-    ByteReader r(w.bytes());
-    program->program->load(r);
-    const auto same = [](const Description::Entry& a, const Description::Entry& b) {
-      return a.device == b.device && a.level == b.level && a.type == b.type;
-    };
-    for (const Description::Entry& entry : program->description->readings)
-      for (const Description::Entry& before : old->description->readings)
-        if (same(entry, before)) program->seen[entry.index] = old->seen[before.index];
-    // Orders of the previous tick are still to be carried out.
-    for (const Command::Order& order : old->command.orders()) {
-      const auto& actuators = program->description->actuators;
-      const auto now = std::find_if(actuators.begin(), actuators.end(), [&](const Description::Entry& entry) {
-        return same(entry, old->description->actuators[order.slot]);
-      });
-      if (now == actuators.end()) ++refused;
-      else program->command.set_bytes(now->index, old->command.bytes(order));
-    }
-    fresh.push_back(std::move(program));
-  }
-  entity.programs = std::move(fresh);
-  changed_ = true;
-  commands_.count_refused(refused);
-  follow_levels(entity);
-  return {};
-}
 
 // --------------------------------------------------------------------------------------------- phases of a tick
 
@@ -246,27 +47,68 @@ Status Programs::describe_again(Entity& entity) {
 void Programs::gather(Entities entities) {
   if (!changed_) return;
   changed_ = false;
-  all_.clear();
-  owners_.clear();
-  running_.clear();
+  for (auto* const list : {&all_, &running_, &timed_, &publishing_, &outside_}) list->clear();
+  sources_.clear();
+  const auto add = [&](ProgramEntry& program, std::uint64_t source) {
+    all_.push_back(&program);
+    sources_.push_back(source);
+    if (program.outputs) publishing_.push_back(&program);
+    if (program.program->outside()) outside_.push_back(&program);
+    if (!program.ended) (program.schedule || program.wait ? timed_ : running_).push_back(&program);
+  };
   for (auto& entity : entities)
-    for (auto& program : entity->programs) {
-      all_.push_back(program.get());
-      owners_.push_back(entity.get());
-      if (!program->ended) running_.push_back(program.get());
-    }
+    for (auto& program : entity->programs) add(*program, entity->serial);
+  for (std::size_t i = 0; i < teams_.size(); ++i)
+    for (auto& program : teams_[i].programs) add(*program, first_team + i);
   // Kind by kind, in the order in which the kinds first appear.
-  std::map<const ControllerKind*, std::size_t> place;
-  for (const ProgramEntry* const entry : running_) place.emplace(entry->kind, place.size());
-  std::stable_sort(running_.begin(), running_.end(), [&](const ProgramEntry* a, const ProgramEntry* b) {
-    return place.at(a->kind) < place.at(b->kind);
-  });
+  for (auto* const list : {&running_, &timed_}) {
+    std::map<const ControllerKind*, std::size_t> place;
+    for (const ProgramEntry* const entry : *list) place.emplace(entry->kind, place.size());
+    std::stable_sort(list->begin(), list->end(), [&](const ProgramEntry* a, const ProgramEntry* b) {
+      return place.at(a->kind) < place.at(b->kind);
+    });
+  }
+}
+
+bool Programs::is_due(const ProgramEntry& entry, Time now, bool control_step) const {
+  if (entry.wait && entry.wait->waiting_for == Program::Waiting::time) return entry.wait->until <= now;
+  if (entry.wait && entry.wait->waiting_for == Program::Waiting::message)
+    return entry.topics[entry.wait->reading]->count > entry.seen[entry.wait->reading];
+  return entry.schedule ? entry.schedule->due <= now : control_step;
+}
+
+/// Notes what a program waits for now.
+void Programs::take(ProgramEntry& entry, Program::Resumed resumed) {
+  entry.failure = std::move(resumed.failure);
+  entry.ended = resumed.waiting_for == Program::Waiting::nothing;
+  if (!entry.wait) return;
+  SL_CHECK(resumed.waiting_for != Program::Waiting::message || resumed.reading < entry.topics.size());
+  *entry.wait = {resumed.waiting_for, resumed.until, resumed.reading};
+}
+
+Error Programs::failure_of(const ProgramEntry& entry, Time now) {
+  const bool controller = static_cast<bool>(entry.controller);
+  return {std::string(controller ? "controller '" : "program '") + entry.path + "' (" + entry.decl.kind +
+              (controller ? ") threw at " : ") failed at ") + number_text(now.s()) + " s: " + *entry.failure,
+          "", entry.decl.place};
+}
+
+void Programs::plan_next_step(ProgramEntry& entry, Time now) const {
+  SimulationParts::Schedule& schedule = *entry.schedule;
+  if (schedule.due > now) return;  // it waited for something else
+  ++schedule.step;
+  // Steps that a long tick of a continuous clock skips are left out, and those in which it waited for something else.
+  if (setup_.clock.mode == model::Clock::Mode::continuous || entry.wait) {
+    const double passed = (now - schedule.start).s() * schedule.rate_hz;
+    schedule.step = std::max(schedule.step, static_cast<std::uint64_t>(passed) + 1);
+  }
+  schedule.due = due_time(schedule.start, static_cast<std::int64_t>(schedule.step), schedule.rate_hz);
 }
 
 void Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const {
   std::array<std::optional<Observation>, most_in_batch> seen;
   std::array<ControllerTurn, most_in_batch> turns;
-  const ControllerKind& kind = *batch.front()->kind;
+  const auto step_all = batch.front()->kind ? batch.front()->kind->step_all : nullptr;
   for (std::size_t i = 0; i < batch.size(); ++i) {
     ProgramEntry& entry = *batch[i];
     entry.command.clear();
@@ -274,26 +116,30 @@ void Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const 
                     Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
     turns[i] = {entry.controller.get(), &*seen[i], &entry.command};
   }
-  if (kind.step_all) kind.step_all({turns.data(), batch.size()});
+  if (step_all) step_all({turns.data(), batch.size()});
   for (std::size_t i = 0; i < batch.size(); ++i) {
     ProgramEntry& entry = *batch[i];
-    if (kind.step_all) {
-      entry.failure = std::move(turns[i].failure);
-    } else {
-      Program::Resumed resumed = entry.program->resume(now, *seen[i], entry.command);
-      entry.failure = std::move(resumed.failure);
-      entry.ended = resumed.waiting_for == Program::Waiting::nothing;
-    }
+    if (step_all) entry.failure = std::move(turns[i].failure);
+    else take(entry, entry.program->resume(*seen[i], entry.command));
     ++entry.steps;
+    if (entry.schedule) plan_next_step(entry, now);
     for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
   }
 }
 
-std::optional<Error> Programs::step(Entities entities, Time now) {
+std::optional<Error> Programs::step(Entities entities, Time now, bool control_step) {
   gather(entities);
-  parallel_for(running_.size(), 64, [&](std::size_t begin, std::size_t end) {
+  std::span<ProgramEntry* const> due;
+  if (control_step) due = running_;
+  if (!timed_.empty()) {
+    due_.assign(due.begin(), due.end());
+    for (ProgramEntry* const entry : timed_)
+      if (is_due(*entry, now, control_step)) due_.push_back(entry);
+    due = due_;
+  }
+  parallel_for(due.size(), 64, [&](std::size_t begin, std::size_t end) {
     while (begin < end) {
-      std::span<ProgramEntry* const> batch(&running_[begin], std::min(most_in_batch, end - begin));
+      const auto batch = due.subspan(begin, std::min(most_in_batch, end - begin));
       prefetch(batch);
       std::size_t count = 1;
       while (count < batch.size() && batch[count]->kind == batch.front()->kind) ++count;
@@ -301,14 +147,15 @@ std::optional<Error> Programs::step(Entities entities, Time now) {
       begin += count;
     }
   });
+  for (ProgramEntry* const entry : publishing_) entry->outputs->commit(now);
   std::optional<Error> failed;
-  for (const ProgramEntry* entry : running_) {
+  for (const ProgramEntry* entry : due) {
     changed_ = changed_ || entry->ended;
-    if (!entry->failure || failed) continue;
-    failed = Error{"controller '" + entry->path + "' (" + entry->decl.kind + ") threw at " +
-                       number_text(now.s()) + " s: " + *entry->failure,
-                   "", entry->decl.place};
+    if (entry->failure && !failed) failed = failure_of(*entry, now);
   }
+  awaited_.clear();
+  for (ProgramEntry* const entry : outside_)
+    if (std::find(due.begin(), due.end(), entry) != due.end()) awaited_.push_back(entry);
   return failed;
 }
 
@@ -325,6 +172,10 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
       __builtin_prefetch(next.command.orders().data());
     }
     for (const Command::Order& order : program.command.orders()) {
+      if (order.is_sample()) {
+        deliver_sample(program, order, logged, sources_[i]);
+        continue;
+      }
       SimulationParts::Route& route = program.routes[order.slot];
       const bool taken = route.slot && !commands_.is_overridden(*route.device) &&
                          DevicePools::takes_commands(*route.device, now);
@@ -334,11 +185,10 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
       const bool refused = !slot || !Commands::deliver(*slot, bytes, now);
       if (refused) commands_.count_refused();
       if (!logged) continue;
-      const Entity& entity = *owners_[i];
       const Description::Entry& entry = program.description->actuators[order.slot];
-      LogEntry& log = commands_.log_entry(LogEntry::command, {Source::Kind::program, entity.serial},
+      LogEntry& log = commands_.log_entry(LogEntry::command, {Source::Kind::program, sources_[i]},
                                           program.steps);
-      log.target.append(entity.instance.name).append("/").append(sanitised(entry.device));
+      if (route.device) log.target = route.device->path;
       if (!entry.level.empty()) log.target.append("/").append(entry.level);
       log.type = entry.type;
       log.bytes.assign(bytes.begin(), bytes.end());
@@ -346,6 +196,23 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
     }
     program.command.clear();
   }
+}
+
+/// Asks a device for a sample at the end of this tick.
+void Programs::deliver_sample(const ProgramEntry& program, const Command::Order& order, bool logged,
+                              std::uint64_t source) {
+  const Device* const device = program.sources[order.reading()].get();
+  if (device) devices_.request_sample(*device);
+  else commands_.count_refused();
+  if (!logged) return;
+  const SampleRequest request{device ? device->path : ""};
+  LogEntry& log = commands_.log_entry(static_cast<std::uint8_t>(Request(request).index()),
+                                      {Source::Kind::program, source}, program.steps);
+  log.target = request.device;
+  ByteWriter w;
+  write_request(w, request);
+  log.bytes.assign(w.bytes().begin(), w.bytes().end());
+  log.refused = !device;
 }
 
 // --------------------------------------------------------------------------------------------------------- State
@@ -361,10 +228,21 @@ void Programs::save(const ProgramEntry& program, ByteWriter& w) {
     write(w, static_cast<std::uint32_t>(bytes.size()));
     w.raw(bytes.data(), bytes.size());
   }
+  if (program.schedule) {
+    write(w, program.schedule->start);
+    write(w, program.schedule->step);
+  }
+  if (program.wait) {
+    write(w, program.wait->waiting_for);
+    write(w, program.wait->until);
+    write(w, program.wait->reading);
+  }
+  if (program.outputs)
+    for (const Outputs::Output& output : program.outputs->all()) output.topic->save(w);
   program.program->save(w);
 }
 
-bool Programs::load(ProgramEntry& program, ByteReader& r) {
+bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
   const std::size_t readings = program.seen.size();
   read(r, program.steps);
   read(r, program.ended);
@@ -377,9 +255,37 @@ bool Programs::load(ProgramEntry& program, ByteReader& r) {
     read(r, slot);
     read(r, size);
     const auto bytes = r.take(size);
+    if ((slot & Command::sample_bit) != 0) {
+      if ((slot & ~Command::sample_bit) >= readings || size != 0) return false;
+      program.command.request_sample_of(slot & ~Command::sample_bit);
+      continue;
+    }
     if (slot >= program.description->actuators.size()) return false;
     program.command.set_bytes(slot, bytes);
   }
+  if (program.schedule) {
+    SimulationParts::Schedule& schedule = *program.schedule;
+    read(r, schedule.start);
+    read(r, schedule.step);
+    // The due time is computed from these: what cannot be would overflow.
+    if (schedule.start < Time{} || schedule.start > now) return false;
+    if (static_cast<double>(schedule.step) > (now - schedule.start).s() * schedule.rate_hz + 2) return false;
+    schedule.due = due_time(schedule.start, static_cast<std::int64_t>(schedule.step), schedule.rate_hz);
+  }
+  if (program.wait) {
+    SimulationParts::Wait& wait = *program.wait;
+    read(r, wait.waiting_for);
+    read(r, wait.until);
+    read(r, wait.reading);
+    if (wait.waiting_for > Program::Waiting::nothing || wait.until < Time{} ||
+        (wait.waiting_for == Program::Waiting::message && wait.reading >= readings))
+      return false;
+  }
+  if (program.outputs)
+    for (Outputs::Output& output : program.outputs->all()) {
+      output.topic->load(r);
+      if (output.topic->stamp < Time{} || output.topic->stamp > now) return false;
+    }
   program.program->load(r);
   return r.ok() && program.seen.size() == readings;
 }

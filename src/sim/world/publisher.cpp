@@ -172,23 +172,21 @@ void Publisher::fill_topics(Frame& frame) {
   frame.topics.clear();  // before copies are taken: those that this frame held are free now
   if (!wants_.messages) return;
   std::size_t place = 0;
-  for (const auto& entity : sim_.entities_)
-    for (const auto& device : entity->devices)
-      for (const SimulationParts::Slot& slot : device->topics) {
-        const std::size_t own = place++;
-        if (slot.topic->count == 0 || slot.topic->stamp != sim_.now_) continue;
-        if (memory_->copies.size() <= own) memory_->copies.resize(own + 1);
-        Ring<TopicBase>& ring = memory_->copies[own];
-        const auto clone = [&] { return std::shared_ptr<TopicBase>(slot.topic->clone()); };
-        std::shared_ptr<TopicBase> copy = ring.take(clone);
-        // Devices come and go, and with them the places.
-        if (copy->name() != slot.topic->name() || std::string_view(copy->type()) != slot.topic->type()) {
-          ring = {};
-          copy = ring.take(clone);
-        }
-        copy->copy_from(*slot.topic);
-        frame.topics.push_back(std::move(copy));
-      }
+  sim_.for_each_topic([&](const TopicBase& topic, const std::string&) {
+    const std::size_t own = place++;
+    if (topic.count == 0 || topic.stamp != sim_.now_) return;
+    if (memory_->copies.size() <= own) memory_->copies.resize(own + 1);
+    Ring<TopicBase>& ring = memory_->copies[own];
+    const auto clone = [&] { return std::shared_ptr<TopicBase>(topic.clone()); };
+    std::shared_ptr<TopicBase> copy = ring.take(clone);
+    // Devices come and go, and with them the places.
+    if (copy->name() != topic.name() || std::string_view(copy->type()) != topic.type()) {
+      ring = {};
+      copy = ring.take(clone);
+    }
+    copy->copy_from(topic);
+    frame.topics.push_back(std::move(copy));
+  });
 }
 
 /// A device that only senses changes when it takes a sample, a program when it runs and when its orders are carried
@@ -214,6 +212,11 @@ void Publisher::fill_hashes(Frame& frame) {
     constexpr std::size_t enough = 64 * 1024;
     if (p.bytes.size() > enough) p.hash_waiting();
   };
+  const auto add_programs = [&](const SimulationParts::ProgramEntries& programs) {
+    for (const auto& program : programs)
+      add(program->key, 2 * program->steps + (program->command.orders().empty() ? 0 : 1),
+          [&](ByteWriter& w) { Programs::save(*program, w); });
+  };
   add(0, always, [&](ByteWriter& w) { sim_.save_run(w); });
   for (const auto& entity : sim_.entities_) {
     add(entity->key, always, [&](ByteWriter& w) { sim_.engine_->save(entity->id, w); });
@@ -225,10 +228,9 @@ void Publisher::fill_hashes(Frame& frame) {
       add(device->key, only_senses ? version : always,
           [&](ByteWriter& w) { sim_.devices_.save(*device, w); });
     }
-    for (const auto& program : entity->programs)
-      add(program->key, 2 * program->steps + (program->command.orders().empty() ? 0 : 1),
-          [&](ByteWriter& w) { Programs::save(*program, w); });
+    add_programs(entity->programs);
   }
+  for (const SimulationParts::Team& team : sim_.teams()) add_programs(team.programs);
   p.hash_waiting();
   p.parts.resize(count);
   p.hashed_tick = sim_.tick_;

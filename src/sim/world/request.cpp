@@ -32,6 +32,9 @@ struct Save {
     write(w, x.name), write(w, x.link);
     return write(w, x.point_L), write(w, x.target_W), write(w, x.hold), true;
   }
+  bool operator()(const AnswerRequest& x) {
+    return write(w, x.program), write(w, x.answer.kind), write(w, x.answer.bytes), true;
+  }
 };
 
 struct Load {
@@ -49,6 +52,10 @@ struct Load {
     read(r, x.name), read(r, x.link);
     return read(r, x.point_L), read(r, x.target_W), read(r, x.hold), r.ok();
   }
+  bool operator()(AnswerRequest& x) {
+    read(r, x.program), read(r, x.answer.kind), read(r, x.answer.bytes);
+    return r.ok() && x.answer.kind <= OutsideAnswer::Kind::gone;
+  }
 };
 
 struct Target {
@@ -62,6 +69,7 @@ struct Target {
   const std::string& operator()(const LoadDeviceRequest& x) const { return x.robot; }
   const std::string& operator()(const UnloadDeviceRequest& x) const { return x.device; }
   const std::string& operator()(const PullRequest& x) const { return x.name; }
+  const std::string& operator()(const AnswerRequest& x) const { return x.program; }
 };
 
 }  // namespace
@@ -70,8 +78,8 @@ static_assert(std::is_same_v<std::variant_alternative_t<0, Request>, CommandRequ
 
 const char* request_kind(std::size_t index) {
   static constexpr std::array<const char*, std::variant_size_v<Request>> names{
-      "command", "parameter", "level",       "spawn",         "delete",
-      "pose",    "sample",    "load device", "unload device", "pull"};
+      "command", "parameter",   "level",         "spawn", "delete", "pose",
+      "sample",  "load device", "unload device", "pull",  "answer"};
   return index < names.size() ? names[index] : "unknown";
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/node.h"
+#include "control/program.h"
 #include "geometry/pose.h"
 #include "model/model.h"
 
@@ -74,8 +75,15 @@ struct SampleRequest {
   std::string device;
 };
 
-using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
-                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest>;
+/// What came from outside for a program that waits for it, or that nothing came in time.
+struct AnswerRequest {
+  std::string program;
+  OutsideAnswer answer;
+};
+
+using Request =
+    std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest, PoseRequest,
+                 SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest, AnswerRequest>;
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);

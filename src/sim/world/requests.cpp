@@ -27,6 +27,7 @@ struct Simulation::Processor {
   Status operator()(const LoadDeviceRequest& request);
   Status operator()(const UnloadDeviceRequest& request);
   Status operator()(const PullRequest& request);
+  Status operator()(const AnswerRequest& request);
 
  private:
   Result<Entity*> entity_named(const std::string& name);
@@ -113,7 +114,7 @@ Status Simulation::Processor::operator()(const LevelRequest& request) {
   SL_ASSIGN(Device* const device, device_named(request.device));
   SL_TRY(sim.devices_.set_levels(*device, request.levels, sim.context()));
   ++sim.revision_;
-  sim.programs_.follow_levels(sim.entity_of(*device));
+  sim.programs_.follow_levels(sim.entities_, sim.entity_of(*device));
   return {};
 }
 
@@ -127,6 +128,10 @@ Status Simulation::Processor::operator()(const SampleRequest& request) {
 
 Status Simulation::Processor::operator()(SpawnRequest& request) {
   Diagnostics ignored;
+  // A request may come from anywhere: it starts no process.
+  for (const model::ControllerDecl& decl : std::as_const(request.instance.controllers))
+    if (Programs::is_outside(decl.kind))
+      return Error{"a program of kind '" + decl.kind + "' begins with the run: it cannot be spawned"};
   SL_TRY(sim.add_entity(request.instance, ignored));
   sim.world_changed();
   return {};
@@ -134,6 +139,7 @@ Status Simulation::Processor::operator()(SpawnRequest& request) {
 
 Status Simulation::Processor::operator()(const DeleteRequest& request) {
   SL_ASSIGN(const Entity* const entity, entity_named(request.name));
+  SL_TRY(sim.programs_.describe_team(sim.entities_, entity->instance.team, entity));
   const auto place = std::find_if(sim.entities_.begin(), sim.entities_.end(),
                                   [&](const auto& each) { return each.get() == entity; });
   sim.remove_entity(static_cast<std::size_t>(place - sim.entities_.begin()));
@@ -154,6 +160,19 @@ Status Simulation::Processor::operator()(const PullRequest& request) {
   return sim.pulls_.start(*entity, request, sim.now_);
 }
 
+Status Simulation::Processor::operator()(const AnswerRequest& request) {
+  ProgramEntry* const program = sim.find_program(request.program);
+  if (!program || !program->program->outside())
+    return Error{"there is no program '" + request.program.substr(0, 200) + "' that takes answers"};
+  if (program->ended) return Error{"program '" + program->path + "' has ended"};
+  if (!sim.options_.run_programs) return {};  // its orders are in the log, too
+  if (auto failed = sim.programs_.answer(*program, request.answer, sim.now_)) {
+    sim.fail(*failed);
+    return std::move(*failed);
+  }
+  return {};
+}
+
 // --------------------------------------------------------------------------------------------------------- devices
 
 /// The instance's own list of devices is extended as well, so that a snapshot taken later builds the same robot. A program
@@ -166,7 +185,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
                  std::to_string(request.device.link)};
   Diagnostics ignored;
   SL_TRY(sim.devices_.add(*entity, request.device, *sim.engine_, sim.now_, ignored));
-  if (Status described = sim.programs_.describe_again(*entity); !described) {
+  if (Status described = sim.programs_.describe_again(sim.entities_, *entity); !described) {
     sim.devices_.remove(*entity->devices.back());
     entity->devices.pop_back();
     return described;
@@ -189,7 +208,7 @@ Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   const std::ptrdiff_t index = place - entity.devices.begin();
   Owned<Device> taken = std::move(*place);
   entity.devices.erase(place);
-  if (Status described = sim.programs_.describe_again(entity); !described) {
+  if (Status described = sim.programs_.describe_again(sim.entities_, entity); !described) {
     entity.devices.insert(entity.devices.begin() + index, std::move(taken));
     return described;
   }

@@ -46,6 +46,9 @@ struct SimulationOptions {
   std::span<const ControllerKind* const> extra_controllers = {};
   ContactRule contact_rule = {};            ///< exceptions from the contact law (physics/contact_rule.h)
   std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
+  /// Whether programs that run in processes of their own are started. A scenario, and a snapshot, carry command lines:
+  /// allow it for those you trust. Without it, such programs give no orders but those of a log.
+  bool start_programs = false;
 };
 
 class Simulation final : public SimulationParts, public TopicFinder {
@@ -70,6 +73,10 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::uint64_t revision() const { return revision_; }
   const std::optional<std::string>& stop_reason() const { return stop_reason_; }
   const model::Setup& setup() const { return setup_; }
+
+  /// Connects programs that run outside this process, where the options allow it; else a warning each. create() has done
+  /// so if it was allowed; for a restored world, call it where the log of what came from outside ends.
+  void connect_programs();
 
   /// Queues a request for the next tick. @return its sequence number
   std::uint64_t submit(Request request, Source source = {}) {
@@ -109,6 +116,22 @@ class Simulation final : public SimulationParts, public TopicFinder {
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
   const TopicBase* find_topic(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
+  /// Calls visit(topic, path of the device or program that publishes it) for each topic: by entity in creation order, its
+  /// devices' and then its programs', and in the end those of teams.
+  template <class Visit>
+  void for_each_topic(Visit&& visit) const {
+    const auto published = [&](const ProgramEntries& programs) {
+      for (const auto& program : programs)
+        if (program->outputs)
+          for (const Outputs::Output& output : program->outputs->all()) visit(*output.topic, program->path);
+    };
+    for (const auto& entity : entities_) {
+      for (const auto& device : entity->devices)
+        for (const Slot& slot : device->topics) visit(*slot.topic, device->path);
+      published(entity->programs);
+    }
+    for (const Team& team : teams()) published(team.programs);
+  }
   /// The instances of the world now, in creation order.
   std::vector<const model::Instance*> instances() const;
   /// Devices and programs of an instance: path, kind, active levels, topics.
@@ -133,6 +156,10 @@ class Simulation final : public SimulationParts, public TopicFinder {
   /// The entities of the world, in creation order. Valid until the next tick.
   std::span<const Owned<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
+  /// In the order of the scenario.
+  const std::vector<Team>& teams() const { return programs_.teams(); }
+  /// Programs of an instance or a team; null: there is no such thing.
+  const ProgramEntries* programs_of(std::string_view owner) const;
   const PoolBase& pool(const Device& device) const { return devices_.pool(device); }
   const Kind& kind(const Device& device) const { return devices_.kind(device); }
   const Timing& timing(const Device& device) const { return devices_.timing(device); }
@@ -147,6 +174,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   // build.cpp: entities
   Status build(Diagnostics& diagnostics);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
+  Status check_team(const model::Instance& instance) const;
   void remove_entity(std::size_t index);
   void world_changed();
   Entity* find_entity(std::string_view name);

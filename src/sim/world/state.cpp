@@ -187,6 +187,9 @@ void Simulation::for_each_state(Visit&& visit) const {
     for (const auto& program : entity->programs)
       visit(program->path, program->key, [&](ByteWriter& w) { Programs::save(*program, w); });
   }
+  for (const Team& team : teams())
+    for (const auto& program : team.programs)
+      visit(program->path, program->key, [&](ByteWriter& w) { Programs::save(*program, w); });
 }
 
 /// Fills the hash of each part, the run's own first. @return the hash of all
@@ -212,6 +215,8 @@ std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
     for (const auto& device : entity->devices) names->push_back(device->path);
     for (const auto& program : entity->programs) names->push_back(program->path);
   }
+  for (const Team& team : teams())
+    for (const auto& program : team.programs) names->push_back(program->path);
   return names;
 }
 
@@ -281,6 +286,14 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) sim->entities_[i]->serial = opened.serials[i];
   ByteReader run = read_block(r);
   if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
+  const auto load_programs = [&](ProgramEntries& programs) -> Status {
+    for (auto& program : programs) {
+      ByteReader state = read_block(r);
+      if (!Programs::load(*program, state, sim->now_) || !whole(state))
+        return damaged("the program '" + program->path + "' cannot be read");
+    }
+    return {};
+  };
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
     Entity& entity = *sim->entities_[i];
     ByteReader bodies = read_block(r);
@@ -291,13 +304,10 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
       sim->devices_.load(*device, state, sim->now_);
       if (!whole(state)) return damaged("the device '" + device->path + "' cannot be read");
     }
-    for (auto& program : entity.programs) {
-      ByteReader state = read_block(r);
-      if (!Programs::load(*program, state) || !whole(state))
-        return damaged("the program '" + program->path + "' cannot be read");
-    }
-    sim->programs_.follow_levels(entity);
+    SL_TRY(load_programs(entity.programs));
+    sim->programs_.follow_levels(sim->entities_, entity);
   }
+  for (Team& team : sim->programs_.teams()) SL_TRY(load_programs(team.programs));
   sim->programs_.entities_changed();
   if (!whole(r)) return damaged("there is more in it than belongs there");
   sim->arena_->execute([&] {

@@ -17,6 +17,7 @@ Status Simulation::tick(std::optional<Time> measured) {
   arena_->execute([&] {
     set_step(measured);
     process_commands();    // 1  requests from outside, then orders that programs gave in the previous tick
+    if (!status_) return;  // an answer from outside that its program cannot go on with
     actuate();             // 2  actuators turn commands into targets and wrenches
     physics();             // 3  sub-steps: servo loops, then the engine
     if (!status_) return;  // nothing has moved: the world is that of the last tick that was sound
@@ -29,6 +30,8 @@ Status Simulation::tick(std::optional<Time> measured) {
     control();        // 8  programs decide; their orders act in the next tick
     publish();        // 9  the immutable frame to observers
   });
+  // Outside of the threads' work: what programs of other processes answer is input of the next tick.
+  if (status_) programs_.await_answers();
   return status_;
 }
 
@@ -180,8 +183,9 @@ void Simulation::judge() {
 
 void Simulation::control() {
   const PhaseTimer timer(phase_times_, Phase::control);
-  if (!options_.run_programs || tick_ % static_cast<std::uint64_t>(setup_.control_interval) != 0) return;
-  if (auto failed = programs_.step(entities_, now_)) fail(std::move(*failed));
+  if (!options_.run_programs) return;
+  const bool control_step = tick_ % static_cast<std::uint64_t>(setup_.control_interval) == 0;
+  if (auto failed = programs_.step(entities_, now_, control_step)) fail(std::move(*failed));
 }
 
 void Simulation::publish() {

@@ -1,0 +1,90 @@
+/// Programs that run outside this process: the one place that connects them and waits for them.
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/log.h"
+#include "sim/world/programs.h"
+
+namespace sandlot {
+
+Status Programs::connect(Entities entities, bool allowed, bool restored) {
+  if (std::exchange(connected_, true)) return {};
+  gather(entities);
+  const auto warn = [](const ProgramEntry& entry, const std::string& why) {
+    log::warning("program '" + entry.path + "' (" + entry.decl.kind + ") gives no orders: " + why);
+  };
+  for (ProgramEntry* const entry : outside_) {
+    Outside& outside = *entry->program->outside();
+    if (entry->ended || outside.connected()) continue;
+    if (!allowed) {
+      warn(*entry, "this run may not start programs; run the scenario itself, or add --allow-programs");
+      continue;
+    }
+    if (restored && !outside.connects_again()) {
+      warn(*entry, "the run was restored, and it stays detached then");
+      continue;
+    }
+    Status status = outside.connect();
+    if (status) continue;
+    if (!status.error().place.file) status.error().place = entry->decl.place;
+    if (!restored) return status;
+    warn(*entry, status.error().text());
+  }
+  return {};
+}
+
+void Programs::await_answers() {
+  if (awaited_.empty()) return;
+  using Clock = Outside::Clock;
+  const auto submit = [&](const ProgramEntry& entry, OutsideAnswer answer) {
+    commands_.submit(AnswerRequest{entry.path, std::move(answer)}, {});
+  };
+  std::vector<Outside::Watched> watched;
+  std::vector<pollfd> polled;
+  while (true) {
+    // In the order of the programs, so that what is there in time has one order.
+    std::erase_if(awaited_, [&](ProgramEntry* entry) {
+      Outside& outside = *entry->program->outside();
+      while (outside.expects_answer()) {
+        auto answer = outside.receive();
+        if (!answer) break;
+        submit(*entry, std::move(*answer));
+      }
+      if (!outside.expects_answer()) return true;
+      if (Clock::now() < outside.deadline()) return false;
+      submit(*entry, {OutsideAnswer::Kind::missed, {}});
+      return true;
+    });
+    if (awaited_.empty()) return;
+    watched.clear();
+    Clock::time_point deadline = Clock::time_point::max();
+    for (ProgramEntry* const entry : awaited_) {
+      entry->program->outside()->watched(watched);
+      deadline = std::min(deadline, entry->program->outside()->deadline());
+    }
+    polled.clear();
+    for (const Outside::Watched& each : watched)
+      polled.push_back({each.descriptor, static_cast<short>(each.writing ? POLLOUT : POLLIN), 0});
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    poll(polled.data(), polled.size(), static_cast<int>(std::clamp<std::int64_t>(left, 0, 60'000)));
+  }
+}
+
+std::optional<Error> Programs::answer(ProgramEntry& entry, const OutsideAnswer& answer, Time now) {
+  std::vector<const TopicBase*> forms(entry.routes.size(), nullptr);
+  for (const Description::Entry& actuator : entry.description->actuators)
+    if (const Device* const device = entry.routes[actuator.index].device.get())
+      for (const SimulationParts::Slot& slot : device->commands)
+        if (actuator.type == slot.topic->type()) forms[actuator.index] = slot.topic.get();
+  Program::Resumed resumed;
+  const auto thrown = caught([&] { resumed = entry.program->answer(answer, forms, entry.command); });
+  if (thrown) resumed.failure = thrown;
+  take(entry, std::move(resumed));
+  changed_ = changed_ || entry.ended;
+  if (!entry.failure) return std::nullopt;
+  return failure_of(entry, now);
+}
+
+}  // namespace sandlot

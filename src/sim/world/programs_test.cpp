@@ -1,0 +1,335 @@
+/// Programs: topics of their own, samples on request, control rates of their own, and programs of teams.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/load/load.h"
+#include "sim/test_world.h"
+#include "sim/watch/values.h"
+
+namespace sandlot::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Publishes the number of its steps.
+struct Counter {
+  using Spec = NoFields;
+  struct State {
+    std::uint32_t n = 0;
+    static void fields(auto& s, auto&& visit) { visit(Field{"n", "1", "Number of steps."}, s.n); }
+  };
+  Spec spec;
+  State state;
+  Publication<msg::UInt32> count;
+  Status init(const Description&, Outputs& out) {
+    count = out.publish<msg::UInt32>("count");
+    return {};
+  }
+  void step(const Observation&, Command& cmd) { cmd.publish(count, msg::UInt32{++state.n}); }
+};
+
+/// Adds up what it sees of a counter.
+struct Follower {
+  struct Spec {
+    std::string counter;
+    static void fields(auto& s, auto&& visit) { visit(Field{"counter", "", "Topic to follow."}, s.counter); }
+  };
+  struct State {
+    std::uint32_t seen = 0, fresh = 0;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"seen", "1", "Last number."}, s.seen);
+      visit(Field{"fresh", "1", "Fresh messages so far."}, s.fresh);
+    }
+  };
+  Spec spec;
+  State state;
+  Reading<msg::UInt32> counter;
+  Status init(const Description& robot) {
+    SL_ASSIGN(counter, robot.reading<msg::UInt32>(spec.counter));
+    return {};
+  }
+  void step(const Observation& obs, Command&) {
+    const auto view = obs.get(counter);
+    if (view.valid) state.seen = view.message.data;
+    state.fresh += view.fresh;
+  }
+};
+
+/// Requests a sample of the ground truth in every third step.
+struct Sampler {
+  using Spec = NoFields;
+  using State = Counter::State;
+  Spec spec;
+  State state;
+  Reading<msg::Odometry> truth;
+  Status init(const Description& robot) {
+    SL_ASSIGN(truth, robot.reading<msg::Odometry>("truth"));
+    return {};
+  }
+  void step(const Observation&, Command& cmd) {
+    if (++state.n % 3 == 0) cmd.request_sample(truth);
+  }
+};
+
+/// A name that cannot be one of a topic.
+struct Misnamed : Counter {
+  Status init(const Description&, Outputs& out) {
+    count = out.publish<msg::UInt32>("a b");
+    return {};
+  }
+};
+
+constexpr ControllerKind counter = make_controller<Counter>({.name = "counter", .help = "Counts."});
+constexpr ControllerKind follower = make_controller<Follower>({.name = "follower", .help = "Follows."});
+constexpr ControllerKind sampler = make_controller<Sampler>({.name = "sampler", .help = "Samples."});
+constexpr ControllerKind misnamed = make_controller<Misnamed>({.name = "misnamed", .help = "Errs."});
+constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed};
+
+/// One rover on a plane with programs; ticks of 10 ms, control steps every 50 ms.
+model::Setup with_programs(std::vector<model::ControllerDecl> programs) {
+  model::Setup setup = arena("planar", 1, "");
+  for (auto& decl : programs) setup.instances.back().controllers.push_back(std::move(decl));
+  return setup;
+}
+
+Result<std::unique_ptr<Simulation>> try_build(model::Setup setup, int threads = 1) {
+  Diagnostics diagnostics;
+  return Simulation::create(std::move(setup), {.threads = threads, .extra_controllers = kinds}, diagnostics);
+}
+
+std::unique_ptr<Simulation> make(model::Setup setup, int threads = 1) {
+  auto made = try_build(std::move(setup), threads);
+  EXPECT_TRUE(made) << (made ? "" : made.error().text());
+  return made ? std::move(*made) : nullptr;
+}
+
+std::unique_ptr<Simulation> restored(const Simulation& from, int threads = 1) {
+  Diagnostics diagnostics;
+  auto made = Simulation::restore(from.snapshot(), {.threads = threads, .extra_controllers = kinds},
+                                  diagnostics);
+  EXPECT_TRUE(made) << (made ? "" : made.error().text());
+  return made ? std::move(*made) : nullptr;
+}
+
+double value(const Simulation& simulation, const std::string& address) {
+  auto found = NamedValue::find(simulation, address);
+  EXPECT_TRUE(found) << (found ? "" : found.error().text());
+  return found ? found->read().value_or(NAN) : NAN;
+}
+
+/// To forge its State.
+SimulationParts::ProgramEntry& first_program(const Simulation& simulation) {
+  return const_cast<SimulationParts::ProgramEntry&>(*simulation.entities().back()->programs.front());
+}
+
+model::Setup counted() {
+  return with_programs({{"counter", "counter", Node::map(), {}},
+                        {"first", "follower", map({{"counter", "counter/count"}}), {}}});
+}
+
+struct Frames : Observer {
+  Wants wants() const override { return {.messages = true, .log = true, .hash = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override { kept.push_back(frame); }
+  std::vector<std::shared_ptr<const Frame>> kept;
+};
+
+// ------------------------------------------------------------------------------------------------------- topics
+
+TEST(ProgramTopics, AreSeenByOthersAtTheirNextStep) {
+  const auto simulation = make(counted());
+  // The follower steps in the same batch: at tick 0 there is nothing yet, then always the number of the step before.
+  EXPECT_EQ(value(*simulation, "rover1/first.fresh"), 0);
+  for (int step = 1; step <= 4; ++step) {
+    advance(*simulation, 5);
+    EXPECT_EQ(value(*simulation, "rover1/counter/count.data"), step + 1);
+    EXPECT_EQ(value(*simulation, "rover1/first.seen"), step);
+    EXPECT_EQ(value(*simulation, "rover1/first.fresh"), step);
+  }
+  EXPECT_EQ(value(*simulation, "rover1/counter/count.count"), 5);
+  EXPECT_EQ(value(*simulation, "rover1/counter/count.stamp"), 0.2);
+}
+
+TEST(ProgramTopics, AreFoundListedAndPublishedInFrames) {
+  const auto simulation = make(counted());
+  const TopicBase* const topic = simulation->find_topic("/rover1/counter/count");
+  ASSERT_NE(topic, nullptr);
+  EXPECT_EQ(simulation->find_topic("rover1/counter/count"), topic);
+  const auto all = simulation->topics();
+  EXPECT_EQ(std::count(all.begin(), all.end(), topic), 1);
+  Frames frames;
+  simulation->add_observer(&frames);
+  advance(*simulation, 10);
+  int published = 0;
+  for (const auto& frame : frames.kept)
+    for (const auto& each : frame->topics)
+      if (each->name() == "/rover1/counter/count") {
+        ++published;
+        EXPECT_EQ(frame->tick % 5, 0u);
+        EXPECT_EQ(topic_cast<msg::UInt32>(each.get())->message.data, frame->tick / 5 + 1);
+      }
+  EXPECT_EQ(published, 2);
+  std::vector<std::string> addresses;
+  list_values(*simulation, "rover1", [&](const ValueEntry& entry) { addresses.push_back(entry.path); });
+  EXPECT_EQ(std::count(addresses.begin(), addresses.end(), "rover1/counter/count.data"), 1);
+  simulation->remove_observer(&frames);
+}
+
+TEST(ProgramTopics, AreState) {
+  const auto whole = make(counted());
+  advance(*whole, 12);
+  for (const int threads : {1, 2, 4}) {
+    const auto rest = restored(*whole, threads);
+    ASSERT_TRUE(rest);
+    EXPECT_EQ(rest->state_hash(), whole->state_hash());
+    EXPECT_EQ(value(*rest, "rover1/counter/count.data"), 3);
+    advance(*rest, 40);
+    const auto other = restored(*whole);
+    advance(*other, 40);
+    EXPECT_EQ(rest->state_hash(), other->state_hash());
+    EXPECT_EQ(value(*rest, "rover1/first.seen"), 10);
+  }
+}
+
+/// The topic of the fifth step is of a time that has not come yet: such a snapshot is refused.
+TEST(ProgramTopics, OfTheFutureAreRefusedInASnapshot) {
+  const auto early = make(counted());
+  auto& entry = first_program(*early);
+  ByteWriter w;
+  Programs::save(entry, w);
+  const auto loads = [&](std::span<const std::byte> bytes, Time now) {
+    ByteReader r(bytes);
+    return Programs::load(entry, r, now) && r.remaining() == 0;
+  };
+  EXPECT_TRUE(loads(w.bytes(), Time::from_s(1)));
+  advance(*early, 10);
+  w.clear();
+  Programs::save(entry, w);
+  EXPECT_TRUE(loads(w.bytes(), Time::from_s(1)));
+  EXPECT_FALSE(loads(w.bytes(), Time::from_s(0.05)));
+  EXPECT_FALSE(loads(w.bytes().first(w.size() - 1), Time::from_s(1)));
+}
+
+TEST(ProgramTopics, LastWhenDevicesComeAndGo) {
+  const auto simulation = make(counted());
+  advance(*simulation, 10);
+  model::DeviceDecl decl;
+  decl.name = "second";
+  decl.kind = "ground_truth";
+  simulation->submit(LoadDeviceRequest{"rover1", decl});
+  advance(*simulation, 1);
+  ASSERT_TRUE(simulation->outcomes().front().status);
+  EXPECT_EQ(value(*simulation, "rover1/counter/count.data"), 3);
+  advance(*simulation, 9);
+  EXPECT_EQ(value(*simulation, "rover1/counter/count.data"), 5);
+  EXPECT_EQ(value(*simulation, "rover1/first.seen"), 4);
+  EXPECT_EQ(value(*simulation, "rover1/first.fresh"), 4);
+}
+
+TEST(ProgramTopics, ErrorsNameWhatIsWrong) {
+  const auto error_of = [](model::Setup setup) {
+    const auto made = try_build(std::move(setup));
+    return made ? "" : made.error().text();
+  };
+  EXPECT_THAT(error_of(with_programs({{"odd", "misnamed", Node::map(), {}}})),
+              HasSubstr("'a b' cannot be the name of a topic"));
+  // A program reads those before it.
+  EXPECT_THAT(error_of(with_programs({{"first", "follower", map({{"counter", "counter/count"}}), {}},
+                                      {"counter", "counter", Node::map(), {}}})),
+              HasSubstr("has no reading 'counter/count'"));
+  EXPECT_THAT(error_of(with_programs({{"counter", "counter", Node::map(), {}},
+                                      {"first", "follower", map({{"counter", "counter/cuont"}}), {}}})),
+              HasSubstr("did you mean 'counter/count'"));
+}
+
+// ---------------------------------------------------------------------------------------------------- requests
+
+TEST(ProgramSamples, AreTakenInTheNextTickAndLogged) {
+  model::Setup setup = with_programs({{"sampler", "sampler", Node::map(), {}}});
+  for (model::DeviceDecl& decl : setup.instances.back().devices.edit())
+    if (decl.name == "truth") decl.config = map({{"rate", "0.1"}});
+  const auto simulation = make(setup);
+  Frames frames;
+  simulation->add_observer(&frames);
+  const auto samples = [&] { return simulation->find_topic("rover1/truth")->count; };
+  EXPECT_EQ(samples(), 1u);  // tick 0
+  advance(*simulation, 10);  // the third step is at tick 10
+  EXPECT_EQ(samples(), 1u);
+  const auto half = simulation->snapshot();
+  advance(*simulation, 1);
+  EXPECT_EQ(samples(), 2u);
+  const LogEntry& entry = frames.kept.back()->log.at(0);
+  EXPECT_STREQ(request_kind(entry.kind), "sample");
+  EXPECT_EQ(entry.target, "rover1/truth");
+  EXPECT_EQ(entry.source.kind, Source::Kind::program);
+  EXPECT_FALSE(entry.refused);
+  advance(*simulation, 29);
+  EXPECT_EQ(samples(), 3u);
+  // The request is State, and the log alone does the same.
+  Diagnostics diagnostics;
+  auto rest = Simulation::restore(half, {.extra_controllers = kinds}, diagnostics);
+  ASSERT_TRUE(rest);
+  advance(**rest, 30);
+  EXPECT_EQ((*rest)->state_hash(), simulation->state_hash());
+  auto logged = Simulation::create(setup, {.run_programs = false, .extra_controllers = kinds}, diagnostics);
+  ASSERT_TRUE(logged);
+  for (const auto& frame : frames.kept) {
+    for (const LogEntry& each : frame->log) {
+      ByteReader r(each.bytes);
+      Request request;
+      ASSERT_TRUE(read_request(r, request));
+      (*logged)->submit(std::move(request), each.source);
+    }
+    advance(**logged, 1);
+  }
+  EXPECT_EQ((*logged)->find_topic("rover1/truth")->count, 3u);
+  simulation->remove_observer(&frames);
+}
+
+// ------------------------------------------------------------------------------------------------------- rates
+
+TEST(ProgramRates, StepsFallOnTheFirstTickNotBeforeTheirTimes) {
+  // Step k is due at floor(k 1e9 / rate) ns. With 30 Hz and ticks of 10 ms: 0, 33.3, 66.6 ms ... fall on ticks 0, 4, 7, 10.
+  const auto simulation = make(with_programs({{"fast", "counter", map({{"rate", "30"}}), {}},
+                                              {"slow", "counter", map({{"rate", "4 Hz"}}), {}},
+                                              {"plain", "counter", Node::map(), {}}}));
+  for (int tick = 0; tick <= 100; ++tick) {
+    int fast = 0;
+    while (due_time({}, fast, 30).ns <= tick * 10'000'000) ++fast;
+    ASSERT_EQ(value(*simulation, "rover1/fast.steps"), fast) << "tick " << tick;
+    EXPECT_EQ(value(*simulation, "rover1/slow.steps"), tick / 25 + 1);
+    EXPECT_EQ(value(*simulation, "rover1/plain.steps"), tick / 5 + 1);
+    advance(*simulation, 1);
+  }
+}
+
+TEST(ProgramRates, AreState) {
+  const auto whole = make(with_programs({{"fast", "counter", map({{"rate", "30"}}), {}}}));
+  advance(*whole, 15);
+  const auto rest = restored(*whole, 2);
+  for (int i = 0; i < 50; ++i) {
+    advance(*whole, 1);
+    advance(*rest, 1);
+    ASSERT_EQ(rest->state_hash(), whole->state_hash()) << whole->tick_index();
+  }
+  // A step that no run can have reached is refused.
+  auto& entry = first_program(*whole);
+  entry.schedule->step = 1000;
+  ByteWriter w;
+  Programs::save(entry, w);
+  ByteReader r(w.bytes());
+  EXPECT_FALSE(Programs::load(entry, r, whole->now()));
+}
+
+TEST(ProgramRates, AboveTheTickRateIsAnErrorAtItsLine) {
+  Node config = Node::map();
+  config.set("rate", Node::scalar("200 Hz", {std::make_shared<const std::string>("s.yaml"), 7, 20}));
+  const auto made = try_build(with_programs({{"fast", "counter", config, {}}}));
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().text(),
+              HasSubstr("s.yaml:7:20: /rate: rate 200 Hz is above the tick rate of 100 Hz"));
+}
+
+}  // namespace
+}  // namespace sandlot::test
