@@ -3,6 +3,7 @@
 // clang-format off
 #define SANDLOT_CONTROLLERS(controller) \
   controller(diffusion)                 \
+  controller(odometry_estimator)        \
   controller(playback)                  \
   controller(seeker)                    \
   controller(sequence)                  \

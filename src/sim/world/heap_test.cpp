@@ -118,6 +118,25 @@ TEST_P(Heap, NorDoesOneWhoseFramesAreHeldForAWhile) {
   EXPECT_EQ(ours.load(), 0u);
 }
 
+TEST_P(Heap, NorDoesOneWithProgramsThatPublishAtRatesOfTheirOwn) {
+  model::Setup setup = arena(GetParam(), 10);
+  for (model::Instance& instance : setup.instances)
+    if (instance.is_robot)
+      instance.controllers.push_back(
+          {"estimator", "odometry_estimator", map({{"odometry", "drive"}, {"rate", "25"}}), {}});
+  const auto simulation = build(setup);
+  Holder holder;
+  simulation->add_observer(&holder);
+  advance(*simulation, 1000);
+  const std::uint64_t before = simulation->find_topic("/rover1/estimator/estimate")->count;
+  ours = of_libraries = 0;
+  counting = true;
+  advance(*simulation, 200);
+  counting = false;
+  EXPECT_EQ(ours.load(), 0u);
+  EXPECT_EQ(simulation->find_topic("/rover1/estimator/estimate")->count, before + 50);
+}
+
 }  // namespace
 }  // namespace sandlot::test
 
