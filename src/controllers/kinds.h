@@ -3,6 +3,7 @@
 // clang-format off
 #define SANDLOT_CONTROLLERS(controller) \
   controller(diffusion)                 \
+  controller(formation)                 \
   controller(odometry_estimator)        \
   controller(playback)                  \
   controller(seeker)                    \
