@@ -28,7 +28,7 @@ TEST(Examples, EachFolderStandsAlone) {
       EXPECT_EQ(printed.exit_code, 0) << folder.path() << "\n" << printed.out;
     }
   }
-  EXPECT_EQ(checked, 3);
+  EXPECT_EQ(checked, 4);
 }
 
 }  // namespace

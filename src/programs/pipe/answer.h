@@ -1,0 +1,39 @@
+#pragma once
+/// Answers of a process at a pipe: one line of JSON each.
+///
+///   {"orders": {"drive": {"linear": {"x": 0.3}}}, "samples": ["eye"], "wait": 2.5}
+///
+/// orders   messages for devices, by the device's name, `device/level` or, of a device that takes several types,
+///          `device/Type`; in the order of the line. Fields that are left out keep their defaults.
+/// samples  devices that shall take a sample although none is due.
+/// wait     the next observation: at this time [s], or with the next message of the reading of this name; left out or null:
+///          at the next control step.
+/// Errors   no JSON, another key, a name or a field that is not there (with the nearest), a value of another type. Nothing of
+///          the answer has been ordered then.
+/// Limits   objects and lists are nested 32 deep at most; 1000 orders.
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "control/program.h"
+
+namespace sandlot::programs::pipe {
+
+/// A reading or an actuator, by the names that JSON has for it.
+struct Named {
+  std::string name;  ///< "drive", or "drive/TwistStamped" where another type has that name
+  std::uint32_t index = 0;
+  std::string type;
+  bool any_level = true;  ///< follows the active level
+};
+/// Names for the entries of a description.
+std::vector<Named> names_of(const std::vector<Description::Entry>& entries);
+
+/// Puts orders and requests of an answer into `cmd`.
+/// @param forms  per actuator an object of its message type
+Result<Program::Resumed> read_answer(std::string_view line, std::span<const Named> readings,
+                                     std::span<const Named> actuators,
+                                     std::span<const TopicBase* const> forms, Command& cmd);
+
+}  // namespace sandlot::programs::pipe

@@ -1,0 +1,213 @@
+#include "programs/pipe/child.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "base/text.h"
+
+namespace sandlot::programs::pipe {
+namespace {
+
+void close_one(int& descriptor) {
+  if (descriptor >= 0) close(descriptor);
+  descriptor = -1;
+}
+
+/// A pair of connected descriptors that no other child inherits.
+struct Pair {
+  int ours = -1, theirs = -1;
+  ~Pair() { close_one(ours), close_one(theirs); }
+};
+
+bool open_pair(Pair& pair, bool to_child) {
+  int both[2];
+  // To the child by a socket: writing to one that is closed can be told not to raise SIGPIPE.
+  if (to_child ? socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, both) : pipe2(both, O_CLOEXEC))
+    return false;
+  pair.ours = both[0];  // of a pipe the end that reads
+  pair.theirs = both[1];
+  return fcntl(pair.ours, F_SETFL, fcntl(pair.ours, F_GETFL) | O_NONBLOCK) == 0;
+}
+
+/// The file that a command runs; "": there is none.
+std::string find_program(const std::string& name, const std::string& folder) {
+  if (name.find('/') != std::string::npos) {
+    std::string file = name.front() == '/' || folder.empty() ? name : folder + "/" + name;
+    return access(file.c_str(), X_OK) == 0 ? file : "";
+  }
+  const char* const path = std::getenv("PATH");
+  for (const std::string_view each : split(path ? path : "/usr/local/bin:/usr/bin:/bin", ':')) {
+    std::string file = std::string(each.empty() ? "." : each) + "/" + name;
+    if (access(file.c_str(), X_OK) == 0) return file;
+  }
+  return "";
+}
+
+/// What the child does between fork and exec: system calls alone, since other threads may hold any lock.
+[[noreturn]] void become(const char* file, char* const* arguments, const char* folder, pid_t parent, int in,
+                         int out, int error, int report) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() == parent && dup2(in, 0) >= 0 && dup2(out, 1) >= 0 && dup2(error, 2) >= 0 &&
+      (!*folder || chdir(folder) == 0)) {
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    signal(SIGPIPE, SIG_DFL);
+    execv(file, arguments);
+  }
+  const int why = errno;
+  [[maybe_unused]] const ssize_t sent = ::write(report, &why, sizeof why);
+  _exit(127);
+}
+
+}  // namespace
+
+Result<Child> Child::start(const std::vector<std::string>& command, const std::string& folder) {
+  const auto failed = [&](const std::string& why) {
+    return Error{"cannot start '" + (command.empty() ? std::string() : command.front()) + "': " + why,
+                 "name a program and its arguments: command: [python3, brain.py]"};
+  };
+  if (command.empty() || command.front().empty()) return failed("the command is empty");
+  const std::string file = find_program(command.front(), folder);
+  if (file.empty()) return failed("there is no such program");
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+
+  Pair in, out, error, report;
+  if (!open_pair(in, true) || !open_pair(out, false) || !open_pair(error, false) || !open_pair(report, false))
+    return failed(std::strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t process = fork();
+  if (process < 0) return failed(std::strerror(errno));
+  if (process == 0)
+    become(file.c_str(), arguments.data(), folder.c_str(), parent, in.theirs, out.theirs, error.theirs,
+           report.theirs);
+  setpgid(process, process);  // here too: whoever comes first
+  Child child;
+  child.process_ = process;
+  for (Pair* const pair : {&in, &out, &error, &report}) close_one(pair->theirs);
+  child.input_ = std::exchange(in.ours, -1);
+  child.output_ = std::exchange(out.ours, -1);
+  child.error_ = std::exchange(error.ours, -1);
+  // The report closes when the command runs; this is the only wait, and it is one for the kernel.
+  int why = 0;
+  fcntl(report.ours, F_SETFL, 0);
+  ssize_t got = 0;
+  do got = ::read(report.ours, &why, sizeof why);
+  while (got < 0 && errno == EINTR);
+  if (got > 0) return failed(std::strerror(why));
+  return child;
+}
+
+Child& Child::operator=(Child&& other) noexcept {
+  if (this == &other) return *this;
+  end();
+  process_ = std::exchange(other.process_, -1);
+  input_ = std::exchange(other.input_, -1);
+  output_ = std::exchange(other.output_, -1);
+  error_ = std::exchange(other.error_, -1);
+  out_ = std::move(other.out_);
+  rest_ = std::move(other.rest_);
+  error_rest_ = std::move(other.error_rest_);
+  lines_ = std::move(other.lines_);
+  notes_ = std::move(other.notes_);
+  gone_ = std::move(other.gone_);
+  return *this;
+}
+
+void Child::end() {
+  close_one(input_);
+  close_one(output_);
+  close_one(error_);
+  if (process_ < 0) return;
+  kill(-process_, SIGKILL);
+  kill(process_, SIGKILL);
+  while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {}
+  process_ = -1;
+}
+
+void Child::write_line(std::string_view line) {
+  out_.append(line).push_back('\n');
+  write_some();
+}
+
+void Child::write_some() {
+  while (!out_.empty() && input_ >= 0) {
+    const ssize_t sent = send(input_, out_.data(), out_.size(), MSG_NOSIGNAL);
+    if (sent > 0) {
+      out_.erase(0, static_cast<std::size_t>(sent));
+    } else if (sent < 0 && errno == EINTR) {
+      continue;
+    } else {
+      if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK) {
+        close_one(input_);  // it reads no more; it may still have something to say
+        out_.clear();
+      }
+      return;
+    }
+  }
+}
+
+void Child::move() {
+  write_some();
+  constexpr std::size_t most_lines = 64, most_notes = 64;
+  read_some(error_, error_rest_, notes_, most_notes, true);
+  if (output_ < 0) return;
+  read_some(output_, rest_, lines_, most_lines, false);
+  if (output_ < 0 && gone_.empty()) gone_ = "it has ended";
+}
+
+/// Reads until there is nothing more for now, or lines enough: the kernel's buffer then holds the child back.
+/// @param cut_lines  too long a line is cut; else it ends the connection
+void Child::read_some(int& descriptor, std::string& rest, std::deque<std::string>& lines,
+                      std::size_t most_lines, bool cut_lines) {
+  constexpr std::size_t longest_note = 1000;
+  std::array<char, 16384> buffer;
+  while (descriptor >= 0 && lines.size() < most_lines) {
+    const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (got <= 0) return close_one(descriptor);
+    std::string_view text(buffer.data(), static_cast<std::size_t>(got));
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      rest.append(text.substr(0, end));
+      if (cut_lines && rest.size() > longest_note) rest.resize(longest_note);
+      if (!cut_lines && rest.size() > longest_line) {
+        gone_ = "its line is longer than " + std::to_string(longest_line) + " bytes";
+        return close_one(descriptor);
+      }
+      if (end == std::string_view::npos) break;
+      lines.push_back(std::exchange(rest, {}));
+      text.remove_prefix(end + 1);
+    }
+  }
+}
+
+std::optional<std::string> Child::take_line() {
+  if (lines_.empty()) return std::nullopt;
+  std::string line = std::move(lines_.front());
+  lines_.pop_front();
+  return line;
+}
+
+std::optional<std::string> Child::take_note() {
+  if (notes_.empty()) return std::nullopt;
+  std::string note = std::move(notes_.front());
+  notes_.pop_front();
+  return note;
+}
+
+}  // namespace sandlot::programs::pipe

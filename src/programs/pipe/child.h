@@ -1,0 +1,62 @@
+#pragma once
+/// Child process with its standard input, output and error connected to this one.
+///
+/// Writing   never waits: what the child does not take at once stays in a buffer.
+/// Reading   never waits: whole lines, from output and error alike.
+/// End       destroying it kills the child's process group and collects the child. The child is killed by the kernel when
+///           the thread that started it ends.
+/// Limits    a line of output has at most `longest_line` bytes; children that leave their process group live on.
+/// Errors    the command cannot be started, with the system's reason.
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace sandlot::programs::pipe {
+
+class Child {
+ public:
+  static constexpr std::size_t longest_line = std::size_t{1} << 20;
+
+  /// @param command  program and arguments; a program without '/' is looked for in PATH
+  /// @param folder   its working directory; "": that of this process
+  static Result<Child> start(const std::vector<std::string>& command, const std::string& folder = "");
+  Child(Child&& other) noexcept { *this = std::move(other); }
+  Child& operator=(Child&& other) noexcept;
+  ~Child() { end(); }
+
+  /// Appends a line to what is on its way to the child.
+  void write_line(std::string_view line);
+  /// Moves what can be moved at once, in both directions.
+  void move();
+  /// The next whole line of output; move() brings them.
+  std::optional<std::string> take_line();
+  /// The next whole line of standard error.
+  std::optional<std::string> take_note();
+  /// Whether bytes are still on their way to the child.
+  bool writing() const { return !out_.empty() && input_ >= 0; }
+  /// Empty while the child may still send lines; else why it will not.
+  const std::string& gone() const { return gone_; }
+  int input() const { return input_; }
+  int output() const { return output_; }
+  int error() const { return error_; }
+
+ private:
+  Child() = default;
+  void end();
+  void write_some();
+  void read_some(int& descriptor, std::string& rest, std::deque<std::string>& lines, std::size_t most_lines,
+                 bool cut_lines);
+
+  int process_ = -1;  ///< also its process group
+  int input_ = -1, output_ = -1, error_ = -1;
+  std::string out_, rest_, error_rest_;
+  std::deque<std::string> lines_, notes_;
+  std::string gone_;
+};
+
+}  // namespace sandlot::programs::pipe

@@ -1,0 +1,241 @@
+/// Programs that run outside this process, in a world: their answers are input that is logged, and the log alone repeats the
+/// run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cerrno>
+#include <fstream>
+
+#include "base/test_folder.h"
+#include "sim/session/session.h"
+#include "sim/test_world.h"
+#include "sim/watch/values.h"
+
+namespace sandlot::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Drives forward at a speed that grows with the number of its observations; writes a line per start.
+constexpr const char* brain = R"(
+import json, sys, os
+open(sys.argv[1], 'a').write(str(os.getpid()) + '\n')
+sys.stdin.readline()
+n = 0
+for line in sys.stdin:
+    observation = json.loads(line)
+    n += 1
+    orders = {'drive': {'linear': {'x': 0.01 * n}, 'angular': {'z': 0.1}}}
+    print(json.dumps({'orders': orders, 'wait': None}), flush=True)
+)";
+
+model::Setup with_brain(const TestFolder& folder,
+                        const std::vector<std::pair<const char*, const char*>>& more = {}) {
+  model::Setup setup = arena("planar", 1, "");
+  Node config = Node::map();
+  Node& command = config.set("command", Node::sequence());
+  for (const std::string& word :
+       {std::string("python3"), folder.write("brain.py", brain), folder.file("starts")})
+    command.push(Node::scalar(word));
+  config.set("deadline", Node::scalar("20 s"));
+  for (const auto& [key, text] : more) config.set(key, Node::scalar(text));
+  setup.instances.back().controllers.push_back({"brain", "pipe", config, {}});
+  return setup;
+}
+
+std::vector<int> starts(const TestFolder& folder) {
+  std::ifstream in(folder.file("starts"));
+  std::vector<int> out;
+  for (int process = 0; in >> process;) out.push_back(process);
+  return out;
+}
+
+double value(const Simulation& simulation, const std::string& address) {
+  auto found = NamedValue::find(simulation, address);
+  EXPECT_TRUE(found) << (found ? "" : found.error().text());
+  return found ? found->read().value_or(NAN) : NAN;
+}
+
+struct Log : Observer {
+  Wants wants() const override { return {.log = true, .hash = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    input[frame->tick] = frame->log;
+    hash[frame->tick] = frame->hash;
+  }
+  std::map<std::uint64_t, std::vector<LogEntry>> input;
+  std::map<std::uint64_t, std::uint64_t> hash;
+};
+
+void feed(Simulation& simulation, const std::vector<LogEntry>& entries) {
+  for (const LogEntry& entry : entries) {
+    if (entry.source.kind == Source::Kind::program) continue;
+    ByteReader r(entry.bytes);
+    Request request;
+    ASSERT_TRUE(read_request(r, request));
+    simulation.submit(std::move(request), entry.source);
+  }
+}
+
+TEST(OutsideProgram, TheLogAloneRepeatsTheRun) {
+  const TestFolder folder;
+  const auto live = build(with_brain(folder), {.start_programs = true});
+  ASSERT_TRUE(live);
+  Log log;
+  live->add_observer(&log);
+  advance(*live, 33);
+  const auto half = live->snapshot();
+  advance(*live, 67);
+  // Control steps at ticks 0, 5, ... 100; the answer to that of tick 100 acts in the next tick.
+  EXPECT_EQ(value(*live, "rover1/brain.answers"), 20);
+  EXPECT_EQ(value(*live, "rover1/brain.misses"), 0);
+  EXPECT_NEAR(value(*live, "rover1/drive/ideal/command.linear.x"), 0.2, 1e-12);
+  EXPECT_EQ(log.input[1].front().kind, Request(AnswerRequest{}).index());
+  ASSERT_EQ(starts(folder).size(), 1u);
+  for (const int threads : {1, 2, 4}) {
+    const auto rest = [&] {
+      Diagnostics diagnostics;
+      return std::move(*Simulation::restore(half, {.threads = threads}, diagnostics));
+    }();
+    for (std::uint64_t tick = 34; tick <= 100; ++tick) {
+      feed(*rest, log.input[tick]);
+      advance(*rest, 1);
+      ASSERT_EQ(rest->state_hash(), log.hash[tick]) << tick << ", " << threads << " threads";
+    }
+  }
+  EXPECT_EQ(starts(folder).size(), 1u);  // nobody started it again
+  live->remove_observer(&log);
+}
+
+TEST(OutsideProgram, TheProcessEndsWithTheWorld) {
+  const TestFolder folder;
+  int process = 0;
+  {
+    const auto live = build(with_brain(folder), {.start_programs = true});
+    ASSERT_TRUE(live);
+    process = starts(folder).at(0);
+    EXPECT_EQ(kill(process, 0), 0);
+  }
+  EXPECT_EQ(kill(process, 0), -1);
+  EXPECT_EQ(errno, ESRCH);
+}
+
+TEST(OutsideProgram, IsNotStartedUnlessTheRunMay) {
+  const TestFolder folder;
+  const auto quiet = build(with_brain(folder));
+  ASSERT_TRUE(quiet);
+  quiet->connect_programs();
+  advance(*quiet, 20);
+  EXPECT_TRUE(starts(folder).empty());
+  EXPECT_EQ(value(*quiet, "rover1/brain.answers"), 0);
+  // Nor does a request start one.
+  model::Instance another = quiet->entities().back()->instance;
+  another.name = "another";
+  quiet->submit(SpawnRequest{another});
+  advance(*quiet, 1);
+  ASSERT_FALSE(quiet->outcomes().front().status);
+  EXPECT_THAT(quiet->outcomes().front().status.error().text(), HasSubstr("it cannot be spawned"));
+}
+
+TEST(OutsideProgram, AMissIsLoggedAndActsAsItsKindSays) {
+  const TestFolder folder;
+  model::Setup setup = with_brain(folder, {{"deadline", "30 ms"}, {"on_miss", "end"}});
+  Node& command = *setup.instances.back().controllers.edit().front().config.find("command");
+  command = Node::sequence();
+  for (const char* word : {"sh", "-c", "read d; read a; echo '{}'; read b; sleep 1000"})
+    command.push(Node::scalar(word));
+  const auto live = build(setup, {.start_programs = true});
+  ASSERT_TRUE(live);
+  Log log;
+  live->add_observer(&log);
+  Status status;
+  int ticks = 0;
+  while (status && ticks < 20) status = live->tick(), ++ticks;
+  ASSERT_FALSE(status);
+  EXPECT_EQ(ticks, 6);  // asked at tick 5, missed, so the run ends where that is known
+  EXPECT_EQ(status.error().what,
+            "program 'rover1/brain' (pipe) failed at 0.05 s: the process sent no answer within 0.03 s");
+  live->remove_observer(&log);
+}
+
+TEST(OutsideProgram, WaitsForTimesAndMessages) {
+  const TestFolder folder;
+  model::Setup setup = with_brain(folder);
+  Node& command = *setup.instances.back().controllers.edit().front().config.find("command");
+  command = Node::sequence();
+  // Answers 0.12 s, then a message of the ground truth (20 Hz), and then ends.
+  for (const char* word :
+       {"sh", "-c",
+        "read d; read a; echo '{\"wait\": 0.12}'; read b; echo '{\"wait\": \"truth\"}'; read c; echo '{}'"})
+    command.push(Node::scalar(word));
+  const auto live = build(setup, {.start_programs = true});
+  ASSERT_TRUE(live);
+  std::vector<std::uint64_t> stepped;
+  double steps = value(*live, "rover1/brain.steps");
+  EXPECT_EQ(steps, 1);
+  std::vector<std::byte> half;
+  for (int tick = 1; tick <= 20; ++tick) {
+    advance(*live, 1);
+    if (tick == 8) half = live->snapshot();
+    if (value(*live, "rover1/brain.steps") > steps) stepped.push_back(live->tick_index());
+    steps = value(*live, "rover1/brain.steps");
+    if (stepped.size() == 2) break;
+  }
+  // At 0.12 s, and with the sample of 0.15 s. What it waits for is State.
+  EXPECT_EQ(stepped, (std::vector<std::uint64_t>{12, 15}));
+  Diagnostics diagnostics;
+  const auto rest = Simulation::restore(half, {}, diagnostics);
+  ASSERT_TRUE(rest);
+  advance(**rest, 3);
+  EXPECT_EQ(value(**rest, "rover1/brain.steps"), 1);
+  advance(**rest, 1);
+  EXPECT_EQ(value(**rest, "rover1/brain.steps"), 2);
+}
+
+/// A rewound run repeats the answers up to where it was, and starts the process again there.
+TEST(OutsideProgram, ARewoundRunRepeatsTheAnswersAndThenGoesOn) {
+  const TestFolder folder;
+  Log log;
+  Session session(build(with_brain(folder), {.start_programs = true}),
+                  {.history_every_s = 0.2, .simulation = {.start_programs = true}});
+  session.add_observer(&log);
+  RunReport report;
+  std::map<std::uint64_t, std::uint64_t> first;
+  bool back = false;
+  const auto keep_going = [&](const Simulation& simulation) {
+    if (!back && simulation.tick_index() >= 80) {
+      back = true;
+      first = log.hash;
+      EXPECT_TRUE(session.jump(Time::from_s(0.5)));
+    }
+    return !back || simulation.tick_index() < 120 || session.epoch() == 1;
+  };
+  EXPECT_TRUE(session.run(report, keep_going));
+  // Up to the target the run is the same; then another process goes on.
+  for (std::uint64_t tick = 1; tick <= 50; ++tick) EXPECT_EQ(log.hash[tick], first[tick]) << tick;
+  EXPECT_EQ(starts(folder).size(), 2u);
+  EXPECT_GT(value(session.simulation(), "rover1/brain.answers"), 20);
+}
+
+TEST(OutsideProgram, ForgedStateIsRefused) {
+  const TestFolder folder;
+  const auto quiet = build(with_brain(folder));
+  auto& entry = const_cast<SimulationParts::ProgramEntry&>(*quiet->entities().back()->programs.front());
+  const auto loads = [&] {
+    ByteWriter w;
+    Programs::save(entry, w);
+    ByteReader r(w.bytes());
+    return Programs::load(entry, r, quiet->now());
+  };
+  EXPECT_TRUE(loads());
+  entry.wait->waiting_for = Program::Waiting::message;
+  entry.wait->reading = 1000;
+  EXPECT_FALSE(loads());
+  entry.wait->reading = 0;
+  EXPECT_TRUE(loads());
+  entry.wait->until = {-1};
+  EXPECT_FALSE(loads());
+}
+
+}  // namespace
+}  // namespace sandlot::test
