@@ -86,6 +86,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
                  instance.place};
   const Pose X_WM = instance.X_WM;
   if (instance.motion) instance.X_WM = model::pose_at(*instance.motion, now_.s());
+  SL_ASSIGN(std::shared_ptr<const model::Model> declared_model, add_masses(instance));
   auto id = engine_->add(instance);
   instance.X_WM = X_WM;
   if (!id) {
@@ -94,6 +95,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   }
   auto entity = std::make_unique<Entity>();
   entity->instance = std::move(instance);
+  entity->declared_model = std::move(declared_model);
   entity->id = *id;
   entity->key = entity_key(entity->instance.name);
   entity->serial = next_serial_++;
@@ -104,10 +106,23 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   Status status;
   for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = devices_.add(added, decl, *engine_, now_, diagnostics);
+  for (const auto& device : added.devices)
+    if (status) status = devices_.connect_orders(added, *device, commands_);
   for (std::size_t i = 0; i < added.instance.controllers.size(); ++i)
     if (status) status = programs_.add(added, added.instance.controllers.share(i));
   if (!status) remove_entity(entities_.size() - 1);
   return status;
+}
+
+/// Gives an instance a model with the masses of its devices. Instances declared alike share one.
+/// @return the model that was declared; null: the devices have no mass
+Result<std::shared_ptr<const model::Model>> Simulation::add_masses(model::Instance& instance) {
+  SL_ASSIGN(std::vector<PointMass> masses,
+            masses_of_devices(instance, [&](std::string_view name) { return devices_.find_kind(name); }));
+  if (masses.empty()) return std::shared_ptr<const model::Model>();
+  if (with_masses_.declared != instance.model || with_masses_.masses != masses)
+    with_masses_ = {instance.model, model_with_masses(*instance.model, masses), std::move(masses)};
+  return std::exchange(instance.model, with_masses_.loaded);
 }
 
 void Simulation::remove_entity(std::size_t index) {
@@ -178,17 +193,6 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
   return nullptr;
 }
 
-TopicBase* Simulation::find_command(std::string_view name) const {
-  const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
-  const Entity* const entity = find_entity(name.substr(begin, name.find('/', begin) - begin));
-  if (!entity) return nullptr;
-  for (const auto& device : entity->devices)
-    for (const Slot& slot : device->commands)
-      if (slot.topic->name() == name)
-        return DevicePools::takes_commands(*device, now_) ? slot.topic.get() : nullptr;
-  return nullptr;
-}
-
 std::vector<const TopicBase*> Simulation::topics() const {
   std::vector<const TopicBase*> all;
   for (const auto& entity : entities_)
@@ -209,11 +213,12 @@ std::vector<Simulation::DeviceView> Simulation::devices(std::string_view instanc
     if (entity->instance.name != instance) continue;
     for (const auto& device : entity->devices) {
       const Kind& kind = devices_.kind(*device);
-      DeviceView view{device->path, kind.name, {}, {}, {}};
+      DeviceView view{device->path, kind.name, {}, {}, {}, {}};
       for (std::size_t level = 0; level < kind.levels.size(); ++level)
         if (device->levels >> level & 1) view.active_levels.emplace_back(kind.levels[level].name);
       for (const Slot& slot : device->topics) view.topics.push_back(slot.topic.get());
       for (const Slot& slot : device->commands) view.commands.push_back(slot.topic.get());
+      for (const auto& order : device->orders) view.orders.push_back(order.get());
       views.push_back(std::move(view));
     }
   }

@@ -326,12 +326,10 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
     }
     for (const Command::Order& order : program.command.orders()) {
       const SimulationParts::Route& route = program.routes[order.slot];
-      const bool taken = route.slot && !commands_.is_overridden(*route.device) &&
-                         DevicePools::takes_commands(*route.device, now);
-      SimulationParts::Slot* const slot = taken ? route.slot : nullptr;
+      const bool possible = route.slot && !commands_.is_overridden(*route.device);
       const std::span<const std::byte> bytes = program.command.bytes(order);
       // Orders for a level that was switched off meanwhile, or for a device under manual override, are refused and counted.
-      const bool refused = !slot || !Commands::deliver(*slot, bytes, now);
+      const bool refused = !possible || !devices_.deliver(*route.device, *route.slot, bytes, now, false);
       if (refused) commands_.count_refused();
       if (!logged) continue;
       const Entity& entity = *owners_[i];

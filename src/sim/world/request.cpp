@@ -32,6 +32,9 @@ struct Save {
     write(w, x.name), write(w, x.link);
     return write(w, x.point_L), write(w, x.target_W), write(w, x.hold), true;
   }
+  bool operator()(const CallRequest& x) {
+    return write(w, x.device), write(w, x.service), write(w, x.bytes), true;
+  }
 };
 
 struct Load {
@@ -49,6 +52,7 @@ struct Load {
     read(r, x.name), read(r, x.link);
     return read(r, x.point_L), read(r, x.target_W), read(r, x.hold), r.ok();
   }
+  bool operator()(CallRequest& x) { return read(r, x.device), read(r, x.service), read(r, x.bytes), r.ok(); }
 };
 
 struct Target {
@@ -62,6 +66,7 @@ struct Target {
   const std::string& operator()(const LoadDeviceRequest& x) const { return x.robot; }
   const std::string& operator()(const UnloadDeviceRequest& x) const { return x.device; }
   const std::string& operator()(const PullRequest& x) const { return x.name; }
+  const std::string& operator()(const CallRequest& x) const { return x.device; }
 };
 
 }  // namespace
@@ -70,8 +75,8 @@ static_assert(std::is_same_v<std::variant_alternative_t<0, Request>, CommandRequ
 
 const char* request_kind(std::size_t index) {
   static constexpr std::array<const char*, std::variant_size_v<Request>> names{
-      "command", "parameter", "level",       "spawn",         "delete",
-      "pose",    "sample",    "load device", "unload device", "pull"};
+      "command", "parameter",   "level",         "spawn", "delete", "pose",
+      "sample",  "load device", "unload device", "pull",  "call"};
   return index < names.size() ? names[index] : "unknown";
 }
 

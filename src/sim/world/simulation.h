@@ -18,6 +18,7 @@
 
 #include "devices/kind.h"
 #include "sim/world/commands.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/device_pools.h"
 #include "sim/world/frame.h"
 #include "sim/world/parts.h"
@@ -104,7 +105,6 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::optional<InstanceId> find_instance(std::string_view name) const;
   /// "/rover/laser/ranges", or "rover/laser" for a device's first topic.
   const TopicBase* find_topic(std::string_view name) const override;
-  TopicBase* find_command(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
   /// The instances of the world now, in creation order.
   std::vector<const model::Instance*> instances() const;
@@ -113,6 +113,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
     std::string path, kind;
     std::vector<std::string> active_levels;
     std::vector<const TopicBase*> topics, commands;
+    std::vector<const DeviceOrder*> orders;  ///< that it gives to other devices
   };
   std::vector<DeviceView> devices(std::string_view instance) const;
 
@@ -133,6 +134,13 @@ class Simulation final : public SimulationParts, public TopicFinder {
   const PoolBase& pool(const Device& device) const { return devices_.pool(device); }
   const Kind& kind(const Device& device) const { return devices_.kind(device); }
   const Timing& timing(const Device& device) const { return devices_.timing(device); }
+  /// Numbers of a device's parameters and state, common keys included.
+  ValueFound value(const Device& device, ValuePart part, std::span<const ValueStep> path) const {
+    return devices_.value(device, part, path);
+  }
+  void list_values(const Device& device, ValuePart part, const ValueVisit& visit) const {
+    devices_.list_values(device, part, visit);
+  }
   /// Controller kinds that this world knows: the built-in ones, the embedding program's and those of plugins.
   std::span<const ControllerKind* const> controller_kinds() const { return programs_.kinds(); }
 
@@ -144,6 +152,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   // build.cpp: entities
   Status build(Diagnostics& diagnostics);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
+  Result<std::shared_ptr<const model::Model>> add_masses(model::Instance& instance);
   void remove_entity(std::size_t index);
   void world_changed();
   Entity* find_entity(std::string_view name);
@@ -168,7 +177,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
 
   // requests.cpp
   struct Processor;
-  Status process(Request& request, const Source& source);
+  Status process(Request& request, const Source& source, std::vector<std::byte>& response);
 
   // state.cpp
   template <class Visit>
@@ -190,6 +199,11 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::vector<std::unique_ptr<Entity>> entities_;
   std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
+  /// The latest model that got the masses of devices.
+  struct WithMasses {
+    std::shared_ptr<const model::Model> declared, loaded;
+    std::vector<PointMass> masses;
+  } with_masses_;
   DevicePools devices_{setup_};
   Commands commands_;
   Programs programs_{setup_, devices_, commands_};

@@ -71,8 +71,9 @@ void Simulation::process_commands() {
   const PhaseTimer timer(phase_times_, Phase::commands);
   commands_.begin_tick(now_);
   for (Commands::Pending& pending : commands_.take()) {
-    Status status = process(pending.request, pending.source);
-    commands_.conclude(pending, std::move(status), publisher_.wants().input);
+    std::vector<std::byte> response;
+    Status status = process(pending.request, pending.source, response);
+    commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
   }
   // A snapshot may hold orders of programs that do not run: the log that drives the run has them, too.
   if (options_.run_programs) programs_.deliver_orders(entities_, now_, publisher_.wants().log);
