@@ -33,11 +33,11 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
   const struct {
     const char *name, *request, *response;
   } expected[] = {
+      {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},
-      {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"simulation_interfaces/srv/DeleteEntity", "string entity\n", "simulation_interfaces/Result result\n"},
       {"simulation_interfaces/srv/GetEntities", "simulation_interfaces/EntityFilters filters\n",
        "simulation_interfaces/Result result\nstring[] entities\n"},

@@ -90,7 +90,7 @@ Status DeviceKeys::begin(const Device& device, const Kind& kind, double sample_h
   };
   const std::string a_kind = "a " + device.decl.kind;
   levels_ = kind.levels.size();
-  if (spec.max_rate_hz > 0 && samples && sample_hz > spec.max_rate_hz * (1 + 1e-9))
+  if (spec.max_rate_hz > 0 && samples && device.commands.empty() && sample_hz > spec.max_rate_hz * (1 + 1e-9))
     return error(
         "max_rate",
         "rate " + number_text(sample_hz) + " Hz is above max_rate, " + number_text(spec.max_rate_hz) + " Hz",

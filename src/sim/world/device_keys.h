@@ -25,7 +25,8 @@
 /// Limits    the components of a joint command are counted by place: orders of several commands that name joints in another
 ///           order exchange channels. At most most_held commands or messages of a device are on the way, at most
 ///           most_held_bytes of them; more are refused and counted.
-/// Errors    a rate above max_rate, keys without effect on the device, quantities that its commands do not have.
+/// Errors    a rate above max_rate (of devices without commands), keys without effect on the device, quantities that its
+///           commands do not have.
 /// State     of devices with such keys: tunable keys, what is on the way, the latest command, chains, refusals.
 /// Cost      nothing for devices without such keys; delayed messages are copied twice, and hashed while they are on the way.
 #include <array>
@@ -179,7 +180,7 @@ inline bool is_full(const TopicBase& slot) {
 /// Takes the keys above out of the keys of a device. Null: it has none of them.
 Result<std::unique_ptr<DeviceKeys>> take_device_keys(Node& config, bool kind_has_errors);
 
-/// Whether a parameter belongs to the common keys: "delay", "command_errors/linear/0/gaussian/std".
+/// Whether a parameter belongs to the common keys: "delay", "command_errors/linear/stages/0/gaussian/std".
 bool is_device_key(std::string_view field, bool kind_has_errors);
 /// Sets one while the run goes on.
 Status set_device_key(SimulationParts::Device& device, std::string_view field, const Node& value);

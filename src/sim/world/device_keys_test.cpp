@@ -257,7 +257,7 @@ TEST(Delay, OfAMessageKeepsTheTimeOfItsMeasurementAndChangesNothingElse) {
   }
   const auto other = by_path(*plain);
   for (const auto& [path, hash] : by_path(*late))
-    if (path != "rover2/laser") EXPECT_EQ(hash, other.at(path)) << path;
+    if (path != "rover2/laser") { EXPECT_EQ(hash, other.at(path)) << path; }
 }
 
 TEST(Delay, WhatIsOnTheWayIsLostWhenTheDeviceFailsOrTheLevelIsOff) {
@@ -311,22 +311,22 @@ TEST(DeviceKeys, AreParametersAndValues) {
   EXPECT_NEAR(value(*simulation, "robot1/mover.delay"), 0.02, 1e-15);
   EXPECT_EQ(value(*simulation, "robot1/mover.max_rate"), 10);
   EXPECT_EQ(value(*simulation, "robot1/mover.errors"), 1);
-  EXPECT_EQ(value(*simulation, "robot1/mover.command_errors.linear[0].gaussian.std"), 0.05);
+  EXPECT_EQ(value(*simulation, "robot1/mover.command_errors.linear.stages[0].gaussian.std"), 0.05);
   Parameters parameters(*simulation);
   std::vector<std::string> settable;
   for (const Parameter& each :
        parameters.list(*std::as_const(*simulation).find_entity("robot1"), "robot1/mover"))
     settable.push_back(each.address());
-  for (const char* name : {"delay", "max_rate", "errors", "command_errors.linear[0].gaussian.std"})
+  for (const char* name : {"delay", "max_rate", "errors", "command_errors.linear.stages[0].gaussian.std"})
     EXPECT_THAT(settable, testing::Contains(std::string("robot1/mover.") + name));
   EXPECT_THAT(settable, testing::Not(testing::Contains("robot1/mover.mass")));
   simulation->submit(
-      ParameterRequest{"robot1/mover", "command_errors/linear/0/gaussian/std", Node::scalar("0")});
+      ParameterRequest{"robot1/mover", "command_errors/linear/stages/0/gaussian/std", Node::scalar("0")});
   simulation->submit(ParameterRequest{"robot1/mover", "mass", Node::scalar("1")});
   advance(*simulation, 1);
   EXPECT_TRUE(simulation->outcomes()[0].status);
   EXPECT_FALSE(simulation->outcomes()[1].status);
-  EXPECT_EQ(value(*simulation, "robot1/mover.command_errors.linear[0].gaussian.std"), 0);
+  EXPECT_EQ(value(*simulation, "robot1/mover.command_errors.linear.stages[0].gaussian.std"), 0);
 }
 
 /// Everything at once: a rover with errors, delays and limits, driven by its program.
