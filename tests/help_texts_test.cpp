@@ -22,6 +22,7 @@
 #include "noise/image_noise.h"
 #include "physics/engine.h"
 #include "programs/programs.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/faults.h"
 
 namespace sandlot {
@@ -66,10 +67,13 @@ std::vector<HelpText> device_texts() {
     const std::string owner = kind->name;
     out.push_back({owner, kind->help});
     for (const LevelInfo& level : kind->levels) out.push_back({owner + " level " + level.name, level.help});
+    for (const DeviceService& service : kind->services)
+      out.push_back({owner + " service " + service.name, service.help});
     for (const Preset& preset : kind->presets) out.push_back({owner + " preset " + preset.name, preset.help});
     add_fields(owner, kind->describe(), out);
   }
   add_fields("faults", describe_fields<FaultsSpec>(), out);
+  add_fields("common", describe_fields<DeviceKeysSpec>(), out);
   return out;
 }
 

@@ -46,6 +46,7 @@ enum class Argument : std::uint8_t {
   thing,      ///< an instance
   device,     ///< its path
   level,      ///< of the device before it
+  service,    ///< of the device before it
   link,       ///< of the thing before it
   parameter,  ///< its address
   value,      ///< its address
@@ -81,6 +82,7 @@ std::vector<std::string> command_names(const Console::Options& options);
 struct PendingRequest {
   Request request;
   std::string text;
+  const MessageInfo* response = nullptr;  ///< of a CallRequest
 };
 /// Hands requests to the session, which answers for all of them together. @pre there is at least one
 CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests);
@@ -112,6 +114,7 @@ CommandResult cmd_set(CommandCall& call);
 CommandResult cmd_level(CommandCall& call);
 CommandResult cmd_command(CommandCall& call);
 CommandResult cmd_sample(CommandCall& call);
+CommandResult cmd_call(CommandCall& call);
 CommandResult cmd_values(CommandCall& call);
 CommandResult cmd_events(CommandCall& call);
 CommandResult cmd_pose(CommandCall& call);

@@ -129,6 +129,10 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
         if (const auto kind = find_device_kind(device->decl.kind))
           for (const LevelInfo& level : (*kind)->levels) out.add(level.name);
       break;
+    case Argument::service:
+      if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
+        for (const DeviceService& service : simulation.kind(*device).services) out.add(service.name);
+      break;
     case Argument::link:
       if (const Entity* const entity = before.empty() ? nullptr : simulation.find_entity(before.front()))
         for (const model::Link& link : entity->instance.model->links) out.add(link.name);

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "console/command.h"
 #include "console/line_parsing.h"
+#include "messages/json.h"
 #include "sim/session/run_hooks.h"
 
 namespace sandlot {
@@ -297,9 +298,8 @@ CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests) {
   };
   std::vector<std::string> later;
   for (PendingRequest& each : requests) {
-    const auto done = [waiting, joined, text = each.text](const Status& status) {
-      const std::string tick = std::to_string(waiting->session.simulation().tick_index());
-      if (status) waiting->done.push_back(text + " from tick " + tick);
+    const auto finish = [waiting, joined](const Status& status, const std::string& text) {
+      if (status) waiting->done.push_back(text);
       else waiting->refused.push_back(status.error().text());
       if (--waiting->left > 0 || !waiting->reply) return;
       if (waiting->refused.empty()) return waiting->reply({true, joined(waiting->done)});
@@ -308,7 +308,18 @@ CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests) {
       waiting->reply({false, failed});
     };
     later.push_back(each.text + " with the next tick");
-    auto sequence = call.session.submit(std::move(each.request), call.caller.source, done);
+    const auto done = [waiting, finish, text = each.text](const Status& status) {
+      finish(status, text + " from tick " + std::to_string(waiting->session.simulation().tick_index()));
+    };
+    const auto answered = [finish, text = each.text,
+                           info = each.response](const Result<std::vector<std::byte>>& response) {
+      std::string json;
+      const Status status = response ? cdr_to_json(*info, *response, json) : Status(response.error());
+      finish(status, text + ": " + json);
+    };
+    auto* const asked = std::get_if<CallRequest>(&each.request);
+    auto sequence = asked ? call.session.call(std::move(*asked), call.caller.source, answered)
+                          : call.session.submit(std::move(each.request), call.caller.source, done);
     if (!sequence) {
       if (submitted == 0) return std::move(sequence.error());
       waiting->left -= 1;  // the run stopped taking input in between: the answer names what was taken

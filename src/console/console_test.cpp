@@ -218,6 +218,33 @@ TEST(Console, CommandsADevice) {
   EXPECT_TRUE(has(talk.refused("command rover1/drve Twist {}"), "did you mean 'rover1/drive'"));
 }
 
+TEST(Console, CallsServicesOfDevices) {
+  model::Setup setup = test::arena("planar", 1);
+  model::DeviceDecl odometry;
+  odometry.name = "odo";
+  odometry.kind = "wheel_odometry";
+  odometry.config = test::map({{"left_joint", "left_wheel_joint"},
+                               {"right_joint", "right_wheel_joint"},
+                               {"wheel_radius", "0.07"},
+                               {"wheel_separation", "0.3"}});
+  setup.instances.back().devices.push_back(odometry);
+  Talk talk(std::move(setup));
+  EXPECT_EQ(talk.ok("call rover1/odo reset"), "rover1/odo reset with the next tick");
+  EXPECT_TRUE(has(talk.refused("call rover1/odo rest"), "did you mean 'reset'"));
+  EXPECT_TRUE(has(talk.refused("call rover1/laser reset"), "a laser_scanner offers none"));
+  EXPECT_TRUE(has(talk.refused("call rover1/od reset"), "did you mean 'rover1/odo'"));
+  EXPECT_TRUE(has(talk.refused("call rover1/odo reset {\"x\": 1}"), "x"));
+  EXPECT_TRUE(has(talk.refused("call rover1/odo reset", false), "you may watch, not steer"));
+  EXPECT_EQ(talk.complete("call rover1/odo "), (std::vector<std::string>{"reset", "set_pose"}));
+  talk.ok("run");
+  EXPECT_EQ(talk.ok("call rover1/odo reset"),
+            R"(rover1/odo reset: {"success":true,"message":"the odometry is at zero"})");
+  EXPECT_EQ(talk.ok(R"(call rover1/odo set_pose {"pose": {"pose": {"pose": {"position": {"x": 1}}}}})"),
+            "rover1/odo set_pose: {}");
+  EXPECT_TRUE(has(talk.refused(R"(call rover1/odo set_pose {"pose": {"header": {"frame_id": "map"}}})"),
+                  "give it in"));
+}
+
 TEST(Console, StepsSpeedsAndTellsTheTime) {
   Talk talk(test::arena("rigid", 1));
   talk.step(7);

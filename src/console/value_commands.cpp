@@ -11,6 +11,7 @@
 #include "devices/kind.h"
 #include "files/yaml.h"
 #include "messages/command.h"
+#include "messages/registry.h"
 #include "noise/chain.h"
 #include "sim/watch/monitor.h"
 #include "sim/watch/parameters.h"
@@ -388,6 +389,22 @@ CommandResult cmd_sample(CommandCall& call) {
   std::vector<PendingRequest> requests;
   for (const std::string& path : devices) requests.push_back({SampleRequest{path}, path + " measures"});
   return submit(call, std::move(requests));
+}
+
+CommandResult cmd_call(CommandCall& call) {
+  const std::string path(without_slash(call.words.front()));
+  const auto device = device_named(call.simulation(), path);
+  if (!device) {
+    call.unknown_thing = true;
+    return device.error();
+  }
+  SL_ASSIGN(const DeviceService* const service,
+            service_of(call.simulation().kind(**device), path, call.words[1]));
+  const std::string_view text = call.words.size() > 2 ? call.rest(2) : std::string_view("{}");
+  SL_ASSIGN(const AnyMessage request, message_from_json(service->request(), text));
+  CallRequest made{path, service->name, {}};
+  request.to_cdr(made.bytes);
+  return submit(call, {{std::move(made), path + " " + service->name, &service->response()}});
 }
 
 CommandResult cmd_values(CommandCall& call) {

@@ -187,7 +187,7 @@ Result<model::Instance> pattern_of(CommandCall& call, const std::string& model, 
   for (const auto& entity : simulation.entities())
     if (!like && entity->instance.model->name == model) like = entity.get();
   if (like) {
-    model::Instance copy = like->instance;
+    model::Instance copy = like->declared();
     copy.motion.reset();
     return copy;
   }

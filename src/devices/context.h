@@ -18,15 +18,12 @@ namespace sandlot {
 
 class TopicBase;  // messages/topic.h
 
-/// Topics and command slots of other devices, for devices that work with another one, such as a pan-tilt unit
-/// with its camera.
+/// Topics of other devices, for devices that work with another one, such as a pan-tilt unit with its camera. What one
+/// device orders of another is declared when it is built: DeviceBuild::order.
 class TopicFinder {
  public:
   /// "/robot1/camera/objects"; null when there is none. Valid within the phase.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
-  /// "/robot1/camera/zoom/command", to write a command into in the actuate phase; null when there is none, or
-  /// when its device has failed. Valid within the phase.
-  virtual TopicBase* find_command(std::string_view name) const = 0;
 
  protected:
   ~TopicFinder() = default;

@@ -6,9 +6,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "base/bytes.h"
+#include "base/check.h"
 #include "base/result.h"
 #include "base/time.h"
+#include "messages/command_queue.h"
 #include "messages/topic.h"
 #include "model/model.h"
 #include "physics/engine.h"
@@ -23,6 +27,55 @@ struct LevelInfo {
   const char* help;
 };
 
+/// Destination of a device's orders; the simulation gives it.
+class OrderSink {
+ public:
+  virtual ~OrderSink() = default;
+  /// Takes a command as if a program had given it. @return false: the device has failed, takes no more now, or is under manual
+  /// override
+  virtual bool take(std::span<const std::byte> message, Time now) = 0;
+  /// The latest command that the device took, from anyone; null: it takes none now, because it has failed.
+  virtual const TopicBase* latest(Time now) const = 0;
+};
+
+/// Orders of one device to another of its robot, such as a pan-tilt unit's to the zoom of its camera: declared while the
+/// first one is built (DeviceBuild::order), checked and connected when the robot is complete. The other device is not
+/// unloaded meanwhile.
+class DeviceOrder {
+ public:
+  DeviceOrder(std::string device, std::string slot, const char* type, Place place, std::string key)
+      : device_(std::move(device)),
+        slot_(std::move(slot)),
+        type_(type),
+        place_(std::move(place)),
+        key_(std::move(key)) {}
+  const std::string& device() const { return device_; }  ///< "robot1/eye"
+  const std::string& slot() const { return slot_; }      ///< "/robot1/eye/zoom/command"
+  const char* type() const { return type_; }
+  /// Place and key at which the other device was named.
+  const Place& place() const { return place_; }
+  const std::string& key() const { return key_; }
+
+  /// @return false: refused; the simulation counts it
+  template <class M>
+  bool give(const M& message, Time now) {
+    SL_CHECK(std::string_view(type_) == M::ros_type);
+    bytes_.clear();
+    write(bytes_, message);
+    return sink_ && sink_->take(bytes_.bytes(), now);
+  }
+  const TopicBase* latest(Time now) const { return sink_ ? sink_->latest(now) : nullptr; }
+  void connect(std::unique_ptr<OrderSink> sink) { sink_ = std::move(sink); }
+
+ private:
+  std::string device_, slot_;
+  const char* type_;
+  Place place_;
+  std::string key_;
+  std::unique_ptr<OrderSink> sink_;
+  ByteWriter bytes_;
+};
+
 /// Creates topics and command slots while a device is built; they live as long as the device.
 class TopicMaker {
  public:
@@ -30,6 +83,7 @@ class TopicMaker {
   virtual void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) = 0;
   virtual void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) = 0;
   virtual void adopt_frame(std::string, const Pose&) {}
+  virtual void adopt_order(std::unique_ptr<DeviceOrder> order) = 0;
 };
 
 /// Pixels (rows from the top, 1 or 3 channels) as a file's bytes; given by sim, which knows the formats.
@@ -82,6 +136,28 @@ struct DeviceBuild {
     Topic<M>* const slot = made.get();
     topics.adopt_command(std::move(made), level);
     return slot;
+  }
+  /// A command slot that keeps up to `limit` orders until the device takes them, first in, first out.
+  template <class M>
+  CommandQueue<M>* accept_queue(std::uint32_t level, const char* level_name, std::size_t limit) const {
+    auto made = std::make_unique<CommandQueue<M>>("/" + path + "/" + level_name + "/command", limit);
+    CommandQueue<M>* const queue = made.get();
+    topics.adopt_command(std::move(made), level);
+    return queue;
+  }
+  /// Declares that this device gives orders to another device of its robot. Valid as long as this device.
+  /// @param device    its path, "robot1/eye"
+  /// @param part      its slot: "zoom" of <device>/zoom/command
+  /// @param spec_key  key that names the device, for errors
+  template <class M>
+  DeviceOrder* order(const std::string& device, const char* part, const char* spec_key) const {
+    const Node* const node = decl.config.find(spec_key);
+    auto made = std::make_unique<DeviceOrder>(device, "/" + device + "/" + part + "/command", M::ros_type,
+                                              node && node->place().file ? node->place() : decl.place,
+                                              std::string("/") + spec_key);
+    DeviceOrder* const order = made.get();
+    topics.adopt_order(std::move(made));
+    return order;
   }
   /// Error about a key of the spec: at the key's place in its file, or at the device's where the key is not
   /// written.

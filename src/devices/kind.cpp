@@ -32,6 +32,16 @@ Result<JointId> DeviceBuild::joint(std::string_view name, const char* spec_key) 
   return joints[index];
 }
 
+Result<const DeviceService*> service_of(const Kind& kind, std::string_view device, std::string_view service) {
+  std::vector<std::string> known;
+  for (const DeviceService& each : kind.services) {
+    if (service == each.name) return &each;
+    known.emplace_back(each.name);
+  }
+  return Error{"'" + std::string(device) + "' offers no service '" + std::string(service.substr(0, 60)) + "'",
+               known.empty() ? "a " + std::string(kind.name) + " offers none" : suggestion(service, known)};
+}
+
 std::span<const Kind* const> device_kinds() {
 #define SL_ENTRY(name) &name::kind,
   static const Kind* const table[] = {SANDLOT_DEVICES(SL_ENTRY)};

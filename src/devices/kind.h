@@ -33,6 +33,7 @@
 #include "base/time.h"
 #include "devices/context.h"
 #include "devices/device_build.h"
+#include "devices/device_service.h"
 #include "devices/scaled_errors.h"
 #include "devices/shared_spec.h"
 #include "physics/engine.h"
@@ -40,7 +41,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 7;
+inline constexpr int device_api_version = 8;
 
 /// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
 /// take precedence.
@@ -92,11 +93,16 @@ class PoolBase {
   virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
                               const Context& context) = 0;
   virtual Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) = 0;
+  /// Calls a service of the kind; request and response in CDR.
+  virtual Status call(std::uint32_t index, const DeviceService& service, std::span<const std::byte> request,
+                      std::vector<std::byte>& response, const Context& context) = 0;
   /// A number of a device's spec or state by its path, and all of them.
   virtual ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const = 0;
   virtual void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const = 0;
   virtual void save(std::uint32_t index, ByteWriter& w) const = 0;
   virtual void load(std::uint32_t index, ByteReader& r) = 0;
+  /// Whether the device can go on with its State and the messages in its topics (Device::fits).
+  virtual bool fits(std::uint32_t index) const = 0;
 };
 
 enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
@@ -116,6 +122,7 @@ struct Kind {
   bool (*accepts)(const Node& element) = nullptr;
   const char* sdf_note = "";  ///< for the docs: what of those elements has no effect here
   std::span<const Preset> presets = {};
+  std::span<const DeviceService> services = {};
   bool needs_render_scene = false;  ///< its devices look at Context::pictures or Context::labelled_objects
   int api_version = device_api_version;
   // Filled by make_kind:
@@ -190,6 +197,13 @@ class DevicePool final : public PoolBase {
       return devices_[index].switch_level(before, after, context);
     else return (void)index, (void)before, (void)after, (void)context, Status();
   }
+  Status call(std::uint32_t index, const DeviceService& service, std::span<const std::byte> request,
+              std::vector<std::byte>& response, const Context& context) override {
+    Status status;
+    errors_.run(devices_, {&index, 1},
+                [&] { status = service.call(&devices_[index], request, response, context); });
+    return status;
+  }
   Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) override {
     Spec changed = spec_of(devices_[index]);
     SL_TRY(set_tunable(changed, path, value));
@@ -220,8 +234,11 @@ class DevicePool final : public PoolBase {
       if (!(spec.errors >= 0 && spec.errors <= 1e6)) r.fail();
     }
     set_spec(d, std::move(spec));
-    if constexpr (requires { d.fits(); })
-      if (!d.fits()) r.fail();
+    if (!fits(index)) r.fail();
+  }
+  bool fits([[maybe_unused]] std::uint32_t index) const override {
+    if constexpr (requires { devices_[index].fits(); }) return devices_[index].fits();
+    else return true;
   }
 
  private:
@@ -263,6 +280,9 @@ constexpr Kind make_kind(Kind kind) {
   kind.create_pool = []() -> std::unique_ptr<PoolBase> { return std::make_unique<DevicePool<Device>>(); };
   return kind;
 }
+
+/// The service of that name, or an error with the nearest one. @param device  for the error: its path
+Result<const DeviceService*> service_of(const Kind& kind, std::string_view device, std::string_view service);
 
 /// All kinds, in the order of devices/kinds.h.
 std::span<const Kind* const> device_kinds();

@@ -39,6 +39,7 @@
   device(skid_drive)            \
   device(stereo_camera)         \
   device(swerve_drive)          \
+  device(text_display)          \
   device(thermometer)           \
   device(track_drive)           \
   device(wheel_encoder)         \

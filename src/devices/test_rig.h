@@ -141,7 +141,8 @@ class Rig : public TopicMaker {
   std::unique_ptr<HandEngine> engine;
   std::unique_ptr<PoolBase> pool;
   std::map<std::string, std::unique_ptr<TopicBase>> topics;  ///< messages and commands by name
-  std::map<std::string, Pose> frames;                        ///< in addition to the sensors' own, as X_SF
+  std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< declared by the devices; a test connects them
+  std::map<std::string, Pose> frames;                ///< in addition to the sensors' own, as X_SF
   const RayCaster* rays = nullptr;
   optics::PictureScene* pictures = nullptr;
   std::vector<LabelledObject> things;
@@ -236,6 +237,7 @@ class Rig : public TopicMaker {
   void adopt_topic(std::unique_ptr<TopicBase> made, std::uint32_t) override { keep(std::move(made)); }
   void adopt_command(std::unique_ptr<TopicBase> made, std::uint32_t) override { keep(std::move(made)); }
   void adopt_frame(std::string name, const Pose& X_SF) override { frames[name] = X_SF; }
+  void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
 
  private:
   void keep(std::unique_ptr<TopicBase> made) {

@@ -24,6 +24,7 @@ namespace sandlot {
 #define SL_SERVICE(type, ...)                                \
   template const MessageInfo& message_info<type::Request>(); \
   template const MessageInfo& message_info<type::Response>();
+#define SL_SERVICE_TYPE(type) SL_SERVICE(type, )
 #include "messages/services.def"
 #undef SL_SERVICE
 
@@ -46,6 +47,7 @@ std::vector<ServiceInfo> make_services() {
   std::vector<ServiceInfo> list;
 #define SL_SERVICE(type, ...) \
   list.push_back({type::ros_type, &message_info<type::Request>(), &message_info<type::Response>()});
+#define SL_SERVICE_TYPE(type) SL_SERVICE(type, )
 #include "messages/services.def"
 #undef SL_SERVICE
   std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.name < b.name; });

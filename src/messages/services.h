@@ -1,5 +1,5 @@
 #pragma once
-/// Services that Sandlot answers, as pairs of messages: its own, and those of simulation_interfaces 2.1.0.
+/// Services that Sandlot answers, as pairs of messages: its own, those of simulation_interfaces 2.1.0, and those of devices.
 ///
 /// A service type has a name and two messages, Request and Response, named as ROS 2 names them: `pkg/srv/Name_Request` and
 /// `pkg/srv/Name_Response`. messages/services.def lists them; messages/registry.h finds them by name.
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "messages/device_services.h"
 #include "messages/simulation_interfaces.h"
 
 namespace sandlot::msg {

@@ -33,6 +33,7 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
   const struct {
     const char *name, *request, *response;
   } expected[] = {
+      {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
@@ -58,6 +59,7 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
        "uint8 ALREADY_IN_TARGET_STATE=101\nuint8 STATE_TRANSITION_ERROR=102\nuint8 "
        "INCORRECT_TRANSITION=103\nsimulation_interfaces/Result result\n"},
       {"simulation_interfaces/srv/StepSimulation", "uint64 steps\n", "simulation_interfaces/Result result\n"},
+      {"std_srvs/srv/Trigger", "", "bool success\nstring message\n"},
   };
   ASSERT_EQ(all_services().size(), std::size(expected));
   for (std::size_t i = 0; i < std::size(expected); ++i) {

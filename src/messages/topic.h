@@ -25,18 +25,20 @@ class TopicBase {
   Time stamp;                                        ///< of the latest message
   std::uint64_t count = 0;                           ///< messages so far; 0: none yet
 
-  /// Stamp, count and message.
-  void save(ByteWriter& w) const {
-    write(w, stamp);
-    write(w, count);
-    save_message(w);
-  }
+  /// Stamp, count and message; of a queue the orders that wait, too.
+  virtual void save(ByteWriter& w) const = 0;
   virtual void load(ByteReader& r) = 0;
   /// The message alone: the bytes of a command (messages/command.h).
   virtual void save_message(ByteWriter& w) const = 0;
   /// Takes the message alone, as a command. Errors: bytes that are not exactly one message, numbers that
   /// check_command() refuses; the old message stays.
   virtual Status assign(std::span<const std::byte> bytes) = 0;
+  /// Whether assign() would take these bytes into an empty slot.
+  virtual Status check(std::span<const std::byte> bytes) const = 0;
+  /// Of a command slot that keeps several orders (messages/command_queue.h): the orders that wait, and how many may. 0: of
+  /// several orders the last counts.
+  virtual std::size_t waiting() const { return 0; }
+  virtual std::size_t queue_limit() const { return 0; }
   virtual std::unique_ptr<TopicBase> clone() const = 0;
   /// A number of the message by its path, and all of them.
   virtual ValueFound value(std::span<const ValueStep> path) const = 0;
@@ -105,6 +107,11 @@ class Topic : public TopicBase {
     if constexpr (requires { message.header; }) return message.header.stamp = other, true;
     else return false;
   }
+  void save(ByteWriter& w) const override {
+    write(w, stamp);
+    write(w, count);
+    write(w, message);
+  }
   void save_message(ByteWriter& w) const override { write(w, message); }
   void load(ByteReader& r) override {
     read(r, stamp);
@@ -112,12 +119,14 @@ class Topic : public TopicBase {
     read(r, message);
   }
   Status assign(std::span<const std::byte> bytes) override {
-    ByteReader r(bytes);
     M taken{};
-    read(r, taken);
-    SL_TRY(check_command(message_info<M>(), r.ok() && r.remaining() == 0 ? &taken : nullptr));
+    SL_TRY(read_command(bytes, taken));
     message = std::move(taken);
     return {};
+  }
+  Status check(std::span<const std::byte> bytes) const override {
+    M taken{};
+    return read_command(bytes, taken);
   }
   std::unique_ptr<TopicBase> clone() const override { return std::make_unique<Topic>(*this); }
   const MessageInfo& info() const override { return message_info<M>(); }
@@ -139,6 +148,13 @@ class Topic : public TopicBase {
     message = from.message;
   }
   std::size_t memory_bytes() const override { return sizeof *this + heap_bytes(message); }
+
+ protected:
+  static Status read_command(std::span<const std::byte> bytes, M& taken) {
+    ByteReader r(bytes);
+    read(r, taken);
+    return check_command(message_info<M>(), r.ok() && r.remaining() == 0 ? &taken : nullptr);
+  }
 };
 
 /// M's topic behind a base pointer, or null when it carries another type.

@@ -1,5 +1,5 @@
 #pragma once
-/// Stages that are a sensor's way to answer: scale, quantise, clip, dead_zone. Symbols as in
+/// Stages that are a sensor's or an actuator's way to answer: scale, quantise, clip, dead_zone, lag. Symbols as in
 /// noise/additive.h.
 ///
 /// For many values at once scale is one factor that all share; the others work on each value. Only scale
@@ -8,6 +8,8 @@
 /// Source   B. Widrow, I. Kollar, Quantization Noise (2008), ch. 4 (variance step^2 / 12).
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "noise/additive.h"
 
@@ -92,6 +94,50 @@ struct DeadZoneSpec {
   }
   double corrupt(double x, const NoiseSample& sample, Stream&) const {
     return std::abs(x) < sample.errors * width ? 0 : x;
+  }
+};
+
+/// y[k] = y[k-1] + (1 - exp(-dt / (e tau))) (x[k] - y[k-1]),   y = x at the first sample.   First-order lag, exact for an x
+/// that is constant between two samples: after a step the difference falls to 1/e = 37 % within tau at any rate.
+struct LagSpec {
+  static constexpr const char* name = "lag";
+  static constexpr const char* help = "First-order lag: follows the value with a time constant.";
+  double time_constant_s = 0;
+  struct State {
+    bool begun = false;
+    double value = 0;           ///< [U] the latest y
+    std::vector<float> values;  ///< of many values at once
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"begun", "", "Whether there was a sample."}, s.begun);
+      visit(Field{"value", "", "Value shown last."}, s.value);
+      visit(Field{"values", "", "Values of a scan shown last."}, s.values);
+    }
+  };
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"time_constant", "s", "Time constant tau.", 0, 1e6, Field::tunable | Field::required},
+          s.time_constant_s);
+  }
+  double corrupt(State& state, double x, const NoiseSample& sample, Stream&) const {
+    if (!std::isfinite(x)) return x;
+    if (!state.begun || !std::isfinite(state.value)) state.value = x;
+    state.begun = true;
+    return state.value += share(sample) * (x - state.value);
+  }
+  void corrupt(State& state, std::span<float> values, const NoiseSample& sample, Stream&) const {
+    if (state.values.size() != values.size()) state.values.assign(values.begin(), values.end());
+    const auto toward = static_cast<float>(share(sample));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      if (!std::isfinite(state.values[i])) state.values[i] = values[i];
+      values[i] = state.values[i] += toward * (values[i] - state.values[i]);
+    }
+  }
+
+ private:
+  double share(const NoiseSample& sample) const {
+    const double tau_s = sample.errors * time_constant_s;
+    return tau_s > 0 ? 1 - math::exp(-sample.dt_s / tau_s) : 1;
   }
 };
 

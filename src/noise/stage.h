@@ -80,7 +80,7 @@ struct StageTypes {
 };
 using All = StageTypes<GaussianSpec, WhiteSpec, UniformSpec, ProportionalSpec, DriftSpec, BiasSpec, WalkSpec,
                        ScaleSpec, QuantiseSpec, ClipSpec, DeadZoneSpec, DropoutsSpec, OutliersSpec,
-                       LatencySpec, GrowingSpec, MixedSpec, ShortSpec, MultipathSpec>;
+                       LatencySpec, GrowingSpec, MixedSpec, ShortSpec, MultipathSpec, LagSpec>;
 }  // namespace noise_detail
 
 /// A stage for values: a reading, an axis, the beams of a scan.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "noise/chain.h"
@@ -55,6 +56,34 @@ void expect_moments(const std::vector<double>& x, double mean, double variance, 
 TEST(Stages, GaussianIsTheSamePerSampleAtEveryRate) {
   for (const double dt_s : rates_dt_s)
     expect_moments(run({GaussianSpec{.std = 0.2, .mean = 0.5}}, 3, dt_s, 40'000), 3.5, 0.04);
+}
+
+TEST(Stages, LagFollowsAStepAlikeAtEveryRate) {
+  for (const double dt_s : rates_dt_s) {
+    const std::vector<StageSpec> stages{LagSpec{.time_constant_s = 0.5}};
+    ChannelChain chain;
+    chain.reset(stages, stream(Purpose::initial, 0));
+    const auto show = [&](double x, double errors = 1) {
+      return chain.corrupt(stages, x, dt_s, stream(Purpose::noise, 0), errors);
+    };
+    EXPECT_EQ(show(2), 2) << "no warm-up";
+    double y = 0;
+    for (int k = 1; k <= std::lround(1 / dt_s); ++k) y = show(5);
+    EXPECT_NEAR(y, 5 - 3 * math::exp(-2.0), 1e-12);  // two time constants
+    EXPECT_TRUE(std::isnan(show(std::nan("")))) << "no number passes by";
+    EXPECT_NEAR(show(5), 5 - 3 * math::exp(-2 - dt_s / 0.5), 1e-12);
+    EXPECT_EQ(show(7, 0), 7);
+    // A scan, each beam for itself.
+    ChannelChain beams;
+    beams.reset(stages, stream(Purpose::initial, 0));
+    std::vector<float> scan{1, 10};
+    beams.corrupt(stages, scan, dt_s, stream(Purpose::noise, 0));
+    EXPECT_EQ(scan, (std::vector<float>{1, 10}));
+    scan = {2, std::numeric_limits<float>::infinity()};
+    beams.corrupt(stages, scan, dt_s, stream(Purpose::noise, 1));
+    EXPECT_NEAR(scan[0], 1 + (1 - math::exp(-dt_s / 0.5)), 1e-6);
+    EXPECT_TRUE(std::isinf(scan[1]));
+  }
 }
 
 TEST(Stages, WhiteNoiseHasTheVarianceOfItsDensity) {

@@ -203,7 +203,8 @@ TEST(Summary, HasTheKeysThatPeopleParseInTheirOrder) {
   const std::string always =
       "name physics seed ticks sim_seconds wall_seconds real_time_factor late_ticks phase_us end_tick "
       "end_time stopped "
-      "state_hash sub_hashes profile robots engine refused_commands events criterion teams warnings errors";
+      "state_hash sub_hashes profile robots engine refused_commands refused_by_device events criterion teams "
+      "warnings errors";
   EXPECT_EQ(keys(as_json(s)), always);
   s.video = {"a.mp4", 3};
   s.recording.emplace();

@@ -119,6 +119,10 @@ Summary summarise(const Simulation& simulation, const RunReport& report, const T
   const EngineCounters counters = simulation.engine().counters();
   out.engine = {counters.solver_messages, counters.contacts, counters.awake_bodies};
   out.refused_commands = simulation.refused_commands();
+  for (const auto& entity : simulation.entities())
+    for (const auto& device : entity->devices)
+      if (device->keys && device->keys->state.refused > 0)
+        out.refused_by_device.push_back({device->path, device->keys->state.refused});
   for (const Monitor::Event& event : simulation.monitor().events()) {
     EventSummary& added = out.events.emplace_back(EventSummary{event.decl.name, event.count, {}, {}});
     if (event.count > 0) added.first_s = event.first.s(), added.last_s = event.last.s();

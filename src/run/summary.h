@@ -141,6 +141,7 @@ struct Summary {
   std::vector<RobotSummary> robots;
   EngineSummary engine;
   std::uint64_t refused_commands = 0;
+  std::vector<Named<std::uint64_t>> refused_by_device;
   std::vector<EventSummary> events;
   std::optional<double> criterion;
   std::vector<Named<std::vector<std::string>>> teams;
@@ -172,6 +173,8 @@ struct Summary {
     visit(Field{"robots", "", "Robots that took part, in order of their first tick."}, s.robots);
     visit(Field{"engine", "", "Counters of the physics engine."}, s.engine);
     visit(Field{"refused_commands", "1", "Commands and requests that were refused."}, s.refused_commands);
+    visit(Field{"refused_by_device", "1", "Refusals by devices with common keys, where there were any."},
+          s.refused_by_device);
     visit(Field{"events", "", "Events of the scenario and of the run."}, s.events);
     visit(Field{"criterion", "1", "Figure of merit; null when none is defined."}, s.criterion);
     visit(Field{"teams", "", "Names of the robots of each team."}, s.teams);

@@ -94,6 +94,15 @@ Status check_commandable(const Simulation& sim, std::string_view name, const cha
   return no_slot(name, "takes", type, device->commands);
 }
 
+Status check_callable(const Simulation& sim, std::string_view device, std::string_view service,
+                      const char* type) {
+  SL_ASSIGN(const Simulation::Device* const found, device_named(sim, device));
+  SL_ASSIGN(const DeviceService* const offered, service_of(sim.kind(*found), device, service));
+  if (std::string_view(offered->type) == type) return {};
+  return Error{"service '" + std::string(service) + "' of '" + std::string(device) + "' is of type " +
+               offered->type + ", not " + type};
+}
+
 Result<Pose> pose(const Simulation& sim, std::string_view instance) {
   SL_ASSIGN(const Simulation::Entity* const entity, entity_named(sim, instance));
   return sim.engine().pose(entity->id);

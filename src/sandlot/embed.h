@@ -22,6 +22,7 @@
 
 #include "messages/command.h"
 #include "messages/messages.h"
+#include "messages/services.h"
 #include "sim/load/load.h"
 #include "sim/world/simulation.h"
 
@@ -71,6 +72,34 @@ Status command(Simulation& sim, const std::string& device, const M& message) {
   SL_TRY(check_commandable(sim, device, M::ros_type));
   sim.submit(CommandRequest{device, M::ros_type, command_bytes(message)});
   return {};
+}
+
+/// Fails unless the device offers a service of that name and type.
+Status check_callable(const Simulation& sim, std::string_view device, std::string_view service,
+                      const char* type);
+
+/// Queues a call of a device's service for the next tick, such as call<msg::std_srvs::Trigger>(sim, "rover/odometry", "reset").
+/// @return number of the call, for response()
+/// Errors   no such device or service, or one of another type.
+template <class S>
+Result<std::uint64_t> call(Simulation& sim, const std::string& device, const std::string& service,
+                           const typename S::Request& request = {}) {
+  SL_TRY(check_callable(sim, device, service, S::ros_type));
+  CallRequest made{device, service, {}};
+  write_cdr(message_info<typename S::Request>(), &request, made.bytes);
+  return sim.submit(std::move(made));
+}
+/// Response to a call that the latest tick carried out. Errors: refused, or not in the latest tick.
+template <class S>
+Result<typename S::Response> response(const Simulation& sim, std::uint64_t call) {
+  for (const Outcome& outcome : sim.outcomes()) {
+    if (outcome.sequence != call) continue;
+    SL_TRY(outcome.status);
+    typename S::Response out{};
+    SL_TRY(read_cdr(message_info<typename S::Response>(), outcome.response, &out));
+    return out;
+  }
+  return Error{"the latest tick carried out no call of this number", "ask for it right after the tick"};
 }
 
 /// Present pose of an instance in the world.

@@ -47,6 +47,23 @@ TEST(Embed, ACommandMovesTheRobotFromTheNextTickOn) {
   EXPECT_NEAR(or_exit(pose(*sim, "rover")).p.x, 0.375, 0.0026);
 }
 
+TEST(Embed, AServiceIsCalledWithTheNextTick) {
+  using msg::std_srvs::Trigger;
+  const std::string text = std::string(scenario) + "    devices: {unit: {kind: imu, link: base_link}}\n";
+  const auto sim = or_exit(load_simulation_text(text));
+  const std::uint64_t number = or_exit(call<Trigger>(*sim, "rover/unit", "calibrate"));
+  EXPECT_FALSE(response<Trigger>(*sim, number)) << "no tick has carried it out";
+  or_exit(sim->tick());
+  const Trigger::Response answer = or_exit(response<Trigger>(*sim, number));
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(call<Trigger>(*sim, "rover/unit", "calibrat").error().text(),
+              HasSubstr("did you mean 'calibrate'?"));
+  EXPECT_THAT(call<msg::Console>(*sim, "rover/unit", "calibrate").error().text(),
+              HasSubstr("is of type std_srvs/srv/Trigger"));
+  EXPECT_THAT(call<Trigger>(*sim, "rover/laser", "calibrate").error().text(),
+              HasSubstr("a laser_scanner offers none"));
+}
+
 TEST(Embed, TheSecondHalfFromASnapshotEndsInTheSameState) {
   const auto sim = rover();
   or_exit(command(*sim, "rover/drive", msg::Twist{.linear = {0.5, 0, 0}, .angular = {0, 0, 1}}));

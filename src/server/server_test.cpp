@@ -1,4 +1,5 @@
 #include "base/log.h"
+#include "messages/nav_msgs.h"
 #include "messages/rcl_interfaces.h"
 #include "messages/sandlot_msgs.h"
 #include "messages/sensor_msgs.h"
@@ -387,6 +388,46 @@ TEST(Server, WhatIsRunAgainIsNotToldAgain) {
   const auto second = viewer.next(commands);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->parsed()["commands"][0]["tick"], 4);
+}
+
+TEST(Server, DevicesOfferServicesThatComeAndGoWithThem) {
+  model::Setup setup = one_rover();
+  model::DeviceDecl odometry;
+  odometry.name = "odometry";
+  odometry.kind = "wheel_odometry";
+  odometry.config = sandlot::test::map({{"left_joint", "left_wheel_joint"},
+                                        {"right_joint", "right_wheel_joint"},
+                                        {"wheel_radius", "0.07"},
+                                        {"wheel_separation", "0.3"},
+                                        {"rate", "0"}});
+  setup.instances.back().devices.push_back(odometry);
+  Running run(std::move(setup), {.paused = false});
+  run.go();
+  Viewer viewer(run.url());
+  const auto offered = [&] { return viewer.services.count("/rover1/odometry/set_pose") > 0; };
+  ASSERT_TRUE(viewer.until(offered));
+  EXPECT_EQ(viewer.call("/rover1/odometry/reset", json::object()),
+            (json{{"success", true}, {"message", "the odometry is at zero"}}));
+  const json pose{{"header", {{"frame_id", "rover1/odom"}}},
+                  {"pose", {{"pose", {{"position", {{"x", 3}}}}}}}};
+  EXPECT_EQ(viewer.call("/rover1/odometry/set_pose", {{"pose", pose}}), json::object());
+  const auto shown = viewer.subscribe("/rover1/odometry/odometry");
+  std::optional<Viewer::Data> data = viewer.next(shown);
+  while (data && std::abs(viewer.read<msg::Odometry>(*data).pose.pose.p.x - 3) > 0.1)
+    data = viewer.next(shown);
+  ASSERT_TRUE(data) << "the rover stands still at x = 3 of its odometry";
+
+  json wrong = pose;
+  wrong["header"]["frame_id"] = "map";
+  const std::uint32_t refused = viewer.start_call("/rover1/odometry/set_pose", json{{"pose", wrong}}.dump());
+  ASSERT_TRUE(viewer.until([&] { return viewer.failures.count(refused) > 0; }));
+  EXPECT_EQ(viewer.failures[refused], "the pose is in 'map'; give it in 'rover1/odom'");
+  const json said = viewer.console("call rover1/odometry reset");
+  EXPECT_TRUE(said["ok"]);
+  EXPECT_NE(said["text"].get<std::string>().find("the odometry is at zero"), std::string::npos) << said;
+  EXPECT_TRUE(viewer.call("/delete_entity", {{"entity", "rover1"}})["result"]["result"] == 1);
+  EXPECT_TRUE(viewer.until([&] { return !offered(); }));
+  EXPECT_EQ(viewer.services.size(), 12u);
 }
 
 TEST(Server, WarningsOfTheProgramAreLogLines) {

@@ -211,6 +211,9 @@ class Viewer {
         unadvertised.push_back(each);
         std::erase_if(channels, [&](const auto& known) { return known.second["id"] == each; });
       }
+    if (op == "unadvertiseServices")
+      for (const json& each : received["serviceIds"])
+        std::erase_if(services, [&](const auto& known) { return known.second == each; });
     if (op == "advertiseServices")
       for (const json& each : received["services"]) services[each["name"]] = each["id"];
     if (op == "status") statuses.push_back(received);

@@ -46,6 +46,7 @@ std::string text_of(const Pose& X) {
 }
 
 struct RequestText {
+  std::string operator()(const CallRequest& x) const { return "call " + x.service; }
   std::string operator()(const CommandRequest& x) const { return x.type; }
   std::string operator()(const ParameterRequest& x) const {
     std::string out = x.field + " = ";

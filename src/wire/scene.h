@@ -58,7 +58,7 @@ class WorldJsonWriter {
   using ByContent = std::map<std::string, WrittenModel>;  ///< JSON of a model, without its id
   ByContent::iterator written_model(const std::shared_ptr<const model::Model>& model);
   const std::string& kind_json(const void* kind, const char* help, std::span<const LevelInfo> levels,
-                               std::vector<FieldInfo> (*describe)());
+                               std::vector<FieldInfo> (*describe)(), const Kind* common_keys_of = nullptr);
 
   Assets assets_;
   ByContent models_;
@@ -67,7 +67,7 @@ class WorldJsonWriter {
     ByContent::iterator written;
   };
   std::unordered_map<const model::Model*, Known> known_models_;
-  std::unordered_map<const void*, std::string> kinds_;
+  std::map<std::pair<const void*, bool>, std::string> kinds_;
   std::uint64_t next_model_ = 0;
 };
 

@@ -1,5 +1,8 @@
+#include <set>
+
 #include "base/field_json.h"
 #include "kinematics/tree.h"
+#include "sim/world/device_keys.h"
 #include "wire/asset_table.h"
 
 namespace sandlot::wire {
@@ -202,6 +205,15 @@ void write_instance(JsonWriter& w, const Simulation& simulation, const Simulatio
           write_topics(w, kind, device->topics);
           w.key("commands");
           write_topics(w, kind, device->commands);
+          if (!kind.services.empty())
+            w.key("services").list([&] {
+              for (const DeviceService& service : kind.services)
+                w.object([&] {
+                  w.key("name").text("/" + device->path + "/" + service.name);
+                  w.key("type").text(service.type);
+                  w.key("help").text(service.help);
+                });
+            });
         });
       }
     });
@@ -231,8 +243,9 @@ WorldJsonWriter::ByContent::iterator WorldJsonWriter::written_model(
 
 const std::string& WorldJsonWriter::kind_json(const void* kind, const char* help,
                                               std::span<const LevelInfo> levels,
-                                              std::vector<FieldInfo> (*describe)()) {
-  std::string& out = kinds_[kind];
+                                              std::vector<FieldInfo> (*describe)(),
+                                              const Kind* common_keys_of) {
+  std::string& out = kinds_[{kind, common_keys_of != nullptr}];
   if (!out.empty()) return out;
   JsonWriter w(out);
   w.object([&] {
@@ -247,11 +260,15 @@ const std::string& WorldJsonWriter::kind_json(const void* kind, const char* help
         });
     });
     w.key("fields").list([&] {
-      for (const FieldInfo& field : describe())
-        w.object([&] {
-          w.key("path").text(field.path);
-          write_field(w, field);
-        });
+      const auto add = [&](const std::vector<FieldInfo>& fields) {
+        for (const FieldInfo& field : fields)
+          w.object([&] {
+            w.key("path").text(field.path);
+            write_field(w, field);
+          });
+      };
+      add(describe());
+      if (common_keys_of) add(device_key_fields(*common_keys_of));
     });
   });
   return out;
@@ -294,10 +311,15 @@ std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t e
     });
     // Devices go before controllers of the same name: fields of both are found by the kind that a path has.
     std::map<std::string_view, const std::string*> kinds;
+    std::set<const Kind*> keyed;  // kinds of which some device has common keys
+    for (const auto& entity : simulation.entities())
+      for (const auto& device : entity->devices)
+        if (device->keys) keyed.insert(&simulation.kind(*device));
     for (const auto& entity : simulation.entities())
       for (const auto& device : entity->devices) {
         const Kind& kind = simulation.kind(*device);
-        kinds.try_emplace(kind.name, &kind_json(&kind, kind.help, kind.levels, kind.describe));
+        kinds.try_emplace(kind.name, &kind_json(&kind, kind.help, kind.levels, kind.describe,
+                                                keyed.contains(&kind) ? &kind : nullptr));
       }
     for (const auto& entity : simulation.entities())
       for (const auto& program : entity->programs)

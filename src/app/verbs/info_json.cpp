@@ -97,22 +97,39 @@ Json of(const model::Light& light) {
           {"cast_shadows", light.cast_shadows}};
 }
 
-Json of(const Simulation::DeviceView& view, const model::DeviceDecl& decl, const model::Model& model) {
-  Json topics = Json::object(), commands = Json::object();
+Json of(const Simulation::DeviceView& view, const Simulation::Device& device, const Kind& kind,
+        const model::Model& model) {
+  const model::DeviceDecl& decl = device.decl;
+  Json topics = Json::object(), commands = Json::object(), orders = Json::object();
   for (const TopicBase* topic : view.topics) topics[topic->name()] = topic->type();
   for (const TopicBase* slot : view.commands) commands[slot->name()] = slot->type();
+  for (const DeviceOrder* order : view.orders) orders[order->slot()] = order->type();
   const auto rate_hz = setting(decl, "rate");
-  return {{"path", view.path},
-          {"original_name", decl.name},
-          {"kind", view.kind},
-          {"link", model.links[decl.link].name},
-          {"pose", of(decl.X_LS)},
-          {"levels", view.active_levels},
-          {"rate_hz", rate_hz ? Json(*rate_hz) : Json(nullptr)},
-          {"topics", topics},
-          {"commands", commands},
-          {"mapped_from", decl.sdf_types},
-          {"place", of(decl.place)}};
+  Json out{{"path", view.path},
+           {"original_name", decl.name},
+           {"kind", view.kind},
+           {"link", model.links[decl.link].name},
+           {"pose", of(decl.X_LS)},
+           {"levels", view.active_levels},
+           {"rate_hz", rate_hz ? Json(*rate_hz) : Json(nullptr)},
+           {"topics", topics},
+           {"commands", commands},
+           {"orders", orders},
+           {"mapped_from", decl.sdf_types},
+           {"place", of(decl.place)}};
+  if (device.keys) {
+    const DeviceKeysSpec& keys = device.keys->spec;
+    out["mass_kg"] = keys.mass_kg;
+    out["max_rate_hz"] = keys.max_rate_hz;
+    out["delay_s"] = keys.delay_s;
+    out["command_errors"] = keys.command_errors.has_value();
+  }
+  if (!kind.services.empty()) {
+    Json& services = out["services"] = Json::object();
+    for (const DeviceService& service : kind.services)
+      services["/" + view.path + "/" + service.name] = service.type;
+  }
+  return out;
 }
 
 }  // namespace
@@ -158,7 +175,7 @@ Json info_json(const Simulation& simulation, const Diagnostics& diagnostics) {
     }
     const auto views = simulation.devices(instance.name);
     for (std::size_t i = 0; i < views.size(); ++i)
-      devices.push_back(of(views[i], entity->devices[i]->decl, model));
+      devices.push_back(of(views[i], *entity->devices[i], simulation.kind(*entity->devices[i]), model));
     for (const model::ControllerDecl& controller : instance.controllers)
       controllers.push_back(
           {{"name", controller.name}, {"kind", controller.kind}, {"place", of(controller.place)}});

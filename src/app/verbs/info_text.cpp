@@ -147,9 +147,30 @@ struct Shown {
   bool places = true;
 };
 
-std::string topic_text(const TopicBase& topic, const model::Instance& instance, const std::string& shown) {
+std::string slot_text(const std::string& topic, const model::Instance& instance, const std::string& shown) {
   const std::string own = "/" + instance.name + "/";
-  return starts_with(topic.name(), own) ? "/" + shown + "/" + topic.name().substr(own.size()) : topic.name();
+  return starts_with(topic, own) ? "/" + shown + "/" + topic.substr(own.size()) : topic;
+}
+
+std::string topic_text(const TopicBase& topic, const model::Instance& instance, const std::string& shown) {
+  return slot_text(topic.name(), instance, shown);
+}
+
+/// The common keys of a device: "mass 4.5 kg, delay 0.035 s".
+std::string keys_text(const Simulation::Device& device) {
+  if (!device.keys) return "";
+  const DeviceKeysSpec& spec = device.keys->spec;
+  std::vector<std::string> out;
+  if (spec.mass_kg > 0) out.push_back(fmt::format("mass {:.4g} kg", spec.mass_kg));
+  if (spec.max_rate_hz > 0) out.push_back(fmt::format("at most {:.4g} Hz", spec.max_rate_hz));
+  if (spec.delay_s > 0) out.push_back(fmt::format("delay {:.4g} s", spec.delay_s));
+  if (spec.command_errors) out.emplace_back("errors of commands");
+  if (spec.errors != 1) out.push_back(fmt::format("errors {:.4g}", spec.errors));
+  return joined(out, ", ");
+}
+
+std::string queue_text(const TopicBase& slot) {
+  return slot.queue_limit() > 0 ? fmt::format(", up to {} waiting", slot.queue_limit()) : "";
 }
 
 void add_links(const model::Model& model, Table& table) {
@@ -193,12 +214,20 @@ void add_devices(const Simulation& simulation, const Simulation::Entity& entity,
     table.add({"device", shown.name + "/" + name, view.kind, "level " + joined(view.active_levels, ", "),
                rate && *rate > 0 ? fmt::format("{:.4g} Hz", *rate) : "",
                "on " + entity.instance.model->links[decl.link].name, origin_text(decl, name, shown.places)});
+    if (const std::string keys = keys_text(*entity.devices[i]); !keys.empty())
+      table.below("  has        " + keys);
     for (const TopicBase* topic : view.topics)
       table.below(fmt::format("  publishes  {:<{}}  {}", topic_text(*topic, entity.instance, shown.name),
                               width, topic->type()));
     for (const TopicBase* slot : view.commands)
-      table.below(fmt::format("  takes      {:<{}}  {}", topic_text(*slot, entity.instance, shown.name),
-                              width, slot->type()));
+      table.below(fmt::format("  takes      {:<{}}  {}{}", topic_text(*slot, entity.instance, shown.name),
+                              width, slot->type(), queue_text(*slot)));
+    for (const DeviceService& service : simulation.kind(*entity.devices[i]).services)
+      table.below(fmt::format("  offers     {:<{}}  {}", "/" + shown.name + "/" + name + "/" + service.name,
+                              width, service.type));
+    for (const DeviceOrder* order : view.orders)
+      table.below(fmt::format("  orders     {:<{}}  {}",
+                              slot_text(order->slot(), entity.instance, shown.name), width, order->type()));
   }
 }
 

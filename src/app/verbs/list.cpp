@@ -23,6 +23,7 @@
 #include "physics/engine.h"
 #include "programs/programs.h"
 #include "sim/load/plugin.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/faults.h"
 
 namespace sandlot::app {
@@ -37,6 +38,7 @@ struct Item {
   std::span<const LevelInfo> levels;
   std::vector<std::string> sdf_names;
   std::span<const Preset> presets = {};
+  std::span<const DeviceService> services = {};
   // Of file formats:
   std::string contents = {};  ///< "worlds and models"
   std::vector<std::string> extensions = {};
@@ -91,7 +93,7 @@ Section format_section() {
 std::vector<Section> sections(std::span<const ControllerKind* const> controller_table) {
   Section devices{"devices", "Devices", "Sensors and actuators: `devices:` of a robot in a scenario.", {}};
   for (const Kind* kind : device_kinds()) {
-    Item item{kind->name, kind->help, kind->describe(), kind->levels, {}, kind->presets};
+    Item item{kind->name, kind->help, kind->describe(), kind->levels, {}, kind->presets, kind->services};
     for (const char* name : kind->sdf_types) item.sdf_names.emplace_back(name);
     devices.items.push_back(std::move(item));
   }
@@ -110,6 +112,19 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
   Section engines{"engines", "Physics engines", "`physics:` of a scenario.", {}};
   for (const EngineKind* kind : engine_kinds())
     engines.items.push_back({kind->name, kind->help, kind->describe(), {}, {}, {}});
+  Section common{"common",
+                 "Common keys",
+                 "Keys of every device in addition to its kind's and to those of [faults](#faults): `mass: "
+                 "160 g`, `delay: 50 ms`, "
+                 "`command_errors: {linear: [{gaussian: {std: 1 cm/s}}]}`.",
+                 {}};
+  common.items.push_back({"device",
+                          "Mass, limit of activations, delay and errors of commands. A kind with a key "
+                          "`errors` of its own has that one.",
+                          describe_fields<DeviceKeysSpec>(),
+                          {},
+                          {},
+                          {}});
   Section faults{
       "faults",
       "Faults",
@@ -130,6 +145,7 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
     for (const StageType& type : family.types)
       out.back().items.push_back({type.name, type.help, type.fields, {}, {}, {}});
   }
+  out.push_back(std::move(common));
   out.push_back(std::move(faults));
   Section builders{
       "builders",
@@ -216,6 +232,8 @@ void print_text(const Section& section, bool verbose) {
       if (*level.command) line += (line.empty() ? "" : " ") + std::string("Takes ") + level.command + ".";
       fmt::print("    level {:<20} {}\n", level.name, line);
     }
+    for (const DeviceService& service : item.services)
+      fmt::print("    service {:<18} {} Type {}.\n", service.name, service.help, service.type);
     for (const Preset& preset : item.presets) fmt::print("    preset {:<19} {}\n", preset.name, preset.help);
     const std::size_t keys = std::max<std::size_t>(
         26, width_of(item.fields, [](const FieldInfo& field) { return std::string_view(field.path); }));
@@ -390,6 +408,11 @@ void print_markdown(const std::vector<Section>& all) {
           fmt::print("| `{}` | {} | {} | {} |\n", level.name, level.message, level.command,
                      own_help(item, level));
       }
+      if (!item.services.empty()) {
+        fmt::print("\n| service | type | meaning |\n|---|---|---|\n");
+        for (const DeviceService& service : item.services)
+          fmt::print("| `{}` | {} | {} |\n", service.name, service.type, cell(service.help));
+      }
       if (!item.presets.empty()) {
         fmt::print("\n| preset | stands for |\n|---|---|\n");
         for (const Preset& preset : item.presets)
@@ -436,6 +459,12 @@ Json to_json(const Section& section) {
     for (const Preset& preset : item.presets)
       presets.push_back({{"name", preset.name}, {"help", preset.help}, {"keys", preset.keys}});
     entry["presets"] = presets;
+    if (!item.services.empty()) {
+      Json services = Json::array();
+      for (const DeviceService& service : item.services)
+        services.push_back({{"name", service.name}, {"type", service.type}, {"help", service.help}});
+      entry["services"] = services;
+    }
     entry["fields"] = fields;
     out.push_back(std::move(entry));
   }
@@ -464,6 +493,7 @@ int list(const ListOptions& options) {
     std::vector<formats::KindFields> devices, controllers;
     for (const Kind* kind : device_kinds()) {
       devices.emplace_back(kind->name, kind->describe());
+      for (FieldInfo& field : device_key_fields(*kind)) devices.back().second.push_back(std::move(field));
       if (kind->presets.empty()) continue;
       FieldInfo preset{"preset", "choice", "",
                        "Name of ready-made keys; keys given in addition take precedence."};

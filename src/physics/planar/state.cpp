@@ -48,7 +48,7 @@ constexpr std::uint32_t rolling_mode = 3;  ///< in place of a motor's
 constexpr std::uint32_t most_contact_points = 1u << 24;
 
 // Bytes of a snapshot may be forged. What these let through, step() computes with; all are false for NaN.
-bool in_range(double x) { return std::abs(x) < 1e300; }
+bool in_range(double x) { return std::abs(x) < 1e150; }  // the square is finite
 bool in_range(Vec2 v) { return dot(v, v) < 1e24; }
 bool is_unit(Turn t) { return std::abs(t.c * t.c + t.s * t.s - 1) < 1e-6; }
 /// An attitude is kept as the model gave it, so it need not have length 1.
@@ -107,7 +107,8 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   std::vector<RigidGroup> groups(instance.groups.size());
   for (RigidGroup& l : groups) {
     visit_group(l, take);
-    if (!r.ok() || !in_range(l.p) || !in_range(l.v) || !is_unit(l.heading) || !in_range(l.force_N))
+    if (!r.ok() || !in_range(l.p) || !in_range(l.v) || !(std::abs(l.w_radps) < 1e12) || !is_unit(l.heading) ||
+        !in_range(l.force_N))
       return false;
   }
   struct SavedJoint {

@@ -85,14 +85,11 @@ void Hub::connected(ClientId id, bool may_steer) {
   info.session_id = session_id_;
   transport_->send_text(id, foxglove::server_info(info));
   std::vector<foxglove::Service> offered;
-  for (const Service& service : services()) {
-    const ServiceInfo& type = *service.type;
-    const auto side = [](const MessageInfo& message) {
-      return foxglove::Service::Side{"cdr", message.name, "ros2msg", message.schema};
-    };
-    offered.push_back({static_cast<std::uint32_t>(offered.size() + 1), service.name, type.name,
-                       side(*type.request), side(*type.response)});
-  }
+  for (const Service& service : services())
+    offered.push_back(
+        offered_service(static_cast<std::uint32_t>(offered.size() + 1), service.name, *service.type));
+  for (const auto& [number, service] : device_services_)
+    offered.push_back(offered_service(number, service.name, service.type));
   transport_->send_text(id, foxglove::advertise_services(offered));
   advertise_waiting(id, client);
   subscriptions_changed_ = true;

@@ -26,6 +26,9 @@ inline constexpr std::size_t most_subscriptions = 10'000, most_publications = 10
                              most_watched = 200, most_watched_by_all = 2000;
 inline constexpr double most_requests_per_s = 500;
 
+/// A service as clients are told of it.
+foxglove::Service offered_service(std::uint32_t number, std::string name, const ServiceInfo& type);
+
 class Hub final : private ServiceHost {
  public:
   Hub(Session& session, Console& console, const ServerOptions& options, std::shared_ptr<Mailbox> mailbox,
@@ -144,6 +147,15 @@ class Hub final : private ServiceHost {
 
   // hub_services.cpp
   void call(ClientId id, Client& client, const foxglove::CallService& request);
+  /// Services of devices have the numbers behind those of the table.
+  struct OfferedService {
+    std::string name, device;
+    const DeviceService* service = nullptr;
+    ServiceInfo type;
+  };
+  void adopt_services(const Inventory& inventory);
+  void call_device(ClientId id, const OfferedService& offered, const AnyMessage& request,
+                   const std::shared_ptr<ServiceCall>& call);
   using WatchDone = std::function<void(const Result<std::string>&)>;
   Session& session() override { return session_; }
   Console& console() override { return console_; }
@@ -177,6 +189,8 @@ class Hub final : private ServiceHost {
   std::array<std::uint32_t, static_cast<std::size_t>(ChannelKind::count_)> fixed_{};
   std::map<std::pair<std::string, std::string>, std::uint32_t> devices_;  ///< channels by topic and type
   std::uint32_t next_channel_ = 1;
+  std::map<std::uint32_t, OfferedService> device_services_;
+  std::uint32_t next_service_ = 1;
   std::map<ClientId, Client> clients_;
   std::size_t watched_ = 0;
 

@@ -223,6 +223,8 @@ foxglove::Graph Hub::graph() const {
   for (auto& [name, ids] : published) out.published.push_back(Named{name, std::move(ids)});
   for (auto& [name, ids] : subscribed) out.subscribed.push_back(Named{name, std::move(ids)});
   for (const Service& service : services()) out.services.push_back(Named{service.name, {"sandlot"}});
+  for (const auto& [number, service] : device_services_)
+    out.services.push_back(Named{service.name, {service.device}});
   return out;
 }
 
@@ -248,7 +250,8 @@ void Hub::send_graph(bool to_everybody) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](const auto& x, const auto& y) { return x.name == y.name && x.ids == y.ids; });
   };
-  const bool changed = !same(graph_.published, now.published) || !same(graph_.subscribed, now.subscribed);
+  const bool changed = !same(graph_.published, now.published) || !same(graph_.subscribed, now.subscribed) ||
+                       !same(graph_.services, now.services);
   graph_ = std::move(now);
   if (!changed && !to_everybody) return;
   const std::string text = foxglove::graph_update(graph_, removed);

@@ -86,6 +86,7 @@ void Hub::adopt(const Inventory& inventory) {
     }
   }
   devices_ = std::move(now);
+  adopt_services(inventory);
   for (auto& [id, client] : clients_) advertise_waiting(id, client);
   graph_changed_ = true;
 }

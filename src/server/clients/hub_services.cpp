@@ -25,17 +25,29 @@ std::pair<Payload, bool> encode(const ServiceCall::Outcome& outcome, const Messa
 
 }  // namespace
 
+foxglove::Service offered_service(std::uint32_t number, std::string name, const ServiceInfo& type) {
+  const auto side = [](const MessageInfo& message) {
+    return foxglove::Service::Side{"cdr", message.name, "ros2msg", message.schema};
+  };
+  return {number, std::move(name), type.name, side(*type.request), side(*type.response)};
+}
+
 void Hub::call(ClientId id, Client& client, const foxglove::CallService& request) {
   const auto fail = [&](const std::string& why) {
     ++counts_.refused;
     transport_->send_text(id, foxglove::service_failure(request.service, request.call, why));
   };
-  if (request.service == 0 || request.service > services().size())
+  const Service* const row = request.service > 0 && request.service <= services().size()
+                                 ? &services()[request.service - 1]
+                                 : nullptr;
+  const auto of_device = device_services_.find(request.service);
+  if (!row && of_device == device_services_.end())
     return fail("there is no service " + std::to_string(request.service));
-  const Service& service = services()[request.service - 1];
-  if (service.right == Right::steer && !client.may_steer) {
-    fail("a spectator may not call " + std::string(service.name));
-    refuse(id, "a spectator may not call " + std::string(service.name));
+  const std::string name = row ? row->name : of_device->second.name;
+  const ServiceInfo& type = row ? *row->type : of_device->second.type;
+  if ((!row || row->right == Right::steer) && !client.may_steer) {
+    fail("a spectator may not call " + name);
+    refuse(id, "a spectator may not call " + name);
     return;
   }
   if (client.calls >= most_calls)
@@ -43,18 +55,60 @@ void Hub::call(ClientId id, Client& client, const foxglove::CallService& request
   const bool json = request.encoding == "json";
   if (!json && request.encoding != "cdr")
     return fail("'" + request.encoding.substr(0, 60) + "' is no encoding of requests; cdr and json are");
-  const MessageInfo& info = *service.type->request;
+  const MessageInfo& info = *type.request;
   const auto message = json ? message_from_json(info, {reinterpret_cast<const char*>(request.bytes.data()),
                                                        request.bytes.size()})
                             : message_from_cdr(info, request.bytes);
-  if (!message) return fail(std::string(service.name) + ": " + message.error().text());
+  if (!message) return fail(name + ": " + message.error().text());
   ++client.calls;
-  const auto send = [mailbox = mailbox_, id, type = service.type->response, service_id = request.service,
+  const auto send = [mailbox = mailbox_, id, type = type.response, service_id = request.service,
                      call = request.call, encoding = request.encoding](const ServiceCall::Outcome& outcome) {
     auto [bytes, text] = encode(outcome, *type, service_id, call, encoding);
     mailbox->push([id, bytes = std::move(bytes), text = text](Hub& hub) { hub.answer(id, bytes, text); });
   };
-  service.call({*this, id, client.may_steer}, *message, std::make_shared<ServiceCall>(send));
+  const auto waiting = std::make_shared<ServiceCall>(send);
+  if (row) row->call({*this, id, client.may_steer}, *message, waiting);
+  else call_device(id, of_device->second, *message, waiting);
+}
+
+/// A call of a device's service is a request to the run, which answers when a tick has carried it out.
+void Hub::call_device(ClientId id, const OfferedService& offered, const AnyMessage& request,
+                      const std::shared_ptr<ServiceCall>& call) {
+  CallRequest made{offered.device, offered.service->name, {}};
+  request.to_cdr(made.bytes);
+  const auto queued = session_.call(std::move(made), {Source::Kind::admin, id}, [call](const auto& response) {
+    if (response) call->answer(*response);
+    else call->fail(response.error().text());
+  });
+  if (!queued) call->fail(queued.error().text());
+}
+
+/// Follows the devices of the world: the services of those that came and went.
+void Hub::adopt_services(const Inventory& inventory) {
+  if (next_service_ == 1) next_service_ = static_cast<std::uint32_t>(services().size()) + 1;
+  std::map<std::string, std::uint32_t> known;
+  for (const auto& [number, each] : device_services_) known.emplace(each.name, number);
+  std::vector<std::uint32_t> gone;
+  std::vector<foxglove::Service> fresh;
+  for (const Inventory::Service& each : inventory.services) {
+    if (const auto found = known.find(each.name);
+        found != known.end() && device_services_.at(found->second).service == each.service) {
+      known.erase(found);
+      continue;
+    }
+    const std::uint32_t number = next_service_++;
+    const ServiceInfo type{each.service->type, &each.service->request(), &each.service->response()};
+    device_services_[number] = {each.name, each.device, each.service, type};
+    fresh.push_back(offered_service(number, each.name, type));
+  }
+  for (const auto& [name, number] : known) {
+    device_services_.erase(number);
+    gone.push_back(number);
+  }
+  for (const auto& [id, client] : clients_) {
+    if (!gone.empty()) transport_->send_text(id, foxglove::unadvertise_services(gone));
+    if (!fresh.empty()) transport_->send_text(id, foxglove::advertise_services(fresh));
+  }
 }
 
 void Hub::watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) {

@@ -66,6 +66,9 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
       }
     }
     add_published(entity->programs);
+    for (const auto& device : entity->devices)
+      for (const DeviceService& service : simulation.kind(*device).services)
+        out->services.push_back({"/" + device->path + "/" + service.name, device->path, &service});
     for (const auto& program : entity->programs) {
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;

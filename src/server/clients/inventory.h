@@ -26,6 +26,11 @@ struct Inventory {
     const MessageInfo* info = nullptr;
     std::shared_ptr<const TopicBase> blank;  ///< an empty one of its type
   };
+  struct Service {
+    std::string name;    ///< "/rover/odometry/reset"
+    std::string device;  ///< "rover/odometry"
+    const DeviceService* service = nullptr;
+  };
   struct Program {
     std::string path;  ///< "rover/controller"
     /// Topics and slots of its robot at their active levels: what it may read and order; which of them it does is its own affair.
@@ -34,6 +39,7 @@ struct Inventory {
   std::uint64_t epoch = 1, revision = 0;
   std::vector<Topic> topics;
   std::vector<Slot> slots;
+  std::vector<Service> services;
   std::vector<Program> programs;
   std::vector<std::string> robots;
 

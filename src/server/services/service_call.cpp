@@ -5,10 +5,13 @@
 namespace sandlot::server {
 
 void ServiceCall::answer(const MessageInfo& info, const void* response) {
-  if (answered_.exchange(true)) return;
   std::vector<std::byte> cdr;
   write_cdr(info, response, cdr);
-  send_(std::move(cdr));
+  answer(std::move(cdr));
+}
+
+void ServiceCall::answer(std::vector<std::byte> cdr) {
+  if (!answered_.exchange(true)) send_(std::move(cdr));
 }
 
 void ServiceCall::fail(std::string_view why) {

@@ -27,6 +27,8 @@ class ServiceCall {
     answer(message_info<M>(), &response);
   }
   void answer(const MessageInfo& info, const void* response);
+  /// @param cdr  the response
+  void answer(std::vector<std::byte> cdr);
   void fail(std::string_view why);
 
  private:

@@ -138,11 +138,24 @@ void Session::quit() {
 }
 
 Result<std::uint64_t> Session::submit(Request request, Source source, Done done) {
+  Waiting waiting;
+  if (done) waiting = [done = std::move(done)](const Outcome& outcome) { done(outcome.status); };
+  return submit_waiting(std::move(request), source, std::move(waiting));
+}
+
+Result<std::uint64_t> Session::call(CallRequest request, Source source, Answer answer) {
+  return submit_waiting(std::move(request), source, [answer = std::move(answer)](const Outcome& outcome) {
+    if (outcome.status) answer(outcome.response);
+    else answer(outcome.status.error());
+  });
+}
+
+Result<std::uint64_t> Session::submit_waiting(Request request, Source source, Waiting waiting) {
   const std::lock_guard lock(mutex_);
   if (!running_) return Error{"the run has ended"};
   if (!report_.takes_no_input.empty()) return Error{report_.takes_no_input};
   const std::uint64_t sequence = simulation_->submit(std::move(request), source);
-  if (done) waiting_.emplace(sequence, std::move(done));
+  if (waiting) waiting_.emplace(sequence, std::move(waiting));
   return sequence;
 }
 

@@ -111,6 +111,9 @@ class Session {
   /// Queues a request for the next tick. @return its sequence number; an error at once when the run takes no input now.
   /// While the run is paused the request waits.
   Result<std::uint64_t> submit(Request request, Source source = {}, Done done = {});
+  /// As above for a call of a device's service: `answer` receives the response in CDR, or why there is none.
+  using Answer = std::function<void(const Result<std::vector<std::byte>>&)>;
+  Result<std::uint64_t> call(CallRequest request, Source source, Answer answer);
 
   /// Calls `task` on the simulation's thread, between two ticks, also while the run is paused. False: too many wait, or
   /// run() has returned; it will not be called then.
@@ -237,7 +240,9 @@ class Session {
   bool quit_ = false, running_ = true;
   bool woken_ = false;  ///< something came that the loop must look at before it sleeps
   Pace pace_;
-  std::map<std::uint64_t, Done> waiting_;  ///< by sequence number
+  using Waiting = std::function<void(const Outcome&)>;
+  Result<std::uint64_t> submit_waiting(Request request, Source source, Waiting waiting);
+  std::map<std::uint64_t, Waiting> waiting_;  ///< by sequence number
   std::deque<std::function<void(Session&)>> tasks_;
   Report report_;
 };

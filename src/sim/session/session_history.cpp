@@ -95,7 +95,7 @@ Status Session::replace(std::span<const std::byte> bytes, const std::string& why
   SL_ASSIGN(auto world, Simulation::restore(bytes, options_.simulation, given_before));
   for (Observer* observer : observers_) world->add_observer(observer);
   if (input_recorder_) world->add_observer(input_recorder_.get());
-  std::map<std::uint64_t, Done> waiting;
+  std::map<std::uint64_t, Waiting> waiting;
   {
     const std::lock_guard lock(mutex_);
     std::swap(simulation_, world);
@@ -104,7 +104,8 @@ Status Session::replace(std::span<const std::byte> bytes, const std::string& why
     // Before anybody can submit to the new world: ticks that are repeated have their input already.
     report_.takes_no_input = why_no_input();
   }
-  for (const auto& [sequence, done] : waiting) done(Error{"the run was " + why + " before"});
+  for (const auto& [sequence, answer] : waiting)
+    answer({{}, sequence, Error{"the run was " + why + " before"}});
   if (options_.on_world) options_.on_world(*simulation_, why);
   return {};
 }

@@ -305,18 +305,18 @@ Status Session::advance(std::optional<Time> measured, RunReport& report) {
 
 /// Calls `done` of the requests that the latest tick carried out.
 void Session::answer_outcomes() {
-  std::vector<std::pair<Done, const Status*>> answers;
+  std::vector<std::pair<Waiting, const Outcome*>> answers;
   {
     const std::lock_guard lock(mutex_);
     if (waiting_.empty()) return;
     for (const Outcome& outcome : simulation_->outcomes()) {
       const auto found = waiting_.find(outcome.sequence);
       if (found == waiting_.end()) continue;
-      answers.emplace_back(std::move(found->second), &outcome.status);
+      answers.emplace_back(std::move(found->second), &outcome);
       waiting_.erase(found);
     }
   }
-  for (const auto& [done, status] : answers) done(*status);
+  for (const auto& [answer, outcome] : answers) answer(*outcome);
 }
 
 /// Runs the tasks that are waiting now. When `patience` is over, the rest waits for the next round, so that viewers who ask
@@ -345,7 +345,7 @@ void Session::answer_the_rest() {
     running_ = false;
   }
   run_tasks(std::chrono::hours(1));
-  std::map<std::uint64_t, Done> waiting;
+  std::map<std::uint64_t, Waiting> waiting;
   std::vector<Load> loads;
   {
     const std::lock_guard lock(mutex_);
@@ -353,7 +353,7 @@ void Session::answer_the_rest() {
     std::swap(loads, pending_.loads);
   }
   const Error over{"the run has ended"};
-  for (const auto& [sequence, done] : waiting) done(over);
+  for (const auto& [sequence, answer] : waiting) answer({{}, sequence, over});
   for (const Load& load : loads)
     if (load.done) load.done(over);
 }

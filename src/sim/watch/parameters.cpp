@@ -61,6 +61,18 @@ const std::vector<FieldInfo>& Parameters::describe(const void* kind, std::vector
   return found->second;
 }
 
+/// Fields of the kind, and the common keys of devices that have some.
+const std::vector<FieldInfo>& Parameters::describe(const Simulation::Device& device) {
+  const Kind& kind = simulation_.kind(device);
+  if (!device.keys) return describe(&kind, kind.describe);
+  const auto [found, fresh] = with_keys_.try_emplace(&kind);
+  if (fresh) {
+    found->second = describe(&kind, kind.describe);
+    for (FieldInfo& field : device_key_fields(kind)) found->second.push_back(std::move(field));
+  }
+  return found->second;
+}
+
 std::optional<Parameters::Part> Parameters::find(std::string_view target) {
   static const std::vector<Owned<Simulation::Device>> no_devices;
   static const Simulation::ProgramEntries no_programs;
@@ -68,12 +80,12 @@ std::optional<Parameters::Part> Parameters::find(std::string_view target) {
   for (const auto& each : entity ? entity->devices : no_devices) {
     if (each->path != target) continue;
     const Simulation::Device& device = *each;
-    const Kind& kind = simulation_.kind(device);
-    const auto& pool = simulation_.pool(device);
     return Part{
-        &describe(&kind, kind.describe),
-        [&](std::span<const ValueStep> path) { return pool.value(device.index, ValuePart::parameter, path); },
-        [&](const ValueVisit& visit) { pool.list_values(device.index, ValuePart::parameter, visit); }};
+        &describe(device),
+        [&](std::span<const ValueStep> path) {
+          return simulation_.value(device, ValuePart::parameter, path);
+        },
+        [&](const ValueVisit& visit) { simulation_.list_values(device, ValuePart::parameter, visit); }};
   }
   const Simulation::ProgramEntries* const programs = simulation_.programs_of(first_part(target));
   for (const auto& each : programs ? *programs : no_programs) {

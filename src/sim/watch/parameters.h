@@ -59,9 +59,11 @@ class Parameters {
   };
   std::optional<Part> find(std::string_view target);
   const std::vector<FieldInfo>& describe(const void* kind, std::vector<FieldInfo> (*describe)());
+  const std::vector<FieldInfo>& describe(const Simulation::Device& device);
 
   const Simulation& simulation_;
   std::map<const void*, std::vector<FieldInfo>> described_;  ///< by kind
+  std::map<const void*, std::vector<FieldInfo>> with_keys_;  ///< likewise, of devices with common keys
 };
 
 }  // namespace sandlot

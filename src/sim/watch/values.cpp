@@ -91,6 +91,7 @@ bool NamedValue::resolve_topic(const TopicBase& topic) {
   if (path_.size() != 1) return false;
   const std::string& first = path_.front().key;
   if (first == "count") return take(What::topic_count, 1, number(0, "1"));
+  if (first == "waiting" && topic.queue_limit() > 0) return take(What::topic_waiting, 1, number(0, "1"));
   return first == "stamp" && take(What::topic_stamp, 1, number(0, "s"));
 }
 
@@ -140,21 +141,20 @@ bool NamedValue::resolve_thing(const Simulation::Entity& entity) {
 bool NamedValue::resolve_device(const Simulation::Device& device) {
   device_ = &device;
   topic_ = device.topics.empty() ? nullptr : device.topics.front().topic.get();
-  const PoolBase& pool = simulation_->pool(device);
   const std::string& first = path_.front().key;
   const auto rest = std::span<const ValueStep>(path_).subspan(1);
   // What is spelt out goes first: a field called `state` is found behind `reading.`.
   if (!rest.empty()) {
     if (first == "reading" && topic_ && take(What::topic, 1, topic_->value(rest))) return true;
     if (first == "parameter" &&
-        take(What::parameter, 1, pool.value(device.index, ValuePart::parameter, rest)))
+        take(What::parameter, 1, simulation_->value(device, ValuePart::parameter, rest)))
       return true;
-    if (first == "state" && take(What::state, 1, pool.value(device.index, ValuePart::state, rest)))
+    if (first == "state" && take(What::state, 1, simulation_->value(device, ValuePart::state, rest)))
       return true;
   }
   if (topic_ && take(What::topic, 0, topic_->value(path_))) return true;
-  if (take(What::parameter, 0, pool.value(device.index, ValuePart::parameter, path_))) return true;
-  if (take(What::state, 0, pool.value(device.index, ValuePart::state, path_))) return true;
+  if (take(What::parameter, 0, simulation_->value(device, ValuePart::parameter, path_))) return true;
+  if (take(What::state, 0, simulation_->value(device, ValuePart::state, path_))) return true;
   if (path_.size() != 1) return false;
   if (first == "sample") return take(What::sample, 1, number(0, "1"));
   if (!topic_) return false;
@@ -203,9 +203,9 @@ ValueFound NamedValue::look() const {
     case What::topic: return topic_->count > 0 ? topic_->value(rest) : ValueFound{Is::absent};
     case What::topic_count: return number(static_cast<double>(topic_->count), "");
     case What::topic_stamp: return topic_->count > 0 ? number(topic_->stamp.s(), "") : ValueFound{Is::absent};
-    case What::parameter:
-      return simulation_->pool(*device_).value(device_->index, ValuePart::parameter, rest);
-    case What::state: return simulation_->pool(*device_).value(device_->index, ValuePart::state, rest);
+    case What::topic_waiting: return number(static_cast<double>(topic_->waiting()), "");
+    case What::parameter: return simulation_->value(*device_, ValuePart::parameter, rest);
+    case What::state: return simulation_->value(*device_, ValuePart::state, rest);
     case What::sample: return number(static_cast<double>(simulation_->timing(*device_).sample), "");
     case What::program_parameter: return program_->program->value(ValuePart::parameter, rest);
     case What::program_state: return program_->program->value(ValuePart::state, rest);
@@ -320,11 +320,10 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
   list_thing(simulation, entity, visit);
   Lister lister(visit);
   for (const auto& device : entity.devices) {
-    const PoolBase& pool = simulation.pool(*device);
     if (!device->topics.empty())
       list_topic(*device->topics.front().topic, lister.under(device->path, "reading"));
-    pool.list_values(device->index, ValuePart::parameter, given(lister.under(device->path, "parameter")));
-    pool.list_values(device->index, ValuePart::state, lister.under(device->path, "state"));
+    simulation.list_values(*device, ValuePart::parameter, given(lister.under(device->path, "parameter")));
+    simulation.list_values(*device, ValuePart::state, lister.under(device->path, "state"));
     if (lister.fresh(device->path + ".sample"))
       lister.one(device->path + ".sample", "1", "Index of the next sample.",
                  static_cast<double>(simulation.timing(*device).sample));
@@ -334,6 +333,9 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
         if (&slot != device->topics.data()) list_topic(*slot.topic, lister.under(topic, "reading"));
         if (lister.fresh(topic + ".count"))
           lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(slot.topic->count));
+        if (slot.topic->queue_limit() > 0 && lister.fresh(topic + ".waiting"))
+          lister.one(topic + ".waiting", "1", "Orders that wait in the queue.",
+                     static_cast<double>(slot.topic->waiting()));
       }
   }
   list_programs(entity.programs, lister);

@@ -60,6 +60,7 @@ class NamedValue {
     topic,
     topic_count,
     topic_stamp,
+    topic_waiting,
     parameter,
     state,
     sample,

@@ -97,6 +97,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   SL_TRY(check_team(instance));
   const Pose X_WM = instance.X_WM;
   if (instance.motion) instance.X_WM = model::pose_at(*instance.motion, now_.s());
+  SL_ASSIGN(std::shared_ptr<const model::Model> declared_model, add_masses(instance));
   auto id = engine_->add(instance);
   instance.X_WM = X_WM;
   if (!id) {
@@ -105,6 +106,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   }
   auto entity = std::make_unique<Entity>();
   entity->instance = std::move(instance);
+  entity->declared_model = std::move(declared_model);
   entity->id = *id;
   entity->key = entity_key(entity->instance.name);
   entity->serial = next_serial_++;
@@ -115,6 +117,8 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   Status status;
   for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = devices_.add(added, decl, *engine_, now_, diagnostics);
+  for (auto& device : added.devices)
+    if (status) status = devices_.connect_orders(added, *device, commands_);
   for (std::size_t i = 0; i < added.instance.controllers.size(); ++i)
     if (status) status = programs_.add(added, added.instance.controllers.share(i), now_, diagnostics);
   // Of a world that is being built the teams come last.
@@ -136,6 +140,17 @@ Status Simulation::check_team(const model::Instance& instance) const {
   if (instance.team.empty() || std::find(names.begin(), names.end(), instance.team) != names.end()) return {};
   return Error{"'" + instance.name + "' is of team '" + instance.team + "', which is not there",
                suggestion(instance.team, names), instance.place};
+}
+
+/// Gives an instance a model with the masses of its devices. Instances declared alike share one.
+/// @return the model that was declared; null: the devices have no mass
+Result<std::shared_ptr<const model::Model>> Simulation::add_masses(model::Instance& instance) {
+  SL_ASSIGN(std::vector<PointMass> masses,
+            masses_of_devices(instance, [&](std::string_view name) { return devices_.find_kind(name); }));
+  if (masses.empty()) return std::shared_ptr<const model::Model>();
+  if (with_masses_.declared != instance.model || with_masses_.masses != masses)
+    with_masses_ = {instance.model, model_with_masses(*instance.model, masses), std::move(masses)};
+  return std::exchange(instance.model, with_masses_.loaded);
 }
 
 void Simulation::remove_entity(std::size_t index) {
@@ -223,17 +238,6 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
   return nullptr;
 }
 
-TopicBase* Simulation::find_command(std::string_view name) const {
-  const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
-  const auto found = by_name_.find(name.substr(begin, name.find('/', begin) - begin));
-  if (found == by_name_.end()) return nullptr;
-  for (auto& device : found->second->devices)
-    for (Slot& slot : device->commands)
-      if (slot.topic->name() == name)
-        return DevicePools::takes_commands(*device, now_) ? slot.topic.get() : nullptr;
-  return nullptr;
-}
-
 std::vector<const TopicBase*> Simulation::topics() const {
   std::vector<const TopicBase*> all;
   for_each_topic([&](const TopicBase& topic, const std::string&) { all.push_back(&topic); });
@@ -252,11 +256,12 @@ std::vector<Simulation::DeviceView> Simulation::devices(std::string_view instanc
     if (entity->instance.name != instance) continue;
     for (const auto& device : entity->devices) {
       const Kind& kind = devices_.kind(*device);
-      DeviceView view{device->path, kind.name, {}, {}, {}};
+      DeviceView view{device->path, kind.name, {}, {}, {}, {}};
       for (std::size_t level = 0; level < kind.levels.size(); ++level)
         if (device->levels >> level & 1) view.active_levels.emplace_back(kind.levels[level].name);
       for (const Slot& slot : device->topics) view.topics.push_back(slot.topic.get());
       for (const Slot& slot : device->commands) view.commands.push_back(slot.topic.get());
+      for (const auto& order : device->orders) view.orders.push_back(order.get());
       views.push_back(std::move(view));
     }
   }

@@ -74,16 +74,9 @@ void Commands::begin_tick(Time now) {
   std::erase_if(overrides_, [&](const ManualOverride& each) { return each.until <= now; });
 }
 
-void Commands::conclude(const Pending& pending, Status status, bool logged) {
-  outcomes_.push_back({pending.source, pending.sequence, std::move(status)});
+void Commands::conclude(const Pending& pending, Status status, bool logged, std::vector<std::byte> response) {
+  outcomes_.push_back({pending.source, pending.sequence, std::move(status), std::move(response)});
   if (logged) log_request(pending.request, outcomes_.back());
-}
-
-Status Commands::deliver(SimulationParts::Slot& slot, std::span<const std::byte> bytes, Time now) {
-  SL_TRY(slot.topic->assign(bytes));
-  slot.topic->stamp = now;
-  ++slot.topic->count;
-  return {};
 }
 
 void Commands::override_manually(const SimulationParts::Device& device, Time now) {

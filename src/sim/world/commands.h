@@ -54,11 +54,9 @@ class Commands {
   /// Forgets the outcomes of the tick before, and overrides that are over.
   void begin_tick(Time now);
   /// Records the outcome of a request, in the log, too, if `logged`.
-  void conclude(const Pending& pending, Status status, bool logged);
+  void conclude(const Pending& pending, Status status, bool logged, std::vector<std::byte> response = {});
   std::span<const Outcome> outcomes() const { return outcomes_; }
 
-  /// Writes a message into a command slot. Errors: not finite, not a message of the slot's type.
-  static Status deliver(SimulationParts::Slot& slot, std::span<const std::byte> bytes, Time now);
   void count_refused(std::uint64_t number = 1) { refused_ += number; }
   std::uint64_t refused() const { return refused_; }
 

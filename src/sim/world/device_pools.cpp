@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "assets/image/write.h"
 #include "base/text.h"
 #include "noise/chain.h"
 #include "sim/load/presets.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/faults.h"
 
 namespace sandlot {
@@ -17,15 +19,18 @@ namespace {
 struct SlotMaker final : TopicMaker {
   std::vector<SimulationParts::Slot> topics, commands;
   std::vector<std::pair<std::string, Pose>> frames;
+  std::vector<std::unique_ptr<DeviceOrder>> orders;
   void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
-    topics.push_back({std::move(topic), level});
+    topics.push_back({std::move(topic), level, false});
   }
   void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) override {
-    commands.push_back({std::move(slot), level});
+    const bool queued = slot->queue_limit() > 0;
+    commands.push_back({std::move(slot), level, queued});
   }
   void adopt_frame(std::string name, const Pose& X_SF) override {
     frames.emplace_back(std::move(name), X_SF);
   }
+  void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
 };
 
 /// Levels named by `level: x` or `levels: [x, y]`; both keys belong to the simulator, not to the kind's spec.
@@ -72,6 +77,12 @@ void DevicePools::add_kind(const Kind& kind) {
   pools_.push_back({&kind, kind.create_pool(), {}, {}, {}, {}, {}, {}, {}});
 }
 
+const Kind* DevicePools::find_kind(std::string_view name) const {
+  const auto found = std::find_if(pools_.begin(), pools_.end(),
+                                  [&](const Pool& pool) { return name == pool.kind->name; });
+  return found == pools_.end() ? nullptr : found->kind;
+}
+
 Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
                         Diagnostics& diagnostics) {
   model::DeviceDecl decl = declared;
@@ -90,7 +101,10 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   SL_ASSIGN(const std::uint32_t levels, take_levels(decl.config, *kind, decl.place));
   const auto pool = std::find_if(pools_.begin(), pools_.end(), [&](const Pool& p) { return p.kind == kind; });
   SL_CHECK(pool != pools_.end());
-  SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, *pool->pool, kind->name));
+  const bool kind_has_errors = pool->pool->has_errors();
+  SL_ASSIGN(std::shared_ptr<DeviceKeys> keys, take_device_keys(decl.config, kind_has_errors));
+  const bool has_errors = kind_has_errors || (keys && keys->spec.command_errors);
+  SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, has_errors, kind->name));
 
   SlotMaker maker;
   const DeviceBuild build{
@@ -153,8 +167,19 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   device->topics = std::move(maker.topics);
   device->commands = std::move(maker.commands);
   device->frames = std::move(maker.frames);
+  device->orders = std::move(maker.orders);
   device->errors = build.errors;
   device->faults = std::move(faults);
+  device->keys = std::move(keys);
+  if (device->keys) {
+    Status begun = device->keys->begin(*device, *kind, rate_hz, kind->phases & phase_sense,
+                                       entity.instance.model->joints.size(), setup_.seed);
+    if (!begun) {
+      pool->pool->remove(index);
+      return begun;
+    }
+    ++pool->keyed;
+  }
   if (device->faults) ++pool->faulty;
   pool->devices.push_back(device.get());
   pool->all.push_back(index);
@@ -178,6 +203,7 @@ void DevicePools::remove(const Device& device) {
   pool.sample.pop_back();
   pool.since.pop_back();
   if (device.faults) --pool.faulty;
+  if (device.keys) --pool.keyed;
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
 
@@ -188,18 +214,6 @@ void DevicePools::release(const Device& device, const Context& context) {
 bool DevicePools::need_render_scene() const {
   return std::any_of(pools_.begin(), pools_.end(),
                      [](const Pool& pool) { return pool.kind->needs_render_scene && !pool.devices.empty(); });
-}
-
-DevicePools::Slot* DevicePools::command_slot(Device& device, std::string_view type,
-                                             std::string_view level) const {
-  const auto& levels = pools_[device.kind].kind->levels;
-  for (Slot& slot : device.commands) {
-    if (type != slot.topic->type()) continue;
-    const bool always = slot.level >= levels.size();
-    if (!level.empty() && (always || level != levels[slot.level].name)) continue;
-    if (always || (device.levels >> slot.level & 1)) return &slot;
-  }
-  return nullptr;
 }
 
 void DevicePools::plan_next_sample(const Device& device) {
@@ -234,14 +248,40 @@ Status DevicePools::set_levels(Device& device, std::span<const std::string> name
 }
 
 Status DevicePools::set_parameter(Device& device, std::string_view field, const Node& value) {
-  SL_TRY(pools_[device.kind].pool->set_parameter(device.index, field, value));
+  PoolBase& pool = *pools_[device.kind].pool;
+  if (is_device_key(field, pool.has_errors())) return set_device_key(device, field, value);
+  SL_TRY(pool.set_parameter(device.index, field, value));
   plan_next_sample(device);
   return {};
 }
 
+Status DevicePools::request_sample(Device& device, Time at) {
+  Timing& when = pools_[device.kind].timing[device.index];
+  if (device.keys && !when.requested)
+    SL_TRY(device.keys->take_request(device, at, when.last, when.sample == 0));
+  when.requested = true;
+  return {};
+}
+
+ValueFound DevicePools::value(const Device& device, ValuePart part, std::span<const ValueStep> path) const {
+  const ValueFound found = pools_[device.kind].pool->value(device.index, part, path);
+  if (!device.keys || found.is == ValueFound::Is::value || found.is == ValueFound::Is::compound) return found;
+  const ValueFound common = value_at(part, device.keys->spec, device.keys->state, path);
+  return common.is == ValueFound::Is::value || common.is == ValueFound::Is::compound ? common : found;
+}
+
+void DevicePools::list_values(const Device& device, ValuePart part, const ValueVisit& visit) const {
+  pools_[device.kind].pool->list_values(device.index, part, visit);
+  if (!device.keys) return;
+  const bool kind_has_errors = pools_[device.kind].pool->has_errors();
+  sandlot::list_values(part, device.keys->spec, device.keys->state, [&](ValueEntry entry) {
+    if (!kind_has_errors || entry.path != errors_field.key) visit(std::move(entry));
+  });
+}
+
 Status DevicePools::order_failure(Device& device, const FailureOrder& order) {
   Pool& pool = pools_[device.kind];
-  return sandlot::order_failure(device, *pool.pool, pool.faulty, order);
+  return sandlot::order_failure(device, has_errors(device), pool.faulty, order);
 }
 
 void DevicePools::scale_errors(Device& device, double factor) {
@@ -259,7 +299,19 @@ bool DevicePools::any_failure_ordered() const {
 
 // --------------------------------------------------------------------------------------------------------- phases
 
+bool DevicePools::has_errors(const Device& device) const {
+  return pool(device).has_errors() || (device.keys && device.keys->spec.command_errors);
+}
+
+double DevicePools::all_errors(const Device& device, Time now) const {
+  const double own = pool(device).errors(device.index) * (device.keys ? device.keys->spec.errors : 1);
+  const double failing = device.faults ? device.faults->at(now).factor : 1;
+  return std::min(max_errors, own * device.errors * failing);
+}
+
 void DevicePools::actuate(const Context& context) {
+  for (Pool& pool : pools_)
+    if (pool.keyed > 0) prepare_commands(pool, context);
   for (Pool& pool : pools_)
     if ((pool.kind->phases & phase_actuate) && !pool.devices.empty())
       pool.pool->actuate(context, {acting(pool, context, true), pool.sample, pool.levels, pool.since});
@@ -308,16 +360,34 @@ void DevicePools::sense(const Context& context) {
   for (Pool& pool : pools_) {
     if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
     find_due(pool, context.now, context.tick);
-    if (pool.due.empty()) continue;
-    if (pool.faulty > 0) sense_faulty(pool, context);
-    else pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
+    if (pool.keyed > 0) sense_keyed(pool, context);
+    else sense_due(pool, context);
   }
 }
 
-bool DevicePools::takes_commands(const Device& device, Time now) {
-  if (!device.faults) return true;
-  const Failing failing = device.faults->at(now);
-  return !failing.stuck && !failing.dead;
+void DevicePools::sense_due(Pool& pool, const Context& context) const {
+  if (pool.due.empty()) return;
+  if (pool.faulty > 0) sense_faulty(pool, context);
+  else pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
+}
+
+/// Takes the samples that are due in a pool with common keys: messages may be delayed.
+void DevicePools::sense_keyed(Pool& pool, const Context& context) const {
+  const auto for_delayed = [&](std::span<const std::uint32_t> indices, auto&& work) {
+    for (const std::uint32_t index : indices) {
+      Device& device = *pool.devices[index];
+      if (device.keys && device.keys->delays_messages()) work(device);
+    }
+  };
+  for_delayed(pool.due, [](Device& device) { device.keys->remember_messages(device); });
+  sense_due(pool, context);
+  for_delayed(pool.due, [&](Device& device) {
+    device.keys->hold_back_messages(device, context.now, all_errors(device, context.now));
+  });
+  for_delayed(pool.all, [&](Device& device) {
+    const bool dead = device.faults && device.faults->at(context.now).dead;
+    device.keys->publish_messages(device, context.now, dead);
+  });
 }
 
 /// Takes the samples that are due in a pool with devices that have faults.
@@ -388,6 +458,13 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   write(w, when.requested);
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
+  if (device.keys) {
+    const std::size_t at = w.size();
+    write(w, std::uint64_t{0});
+    device.keys->save(w);
+    const std::uint64_t size = w.size() - at - 8;
+    std::memcpy(w.buffer().data() + at, &size, 8);
+  }
   pools_[device.kind].pool->save(device.index, w);
 }
 
@@ -414,7 +491,18 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     // What assign() refuses does not come in by another door.
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
-  pools_[device.kind].pool->load(device.index, r);
+  PoolBase& pool = *pools_[device.kind].pool;
+  if (!device.keys) {
+    pool.load(device.index, r);
+  } else {
+    // The state of the kind first: whether it can go on with a message on its way depends on it.
+    std::uint64_t size = 0;
+    read(r, size);
+    ByteReader common(r.take(size));
+    pool.load(device.index, r);
+    const auto fits = [&] { return pool.fits(device.index); };
+    if (!r.ok() || !device.keys->load(device, common, now, fits) || common.remaining() != 0) r.fail();
+  }
   if (r.ok()) plan_next_sample(device);
 }
 

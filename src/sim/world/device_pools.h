@@ -13,6 +13,7 @@
 
 namespace sandlot {
 
+class Commands;       // sim/world/commands.h
 struct FailureOrder;  // sim/world/faults.h
 
 class DevicePools {
@@ -30,26 +31,46 @@ class DevicePools {
   /// Errors   unknown kind, a name given twice, wrong keys, a rate above the tick rate; nothing has changed then.
   Status add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
              Diagnostics& diagnostics);
+  /// Connects the orders that a device gives to others of its robot. Once all devices of the robot are there.
+  /// Errors   no such device, or it takes no such command.
+  Status connect_orders(Entity& entity, Device& device, Commands& commands) const;
   /// Takes a device out of its pool; the caller destroys it.
   void remove(const Device& device);
   /// Lets an actuator release what it holds, into context.actuation.
   void release(const Device& device, const Context& context);
 
+  /// Null: there is none of that name.
+  const Kind* find_kind(std::string_view name) const;
   const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
   const Timing& timing(const Device& device) const { return pools_[device.kind].timing[device.index]; }
+  /// Numbers of a device by path, of its kind and of the common keys.
+  ValueFound value(const Device& device, ValuePart part, std::span<const ValueStep> path) const;
+  void list_values(const Device& device, ValuePart part, const ValueVisit& visit) const;
   /// Whether some device needs the render scene.
   bool need_render_scene() const;
   /// The command slot of a type: at the level of that name, or at an active level (""). Null: none takes it.
   Slot* command_slot(Device& device, std::string_view type, std::string_view level) const;
+  /// Takes a command into a slot of the device, or puts it on its way there.
+  /// Errors   the device has failed, takes no more now, has no room; bytes that are not a message of the slot's type, numbers
+  ///          that are not finite.
+  /// @param explain  false: errors that may come in every tick have no text, and cost no memory
+  Status deliver(Device& device, Slot& slot, std::span<const std::byte> bytes, Time now,
+                 bool explain = true) const;
   /// False while a failure keeps the device from taking commands.
   static bool takes_commands(const Device& device, Time now);
+  /// The latest command that was accepted for a slot, which may be on its way still.
+  static const TopicBase& latest_command(const Device& device, const Slot& slot);
 
   // Changes by requests.
   Status set_levels(Device& device, std::span<const std::string> names, const Context& context);
   Status set_parameter(Device& device, std::string_view field, const Node& value);
   Status order_failure(Device& device, const FailureOrder& order);
-  void request_sample(const Device& device) { pools_[device.kind].timing[device.index].requested = true; }
+  /// @param at  the end of the tick that begins
+  Status request_sample(Device& device, Time at);
+  /// Calls a service. Errors: no such service, the device has failed, what the service refuses.
+  Status call(Device& device, std::string_view service, std::span<const std::byte> request,
+              std::vector<std::byte>& response, const Context& context);
   /// @param factor  of the world times that of the robot
   void scale_errors(Device& device, double factor);
   /// Whether the failure of some device was ordered while the run went on.
@@ -74,10 +95,17 @@ class DevicePools {
     std::vector<std::uint64_t> sample;
     std::vector<Time> since;
     std::uint32_t faulty = 0;  ///< number of devices with faults
+    std::uint32_t keyed = 0;   ///< number of devices with common keys
   };
   static std::span<const std::uint32_t> acting(Pool& pool, const Context& context, bool release_dead);
+  /// Product of all factors on a device's errors, a failure's included.
+  double all_errors(const Device& device, Time now) const;
+  bool has_errors(const Device& device) const;
+  void prepare_commands(Pool& pool, const Context& context) const;
   void find_due(Pool& pool, Time now, Time step) const;
+  void sense_due(Pool& pool, const Context& context) const;
   void sense_faulty(Pool& pool, const Context& context) const;
+  void sense_keyed(Pool& pool, const Context& context) const;
   void plan_next_sample(const Device& device);
   void set_active_levels(Device& device, std::uint32_t levels);
 

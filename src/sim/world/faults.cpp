@@ -13,7 +13,7 @@ Status FailureSpec::check(const Node& node, const std::string& path) const {
   return node.error("until is not later than from", "it begins at " + number_text(from_s) + " s", path);
 }
 
-Result<std::unique_ptr<Faults>> take_faults(Node& config, const PoolBase& pool, std::string_view kind) {
+Result<std::unique_ptr<Faults>> take_faults(Node& config, bool has_errors, std::string_view kind) {
   FaultsSpec spec;
   Place clock_place;
   Status status;
@@ -24,7 +24,7 @@ Result<std::unique_ptr<Faults>> take_faults(Node& config, const PoolBase& pool, 
     status = read_value(*value, field, member, std::string("/") + field.key);
     const bool noisy = std::any_of(spec.failures.begin(), spec.failures.end(),
                                    [](const auto& each) { return each.kind == FailureSpec::Kind::noisy; });
-    if (status && noisy && !pool.has_errors())
+    if (status && noisy && !has_errors)
       status = value->error("a " + std::string(kind) + " has no errors that could grow",
                             "it can be stuck or dead", "/failures");
     clock_place = value->place();
@@ -90,9 +90,9 @@ Status Faults::check(std::span<SimulationParts::Slot> topics) const {
                "/clock"};
 }
 
-Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std::uint32_t& faulty,
+Status order_failure(SimulationParts::Device& device, bool has_errors, std::uint32_t& faulty,
                      const FailureOrder& order) {
-  if (order.kind == FailureOrder::Kind::noisy && !pool.has_errors())
+  if (order.kind == FailureOrder::Kind::noisy && !has_errors)
     return Error{"a " + device.decl.kind + " has no errors that could grow", "it can be stuck or dead"};
   if (!device.faults) {
     device.faults = std::make_shared<Faults>();

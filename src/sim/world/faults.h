@@ -9,7 +9,7 @@
 ///         reads a sensor which no longer measures. Nothing is published if there was no message before. An actuator
 ///         goes on with its last command; new ones are refused.
 /// dead    It publishes nothing and takes no commands. An actuator exerts nothing.
-/// noisy   Its errors are `factor` times as large: as if its key `errors` were, of kinds that have one.
+/// noisy   Its errors, those of its commands included, are `factor` times as large: as if its key `errors` were.
 ///
 /// By order while the run goes on: the parameter `failure` of the device, whatever its kind, is stuck, dead, noisy or
 /// {kind: noisy, factor: 5}; `none` is no failure even if one is planned, `planned` follows the key `failures`. An order
@@ -127,10 +127,10 @@ inline bool is_ordered(const SimulationParts::Device& device) {
   return device.faults && device.faults->order.kind != FailureOrder::Kind::planned;
 }
 /// @param faulty  how many devices of the pool have faults
-Status order_failure(SimulationParts::Device& device, const PoolBase& pool, std::uint32_t& faulty,
+Status order_failure(SimulationParts::Device& device, bool has_errors, std::uint32_t& faulty,
                      const FailureOrder& order);
 
 /// Takes the keys above out of the keys of a device of this kind. Null: it has none of them.
-Result<std::unique_ptr<Faults>> take_faults(Node& config, const PoolBase& pool, std::string_view kind);
+Result<std::unique_ptr<Faults>> take_faults(Node& config, bool has_errors, std::string_view kind);
 
 }  // namespace sandlot

@@ -137,6 +137,34 @@ TEST_P(Heap, NorDoesOneWithProgramsThatPublishAtRatesOfTheirOwn) {
   EXPECT_EQ(simulation->find_topic("/rover1/estimator/estimate")->count, before + 50);
 }
 
+/// Commands and scans on their way, commands with errors.
+TEST_P(Heap, NorDoesOneWithCommonKeysOfDevices) {
+  model::Setup setup = arena(GetParam(), 5);
+  for (model::Instance& instance : setup.instances) {
+    if (instance.devices.empty()) continue;
+    Node stage = Node::map(), stages = Node::sequence(), errors = Node::map();
+    stage.set("gaussian", map({{"std", "0.02"}}));
+    stages.push(stage);
+    stage = Node::map();
+    stage.set("lag", map({{"time_constant", "0.1"}}));
+    stages.push(stage);
+    errors.set("linear", stages);
+    instance.devices[0].config.set("command_errors", errors);
+    instance.devices[0].config.set("delay", Node::scalar("30 ms"));
+    instance.devices[0].config.set("max_rate", Node::scalar("10"));
+    instance.devices[1].config.set("delay", Node::scalar("250 ms"));
+  }
+  const auto simulation = build(std::move(setup));
+  Holder holder;
+  simulation->add_observer(&holder);
+  advance(*simulation, 1000);
+  ours = of_libraries = 0;
+  counting = true;
+  advance(*simulation, 200);
+  counting = false;
+  EXPECT_EQ(ours.load(), 0u);
+}
+
 }  // namespace
 }  // namespace sandlot::test
 

@@ -12,12 +12,14 @@
 
 namespace sandlot {
 
-struct Faults;  // sim/world/faults.h
+struct Faults;     // sim/world/faults.h
+class DeviceKeys;  // sim/world/device_keys.h
 
 struct SimulationParts {
   struct Slot {
     Owned<TopicBase> topic;
     std::uint32_t level = 0;
+    bool queued = false;  ///< it keeps several orders
   };
   struct Device {
     explicit Device(std::shared_ptr<const model::DeviceDecl> declared)
@@ -31,8 +33,10 @@ struct SimulationParts {
     std::uint32_t levels = 1;
     std::vector<Slot> topics, commands;
     std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
+    std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< that it gives to other devices
     double errors = 1;                                 ///< the world's factor on errors times the robot's
     DeepConst<std::shared_ptr<Faults>> faults;         ///< null: it has none
+    std::shared_ptr<DeviceKeys> keys;                  ///< null: it has none of the common keys
   };
   /// Sampling times of a device. Read in every tick, so those of a pool lie side by side.
   struct Timing {
@@ -93,7 +97,15 @@ struct SimulationParts {
     std::uint64_t serial = 0;  ///< creation order over the whole run
     std::vector<Owned<Device>> devices;
     ProgramEntries programs;
+    /// The model without the masses of devices, of an instance whose devices have some; else null.
+    std::shared_ptr<const model::Model> declared_model;
 
+    /// The instance as it was declared, to make it again.
+    model::Instance declared() const {
+      model::Instance out = instance;
+      if (declared_model) out.model = declared_model;
+      return out;
+    }
     /// By path, "rover/laser"; null when there is none.
     Device* find_device(std::string_view path) {
       for (auto& device : devices)

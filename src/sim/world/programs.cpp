@@ -159,7 +159,7 @@ std::optional<Error> Programs::step(Entities entities, Time now, bool control_st
   return failed;
 }
 
-void Programs::deliver_orders(Entities entities, Time now, bool logged) {
+void Programs::deliver_orders(Entities entities, Time now, Time end, bool logged) {
   gather(entities);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     ProgramEntry& program = *all_[i];
@@ -173,16 +173,14 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
     }
     for (const Command::Order& order : program.command.orders()) {
       if (order.is_sample()) {
-        deliver_sample(program, order, logged, sources_[i]);
+        deliver_sample(program, order, end, logged, sources_[i]);
         continue;
       }
       SimulationParts::Route& route = program.routes[order.slot];
-      const bool taken = route.slot && !commands_.is_overridden(*route.device) &&
-                         DevicePools::takes_commands(*route.device, now);
-      SimulationParts::Slot* const slot = taken ? route.slot.get() : nullptr;
+      const bool possible = route.slot && !commands_.is_overridden(*route.device);
       const std::span<const std::byte> bytes = program.command.bytes(order);
       // Orders for a level that was switched off meanwhile, or for a device under manual override, are refused and counted.
-      const bool refused = !slot || !Commands::deliver(*slot, bytes, now);
+      const bool refused = !possible || !devices_.deliver(*route.device, *route.slot, bytes, now, false);
       if (refused) commands_.count_refused();
       if (!logged) continue;
       const Description::Entry& entry = program.description->actuators[order.slot];
@@ -199,11 +197,11 @@ void Programs::deliver_orders(Entities entities, Time now, bool logged) {
 }
 
 /// Asks a device for a sample at the end of this tick.
-void Programs::deliver_sample(const ProgramEntry& program, const Command::Order& order, bool logged,
+void Programs::deliver_sample(ProgramEntry& program, const Command::Order& order, Time end, bool logged,
                               std::uint64_t source) {
-  const Device* const device = program.sources[order.reading()].get();
-  if (device) devices_.request_sample(*device);
-  else commands_.count_refused();
+  Device* const device = program.sources[order.reading()].get();
+  const bool refused = !device || !devices_.request_sample(*device, end);
+  if (refused) commands_.count_refused();
   if (!logged) return;
   const SampleRequest request{device ? device->path : ""};
   LogEntry& log = commands_.log_entry(static_cast<std::uint8_t>(Request(request).index()),
@@ -212,7 +210,7 @@ void Programs::deliver_sample(const ProgramEntry& program, const Command::Order&
   ByteWriter w;
   write_request(w, request);
   log.bytes.assign(w.bytes().begin(), w.bytes().end());
-  log.refused = !device;
+  log.refused = refused;
 }
 
 // --------------------------------------------------------------------------------------------------------- State

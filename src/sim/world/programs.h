@@ -60,8 +60,8 @@ class Programs {
   /// To be called when entities were added or removed, and when programs were loaded.
   void entities_changed() { changed_ = true; }
 
-  /// Delivers the orders of the latest step to the devices. @param logged  whether to log them
-  void deliver_orders(Entities entities, Time now, bool logged);
+  /// Delivers the orders of the latest step to the devices. @param end  of the tick that begins. @param logged  whether to log them
+  void deliver_orders(Entities entities, Time now, Time end, bool logged);
   /// Steps the programs that are due. @param control_step  whether the tick is one of the run's control steps
   /// @return the first failure
   std::optional<Error> step(Entities entities, Time now, bool control_step);
@@ -113,7 +113,7 @@ class Programs {
   void step_batch(std::span<ProgramEntry* const> batch, Time now) const;
   static void take(ProgramEntry& entry, Program::Resumed resumed);
   static Error failure_of(const ProgramEntry& entry, Time now);
-  void deliver_sample(const ProgramEntry& program, const Command::Order& order, bool logged,
+  void deliver_sample(ProgramEntry& program, const Command::Order& order, Time end, bool logged,
                       std::uint64_t source);
 
   const model::Setup& setup_;

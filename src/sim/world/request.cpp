@@ -35,6 +35,9 @@ struct Save {
   bool operator()(const AnswerRequest& x) {
     return write(w, x.program), write(w, x.answer.kind), write(w, x.answer.bytes), true;
   }
+  bool operator()(const CallRequest& x) {
+    return write(w, x.device), write(w, x.service), write(w, x.bytes), true;
+  }
 };
 
 struct Load {
@@ -56,6 +59,7 @@ struct Load {
     read(r, x.program), read(r, x.answer.kind), read(r, x.answer.bytes);
     return r.ok() && x.answer.kind <= OutsideAnswer::Kind::gone;
   }
+  bool operator()(CallRequest& x) { return read(r, x.device), read(r, x.service), read(r, x.bytes), r.ok(); }
 };
 
 struct Target {
@@ -70,6 +74,7 @@ struct Target {
   const std::string& operator()(const UnloadDeviceRequest& x) const { return x.device; }
   const std::string& operator()(const PullRequest& x) const { return x.name; }
   const std::string& operator()(const AnswerRequest& x) const { return x.program; }
+  const std::string& operator()(const CallRequest& x) const { return x.device; }
 };
 
 }  // namespace
@@ -79,7 +84,7 @@ static_assert(std::is_same_v<std::variant_alternative_t<0, Request>, CommandRequ
 const char* request_kind(std::size_t index) {
   static constexpr std::array<const char*, std::variant_size_v<Request>> names{
       "command", "parameter",   "level",         "spawn", "delete", "pose",
-      "sample",  "load device", "unload device", "pull",  "answer"};
+      "sample",  "load device", "unload device", "pull",  "answer", "call"};
   return index < names.size() ? names[index] : "unknown";
 }
 

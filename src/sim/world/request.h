@@ -81,9 +81,17 @@ struct AnswerRequest {
   OutsideAnswer answer;
 };
 
+/// Calls a service of a device (devices/device_service.h).
+struct CallRequest {
+  std::string device;            ///< "rover/odometry"
+  std::string service;           ///< "reset"
+  std::vector<std::byte> bytes;  ///< the service's request, in CDR
+};
+
 using Request =
     std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest, PoseRequest,
-                 SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest, AnswerRequest>;
+                 SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest, AnswerRequest,
+                 CallRequest>;
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);
@@ -100,6 +108,7 @@ struct Outcome {
   Source source;
   std::uint64_t sequence = 0;
   Status status;
+  std::vector<std::byte> response = {};  ///< of a CallRequest, in CDR
 };
 
 }  // namespace sandlot

@@ -16,6 +16,7 @@ namespace sandlot {
 struct Simulation::Processor {
   Simulation& sim;
   const Source& source;
+  std::vector<std::byte>& response;
 
   Status operator()(const CommandRequest& command);
   Status operator()(const ParameterRequest& request);
@@ -28,6 +29,7 @@ struct Simulation::Processor {
   Status operator()(const UnloadDeviceRequest& request);
   Status operator()(const PullRequest& request);
   Status operator()(const AnswerRequest& request);
+  Status operator()(const CallRequest& request);
 
  private:
   Result<Entity*> entity_named(const std::string& name);
@@ -36,8 +38,8 @@ struct Simulation::Processor {
   Status set_errors(Entity* entity, std::string_view field, const Node& value);
 };
 
-Status Simulation::process(Request& request, const Source& source) {
-  return std::visit(Processor{*this, source}, request);
+Status Simulation::process(Request& request, const Source& source, std::vector<std::byte>& response) {
+  return std::visit(Processor{*this, source, response}, request);
 }
 
 Result<Simulation::Entity*> Simulation::Processor::entity_named(const std::string& name) {
@@ -74,8 +76,7 @@ Status Simulation::Processor::deliver(Device& device, std::string_view level, co
   const bool by_program = source.kind == Source::Kind::program;
   if (by_program && sim.commands_.is_overridden(device))
     return Error{"'" + command.target + "' is driven from outside"};
-  if (!DevicePools::takes_commands(device, sim.now_)) return Error{"'" + command.target + "' has failed"};
-  SL_TRY(Commands::deliver(*slot, command.bytes, sim.now_));
+  SL_TRY(sim.devices_.deliver(device, *slot, command.bytes, sim.now_));
   if (!by_program) sim.commands_.override_manually(device, sim.now_);
   return {};
 }
@@ -119,9 +120,14 @@ Status Simulation::Processor::operator()(const LevelRequest& request) {
 }
 
 Status Simulation::Processor::operator()(const SampleRequest& request) {
-  SL_ASSIGN(const Device* const device, device_named(request.device));
-  sim.devices_.request_sample(*device);
-  return {};
+  SL_ASSIGN(Device* const device, device_named(request.device));
+  return sim.devices_.request_sample(*device, sim.now_ + sim.step_);
+}
+
+/// A device that is dead or stuck answers nothing.
+Status Simulation::Processor::operator()(const CallRequest& request) {
+  SL_ASSIGN(Device* const device, device_named(request.device));
+  return sim.devices_.call(*device, request.service, request.bytes, response, sim.context());
 }
 
 // -------------------------------------------------------------------------------------------------------- entities
@@ -175,6 +181,17 @@ Status Simulation::Processor::operator()(const AnswerRequest& request) {
 
 // --------------------------------------------------------------------------------------------------------- devices
 
+namespace {
+
+/// The engines build bodies once: what is part of a link's mass can neither come nor go.
+Status adds_no_mass(const SimulationParts::Device& device) {
+  if (!device.keys || device.keys->spec.mass_kg == 0) return {};
+  return Error{"'" + device.path + "' has a mass, and the mass of a robot is fixed once it is in the world",
+               "declare the device with the robot and keep it, or leave mass out"};
+}
+
+}  // namespace
+
 /// The instance's own list of devices is extended as well, so that a snapshot taken later builds the same robot. A program
 /// that would not start with the new list ("the only laser" is one of two now) refuses the request.
 Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
@@ -185,10 +202,13 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
                  std::to_string(request.device.link)};
   Diagnostics ignored;
   SL_TRY(sim.devices_.add(*entity, request.device, *sim.engine_, sim.now_, ignored));
-  if (Status described = sim.programs_.describe_again(sim.entities_, *entity); !described) {
+  Status fits = adds_no_mass(*entity->devices.back());
+  if (fits) fits = sim.devices_.connect_orders(*entity, *entity->devices.back(), sim.commands_);
+  if (fits) fits = sim.programs_.describe_again(sim.entities_, *entity);
+  if (!fits) {
     sim.devices_.remove(*entity->devices.back());
     entity->devices.pop_back();
-    return described;
+    return fits;
   }
   entity->instance.devices.push_back(request.device);
   // The engine has to know too: a snapshot makes a robot of it.
@@ -202,7 +222,13 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
 /// Refused while a program of the robot needs the device.
 Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   SL_ASSIGN(Device* const device, device_named(request.device));
+  SL_TRY(adds_no_mass(*device));
   Entity& entity = sim.entity_of(*device);
+  for (const auto& other : entity.devices)
+    for (const auto& order : other->orders)
+      if (order->device() == device->path)
+        return Error{"'" + other->path + "' gives orders to '" + device->path + "'",
+                     "unload '" + other->path + "' first"};
   const auto place = std::find_if(entity.devices.begin(), entity.devices.end(),
                                   [&](const auto& each) { return each.get() == device; });
   const std::ptrdiff_t index = place - entity.devices.begin();

@@ -18,6 +18,7 @@
 
 #include "devices/kind.h"
 #include "sim/world/commands.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/device_pools.h"
 #include "sim/world/frame.h"
 #include "sim/world/parts.h"
@@ -139,6 +140,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
     std::string path, kind;
     std::vector<std::string> active_levels;
     std::vector<const TopicBase*> topics, commands;
+    std::vector<const DeviceOrder*> orders;  ///< that it gives to other devices
   };
   std::vector<DeviceView> devices(std::string_view instance) const;
 
@@ -163,6 +165,13 @@ class Simulation final : public SimulationParts, public TopicFinder {
   const PoolBase& pool(const Device& device) const { return devices_.pool(device); }
   const Kind& kind(const Device& device) const { return devices_.kind(device); }
   const Timing& timing(const Device& device) const { return devices_.timing(device); }
+  /// Numbers of a device's parameters and state, common keys included.
+  ValueFound value(const Device& device, ValuePart part, std::span<const ValueStep> path) const {
+    return devices_.value(device, part, path);
+  }
+  void list_values(const Device& device, ValuePart part, const ValueVisit& visit) const {
+    devices_.list_values(device, part, visit);
+  }
   /// Controller kinds that this world knows: the built-in ones, the embedding program's and those of plugins.
   std::span<const ControllerKind* const> controller_kinds() const { return programs_.kinds(); }
 
@@ -175,6 +184,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   Status build(Diagnostics& diagnostics);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status check_team(const model::Instance& instance) const;
+  Result<std::shared_ptr<const model::Model>> add_masses(model::Instance& instance);
   void remove_entity(std::size_t index);
   void world_changed();
   Entity* find_entity(std::string_view name);
@@ -196,12 +206,10 @@ class Simulation final : public SimulationParts, public TopicFinder {
   void publish();
   Context context();
   void fail(Error error);
-  /// For devices alone: viewers write into nothing.
-  TopicBase* find_command(std::string_view name) const override;
 
   // requests.cpp
   struct Processor;
-  Status process(Request& request, const Source& source);
+  Status process(Request& request, const Source& source, std::vector<std::byte>& response);
 
   // state.cpp
   template <class Visit>
@@ -223,6 +231,11 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::vector<Owned<Entity>> entities_;
   std::vector<const Entity*> guided_;  ///< those with a motion
   std::map<std::string, Entity*, std::less<>> by_name_;
+  /// The latest model that got the masses of devices.
+  struct WithMasses {
+    std::shared_ptr<const model::Model> declared, loaded;
+    std::vector<PointMass> masses;
+  } with_masses_;
   DevicePools devices_{setup_};
   Commands commands_;
   Programs programs_{setup_, devices_, commands_};

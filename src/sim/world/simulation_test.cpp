@@ -452,7 +452,8 @@ std::vector<Request> all_requests() {
           LoadDeviceRequest{"rover1", setup.instances.back().devices[0]},
           UnloadDeviceRequest{"rover1/laser"},
           PullRequest{"rover1", "base_link", {0.1, 0.2, 0.3}, {4, 5, 6}, Time::from_s(0.5)},
-          AnswerRequest{"rover1/brain", {OutsideAnswer::Kind::gone, bytes_of(2)}}};
+          AnswerRequest{"rover1/brain", {OutsideAnswer::Kind::gone, bytes_of(2)}},
+          CallRequest{"rover1/odometry", "reset", bytes_of(1)}};
 }
 
 TEST(Requests, EachKindSurvivesBeingBytes) {

@@ -255,7 +255,11 @@ std::vector<std::byte> Simulation::snapshot() const {
   write(w, profile());
   write_block(w, [&](ByteWriter& block) {
     std::vector<const model::Instance*> instances;
-    for (const auto& entity : entities_) instances.push_back(&entity->instance);
+    std::vector<model::Instance> declared;  // those that differ from what is in the world
+    declared.reserve(entities_.size());
+    for (const auto& entity : entities_)
+      instances.push_back(entity->declared_model ? &declared.emplace_back(entity->declared())
+                                                 : &entity->instance);
     write_setup(block, setup_, instances);
     for (const auto& entity : entities_) write(block, entity->serial);
   });

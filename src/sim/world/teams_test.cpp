@@ -187,7 +187,7 @@ TEST(Rates, ARobotsRateIsTheDefaultOfItsProgramsAndDevices) {
   const auto setup = loaded(
       std::string("version: 1\nphysics: planar\ntime: {step: 10 ms, stop: 1 s}\n") +
       "robots:\n- name: a\n  model: ../models/rover/model.sdf\n  rate: 25\n  controllers:\n"
-      "  - {name: own, kind: wander, rate: 5}\n  - {name: given, kind: wander}\n"
+      "  - {name: own, kind: wander, laser: laser, rate: 5}\n  - {name: given, kind: wander, laser: laser}\n"
       "  devices:\n    slow: {kind: ground_truth, rate: 2}\n    plain: {kind: ground_truth}\n"
       "    every: {kind: ground_truth, rate: 0}\n    sick: {kind: laser_scanner, preset: sick_lms200}\n");
   ASSERT_TRUE(setup) << setup.error().text();

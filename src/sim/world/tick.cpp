@@ -78,11 +78,12 @@ void Simulation::process_commands() {
     return entity ? std::optional(entity->serial) : std::nullopt;
   };
   for (Commands::Pending& pending : commands_.take(serial_of)) {
-    Status status = process(pending.request, pending.source);
-    commands_.conclude(pending, std::move(status), publisher_.wants().input);
+    std::vector<std::byte> response;
+    Status status = process(pending.request, pending.source, response);
+    commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
   }
   // A snapshot may hold orders of programs that do not run: the log that drives the run has them, too.
-  if (options_.run_programs) programs_.deliver_orders(entities_, now_, publisher_.wants().log);
+  if (options_.run_programs) programs_.deliver_orders(entities_, now_, now_ + step_, publisher_.wants().log);
 }
 
 void Simulation::actuate() {

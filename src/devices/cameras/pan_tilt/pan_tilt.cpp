@@ -82,19 +82,17 @@ Pose eye_pose(const Unit& unit, const Context& context) {
   return context.engine.states()[unit.eye_body].X_WB * unit.X_LE;
 }
 
-/// Command slot of the camera's zoom; null: it has none, is gone or has failed.
-Topic<msg::Float64>* zoom_command(const Unit& unit, const Context& context) {
-  if (unit.zoom_command_topic.empty() || !context.topics) return nullptr;
-  return topic_cast<msg::Float64>(context.topics->find_command(unit.zoom_command_topic));
+/// The latest command to the camera's zoom; null: it has no zoom lens or has failed.
+const Topic<msg::Float64>* zoom_command(const Unit& unit, Time now) {
+  return unit.zoom_order ? topic_cast<msg::Float64>(unit.zoom_order->latest(now)) : nullptr;
 }
 
 void zoom_to(const Unit& unit, double wanted, const Context& context) {
-  Topic<msg::Float64>* const slot = zoom_command(unit, context);
+  const Time now = context.now - context.tick;
+  const Topic<msg::Float64>* const slot = zoom_command(unit, now);
   wanted = std::clamp(wanted, 1.0, unit.longest_zoom);
   if (!slot || (slot->count > 0 && slot->message.data == wanted)) return;
-  slot->message.data = wanted;
-  slot->stamp = context.now - context.tick;
-  ++slot->count;
+  unit.zoom_order->give(msg::Float64{wanted}, now);
 }
 
 /// @return [0]: the zoom, [1]: what it shall become
@@ -102,7 +100,7 @@ std::array<double, 2> zoom_of(const Unit& unit, const Context& context) {
   if (unit.zoom_topic.empty() || !context.topics) return {1, 1};
   const auto* const now = topic_cast<msg::Float64>(context.topics->find_topic(unit.zoom_topic));
   const double zoom = now && now->count > 0 ? now->message.data : 1;
-  const Topic<msg::Float64>* const command = zoom_command(unit, context);
+  const Topic<msg::Float64>* const command = zoom_command(unit, context.now);
   return {zoom,
           command && command->count > 0 ? std::clamp(command->message.data, 1.0, unit.longest_zoom) : zoom};
 }
@@ -329,7 +327,7 @@ Result<Unit> Unit::create(const DeviceBuild& build, Spec spec) {
       SL_ASSIGN(const Zoom lens, read_spec<Zoom>(*zoom));
       unit.longest_zoom = lens.max;
       unit.zoom_topic = device + "/zoom";
-      unit.zoom_command_topic = device + "/zoom/command";
+      unit.zoom_order = build.order<msg::Float64>(device.substr(1), "zoom", "camera");
     }
   }
   for (const char* const key : {"search_zoom", "zoom_per_m"}) {

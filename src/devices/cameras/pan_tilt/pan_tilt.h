@@ -145,7 +145,8 @@ struct Unit {
   std::uint32_t eye_body = 0;
   Pose X_LE;  ///< the eye on its link
   std::string objects_topic, robot;
-  std::string zoom_topic, zoom_command_topic;  ///< of the camera; empty: it has no zoom lens
+  std::string zoom_topic;             ///< of the camera; empty: it has no zoom lens
+  DeviceOrder* zoom_order = nullptr;  ///< to the camera; null likewise
   double longest_zoom = 1;
   std::vector<std::pair<std::string, std::uint32_t>> frames;  ///< names of links, and their bodies
   Topic<msg::JointState>* joints_command = nullptr;

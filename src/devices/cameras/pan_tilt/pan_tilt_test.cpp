@@ -46,12 +46,25 @@ class Found final : public TopicFinder {
     if (name == zoom.name()) return &zoom;
     return name == objects.name() ? &objects : nullptr;
   }
-  TopicBase* find_command(std::string_view name) const override {
-    return name == told.name() ? &told : nullptr;
-  }
   Topic<msg::ObjectArray> objects{"/robot1/eye/objects"};
   Topic<msg::Float64> zoom{"/robot1/eye/zoom"};
-  mutable Topic<msg::Float64> told{"/robot1/eye/zoom/command"};
+  Topic<msg::Float64> told{"/robot1/eye/zoom/command"};
+};
+
+/// Writes orders into a slot.
+class Into final : public OrderSink {
+ public:
+  explicit Into(TopicBase& slot) : slot_(slot) {}
+  bool take(std::span<const std::byte> message, Time now) override {
+    if (!slot_.assign(message)) return false;
+    slot_.stamp = now;
+    ++slot_.count;
+    return true;
+  }
+  const TopicBase* latest(Time) const override { return &slot_; }
+
+ private:
+  TopicBase& slot_;
 };
 
 class Owl : public Rig {
@@ -68,7 +81,12 @@ class Owl : public Rig {
   Status mount(std::uint32_t level, std::initializer_list<std::pair<const char*, const char*>> more = {}) {
     Node node = config({{"pan_joint", "pan"}, {"tilt_joint", "tilt"}, {"camera", "eye"}});
     for (const auto& [key, value] : more) node.set(key, Node::scalar(value));
-    return add("head", std::move(node), level);
+    SL_TRY(add("head", std::move(node), level));
+    for (const auto& order : orders) {
+      EXPECT_EQ(order->slot(), found.told.name());
+      order->connect(std::make_unique<Into>(found.told));
+    }
+    return {};
   }
   /// Ticks, with links where the joints have them.
   void run(int ticks) {

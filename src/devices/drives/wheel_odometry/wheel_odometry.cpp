@@ -175,6 +175,36 @@ void Odometer::sense(PoolView<Odometer> pool, const Context& context) {
   }
 }
 
+void Odometer::go_to(const kinematics::PlanarPose& X_OB, const std::array<double, 6>& covariance) {
+  const auto [s, c] = math::sincos(X_OB.theta_rad);
+  state.X_OD = {X_OB.x_m + c * dx_m - s * dy_m, X_OB.y_m + s * dx_m + c * dy_m, X_OB.theta_rad};
+  state.pose.reported_O = X_OB;
+  state.covariance = state.pose.covariance = covariance;
+}
+
+Result<Odometer::Trigger::Response> Odometer::reset(const Trigger::Request&, const Context&) {
+  go_to({}, {});
+  return Trigger::Response{true, "the odometry is at zero"};
+}
+
+Result<Odometer::SetPose::Response> Odometer::set_pose(const SetPose::Request& request, const Context&) {
+  const msg::PoseWithCovarianceStamped& given = request.pose;
+  const std::string& frame = odometry->message.header.frame_id;
+  if (!given.header.frame_id.empty() && given.header.frame_id != frame)
+    return Error{"the pose is in '" + given.header.frame_id.substr(0, 60) + "'",
+                 "give it in '" + frame + "'"};
+  const Pose& pose_OB = given.pose.pose;
+  const std::array<double, 36>& P = given.pose.covariance;
+  constexpr double most = 1e9;  // what is larger would overflow soon
+  if (!is_finite(pose_OB) || norm(pose_OB.q) < 1e-6 || norm(pose_OB.p) > most)
+    return Error{"the pose is not finite"};
+  if (!std::all_of(P.begin(), P.end(), [](double x) { return std::abs(x) <= most; }))
+    return Error{"the covariance is not finite"};
+  if (P[0] < 0 || P[7] < 0 || P[35] < 0) return Error{"the covariance has a negative variance"};
+  go_to({pose_OB.p.x, pose_OB.p.y, yaw_of(normalised(pose_OB.q))}, {P[0], P[1], P[5], P[7], P[11], P[35]});
+  return SetPose::Response{};
+}
+
 /// A level that takes over alone goes on from where the other one is.
 Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   const std::uint32_t fresh = after & ~before;
@@ -201,6 +231,12 @@ Status Odometer::switch_level(std::uint32_t before, std::uint32_t after, const C
 }
 
 namespace {
+constexpr DeviceService services[] = {
+    device_service<Odometer, Odometer::Trigger, &Odometer::reset>("reset",
+                                                                  "Sets pose and covariance to zero."),
+    device_service<Odometer, Odometer::SetPose, &Odometer::set_pose>(
+        "set_pose", "Sets pose and covariance in the odometry's frame."),
+};
 constexpr LevelInfo levels[] = {
     {"odometry", msg::Odometry::ros_type, "", "Pose and velocity estimated from the wheels."},
     {"pose", msg::Odometry::ros_type, "", "Pose and velocity with the errors of a good odometry."},
@@ -211,6 +247,7 @@ constinit const Kind kind = make_kind<Odometer>({
     .name = "wheel_odometry",
     .help = "Dead reckoning from the wheels, with systematic and random errors.",
     .levels = levels,
+    .services = services,
 });
 
 }  // namespace sandlot::wheel_odometry

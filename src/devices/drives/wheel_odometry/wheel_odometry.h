@@ -22,6 +22,9 @@
 ///          F P F^T + G Q G^T with the Jacobians of the arc's chord. `errors` multiplies relative errors (no
 ///          wheel and no distance gets below half its size by that) and, squared, the variances. Slip of the
 ///          wheels shows by itself: the wheels' joints turn.
+/// Services reset (std_srvs/Trigger): pose and covariance of both levels become zero. set_pose
+///          (robot_localization/SetPose): they become those given, of B in "<robot>/odom"; of the pose only x, y and the heading
+///          count. Both show from the next sample on.
 /// Limits   wheels that roll; play and width of the tyres are not there.
 /// Cost     one arc, two normals and two products of 3x3 matrices per sample; no allocation.
 /// Errors   joints that are not there, do not turn, or whose axes do not lie across the robot.
@@ -33,6 +36,7 @@
 
 #include "devices/kind.h"
 #include "kinematics/differential.h"
+#include "messages/device_services.h"
 #include "messages/messages.h"
 #include "noise/chain.h"
 
@@ -133,6 +137,14 @@ struct Odometer {
   static Result<Odometer> create(const DeviceBuild& build, Spec spec);
   static void sense(PoolView<Odometer> pool, const Context& context);
   Status switch_level(std::uint32_t before, std::uint32_t after, const Context& context);
+
+  using Trigger = msg::std_srvs::Trigger;
+  using SetPose = msg::robot_localization::SetPose;
+  Result<Trigger::Response> reset(const Trigger::Request&, const Context&);
+  Result<SetPose::Response> set_pose(const SetPose::Request& request, const Context&);
+
+ private:
+  void go_to(const kinematics::PlanarPose& X_OB, const std::array<double, 6>& covariance);
 };
 
 extern const Kind kind;

@@ -52,6 +52,52 @@ TEST(WheelOdometry, GoesStraightAndRoundAsTheWheelsTurn) {
   for (const double c : at.pose.covariance) EXPECT_EQ(c, 0);
 }
 
+TEST(WheelOdometry, IsResetAndSetByItsServices) {
+  Bench bench({{"alpha_3", "0.01"}}, 0.2);  // 0.01 m^2 per m
+  bench.roll(10, 10);
+  const auto call = [&](const char* name, const auto& request, auto& response) -> Status {
+    std::vector<std::byte> asked, answer;
+    write_cdr(message_info<std::remove_cvref_t<decltype(request)>>(), &request, asked);
+    const auto service = service_of(kind, "robot1/odo", name);
+    EXPECT_TRUE(service);
+    SL_TRY(bench.pool->call(0, **service, asked, answer, bench.context(bench.now)));
+    return read_cdr(message_info<std::remove_cvref_t<decltype(response)>>(), answer, &response);
+  };
+  Odometer::Trigger::Response done;
+  ASSERT_TRUE(call("reset", Odometer::Trigger::Request{}, done));
+  EXPECT_TRUE(done.success);
+  msg::Odometry at = bench.roll(0, 0);
+  EXPECT_NEAR(norm(at.pose.pose.p), 0, 1e-15);
+  EXPECT_EQ(at.pose.covariance[0], 0);
+
+  // At (3, 4) and turned to the left, 1 m ahead is 1 m along y. The covariance given grows by 0.01 m^2 along the way.
+  Odometer::SetPose::Request request;
+  request.pose.header.frame_id = "robot1/odom";
+  request.pose.pose.pose = {{3, 4, 9}, quat_from_rpy(0, 0, math::pi / 2)};
+  request.pose.pose.covariance[0] = 0.5;
+  request.pose.pose.covariance[7] = 0.25;
+  Odometer::SetPose::Response none;
+  ASSERT_TRUE(call("set_pose", request, none));
+  at = bench.roll(10, 10);
+  EXPECT_NEAR(at.pose.pose.p.x, 3, 1e-12);
+  EXPECT_NEAR(at.pose.pose.p.y, 5, 4.5 * 0.1);
+  EXPECT_NEAR(at.pose.covariance[0], 0.5, 1e-12);
+  EXPECT_NEAR(at.pose.covariance[7], 0.26, 1e-12);
+
+  const auto refused = [&](auto&& spoil) {
+    Odometer::SetPose::Request bad = request;
+    spoil(bad.pose);
+    const Status status = call("set_pose", bad, none);
+    return status ? std::string() : status.error().text();
+  };
+  EXPECT_EQ(refused([](auto& p) { p.header.frame_id = "map"; }),
+            "the pose is in 'map'; give it in 'robot1/odom'");
+  EXPECT_EQ(refused([](auto& p) { p.pose.pose.p.x = NAN; }), "the pose is not finite");
+  EXPECT_EQ(refused([](auto& p) { p.pose.covariance[5] = INFINITY; }), "the covariance is not finite");
+  EXPECT_EQ(refused([](auto& p) { p.pose.covariance[35] = -1; }), "the covariance has a negative variance");
+  EXPECT_NEAR(bench.roll(0, 0).pose.pose.p.x, 3, 1e-12) << "refused calls change nothing";
+}
+
 TEST(WheelOdometry, SystematicErrorsBendTheWay) {
   // UMBmark: with the right wheels believed 1 % larger, 10 m become an arc that turns by 0.1 m / 0.5 m.
   Bench unequal({{"right_error", "0.01"}});

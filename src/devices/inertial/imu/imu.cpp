@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "base/text.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::imu {
@@ -245,7 +246,26 @@ Status Imu::switch_level(std::uint32_t before, std::uint32_t after, const Contex
   return {};
 }
 
+Result<msg::std_srvs::Trigger::Response> Imu::calibrate(const msg::std_srvs::Trigger::Request&,
+                                                        const Context& context) {
+  constexpr double most_radps = 0.01;
+  const double turning_radps = norm(context.engine.states()[body].V_WB.angular);
+  if (turning_radps > most_radps)
+    return msg::std_srvs::Trigger::Response{
+        false, "the unit turns at " + number_text(turning_radps) + " rad/s; hold it still"};
+  const auto zero = [](const ChannelNoiseSpec& axis, ChannelNoise& noise) {
+    noise.drawn = -axis.mean - noise.bias.bias;
+  };
+  zero(spec.gyro.x, state.gyro.x);
+  zero(spec.gyro.y, state.gyro.y);
+  zero(spec.gyro.z, state.gyro.z);
+  return msg::std_srvs::Trigger::Response{true, "the offsets of the gyroscopes are set"};
+}
+
 namespace {
+using msg::std_srvs::Trigger;
+constexpr DeviceService services[] = {device_service<Imu, Trigger, &Imu::calibrate>(
+    "calibrate", "Sets the offsets of the gyroscopes, at rest.")};
 constexpr LevelInfo levels[] = {
     {"imu", msg::Imu::ros_type, "", "Rates, specific force and orientation."},
     {"pose", msg::PoseWithCovarianceStamped::ros_type, "", "Pose by inertial navigation."},
@@ -275,6 +295,7 @@ constinit const Kind kind = make_kind<Imu>({
     .from_sdf = from_sdf,
     .sdf_note = "topic and frame names, xyzOffset and rpyOffset, grav_dir_x, hector's drift parameters",
     .presets = presets,
+    .services = services,
 });
 
 }  // namespace sandlot::imu

@@ -25,6 +25,9 @@
 ///          with R_m the orientation half way. The orientation is that at the end of the tick. The first
 ///          sample of a device has no interval: it shows the present rate and a force without acceleration.
 /// Noise    noise/channel_noise.h, for each axis of gyro and accel. The orientation is exact.
+/// Services calibrate (std_srvs/Trigger): sets the offsets of the gyroscopes so that they read zero now, as averaging at rest
+///          does: mean, mean_std and the bias of this moment are gone, the bias drifts on from there. Refused while the unit
+///          turns. Errors given as stages stay.
 /// Limits   no errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East
 ///          is the world's x axis. Setting a robot's pose while it moves shows as a blow in the sample that
 ///          covers it.
@@ -35,6 +38,7 @@
 #include <array>
 
 #include "devices/kind.h"
+#include "messages/device_services.h"
 #include "messages/messages.h"
 #include "noise/axes_noise.h"
 
@@ -140,6 +144,8 @@ struct Imu {
   Topic<msg::PoseWithCovarianceStamped>* pose = nullptr;
 
   static Result<Imu> create(const DeviceBuild& build, Spec spec);
+  Result<msg::std_srvs::Trigger::Response> calibrate(const msg::std_srvs::Trigger::Request&,
+                                                     const Context& context);
   static void pre_substep(PoolView<Imu> pool, const Context& context, double h_s);
   static void sense(PoolView<Imu> pool, const Context& context);
   /// A level that becomes active starts again: `imu` with an interval of its own, `pose` at the true pose.

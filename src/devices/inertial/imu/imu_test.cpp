@@ -52,6 +52,42 @@ TEST(Imu, AtRestItShowsGravityUpwards) {
   EXPECT_EQ(reading(rig).header.frame_id, "robot1/imu");
 }
 
+TEST(Imu, IsCalibratedAtRestOnly) {
+  Rig rig(kind, test::two_wheels());
+  Node gyro = Node::map();
+  Node axis = config({{"mean", "0.02"}, {"mean_std", "0.01"}});
+  Node bias = config({{"bias_std", "0.01"}, {"correlation", "1e8"}});
+  axis.set("bias", bias);
+  for (const char* name : {"x", "y", "z"}) gyro.set(name, axis);
+  Node keys = Node::map();
+  keys.set("gyro", gyro);
+  ASSERT_TRUE(rig.add("imu", keys));
+  const Path rest{[](double) { return BodyState{}; }};
+  drive(rig, rest, 1, 2);
+  EXPECT_GT(norm(reading(rig).angular_velocity), 0.01);
+  const auto calibrate = [&] {
+    using Trigger = msg::std_srvs::Trigger;
+    Trigger::Request nothing;
+    std::vector<std::byte> asked, answer;
+    write_cdr(message_info<Trigger::Request>(), &nothing, asked);
+    Trigger::Response response;
+    EXPECT_TRUE(rig.pool->call(0, **service_of(kind, "robot1/imu", "calibrate"), asked, answer,
+                               rig.context(rig.now)));
+    EXPECT_TRUE(read_cdr(message_info<Trigger::Response>(), answer, &response));
+    return response;
+  };
+  rig.engine->body[0].V_WB.angular = {0, 0, 0.5};
+  const auto turning = calibrate();
+  EXPECT_FALSE(turning.success);
+  EXPECT_EQ(turning.message, "the unit turns at 0.5 rad/s; hold it still");
+  drive(rig, rest, 1, 1);
+  EXPECT_GT(norm(reading(rig).angular_velocity), 0.01) << "nothing has changed";
+  EXPECT_TRUE(calibrate().success);
+  // What is left is the drift from here on: std sqrt(2 dt / tau) * 0.01 = 1.4e-7 for a tick of 10 ms.
+  drive(rig, rest, 1, 1);
+  EXPECT_LT(norm(reading(rig).angular_velocity), 1e-6);
+}
+
 TEST(Imu, ATiltedMountTurnsWhatItShows) {
   // Rolled by 90 degrees, the sensor's y points up; pitched by 30, x points down by sin 30.
   for (const auto& [rpy, force] :
