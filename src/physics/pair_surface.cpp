@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/polygon.h"
 #include "physics/substance.h"
 
 namespace sandlot {
@@ -55,13 +56,7 @@ bool holds(const model::SurfaceZone& zone, Vec3 p) {
     const double x = p.x - zone.centre_W.x, y = p.y - zone.centre_W.y;
     return x * x + y * y <= zone.radius_m * zone.radius_m;
   }
-  bool inside = false;  // a ray towards +x crosses the outline an odd number of times
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const Vec3 a = corners[i], b = corners[j];
-    if ((a.y > p.y) == (b.y > p.y)) continue;
-    if (p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) inside = !inside;
-  }
-  return inside;
+  return polygon_contains(corners, p);
 }
 
 }  // namespace
