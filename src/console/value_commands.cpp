@@ -1,7 +1,8 @@
-/// Commands about values, parameters and devices.
+/// long file: the commands share how they match addresses. Commands about values, parameters and devices.
 #include "sim/watch/values.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/json_writer.h"
 #include "base/text.h"
@@ -108,12 +109,13 @@ Status gather(CommandCall& call, std::string_view pattern, std::vector<ValueEntr
   }
   const std::string_view robot = robot_of(pattern);
   const bool deep = robot.find("**") != std::string_view::npos;
-  for (const auto& entity : simulation.entities()) {
-    if (too_many) break;
-    const std::string& name = entity->instance.name;
-    if (plain ? name != robot : !deep && !fits(robot, name)) continue;
-    list_values(simulation, name, take);
-  }
+  const auto look = [&](std::string_view name) {
+    if (!too_many && (plain ? name == robot : deep || fits(robot, name))) list_values(simulation, name, take);
+  };
+  std::set<std::string_view> lists;  // "media", "rules"
+  for (const WorldElements::Part& part : simulation.elements().parts()) lists.insert(first_part(part.path));
+  for (const std::string_view list : lists) look(list);
+  for (const auto& entity : simulation.entities()) look(entity->instance.name);
   if (too_many)
     return Error{"'" + std::string(pattern) + "' meets more than " + std::to_string(most_matches) + " values",
                  "narrow it down"};
@@ -311,6 +313,7 @@ CommandResult cmd_set(CommandCall& call) {
       else if (near.size() < 200) near.push_back(whole);
     }
   };
+  for (const WorldElements::Part& part : simulation.elements().parts()) look(part.path);
   const std::string_view robot = robot_of(thing);
   for (const auto& entity : simulation.entities()) {
     const std::string& name = entity->instance.name;
@@ -510,6 +513,7 @@ CommandResult list_parameters(CommandCall& call) {
       if (value) text += " = " + with_unit(*value, parameter.unit);
     }
   };
+  for (const WorldElements::Part& part : simulation.elements().parts()) add(part.path);
   for (const auto& entity : simulation.entities()) {
     for (const auto& device : entity->devices) add(device->path);
     for (const auto& program : entity->programs) add(program->path);

@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/result.h"
 #include "base/time.h"
+#include "media/inbox.h"
 #include "messages/command_queue.h"
 #include "messages/topic.h"
 #include "model/model.h"
@@ -84,6 +85,7 @@ class TopicMaker {
   virtual void adopt_command(std::unique_ptr<TopicBase> slot, std::uint32_t level) = 0;
   virtual void adopt_frame(std::string, const Pose&) {}
   virtual void adopt_order(std::unique_ptr<DeviceOrder> order) = 0;
+  virtual void adopt_inbox(std::unique_ptr<Inbox> inbox) = 0;
 };
 
 /// Pixels (rows from the top, 1 or 3 channels) as a file's bytes; given by sim, which knows the formats.
@@ -109,6 +111,7 @@ struct DeviceBuild {
   Vec3 magnetic_field_T{};                         ///< of the Earth, in W
   double errors = 1;                               ///< factor on the errors, in addition to the device's own
   ImageEncoder encode_image = nullptr;             ///< null in tests of kinds alone
+  std::span<const model::ElementDecl> media = {};  ///< of the world
 
   BodyId body() const { return bodies[decl.link]; }
   /// Frame of the sensor in messages: "robot1/laser".
@@ -158,6 +161,17 @@ struct DeviceBuild {
     DeviceOrder* const order = made.get();
     topics.adopt_order(std::move(made));
     return order;
+  }
+  /// Index of a medium for Emission::medium: that of this name and kind, or "": the only one of the kind. Errors name what
+  /// there is.
+  Result<std::uint32_t> medium(std::string_view name, const char* kind, const char* spec_key) const;
+  /// The inbox of the device, for deliveries of a medium; it lives as long as the device. Once per device.
+  /// @param limit  number of deliveries that it holds until the device senses
+  Inbox* receive(std::uint32_t medium, std::size_t limit) const {
+    auto made = std::make_unique<Inbox>(medium, limit);
+    Inbox* const inbox = made.get();
+    topics.adopt_inbox(std::move(made));
+    return inbox;
   }
   /// Error about a key of the spec: at the key's place in its file, or at the device's where the key is not
   /// written.

@@ -6,7 +6,7 @@
 ///   constexpr DeviceService services[] = {
 ///       device_service<Odometer, Trigger, &Odometer::reset>("reset", "Sets the pose of the odometry to zero.")};
 ///
-/// A call is a request like any other (sim/world/request.h): sorted, logged and replayed; its outcome carries the response. It is
+/// A call is a request like any other (elements/request.h): sorted, logged and replayed; its outcome carries the response. It is
 /// offered by the server as /robot/device/NAME, in the console by `call`, in C++ by sandlot/embed.h. The function may change
 /// the device's State and nothing else.
 #include <cstddef>

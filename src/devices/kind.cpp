@@ -49,6 +49,26 @@ std::span<const Kind* const> device_kinds() {
   return table;
 }
 
+Result<std::uint32_t> DeviceBuild::medium(std::string_view name, const char* kind,
+                                          const char* spec_key) const {
+  std::optional<std::uint32_t> found;
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < media.size(); ++i) {
+    if (media[i].kind != kind) continue;
+    names.push_back(sanitised(media[i].name));
+    if (!name.empty() && name != names.back()) continue;
+    if (found)
+      return error(spec_key, "the world has several media of kind " + std::string(kind),
+                   "name one of them: " + names.front() + ", " + names.back());
+    found = i;
+  }
+  if (found) return *found;
+  const std::string wanted = name.empty() ? "" : " named '" + std::string(name.substr(0, 60)) + "'";
+  return error(spec_key, "the world has no medium of kind " + std::string(kind) + wanted,
+               names.empty() ? "declare it in the scenario: media: [{kind: " + std::string(kind) + "}]"
+                             : suggestion(name, names));
+}
+
 Result<const Kind*> find_device_kind(std::string_view name) {
   std::vector<std::string> names;
   for (const Kind* kind : device_kinds()) {

@@ -13,6 +13,7 @@
   device(dc_motor)              \
   device(depth_camera)          \
   device(diff_drive)            \
+  device(ear)                   \
   device(force_torque)          \
   device(gps)                   \
   device(gripper)               \
@@ -42,6 +43,7 @@
   device(text_display)          \
   device(thermometer)           \
   device(track_drive)           \
+  device(voice)                 \
   device(wheel_encoder)         \
   device(wheel_odometry)
 // clang-format on

@@ -143,6 +143,8 @@ class Rig : public TopicMaker {
   std::map<std::string, std::unique_ptr<TopicBase>> topics;  ///< messages and commands by name
   std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< declared by the devices; a test connects them
   std::map<std::string, Pose> frames;                ///< in addition to the sensors' own, as X_SF
+  std::unique_ptr<Inbox> inbox;                      ///< of the latest device
+  std::vector<model::ElementDecl> media;
   const RayCaster* rays = nullptr;
   optics::PictureScene* pictures = nullptr;
   std::vector<LabelledObject> things;
@@ -170,7 +172,7 @@ class Rig : public TopicMaker {
     const std::string path = "robot1/" + name;
     SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids,
                       engine->what, tick, level_bits, *this, gravity_mps2, geography, magnetic_field_T, 1,
-                      encoder}));
+                      encoder, media}));
     all.push_back(static_cast<std::uint32_t>(all.size()));
     levels.push_back(level_bits);
     sample.push_back(0);
@@ -238,6 +240,7 @@ class Rig : public TopicMaker {
   void adopt_command(std::unique_ptr<TopicBase> made, std::uint32_t) override { keep(std::move(made)); }
   void adopt_frame(std::string name, const Pose& X_SF) override { frames[name] = X_SF; }
   void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
+  void adopt_inbox(std::unique_ptr<Inbox> made) override { inbox = std::move(made); }
 
  private:
   void keep(std::unique_ptr<TopicBase> made) {

@@ -69,6 +69,20 @@ struct TeamDecl {
   }
 };
 
+/// A rule, medium or marker of the world.
+struct ElementDecl {
+  std::string name;  ///< unique in its list; the kind by default
+  std::string kind;
+  Node config;
+  Place place;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the element; unique in its list."}, s.name);
+    visit(Field{"kind", "", "Kind of the element."}, s.kind);
+    visit(Field{"config", "", "Keys of the kind."}, s.config);
+  }
+};
+
 /// A shared library with controllers of the user's own.
 struct PluginDecl {
   std::string file;

@@ -3,7 +3,7 @@
 ///
 /// Frames: W world, M model, L link, C collision or visual, J joint, S sensor. `X_ML` is the pose of L in M.
 ///
-/// Each struct has one list of its fields; snapshots hold them in the order of the list (sim/world/model_bytes.h). Places
+/// Each struct has one list of its fields; snapshots hold them in the order of the list (model/model_bytes.h). Places
 /// in files are not part of the value, so no list has them.
 #include <cstdint>
 #include <memory>
@@ -187,6 +187,7 @@ struct Setup : Environment {
   std::vector<std::string> addresses;
   std::optional<LogDecl> log;
   std::vector<SurfaceZone> zones;
+  std::vector<ElementDecl> media, rules, markers;
 
   /// All but the instances, whose models are written apart, and `record` and `log`: outputs are not part of the run.
   static void fields(auto& s, auto&& visit) {
@@ -214,6 +215,9 @@ struct Setup : Environment {
     visit(Field{"events", "", "Conditions that are events."}, s.events);
     visit(Field{"addresses", "", "Addresses in values and events; known even when their object is gone."},
           s.addresses);
+    visit(Field{"media", "", "Media between robots."}, s.media);
+    visit(Field{"rules", "", "Rules of the world."}, s.rules);
+    visit(Field{"markers", "", "Areas on the ground."}, s.markers);
   }
 };
 

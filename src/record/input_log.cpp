@@ -7,7 +7,7 @@ namespace {
 
 /// Whether a Session can feed it again.
 bool readable(const LogEntry& entry) {
-  if (entry.source.kind > Source::Kind::program) return false;
+  if (entry.source.kind > Source::last_kind) return false;
   ByteReader r(entry.bytes);
   if (entry.kind == LogEntry::step) {
     Time length;
@@ -53,7 +53,7 @@ Result<RecordedRun> read_run(Recording& recording) {
     if (tick.tick == out.first_tick) continue;
     std::vector<LogEntry> outside;
     for (const LogEntry& entry : tick.log) {
-      if (entry.kind != LogEntry::step && entry.source.kind == Source::Kind::program) continue;
+      if (!entry.is_input()) continue;
       if (!readable(entry))
         return Error{tick_text(tick.tick, tick.now) + ": an entry of the log for '" + entry.target +
                          "' cannot be read",

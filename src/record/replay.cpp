@@ -20,7 +20,7 @@ std::string list_of(const std::vector<std::string>& names, const char* between) 
 }
 
 bool of_program(const LogEntry& entry) {
-  return entry.kind != LogEntry::step && entry.source.kind == Source::Kind::program;
+  return !entry.is_input() && entry.source.kind == Source::Kind::program;
 }
 
 std::string kind_text(const LogEntry& entry) {
@@ -127,8 +127,8 @@ Result<std::optional<Time>> Replay::submit(const RecordedTick& recorded) {
       measured = length;
       continue;
     }
-    if (entry.source.kind > Source::Kind::program)
-      return damaged_entry(recorded, entry, "has no known source");
+    if (entry.source.kind > Source::last_kind) return damaged_entry(recorded, entry, "has no known source");
+    if (entry.source.kind == Source::Kind::rule) continue;  // rules judge again, whatever drives the programs
     if (of_program(entry) && options_.programs == Programs::recompute) continue;
     if (entry.kind == LogEntry::command) {
       simulation_->repeat(CommandRequest{entry.target, entry.type, entry.bytes}, entry.source);
@@ -164,7 +164,9 @@ void Replay::compare_log(const RecordedTick& recorded, Difference& difference) c
         a.source.id != b.source.id)
       return differs("was logged where now comes a " + entry_text(b));
     if (a.bytes != b.bytes)
-      differs(of_program(a) ? "is not what the program orders now" : "is not what was carried out");
+      differs(a.is_input()    ? "is not what was carried out"
+              : of_program(a) ? "is not what the program orders now"
+                              : "is not what the rule requests now");
     if (a.refused != b.refused)
       differs(a.refused ? "was refused, and is not now" : "was carried out, and is refused now");
   }

@@ -35,7 +35,8 @@ Listing values_of(const Simulation& simulation, const std::string& part) {
     out.values[address] = {value, unit};
   };
   const std::string entity(first_part(part));
-  if (entity != "sim" && !simulation.find_instance(entity)) return out;
+  if (entity != "sim" && !simulation.find_instance(entity) && !simulation.elements().find_part(part))
+    return out;
   list_values(simulation, entity == "sim" ? "" : entity, [&](const ValueEntry& entry) {
     if (!belongs_to(entry.path, part)) return;
     if (entry.list) {

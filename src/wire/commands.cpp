@@ -103,6 +103,7 @@ const char* name_of(Source::Kind kind) {
   switch (kind) {
     case Source::Kind::robot: return "robot";
     case Source::Kind::program: return "program";
+    case Source::Kind::rule: return "rule";
     case Source::Kind::admin: break;
   }
   return "admin";

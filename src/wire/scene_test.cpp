@@ -250,6 +250,27 @@ TEST(World, HasZonesOfTheGroundWhereThereAreSome) {
   EXPECT_EQ(zones[1]["hole"], true);
 }
 
+TEST(World, HasMarkersWithTheirCornersAndColours) {
+  auto setup = arena("rigid", 1);
+  WorldJsonWriter writer{Assets()};
+  EXPECT_FALSE(Json::parse(writer.write(*build(setup), 1)).contains("markers"));
+  const auto numbers = [](std::initializer_list<const char*> texts) {
+    Node out = Node::sequence();
+    for (const char* text : texts) out.push(Node::scalar(text));
+    return out;
+  };
+  Node config = Node::map();
+  Node corners = Node::sequence();  // clockwise: they come the other way round
+  for (const auto& corner : {numbers({"0", "0"}), numbers({"0", "1"}), numbers({"2", "0"})})
+    corners.push(corner);
+  config.set("corners", corners);
+  config.set("color", numbers({"1", "0.5", "0"}));
+  setup.markers.push_back({"goal", "polygon", config, {}});
+  const Json markers = Json::parse(writer.write(*build(setup), 2))["markers"];
+  EXPECT_EQ(markers,
+            Json::parse(R"([{"name":"goal","color":[1,0.5,0,1],"corners":[[2,0,0],[0,1,0],[0,0,0]]}])"));
+}
+
 TEST(World, NumbersStayWhenTheWorldIsBuiltAnew) {
   const auto simulation = build(arena("rigid", 2));
   WorldJsonWriter writer{Assets()};

@@ -108,6 +108,16 @@ void write_zone(JsonWriter& w, const model::SurfaceZone& zone) {
   });
 }
 
+void write_marker(JsonWriter& w, const WorldElements::NamedMarker& each) {
+  w.object([&] {
+    w.key("name").text(each.name);
+    write_color(w.key("color"), each.marker->color());
+    w.key("corners").list([&] {
+      for (const Vec3& corner : each.marker->outline_W()) write_vector(w, corner);
+    });
+  });
+}
+
 void write_link(JsonWriter& w, AssetTable& assets, const model::Model& model, const KinematicTree& tree,
                 std::uint32_t index) {
   const model::Link& link = model.links[index];
@@ -294,6 +304,10 @@ std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t e
     if (!setup.zones.empty())
       w.key("zones").list([&] {
         for (const model::SurfaceZone& zone : setup.zones) write_zone(w, zone);
+      });
+    if (!simulation.elements().markers().empty())
+      w.key("markers").list([&] {
+        for (const auto& marker : simulation.elements().markers()) write_marker(w, marker);
       });
     for (auto& [content, model] : models_) model.used = false;
     std::vector<ByContent::iterator> models;

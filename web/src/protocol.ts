@@ -161,6 +161,13 @@ export interface Kind {
   fields: Field[];
 }
 
+/** An area on the ground that rules and sensors know; it has no body. */
+export interface Marker {
+  name: string;
+  color: [number, number, number, number];
+  corners: [number, number, number][];
+}
+
 /** A part of the ground with a surface of its own. */
 export interface Zone {
   name: string;
@@ -186,6 +193,7 @@ export interface World {
   background: Color;
   lights: Light[];
   zones?: Zone[];
+  markers?: Marker[];
   models: Model[];
   instances: Instance[];
   kinds: Record<string, Kind>;

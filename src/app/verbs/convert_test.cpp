@@ -14,8 +14,8 @@
 #include "formats/sdf/write.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "model/model_bytes.h"
 #include "sim/load/load.h"
-#include "sim/world/model_bytes.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {

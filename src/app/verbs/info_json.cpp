@@ -148,6 +148,10 @@ Json info_json(const Simulation& simulation, const Diagnostics& diagnostics) {
             {"moving_mass_kg", overview.moving_mass_kg},
             {"bounds", of(overview.bounds)},
             {"endless_ground", overview.endless_ground}};
+  for (const auto& [list, declared] :
+       {std::pair("media", &setup.media), {"rules", &setup.rules}, {"markers", &setup.markers}})
+    for (const model::ElementDecl& each : *declared)
+      root[list].push_back({{"name", each.name}, {"kind", each.kind}});
   if (setup.clock.mode == model::Clock::Mode::continuous)
     root["clock"] = {{"min_step_s", setup.clock.min_step.s()}, {"max_step_s", setup.clock.max_step.s()}};
   root["stop_s"] = setup.stop ? Json(setup.stop->s()) : Json(nullptr);

@@ -360,6 +360,14 @@ std::string head_text(const std::string& file, const Simulation& simulation) {
                                       rounded(setup.step.s() / setup.substeps))
                                 : fmt::format("step {} s in {}", rounded(setup.step.s()),
                                               counted(static_cast<std::size_t>(setup.substeps), "sub-step"));
+  for (const auto& [list, declared] :
+       {std::pair("media", &setup.media), {"rules", &setup.rules}, {"markers", &setup.markers}}) {
+    if (declared->empty()) continue;
+    std::vector<std::string> names;
+    for (const model::ElementDecl& each : *declared)
+      names.push_back(each.name == each.kind ? each.name : each.name + " (" + each.kind + ")");
+    out += fmt::format("  {}: {}\n", list, joined(names, ", "));
+  }
   out += fmt::format("  {} physics, {}, control every {}, seed {}{}\n", setup.engine, steps,
                      counted(static_cast<std::size_t>(setup.control_interval), "tick"), setup.seed,
                      setup.stop ? ", ends at " + number_text(setup.stop->s()) + " s" : "");

@@ -16,12 +16,15 @@
 #include "devices/kind.h"
 #include "formats/kind.h"
 #include "formats/ros2_control/ros2_control.h"
+#include "markers/marker.h"
+#include "media/medium.h"
 #include "messages/registry.h"
 #include "noise/chain.h"
 #include "noise/depth_noise.h"
 #include "noise/image_noise.h"
 #include "physics/engine.h"
 #include "programs/programs.h"
+#include "rules/rule.h"
 #include "sim/load/plugin.h"
 #include "sim/world/device_keys.h"
 #include "sim/world/faults.h"
@@ -65,6 +68,27 @@ std::vector<StageFamily> stage_families() {
            image_stage_types()},
           {"depth_noise", "Noise of depth pictures",
            "Stages of errors of depth pictures: `[{quadratic: {std: 1.4 mm}}, ...]`.", depth_stage_types()}};
+}
+
+/// Elements of the world, by the key of the scenario that declares them.
+struct ElementFamily {
+  const char *key, *title, *intro;
+  struct Kind {
+    std::string name, help;
+    std::vector<FieldInfo> fields;
+  };
+  std::vector<Kind> kinds;
+};
+std::vector<ElementFamily> element_families() {
+  const auto of = [](const char* key, const char* title, const char* intro, const auto& table) {
+    ElementFamily out{key, title, intro, {}};
+    for (const auto* const kind : table) out.kinds.push_back({kind->name, kind->help, kind->describe()});
+    return out;
+  };
+  return {of("media", "Media", "What spreads between robots or pushes them: `media:` of a scenario.",
+             medium_kinds()),
+          of("rules", "Rules", "What judges the run, and acts: `rules:` of a scenario.", rule_kinds()),
+          of("markers", "Markers", "Areas on the ground: `markers:` of a scenario.", marker_kinds())};
 }
 
 Section format_section() {
@@ -139,7 +163,12 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
                           {}});
   faults.items.push_back(
       {"clock", "Errors of the times in its messages.", describe_fields<ClockSpec>(), {}, {}, {}});
-  std::vector<Section> out{devices, controllers, programs, engines};
+  std::vector<Section> out{devices, controllers, programs};
+  for (ElementFamily& family : element_families()) {
+    out.push_back({family.key, family.title, family.intro, {}});
+    for (auto& [name, help, fields] : family.kinds) out.back().items.push_back({name, help, fields, {}, {}});
+  }
+  out.push_back(std::move(engines));
   for (const StageFamily& family : stage_families()) {
     out.push_back({family.key, family.title, family.intro, {}});
     for (const StageType& type : family.types)
@@ -511,8 +540,14 @@ int list(const ListOptions& options) {
     std::vector<formats::KindFields> builders;
     for (const Builder* const builder : builder_table())
       builders.emplace_back(builder->name, builder->describe());
+    std::vector<formats::ElementFields> elements;
+    for (const ElementFamily& family : element_families()) {
+      elements.push_back({family.key, {}});
+      for (const ElementFamily::Kind& kind : family.kinds)
+        elements.back().second.emplace_back(kind.name, kind.fields);
+    }
     fmt::print("{}\n", formats::scenario_schema(devices, controllers, stages, builders,
-                                                describe_fields<FaultsSpec>()));
+                                                describe_fields<FaultsSpec>(), elements));
     return exit_ok;
   }
   if (options.what == "plugins" && !options.markdown) {

@@ -17,16 +17,6 @@ namespace {
 
 namespace spec = scenario_spec;
 
-/// Refuses keys that later versions read, with an error of their own in place of "unknown key".
-Status refuse_later_keys(const Node& root) {
-  for (const Node::Entry& entry : root.entries())
-    for (const char* const key : spec::later_keys)
-      if (entry.key == key)
-        return Error{"'" + entry.key + "' is not supported yet", "leave it out", entry.key_place,
-                     "/" + entry.key};
-  return {};
-}
-
 bool is_identifier(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   if (name.empty() || name.size() > 100 || !is_letter(name.front())) return false;
@@ -88,6 +78,40 @@ Result<model::ControllerDecl> read_controller(const Node& node, const std::strin
   if (decl.kind.empty()) return node.error("the kind of controller is missing", "write kind: wander", path);
   if (decl.name.empty()) return node.error("the controller's name is empty", "", path);
   return decl;
+}
+
+/// A list of elements of the world, each with its kind and a name.
+Status read_elements(const Node& list, const char* key, std::vector<model::ElementDecl>& out) {
+  if (list.is_null()) return {};
+  const std::string path = std::string("/") + key;
+  constexpr std::size_t most = 10'000;
+  if (!list.is_sequence()) return wrong_type(list, "a list of maps with 'kind'", path);
+  if (list.items().size() > most) return list.error("there are more than 10000 of them", "", path);
+  std::map<std::string, Place> names;
+  for (std::size_t i = 0; i < list.items().size(); ++i) {
+    const Node& node = list.items()[i];
+    const std::string here = path + "/" + std::to_string(i);
+    model::ElementDecl decl;
+    decl.place = node.place();
+    if (node.is_scalar()) {
+      decl.kind = node.text();
+      decl.config = Node::map(node.place());
+    } else if (node.is_map()) {
+      decl.config = node;
+      SL_ASSIGN(decl.kind, take_text(decl.config, "kind", "", here));
+    } else {
+      return wrong_type(node, "the name of a kind or a map with 'kind'", here);
+    }
+    if (decl.kind.empty())
+      return node.error("the kind is missing", std::string("`sandlot list ") + key + "` shows them", here);
+    SL_ASSIGN(decl.name, take_text(decl.config, "name", decl.kind, here));
+    if (decl.name.empty()) return node.error("the name is empty", "", here + "/name");
+    if (const auto [known, fresh] = names.emplace(sanitised(decl.name), decl.place); !fresh)
+      return node.error("'" + decl.name + "' is given twice in " + key,
+                        "the other one is at " + to_string(known->second) + "; give each a 'name'", here);
+    out.push_back(std::move(decl));
+  }
+  return {};
 }
 
 /// The controllers of a robot or a team.
@@ -335,7 +359,6 @@ Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
 }
 
 Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
-  SL_TRY(refuse_later_keys(node));
   // A file of a later version may differ in every key: its version is the only error.
   if (const Node* version = node.find("version")) {
     double number = 1;
@@ -396,6 +419,9 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   SL_TRY(read_teams(node, root, setup));
   SL_TRY(read_watch(node, root, setup));
   SL_TRY(read_zones(node, root.zones, setup.zones, diagnostics));
+  SL_TRY(read_elements(root.media, "media", setup.media));
+  SL_TRY(read_elements(root.rules, "rules", setup.rules));
+  SL_TRY(read_elements(root.markers, "markers", setup.markers));
   return out;
 }
 

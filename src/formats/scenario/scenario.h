@@ -2,8 +2,7 @@
 /// Scenario files (YAML): which world, which robots with which controllers, how time runs, when it stops.
 ///
 /// The reader resolves `include`, `vars` and `--set`, checks the whole schema and returns plain structs; files the
-/// scenario names (worlds, models) are opened by sim/load. A key that belongs to a later version of Sandlot
-/// answers "not supported yet"; an unknown key names the nearest known one.
+/// scenario names (worlds, models) are opened by sim/load. An unknown key names the nearest known one.
 ///
 /// Limits   includes 16 deep and 100 in all; a robot name stands for at most 1e6 robots, all together too.
 #include <optional>
@@ -100,17 +99,20 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 
 /// "noise" and the types of stages that such a list may hold.
 using StageFields = std::pair<std::string, std::vector<KindFields>>;
+using ElementFields = std::pair<std::string, std::vector<KindFields>>;
 
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.
 /// @param stages    what lists of stages of errors may hold, by the name they are described under (FieldInfo::elements)
 /// @param builders  of models with parameters
+/// @param elements  of the world, by the key of the scenario: media, rules, markers
 /// @param device_keys  keys that every device has in addition to its kind's
 std::string scenario_schema(std::span<const KindFields> devices = {},
                             std::span<const KindFields> controllers = {},
                             std::span<const StageFields> stages = {},
                             std::span<const KindFields> builders = {},
-                            std::span<const FieldInfo> device_keys = {});
+                            std::span<const FieldInfo> device_keys = {},
+                            std::span<const ElementFields> elements = {});
 
 }  // namespace sandlot::formats

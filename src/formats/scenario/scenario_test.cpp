@@ -310,11 +310,32 @@ TEST(Scenario, NamesOfRobotsAndGroupsDoNotMeet) {
   EXPECT_EQ(two("name: a, count: 10", "name: a1, count: 5"), "");
 }
 
+TEST(Scenario, ElementsOfTheWorldHaveAKindAndANameOfTheirOwn) {
+  Diagnostics diagnostics;
+  const auto scenario = parse_scenario(
+      "version: 1\n"
+      "media: [wind, {kind: shout, name: air, speed: 10}]\n"
+      "rules:\n"
+      "  - {kind: goals, object: ball}\n"
+      "markers: [{kind: disc, name: spot}]\n",
+      "dir/s.yaml", {}, diagnostics);
+  ASSERT_TRUE(scenario) << scenario.error().text();
+  const model::Setup& setup = scenario->setup;
+  ASSERT_EQ(setup.media.size(), 2u);
+  EXPECT_EQ(setup.media[0].kind, "wind");
+  EXPECT_EQ(setup.media[0].name, "wind");
+  EXPECT_EQ(setup.media[1].name, "air");
+  EXPECT_EQ(setup.media[1].config.entries().size(), 1u) << "kind and name are not the kind's own keys";
+  EXPECT_EQ(setup.rules.at(0).place.line, 4);
+  EXPECT_EQ(setup.markers.at(0).name, "spot");
+}
+
 TEST(Scenario, SchemaFollowsFromTheFieldLists) {
   using Json = nlohmann::json;
   const std::vector<KindFields> devices = {
       {"laser", {{"beams", "integer", "1", "Beams.", 1, 10}, {"noise/white", "number", "m", "", 0, 1}}}};
-  const Json schema = Json::parse(scenario_schema(devices, {}));
+  const std::vector<ElementFields> elements = {{"rules", {{"goals", {{"object", "text", "", "", 0, 1}}}}}};
+  const Json schema = Json::parse(scenario_schema(devices, {}, {}, {}, {}, elements));
   const Json& keys = schema["properties"];
   EXPECT_EQ(schema["required"], Json::array({"version"}));
   EXPECT_EQ(schema["additionalProperties"], false);
@@ -332,6 +353,8 @@ TEST(Scenario, SchemaFollowsFromTheFieldLists) {
   EXPECT_EQ(laser["noise"]["properties"]["white"]["type"], Json::array({"number", "string"}));
   EXPECT_TRUE(laser.contains("pose"));
   EXPECT_FALSE(Json::parse(schema_of(devices[0].second))["properties"].contains("pose"));
+  const Json& rule = keys["rules"]["items"]["anyOf"][1]["allOf"][0]["then"]["properties"];
+  EXPECT_TRUE(rule.contains("object") && rule.contains("name"));
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ std::string schema_of(const std::vector<FieldInfo>& fields) {
 
 std::string scenario_schema(std::span<const KindFields> devices, std::span<const KindFields> controllers,
                             std::span<const StageFields> stages, std::span<const KindFields> builders,
-                            std::span<const FieldInfo> device_keys) {
+                            std::span<const FieldInfo> device_keys, std::span<const ElementFields> elements) {
   Json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sandlot scenario"}};
   root.update(object_of(describe_fields<spec::Root>()));
   // The keys whose form the field lists leave open.
@@ -187,6 +187,12 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   mounted.update(object_of({device_keys.begin(), device_keys.end()})["properties"]);
   describe_as(robot["devices"],
               {{"type", "object"}, {"additionalProperties", kinds_of(devices, mounted, false)}});
+  const Json element_name = {
+      {"name", {{"type", "string"}, {"description", "Name of the element; its kind by default."}}}};
+  for (const auto& [key, kinds] : elements)
+    describe_as(keys[key],
+                {{"type", "array"},
+                 {"items", {{"anyOf", {Json{{"type", "string"}}, kinds_of(kinds, element_name, true)}}}}});
   for (const auto& [name, sorts] : stages) root["$defs"][name] = stages_of(sorts);
   return root.dump(2);
 }

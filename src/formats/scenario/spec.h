@@ -8,6 +8,7 @@
 #include "base/fields.h"
 #include "base/node.h"
 #include "formats/scenario/team_spec.h"
+#include "formats/scenario/watch_spec.h"
 #include "formats/scenario/zone_spec.h"
 #include "geometry/vec3.h"
 #include "model/model.h"
@@ -201,38 +202,6 @@ struct Robot {
   }
 };
 
-struct Event {
-  std::string name;
-  std::string when;
-  double hold_s = 0;
-  bool stop = false, once = false;
-
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Name of the event; unique.", 0, 0, Field::required, 100}, s.name);
-    visit(Field{"when", "", "Condition of the event: an expression that is other than 0.", 0, 0,
-                Field::required, 2000},
-          s.when);
-    visit(Field{"for", "s", "Time for which the condition must hold without a break.", 0, 9e9}, s.hold_s);
-    visit(Field{"stop", "", "Whether the event ends the run."}, s.stop);
-    visit(Field{"once", "", "Whether the event happens only once."}, s.once);
-  }
-};
-
-struct Log {
-  std::string file;
-  double rate_hz = 0;
-  std::vector<std::string> values;
-
-  static void fields(auto& s, auto&& visit) {
-    visit(Field{"file", "", "CSV file to write, relative to where the program runs.", 0, 0, Field::required,
-                4096},
-          s.file);
-    visit(Field{"rate", "Hz", "Lines per simulated second; 0: one per tick.", 0, 1e6}, s.rate_hz);
-    visit(Field{"values", "", "Addresses or expressions, one per column.", 0, 0, Field::required, 2000},
-          s.values);
-  }
-};
-
 struct Root {
   int version = 1;
   model::Setup setup;  ///< name, seed, errors, record
@@ -248,6 +217,7 @@ struct Root {
   std::vector<Event> events;
   std::optional<Log> log;
   std::vector<Zone> zones;
+  Node media, rules, markers;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -289,11 +259,15 @@ struct Root {
               "Parts of the ground with a surface of their own, seen from above; of several the last counts.",
               0, 0, Field::none, 1000},
         s.zones);
+    visit(Field{"media", "",
+                "Media between robots, such as sound: a list of maps with kind, name and the kind's keys."},
+          s.media);
+    visit(Field{"rules", "", "Rules of the world: a list of maps with kind, name and the kind's keys."},
+          s.rules);
+    visit(Field{"markers", "", "Areas on the ground: a list of maps with kind, name and the kind's keys."},
+          s.markers);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };
-
-/// Keys of the root that later versions of Sandlot read.
-inline constexpr const char* later_keys[] = {"media", "markers", "rules"};
 
 }  // namespace sandlot::formats::scenario_spec

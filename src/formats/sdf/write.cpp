@@ -329,6 +329,9 @@ Result<Xml> sdf_of(const model::Setup& setup, Diagnostics& diagnostics) {
   if (!setup.events.empty()) lost("the events");
   if (setup.log) lost("the log");
   if (!setup.zones.empty()) lost("the zones of the ground", setup.zones.front().place);
+  if (!setup.media.empty()) lost("the media", setup.media.front().place);
+  if (!setup.rules.empty()) lost("the rules", setup.rules.front().place);
+  if (!setup.markers.empty()) lost("the markers", setup.markers.front().place);
   Xml& scene = add(world, "scene");
   add(scene, "ambient", text_of(setup.ambient));
   add(scene, "background", text_of(setup.background));

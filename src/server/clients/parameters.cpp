@@ -35,6 +35,7 @@ bool list_parameters(const Simulation& simulation, std::vector<foxglove::Paramet
     for (const Parameter& parameter : parameters.list(path))
       if (!parameter.in_list) add(parameter);
   };
+  for (const WorldElements::Part& part : simulation.elements().parts()) add_part(part.path);
   for (const auto& entity : simulation.entities()) {
     for (const auto& device : entity->devices) add_part(device->path);
     for (const auto& program : entity->programs) add_part(program->path);

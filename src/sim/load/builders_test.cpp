@@ -13,9 +13,9 @@
 #include "formats/sdf/write.h"
 #include "geometry/bounds.h"
 #include "geometry/height_grid.h"
+#include "model/model_bytes.h"
 #include "sim/load/load.h"
 #include "sim/test_world.h"
-#include "sim/world/model_bytes.h"
 
 namespace sandlot {
 namespace {

@@ -17,12 +17,9 @@ double wall_s() {
 }  // namespace
 
 void Session::InputRecorder::on_frame(const std::shared_ptr<const Frame>& frame) {
-  const auto from_outside = [](const LogEntry& entry) {
-    return entry.kind == LogEntry::step || entry.source.kind != Source::Kind::program;
-  };
   std::vector<LogEntry> entries;
   for (const LogEntry& entry : frame->log)
-    if (from_outside(entry)) entries.push_back(entry);
+    if (entry.is_input()) entries.push_back(entry);
   if (entries.empty()) input.entries.erase(frame->tick);
   else input.entries[frame->tick] = std::move(entries);
 }

@@ -310,6 +310,7 @@ void Session::answer_outcomes() {
     const std::lock_guard lock(mutex_);
     if (waiting_.empty()) return;
     for (const Outcome& outcome : simulation_->outcomes()) {
+      if (outcome.source.is_inside()) continue;  // they count by themselves
       const auto found = waiting_.find(outcome.sequence);
       if (found == waiting_.end()) continue;
       answers.emplace_back(std::move(found->second), &outcome);

@@ -74,6 +74,12 @@ const std::vector<FieldInfo>& Parameters::describe(const Simulation::Device& dev
 }
 
 std::optional<Parameters::Part> Parameters::find(std::string_view target) {
+  if (const WorldElements::Part* const found = simulation_.elements().find_part(target)) {
+    const Element& element = *found->element;
+    return Part{&describe(found->kind, found->describe),
+                [&](std::span<const ValueStep> path) { return element.value(ValuePart::parameter, path); },
+                [&](const ValueVisit& visit) { element.list_values(ValuePart::parameter, visit); }};
+  }
   static const std::vector<Owned<Simulation::Device>> no_devices;
   static const Simulation::ProgramEntries no_programs;
   const Simulation::Entity* const entity = simulation_.find_entity(first_part(target));
@@ -135,12 +141,13 @@ std::vector<Parameter> Parameters::list(std::string_view target) {
 ParameterValue Parameters::value(const Parameter& parameter) {
   const auto& [target, field, unit, in_list] = parameter;
   if (target == "sim" && field == "errors") return simulation_.setup().errors;
-  const Simulation::Entity* const entity = simulation_.find_entity(first_part(target));
-  if (entity && target == entity->instance.name && field == "errors") return entity->instance.errors;
-  if (entity && field == failure_field) {
-    for (const auto& device : entity->devices)
-      if (device->path == target) return failure_of(*device);
-    return {};
+  if (const Simulation::Entity* const entity = simulation_.find_entity(first_part(target))) {
+    if (target == entity->instance.name && field == "errors") return entity->instance.errors;
+    if (field == failure_field) {
+      for (const auto& device : entity->devices)
+        if (device->path == target) return failure_of(*device);
+      return {};
+    }
   }
   const std::optional<Part> part = find(target);
   auto steps = parse_value_path(value_path(field));

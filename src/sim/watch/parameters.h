@@ -1,7 +1,8 @@
 #pragma once
-/// Parameters of a running simulation: tunable fields of its devices and programs by address, "rover/laser.noise.white".
+/// Parameters of a running simulation: tunable fields of its devices, programs, media and rules by address,
+/// "rover/laser.noise.white".
 ///
-/// Address   TARGET.PATH: a device or program, and the field as a path of values (docs/values.md), elements as "[3]" or ".3".
+/// Address   TARGET.PATH: a device, a program or an element of the world ("rules/goals"), and the field as a path of values (docs/values.md), elements as "[3]" or ".3".
 ///           A ParameterRequest names the same field with slashes: "noise/0/white".
 /// Others    "sim.errors" and "ROBOT.errors", the factors on errors, and "DEVICE.failure", the ordered failure, can be read
 ///           in the same way.
@@ -42,7 +43,7 @@ using ParameterValue = std::variant<std::monostate, bool, double, std::string, s
 class Parameters {
  public:
   explicit Parameters(const Simulation& simulation) : simulation_(simulation) {}
-  /// What can be set now of a device or program, by its path.
+  /// What can be set now of a device, program, medium or rule.
   std::vector<Parameter> list(std::string_view target);
   /// @param parameter  or one of the others above
   ParameterValue value(const Parameter& parameter);
@@ -52,7 +53,7 @@ class Parameters {
 
  private:
   using ValueReader = std::function<ValueFound(std::span<const ValueStep>)>;
-  struct Part {  ///< a device or program
+  struct Part {  ///< a device, program, medium or rule
     const std::vector<FieldInfo>* fields = nullptr;
     ValueReader read;
     std::function<void(const ValueVisit&)> list;

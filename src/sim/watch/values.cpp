@@ -67,6 +67,8 @@ bool NamedValue::resolve() {
     index_ = *named;
     return take(What::named, 1, number(0, ""));
   }
+  if (const WorldElements::Part* const part = simulation_->elements().find_part(thing))
+    return resolve_element(*part->element);
   const Simulation::Entity* const entity = simulation_->find_entity(first_part(thing));
   if (!entity) {
     const auto* const of_team = simulation_->programs_of(first_part(thing));
@@ -178,6 +180,20 @@ bool NamedValue::resolve_program(const Simulation::ProgramEntry& entry) {
   return first == "steps" && rest.empty() && take(What::steps, 1, number(0, "1"));
 }
 
+bool NamedValue::resolve_element(const Element& element) {
+  element_ = &element;
+  const auto rest = std::span<const ValueStep>(path_).subspan(1);
+  const std::string& first = path_.front().key;
+  if (first == "parameter" && !rest.empty() &&
+      take(What::element_parameter, 1, element.value(ValuePart::parameter, rest)))
+    return true;
+  if (first == "state" && !rest.empty() &&
+      take(What::element_state, 1, element.value(ValuePart::state, rest)))
+    return true;
+  return take(What::element_parameter, 0, element.value(ValuePart::parameter, path_)) ||
+         take(What::element_state, 0, element.value(ValuePart::state, path_));
+}
+
 ValueFound NamedValue::look() const {
   const auto rest = std::span<const ValueStep>(path_).subspan(skip_);
   const Engine& engine = simulation_->engine();
@@ -210,6 +226,8 @@ ValueFound NamedValue::look() const {
     case What::program_parameter: return program_->program->value(ValuePart::parameter, rest);
     case What::program_state: return program_->program->value(ValuePart::state, rest);
     case What::steps: return number(static_cast<double>(program_->steps), "");
+    case What::element_parameter: return element_->value(ValuePart::parameter, rest);
+    case What::element_state: return element_->value(ValuePart::state, rest);
   }
   return {Is::absent};
 }
@@ -341,6 +359,12 @@ void list_entity(const Simulation& simulation, const Simulation::Entity& entity,
   list_programs(entity.programs, lister);
 }
 
+void list_element(const WorldElements::Part& part, const ValueVisit& visit) {
+  Lister lister(visit);
+  part.element->list_values(ValuePart::parameter, given(lister.under(part.path, "parameter")));
+  part.element->list_values(ValuePart::state, lister.under(part.path, "state"));
+}
+
 /// What an unknown address was meant to be.
 Error no_such(const Simulation& simulation, std::string_view address) {
   const std::string shown(address.substr(0, 100));
@@ -349,7 +373,9 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   std::vector<std::string> things{"sim"};
   if (!simulation.monitor().value_names().empty()) things.emplace_back("values");
   for (const std::string& name : simulation.monitor().value_names()) things.push_back(name);
-  bool known = thing == "sim" || thing == "values" || (entity && entity->instance.name == thing);
+  const WorldElements::Part* const part = simulation.elements().find_part(thing);
+  for (const WorldElements::Part& each : simulation.elements().parts()) things.push_back(each.path);
+  bool known = thing == "sim" || thing == "values" || part || (entity && entity->instance.name == thing);
   if (entity) {
     things.push_back(entity->instance.name);
     for (const auto& device : entity->devices) {
@@ -379,7 +405,8 @@ Error no_such(const Simulation& simulation, std::string_view address) {
     if (cut(entry.path).first == wanted) addresses.push_back(entry.path + (entry.list ? "[0]" : ""));
   };
   Lister lister(take);
-  if (entity) list_entity(simulation, *entity, take);
+  if (part) list_element(*part, take);
+  else if (entity) list_entity(simulation, *entity, take);
   else if (programs) list_programs(*programs, lister);
   if (rest.empty()) {
     std::string example;
@@ -459,6 +486,8 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
              value.value_or(0)});
     }
   }
+  for (const WorldElements::Part& part : simulation.elements().parts())
+    if (entity.empty() || entity == first_part(part.path)) list_element(part, visit);
   for (const auto& each : simulation.entities()) {
     const bool is_static = each->instance.model->is_static && !each->instance.motion && each->devices.empty();
     if (entity.empty() ? !is_static : each->instance.name == entity) list_entity(simulation, *each, visit);

@@ -12,6 +12,7 @@
 ///                                                   sample (index of the next one) or count (messages so far)
 ///   rover/laser.reading.PATH, .parameter.PATH, .state.PATH      where one hides another
 ///   rover/laser/ranges.PATH                         the message of one level, by the topic's name; also commands
+///   media/air.PATH, rules/goals.PATH                an element of the world: a parameter, else its state
 ///   rover/controller.PATH                           a program: a parameter, else its state, else steps
 ///   rover/controller/estimate.PATH                  a message that the program publishes, by the topic's name
 ///   red/coach.PATH                                  a program of team red, and its topics, likewise
@@ -67,6 +68,8 @@ class NamedValue {
     program_parameter,
     program_state,
     steps,
+    element_parameter,
+    element_state,
   };
   NamedValue(const Simulation& simulation, std::string address)
       : simulation_(&simulation), address_(std::move(address)) {}
@@ -78,6 +81,7 @@ class NamedValue {
   /// A topic by its name, or a program by its path.
   bool resolve_topic(const TopicBase& topic);
   bool resolve_programs(const Simulation::ProgramEntries& programs, std::string_view thing);
+  bool resolve_element(const Element& element);
   bool take(What what, std::size_t skip, const ValueFound& found);
   ValueFound look() const;
 
@@ -91,6 +95,7 @@ class NamedValue {
   const Simulation::Device* device_ = nullptr;
   const Simulation::ProgramEntry* program_ = nullptr;
   const TopicBase* topic_ = nullptr;
+  const Element* element_ = nullptr;
   std::uint32_t index_ = 0;  ///< of a body, joint or named value
 };
 

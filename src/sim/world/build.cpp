@@ -30,14 +30,14 @@ Simulation::~Simulation() = default;
 Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const SimulationOptions& options,
                                                        Diagnostics& diagnostics) {
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
-  SL_TRY(sim->build(diagnostics));
+  SL_TRY(sim->build(diagnostics, false));
   if (options.start_programs && options.run_programs)
     SL_TRY(sim->programs_.connect(sim->entities_, true, false));
   // Tick 0: nothing has moved yet, but sensors whose first sample is due now take it and programs see it.
   sim->arena_->execute([&] {
     sim->update_scene();
-    sim->sense();
     sim->deliver_media();
+    sim->sense();
     sim->judge();
     sim->control();
   });
@@ -51,7 +51,7 @@ void Simulation::connect_programs() {
   SL_CHECK(status);  // of a world that is there all failures are warnings
 }
 
-Status Simulation::build(Diagnostics& diagnostics) {
+Status Simulation::build(Diagnostics& diagnostics, bool restored) {
   if (setup_.step.ns <= 0) return Error{"time.step must be positive"};
   // A forged snapshot or an embedding program may ask for anything.
   if (setup_.substeps < 1) return Error{"time.substeps must be at least 1"};
@@ -67,27 +67,25 @@ Status Simulation::build(Diagnostics& diagnostics) {
   for (const Kind* const device_kind : device_kinds()) devices_.add_kind(*device_kind);
   for (const Kind* const device_kind : options_.extra_kinds) devices_.add_kind(*device_kind);
   SL_TRY(programs_.gather_kinds(setup_.plugins, options_, diagnostics));
-  set_stop(setup_.stop);
   // The instances live in the entities from here on; one copy is enough.
   for (model::Instance& instance : std::exchange(setup_.instances, {}))
     SL_TRY(add_entity(std::move(instance), diagnostics));
   SL_TRY(programs_.add_teams(entities_, now_, diagnostics));
   scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
+  SL_TRY(elements_.build(options_, restored, setup_.addresses));
   SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
   return {};
 }
 
 Status Simulation::add_event(model::EventDecl decl) {
   SL_TRY(monitor_->add_event(std::move(decl), false, {}));
-  judge();
+  find_stop_reason();
   return status_;
 }
 
 void Simulation::set_stop(std::optional<Time> stop) {
   setup_.stop = stop;
   stop_reason_.reset();
-  std::erase_if(rules_, [](const auto& rule) { return dynamic_cast<StopAfter*>(rule.get()) != nullptr; });
-  if (stop) rules_.insert(rules_.begin(), std::make_unique<StopAfter>(*stop));
 }
 
 Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics) {
@@ -114,6 +112,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   Entity& added = *entities_.back();
   if (added.instance.motion) guided_.push_back(&added);
   by_name_[added.instance.name] = &added;
+  elements_.entities_changed();
   Status status;
   for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = devices_.add(added, decl, *engine_, now_, diagnostics);
@@ -164,6 +163,7 @@ void Simulation::remove_entity(std::size_t index) {
   pulls_.remove(entity);
   entities_.erase(entities_.begin() + static_cast<std::ptrdiff_t>(index));
   programs_.entities_changed();
+  elements_.entities_changed();
 }
 
 /// After entities came or went while the run goes on.

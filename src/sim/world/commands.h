@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "base/fields.h"
+#include "elements/request.h"
 #include "sim/world/frame.h"
 #include "sim/world/parts.h"
-#include "sim/world/request.h"
 
 namespace sandlot {
 

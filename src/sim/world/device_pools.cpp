@@ -20,6 +20,7 @@ struct SlotMaker final : TopicMaker {
   std::vector<SimulationParts::Slot> topics, commands;
   std::vector<std::pair<std::string, Pose>> frames;
   std::vector<std::unique_ptr<DeviceOrder>> orders;
+  std::unique_ptr<Inbox> inbox;
   void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
     topics.push_back({std::move(topic), level, false});
   }
@@ -31,6 +32,10 @@ struct SlotMaker final : TopicMaker {
     frames.emplace_back(std::move(name), X_SF);
   }
   void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
+  void adopt_inbox(std::unique_ptr<Inbox> made) override {
+    SL_CHECK_MSG(!inbox, "a device has one inbox");
+    inbox = std::move(made);
+  }
 };
 
 /// Levels named by `level: x` or `levels: [x, y]`; both keys belong to the simulator, not to the kind's spec.
@@ -124,6 +129,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
       .magnetic_field_T = setup_.magnetic_field_T,
       .errors = setup_.errors * entity.instance.errors,
       .encode_image = encode_image,
+      .media = setup_.media,
   };
   SL_TRY(pool->pool->add(build));
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
@@ -168,6 +174,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   device->commands = std::move(maker.commands);
   device->frames = std::move(maker.frames);
   device->orders = std::move(maker.orders);
+  device->inbox = std::move(maker.inbox);
   device->errors = build.errors;
   device->faults = std::move(faults);
   device->keys = std::move(keys);
@@ -458,6 +465,7 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   write(w, when.requested);
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
+  if (device.inbox) device.inbox->save(w);
   if (device.keys) {
     const std::size_t at = w.size();
     write(w, std::uint64_t{0});
@@ -491,6 +499,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     // What assign() refuses does not come in by another door.
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
+  if (device.inbox) device.inbox->load(r);
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "elements/request.h"
 #include "messages/topic.h"
 #include "physics/engine.h"
-#include "sim/world/request.h"
 
 namespace sandlot {
 
@@ -41,6 +41,9 @@ struct LogEntry {
   std::vector<std::byte> bytes;  ///< command: the message; step: nanoseconds, int64; others: write_request()
   bool refused = false;
   std::string why;  ///< it was refused; for those who look now, no part of recordings
+
+  /// Whether it is input: what the world does not bring forth by itself when the run is repeated.
+  bool is_input() const { return kind == step || !source.is_inside(); }
 };
 
 struct Frame {
@@ -68,7 +71,7 @@ class Observer {
   struct Wants {
     bool messages = false;
     bool log = false;
-    bool input = false;  ///< of the log what came from outside, without the orders of programs
+    bool input = false;  ///< of the log what came from outside and from rules, without the orders of programs
     bool hash = false;
     bool links = false;
     bool contacts = false;

@@ -32,6 +32,7 @@ struct SimulationParts {
     std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
     std::vector<Slot> topics, commands;
+    std::unique_ptr<Inbox> inbox;                      ///< null: it receives from no medium
     std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
     std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< that it gives to other devices
     double errors = 1;                                 ///< the world's factor on errors times the robot's

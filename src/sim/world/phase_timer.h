@@ -6,9 +6,9 @@
 
 namespace sandlot {
 
-enum class Phase : std::uint8_t { commands, actuate, physics, scene, sense, media, rules, control, publish };
-inline constexpr std::array phase_names{"commands", "actuate", "physics", "scene",  "sense",
-                                        "media",    "rules",   "control", "publish"};
+enum class Phase : std::uint8_t { commands, actuate, physics, scene, media, sense, rules, control, publish };
+inline constexpr std::array phase_names{"commands", "actuate", "physics", "scene",  "media",
+                                        "sense",    "rules",   "control", "publish"};
 
 struct PhaseTimes {
   std::array<std::int64_t, phase_names.size()> ns{};

@@ -218,12 +218,15 @@ void Publisher::fill_hashes(Frame& frame) {
           [&](ByteWriter& w) { Programs::save(*program, w); });
   };
   add(0, always, [&](ByteWriter& w) { sim_.save_run(w); });
+  for (const WorldElements::Part& part : sim_.elements_.parts())
+    add(part.key, always, [&](ByteWriter& w) { sim_.elements_.save(part, w); });
   for (const auto& entity : sim_.entities_) {
     add(entity->key, always, [&](ByteWriter& w) { sim_.engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
       const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense;
-      // Samples and commands only become more, and so does their sum.
+      // Samples, commands and deliveries only become more, and so does their sum.
       std::uint64_t version = sim_.timing(*device).sample;
+      if (device->inbox) version += device->inbox->arrived();
       for (const SimulationParts::Slot& slot : device->commands) version += slot.topic->count;
       add(device->key, only_senses ? version : always,
           [&](ByteWriter& w) { sim_.devices_.save(*device, w); });

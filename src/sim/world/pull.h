@@ -15,9 +15,9 @@
 #include "base/bytes.h"
 #include "base/time.h"
 #include "devices/context.h"
+#include "elements/request.h"
 #include "physics/engine.h"
 #include "sim/world/parts.h"
-#include "sim/world/request.h"
 
 namespace sandlot {
 

@@ -77,11 +77,11 @@ Status Simulation::Processor::deliver(Device& device, std::string_view level, co
   if (by_program && sim.commands_.is_overridden(device))
     return Error{"'" + command.target + "' is driven from outside"};
   SL_TRY(sim.devices_.deliver(device, *slot, command.bytes, sim.now_));
-  if (!by_program) sim.commands_.override_manually(device, sim.now_);
+  if (!source.is_inside()) sim.commands_.override_manually(device, sim.now_);
   return {};
 }
 
-/// The target is a device, a program, "sim" or an entity, looked for in this order.
+/// The target is a device, a program, a medium or rule, "sim" or an entity, looked for in this order.
 Status Simulation::Processor::operator()(const ParameterRequest& request) {
   if (Device* const device = sim.find_device(request.target)) {
     if (request.field != failure_field)
@@ -91,6 +91,8 @@ Status Simulation::Processor::operator()(const ParameterRequest& request) {
   }
   if (ProgramEntry* const program = sim.find_program(request.target))
     return program->program->set_parameter(request.field, request.value);
+  if (const WorldElements::Part* const part = sim.elements_.find_part(request.target))
+    return part->element->set_parameter(request.field, request.value);
   if (request.target == "sim") return set_errors(nullptr, request.field, request.value);
   if (Entity* const entity = sim.find_entity(request.target))
     return set_errors(entity, request.field, request.value);
@@ -214,6 +216,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
   // The engine has to know too: a snapshot makes a robot of it.
   if (!entity->instance.is_robot) sim.engine_->become_robot(entity->id);
   entity->instance.is_robot = true;
+  sim.elements_.entities_changed();
   ++sim.revision_;
   sim.scenes_.rebuild_render_scene(sim.entities_, sim.devices_.need_render_scene(), ignored);
   return {};
@@ -243,6 +246,7 @@ Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   sim.hand_over(sim.actuation_);
   sim.actuation_.clear();
   sim.devices_.remove(*taken);
+  sim.elements_.entities_changed();
   entity.instance.devices.erase(static_cast<std::size_t>(index));
   ++sim.revision_;
   return {};

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "elements/request.h"
 #include "sim/world/commands.h"
 #include "sim/world/device_keys.h"
 #include "sim/world/device_pools.h"
@@ -26,9 +27,8 @@
 #include "sim/world/programs.h"
 #include "sim/world/publisher.h"
 #include "sim/world/pull.h"
-#include "sim/world/request.h"
-#include "sim/world/rule.h"
 #include "sim/world/scenes.h"
+#include "sim/world/world_elements.h"
 
 namespace tbb::detail::d1 {
 class global_control;
@@ -45,6 +45,8 @@ struct SimulationOptions {
   std::span<const Kind* const> extra_kinds = {};  ///< in addition to the built-in ones
   /// In addition to the built-in ones and those of plugins.
   std::span<const ControllerKind* const> extra_controllers = {};
+  std::span<const MediumKind* const> extra_media = {};  ///< in addition to the built-in ones
+  std::span<const RuleKind* const> extra_rules = {};    ///< in addition to the built-in ones
   ContactRule contact_rule = {};            ///< exceptions from the contact law (physics/contact_rule.h)
   std::span<const std::string> paths = {};  ///< folders to search first for the plugins of a snapshot
   /// Whether programs that run in processes of their own are started. A scenario, and a snapshot, carry command lines:
@@ -98,12 +100,10 @@ class Simulation final : public SimulationParts, public TopicFinder {
   const Monitor& monitor() const { return *monitor_; }
   void add_observer(Observer* observer) { publisher_.add(observer); }
   void remove_observer(Observer* observer) { publisher_.remove(observer); }
-  void add_rule(std::unique_ptr<Rule> rule) { rules_.push_back(std::move(rule)); }
-  void add_medium(std::unique_ptr<Medium> medium) { media_.push_back(std::move(medium)); }
 
   /// Hash of all State.
   std::uint64_t state_hash() const;
-  /// Hashes of the parts of the State: the run's own ("sim"), then each entity's in creation order.
+  /// Hashes of the parts of the State: the run's own ("sim"), media and rules, then each entity's in creation order.
   std::vector<SubHash> sub_hashes() const;
   /// All State with the Model it belongs to.
   std::vector<std::byte> snapshot() const;
@@ -151,6 +151,9 @@ class Simulation final : public SimulationParts, public TopicFinder {
   /// no run. Built at the first call where no device needs it; warnings of textures are then dropped.
   RenderScene& render_scene();
 
+  /// Media, rules and markers.
+  const WorldElements& elements() const { return elements_; }
+
   const PhaseTimes& phase_times() const { return phase_times_; }
   std::uint64_t refused_commands() const { return commands_.refused(); }
 
@@ -181,7 +184,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
   Simulation(model::Setup setup, const SimulationOptions& options);
 
   // build.cpp: entities
-  Status build(Diagnostics& diagnostics);
+  /// @param restored  from a snapshot: what names speak of may be gone
+  Status build(Diagnostics& diagnostics, bool restored);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status check_team(const model::Instance& instance) const;
   Result<std::shared_ptr<const model::Model>> add_masses(model::Instance& instance);
@@ -199,12 +203,14 @@ class Simulation final : public SimulationParts, public TopicFinder {
   void physics();
   void hand_over(const Actuation& actuation);
   void update_scene();
-  void sense();
   void deliver_media();
+  void sense();
   void judge();
+  void find_stop_reason();
   void control();
   void publish();
   Context context();
+  MediumContext medium_context() const;
   void fail(Error error);
 
   // requests.cpp
@@ -240,8 +246,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   Commands commands_;
   Programs programs_{setup_, devices_, commands_};
   Pulls pulls_;
-  std::vector<std::unique_ptr<Rule>> rules_;
-  std::vector<std::unique_ptr<Medium>> media_;
+  WorldElements elements_{*this};
   std::unique_ptr<Monitor> monitor_;
   Publisher publisher_{*this};
 

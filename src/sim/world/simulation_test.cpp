@@ -59,7 +59,6 @@ struct Probe {
       probe.count->message.data = static_cast<std::int64_t>(pool.sample[i]);
       probe.count->publish(ctx.now);
       probe.state.sum_since_s += pool.since[i].s();
-      ctx.emissions.emit({entity_key("air"), probe.key, {}, 1.0, 0, 0}, std::as_bytes(std::span("x", 1)));
     }
   }
 };
@@ -380,34 +379,6 @@ TEST(Rules, TheRunStopsWhenItsTimeIsUp) {
   int ticks = 0;
   while (!simulation->stop_reason()) advance(*simulation, 1), ++ticks;
   EXPECT_EQ(ticks, 50);
-}
-
-/// Keeps who was heard, in the order it was heard.
-struct Air : Medium {
-  std::vector<std::uint64_t> heard;
-  std::size_t payload = 0;
-  const char* name() const override { return "air"; }
-  void deliver(const EmissionBuffer& buffer, const MediumContext&) override {
-    for (const Emission& emission : buffer.emissions)
-      if (emission.medium == entity_key("air"))
-        heard.push_back(emission.emitter), payload += emission.payload_size;
-  }
-  void save(ByteWriter& w) const override { write(w, heard); }
-  void load(ByteReader& r) override { read(r, heard); }
-};
-
-TEST(Media, EmissionsOfATickArriveOnceInCreationOrder) {
-  auto setup = one_probe(map({{"rate", "50"}}));
-  for (const char* name : {"c", "a", "b"})
-    setup.instances.push_back(probed(name, map({{"rate", "50"}}), {2, 0, 9}));
-  const auto simulation = build(setup, with_probe);
-  auto air = std::make_unique<Air>();
-  const Air& listener = *air;
-  simulation->add_medium(std::move(air));
-  advance(*simulation, 2);  // samples fall on every second tick
-  EXPECT_EQ(listener.heard, (std::vector{entity_key("ball/probe"), entity_key("c/probe"),
-                                         entity_key("a/probe"), entity_key("b/probe")}));
-  EXPECT_EQ(listener.payload, 4u);
 }
 
 TEST(Levels, ADriveKeepsItsPlaceWhenItsLevelIsSwitched) {

@@ -2,8 +2,8 @@
 /// Format of snapshots. Simulation::snapshot() writes them, Simulation::restore() reads them.
 ///
 /// Layout   magic, version u32, profile text; blocks, each after its length as u64: the Model (setup, instances in
-///          creation order, their serial numbers), the run's own State, then the State of each entity, its devices and
-///          its programs; a checksum u64 of everything before it. Little-endian.
+///          creation order, their serial numbers), the run's own State, the State of each medium and rule, then of each entity,
+///          its devices and its programs; a checksum u64 of everything before it. Little-endian.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 
+#include "model/model_bytes.h"
 #include "sim/load/plugin.h"
 #include "sim/watch/monitor.h"
 #include "sim/world/faults.h"
-#include "sim/world/model_bytes.h"
 #include "sim/world/simulation.h"
 #include "sim/world/snapshot.h"
 
@@ -96,8 +96,8 @@ void Simulation::save_run(ByteWriter& w) const {
   write(w, revision_);
   write(w, next_serial_);
   write(w, commands_.refused());
-  for (const auto& rule : rules_) write_block(w, [&](ByteWriter& block) { rule->save(block); });
-  for (const auto& medium : media_) write_block(w, [&](ByteWriter& block) { medium->save(block); });
+  write(w, std::uint64_t{
+               0});  // the block of the stop time, which is no State: empty, and there with and without one
   monitor_->save(w);
   // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
   const bool scaled = errors_scaled();
@@ -141,14 +141,7 @@ bool Simulation::load_run(ByteReader& r) {
   commands_.restore(refused);
   constexpr std::int64_t most_ns = std::int64_t{1} << 61;  // 73 years, and far from an overflow
   if (now_.ns < 0 || now_.ns > most_ns) return false;
-  for (const auto& rule : rules_) {
-    ByteReader block = read_block(r);
-    rule->load(block);
-  }
-  for (const auto& medium : media_) {
-    ByteReader block = read_block(r);
-    medium->load(block);
-  }
+  if (read_block(r).remaining() != 0) return false;
   monitor_->load(r);
   if (!r.ok() || r.remaining() == 0) return r.ok();
   ByteReader pulls = read_block(r);
@@ -177,9 +170,11 @@ bool Simulation::load_run(ByteReader& r) {
   return r.ok() && failures.ok();
 }
 
-/// Calls visit(path, key, fill) for each part of the State after the run's own, in creation order.
+/// Calls visit(path, key, fill) for each part of the State after the run's own: media, rules, then entities in creation order.
 template <class Visit>
 void Simulation::for_each_state(Visit&& visit) const {
+  for (const WorldElements::Part& part : elements_.parts())
+    visit(part.path, part.key, [&](ByteWriter& w) { elements_.save(part, w); });
   for (const auto& entity : entities_) {
     visit(entity->instance.name, entity->key, [&](ByteWriter& w) { engine_->save(entity->id, w); });
     for (const auto& device : entity->devices)
@@ -210,6 +205,7 @@ std::uint64_t Simulation::hash_parts(std::vector<std::uint64_t>& parts) const {
 
 std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
   auto names = std::make_shared<std::vector<std::string>>(1, "sim");
+  for (const WorldElements::Part& part : elements_.parts()) names->push_back(part.path);
   for (const auto& entity : entities_) {
     names->push_back(entity->instance.name);
     for (const auto& device : entity->devices) names->push_back(device->path);
@@ -286,10 +282,15 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   }
   std::unique_ptr<Simulation> sim(new Simulation(std::move(opened.setup), options));
   Diagnostics given_before;  // these warnings were given when the run began
-  SL_TRY(sim->build(given_before));
+  SL_TRY(sim->build(given_before, true));
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) sim->entities_[i]->serial = opened.serials[i];
   ByteReader run = read_block(r);
   if (!sim->load_run(run) || !whole(run)) return damaged("the run's own state cannot be read");
+  for (const WorldElements::Part& part : sim->elements_.parts()) {
+    ByteReader state = read_block(r);
+    if (!sim->elements_.load(part, state) || !whole(state))
+      return damaged("the state of '" + part.path + "' cannot be read");
+  }
   const auto load_programs = [&](ProgramEntries& programs) -> Status {
     for (auto& program : programs) {
       ByteReader state = read_block(r);
@@ -316,7 +317,7 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   if (!whole(r)) return damaged("there is more in it than belongs there");
   sim->arena_->execute([&] {
     sim->update_scene();
-    sim->judge();
+    sim->find_stop_reason();  // rules have judged this tick: what they found is State
   });
   return sim;
 }

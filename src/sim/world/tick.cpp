@@ -16,7 +16,7 @@ Status Simulation::tick(std::optional<Time> measured) {
   if (!status_) return status_;
   arena_->execute([&] {
     set_step(measured);
-    process_commands();    // 1  requests from outside, then orders that programs gave in the previous tick
+    process_commands();    // 1  requests from outside, then those of rules and orders of programs
     if (!status_) return;  // an answer from outside that its program cannot go on with
     actuate();             // 2  actuators turn commands into targets and wrenches
     physics();             // 3  sub-steps: servo loops, then the engine
@@ -24,8 +24,8 @@ Status Simulation::tick(std::optional<Time> measured) {
     now_ = now_ + step_;
     ++tick_;
     update_scene();   // 4  new poses into the scenes
-    sense();          // 5  sensors that are due take their samples
-    deliver_media();  // 6  emissions of this tick reach their receivers
+    deliver_media();  // 5  emissions of this tick reach the inboxes of their receivers
+    sense();          // 6  sensors that are due take their samples
     judge();          // 7  rules, events and stop conditions
     control();        // 8  programs decide; their orders act in the next tick
     publish();        // 9  the immutable frame to observers
@@ -56,6 +56,7 @@ void Simulation::fail(Error error) {
 /// more of them.
 void Simulation::set_step(std::optional<Time> measured) {
   publisher_.begin_tick();
+  elements_.begin_tick();
   commands_.clear_log();
   step_ = setup_.step;
   substeps_ = setup_.substeps;
@@ -78,6 +79,12 @@ void Simulation::process_commands() {
     return entity ? std::optional(entity->serial) : std::nullopt;
   };
   for (Commands::Pending& pending : commands_.take(serial_of)) {
+    std::vector<std::byte> response;
+    Status status = process(pending.request, pending.source, response);
+    commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
+  }
+  for (WorldElements::Waiting& waiting : elements_.take_requests()) {
+    Commands::Pending pending{waiting.source, waiting.number, std::move(waiting.request)};
     std::vector<std::byte> response;
     Status status = process(pending.request, pending.source, response);
     commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
@@ -114,6 +121,8 @@ void Simulation::physics() {
     const std::size_t held = actuation_.wrenches.size();
     devices_.pre_substep(ctx, h_s);
     pulls_.add_wrenches(entities_, *engine_, now_, actuation_);
+    elements_.push(medium_context(), h_s, actuation_.wrenches);
+    elements_.watch(actuation_.watch);
     hand_over(actuation_);
     // Obstacles with a motion of their own: where they stand at the end of the sub-step.
     for (const Entity* entity : guided_) {
@@ -123,6 +132,7 @@ void Simulation::physics() {
     }
     engine_->step(h_s, hash_combine(mix64(setup_.seed), key(substep)));
     devices_.post_substep(ctx, h_s);
+    elements_.note_touches(static_cast<std::uint32_t>(substep), h_s);
     actuation_.wrenches.resize(held);
     actuation_.joints.clear();
     actuation_.drives.clear();
@@ -156,30 +166,47 @@ void Simulation::update_scene() {
   scenes_.update(tick_, revision_);
 }
 
-void Simulation::sense() {
-  const PhaseTimer timer(phase_times_, Phase::sense);
-  devices_.sense(context());
+MediumContext Simulation::medium_context() const {
+  return {.now = now_,
+          .step = step_,
+          .tick_index = tick_,
+          .seed = setup_.seed,
+          .world = elements_,
+          .rays = rays(),
+          .emissions = {},
+          .buffer = emissions_,
+          .receivers = {},
+          .receivers_by_key = {}};
 }
 
 void Simulation::deliver_media() {
   const PhaseTimer timer(phase_times_, Phase::media);
-  const MediumContext ctx{now_, tick_, setup_.seed, *engine_, rays()};
-  for (const auto& medium : media_) medium->deliver(emissions_, ctx);
+  elements_.deliver(medium_context());
+  emissions_.clear();
+}
+
+void Simulation::sense() {
+  const PhaseTimer timer(phase_times_, Phase::sense);
+  devices_.sense(context());
+  SL_CHECK_MSG(emissions_.emissions.empty(),
+               "a device emits while it senses; that belongs into its actuate phase");
 }
 
 void Simulation::judge() {
   const PhaseTimer timer(phase_times_, Phase::rules);
-  const RuleContext ctx{now_, tick_, *engine_};
-  for (const auto& rule : rules_) {
-    auto reason = rule->judge(ctx);
-    if (reason && !stop_reason_) stop_reason_ = std::move(reason);
-  }
+  elements_.judge(now_, step_);
+  find_stop_reason();
+}
+
+/// What ends the run now, if anything: its stop time, a rule, an event. Asked again at the same time, it finds the same.
+void Simulation::find_stop_reason() {
+  if (!stop_reason_ && setup_.stop && now_ >= *setup_.stop)
+    stop_reason_ = "simulated time reached " + number_text(setup_.stop->s()) + " s";
+  if (const std::string* const reason = elements_.stop_reason(); reason && !stop_reason_)
+    stop_reason_ = *reason;
   auto judged = monitor_->judge(now_);
-  if (judged) {
-    if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
-  } else {
-    fail(std::move(judged.error()));
-  }
+  if (!judged) return fail(std::move(judged.error()));
+  if (*judged && !stop_reason_) stop_reason_ = std::move(*judged);
 }
 
 void Simulation::control() {

@@ -1,6 +1,6 @@
-// Parts of the ground with a surface of their own: flat patches with their names, and arrows where they carry what stands on them.
+// Areas of the ground: parts with a surface of their own, with arrows where they carry what stands on them, and markers. Flat patches with their names.
 import * as THREE from 'three';
-import type { World, Zone } from '../protocol';
+import type { Marker, World, Zone } from '../protocol';
 
 /** Above the ground, below what stands on it; the offset in depth keeps it from flickering far away. */
 const HEIGHT_M = 0.002;
@@ -16,6 +16,7 @@ export class Zones {
   setWorld(world: World): void {
     this.clear();
     for (const zone of world.zones ?? []) this.add(zone);
+    for (const marker of world.markers ?? []) this.addMarker(marker);
   }
 
   dispose(): void {
@@ -37,17 +38,29 @@ export class Zones {
     const outline = zone.corners.length > 0
       ? new THREE.Shape(zone.corners.map(([x, y]) => new THREE.Vector2(x, y)))
       : new THREE.Shape().absarc(zone.centre[0], zone.centre[1], zone.radius_m, 0, 2 * Math.PI, false);
+    const box = this.addPatch(zone.name, outline, colorOf(zone), 0.4);
+    this.addArrows(zone, box);
+  }
+
+  private addMarker(marker: Marker): void {
+    const [r, g, b, a] = marker.color;
+    const outline = new THREE.Shape(marker.corners.map(([x, y]) => new THREE.Vector2(x, y)));
+    this.addPatch(marker.name, outline, new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), 0.35 * a);
+  }
+
+  /** @returns the box about the patch */
+  private addPatch(name: string, outline: THREE.Shape, color: THREE.Color, opacity: number): THREE.Box3 {
     const geometry = new THREE.ShapeGeometry(outline, 48);
     const material = new THREE.MeshBasicMaterial({
-      color: colorOf(zone), transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2,
+      color, transparent: true, opacity, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2,
     });
     const patch = new THREE.Mesh(geometry, material);
     patch.position.z = HEIGHT_M;
     this.group.add(patch);
     geometry.computeBoundingBox();
-    this.addArrows(zone, geometry.boundingBox!);
-    const label = labelOf(zone.name, geometry.boundingBox!);
+    const label = labelOf(name, geometry.boundingBox!);
     if (label !== null) this.group.add(label);
+    return geometry.boundingBox!;
   }
 
   /** Two arrow heads beside the name, the way the belt runs. */

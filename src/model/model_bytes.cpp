@@ -1,4 +1,4 @@
-#include "sim/world/model_bytes.h"
+#include "model/model_bytes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -22,9 +22,14 @@ struct Source {
     admin,
     robot,    ///< a client that drives a robot
     program,  ///< a controller in this process; its orders act after all others
+    rule,  ///< a rule of the world; its requests act after those from outside, before the orders of programs
   } kind = Kind::admin;
-  /// A client's own number. Of a program, and in the log of a client that drives a robot: the robot's creation order.
+  /// A client's own number. Of a program, and in the log of a client that drives a robot: the robot's creation order. Of a
+  /// rule: its place in the list.
   std::uint64_t id = 0;
+  static constexpr Kind last_kind = Kind::rule;
+  /// Whether the world itself brings it forth again when the same input is repeated.
+  bool is_inside() const { return kind == Kind::program || kind == Kind::rule; }
 };
 
 /// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".
@@ -88,10 +93,9 @@ struct CallRequest {
   std::vector<std::byte> bytes;  ///< the service's request, in CDR
 };
 
-using Request =
-    std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest, PoseRequest,
-                 SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest, AnswerRequest,
-                 CallRequest>;
+using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
+                             PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest,
+                             AnswerRequest, CallRequest>;
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);

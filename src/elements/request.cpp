@@ -1,8 +1,8 @@
-#include "sim/world/request.h"
+#include "elements/request.h"
 
 #include <array>
 
-#include "sim/world/model_bytes.h"
+#include "model/model_bytes.h"
 
 namespace sandlot {
 namespace {

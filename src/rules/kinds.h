@@ -1,0 +1,6 @@
+#pragma once
+/// The kinds of rules there are: one line each, the name of the folder. Nothing else knows their names.
+// clang-format off
+#define SANDLOT_RULES(rule) \
+  rule(goals)
+// clang-format on
