@@ -2,5 +2,6 @@
 /// The kinds of rules there are: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_RULES(rule) \
-  rule(goals)
+  rule(goals)               \
+  rule(impact)
 // clang-format on
