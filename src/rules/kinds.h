@@ -3,5 +3,6 @@
 // clang-format off
 #define SANDLOT_RULES(rule) \
   rule(goals)               \
-  rule(impact)
+  rule(impact)              \
+  rule(place)
 // clang-format on
