@@ -21,6 +21,8 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
     error.path = "/steps";
     return error;
   };
+  if (const auto to = robot.actuator<msg::String>(entry.key); to && entry.value.is_scalar())
+    return Sequence::Order{at_s, Sequence::Words{*to, {entry.value.text()}}};
   if (entry.value.is_scalar() && (entry.value.text() == "true" || entry.value.text() == "false")) {
     Sequence::Switch order{.value = {entry.value.text() == "true"}};
     auto to = robot.actuator<msg::Bool>(entry.key);
@@ -88,7 +90,7 @@ void Sequence::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Sequence>({
     .name = "sequence",
-    .help = "Sends commands to joints, drives and grippers at set times.",
+    .help = "Sends commands to joints, drives, grippers and voices at set times.",
 });
 
 }  // namespace sandlot::controllers::sequence

@@ -4,7 +4,7 @@
 /// Reads    nothing.
 /// Orders   to the devices it names: a number is a Float64 (joint motors: angle, speed or effort by their level), a list
 ///          [forward, left, turn] a Twist in m/s and rad/s for a drive. Lists may be shorter; the rest is 0. The words true
-///          and false are a Bool (grippers).
+///          and false are a Bool (grippers); for a device that takes a String, any text is one (voice).
 /// Time     an order is given in the first control step not before its time. With `repeat` the list begins again every
 ///          so many seconds, counted from the start; orders at or after the end of a round are never given.
 /// Limits   open loop: it does not look whether anything came of it.
@@ -24,9 +24,10 @@ struct Step {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"at", "s", "Time of the commands, from the start of a round.", 0, 1e9, Field::required},
           s.at_s);
-    visit(Field{"orders", "", "Map of commands: device -> number, true, false, or [forward, left, turn].", 0,
-                0, Field::required},
-          s.orders);
+    visit(
+        Field{"orders", "", "Map of commands: device -> number, true, false, text, or [forward, left, turn].",
+              0, 0, Field::required},
+        s.orders);
   }
 };
 
@@ -65,13 +66,17 @@ struct Sequence {
     Actuator<msg::Bool> to;
     msg::Bool value;
   };
+  struct Words {
+    Actuator<msg::String> to;
+    msg::String value;
+  };
   struct Motion {
     Actuator<msg::Twist> to;
     msg::Twist value;
   };
   struct Order {
     double at_s;
-    std::variant<Number, Switch, Motion> what;
+    std::variant<Number, Switch, Words, Motion> what;
   };
   std::vector<Order> orders;
 
