@@ -68,7 +68,7 @@ Result<std::unique_ptr<DeviceKeys>> take_device_keys(Node& config, bool kind_has
   Status status;
   const auto take = [&](const Field& field, auto& member) {
     const Node* const value = config.find(field.key);
-    if (!value || !status || (kind_has_errors && field.key == errors_field.key)) return;
+    if (!value || !status || (kind_has_errors && std::string_view(field.key) == errors_field.key)) return;
     status = read_value(*value, field, member, std::string("/") + field.key);
     keys->places.emplace_back(field.key, value->place());
     config.erase(field.key);
