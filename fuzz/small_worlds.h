@@ -115,6 +115,18 @@ robots:
 things: [{name: ball, model: msl_ball, pose: [0.2, 0, 0.11]}]
 robots: [{name: scout, model: scout, controller: {kind: diffusion}}]
 )"},
+    {"programs", "planar", R"(
+teams: [{name: red, controller: {name: coach, kind: formation, rate: 25, odometry: truth}}]
+robots:
+  - name: one
+    model: scout
+    team: red
+    devices: {truth: {kind: ground_truth}}
+    controllers:
+      - {name: estimator, kind: odometry_estimator, odometry: drive, rate: 50}
+      - {name: brain, kind: pipe, command: [cat]}
+  - {name: two, model: scout, team: red, pose: [0.5, 0, 0], devices: {truth: {kind: ground_truth}}}
+)"},
     {"rollers", "rigid", R"(
 robots:
   - name: robot

@@ -41,6 +41,7 @@ constexpr Golden goldens[] = {
     {"scenarios/beach.yaml --duration 10s", "880ea2b250563ec0"},
     {"scenarios/ball.yaml", "3ffb74f0db5c4412"},
     {"scenarios/ball.yaml --set level=objects", "d2d4824f6b4bb10f"},
+    {"scenarios/formation.yaml", "f39e7746684f0ac7"},
 };
 
 class GoldenRun : public testing::TestWithParam<Golden> {};
