@@ -14,9 +14,9 @@ class DeepConst {
 
   DeepConst() = default;
   template <class Other>
-  requires std::is_convertible_v<Other&&, Pointer> DeepConst(
-      Other&& pointer)  // NOLINT(google-explicit-constructor): as a pointer is made of another
-      : pointer_(std::forward<Other>(pointer)) {}
+  requires std::is_convertible_v<Other, Pointer> DeepConst(
+      Other pointer)                     // NOLINT(google-explicit-constructor)
+      : pointer_(std::move(pointer)) {}  // as a pointer is made of another
   DeepConst(DeepConst&&) = default;
   DeepConst& operator=(DeepConst&&) = default;
   DeepConst(const DeepConst&) = delete;  // a copy of a const one would not be const
