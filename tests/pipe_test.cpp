@@ -96,7 +96,8 @@ TEST(Pipe, ErrorsReachTheUser) {
   const Printed ended = run("command: [sh, -c, 'echo no brain >&2; exit 3'], on_miss: end");
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.out, HasSubstr("rover/controller: no brain"));
-  EXPECT_THAT(ended.out, HasSubstr("the process is gone: it has ended; its last words: no brain"));
+  EXPECT_THAT(ended.out,
+              HasSubstr("the process is gone: it has ended; last line of its standard error: no brain"));
   const Printed wrong = run("command: [sh, -c, 'read a; read b; echo {}; read c; echo nonsense; sleep 9']");
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.out,

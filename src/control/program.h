@@ -1,5 +1,5 @@
 #pragma once
-/// Program: anything that decides for a robot or a team. It is resumed and says what it waits for next: its control step, a
+/// Program: anything that decides for a robot or a team. It is resumed and returns what it waits for next: its control step, a
 /// time, a message, an answer from outside, or nothing more.
 ///
 /// A controller is a program that steps in this process (ControllerProgram). The other kinds are one folder under programs/

@@ -31,7 +31,7 @@ struct Pair {
 
 bool open_pair(Pair& pair, bool to_child) {
   int both[2];
-  // To the child by a socket: writing to one that is closed can be told not to raise SIGPIPE.
+  // To the child by a socket: writing to one that is closed need not raise SIGPIPE.
   if (to_child ? socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, both) : pipe2(both, O_CLOEXEC))
     return false;
   pair.ours = both[0];  // of a pipe the end that reads

@@ -168,7 +168,7 @@ std::optional<OutsideAnswer> Pipe::receive() {
     }
   if (broken_.empty()) broken_ = child_->gone();
   if (broken_.empty()) return std::nullopt;
-  if (!last_note_.empty()) broken_ += "; its last words: " + last_note_;
+  if (!last_note_.empty()) broken_ += "; last line of its standard error: " + last_note_;
   child_.reset();
   waiting_ = false;
   return OutsideAnswer{OutsideAnswer::Kind::gone, bytes_of(std::exchange(broken_, {}))};

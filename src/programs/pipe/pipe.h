@@ -9,7 +9,7 @@
 /// Answer       one line per observation, see answer.h; its orders act at the beginning of the next tick, as those of every
 ///              controller. What it writes to standard error goes to the log.
 /// Deadline     in wall time from the observation on. An answer that comes later acts with the next one. Until an answer
-///              has come no other observation is sent; `on_miss` says what the robot does meanwhile.
+///              has come no other observation is sent; `on_miss` is what the robot does meanwhile.
 /// Determinism  the answers are input from outside and logged, also that none came in time: replays and rewound runs get
 ///              them from there, without the process.
 /// Security     a process is started only by a run that may: see SECURITY.md.

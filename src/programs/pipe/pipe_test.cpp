@@ -68,7 +68,7 @@ TEST(Child, IsKilledWithItsGroupAndCollected) {
   EXPECT_TRUE(soon([&] { return !is_running(grandchild); }));
 }
 
-TEST(Child, ReportsItsEndAndItsLastWords) {
+TEST(Child, ReportsItsEndAndItsNotes) {
   Child child = started({"sh", "-c", "echo last; echo why >&2; exit 3"});
   EXPECT_EQ(line_of(child), "last");
   EXPECT_TRUE(soon([&] { return child.move(), !child.gone().empty(); }));
@@ -276,7 +276,7 @@ TEST(Pipe, WhatItAnswersUnaskedEndsIt) {
   EXPECT_FALSE(rig.pipe.connected());
 }
 
-TEST(Pipe, ReactsToMissesAsItIsTold) {
+TEST(Pipe, ReactsToMissesAsConfigured) {
   const auto react = [](const char* on_miss, Command& cmd) {
     Rig rig("cat", {{"on_miss", on_miss}});
     const auto resumed = rig.pipe.answer({OutsideAnswer::Kind::missed, {}}, rig.answers.forms, cmd);
@@ -291,12 +291,12 @@ TEST(Pipe, ReactsToMissesAsItIsTold) {
   EXPECT_EQ(react("end", cmd).failure, "the process sent no answer within 1 s");
 }
 
-TEST(Pipe, ItsEndIsReportedWithItsLastWords) {
+TEST(Pipe, ItsEndIsReportedWithTheLastNote) {
   Rig rig("read d; echo 'no brain' >&2");
   rig.resume();
   const OutsideAnswer gone = rig.wait();
   EXPECT_EQ(gone.kind, OutsideAnswer::Kind::gone);
-  EXPECT_EQ(text(gone), "it has ended; its last words: no brain");
+  EXPECT_EQ(text(gone), "it has ended; last line of its standard error: no brain");
   Command cmd;
   EXPECT_EQ(rig.pipe.answer(gone, rig.answers.forms, cmd).waiting_for, Program::Waiting::nothing);
 }

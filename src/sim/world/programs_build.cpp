@@ -101,6 +101,10 @@ Status Programs::add(Entity& entity, std::shared_ptr<const model::ControllerDecl
 
 Status Programs::add_teams(Entities entities, Time now, Diagnostics& diagnostics) {
   for (const model::TeamDecl& decl : setup_.teams) {
+    // A forged snapshot may name it anything.
+    if (decl.name.empty() || sanitised(decl.name) != decl.name)
+      return Error{"'" + decl.name + "' cannot be the name of a team", "letters, digits, _ and -",
+                   decl.place};
     if (find_team(decl.name))
       return Error{"two teams are called '" + decl.name + "'", "give one of them another name", decl.place};
     teams_.push_back({decl, {}});

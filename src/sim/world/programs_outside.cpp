@@ -39,6 +39,9 @@ void Programs::await_answers() {
   if (awaited_.empty()) return;
   using Clock = Outside::Clock;
   const auto submit = [&](const ProgramEntry& entry, OutsideAnswer answer) {
+    if (answer.kind == OutsideAnswer::Kind::gone)
+      log::warning("program '" + entry.path + "' (" + entry.decl.kind + ") is gone: " +
+                   std::string(reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()));
     commands_.submit(AnswerRequest{entry.path, std::move(answer)}, {});
   };
   std::vector<Outside::Watched> watched;
