@@ -1,5 +1,6 @@
 /// Forged logs: the run of a robot and a ball is replayed with entries as the input says. A target is one of the real ones
 /// or none; the bytes are the input's, or those of a real request of each kind with some of them changed.
+#include "messages/messages.h"
 #include "record/replay.h"
 #include "small_worlds.h"
 
@@ -9,7 +10,13 @@ using namespace sandlot;
 
 constexpr fuzz::SmallWorld world{"replay", "planar", R"(
 things: [{name: ball, model: msl_ball, pose: [0.3, 0, 0.11]}]
-robots: [{name: robot, model: scout, controller: {kind: diffusion}}]
+robots:
+  - name: robot
+    model: scout
+    controller: {kind: diffusion}
+    devices:
+      odometry: {kind: wheel_odometry, left_joint: left_joint, right_joint: right_joint, wheel_radius: 0.03,
+                 wheel_separation: 0.108}
 )"};
 
 struct RealRequest {
@@ -37,7 +44,8 @@ std::vector<RealRequest> real_requests() {
                          SampleRequest{"robot/ring"},
                          LoadDeviceRequest{"robot", {.name = "truth", .kind = "ground_truth"}},
                          UnloadDeviceRequest{"robot/drive"},
-                         PullRequest{"ball", "", {}, {0, 0, 1}, Time::from_s(1)}};
+                         PullRequest{"ball", "", {}, {0, 0, 1}, Time::from_s(1)},
+                         CallRequest{"robot/odometry", "reset", {}}};
   std::vector<RealRequest> out;
   for (const Request& request : all) {
     RealRequest real{static_cast<std::uint8_t>(request.index()), request_target(request), "", {}};
@@ -60,7 +68,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const std::vector<std::byte> snapshot = fuzz::small_snapshot(world);
   static const std::vector<RealRequest> real = real_requests();
   static const char* const targets[] = {
-      "robot", "robot/drive", "robot/drive/ideal", "robot/ring", "robot/controller", "ball", ""};
+      "robot", "robot/drive", "robot/drive/ideal", "robot/ring", "robot/odometry", "robot/controller", "ball",
+      ""};
   static const char* const types[] = {"geometry_msgs/msg/Twist", "std_msgs/msg/Float64", ""};
   Diagnostics diagnostics;
   const auto programs = size && data[0] & 1 ? record::Programs::logged : record::Programs::recompute;

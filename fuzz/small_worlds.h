@@ -1,6 +1,7 @@
 #pragma once
 /// Small worlds for the fuzzers of State: few bodies, few rays, pictures of a dozen pixels, one thread. Together they hold
-/// every kind of device on both engines, and what a run keeps in addition: events, failures, pulls, manual overrides.
+/// every kind of device, medium, rule and marker, on both engines, and what a run keeps in addition: events, failures,
+/// pulls, manual overrides, commands and messages on their way.
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -31,7 +32,8 @@ robots:
     model: cart
     devices:
       joints: {kind: joint_state, noise: {position: [{quantise: {step: 0.01}}, {walk: {density: 0.1}}]}}
-      ticks: {kind: wheel_encoder, joint: left_wheel_joint, ticks_per_turn: 100, levels: [ticks, joint]}
+      left_motor: {delay: 25 ms, max_rate: 50, command_errors: {velocity: [{lag: {time_constant: 50 ms}}, {gaussian: {std: 0.05}}]}}
+      ticks: {kind: wheel_encoder, joint: left_wheel_joint, ticks_per_turn: 100, levels: [ticks, joint], delay: 70 ms}
       odometry: {kind: wheel_odometry, left_joint: left_wheel_joint, right_joint: right_wheel_joint, wheel_radius: 0.05,
                  wheel_separation: 0.24, alpha_1: 0.01, levels: [odometry, pose], pose_error: {distance_walk: 0.02}}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {left_motor: 20, right_motor: 10}}]}
@@ -189,7 +191,28 @@ robots:
       hand: {kind: gripper, link: base_link, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 10 cm, closed: true}
 )"},
     {"mover", "rigid", R"(
-robots: [{name: cart, model: cart, devices: {mover: {kind: body_velocity, initial_linear: [0.2, 0, 0]}}}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      mover: {kind: body_velocity, initial_linear: [0.2, 0, 0]}
+      screen: {kind: text_display, rows: 2, columns: 5, mass: 100 g}
+)"},
+    {"elements", "rigid", R"(
+media: [{kind: wind, velocity: [-6, 1, 0]}, {kind: shout}]
+markers:
+  - {kind: polygon, name: goal, corners: [[-2, -2], [0.2, -2], [0.2, 2], [-2, 2]]}
+  - {kind: disc, name: spot, centre: [2, 0], radius: 0.3}
+rules:
+  - {kind: goals, object: ball, goals: [{marker: goal, team: wind}], place: [0.5, 0, 0.11]}
+  - {kind: impact, threshold: 0.01}
+  - {kind: place, object: ball, when: ball.pose.y > 1, place: [0.5, 0, 0.11]}
+things: [{name: ball, model: msl_ball, pose: [0.25, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices: {voice: {kind: voice}, ear: {kind: ear}}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {voice: hello}}, {at: 0.29 s, orders: {voice: again}}]}
 )"},
     {"shapes", "rigid", R"(
 things: [{name: ball, model: msl_ball, pose: [0, 0, 0.5]}]

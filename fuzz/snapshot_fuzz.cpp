@@ -6,7 +6,9 @@
 #include <set>
 
 #include "base/hash.h"
-#include "devices/kinds.h"
+#include "markers/marker.h"
+#include "media/medium.h"
+#include "rules/rule.h"
 #include "sim/world/snapshot.h"
 #include "small_worlds.h"
 
@@ -20,11 +22,21 @@ std::vector<std::vector<std::byte>> real_snapshots() {
   std::set<std::string> kinds;
   for (const auto& world : sandlot::fuzz::small_worlds) {
     out.push_back(sandlot::fuzz::small_snapshot(world));
-    for (const sandlot::model::Instance& instance : sandlot::examine_snapshot(out.back())->setup.instances)
+    const auto examined = sandlot::examine_snapshot(out.back());
+    SL_CHECK(examined);
+    for (const sandlot::model::Instance& instance : examined->setup.instances)
       for (const sandlot::model::DeviceDecl& device : instance.devices) kinds.insert(device.kind);
+    for (const auto* const list : {&examined->setup.media, &examined->setup.rules, &examined->setup.markers})
+      for (const sandlot::model::ElementDecl& element : *list) kinds.insert(element.kind);
   }
-  for (const sandlot::Kind* const kind : sandlot::device_kinds())
-    SL_CHECK_MSG(kinds.contains(kind->name), kind->name);  // a new kind needs a place in a small world
+  // A new kind needs a place in a small world.
+  const auto check = [&](const auto& known) {
+    for (const auto* const kind : known) SL_CHECK_MSG(kinds.contains(kind->name), kind->name);
+  };
+  check(sandlot::device_kinds());
+  check(sandlot::medium_kinds());
+  check(sandlot::rule_kinds());
+  check(sandlot::marker_kinds());
   return out;
 }
 
