@@ -252,9 +252,16 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.equal((await settled(viewer)).time_s, 0, "it waits at its beginning");
   const shown = await open(player.url);
   await until("a timeline to click on", () => shown.locator(by("timeline")).evaluate((e) => !e.classList.contains("off")));
-  const line = await shown.locator(by("timeline")).boundingBox();
-  await shown.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
-  await until("the middle", () => viewer.status.state === "paused" && viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2);
+  // On a busy machine the page may still find its place when the first click comes: as a person would, click again.
+  let clicked_ms = 0;
+  await until("the middle", async () => {
+    if (viewer.status.state === "paused" && viewer.status.time_s > 0.8 && viewer.status.time_s < 1.2) return true;
+    if (Date.now() - clicked_ms < 4000) return false;
+    clicked_ms = Date.now();
+    const line = await shown.locator(by("timeline")).boundingBox();
+    await shown.mouse.click(line.x + line.width / 2, line.y + line.height / 2);
+    return false;
+  });
   await picture(shown, "player");
   await shown.locator(by("play")).click();
   await until("its end", () => viewer.status.state === "ended");
