@@ -38,7 +38,7 @@ constexpr Golden goldens[] = {
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
     {"scenarios/errors.yaml --duration 10s", "ea1544123e181786"},
-    {"scenarios/beach.yaml --duration 10s", "880ea2b250563ec0"},
+    {"scenarios/beach.yaml --duration 10s", "8f70cddc7dc1ed85"},
     {"scenarios/ball.yaml", "3ffb74f0db5c4412"},
     {"scenarios/ball.yaml --set level=objects", "d2d4824f6b4bb10f"},
     {"scenarios/formation.yaml", "f39e7746684f0ac7"},

@@ -200,6 +200,16 @@ TEST(Shout, AnEarThatSamplesSeldomHearsAllWordsThatCameMeanwhile) {
   EXPECT_EQ(heard(*simulation).words[2].text, "three");
 }
 
+TEST(Shout, AllWordsOfATickAreSpokenInTheirOrder) {
+  const auto simulation = build(talkers({1}));
+  for (const char* word : {"one", "two", "three"}) say(*simulation, word);
+  advance(*simulation, 1);
+  ASSERT_EQ(heard(*simulation).words.size(), 3u);
+  EXPECT_EQ(heard(*simulation).words[0].text, "one");
+  EXPECT_EQ(heard(*simulation).words[2].text, "three");
+  EXPECT_EQ(value(*simulation, "speaker/voice.spoken"), 3);
+}
+
 TEST(Shout, ADeviceWithoutItsMediumIsRefusedByName) {
   model::Setup setup = talkers({1});
   setup.media.clear();

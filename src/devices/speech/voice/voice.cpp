@@ -1,6 +1,7 @@
 /// voice: speaks words into a medium of kind `shout`.
 ///
-/// Limits   one word per tick; a longer one than `max_length` is not spoken and counted.
+/// Order    all words of a tick, first in, first out; at most 100 wait, more are refused.
+/// Limits   a word longer than `max_length` is not spoken; `taken` counts it, `spoken` does not.
 #include "devices/kind.h"
 #include "messages/messages.h"
 
@@ -40,7 +41,7 @@ struct Voice {
   std::uint64_t key = 0;
   BodyId body;
   Vec3 p_LS;
-  Topic<msg::String>* words = nullptr;
+  CommandQueue<msg::String>* words = nullptr;
 
   static Result<Voice> create(const DeviceBuild& build, Spec spec) {
     Voice v{std::move(spec)};
@@ -48,27 +49,29 @@ struct Voice {
     v.key = build.key;
     v.body = build.body();
     v.p_LS = build.decl.X_LS.p;
-    v.words = build.accept<msg::String>(0, "word");
+    v.words = build.accept_queue<msg::String>(0, "word", 100);
     return v;
   }
 
   static void actuate(PoolView<Voice> pool, const Context& context) {
     for (const std::uint32_t index : pool.due) {
       Voice& v = pool.all[index];
-      if (v.words->count == v.state.taken) continue;
-      v.state.taken = v.words->count;
-      const std::string& word = v.words->message.data;
-      if (word.empty() || word.size() > static_cast<std::size_t>(v.spec.max_length)) continue;
-      ++v.state.spoken;
-      context.emissions.emit({.medium = v.medium,
-                              .emitter = v.key,
-                              .body = v.body,
-                              .at = context.now - context.tick,
-                              .point_W = context.engine.states()[v.body.index].X_WB * v.p_LS,
-                              .direction_W = {},
-                              .strength = v.spec.loudness_dB},
-                             std::as_bytes(std::span(word)));
+      for (; !v.words->empty(); v.words->pop()) v.speak(v.words->front().data, context);
     }
+  }
+
+  void speak(const std::string& word, const Context& context) {
+    ++state.taken;
+    if (word.empty() || word.size() > static_cast<std::size_t>(spec.max_length)) return;
+    ++state.spoken;
+    context.emissions.emit({.medium = medium,
+                            .emitter = key,
+                            .body = body,
+                            .at = context.now - context.tick,
+                            .point_W = context.engine.states()[body.index].X_WB * p_LS,
+                            .direction_W = {},
+                            .strength = spec.loudness_dB},
+                           std::as_bytes(std::span(word)));
   }
 };
 
