@@ -261,7 +261,7 @@ std::vector<Simulation::DeviceView> Simulation::devices(std::string_view instanc
         if (device->levels >> level & 1) view.active_levels.emplace_back(kind.levels[level].name);
       for (const Slot& slot : device->topics) view.topics.push_back(slot.topic.get());
       for (const Slot& slot : device->commands) view.commands.push_back(slot.topic.get());
-      for (const auto& order : device->orders) view.orders.push_back(order.get());
+      for (const auto& order : device->orders()) view.orders.push_back(order.get());
       views.push_back(std::move(view));
     }
   }

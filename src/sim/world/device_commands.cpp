@@ -86,7 +86,7 @@ const TopicBase& DevicePools::latest_command(const Device& device, const Slot& s
 }
 
 Status DevicePools::connect_orders(Entity& entity, Device& device, Commands& commands) const {
-  for (const auto& order : device.orders) {
+  for (const auto& order : device.orders()) {
     const auto error = [&](std::string what, std::string fix) {
       return Error{std::move(what), std::move(fix), order->place(), order->key()};
     };

@@ -18,9 +18,7 @@ namespace {
 /// Collects what a device creates while it is built.
 struct SlotMaker final : TopicMaker {
   std::vector<SimulationParts::Slot> topics, commands;
-  std::vector<std::pair<std::string, Pose>> frames;
-  std::vector<std::unique_ptr<DeviceOrder>> orders;
-  std::unique_ptr<Inbox> inbox;
+  SimulationParts::DeviceExtras extras;
   void adopt_topic(std::unique_ptr<TopicBase> topic, std::uint32_t level) override {
     topics.push_back({std::move(topic), level, false});
   }
@@ -29,12 +27,12 @@ struct SlotMaker final : TopicMaker {
     commands.push_back({std::move(slot), level, queued});
   }
   void adopt_frame(std::string name, const Pose& X_SF) override {
-    frames.emplace_back(std::move(name), X_SF);
+    extras.frames.emplace_back(std::move(name), X_SF);
   }
-  void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
+  void adopt_order(std::unique_ptr<DeviceOrder> order) override { extras.orders.push_back(std::move(order)); }
   void adopt_inbox(std::unique_ptr<Inbox> made) override {
-    SL_CHECK_MSG(!inbox, "a device has one inbox");
-    inbox = std::move(made);
+    SL_CHECK_MSG(!extras.inbox, "a device has one inbox");
+    extras.inbox = std::move(made);
   }
 };
 
@@ -172,9 +170,8 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   device->index = index;
   device->topics = std::move(maker.topics);
   device->commands = std::move(maker.commands);
-  device->frames = std::move(maker.frames);
-  device->orders = std::move(maker.orders);
-  device->inbox = std::move(maker.inbox);
+  if (!maker.extras.empty())
+    device->extras = std::make_unique<SimulationParts::DeviceExtras>(std::move(maker.extras));
   device->errors = build.errors;
   device->faults = std::move(faults);
   device->keys = std::move(keys);
@@ -465,7 +462,7 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   write(w, when.requested);
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
-  if (device.inbox) device.inbox->save(w);
+  if (device.inbox()) device.inbox()->save(w);
   if (device.keys) {
     const std::size_t at = w.size();
     write(w, std::uint64_t{0});
@@ -499,7 +496,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     // What assign() refuses does not come in by another door.
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
-  if (device.inbox) device.inbox->load(r);
+  if (device.inbox()) device.inbox()->load(r);
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

@@ -3,6 +3,7 @@
 /// of a const entity are const through and through.
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,23 +22,37 @@ struct SimulationParts {
     std::uint32_t level = 0;
     bool queued = false;  ///< it keeps several orders
   };
+  /// What few devices have.
+  struct DeviceExtras {
+    std::unique_ptr<Inbox> inbox;                      ///< null: it receives from no medium
+    std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
+    std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< that it gives to other devices
+    bool empty() const { return !inbox && frames.empty() && orders.empty(); }
+  };
   struct Device {
     explicit Device(std::shared_ptr<const model::DeviceDecl> declared)
         : shared_decl(std::move(declared)), decl(*shared_decl) {}
-    std::shared_ptr<const model::DeviceDecl> shared_decl;  ///< one object for equal declarations
-    const model::DeviceDecl& decl;
-    std::string path;
+    // Read with every command.
+    DeepConst<std::shared_ptr<Faults>> faults;  ///< null: it has none
+    std::shared_ptr<DeviceKeys> keys;           ///< null: it has none of the common keys
     std::uint64_t key = 0;
     std::uint32_t kind = 0;   ///< index of its pool
     std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
     std::vector<Slot> topics, commands;
-    std::unique_ptr<Inbox> inbox;                      ///< null: it receives from no medium
-    std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
-    std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< that it gives to other devices
-    double errors = 1;                                 ///< the world's factor on errors times the robot's
-    DeepConst<std::shared_ptr<Faults>> faults;         ///< null: it has none
-    std::shared_ptr<DeviceKeys> keys;                  ///< null: it has none of the common keys
+    std::unique_ptr<DeviceExtras> extras;                  ///< null: it has none
+    double errors = 1;                                     ///< the world's factor on errors times the robot's
+    std::shared_ptr<const model::DeviceDecl> shared_decl;  ///< one object for equal declarations
+    const model::DeviceDecl& decl;
+    std::string path;
+
+    Inbox* inbox() const { return extras ? extras->inbox.get() : nullptr; }
+    std::span<const std::pair<std::string, Pose>> frames() const {
+      return extras ? std::span(extras->frames) : std::span<const std::pair<std::string, Pose>>();
+    }
+    std::span<const std::unique_ptr<DeviceOrder>> orders() const {
+      return extras ? std::span(extras->orders) : std::span<const std::unique_ptr<DeviceOrder>>();
+    }
   };
   /// Sampling times of a device. Read in every tick, so those of a pool lie side by side.
   struct Timing {
@@ -69,26 +84,26 @@ struct SimulationParts {
   struct ProgramEntry {
     explicit ProgramEntry(std::shared_ptr<const model::ControllerDecl> declared)
         : shared_decl(std::move(declared)), decl(*shared_decl) {}
+    // Read in every step, the first ones of them side by side: see prefetch() in programs.cpp.
+    std::uint64_t key = 0;
+    const ControllerKind* kind = nullptr;  ///< null: not a controller, but a kind of programs/
+    DeepConst<Controller*> controller;     ///< the program's, where it is no more than a controller
+    Owned<Program> program;
+    std::vector<const TopicBase*> topics;  ///< topics of its readings at the active levels
+    std::vector<std::uint64_t> seen;       ///< message counts at its previous step
+    std::uint64_t steps = 0;
+    Owned<Schedule> schedule;              ///< null: it steps at the run's control steps
+    Owned<Wait> wait;                      ///< null: it is a controller
+    std::unique_ptr<std::string> failure;  ///< in its last step; ends the run. Null: it did not fail
+    bool ended = false;
+    Command command;
+    std::vector<Route> routes;  ///< per actuator of the description
+    Owned<Outputs> outputs;     ///< null: it has no topics
+    /// One object for robots with equal devices: its `robot` is the first of them.
+    std::shared_ptr<const Description> description;
     std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< one object for equal declarations
     const model::ControllerDecl& decl;
     std::string path;
-    std::uint64_t key = 0;
-    const ControllerKind* kind = nullptr;  ///< null: not a controller, but a kind of programs/
-    Owned<Program> program;
-    DeepConst<Controller*> controller;  ///< the program's, where it is no more than a controller
-    /// One object for robots with equal devices: its `robot` is the first of them.
-    std::shared_ptr<const Description> description;
-    std::vector<Route> routes;             ///< per actuator of the description
-    std::vector<const TopicBase*> topics;  ///< topics of its readings at the active levels
-    std::vector<std::uint64_t> seen;       ///< message counts at its previous step
-    Command command;
-    std::uint64_t steps = 0;
-    Owned<Schedule> schedule;  ///< null: it steps at the run's control steps
-    bool ended = false;
-    std::optional<std::string> failure;       ///< in its last step; ends the run
-    Owned<Outputs> outputs;                   ///< null: it has no topics
-    Owned<Wait> wait;                         ///< null: it is a controller
-    std::vector<DeepConst<Device*>> sources;  ///< devices of its readings; null: a topic of a program
   };
   using ProgramEntries = std::vector<Owned<ProgramEntry>>;
   struct Entity {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <map>
 
 #include "base/text.h"
@@ -12,6 +14,7 @@
 namespace sandlot {
 namespace {
 
+constexpr std::size_t cache_line = 64;
 /// Few enough to stay on the stack, enough for a kind to run warm.
 constexpr std::size_t most_in_batch = 16;
 
@@ -19,9 +22,9 @@ constexpr std::size_t most_in_batch = 16;
 /// large swarm the machine waits once per batch and not once per pointer.
 void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
   for (const SimulationParts::ProgramEntry* const entry : programs) {
-    __builtin_prefetch(&entry->key);
-    __builtin_prefetch(&entry->topics);
-    __builtin_prefetch(&entry->steps);
+    const auto* const end = reinterpret_cast<const std::byte*>(&entry->routes);
+    for (const auto* at = reinterpret_cast<const std::byte*>(&entry->key); at < end; at += cache_line)
+      __builtin_prefetch(at);
   }
   for (const SimulationParts::ProgramEntry* const entry : programs) {
     __builtin_prefetch(entry->controller.get());
@@ -34,6 +37,10 @@ void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
       __builtin_prefetch(topic);
       __builtin_prefetch(reinterpret_cast<const std::byte*>(topic) + 128);
     }
+}
+
+void set_failure(SimulationParts::ProgramEntry& entry, std::optional<std::string> failure) {
+  entry.failure = failure ? std::make_unique<std::string>(std::move(*failure)) : nullptr;
 }
 
 /// Sources of orders of teams come after those of robots, whose sources are their creation order.
@@ -79,7 +86,7 @@ bool Programs::is_due(const ProgramEntry& entry, Time now, bool control_step) co
 
 /// Notes what a program waits for now.
 void Programs::take(ProgramEntry& entry, Program::Resumed resumed) {
-  entry.failure = std::move(resumed.failure);
+  set_failure(entry, std::move(resumed.failure));
   entry.ended = resumed.waiting_for == Program::Waiting::nothing;
   if (!entry.wait) return;
   SL_CHECK(resumed.waiting_for != Program::Waiting::message || resumed.reading < entry.topics.size());
@@ -105,7 +112,7 @@ void Programs::plan_next_step(ProgramEntry& entry, Time now) const {
   schedule.due = due_time(schedule.start, static_cast<std::int64_t>(schedule.step), schedule.rate_hz);
 }
 
-void Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const {
+bool Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const {
   std::array<std::optional<Observation>, most_in_batch> seen;
   std::array<ControllerTurn, most_in_batch> turns;
   const auto step_all = batch.front()->kind ? batch.front()->kind->step_all : nullptr;
@@ -117,14 +124,17 @@ void Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const 
     turns[i] = {entry.controller.get(), &*seen[i], &entry.command};
   }
   if (step_all) step_all({turns.data(), batch.size()});
+  bool news = false;
   for (std::size_t i = 0; i < batch.size(); ++i) {
     ProgramEntry& entry = *batch[i];
-    if (step_all) entry.failure = std::move(turns[i].failure);
+    if (step_all) set_failure(entry, std::move(turns[i].failure));
     else take(entry, entry.program->resume(*seen[i], entry.command));
     ++entry.steps;
     if (entry.schedule) plan_next_step(entry, now);
     for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
+    news = news || entry.ended || entry.failure;
   }
+  return news;
 }
 
 std::optional<Error> Programs::step(Entities entities, Time now, bool control_step) {
@@ -137,19 +147,20 @@ std::optional<Error> Programs::step(Entities entities, Time now, bool control_st
       if (is_due(*entry, now, control_step)) due_.push_back(entry);
     due = due_;
   }
+  std::atomic<bool> news = false;
   parallel_for(due.size(), 64, [&](std::size_t begin, std::size_t end) {
     while (begin < end) {
       const auto batch = due.subspan(begin, std::min(most_in_batch, end - begin));
       prefetch(batch);
       std::size_t count = 1;
       while (count < batch.size() && batch[count]->kind == batch.front()->kind) ++count;
-      step_batch(batch.first(count), now);
+      if (step_batch(batch.first(count), now)) news = true;
       begin += count;
     }
   });
   for (ProgramEntry* const entry : publishing_) entry->outputs->commit(now);
   std::optional<Error> failed;
-  for (const ProgramEntry* entry : due) {
+  for (const ProgramEntry* entry : news ? due : std::span<ProgramEntry* const>()) {
     changed_ = changed_ || entry->ended;
     if (entry->failure && !failed) failed = failure_of(*entry, now);
   }
@@ -159,21 +170,43 @@ std::optional<Error> Programs::step(Entities entities, Time now, bool control_st
   return failed;
 }
 
-void Programs::deliver_orders(Entities entities, Time now, Time end, bool logged) {
+/// Fetches what the orders of the programs after the i-th will need, a step further along the pointers the nearer they are.
+void Programs::prefetch_orders(std::size_t i) const {
+  __builtin_prefetch(&all_[i + 16]->routes);
+  __builtin_prefetch(&all_[i + 16]->command);
+  const ProgramEntry& third = *all_[i + 12];
+  __builtin_prefetch(third.routes.data());
+  __builtin_prefetch(third.command.orders().data());
+  const ProgramEntry& second = *all_[i + 8];
+  for (const Command::Order& order : second.command.orders()) {
+    __builtin_prefetch(second.command.bytes(order).data());
+    if (order.is_sample()) continue;
+    const SimulationParts::Route& route = second.routes[order.slot];
+    if (!route.slot) continue;
+    __builtin_prefetch(&route.device->faults);
+    __builtin_prefetch(&route.device->keys);
+    __builtin_prefetch(route.slot.get());
+  }
+  const ProgramEntry& first = *all_[i + 4];
+  for (const Command::Order& order : first.command.orders())
+    if (!order.is_sample() && first.routes[order.slot].slot) {
+      const auto* const topic = reinterpret_cast<const std::byte*>(
+          first.routes[order.slot].slot->topic.get());
+      __builtin_prefetch(topic, 1);
+      __builtin_prefetch(topic + cache_line, 1);
+    }
+}
+
+void Programs::deliver_orders(Entities entities, Time now, Time end, bool logged,
+                              const FindDevice& find_device) {
   gather(entities);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     ProgramEntry& program = *all_[i];
     // Programs lie all over the memory; see prefetch().
-    if (i + 16 < all_.size()) {
-      __builtin_prefetch(&all_[i + 16]->routes);
-      __builtin_prefetch(&all_[i + 16]->command);
-      const ProgramEntry& next = *all_[i + 8];
-      __builtin_prefetch(next.routes.data());
-      __builtin_prefetch(next.command.orders().data());
-    }
+    if (i + 16 < all_.size()) prefetch_orders(i);
     for (const Command::Order& order : program.command.orders()) {
       if (order.is_sample()) {
-        deliver_sample(program, order, end, logged, sources_[i]);
+        deliver_sample(program, order, end, logged, sources_[i], find_device);
         continue;
       }
       SimulationParts::Route& route = program.routes[order.slot];
@@ -198,8 +231,11 @@ void Programs::deliver_orders(Entities entities, Time now, Time end, bool logged
 
 /// Asks a device for a sample at the end of this tick.
 void Programs::deliver_sample(ProgramEntry& program, const Command::Order& order, Time end, bool logged,
-                              std::uint64_t source) {
-  Device* const device = program.sources[order.reading()].get();
+                              std::uint64_t source, const FindDevice& find_device) {
+  // "/rover/laser/ranges" is a topic of the device "rover/laser". A topic of a program has no device.
+  const TopicBase* const topic = program.topics[order.reading()];
+  const std::string_view name = topic ? std::string_view(topic->name()).substr(1) : std::string_view();
+  Device* const device = find_device(name.substr(0, name.find('/', name.find('/') + 1)));
   const bool refused = !device || !devices_.request_sample(*device, end);
   if (refused) commands_.count_refused();
   if (!logged) return;

@@ -7,6 +7,7 @@
 /// Time      a program steps at the run's control steps, or at the due times of its own `rate`, as devices do.
 /// State     of each program (save, load); the lists here follow from the entities.
 /// Errors    an exception from a controller fails the tick and goes no further.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,7 @@ class Programs {
   using ProgramEntries = SimulationParts::ProgramEntries;
   using Team = SimulationParts::Team;
   using Entities = std::span<Owned<Entity>>;
+  using FindDevice = std::function<Device*(std::string_view path)>;
 
   /// All must outlive the programs.
   Programs(const model::Setup& setup, DevicePools& devices, Commands& commands)
@@ -61,7 +63,8 @@ class Programs {
   void entities_changed() { changed_ = true; }
 
   /// Delivers the orders of the latest step to the devices. @param end  of the tick that begins. @param logged  whether to log them
-  void deliver_orders(Entities entities, Time now, Time end, bool logged);
+  /// @param find_device  by path; null: there is none
+  void deliver_orders(Entities entities, Time now, Time end, bool logged, const FindDevice& find_device);
   /// Steps the programs that are due. @param control_step  whether the tick is one of the run's control steps
   /// @return the first failure
   std::optional<Error> step(Entities entities, Time now, bool control_step);
@@ -110,11 +113,13 @@ class Programs {
   void gather(Entities entities);
   bool is_due(const ProgramEntry& entry, Time now, bool control_step) const;
   void plan_next_step(ProgramEntry& entry, Time now) const;
-  void step_batch(std::span<ProgramEntry* const> batch, Time now) const;
+  /// @return whether one of them ended or failed
+  bool step_batch(std::span<ProgramEntry* const> batch, Time now) const;
   static void take(ProgramEntry& entry, Program::Resumed resumed);
   static Error failure_of(const ProgramEntry& entry, Time now);
+  void prefetch_orders(std::size_t i) const;
   void deliver_sample(ProgramEntry& program, const Command::Order& order, Time end, bool logged,
-                      std::uint64_t source);
+                      std::uint64_t source, const FindDevice& find_device);
 
   const model::Setup& setup_;
   DevicePools& devices_;

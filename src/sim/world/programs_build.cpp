@@ -185,7 +185,6 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
   if (!outputs->status()) return at(outputs->status().error());
   program->kind = kind;
   program->topics.resize(program->description->readings.size());
-  program->sources.resize(program->description->readings.size());
   program->seen.resize(program->description->readings.size(), 0);
   program->routes.resize(program->description->actuators.size());
   if (!outputs->empty()) {
@@ -345,14 +344,12 @@ void Programs::follow(ProgramEntry& program, const Driven& driven, const Program
     const auto [entity, name] = locate(entry);
     const TopicBase* first = nullptr;
     const TopicBase* chosen = nullptr;
-    Device* source = nullptr;
     if (entry.program) {
       if (entity) first = topic_of(entity->programs, "/" + entity->instance.name + "/" + std::string(name));
       if (!first) first = topic_of(programs, "/" + driven.name + "/" + entry.device);
     } else if (entity) {
       for (auto& device : entity->devices) {
         if (device->decl.name != name) continue;
-        source = device.get();
         const auto& levels = devices_.kind(*device).levels;
         for (const SimulationParts::Slot& slot : device->topics) {
           if (entry.type != slot.topic->type()) continue;
@@ -365,7 +362,6 @@ void Programs::follow(ProgramEntry& program, const Driven& driven, const Program
       }
     }
     program.topics[entry.index] = chosen ? chosen : first;
-    program.sources[entry.index] = source;
   }
   for (const Entry& entry : program.description->actuators) {
     SimulationParts::Route& route = program.routes[entry.index];

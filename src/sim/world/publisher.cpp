@@ -226,7 +226,7 @@ void Publisher::fill_hashes(Frame& frame) {
       const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense;
       // Samples, commands and deliveries only become more, and so does their sum.
       std::uint64_t version = sim_.timing(*device).sample;
-      if (device->inbox) version += device->inbox->arrived();
+      if (device->inbox()) version += device->inbox()->arrived();
       for (const SimulationParts::Slot& slot : device->commands) version += slot.topic->count;
       add(device->key, only_senses ? version : always,
           [&](ByteWriter& w) { sim_.devices_.save(*device, w); });

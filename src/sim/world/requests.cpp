@@ -228,7 +228,7 @@ Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   SL_TRY(adds_no_mass(*device));
   Entity& entity = sim.entity_of(*device);
   for (const auto& other : entity.devices)
-    for (const auto& order : other->orders)
+    for (const auto& order : other->orders())
       if (order->device() == device->path)
         return Error{"'" + other->path + "' gives orders to '" + device->path + "'",
                      "unload '" + other->path + "' first"};

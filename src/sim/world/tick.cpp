@@ -90,7 +90,9 @@ void Simulation::process_commands() {
     commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
   }
   // A snapshot may hold orders of programs that do not run: the log that drives the run has them, too.
-  if (options_.run_programs) programs_.deliver_orders(entities_, now_, now_ + step_, publisher_.wants().log);
+  if (options_.run_programs)
+    programs_.deliver_orders(entities_, now_, now_ + step_, publisher_.wants().log,
+                             [this](std::string_view path) { return find_device(path); });
 }
 
 void Simulation::actuate() {

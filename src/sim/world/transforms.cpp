@@ -59,7 +59,7 @@ msg::TFMessage static_transforms(const Simulation& simulation) {
       if (!taken)
         set(message.transforms.emplace_back(), now, frame_of(device->decl.link), device->path,
             device->decl.X_LS);
-      for (const auto& [name, X_SF] : device->frames)
+      for (const auto& [name, X_SF] : device->frames())
         set(message.transforms.emplace_back(), now, device->path, name, X_SF);
     }
   }

@@ -140,9 +140,9 @@ void WorldElements::gather() const {
   for (const auto& entity : sim_.entities()) {
     entities_.push_back({&entity->instance, entity->id, entity->serial});
     for (const auto& device : entity->devices)
-      if (device->inbox)
-        media_[device->inbox->medium()].receivers.push_back(
-            {device->inbox.get(), device->key, sim_.engine().bodies(entity->id)[device->decl.link],
+      if (device->inbox())
+        media_[device->inbox()->medium()].receivers.push_back(
+            {device->inbox(), device->key, sim_.engine().bodies(entity->id)[device->decl.link],
              device->decl.X_LS});
   }
   for (NamedMedium& each : media_) {
