@@ -77,6 +77,19 @@ TEST(Pipe, ASnapshotStartsNothingUnlessItIsAllowed) {
   EXPECT_EQ(sandlot("run --headless --allow-programs " + file).exit_code, 2);
 }
 
+TEST(Pipe, AScenarioMayBeNamedWithoutItsFolder) {
+  const TestFolder folder;
+  scenario(folder, "command: [python3, brain.py], deadline: 20 s");
+  const std::string from_there = "cd " + folder.path.string() + " && " + fs::absolute(SANDLOT_BIN).string() +
+                                 " ";
+  const Printed checked = shell(from_there + "check s.yaml");
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+  EXPECT_THAT(checked.out, HasSubstr("s.yaml: ok"));
+  const Printed run = shell(from_there + "run s.yaml --headless");
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_EQ(starts(folder), 1u);
+}
+
 TEST(Pipe, AProcessThatHangsDelaysTheRunByItsDeadlinesOnly) {
   const TestFolder folder;
   const std::string file = scenario(folder, "command: [sleep, '1000'], deadline: 20 ms");

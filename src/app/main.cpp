@@ -707,8 +707,10 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
-  } catch (const std::system_error&) {
-    // fmt::print() throws when the output takes no more.
+  } catch (const std::system_error& error) {
+    // fmt::print() throws when the output takes no more, which finish_output() reports. Whatever else throws must not
+    // end the program without a word.
+    if (!std::ferror(stdout)) std::fprintf(stderr, "error: %s\n", error.what());
     return finish_output(exit_failed);
   }
   return finish_output(result);

@@ -116,9 +116,10 @@ class ScenarioLoader {
       const fs::path written = given ? given->text() : "";
       const Place place = given ? given->place() : decl.place;
       Node& config = controllers.edit()[i].config;
-      const std::string folder =
-          fs::absolute(fs::path(folder_at(place)) / written).lexically_normal().string();
-      config.set("folder", Node::scalar(folder, place));
+      // A file named without its folder is in ".": absolute() throws where it gets nothing.
+      const std::string beside = folder_at(place);
+      const fs::path folder = fs::absolute(fs::path(beside.empty() ? "." : beside) / written);
+      config.set("folder", Node::scalar(folder.lexically_normal().string(), place));
     }
   }
 
