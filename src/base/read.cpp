@@ -133,7 +133,10 @@ Status value(const Node& node, const Field& field, const TypeEdit& type, void* o
     }
     case Holds::fixed:
       if (!node.is_sequence() || node.items().size() != info.extent)
-        return wrong_type(node, "a list of " + std::to_string(info.extent) + " values", path);
+        return node.error(
+            "expected a list of " + std::to_string(info.extent) + " values, found " +
+                (node.is_sequence() ? "one of " + std::to_string(node.items().size()) : describe(node)),
+            "", path);
       for (std::size_t i = 0; i < info.extent; ++i)
         SL_TRY(value(node.items()[i], field, *type.element, type.at(out, i), path + "/" + std::to_string(i)));
       return {};

@@ -142,7 +142,7 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
   EXPECT_EQ(complaint(map("colour", text("gren"))),
             "a.yaml:7:3: /colour: 'gren' is no choice here; did you mean 'green'?");
   EXPECT_EQ(complaint(map("offset", list({"1", "2"}))),
-            "a.yaml:7:3: /offset: expected a list of 3 values, found a list");
+            "a.yaml:7:3: /offset: expected a list of 3 values, found one of 2");
   EXPECT_EQ(complaint(map("offset", list({"0", "0", "2"}))),
             "a.yaml:7:6: /offset/2: must be in [-1, 1] m, is 2; Offset.");
   EXPECT_EQ(complaint(map("list", list({"0", "0", "0", "0"}))),

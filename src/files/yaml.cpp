@@ -228,6 +228,17 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
     const bool in_flow = e.msg.starts_with("end of map flow") || e.msg.starts_with("end of sequence flow");
     const bool in_block = e.msg == "end of sequence not found" || e.msg == "end of map not found" ||
                           e.msg.starts_with("illegal ");
+    // What yaml-cpp says of a character that begins nothing: {when: a/laser.ranges[3] > 1}, seed: @x
+    if (e.msg == "unknown token")
+      return Error{
+          "here begins nothing that YAML knows",
+          "within {} and [], a text with brackets or commas needs quotes; everywhere one that begins "
+          "with @, `, % or a closing bracket",
+          {name, e.mark.line + 1, e.mark.column + 1}};
+    if (e.msg == "the referenced anchor is not defined")
+      return Error{"no anchor of that name stands before this alias",
+                   "write &name at the value that *name shall repeat; a text that begins with * needs quotes",
+                   {name, e.mark.line + 1, e.mark.column + 1}};
     return Error{show_variables(e.msg),
                  in_flow ? "close the bracket; within {} and [], a text with brackets or commas needs quotes"
                  : in_block ? "indent with blanks, not tabs, and the elements of a list or map equally far; "

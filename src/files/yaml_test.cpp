@@ -63,6 +63,10 @@ TEST(Yaml, RefusesWhatItCannotMean) {
   EXPECT_EQ(error_of("a: &x [*x]\n").substr(0, 36), "f.yaml:1:8: this alias stands for a ");
   EXPECT_NE(error_of("a: 1\n\tb: 2\n"), "");
   EXPECT_NE(error_of("a: {when: x[3] < 1}\n").find("needs quotes"), std::string::npos);
+  EXPECT_EQ(error_of("a: [{when: x[3] > 1}]\n").substr(0, 55),
+            "f.yaml:1:17: here begins nothing that YAML knows; withi");
+  EXPECT_NE(error_of("a: @x\n").find("one that begins with @"), std::string::npos);
+  EXPECT_EQ(error_of("a: *x\n").substr(0, 56), "f.yaml:1:4: no anchor of that name stands before this al");
   EXPECT_EQ(error_of("a: [1\nb: 2\n").substr(0, 9), "f.yaml:2:");
 }
 

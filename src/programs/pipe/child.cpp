@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -81,6 +82,9 @@ Result<Child> Child::start(const std::vector<std::string>& command, const std::s
   if (command.empty() || command.front().empty()) return failed("the command is empty");
   const std::string file = find_program(command.front(), folder);
   if (file.empty()) return failed("there is no such program");
+  if (struct stat there; !folder.empty() && (::stat(folder.c_str(), &there) != 0 || !S_ISDIR(there.st_mode)))
+    return Error{"cannot start '" + command.front() + "': there is no folder '" + folder + "' to work in",
+                 "folder: is relative to the scenario's file; by default it is that file's own"};
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);

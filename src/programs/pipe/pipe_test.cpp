@@ -101,6 +101,10 @@ TEST(Child, AnErrorSaysWhyItCannotBeStarted) {
   EXPECT_THAT(error_of({"/etc/passwd"}), HasSubstr("cannot start '/etc/passwd'"));
   EXPECT_THAT(error_of({}), HasSubstr("the command is empty"));
   EXPECT_THAT(error_of({"/"}), HasSubstr("Permission denied"));
+  const auto elsewhere = Child::start({"cat"}, "/no/such/folder");
+  ASSERT_FALSE(elsewhere);
+  EXPECT_THAT(elsewhere.error().text(),
+              HasSubstr("cannot start 'cat': there is no folder '/no/such/folder'"));
 }
 
 // ------------------------------------------------------------------------------------------------------ answers
