@@ -36,6 +36,32 @@ struct SlotMaker final : TopicMaker {
   }
 };
 
+/// The error for a key that a device of the kind does not have. The kind's reader knows its own keys alone; this one also
+/// those of every device.
+std::optional<Error> unknown_key(const Node& config, const Kind& kind) {
+  std::vector<std::string> own, common{"kind", "link", "pose", "level", "levels", "preset"};
+  for (const FieldInfo& field : kind.describe()) {
+    std::string key = field.path.substr(0, field.path.find('/'));
+    if (own.empty() || own.back() != key) own.push_back(std::move(key));
+  }
+  const auto add = [&](const Field& field, auto&) { common.emplace_back(field.key); };
+  DeviceKeysSpec keys;
+  FaultsSpec faults;
+  DeviceKeysSpec::fields(keys, add);
+  FaultsSpec::fields(faults, add);
+  std::vector<std::string> all = own;
+  all.insert(all.end(), common.begin(), common.end());
+  for (const Node::Entry& entry : config.entries()) {
+    if (std::find(all.begin(), all.end(), entry.key) != all.end()) continue;
+    const bool near = own.empty() || !nearest(entry.key, all).empty();
+    return Error{"unknown key '" + entry.key.substr(0, 60) + "'",
+                 near ? suggestion(entry.key, all)
+                      : suggestion(entry.key, own) + "; `sandlot list common` has those of every device",
+                 entry.key_place};
+  }
+  return std::nullopt;
+}
+
 /// Levels named by `level: x` or `levels: [x, y]`; both keys belong to the simulator, not to the kind's spec.
 Result<std::uint32_t> take_levels(Node& config, const Kind& kind, const Place& place) {
   std::vector<std::string> known;
@@ -129,7 +155,10 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
       .encode_image = encode_image,
       .media = setup_.media,
   };
-  SL_TRY(pool->pool->add(build));
+  if (Status added = pool->pool->add(build); !added) {
+    if (auto slip = unknown_key(decl.config, *kind)) return std::move(*slip);
+    return added;
+  }
   const auto index = static_cast<std::uint32_t>(pool->devices.size());
   if (Status fits = faults ? faults->check(maker.topics) : Status(); !fits) {
     pool->pool->remove(index);
