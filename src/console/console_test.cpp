@@ -102,6 +102,20 @@ TEST(Console, UnknownWordsNameTheNearest) {
   EXPECT_FALSE(talk.say("echo a\nb").ok);
 }
 
+TEST(Console, MediaAndRulesAreSetByTheirNames) {
+  model::Setup setup = test::arena("planar", 1);
+  setup.media.push_back({"breeze", "wind", Node::map(), {}});
+  Talk talk(std::move(setup));
+  EXPECT_TRUE(has(talk.ok("set media/breeze.density 2"), "media/breeze.density = 2 kg/m^3"));
+  EXPECT_EQ(talk.refused("set media/breze.density 2"),
+            "there is no 'media/breze'; did you mean 'media/breeze'?");
+  EXPECT_EQ(talk.refused("set media/breeze.densty 2"),
+            "no parameter 'densty' of 'media/breeze' can be set; did you mean 'media/breeze.density'?");
+  Talk still(test::arena("planar", 1));
+  EXPECT_EQ(still.refused("set rules/goals.reset true"),
+            "there is no 'rules/goals'; the scenario declares neither media nor rules");
+}
+
 TEST(Console, SpectatorsLookAndDoNotSteer) {
   Talk talk(test::arena("rigid", 1));
   for (const char* line :

@@ -331,6 +331,13 @@ CommandResult cmd_set(CommandCall& call) {
   if (matching.empty()) {
     if (!met_thing) {
       call.unknown_thing = true;
+      if (plain && !simulation.find_entity(robot) && (robot == "media" || robot == "rules")) {
+        std::vector<std::string> parts;
+        for (const WorldElements::Part& part : simulation.elements().parts()) parts.push_back(part.path);
+        return Error{
+            "there is no '" + std::string(thing.substr(0, 100)) + "'",
+            parts.empty() ? "the scenario declares neither media nor rules" : suggestion(thing, parts)};
+      }
       if (plain) return match_devices(call, thing) ? no_device(thing) : match_devices(call, thing).error();
       return Error{"no device fits '" + std::string(thing) + "'"};
     }
