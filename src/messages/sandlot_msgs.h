@@ -121,7 +121,7 @@ struct LogEntry {
     visit(Field{"source_id", "1", "Identifier of the source among its kind."}, s.source_id);
     visit(Field{"sequence", "1", "Number of the request among those of its source."}, s.sequence);
     visit(Field{"kind", "1", "Kind of the request."}, s.kind);
-    visit(Field{"target", "", "Target velocity of the controller."}, s.target);
+    visit(Field{"target", "", "Device, program, robot or object that the request is about."}, s.target);
     visit(Field{"type", "", "Type of the request's bytes."}, s.type);
     visit(Field{"bytes", "", "Bytes of the request."}, s.bytes);
     visit(Field{"refused", "", "Whether the request was refused."}, s.refused);
