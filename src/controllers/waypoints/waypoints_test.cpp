@@ -157,7 +157,7 @@ TEST(Waypoints, ReadsPointsAndNamesWhatIsMissing) {
   EXPECT_EQ(complaint(config), "/points: there are no points; give at least one [x, y]");
   Node& point = points.push(Node::sequence());
   point.push(Node::scalar("1 m"));
-  EXPECT_EQ(complaint(config), "/points/0: expected a list of 2 values, found a list");
+  EXPECT_EQ(complaint(config), "/points/0: expected a list of 2 values, found one of 1");
   point.push(Node::scalar("50 cm"));
   EXPECT_EQ(complaint(config), "");
   config.set("odometry", Node::scalar("gps"));
