@@ -27,6 +27,7 @@ set(border_rule ${CMAKE_COMMAND} -DOUT=${SANDLOT_GENERATED}/control/border.h -DS
 execute_process(COMMAND ${border_rule} COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS src/base/*.h src/geometry/*.h src/messages/*.h src/control/*.h)
 add_custom_command(OUTPUT ${SANDLOT_GENERATED}/border.stamp
+  BYPRODUCTS ${SANDLOT_GENERATED}/control/border.h  # so that what includes it is built again at once
   COMMAND ${border_rule}
   COMMAND ${CMAKE_COMMAND} -E touch ${SANDLOT_GENERATED}/border.stamp
   DEPENDS ${headers} ${CMAKE_CURRENT_LIST_FILE})
