@@ -78,7 +78,8 @@ class Program {
   virtual ~Program() = default;
   /// Reads the configuration, resolves names and makes topics. Called once, before the first resume().
   virtual Status init(const Description& robot, const Node& config, Outputs& out) = 0;
-  /// Lets the program run. Called in parallel with other programs.
+  /// Lets the program run. Called in parallel with other programs. Of one that waited for its outside when the run was left, it
+  /// is called again, once that is connected to the run that goes on: it sends what it observes, and what it returns is ignored.
   virtual Resumed resume(const Observation& obs, Command& cmd) = 0;
   /// Acts on what came from outside, at the beginning of a tick; orders act in the same tick.
   /// @param forms  per actuator an object of its message type; what it holds does not matter

@@ -330,6 +330,27 @@ TEST(Server, SimulationInterfacesAreAnsweredWithTheirCodes) {
   EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 1}})["result"]["result"], 4) << "it is not paused";
 }
 
+/// With what has State outside of robots, and a robot that came: it is gone again.
+TEST(Server, AfterAResetTheRunIsTheSameAgain) {
+  model::Setup setup = arena("rigid", 2);
+  setup.media.push_back({"wind", "wind", Node::map(), {}});
+  setup.rules.push_back({"impact", "impact", sandlot::test::map({{"threshold", "0.001"}}), {}});
+  Running run(std::move(setup), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  const auto hash_after = [&](int steps) {
+    EXPECT_EQ(viewer.call("/step_simulation", {{"steps", steps}})["result"]["result"], 1);
+    return viewer.console("hash")["text"].get<std::string>();
+  };
+  const std::string expected = hash_after(60);
+  EXPECT_EQ(viewer.console("add copy of rover1 as late 2.8 2.6")["ok"], true);
+  EXPECT_EQ(viewer.console("set media/wind.velocity [3, 0, 0]")["ok"], true);
+  EXPECT_NE(hash_after(20), expected);
+  EXPECT_EQ(viewer.call("/reset_simulation", {{"scope", 0}})["result"]["result"], 1);
+  EXPECT_EQ(viewer.call("/get_entity_state", {{"entity", "late"}})["result"]["result"], 2);
+  EXPECT_EQ(hash_after(60), expected);
+}
+
 TEST(Server, AnotherWorldIsToldAnewAndChannelsStay) {
   Running run(one_rover(), {.paused = true});
   run.go();

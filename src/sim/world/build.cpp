@@ -32,7 +32,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
   std::unique_ptr<Simulation> sim(new Simulation(std::move(setup), options));
   SL_TRY(sim->build(diagnostics, false));
   if (options.start_programs && options.run_programs)
-    SL_TRY(sim->programs_.connect(sim->entities_, true, false));
+    SL_TRY(sim->programs_.connect(sim->entities_, {}, true, false));
   // Tick 0: nothing has moved yet, but sensors whose first sample is due now take it and programs see it.
   sim->arena_->execute([&] {
     sim->update_scene();
@@ -47,8 +47,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
 
 void Simulation::connect_programs() {
   if (!options_.run_programs) return;
-  const Status status = programs_.connect(entities_, options_.start_programs, true);
+  const Status status = programs_.connect(entities_, now_, options_.start_programs, true);
   SL_CHECK(status);  // of a world that is there all failures are warnings
+  programs_.await_answers();
 }
 
 Status Simulation::build(Diagnostics& diagnostics, bool restored) {

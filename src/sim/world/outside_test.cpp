@@ -217,6 +217,114 @@ TEST(OutsideProgram, ARewoundRunRepeatsTheAnswersAndThenGoesOn) {
   EXPECT_GT(value(session.simulation(), "rover1/brain.answers"), 20);
 }
 
+/// Left between a question and its answer, at tick 0 and in the middle, a run goes on as the one that was not left.
+TEST(OutsideProgram, WhatWasNotAnsweredIsAskedAgain) {
+  const TestFolder folder;
+  model::Setup setup = with_brain(folder);
+  folder.write("brain.py", R"(
+import json, sys
+sys.stdin.readline()
+for line in sys.stdin:
+    print(json.dumps({'orders': {'drive': {'linear': {'x': 0.1 + json.loads(line)['time']}}}}), flush=True)
+)");
+  const auto live = build(setup, {.start_programs = true});
+  ASSERT_TRUE(live);
+  std::map<int, std::vector<std::byte>> left;
+  for (int tick = 0; tick < 60; ++tick) {
+    if (tick == 0 || tick == 35 || tick == 36 || tick == 38) left[tick] = live->snapshot();
+    advance(*live, 1);
+  }
+  for (const auto& [tick, snapshot] : left) {
+    Diagnostics diagnostics;
+    const auto rest = std::move(*Simulation::restore(snapshot, {.start_programs = true}, diagnostics));
+    rest->connect_programs();
+    advance(*rest, 60 - tick);
+    EXPECT_EQ(rest->state_hash(), live->state_hash()) << "left at tick " << tick;
+    EXPECT_EQ(value(*rest, "rover1/brain.misses"), 0);
+  }
+}
+
+/// A program in a shell of its own, with what it is to read and say.
+model::Setup with_shell(const TestFolder& folder, const std::string& script,
+                        const std::vector<std::pair<const char*, const char*>>& more = {}) {
+  model::Setup setup = with_brain(folder, more);
+  Node& command = *setup.instances.back().controllers.edit().front().config.find("command");
+  command = Node::sequence();
+  for (const std::string& word : {std::string("sh"), std::string("-c"), script})
+    command.push(Node::scalar(word));
+  return setup;
+}
+
+/// Control steps that fall into the time for which it waits are left out: they are not made up for.
+TEST(OutsideProgram, WithARateOfItsOwnStepsNextWhenThatIsDueAgain) {
+  const TestFolder folder;
+  const auto live = build(
+      with_shell(folder, "read d; read a; echo '{\"wait\": 0.25}'; while read a; do echo '{}'; done",
+                 {{"rate", "10"}}),
+      {.start_programs = true});
+  ASSERT_TRUE(live);
+  std::vector<std::uint64_t> stepped;
+  for (double before = 1; live->tick_index() < 45;) {
+    advance(*live, 1);
+    const double steps = value(*live, "rover1/brain.steps");
+    if (steps > before) stepped.push_back(live->tick_index());
+    before = steps;
+  }
+  EXPECT_EQ(stepped, (std::vector<std::uint64_t>{25, 30, 40}));
+}
+
+TEST(OutsideProgram, ThatHasEndedStaysSoInARestoredRunAndTakesNoAnswers) {
+  const TestFolder folder;
+  const auto live = build(with_shell(folder, "read d; read a"), {.start_programs = true});
+  ASSERT_TRUE(live);
+  advance(*live, 7);
+  EXPECT_EQ(value(*live, "rover1/brain.steps"), 1);
+  Diagnostics diagnostics;
+  const auto rest = std::move(*Simulation::restore(live->snapshot(), {.start_programs = true}, diagnostics));
+  rest->connect_programs();
+  advance(*rest, 20);
+  EXPECT_EQ(value(*rest, "rover1/brain.steps"), 1);
+  auto& entry = const_cast<SimulationParts::ProgramEntry&>(*rest->entities().back()->programs.front());
+  EXPECT_FALSE(entry.program->outside()->connected());
+  rest->submit(AnswerRequest{"rover1/brain", {OutsideAnswer::Kind::missed, {}}});
+  advance(*rest, 1);
+  ASSERT_FALSE(rest->outcomes().front().status);
+  EXPECT_EQ(rest->outcomes().front().status.error().what, "program 'rover1/brain' has ended");
+}
+
+TEST(OutsideProgram, ThatIsToBeDetachedIsNotStartedAgain) {
+  const TestFolder folder;
+  const auto live = build(with_brain(folder, {{"after_restore", "detach"}}), {.start_programs = true});
+  ASSERT_TRUE(live);
+  advance(*live, 12);
+  Diagnostics diagnostics;
+  const auto rest = std::move(*Simulation::restore(live->snapshot(), {.start_programs = true}, diagnostics));
+  rest->connect_programs();
+  advance(*rest, 12);
+  EXPECT_EQ(starts(folder).size(), 1u);
+  EXPECT_EQ(value(*rest, "rover1/brain.answers"), value(*live, "rover1/brain.answers"));
+}
+
+TEST(OutsideProgram, AnswersOfSeveralAreInTheirOrder) {
+  const TestFolder folder;
+  model::Setup setup = with_shell(folder, "sleep 1000", {{"deadline", "1 ms"}});
+  auto& programs = setup.instances.back().controllers.edit();
+  for (const char* name : {"second", "third"}) {
+    programs.push_back(programs.front());
+    programs.back().name = name;
+  }
+  const auto live = build(setup, {.start_programs = true});
+  ASSERT_TRUE(live);
+  Log log;
+  live->add_observer(&log);
+  advance(*live, 1);
+  std::vector<std::string> order;
+  for (const LogEntry& entry : log.input[1])
+    if (entry.kind == Request(AnswerRequest{}).index()) order.push_back(entry.target);
+  EXPECT_EQ(order, (std::vector<std::string>{"rover1/brain", "rover1/second", "rover1/third"}));
+  live->remove_observer(&log);
+}
+
 TEST(OutsideProgram, ForgedStateIsRefused) {
   const TestFolder folder;
   const auto quiet = build(with_brain(folder));

@@ -70,10 +70,10 @@ class Programs {
   std::optional<Error> step(Entities entities, Time now, bool control_step);
 
   // --- programs that run outside this process (control/program.h) ---
-  /// Connects them, once.
+  /// Connects them, once; await_answers() follows.
   /// @param allowed   whether the run may start programs; else they stay without orders, with a warning each
   /// @param restored  the world comes from a snapshot: what cannot be connected is a warning, too
-  Status connect(Entities entities, bool allowed, bool restored);
+  Status connect(Entities entities, Time now, bool allowed, bool restored);
   /// Waits until those that stepped in this tick have answered or their deadlines are over. What came is input of the next
   /// tick: an AnswerRequest each. To be called outside of parallel work.
   void await_answers();
@@ -115,6 +115,7 @@ class Programs {
   void plan_next_step(ProgramEntry& entry, Time now) const;
   /// @return whether one of them ended or failed
   bool step_batch(std::span<ProgramEntry* const> batch, Time now) const;
+  void ask_again(ProgramEntry& entry, Time now);
   static void take(ProgramEntry& entry, Program::Resumed resumed);
   static Error failure_of(const ProgramEntry& entry, Time now);
   void prefetch_orders(std::size_t i) const;

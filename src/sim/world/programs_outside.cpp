@@ -9,7 +9,7 @@
 
 namespace sandlot {
 
-Status Programs::connect(Entities entities, bool allowed, bool restored) {
+Status Programs::connect(Entities entities, Time now, bool allowed, bool restored) {
   if (std::exchange(connected_, true)) return {};
   gather(entities);
   const auto warn = [](const ProgramEntry& entry, const std::string& why) {
@@ -27,12 +27,22 @@ Status Programs::connect(Entities entities, bool allowed, bool restored) {
       continue;
     }
     Status status = outside.connect();
+    if (status && restored) ask_again(*entry, now);
     if (status) continue;
     if (!status.error().place.file) status.error().place = entry->decl.place;
     if (!restored) return status;
     warn(*entry, status.error().text());
   }
   return {};
+}
+
+/// Sends what the program observes once more if the run was left between that and the answer, which is no State: with it the
+/// run goes on as the one that was not left.
+void Programs::ask_again(ProgramEntry& entry, Time now) {
+  if (entry.ended || entry.wait->waiting_for != Program::Waiting::outside) return;
+  const Stream random(setup_.seed, entry.key, Purpose::controller, entry.steps - 1);
+  entry.program->resume({now, entry.topics, entry.seen, random}, entry.command);
+  awaited_.push_back(&entry);
 }
 
 void Programs::await_answers() {
