@@ -1,9 +1,9 @@
 #pragma once
-/// Element of a world with keys (Spec) and State, seen through its field lists: a rule, a medium, a marker.
+/// Element with keys (Spec) and State, seen through its field lists: a rule, a medium, a marker, a controller.
 ///
 /// A kind's author writes a struct T with `using Spec`, `using State`, the members `Spec spec; State state;` and the functions
 /// of its border; ElementAdapter<Border, T> derives parameters, values and bytes from the lists. Border is the abstract class
-/// of that sort of element, itself derived from Element.
+/// of that sort of element: derived from Element, or, as the border to plugins, with the same functions of its own.
 #include <span>
 #include <string_view>
 

@@ -29,6 +29,7 @@
 
 #include "base/bytes.h"
 #include "base/describe.h"
+#include "base/element.h"
 #include "base/random.h"
 #include "base/read.h"
 #include "control/outputs.h"
@@ -233,50 +234,25 @@ struct ControllerKind {
 };
 
 template <class C>
-class ControllerAdapter final : public Controller {
+class ControllerAdapter final : public ElementAdapter<Controller, C> {
  public:
   Status init(const Description& robot, const Node& config, Outputs& out) override {
-    SL_ASSIGN(controller_.spec, read_spec<typename C::Spec>(config));
-    if constexpr (requires { controller_.init(robot, out); }) return controller_.init(robot, out);
-    else return controller_.init(robot);
+    SL_ASSIGN(this->element_.spec, read_spec<typename C::Spec>(config));
+    if constexpr (requires { this->element_.init(robot, out); }) return this->element_.init(robot, out);
+    else return this->element_.init(robot);
   }
   /// For a controller without topics.
   Status init(const Description& robot, const Node& config) {
     Outputs none(robot.robot);
     return init(robot, config, none);
   }
-  void step(const Observation& obs, Command& cmd) override { controller_.step(obs, cmd); }
+  void step(const Observation& obs, Command& cmd) override { this->element_.step(obs, cmd); }
   static void step_all(std::span<ControllerTurn> turns) {
     for (ControllerTurn& turn : turns)
       turn.failure = caught([&] {
-        static_cast<ControllerAdapter*>(turn.controller)->controller_.step(*turn.observation, *turn.command);
+        static_cast<ControllerAdapter*>(turn.controller)->element_.step(*turn.observation, *turn.command);
       });
   }
-  Status set_parameter(std::string_view path, const Node& value) override {
-    typename C::Spec changed = controller_.spec;
-    SL_TRY(set_tunable(changed, path, value));
-    controller_.spec = std::move(changed);
-    return {};
-  }
-  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, controller_.spec, controller_.state, path);
-  }
-  void list_values(ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, controller_.spec, controller_.state, visit);
-  }
-  void save(ByteWriter& w) const override {
-    write_tunables(w, controller_.spec);
-    write(w, controller_.state);
-  }
-  void load(ByteReader& r) override {
-    read_tunables(r, controller_.spec);
-    read(r, controller_.state);
-    if constexpr (requires { controller_.fits(); })
-      if (!controller_.fits()) r.fail();
-  }
-
- private:
-  C controller_;
 };
 
 template <class C>
