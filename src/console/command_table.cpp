@@ -19,7 +19,8 @@ const std::vector<BuiltinCommand>& table() {
       {.name = "list",
        .aliases = "ls",
        .usage = "[entities|models|topics|parameters|NAME|NAME/DEVICE] [--json]",
-       .help = "Entities, models to add, topics or parameters; or the contents of one entity or device.",
+       .help = "Entities, models to add, topics or parameters; or the contents of one entity, "
+               "device, program, medium or rule.",
        .arguments = {A::list},
        .act = cmd_list},
       {.name = "show",

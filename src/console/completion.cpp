@@ -110,6 +110,9 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
     case Argument::list:
       for (const char* each : {"entities", "models", "topics", "parameters"}) out.add(each);
       for (const auto& entity : simulation.entities()) out.add(entity->instance.name);
+      for (const WorldElements::Part& part : simulation.elements().parts()) out.add(part.path);
+      for (const Simulation::Team& team : simulation.teams())
+        for (const auto& program : team.programs) out.add(program->path);
       if (out.prefix().find('/') != std::string::npos)
         if (const Entity* const entity = simulation.find_entity(robot_of(out.prefix())))
           for (std::string& path : device_paths(*entity, true)) out.add(std::move(path));

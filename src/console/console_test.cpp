@@ -374,5 +374,21 @@ TEST(Console, CompletesWordsAndAddresses) {
   EXPECT_LE(talk.complete("show rover2/").size(), 100u);
 }
 
+TEST(Console, ListsWhatBelongsToNoRobot) {
+  model::Setup setup = test::arena("planar", 1, "");
+  setup.media.push_back({"air", "shout", Node::map(), {}});
+  model::TeamDecl& team = setup.teams.emplace_back();
+  team.name = "red";
+  team.controllers.push_back({"coach", "formation", test::map({{"odometry", "truth"}}), {}});
+  setup.instances.back().team = "red";
+  Talk talk(setup);
+  EXPECT_TRUE(has(talk.ok("list media/air"), "media/air  shout\n"));
+  EXPECT_TRUE(has(talk.ok("list media/air"), "media/air.words"));
+  EXPECT_TRUE(has(talk.ok("list red/coach --json"), "red/coach.spacing"));
+  EXPECT_TRUE(has(talk.ok("show re*/coach.spacing"), "red/coach.spacing = 1 m"));
+  EXPECT_TRUE(has(talk.refused("list media/aer"), "did you mean 'media/air'"));
+  EXPECT_EQ(talk.complete("list media/"), (std::vector<std::string>{"media/air"}));
+}
+
 }  // namespace
 }  // namespace sandlot

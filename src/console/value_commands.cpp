@@ -116,6 +116,7 @@ Status gather(CommandCall& call, std::string_view pattern, std::vector<ValueEntr
   for (const WorldElements::Part& part : simulation.elements().parts()) lists.insert(first_part(part.path));
   for (const std::string_view list : lists) look(list);
   for (const auto& entity : simulation.entities()) look(entity->instance.name);
+  for (const Simulation::Team& team : simulation.teams()) look(team.decl.name);
   if (too_many)
     return Error{"'" + std::string(pattern) + "' meets more than " + std::to_string(most_matches) + " values",
                  "narrow it down"};
@@ -547,6 +548,18 @@ CommandResult list_models(CommandCall& call) {
   return std::optional(call.json ? std::move(rows).take() : text);
 }
 
+/// What belongs to no robot: media, rules, programs of teams.
+struct WorldPart {
+  std::string path, kind;
+};
+std::vector<WorldPart> world_parts(const Simulation& simulation) {
+  std::vector<WorldPart> out;
+  for (const WorldElements::Part& part : simulation.elements().parts()) out.push_back({part.path, part.kind});
+  for (const Simulation::Team& team : simulation.teams())
+    for (const auto& program : team.programs) out.push_back({program->path, program->decl.kind});
+  return out;
+}
+
 CommandResult list_one(CommandCall& call, std::string_view address) {
   std::vector<ValueEntry> entries;
   SL_TRY(gather(call, address, entries));
@@ -557,18 +570,23 @@ CommandResult list_one(CommandCall& call, std::string_view address) {
   }
   std::string text;
   const auto add = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
-  const Simulation::Entity& entity = *call.simulation().find_entity(robot_of(address));
-  for (const auto& device : entity.devices) {
-    if (address != entity.instance.name && address != device->path) continue;
-    std::string line = device->path + "  " + device->decl.kind;
-    if (const auto kind = find_device_kind(device->decl.kind))
-      for (std::size_t i = 0; i < (*kind)->levels.size(); ++i)
-        line += std::string(i ? ", " : "  ") + (*kind)->levels[i].name + (device->levels >> i & 1 ? "*" : "");
-    add(line);
+  if (const Simulation::Entity* const entity = call.simulation().find_entity(robot_of(address))) {
+    for (const auto& device : entity->devices) {
+      if (address != entity->instance.name && address != device->path) continue;
+      std::string line = device->path + "  " + device->decl.kind;
+      if (const auto kind = find_device_kind(device->decl.kind))
+        for (std::size_t i = 0; i < (*kind)->levels.size(); ++i)
+          line += std::string(i ? ", " : "  ") + (*kind)->levels[i].name +
+                  (device->levels >> i & 1 ? "*" : "");
+      add(line);
+    }
+    for (const auto& program : entity->programs)
+      if (address == entity->instance.name || address == program->path)
+        add(program->path + "  " + program->decl.kind);
+  } else {
+    for (const WorldPart& part : world_parts(call.simulation()))
+      if (address == part.path) add(part.path + "  " + part.kind);
   }
-  for (const auto& program : entity.programs)
-    if (address == entity.instance.name || address == program->path)
-      add(program->path + "  " + program->decl.kind);
   for (const ValueEntry& entry : entries) add(line_of(call.simulation(), entry));
   return std::optional(std::move(text));
 }
@@ -592,6 +610,8 @@ CommandResult cmd_list(CommandCall& call) {
       return Error{"'" + entity->instance.name + "' has no device '" + what.substr(0, 100) + "'",
                    suggestion(what, paths)};
   }
+  for (const WorldPart& part : world_parts(simulation))
+    if (what == part.path) return list_one(call, what);
   if (what == "entities") {
     std::vector<const Simulation::Entity*> all;
     for (const auto& each : simulation.entities()) all.push_back(each.get());
@@ -606,6 +626,7 @@ CommandResult cmd_list(CommandCall& call) {
   }
   std::vector<std::string> known{"entities", "models", "topics", "parameters"};
   for (const auto& each : simulation.entities()) known.push_back(each->instance.name);
+  for (const WorldPart& part : world_parts(simulation)) known.push_back(part.path);
   return Error{"there is no '" + what.substr(0, 100) + "' to list", suggestion(what, known)};
 }
 

@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "base/field_json.h"
+#include "base/text.h"
 #include "kinematics/tree.h"
 #include "sim/world/device_keys.h"
 #include "wire/asset_table.h"
@@ -187,6 +190,20 @@ void write_topics(JsonWriter& w, const Kind& kind, const std::vector<Simulation:
   });
 }
 
+void write_part(JsonWriter& w, std::string_view name, std::string_view path, std::string_view kind) {
+  w.object([&] {
+    w.key("name").text(name);
+    w.key("path").text(path);
+    w.key("kind").text(kind);
+  });
+}
+
+void write_programs(JsonWriter& w, const Simulation::ProgramEntries& programs) {
+  w.list([&] {
+    for (const auto& program : programs) write_part(w, program->decl.name, program->path, program->decl.kind);
+  });
+}
+
 void write_instance(JsonWriter& w, const Simulation& simulation, const Simulation::Entity& entity,
                     const std::string& model_id) {
   const model::Instance& instance = entity.instance;
@@ -227,14 +244,30 @@ void write_instance(JsonWriter& w, const Simulation& simulation, const Simulatio
         });
       }
     });
-    w.key("controllers").list([&] {
-      for (const auto& program : entity.programs)
-        w.object([&] {
-          w.key("name").text(program->decl.name);
-          w.key("path").text(program->path);
-          w.key("kind").text(program->decl.kind);
-        });
+    w.key("controllers");
+    write_programs(w, entity.programs);
+  });
+}
+
+/// What belongs to no robot: media, rules, programs of teams; each list only where it has something.
+void write_parts(JsonWriter& w, const Simulation& simulation) {
+  for (const char* const list : {"media", "rules"}) {
+    const auto& all = simulation.elements().parts();
+    const auto is_of = [&](const WorldElements::Part& part) { return first_part(part.path) == list; };
+    if (std::none_of(all.begin(), all.end(), is_of)) continue;
+    w.key(list).list([&] {
+      for (const WorldElements::Part& part : all)
+        if (is_of(part)) write_part(w, part.path.substr(std::strlen(list) + 1), part.path, part.kind);
     });
+  }
+  if (simulation.teams().empty()) return;
+  w.key("teams").list([&] {
+    for (const Simulation::Team& team : simulation.teams())
+      w.object([&] {
+        w.key("name").text(team.decl.name);
+        w.key("programs");
+        write_programs(w, team.programs);
+      });
   });
 }
 
@@ -309,6 +342,7 @@ std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t e
       w.key("markers").list([&] {
         for (const auto& marker : simulation.elements().markers()) write_marker(w, marker);
       });
+    write_parts(w, simulation);
     for (auto& [content, model] : models_) model.used = false;
     std::vector<ByContent::iterator> models;
     w.key("models").list([&] {
@@ -335,13 +369,28 @@ std::string WorldJsonWriter::write(const Simulation& simulation, std::uint64_t e
         kinds.try_emplace(kind.name, &kind_json(&kind, kind.help, kind.levels, kind.describe,
                                                 keyed.contains(&kind) ? &kind : nullptr));
       }
-    for (const auto& entity : simulation.entities())
-      for (const auto& program : entity->programs)
-        for (const ControllerKind* kind : simulation.controller_kinds())
-          if (program->decl.kind == kind->name)
+    const auto add_programs = [&](const Simulation::ProgramEntries& programs) {
+      const auto add = [&](const auto& all, const std::string& wanted) {
+        for (const auto* const kind : all)
+          if (wanted == kind->name)
             kinds.try_emplace(kind->name, &kind_json(kind, kind->help, {}, kind->describe));
+      };
+      for (const auto& program : programs) {
+        add(simulation.controller_kinds(), program->decl.kind);
+        add(simulation.program_kinds(), program->decl.kind);
+      }
+    };
+    for (const auto& entity : simulation.entities()) add_programs(entity->programs);
+    for (const Simulation::Team& team : simulation.teams()) add_programs(team.programs);
+    // A rule may be called as a device is: its list goes before its name.
+    std::map<std::string, const std::string*> elements;
+    for (const WorldElements::Part& part : simulation.elements().parts())
+      elements.try_emplace(
+          std::string(first_part(part.path)) + "/" + part.kind,
+          &kind_json(reinterpret_cast<const void*>(part.describe), part.help, {}, part.describe));
     w.key("kinds").object([&] {
       for (const auto& [name, json] : kinds) w.key(name).raw(*json);
+      for (const auto& [name, json] : elements) w.key(name).raw(*json);
     });
   });
   std::erase_if(known_models_, [](const auto& each) {

@@ -273,6 +273,54 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.ok(player.summary.compared_ticks >= 200);
 });
 
+test("media, rules and programs of teams are listed with the world, with their parameters and values", { skip }, async () => {
+  const yard = readFileSync(makeYard(scratch), "utf8").replace("name: idle,", "name: idle, team: red,");
+  const file = scratch.write("parts.yaml", `${yard}teams:
+  - {name: red, controller: {name: coach, kind: formation, odometry: truth}}
+media:
+  - {kind: wind, name: breeze, velocity: [0, 0, 0]}
+  - {kind: shout, name: air}
+rules:
+  - {kind: impact, threshold: 0.001}
+`);
+  const run = await Served.start(["run", file], scratch);
+  const viewer = await watch(run.ws);
+  const shown = await open(run.url);
+  const part = (path) => shown.locator(by(`part-${path}`));
+  const inspector = shown.locator(by("inspector"));
+  for (const path of ["media/breeze", "media/air", "rules/impact", "red/coach"]) await part(path).waitFor();
+  await picture(shown, "world_parts");
+  // A value that moves, and a parameter that is changed.
+  await part("red/coach").click();
+  const steps = inspector.locator('[data-address="red/coach.steps"]');
+  const first = await steps.textContent();
+  await until("another value", async () => (await steps.textContent()) !== first);
+  await picture(shown, "team_program");
+  for (const [path, parameter, value] of [["media/air", "media/air.threshold", 42], ["red/coach", "red/coach.spacing", 1.5],
+    ["rules/impact", "rules/impact.threshold", 0.25]]) {
+    await inspector.locator(".crumb").click();
+    await part(path).click();
+    const field = shown.locator(by(`param-${parameter}`));
+    await field.fill(String(value));
+    await field.press("Enter");
+    await until(`${parameter} = ${value}`, async () => {
+      viewer.client.getParameters([parameter], "parts");
+      return viewer.parameters.get(parameter) === value;
+    });
+  }
+  await inspector.locator(".crumb").click();
+  await part("media/air").click();
+  await inspector.locator('[data-address="media/air.words"]').waitFor();
+  await picture(shown, "medium");
+  // The program of its team is listed with a robot, too.
+  await shown.locator(row("idle")).click();
+  await part("red/coach").click();
+  await inspector.getByText("Drives the robots of a team").waitFor();
+  await shown.context().close();
+  viewer.close();
+  assert.equal(await run.stop(), 0, run.error);
+});
+
 test("what a camera sees is shown in a pane, its view and what it finds in the scene", { skip }, async () => {
   const yard = makeYard(scratch);
   const model = scratch.write("eye.sdf", `<?xml version="1.0"?><sdf version="1.9" xmlns:sandlot="urn:sandlot:sdf"><model name="eye"><link name="body">

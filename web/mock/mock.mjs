@@ -29,6 +29,7 @@ for (const body of world.bodies.filter((b) => b.robot)) {
   parameters.set(`${body.name}/controller.turn`, 'left');
   parameters.set(`${body.name}/controller.avoid`, true);
 }
+for (const [name, value] of [['media/breeze.density', 1.225], ['media/air.threshold', 30], ['red/coach.spacing', 1]]) parameters.set(name, value);
 const commands = [];
 const touched = new Set();
 

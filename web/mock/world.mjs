@@ -126,6 +126,13 @@ export function makeWorld(robots) {
       fields: [field('speed', 'number', 'm/s', 'Speed when nothing is near.', 0, 2, '0.5'),
         field('turn', 'string', '', 'Side to turn to.', null, null, 'left', { choices: ['left', 'right'] }),
         field('avoid', 'boolean', '', 'Turn away from walls.', null, null, 'true')] },
+    'media/wind': { help: 'Air that moves everywhere with one velocity.', levels: [],
+      fields: [field('density', 'number', 'kg/m^3', 'Density of the air.', 0, 100000, '1.225')] },
+    'media/shout': { help: 'Words that carry as far as they are loud.', levels: [],
+      fields: [field('threshold', 'number', 'dB', 'Level below which nothing is heard.', -200, 300, '30')] },
+    'rules/goals': { help: 'Counts how often an object comes into markers.', levels: [], fields: [] },
+    formation: { help: 'Drives the robots of a team to places in a formation.', levels: [],
+      fields: [field('spacing', 'number', 'm', 'Distance between neighbours.', 0.001, 10000, '1')] },
   };
   return {
     bodies,
@@ -135,6 +142,9 @@ export function makeWorld(robots) {
       ambient: [0.4, 0.4, 0.4, 1], background: [0.7, 0.7, 0.7, 1],
       lights: [{ type: 'directional', name: 'sun', pose: [0, 0, 10, 0.9239, 0.2, -0.3, 0.1], color: [0.9, 0.9, 0.88, 1], cast_shadows: true,
         range_m: 0, constant: 1, linear: 0, quadratic: 0, inner_rad: 0, outer_rad: 0 }],
+      media: [{ name: 'breeze', path: 'media/breeze', kind: 'wind' }, { name: 'air', path: 'media/air', kind: 'shout' }],
+      rules: [{ name: 'goals', path: 'rules/goals', kind: 'goals' }],
+      teams: [{ name: 'red', programs: [{ name: 'coach', path: 'red/coach', kind: 'formation' }] }],
       models,
       instances: bodies.map(({ circle: _, ...rest }) => rest),
       kinds,

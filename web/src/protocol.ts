@@ -116,10 +116,17 @@ export interface Device {
   commands: Topic[];
 }
 
-export interface Controller {
+/** A program, a medium or a rule: it has keys and values, and no place in the scene. */
+export interface Part {
   name: string;
+  /** "rover/controller", "red/coach", "media/air", "rules/goals". */
   path: string;
   kind: string;
+}
+
+export interface Team {
+  name: string;
+  programs: Part[];
 }
 
 export interface Instance {
@@ -132,7 +139,7 @@ export interface Instance {
   /** Of the model frame, when the world was told. */
   pose: Pose;
   devices: Device[];
-  controllers: Controller[];
+  controllers: Part[];
 }
 
 export interface Field {
@@ -194,8 +201,12 @@ export interface World {
   lights: Light[];
   zones?: Zone[];
   markers?: Marker[];
+  media?: Part[];
+  rules?: Part[];
+  teams?: Team[];
   models: Model[];
   instances: Instance[];
+  /** Of devices and programs by their names, of others as "media/shout" and "rules/goals". */
   kinds: Record<string, Kind>;
 }
 

@@ -15,7 +15,7 @@ const { graphOf } = await load('ui/graph.ts');
 const { echoRows } = await load('ui/echo.ts');
 const { dragLine } = await load('app/drags.ts');
 const { score } = await load('ui/palette.ts');
-const { Store } = await load('app/store.ts');
+const { Store, worldParts } = await load('app/store.ts');
 
 const field = (more) => ({ path: 'noise/white', type: 'number', unit: 'm', help: '', min: 0, max: 1, tunable: true, default: '0', choices: [], length: 0, ...more });
 const view = (more) => forms.fieldViews('rover/laser', [field(more)])[0];
@@ -62,6 +62,20 @@ test('the tree folds, opens and finds', () => {
   assert.deepEqual(keys(rowsOf(world, new Set(), 'blue')), ['group:robots', 'bob']);
   assert.deepEqual(rowsOf(world, new Set(), 'zzz'), []);
   assert.equal(rowsOf(world, new Set(), 'ann')[0].detail, '1 of 2');
+});
+
+test('media, rules and programs of teams are found, have no place in the scene and are listed', () => {
+  const store = new Store();
+  const air = { name: 'air', path: 'media/air', kind: 'shout' }, coach = { name: 'coach', path: 'red/coach', kind: 'formation' };
+  store.setWorld({ ...structuredClone(world), media: [air], teams: [{ name: 'red', programs: [coach] }] });
+  store.select('media/air');
+  assert.deepEqual(store.selected(), { address: 'media/air', instance: null, device: null, part: air });
+  store.select('red/coach');
+  assert.equal(store.selected().part.kind, 'formation');
+  assert.equal(store.find('ann/c').instance.name, 'ann');
+  assert.deepEqual(worldParts(store.world).map(({ title, parts }) => [title, parts.length]), [['Media', 1], ['Rules', 0], ['Teams', 1]]);
+  store.setWorld(structuredClone(world));
+  assert.equal(store.selection, null, 'it is gone');
 });
 
 test('a thousand robots make their rows within a frame many times over', () => {

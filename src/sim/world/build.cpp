@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "model/motion.h"
+#include "programs/programs.h"
 #include "sim/visuals/render_scene.h"
 #include "sim/watch/monitor.h"
 #include "sim/world/simulation.h"
@@ -44,6 +45,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(model::Setup setup, const
   sim->programs_.await_answers();
   return sim;
 }
+
+std::span<const ProgramKind* const> Simulation::program_kinds() const { return sandlot::program_kinds(); }
 
 void Simulation::connect_programs() {
   if (!options_.run_programs) return;

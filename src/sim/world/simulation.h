@@ -177,6 +177,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
   }
   /// Controller kinds that this world knows: the built-in ones, the embedding program's and those of plugins.
   std::span<const ControllerKind* const> controller_kinds() const { return programs_.kinds(); }
+  /// Those that a program may be of besides.
+  std::span<const ProgramKind* const> program_kinds() const;
 
  private:
   friend class Publisher;  // reads everything, writes nothing

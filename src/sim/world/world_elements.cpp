@@ -101,7 +101,8 @@ Status WorldElements::build(const SimulationOptions& options, bool restored,
   };
   const auto add_part = [&](const char* list, const model::ElementDecl& decl, Element& element,
                             const auto& kind) {
-    Part part{std::string(list) + "/" + sanitised(decl.name), 0, &element, kind.name, kind.describe};
+    Part part{
+        std::string(list) + "/" + sanitised(decl.name), 0, &element, kind.name, kind.help, kind.describe};
     part.key = entity_key(part.path);
     parts_.push_back(std::move(part));
   };

@@ -66,6 +66,7 @@ class WorldElements final : public WorldView {
     std::uint64_t key = 0;
     Element* element = nullptr;
     const char* kind = "";
+    const char* help = "";  ///< of the kind
     std::vector<FieldInfo> (*describe)() = nullptr;
   };
   /// Media, then rules, each in the order of the file.

@@ -238,7 +238,7 @@ export class App {
   }
 
   private doers(): Doers {
-    const selected = (): string | null => this.store.selected()?.instance.name ?? null;
+    const selected = (): string | null => this.store.selected()?.instance?.name ?? null;
     const need = (run: (name: string) => void) => (): void => {
       const name = selected();
       if (name === null) this.toasts.show('Select a robot or an object first');
@@ -255,7 +255,7 @@ export class App {
       this.store.select(robots[(Math.max(at, by > 0 ? -1 : 0) + by + robots.length) % robots.length]?.name ?? null);
     };
     const camera = ([mode]: [CameraMode, string]): [string, () => void] => [`camera.${mode}`, () => {
-      const target = this.store.selection ?? this.store.world?.instances.find((i) => i.robot)?.name;
+      const target = selected() ?? this.store.world?.instances.find((i) => i.robot)?.name;
       this.scene.setCamera(mode, target ?? undefined);
       this.tools.show();
     }];
@@ -271,7 +271,7 @@ export class App {
       'time.faster': speed(1),
       'time.max': () => void this.steer.say('speed max'),
       'time.record': () => void this.steer.say(this.store.status?.recording ? 'record off' : `record ${(this.store.world?.name ?? 'run').replace(/[^\w-]+/g, '-')}.mcap`),
-      'scene.frame': () => (this.store.selection === null ? this.scene.frameAll() : this.scene.frame(this.store.selection)),
+      'scene.frame': () => (selected() === null ? this.scene.frameAll() : this.scene.frame(this.store.selection ?? '')),
       'robots.follow': need((name) => {
         this.scene.setCamera('follow', name);
         this.tools.show();

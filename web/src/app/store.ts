@@ -1,11 +1,22 @@
 // What the page knows of the run. Panels listen here; none of them asks the connection for the world itself.
-import type {Device, Instance, Status, World} from '../protocol';
+import type {Device, Instance, Part, Status, World} from '../protocol';
 import {Signal} from '../net/signal';
 
 export interface Selected {
   address: string;
-  instance: Instance;
+  /** Null: a part of the world itself, such as a rule. */
+  instance: Instance | null;
   device: Device | null;
+  part: Part | null;
+}
+
+/** What belongs to no robot: media, rules, programs of teams. */
+export function worldParts(world: World): {title: string; kinds: string; parts: Part[]}[] {
+  return [
+    {title: 'Media', kinds: 'media/', parts: world.media ?? []},
+    {title: 'Rules', kinds: 'rules/', parts: world.rules ?? []},
+    {title: 'Teams', kinds: '', parts: (world.teams ?? []).flatMap((team) => team.programs)},
+  ];
 }
 
 export class Store {
@@ -26,7 +37,7 @@ export class Store {
 
   private readonly byName = new Map<string, Instance>();
   private readonly devices = new Map<string, {instance: Instance; device: Device}>();
-  private readonly controllers = new Map<string, Instance>();
+  private readonly parts = new Map<string, {instance: Instance | null; part: Part}>();
 
   /** Another run of the server: nothing that was known of the last one holds. */
   forget(): void {
@@ -34,7 +45,7 @@ export class Store {
     this.world = this.status = null;
     this.byName.clear();
     this.devices.clear();
-    this.controllers.clear();
+    this.parts.clear();
     this.epoch = -1;
     this.onEpoch.emit(-1);
   }
@@ -45,12 +56,13 @@ export class Store {
     this.world = world;
     this.byName.clear();
     this.devices.clear();
-    this.controllers.clear();
+    this.parts.clear();
     for (const instance of world.instances) {
       this.byName.set(instance.name, instance);
       for (const device of instance.devices ?? []) this.devices.set(device.path, {instance, device});
-      for (const controller of instance.controllers ?? []) this.controllers.set(controller.path, instance);
+      for (const part of instance.controllers ?? []) this.parts.set(part.path, {instance, part});
     }
+    for (const {parts} of worldParts(world)) for (const part of parts) this.parts.set(part.path, {instance: null, part});
     this.setEpoch(world.epoch);
     this.onWorld.emit(world);
     if (this.selection !== null && !this.find(this.selection)) this.select(null);
@@ -88,14 +100,14 @@ export class Store {
     return this.byName.get(name);
   }
 
-  /** "rover", "rover/laser" or "rover/controller". */
+  /** "rover", "rover/laser", "rover/controller", "red/coach", "media/air" or "rules/goals". */
   find(address: string): Selected | null {
     const instance = this.byName.get(address);
-    if (instance) return {address, instance, device: null};
+    if (instance) return {address, instance, device: null, part: null};
     const device = this.devices.get(address);
-    if (device) return {address, instance: device.instance, device: device.device};
-    const owner = this.controllers.get(address);
-    return owner ? {address, instance: owner, device: null} : null;
+    if (device) return {address, instance: device.instance, device: device.device, part: null};
+    const part = this.parts.get(address);
+    return part ? {address, instance: part.instance, device: null, part: part.part} : null;
   }
 
   selected(): Selected | null {

@@ -87,7 +87,7 @@ export class MatrixPanel implements Panel {
 
   /** For the first look: a scan of the selected robot, else of any. */
   private chooseFirst(): void {
-    const robot = this.context.store.selected()?.instance.name;
+    const robot = this.context.store.selected()?.instance?.name;
     const scans = [...this.context.client.channels.values()].filter((c) => c.schemaName.endsWith('/LaserScan')).map((c) => c.topic).sort();
     const first = scans.find((t) => robot !== undefined && t.startsWith(`/${robot}/`)) ?? scans[0];
     if (first) this.choose(first);

@@ -60,7 +60,7 @@ export class GraphPanel implements Panel {
 
   private readonly draw = (): void => {
     if (!this.graph) return;
-    let {nodes, edges} = graphOf(this.graph, this.search.value, this.own.checked, this.selected.checked ? this.context.store.selected()?.instance.name ?? '' : '');
+    let {nodes, edges} = graphOf(this.graph, this.search.value, this.own.checked, this.selected.checked ? this.context.store.selected()?.instance?.name ?? '' : '');
     if (!this.quiet.checked) {
       const heard = new Set(edges.filter(([a]) => a.startsWith('t:')).map(([a]) => a));
       edges = edges.filter(([a, b]) => heard.has(a) || heard.has(b));

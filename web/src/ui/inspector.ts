@@ -1,8 +1,9 @@
-// What is selected: its pose, its drive, its devices; or a device with its levels, readings and parameters.
+// What is selected: its pose, its drive, its devices; or a device with its levels, readings and parameters; or a program, a medium,
+// a rule with theirs.
 import type {Context, Panel} from '../app/context';
 import {word} from '../app/format';
-import type {Selected} from '../app/store';
-import type {Device, Field} from '../protocol';
+import {type Selected, worldParts} from '../app/store';
+import type {Device, Instance, Kind, Part as WorldPart} from '../protocol';
 import {clear, h, setReason} from './dom';
 import {DriveSection} from './drive_section';
 import {FieldRow} from './field_row';
@@ -19,6 +20,8 @@ interface Part {
   steering?(): void;
   close?(): void;
 }
+
+const partRow = (part: WorldPart, name: string): {path: string; name: string; detail: string} => ({path: part.path, name, detail: part.kind.replace(/_/g, ' ')});
 
 export class Inspector implements Panel {
   private readonly head = h('div', {class: 'inspector-head'});
@@ -65,7 +68,7 @@ export class Inspector implements Panel {
     const {store} = this.context;
     const selected = this.visible ? store.selected() : null;
     // A world that changed elsewhere leaves the form, with what somebody is typing in it, as it is.
-    const key = selected ? JSON.stringify([selected.address, store.epoch, selected.device ?? [selected.instance.id, selected.instance.team, selected.instance.controllers, selected.instance.devices]]) :
+    const key = selected ? JSON.stringify([selected.address, store.epoch, selected.device ?? selected.part ?? [selected.instance?.id, selected.instance?.team, selected.instance?.controllers, selected.instance?.devices]]) :
       store.world && this.visible ? JSON.stringify([store.world.name, store.world.instances.length, store.world.seed, store.epoch]) : '';
     if (key === this.shown && !again) return;
     this.shown = key;
@@ -77,6 +80,7 @@ export class Inspector implements Panel {
       this.head.append(h('div', {class: 'title'}, h('h2', {class: 'ellipsis', title: store.world.name}, store.world.name)), h('div', {class: 'chips'}, h('span', {class: 'chip'}, 'World')));
       const section = new WorldSection(this.context, store.world);
       this.parts.push(section);
+      for (const {title, parts} of worldParts(store.world)) this.list(title, title === 'Teams' ? 'brain' : title === 'Media' ? 'waves' : 'flag', parts.map((p) => partRow(p, title === 'Teams' ? p.path : p.name)));
       this.form([errorsView('sim', 'Factor on the errors of all devices of all robots')], 'Errors');
       for (const part of this.parts) this.body.append(part.element);
       return;
@@ -86,16 +90,15 @@ export class Inspector implements Panel {
       return;
     }
     this.header(selected);
-    const controller = selected.instance.controllers?.find((c) => c.path === selected.address);
     if (selected.device) this.device(selected.device);
-    else if (controller) this.controller(controller.path, controller.kind);
-    else this.instance(selected);
+    else if (selected.part) this.part(selected.part);
+    else if (selected.instance) this.instance(selected.instance);
     for (const part of this.parts) this.body.append(part.element);
   }
 
-  private header({address, instance, device}: Selected): void {
+  private header({address, instance, device, part}: Selected): void {
     const {store, actions} = this.context;
-    const own = address === instance.name;
+    const own = instance !== null && address === instance.name;
     const chips = h('div', {class: 'chips'});
     const chip = (text: string, color = ''): void => void chips.append(h('span', {class: 'chip'}, color ? h('i', {class: 'dot', style: {background: color}}) : null, text));
     if (own) {
@@ -103,11 +106,13 @@ export class Inspector implements Panel {
       if (instance.team) chip(instance.team, teamColor(instance.team, store.world));
       if (instance.original && instance.original !== instance.name) chip(instance.original);
     } else {
-      const kind = device?.kind ?? instance.controllers.find((c) => c.path === address)?.kind ?? '';
-      chip(kind.replace(/_/g, ' '));
+      chip((device ?? part)?.kind.replace(/_/g, ' ') ?? '');
+      const team = instance ? undefined : store.world?.teams?.find((t) => t.programs.some((p) => p.path === address));
+      if (team) chip(team.name, teamColor(team.name, store.world));
     }
-    const title = own ? h('h2', {class: 'ellipsis', title: instance.name}, instance.name) :
-      h('h2', {class: 'ellipsis', title: address}, h('button', {class: 'plain crumb', title: `Select ${instance.name}`, on: {click: () => store.select(instance.name)}}, instance.name), h('span', {class: 'faint'}, '/'), address.slice(instance.name.length + 1));
+    const owner = address.split('/')[0] ?? '';
+    const title = own ? h('h2', {class: 'ellipsis', title: address}, address) :
+      h('h2', {class: 'ellipsis', title: address}, h('button', {class: 'plain crumb', title: `Select ${instance ? owner : 'the world'}`, on: {click: () => store.select(instance ? owner : null)}}, owner), h('span', {class: 'faint'}, '/'), address.slice(owner.length + 1));
     const buttons = h('div', {class: 'buttons'});
     const button = (id: string, name: string, steers: boolean): HTMLButtonElement => {
       const element = h('button', {class: 'plain icon-only', 'aria-label': actions.titleOf(id), title: actions.titleOf(id), on: {click: () => actions.run(id)}}, icon(name));
@@ -115,32 +120,36 @@ export class Inspector implements Panel {
       buttons.append(element);
       return element;
     };
-    button('robots.follow', 'follow', false);
-    button('scene.frame', 'frame', false);
+    if (instance) {
+      button('robots.follow', 'follow', false);
+      button('scene.frame', 'frame', false);
+    }
     if (own) {
       button('scene.duplicate', 'copy', true);
       button('scene.remove', 'trash', true);
     }
     this.parts.forEach((part) => part.steering?.());
     this.head.append(h('div', {class: 'title'}, title, buttons), chips);
-    const help = device ? store.world?.kinds[device.kind]?.help : undefined;
+    const help = device ? store.world?.kinds[device.kind]?.help : part && !instance ? this.kindOf(part)?.help : undefined;
     if (help) this.head.append(h('p', {class: 'help dim'}, help));
   }
 
-  private instance(selected: Selected): void {
-    const {instance} = selected;
+  /** Rows that select what they name. */
+  private list(title: string, symbol: string, rows: {path: string; name: string; detail: string}[]): void {
+    if (rows.length === 0) return;
+    this.parts.push({element: h('section', {class: 'block'}, heading(title), ...rows.map((row) =>
+      h('button', {class: 'plain part-row', title: row.path, testid: `part-${row.path}`, on: {click: () => this.context.store.select(row.path)}}, icon(symbol, 14), h('span', {}, row.name), h('span', {class: 'faint ellipsis'}, row.detail), icon('chevron', 12))))});
+  }
+
+  private instance(instance: Instance): void {
     const world = this.context.store.world;
     const fixed = world?.models.find((m) => m.id === instance.model)?.static ?? false;
     this.parts.push(new PoseSection(this.context, instance.name, !fixed));
     if (instance.robot) this.parts.push(new DriveSection(this.context, this.teleop, instance));
-    const list = (title: string, symbol: string, rows: {path: string; name: string; detail: string}[]): void => {
-      if (rows.length === 0) return;
-      this.parts.push({element: h('section', {class: 'block'}, heading(title), ...rows.map((row) =>
-        h('button', {class: 'plain part-row', title: row.path, on: {click: () => this.context.store.select(row.path)}}, icon(symbol, 14), h('span', {}, row.name), h('span', {class: 'faint ellipsis'}, row.detail), icon('chevron', 12))))});
-    };
     if ((instance.devices ?? []).length > 0) this.form([errorsView(instance.name, 'Factor on the errors of all its devices')], 'Errors');
-    list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
-    list('Controllers', 'brain', (instance.controllers ?? []).map((c) => ({path: c.path, name: c.name, detail: c.kind.replace(/_/g, ' ')})));
+    this.list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
+    this.list('Controllers', 'brain', (instance.controllers ?? []).map((c) => partRow(c, c.name)));
+    this.list('Team', 'brain', (world?.teams ?? []).find((team) => team.name === instance.team)?.programs.map((p) => partRow(p, p.path)) ?? []);
   }
 
   private device(device: Device): void {
@@ -151,11 +160,16 @@ export class Inspector implements Panel {
     this.form(views);
   }
 
-  private controller(path: string, kindName: string): void {
-    const fields: Field[] = this.context.store.world?.kinds[kindName]?.fields ?? [];
-    const views = fieldViews(path, fields);
+  private kindOf(part: WorldPart): Kind | undefined {
+    const world = this.context.store.world;
+    const list = world ? worldParts(world).find(({parts}) => parts.some((p) => p.path === part.path)) : undefined;
+    return world?.kinds[`${list?.kinds ?? ''}${part.kind}`];
+  }
+
+  private part(part: WorldPart): void {
+    const views = fieldViews(part.path, this.kindOf(part)?.fields ?? []);
     this.form(views);
-    this.parts.push(new Readings(this.context, path, new Set(views.map((v) => v.address)), []));
+    this.parts.push(new Readings(this.context, part.path, new Set(views.map((v) => v.address)), []));
   }
 
   private levels(device: Device, levels: {name: string; message: string; command: string; help: string}[]): void {

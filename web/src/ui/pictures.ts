@@ -110,7 +110,7 @@ class PictureWindow {
 
 /** The cameras there are, those of the selected robot first. */
 function topicsOf(context: Context): string[] {
-  const robot = context.store.selected()?.instance.name;
+  const robot = context.store.selected()?.instance?.name;
   const rank = (topic: string): number => (robot !== undefined && topic.startsWith(`/${robot}/`) ? 0 : 1);
   return [...context.client.channels.values()].filter((c) => c.encoding === 'cdr' && c.schemaName.endsWith('/CompressedImage')).map((c) => c.topic)
     .sort((a, b) => rank(a) - rank(b) || a.localeCompare(b, 'en', {numeric: true})).slice(0, 2000);
