@@ -6,12 +6,19 @@
 /// Limits     nobody is drowned out by others; walls neither reflect nor let sound around their edges; the receiver's own motion
 ///            while the word is under way does not count. A body of the speaker other than the one that carries the device is a
 ///            wall.
-/// Cost       one ray per word and receiver in reach.
+/// Cost       one ray per word and receiver in reach; a grid finds those. Words are shared by all threads. 1,000 voices and ears
+///            on 100 m x 100 m (planar, one thread), all speaking in one tick: 2 ms where a word carries 3 m and 19 ms at 10 m,
+///            against 65 ms and 76 ms when every receiver is asked; 0.9 s at 100 m, where all are in reach, which are rays.
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/math.h"
 #include "media/medium.h"
+#include "physics/parallel.h"
+#include "physics/planar/hash_grid.h"
 
 namespace sandlot::media::shout {
 namespace {
@@ -56,17 +63,73 @@ struct State {
   }
 };
 
+/// Where the receivers are in this tick.
+class Places {
+ public:
+  void update(const MediumContext& context) {
+    points_.resize(context.receivers.size());
+    parallel_for(points_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) points_[i] = context.pose(context.receivers[i]).p;
+    });
+    whole_ = {};
+    if (points_.empty()) return;
+    whole_ = {{points_[0].x, points_[0].y}, {points_[0].x, points_[0].y}};
+    for (const Vec3& point : points_) {
+      whole_.low = {std::min(whole_.low.x, point.x), std::min(whole_.low.y, point.y)};
+      whole_.high = {std::max(whole_.high.x, point.x), std::max(whole_.high.y, point.y)};
+    }
+    // About four receivers per cell, were they spread evenly.
+    const auto cells = std::bit_ceil(
+        static_cast<std::uint32_t>(std::sqrt(static_cast<double>(points_.size()) / 4)) + 1);
+    const double length_m = std::max(whole_.high.x - whole_.low.x, whole_.high.y - whole_.low.y);
+    grid_.resize(std::max(length_m / cells, 1e-3), cells, cells);
+    grid_.build(static_cast<std::uint32_t>(points_.size()), [&](std::uint32_t i) {
+      const Vec2 at{points_[i].x, points_[i].y};
+      return grid_.cover({at, at});
+    });
+  }
+  const Vec3& point(std::uint32_t receiver) const { return points_[receiver]; }
+  /// Fills `out` with the receivers within a distance in the plane, and some beyond it, in creation order.
+  void find_near(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
+    out.clear();
+    const planar::Area area{{p.x - distance_m, p.y - distance_m}, {p.x + distance_m, p.y + distance_m}};
+    if (area.low.x <= whole_.low.x && area.low.y <= whole_.low.y && area.high.x >= whole_.high.x &&
+        area.high.y >= whole_.high.y) {
+      out.resize(points_.size());
+      std::iota(out.begin(), out.end(), 0u);
+      return;
+    }
+    const planar::HashGrid::Range range = grid_.cover(area);
+    for (std::int64_t j = range.y0; j <= range.y1; ++j)
+      for (std::int64_t i = range.x0; i <= range.x1; ++i) {
+        const auto found = grid_.in_slot(grid_.slot(i, j));
+        out.insert(out.end(), found.begin(), found.end());
+      }
+    std::sort(out.begin(), out.end());
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  planar::Area whole_;  ///< about all of them
+  planar::HashGrid grid_;
+};
+
+/// Whom one word reaches. Kept for its memory.
+struct Reached {
+  std::vector<std::uint32_t> receivers;
+  std::vector<Vec3> directions;
+  std::vector<double> distances;
+  std::vector<float> hit_m;
+  std::vector<std::uint32_t> hit_bodies;
+};
+
 struct Shout {
   using Spec = shout::Spec;
   using State = shout::State;
   Spec spec;
   State state;
-  // Of one word, kept for their memory:
-  std::vector<const Receiver*> reached;
-  std::vector<Vec3> directions;
-  std::vector<double> distances;
-  std::vector<float> hit_m;
-  std::vector<std::uint32_t> hit_bodies;
+  Places places;
+  std::vector<Reached> reached;
 
   Status init(const ElementBuild&) { return {}; }
   bool fits() const {
@@ -79,55 +142,82 @@ struct Shout {
     return at_1m_dB - 20 / std::numbers::ln10 * math::log(std::max(1.0, distance_m));
   }
 
-  void spread(const Emission& word, const MediumContext& context) {
-    ++state.words;
-    reached.clear();
-    directions.clear();
-    distances.clear();
+  /// Finds whom a word reaches, and what stands between. Called in parallel.
+  void look(const Emission& word, const MediumContext& context, Reached& to) const {
+    to.directions.clear();
+    to.distances.clear();
+    to.receivers.clear();
+    if (level_dB(word.strength, 0) < spec.threshold_dB) return;
+    // A little farther than the level carries, so that rounding leaves nobody out: the level itself decides.
+    const double carries_m = math::exp((word.strength - spec.threshold_dB) * std::numbers::ln10 / 20);
+    places.find_near(word.point_W, 1.001 * carries_m, to.receivers);
     double farthest_m = 0;
-    for (const Receiver& receiver : context.receivers) {
-      if (receiver.body == word.body) continue;  // its own voice
-      const Vec3 way = context.pose(receiver).p - word.point_W;
+    const auto is_out = [&](std::uint32_t index) {
+      if (context.receivers[index].body == word.body) return true;  // its own voice
+      const Vec3 way = places.point(index) - word.point_W;
       const double distance_m = norm(way);
-      if (level_dB(word.strength, distance_m) < spec.threshold_dB) continue;
-      reached.push_back(&receiver);
-      directions.push_back(distance_m > 0 ? way * (1 / distance_m) : Vec3{1, 0, 0});
-      distances.push_back(distance_m);
+      if (level_dB(word.strength, distance_m) < spec.threshold_dB) return true;
+      to.directions.push_back(distance_m > 0 ? way * (1 / distance_m) : Vec3{1, 0, 0});
+      to.distances.push_back(distance_m);
       farthest_m = std::max(farthest_m, distance_m);
-    }
-    if (reached.empty()) return;
-    hit_m.resize(reached.size());
-    hit_bodies.resize(reached.size());
+      return false;
+    };
+    std::erase_if(to.receivers, is_out);
+    if (to.receivers.empty()) return;
+    to.hit_m.resize(to.receivers.size());
+    to.hit_bodies.resize(to.receivers.size());
     const RayJob job{.X_WS = {word.point_W, {}},
-                     .directions = directions,
+                     .directions = to.directions,
                      .max_m = farthest_m,
                      .ignore_body = word.body.index,
-                     .distance_m = hit_m,
-                     .body = hit_bodies};
+                     .distance_m = to.hit_m,
+                     .body = to.hit_bodies};
     context.rays.cast({&job, 1});
-    for (std::size_t i = 0; i < reached.size(); ++i) {
-      const bool wall = hit_m[i] < distances[i] && hit_bodies[i] != reached[i]->body.index;
-      const double level = level_dB(word.strength, distances[i]) - (wall ? spec.wall_loss_dB : 0);
+  }
+
+  /// Sends a word to those whom it reaches.
+  void send(const Emission& word, const MediumContext& context, const Reached& to) {
+    ++state.words;
+    for (std::size_t i = 0; i < to.receivers.size(); ++i) {
+      const Receiver& receiver = context.receivers[to.receivers[i]];
+      const bool wall = to.hit_m[i] < to.distances[i] && to.hit_bodies[i] != receiver.body.index;
+      const double level = level_dB(word.strength, to.distances[i]) - (wall ? spec.wall_loss_dB : 0);
       if (level < spec.threshold_dB) continue;
       if (state.under_way.size() >= most_under_way) {
         ++state.lost;
         continue;
       }
-      const double delay_s = spec.speed_mps > 0 ? distances[i] / spec.speed_mps : 0;
+      const double delay_s = spec.speed_mps > 0 ? to.distances[i] / spec.speed_mps : 0;
       const std::span<const std::byte> bytes = context.buffer.bytes(word);
       const auto* const first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-      state.under_way.push_back({reached[i]->key,
+      state.under_way.push_back({receiver.key,
                                  {.at = word.at + Time::from_s(delay_s),
                                   .emitter = word.emitter,
                                   .channel = word.channel,
                                   .strength = level,
-                                  .direction_W = directions[i] * -1.0,
+                                  .direction_W = to.directions[i] * -1.0,
                                   .payload = {first, first + bytes.size()}}});
     }
   }
 
+  /// In blocks, so that memory stays bounded.
+  void spread(const MediumContext& context) {
+    constexpr std::size_t most_at_once = 64;
+    if (context.emissions.empty()) return;
+    places.update(context);
+    for (std::size_t first = 0; first < context.emissions.size(); first += most_at_once) {
+      const auto words = context.emissions.subspan(first,
+                                                   std::min(most_at_once, context.emissions.size() - first));
+      reached.resize(std::max(reached.size(), words.size()));
+      parallel_for(words.size(), 2, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) look(words[i], context, reached[i]);
+      });
+      for (std::size_t i = 0; i < words.size(); ++i) send(words[i], context, reached[i]);
+    }
+  }
+
   void deliver(const MediumContext& context) {
-    for (const Emission& word : context.emissions) spread(word, context);
+    spread(context);
     if (state.under_way.empty()) return;
     if (!context.emissions.empty())
       std::stable_sort(state.under_way.begin(), state.under_way.end(), by_arrival);

@@ -4,11 +4,16 @@
 ///            to the link's origin and A the area of the box about the link's collisions as seen along u.
 /// Limits     no shelter behind others, no gusts, no moment; links inside one another each count. On the planar engine the
 ///            vertical part has no effect.
-/// Cost       a few dozen operations per moving link and sub-step.
+/// Cost       a few dozen operations per moving link and sub-step, on all threads.
+#include <algorithm>
+#include <atomic>
+#include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "geometry/bounds.h"
 #include "media/medium.h"
+#include "physics/parallel.h"
 
 namespace sandlot::media::wind {
 namespace {
@@ -49,37 +54,60 @@ struct Wind {
   /// Per model, its links' areas: they follow from the model alone.
   std::unordered_map<const model::Model*, std::pair<std::shared_ptr<const model::Model>, std::vector<Areas>>>
       areas;
+  std::vector<std::vector<Wrench>> blocks;  ///< of one sub-step, kept for their memory
 
   Status init(const ElementBuild&) { return {}; }
 
-  const std::vector<Areas>& areas_of_model(const std::shared_ptr<const model::Model>& model) {
+  void learn(const std::shared_ptr<const model::Model>& model) {
     auto& [kept, found] = areas[model.get()];
-    if (!kept) {
-      kept = model;  // its address stays its own
-      for (const model::Link& link : model->links) found.push_back(areas_of(link));
+    if (kept) return;
+    kept = model;  // its address stays its own
+    for (const model::Link& link : model->links) found.push_back(areas_of(link));
+  }
+
+  /// Adds the forces on an entity. @return false: its model is not known yet
+  bool push_one(const Engine& engine, const EntityView& entity, std::vector<Wrench>& wrenches) const {
+    if (entity.instance->model->is_static || entity.instance->motion) return true;
+    const auto known = areas.find(entity.instance->model.get());
+    if (known == areas.end()) return false;
+    const std::vector<Areas>& links = known->second.second;
+    const auto states = engine.states();
+    const auto bodies = engine.bodies(entity.id);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const BodyState& body = states[bodies[i].index];
+      const Vec3 u_W = spec.velocity_mps - body.V_WB.linear;
+      const double speed = norm(u_W);
+      if (!(speed > 0)) continue;
+      const Vec3 way_L = rotate(conjugate(body.X_WB.q), u_W) * (1 / speed);
+      const double area_m2 = links[i].x_m2 * std::abs(way_L.x) + links[i].y_m2 * std::abs(way_L.y) +
+                             links[i].z_m2 * std::abs(way_L.z);
+      const double factor = 0.5 * spec.density_kgpm3 * spec.drag_coefficient * area_m2 * speed;
+      if (factor > 0) wrenches.push_back({bodies[i], u_W * factor, {}});
     }
-    return found;
+    return true;
   }
 
   void push(const MediumContext& context, double, std::vector<Wrench>& wrenches) {
+    constexpr std::size_t in_block = 64;
     const Engine& engine = context.world.engine();
-    const auto states = engine.states();
-    for (const EntityView& entity : context.world.entities()) {
-      if (entity.instance->model->is_static || entity.instance->motion) continue;
-      const std::vector<Areas>& links = areas_of_model(entity.instance->model);
-      const auto bodies = engine.bodies(entity.id);
-      for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const BodyState& body = states[bodies[i].index];
-        const Vec3 u_W = spec.velocity_mps - body.V_WB.linear;
-        const double speed = norm(u_W);
-        if (!(speed > 0)) continue;
-        const Vec3 way_L = rotate(conjugate(body.X_WB.q), u_W) * (1 / speed);
-        const double area_m2 = links[i].x_m2 * std::abs(way_L.x) + links[i].y_m2 * std::abs(way_L.y) +
-                               links[i].z_m2 * std::abs(way_L.z);
-        const double factor = 0.5 * spec.density_kgpm3 * spec.drag_coefficient * area_m2 * speed;
-        if (factor > 0) wrenches.push_back({bodies[i], u_W * factor, {}});
-      }
+    const std::span<const EntityView> entities = context.world.entities();
+    blocks.resize((entities.size() + in_block - 1) / in_block);
+    std::atomic<bool> all_known = false;
+    while (!all_known) {
+      all_known = true;
+      parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+          blocks[b].clear();
+          for (std::size_t i = b * in_block; i < std::min((b + 1) * in_block, entities.size()); ++i)
+            if (!push_one(engine, entities[i], blocks[b])) all_known = false;
+        }
+      });
+      if (!all_known)
+        for (const EntityView& entity : entities) learn(entity.instance->model);
     }
+    // In the order of the entities, whoever has computed what.
+    for (const std::vector<Wrench>& block : blocks)
+      wrenches.insert(wrenches.end(), block.begin(), block.end());
   }
 };
 
