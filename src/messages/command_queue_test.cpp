@@ -74,6 +74,27 @@ TEST(CommandQueue, SurvivesSavingWithItsOrders) {
   EXPECT_EQ(drained(b), (std::vector<std::string>{"b", "c", "d"}));
 }
 
+/// The other's place in its own ring means nothing here, wherever this one has got to in its.
+TEST(CommandQueue, WhatIsLoadedOrCopiedTakesThePlaceOfWhatWasThere) {
+  Words source("/x/say/command", 3), copy("/x/say/command", 3), loaded("/x/say/command", 3),
+      small("/x/say/command", 1);
+  for (Words* const used : {&source, &copy, &loaded})
+    for (const char* word : {"old", "older"}) ASSERT_TRUE(order(*used, word));
+  source.pop();
+  source.pop();
+  for (const char* word : {"a", "b"}) ASSERT_TRUE(order(source, word));  // around the end of the ring
+  source.count = 4;
+  copy.pop();
+  loaded.pop();
+  copy.copy_from(source);
+  EXPECT_EQ(saved(copy), saved(source));
+  EXPECT_EQ(copy.count, 4u);
+  EXPECT_EQ(drained(copy), (std::vector<std::string>{"a", "b"}));
+  ASSERT_TRUE(loads(loaded, saved(source)));
+  EXPECT_EQ(drained(loaded), (std::vector<std::string>{"a", "b"}));
+  EXPECT_FALSE(loads(small, saved(source))) << "one more than there is room for";
+}
+
 TEST(CommandQueue, RefusesForgedOrders) {
   CommandQueue<msg::Float64> queue("/x/beep/command", 2), other("/x/beep/command", 2);
   ASSERT_TRUE(queue.assign(command_bytes(msg::Float64{1})));

@@ -86,6 +86,45 @@ TEST(Stages, LagFollowsAStepAlikeAtEveryRate) {
   }
 }
 
+TEST(Stages, ABeamOfALagThatSeesSomethingAgainShowsItAtOnce) {
+  const std::vector<StageSpec> stages{LagSpec{.time_constant_s = 0.5}};
+  ChannelChain beams;
+  beams.reset(stages, stream(Purpose::initial, 0));
+  std::vector<float> scan{std::numeric_limits<float>::infinity()};
+  beams.corrupt(stages, scan, 0.1, stream(Purpose::noise, 0));
+  scan = {3};
+  beams.corrupt(stages, scan, 0.1, stream(Purpose::noise, 1));
+  EXPECT_EQ(scan[0], 3);
+}
+
+/// What a lag shows next follows from what it showed: of one value, and of a scan.
+TEST(Stages, ALagGoesOnFromItsBytes) {
+  const std::vector<StageSpec> stages{LagSpec{.time_constant_s = 0.5}};
+  ChannelChain lag;
+  lag.reset(stages, stream(Purpose::initial, 0));
+  const auto restored = [&](const ChannelChain& from) {
+    ByteWriter w;
+    write(w, from);
+    ChannelChain to;
+    to.reset(stages, stream(Purpose::initial, 0));
+    ByteReader r(w.bytes());
+    read(r, to);
+    EXPECT_TRUE(r.ok() && r.remaining() == 0);
+    return to;
+  };
+  const double share = 1 - math::exp(-0.1 / 0.5);
+  lag.corrupt(stages, 2, 0.1, stream(Purpose::noise, 0));
+  ChannelChain again = restored(lag);
+  EXPECT_NEAR(again.corrupt(stages, 5, 0.1, stream(Purpose::noise, 1)), 2 + share * 3, 1e-12);
+  std::vector<float> scan{1, 10};
+  lag.corrupt(stages, scan, 0.1, stream(Purpose::noise, 1));
+  again = restored(lag);
+  scan = {2, 20};
+  again.corrupt(stages, scan, 0.1, stream(Purpose::noise, 2));
+  EXPECT_NEAR(scan[0], 1 + share, 1e-6);
+  EXPECT_NEAR(scan[1], 10 + 10 * share, 1e-5);
+}
+
 TEST(Stages, WhiteNoiseHasTheVarianceOfItsDensity) {
   for (const double dt_s : rates_dt_s)
     expect_moments(run({WhiteSpec{.density = 0.1}}, 0, dt_s, 40'000), 0, 0.01 / dt_s);

@@ -267,6 +267,20 @@ TEST(Pipe, ALateAnswerComesBeforeTheNext) {
   EXPECT_FALSE(rig.pipe.expects_answer());
 }
 
+/// A program that takes its place, because devices came or went, waits on for what was asked.
+TEST(Pipe, OneThatReplacesItWaitsForTheAnswerToo) {
+  Rig old("read d; read a; sleep 0.2; echo '{\"wait\":1}'; read d; read b; echo '{\"wait\":2}'; read c");
+  old.resume();
+  EXPECT_TRUE(old.pipe.expects_answer());
+  Rig rig("sleep 1000");
+  rig.pipe.adopt(old.pipe);
+  EXPECT_TRUE(rig.pipe.expects_answer());
+  EXPECT_EQ(text(rig.wait()), R"({"wait":1})");
+  EXPECT_FALSE(rig.pipe.expects_answer());
+  rig.resume();
+  EXPECT_EQ(text(rig.wait()), R"({"wait":2})");
+}
+
 TEST(Pipe, WhatItAnswersUnaskedEndsIt) {
   Rig rig("read d; read a; echo '{}'; echo '{}'; sleep 1000");
   rig.resume();

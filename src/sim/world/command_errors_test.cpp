@@ -132,6 +132,41 @@ TEST(CommandErrors, OfTwoRobotsAndOfTwoAxesAreIndependent) {
   }
 }
 
+/// A drift goes on while nothing is commanded: what it is at a time does not depend on when the first command came.
+TEST(CommandErrors, DriftAlsoWhileNothingIsCommanded) {
+  const Node keys = errors_of("linear",
+                              list_of({{"drift", map({{"std", "0.1"}, {"correlation", "0.2 s"}})}}));
+  const auto early = build(movers(keys)), late = build(movers(keys));
+  drive(*early, 1);
+  advance(*early, 30), advance(*late, 30);
+  drive(*late, 1);
+  advance(*early, 10), advance(*late, 10);
+  EXPECT_NE(followed(*early).message.linear.x, 1);
+  EXPECT_EQ(followed(*late).message.linear.x, followed(*early).message.linear.x);
+}
+
+/// What came last is followed, whatever its slot.
+TEST(CommandErrors, FollowTheLatestCommandAtAnotherLevel) {
+  model::Setup setup = arena("rigid", 1, "");
+  setup.instances.back().devices[0].config.set(
+      "command_errors",
+      *errors_of("linear", list_of({{"gaussian", map({{"std", "0"}})}})).find("command_errors"));
+  const auto simulation = build(std::move(setup));
+  const auto order = [&](double x) {
+    simulation->submit(
+        CommandRequest{"rover1/drive", msg::Twist::ros_type, command_bytes(msg::Twist{{x, 0, 0}, {}})});
+  };
+  order(0.4);
+  advance(*simulation, 5);
+  EXPECT_EQ(value(*simulation, "rover1/drive/ideal/command.linear.x"), 0.4);
+  simulation->submit(LevelRequest{"rover1/drive", {"contact"}});
+  advance(*simulation, 5);
+  EXPECT_EQ(value(*simulation, "rover1/drive/contact/command.linear.x"), 0.4);
+  order(0.1);
+  advance(*simulation, 5);
+  EXPECT_EQ(value(*simulation, "rover1/drive/contact/command.linear.x"), 0.1);
+}
+
 TEST(CommandErrors, EndWithTheLevelOrGoOnAtTheOtherLevel) {
   model::Setup setup = arena("rigid", 1, "");
   setup.instances.back().devices[0].config.set(

@@ -207,6 +207,21 @@ TEST(DeviceOrders, AreRefusedAndCountedAsOthers) {
   EXPECT_EQ(value(*slow, "desk/printer.refused"), 16);
 }
 
+TEST(DeviceOrders, KnowNoLatestOneWhileTheOtherDeviceHasFailed) {
+  Node failures = Node::sequence();
+  failures.push(map({{"kind", "dead"}, {"from", "0.05 s"}, {"until", "0.1 s"}}));
+  Node keys = Node::map();
+  keys.set("failures", failures);
+  const auto simulation = build(
+      office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer", keys)}),
+      with_kinds);
+  advance(*simulation, 3);
+  const DeviceOrder& order = *simulation->devices("desk")[0].orders[0];
+  EXPECT_NE(order.latest(Time::from_s(0.04)), nullptr);
+  EXPECT_EQ(order.latest(Time::from_s(0.05)), nullptr);
+  EXPECT_NE(order.latest(Time::from_s(0.1)), nullptr);
+}
+
 TEST(DeviceOrders, AreCheckedWhenTheRobotIsComplete) {
   EXPECT_EQ(error_of(office(
                 {device("author", "author", map({{"printer", "printr"}})), device("printer", "printer")})),

@@ -153,6 +153,19 @@ TEST(DeviceMass, IsFixedOnceTheWorldRunsAndRefusedWhereItHasNoEffect) {
 
 // ----------------------------------------------------------------------------------------------------------- max_rate
 
+TEST(DeviceMass, OffTheAxesAddsProductsOfInertia) {
+  // Ixy = -integral x y dm: of two masses of 1 kg and 3 kg at a distance r their reduced mass, 0.75 kg, times -r_x r_y.
+  model::Model model;
+  model.links.push_back({.name = "link"});
+  model.links[0].inertial = {1, {}, {1, 1, 1}, {}};
+  const PointMass mass{0, 3, {0.2, 0.4, -0.6}};
+  const auto made = model_with_masses(model, {&mass, 1});
+  const Vec3 products = made->links[0].inertial.products;
+  EXPECT_NEAR(products.x, -0.75 * 0.2 * 0.4, 1e-15);
+  EXPECT_NEAR(products.y, -0.75 * 0.2 * -0.6, 1e-15);
+  EXPECT_NEAR(products.z, -0.75 * 0.4 * -0.6, 1e-15);
+}
+
 TEST(MaxRate, TakesCommandsNoNearerThanItsPeriodAndCountsTheOthers) {
   // One command per tick of 10 ms for a second: those at 0, 50, 100 ... 950 ms are taken, 20 of 100.
   const auto simulation = build(movers(map({{"max_rate", "20 Hz"}})));
@@ -171,6 +184,17 @@ TEST(MaxRate, TakesCommandsNoNearerThanItsPeriodAndCountsTheOthers) {
   EXPECT_TRUE(simulation->outcomes()[0].status);
   EXPECT_EQ(simulation->outcomes()[1].status.error().text(),
             "'robot1/mover' takes at most 20 commands per second");
+}
+
+/// 1 / 30 s is no whole number of nanoseconds: ticks as long as that, cut or rounded, do not come too soon.
+TEST(MaxRate, ToleratesANanosecond) {
+  for (const std::int64_t step_ns : {33'333'333, 16'666'666}) {
+    model::Setup setup = movers(map({{"max_rate", step_ns > 20'000'000 ? "30" : "60"}}));
+    setup.step = Time{step_ns};
+    const auto simulation = build(std::move(setup));
+    for (int tick = 0; tick < 10; ++tick) drive(*simulation, 1), advance(*simulation, 1);
+    EXPECT_EQ(value(*simulation, "robot1/mover.refused"), 0) << step_ns;
+  }
 }
 
 TEST(MaxRate, RefusesRequestedSamplesTooSoonAfterTheLast) {
@@ -195,6 +219,17 @@ TEST(MaxRate, RefusesRequestedSamplesTooSoonAfterTheLast) {
   setup.instances.back().devices.push_back(
       device("eye", "ground_truth", map({{"rate", "20"}, {"max_rate", "10"}})));
   EXPECT_THAT(error_of(std::move(setup)), HasSubstr("rate 20 Hz is above max_rate, 10 Hz"));
+}
+
+TEST(MaxRate, TakesTheFirstSampleOfADeviceThatJustCame) {
+  const auto simulation = build(movers({}));
+  simulation->submit(
+      LoadDeviceRequest{"robot1", device("eye", "ground_truth", map({{"rate", "0.5"}, {"max_rate", "1"}}))});
+  simulation->submit(SampleRequest{"robot1/eye"});
+  advance(*simulation, 1);
+  ASSERT_EQ(simulation->outcomes().size(), 2u);
+  for (const Outcome& outcome : simulation->outcomes())
+    EXPECT_TRUE(outcome.status) << outcome.status.error().text();
 }
 
 // -------------------------------------------------------------------------------------------------------------- delay
@@ -225,6 +260,76 @@ TEST(Delay, OfACommandIsWaitedForExactlyAndNothingOvertakes) {
   drive(*simulation, 4);
   advance(*simulation, 1);
   EXPECT_NEAR(speed_of(*simulation), 4, 1e-6);
+}
+
+/// Commands on their way are State, in the order in which they will arrive.
+TEST(Delay, WhatIsOnTheWayArrivesInARestoredRunToo) {
+  const auto whole = build(movers(map({{"delay", "80 ms"}})));
+  drive(*whole, 1);
+  advance(*whole, 2);
+  whole->submit(ParameterRequest{"robot1/mover", "delay", Node::scalar("10 ms")});
+  advance(*whole, 1);
+  drive(*whole, 2);
+  advance(*whole, 1);
+  Diagnostics diagnostics;
+  auto rest = Simulation::restore(whole->snapshot(), {}, diagnostics);
+  ASSERT_TRUE(rest) << rest.error().text();
+  double before = 0;
+  for (int tick = 0; tick < 10; ++tick) {
+    advance(*whole, 1);
+    advance(**rest, 1);
+    ASSERT_EQ((*rest)->state_hash(), whole->state_hash()) << tick;
+    EXPECT_GE(speed_of(*whole), before) << "the second overtakes the first";
+    before = speed_of(*whole);
+  }
+  EXPECT_NEAR(speed_of(**rest), 2, 1e-6);
+}
+
+/// The factor `errors` may have been changed: a restored run goes on with it.
+TEST(Delay, IsScaledByTheFactorAlsoInARestoredRun) {
+  const auto whole = build(movers(map({{"delay", "20 ms"}})));
+  whole->submit(ParameterRequest{"robot1/mover", "errors", Node::scalar("3")});
+  advance(*whole, 1);
+  ASSERT_TRUE(whole->outcomes()[0].status);
+  const auto rest = again(*whole);
+  drive(*whole, 1), drive(*rest, 1);
+  for (int tick = 0; tick < 8; ++tick) {
+    EXPECT_EQ(followed(*rest).message.linear.x, tick < 7 ? 0 : 1) << tick;
+    EXPECT_EQ(rest->state_hash(), whole->state_hash()) << tick;
+    advance(*whole, 1), advance(*rest, 1);
+  }
+}
+
+TEST(Delay, AMessageOfADeadDeviceIsLost) {
+  model::Setup setup = arena("planar", 1, "");
+  Node& laser = setup.instances.back().devices[1].config;
+  laser.set("delay", Node::scalar("50 ms"));
+  Node failures = Node::sequence();
+  failures.push(map({{"kind", "dead"}, {"from", "0.12 s"}, {"until", "0.18 s"}}));
+  laser.set("failures", failures);
+  const auto simulation = build(std::move(setup));
+  const TopicBase& laser_scan = *simulation->find_topic("rover1/laser");
+  advance(*simulation, 14);
+  EXPECT_EQ(laser_scan.count, 1u);
+  advance(*simulation, 6);  // that of 0.1 s would have come at 0.15 s
+  EXPECT_EQ(laser_scan.count, 1u);
+  advance(*simulation, 5);
+  EXPECT_EQ(laser_scan.count, 2u);
+}
+
+TEST(Delay, WhatHasArrivedLeavesRoomForOthers) {
+  // 4 MB in each of 70 commands: 280 MB in all, more than may be on the way at a time.
+  model::Setup setup = movers({});
+  setup.instances.back().devices.push_back(device("voice", "voice", map({{"delay", "20 ms"}})));
+  setup.media.push_back({"air", "shout", Node::map(), {}});
+  const auto simulation = build(std::move(setup));
+  const std::vector<std::byte> word = command_bytes(msg::String{std::string(4'000'000, 'x')});
+  for (int tick = 0; tick < 70; ++tick) {
+    simulation->submit(CommandRequest{"robot1/voice", msg::String::ros_type, word});
+    advance(*simulation, 1);
+    ASSERT_TRUE(simulation->outcomes()[0].status) << simulation->outcomes()[0].status.error().text();
+  }
+  EXPECT_EQ(value(*simulation, "robot1/voice.refused"), 0);
 }
 
 TEST(Delay, OfAMessageKeepsTheTimeOfItsMeasurementAndChangesNothingElse) {
@@ -282,6 +387,17 @@ TEST(Delay, WhatIsOnTheWayIsLostWhenTheDeviceFailsOrTheLevelIsOff) {
   advance(*rover, 30);
   EXPECT_EQ(value(*rover, "rover1/drive.refused"), 1);
   EXPECT_EQ(value(*rover, "rover1/drive/ideal/command.count"), 0);
+}
+
+TEST(DeviceKeys, CountWhatAFailedDeviceRefuses) {
+  Node failures = Node::sequence();
+  failures.push(map({{"kind", "dead"}, {"from", "0 s"}, {"until", "9 s"}}));
+  Node keys = map({{"max_rate", "50"}});
+  keys.set("failures", failures);
+  const auto simulation = build(movers(keys));
+  for (int tick = 0; tick < 3; ++tick) drive(*simulation, 1), advance(*simulation, 1);
+  EXPECT_EQ(value(*simulation, "robot1/mover.refused"), 3);
+  EXPECT_EQ(simulation->refused_commands(), 3u);
 }
 
 TEST(DeviceKeys, TellWhatTheyCannotDo) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "messages/command.h"
 #include "sim/load/load.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
@@ -73,6 +74,33 @@ struct Sampler {
   }
 };
 
+/// Draws a random number per step.
+struct Dice {
+  using Spec = NoFields;
+  struct State {
+    double thrown = 0;
+    static void fields(auto& s, auto&& visit) { visit(Field{"thrown", "1", "Last number."}, s.thrown); }
+  };
+  Spec spec;
+  State state;
+  Status init(const Description&) { return {}; }
+  void step(const Observation& obs, Command&) { state.thrown = obs.random().uniform(); }
+};
+
+/// Orders the drive straight on.
+struct Driver {
+  using Spec = NoFields;
+  using State = NoFields;
+  Spec spec;
+  State state;
+  Actuator<msg::Twist> drive;
+  Status init(const Description& robot) {
+    SL_ASSIGN(drive, robot.actuator<msg::Twist>(robot.actuators.front().device));
+    return {};
+  }
+  void step(const Observation&, Command& cmd) { cmd.set(drive, msg::Twist{{0.1, 0, 0}, {}}); }
+};
+
 /// A name that cannot be one of a topic.
 struct Misnamed : Counter {
   Status init(const Description&, Outputs& out) {
@@ -85,7 +113,9 @@ constexpr ControllerKind counter = make_controller<Counter>({.name = "counter", 
 constexpr ControllerKind follower = make_controller<Follower>({.name = "follower", .help = "Follows."});
 constexpr ControllerKind sampler = make_controller<Sampler>({.name = "sampler", .help = "Samples."});
 constexpr ControllerKind misnamed = make_controller<Misnamed>({.name = "misnamed", .help = "Errs."});
-constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed};
+constexpr ControllerKind dice = make_controller<Dice>({.name = "dice", .help = "Throws."});
+constexpr ControllerKind driver = make_controller<Driver>({.name = "driver", .help = "Drives."});
+constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed, &dice, &driver};
 
 /// One rover on a plane with programs; ticks of 10 ms, control steps every 50 ms.
 model::Setup with_programs(std::vector<model::ControllerDecl> programs) {
@@ -320,6 +350,60 @@ TEST(ProgramRates, AreState) {
   Programs::save(entry, w);
   ByteReader r(w.bytes());
   EXPECT_FALSE(Programs::load(entry, r, whole->now()));
+}
+
+/// The times of a robot that comes later count from then, also in a restored run.
+TEST(ProgramRates, OfARobotThatComesCountFromThen) {
+  const auto whole = make(with_programs({{"fast", "counter", map({{"rate", "30"}}), {}}}));
+  model::Instance late = whole->entities().back()->instance;
+  late.name = late.original_name = "late";
+  late.X_WM.p.y += 1;
+  advance(*whole, 12);
+  whole->submit(SpawnRequest{late});
+  advance(*whole, 3);
+  ASSERT_TRUE(whole->find_instance("late"));
+  const auto rest = restored(*whole, 2);
+  // It came at 0.12 s: steps at 0.12, 0.1533 and 0.1866 s fall on the ticks 13, 16 and 19.
+  for (const auto& [tick, steps] : {std::pair(15, 1), {16, 2}, {18, 2}, {19, 3}}) {
+    advance(*whole, tick - static_cast<int>(whole->tick_index()));
+    advance(*rest, tick - static_cast<int>(rest->tick_index()));
+    EXPECT_EQ(value(*whole, "late/fast.steps"), steps) << tick;
+    EXPECT_EQ(rest->state_hash(), whole->state_hash()) << tick;
+  }
+  advance(*whole, 40);
+  advance(*rest, 40);
+  EXPECT_EQ(rest->state_hash(), whole->state_hash());
+}
+
+TEST(ProgramRandom, IsAFunctionOfSeedProgramAndStep) {
+  const auto simulation = make(with_programs({{"dice", "dice", Node::map(), {}}}));
+  for (std::uint64_t step = 0; step < 3; ++step) {
+    const std::uint64_t key = first_program(*simulation).key;
+    EXPECT_EQ(value(*simulation, "rover1/dice.thrown"),
+              Stream(simulation->setup().seed, key, Purpose::controller, step).uniform());
+    advance(*simulation, 5);
+  }
+}
+
+TEST(ProgramOrders, AreLoggedWithTheirStepAndWhetherTheyWereRefused) {
+  const auto simulation = make(with_programs({{"driver", "driver", Node::map(), {}}}));
+  Frames frames;
+  simulation->add_observer(&frames);
+  advance(*simulation, 5);
+  simulation->submit(
+      CommandRequest{"rover1/drive", msg::Twist::ros_type, command_bytes(msg::Twist{{0.2, 0, 0}, {}})});
+  advance(*simulation, 1);
+  const auto order_of = [&](std::size_t frame) {
+    for (const LogEntry& entry : frames.kept.at(frame)->log)
+      if (entry.source.kind == Source::Kind::program) return entry;
+    return LogEntry{};
+  };
+  EXPECT_EQ(order_of(0).sequence, 1u);
+  EXPECT_FALSE(order_of(0).refused);
+  EXPECT_EQ(order_of(5).sequence, 2u);
+  EXPECT_TRUE(order_of(5).refused) << "somebody drives by hand";
+  EXPECT_EQ(order_of(5).target.substr(0, 12), "rover1/drive");
+  simulation->remove_observer(&frames);
 }
 
 TEST(ProgramRates, AboveTheTickRateIsAnErrorAtItsLine) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "sim/load/load.h"
 #include "sim/test_world.h"
@@ -136,6 +137,24 @@ TEST(Teams, ParametersOfTheirProgramsAreSet) {
   advance(*simulation, 1);
   ASSERT_TRUE(simulation->outcomes().front().status);
   EXPECT_EQ(value(*simulation, "red/coach.spacing"), 2);
+}
+
+struct Sources : Observer {
+  Wants wants() const override { return {.log = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    for (const LogEntry& entry : frame->log) ids.insert(entry.source.id);
+  }
+  std::set<std::uint64_t> ids;
+};
+
+/// Nobody takes them for those of a robot.
+TEST(Teams, TheirOrdersHaveASourceOfTheirOwn) {
+  const auto simulation = build(formation());
+  Sources sources;
+  simulation->add_observer(&sources);
+  advance(*simulation, 20);
+  EXPECT_EQ(sources.ids, (std::set<std::uint64_t>{std::uint64_t{1} << 63}));
+  simulation->remove_observer(&sources);
 }
 
 TEST(Teams, SurviveASnapshotWithTheirState) {
