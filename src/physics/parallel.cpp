@@ -3,17 +3,21 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
-
-#include "base/sanitizers.h"
-#if SL_THREAD_SANITIZER
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+
+#include "base/sanitizers.h"
+#if SL_THREAD_SANITIZER
 #include <thread>
 #include <vector>
 #endif
 
 namespace sandlot {
+
+std::size_t parallel_threads() {
+  return static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
+}
 
 void parallel_for(std::size_t count, std::size_t grain, const void* closure,
                   void (*body)(const void* closure, std::size_t begin, std::size_t end)) {
@@ -22,8 +26,7 @@ void parallel_for(std::size_t count, std::size_t grain, const void* closure,
 #if SL_THREAD_SANITIZER
   // The sanitizer cannot see how libtbb hands work over and would call every hand-over a race. Plain threads
   // it understands, so there the bodies run on those and real races between them show.
-  const auto most = static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
-  const std::size_t workers = std::min(most, (count + grain - 1) / grain);
+  const std::size_t workers = std::min(parallel_threads(), (count + grain - 1) / grain);
   std::vector<std::thread> threads;
   for (std::size_t worker = 0; worker < workers; ++worker)
     threads.emplace_back([=] {

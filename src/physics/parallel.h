@@ -4,6 +4,9 @@
 
 namespace sandlot {
 
+/// How many threads may share work here; 1: it is done where it is asked for, and what prepares sharing can be spared.
+std::size_t parallel_threads();
+
 /// As below, with the body as a plain function of its closure.
 void parallel_for(std::size_t count, std::size_t grain, const void* closure,
                   void (*body)(const void* closure, std::size_t begin, std::size_t end));

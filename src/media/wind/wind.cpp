@@ -91,6 +91,14 @@ struct Wind {
     constexpr std::size_t in_block = 64;
     const Engine& engine = context.world.engine();
     const std::span<const EntityView> entities = context.world.entities();
+    if (parallel_threads() == 1) {
+      for (const EntityView& entity : entities)
+        if (!push_one(engine, entity, wrenches)) {
+          learn(entity.instance->model);
+          push_one(engine, entity, wrenches);
+        }
+      return;
+    }
     blocks.resize((entities.size() + in_block - 1) / in_block);
     std::atomic<bool> all_known = false;
     while (!all_known) {
