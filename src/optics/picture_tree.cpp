@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include "base/check.h"
@@ -98,12 +97,12 @@ void PictureTree::Layer::clear() {
   visuals.clear();
 }
 
-void PictureTree::Layer::attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality) {
+void PictureTree::Layer::attach(RTCSceneFlags flags, RTCBuildQuality quality) {
   if (visuals.empty()) return;
-  scene = rtcNewScene(device);
+  scene = rtcNewScene(embree::device());
   rtcSetSceneFlags(scene, flags);
   rtcSetSceneBuildQuality(scene, quality);
-  geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  geometry = rtcNewGeometry(embree::device(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(visuals.size()));
   rtcSetGeometryUserData(geometry, this);
   rtcSetGeometryBoundsFunction(geometry, PictureTree::bounds, nullptr);
@@ -112,17 +111,11 @@ void PictureTree::Layer::attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQ
   rtcAttachGeometry(scene, geometry);
 }
 
-PictureTree::PictureTree()
-    : isa_(embree::choose_isa()), device_(rtcNewDevice((std::string("isa=") + isa_).c_str())) {
-  SL_CHECK_MSG(device_, "Embree refuses to start");
-  fixed_.owner = moving_.owner = this;
-}
+PictureTree::PictureTree() { fixed_.owner = moving_.owner = this; }
 
 PictureTree::~PictureTree() {
   fixed_.clear();
   moving_.clear();
-  triangles_.clear();
-  rtcReleaseDevice(device_);
 }
 
 void PictureTree::set(std::span<const PictureShape> shapes) {
@@ -150,7 +143,7 @@ void PictureTree::set(std::span<const PictureShape> shapes) {
         triangles_[key] = std::move(known->second);
       Triangles& t = triangles_[key];
       if (!t.tree) {
-        t.tree = std::make_unique<TriangleTree>(device_, shape.shape);
+        t.tree = std::make_unique<TriangleTree>(shape.shape);
         arena_.execute([&] { t.tree->commit(); });
       }
       std::unique_ptr<Skin>& skin = t.skins[shape.appearance.smooth ? 1 : 0];
@@ -164,8 +157,8 @@ void PictureTree::set(std::span<const PictureShape> shapes) {
     }
     (shape.moves || still <= few ? moving_ : fixed_).visuals.push_back(index);
   }
-  fixed_.attach(device_, RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
-  moving_.attach(device_, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);
+  fixed_.attach(RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
+  moving_.attach(RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);
 }
 
 void PictureTree::place(Layer& layer, std::span<const Pose> X_WG) {

@@ -69,7 +69,7 @@ class PictureTree {
   const Visual& visual(std::size_t i) const { return visuals_[i]; }
   std::size_t size() const { return visuals_.size(); }
   std::uint32_t groups() const { return groups_; }
-  const char* isa() const { return isa_; }
+  const char* isa() const { return embree::choose_isa(); }
 
  private:
   /// Visuals that are built together.
@@ -80,7 +80,7 @@ class PictureTree {
     RTCGeometry geometry = nullptr;
     RTCScene scene = nullptr;
     void clear();
-    void attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality);
+    void attach(RTCSceneFlags flags, RTCBuildQuality quality);
   };
   static void bounds(const RTCBoundsFunctionArguments* arguments);
   static void intersect(const RTCIntersectFunctionNArguments* arguments);
@@ -88,8 +88,6 @@ class PictureTree {
   void place(Layer& layer, std::span<const Pose> X_WG);
 
   tbb::task_arena arena_{1};
-  const char* isa_;
-  RTCDevice device_;
   std::vector<Visual> visuals_;
   std::vector<std::uint32_t> planes_;
   Layer fixed_, moving_;

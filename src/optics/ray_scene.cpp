@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -90,12 +89,12 @@ struct Layer {
     trees.clear();
   }
   /// Makes the (still empty) tree.
-  void attach(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality) {
+  void attach(RTCSceneFlags flags, RTCBuildQuality quality) {
     if (solids.empty()) return;
-    scene = rtcNewScene(device);
+    scene = rtcNewScene(embree::device());
     rtcSetSceneFlags(scene, flags);
     rtcSetSceneBuildQuality(scene, quality);
-    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    geometry = rtcNewGeometry(embree::device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(solids.size()));
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
@@ -208,8 +207,6 @@ struct RayScene::Impl {
   // Embree's own `threads=` option would limit oneTBB in the whole process; an arena of one builds the trees
   // in the calling thread alone.
   tbb::task_arena arena{1};
-  const char* isa = embree::choose_isa();
-  RTCDevice device = nullptr;
   Layer fixed, moving;
   /// By triangles_of(); looked up only, so its order does not matter.
   std::unordered_map<const void*, std::unique_ptr<TriangleTree>> trees;
@@ -217,16 +214,6 @@ struct RayScene::Impl {
   std::uint32_t groups = 0;  ///< that a frame must have
   std::uint64_t revision = 0;
   bool fixed_is_current = false;
-
-  Impl() : device(rtcNewDevice((std::string("isa=") + isa).c_str())) {
-    SL_CHECK_MSG(device, "Embree refuses to start");
-  }
-  ~Impl() {
-    fixed.clear();
-    moving.clear();
-    trees.clear();
-    rtcReleaseDevice(device);
-  }
 
   /// The tree of a mesh, taken over from the last revision if that had it; null for shapes without triangles.
   const TriangleTree* tree_of(const Shape& shape, decltype(trees)& old) {
@@ -237,7 +224,7 @@ struct RayScene::Impl {
     if (const auto known = old.find(key); known != old.end()) {
       tree = std::move(known->second);
     } else {
-      tree = std::make_unique<TriangleTree>(device, shape);
+      tree = std::make_unique<TriangleTree>(shape);
       arena.execute([&] { tree->commit(); });
     }
     return tree.get();
@@ -248,7 +235,7 @@ struct RayScene::Impl {
 
 RayScene::RayScene() : impl_(std::make_unique<Impl>()) {}
 RayScene::~RayScene() = default;
-const char* RayScene::isa() const { return impl_->isa; }
+const char* RayScene::isa() const { return embree::choose_isa(); }
 
 void RayScene::set_shapes(std::span<const SceneShape> shapes) {
   Impl& s = *impl_;
@@ -264,8 +251,8 @@ void RayScene::set_shapes(std::span<const SceneShape> shapes) {
       s.planes.push_back({shape.group, shape.X_GC, plane->normal, shape.body});
     else (shape.moves ? s.moving : s.fixed).add(shape, s.tree_of(shape.shape, old_trees));
   }
-  s.fixed.attach(s.device, RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
-  s.moving.attach(s.device, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);
+  s.fixed.attach(RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_HIGH);
+  s.moving.attach(RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_MEDIUM);
   s.fixed_is_current = false;
 }
 

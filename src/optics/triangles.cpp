@@ -39,18 +39,18 @@ const void* triangles_of(const Shape& shape) {
   return nullptr;
 }
 
-TriangleTree::TriangleTree(RTCDevice device, const Shape& shape) : shape_(shape) {
-  scene_ = rtcNewScene(device);
+TriangleTree::TriangleTree(const Shape& shape) : shape_(shape) {
+  scene_ = rtcNewScene(embree::device());
   SL_CHECK_MSG(scene_, "Embree makes no scene");
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   // High quality takes three times as long to build and answers a few per cent faster.
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
   if (const auto* field = std::get_if<Heightfield>(&shape)) {
     constexpr int most = 32767;  // samples of a grid of Embree's
-    if (std::max(field->grid->columns, field->grid->rows) <= most) add_grid(device, *field->grid);
-    else add_triangles(device, tessellate(shape));
+    if (std::max(field->grid->columns, field->grid->rows) <= most) add_grid(*field->grid);
+    else add_triangles(tessellate(shape));
   } else {
-    add_triangles(device, *std::get<Mesh>(shape).mesh);
+    add_triangles(*std::get<Mesh>(shape).mesh);
   }
 }
 
@@ -62,14 +62,14 @@ void TriangleTree::attach(RTCGeometry geometry) {
   rtcReleaseGeometry(geometry);
 }
 
-void TriangleTree::add_triangles(RTCDevice device, const TriangleMesh& mesh) {
+void TriangleTree::add_triangles(const TriangleMesh& mesh) {
   Range range[3];
   for (const Vec3& v : mesh.vertices)
     for (std::size_t k = 0; k < 3; ++k) range[k].add(v[k]);
   if (mesh.vertices.empty() || mesh.triangles.empty()) return;
   centre_ = {range[0].middle(), range[1].middle(), range[2].middle()};
   half_size_ = {range[0].half(), range[1].half(), range[2].half()};
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const RTCGeometry geometry = rtcNewGeometry(embree::device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* const corners = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
   auto* const indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
@@ -87,12 +87,12 @@ void TriangleTree::add_triangles(RTCDevice device, const TriangleMesh& mesh) {
 
 /// Embree splits the squares of a grid from the second corner to the fourth, HeightGrid from the first to the
 /// third: a grid whose columns run backwards has the same diagonals.
-void TriangleTree::add_grid(RTCDevice device, const HeightGrid& grid) {
+void TriangleTree::add_grid(const HeightGrid& grid) {
   Range z;
   for (const float h : grid.height_m) z.add(static_cast<double>(h));
   centre_ = {0, 0, z.middle()};
   half_size_ = {0.5 * grid.size_x_m, 0.5 * grid.size_y_m, z.half()};
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_GRID);
+  const RTCGeometry geometry = rtcNewGeometry(embree::device(), RTC_GEOMETRY_TYPE_GRID);
   const auto columns = static_cast<unsigned>(grid.columns), rows = static_cast<unsigned>(grid.rows);
   auto* corner = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float),

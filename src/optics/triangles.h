@@ -18,7 +18,7 @@ namespace sandlot::optics {
 class TriangleTree {
  public:
   /// An empty tree over the triangles; commit() builds it. @pre shape is a Mesh or a Heightfield
-  TriangleTree(RTCDevice device, const Shape& shape);
+  explicit TriangleTree(const Shape& shape);
   ~TriangleTree();
   TriangleTree(const TriangleTree&) = delete;
   TriangleTree& operator=(const TriangleTree&) = delete;
@@ -43,8 +43,8 @@ class TriangleTree {
   lanes::I between(const LocalSpread8& rays, lanes::F near, lanes::F far, const int* valid) const;
 
  private:
-  void add_triangles(RTCDevice device, const TriangleMesh& mesh);
-  void add_grid(RTCDevice device, const HeightGrid& grid);
+  void add_triangles(const TriangleMesh& mesh);
+  void add_grid(const HeightGrid& grid);
   void attach(RTCGeometry geometry);
   template <class Rays>
   Hits hit(const Rays& rays, lanes::F near, lanes::F far, const int* valid) const;
