@@ -77,40 +77,60 @@ std::vector<Word> plain_words_of(std::string_view line) {
   return out;
 }
 
-bool fits(std::string_view pattern, std::string_view name, bool indices) {
-  // The reachable places in the pattern, letter by letter of the name: linear in both, whatever the pattern.
-  std::vector<bool> now(pattern.size() + 1, false), next(pattern.size() + 1, false);
-  const auto pass_stars = [&](std::vector<bool>& places) {
-    for (std::size_t p = 0; p < pattern.size(); ++p)
-      if (places[p] && pattern[p] == '*') {
-        places[p + 1] = true;
-        if (p + 1 < pattern.size() && pattern[p + 1] == '*') places[p + 2] = true;
-      }
-  };
-  now[0] = true;
-  pass_stars(now);
-  for (const char c : name) {
-    std::fill(next.begin(), next.end(), false);
-    for (std::size_t p = 0; p < pattern.size(); ++p) {
-      if (!now[p]) continue;
-      if (pattern[p] == '*') {
-        const bool both = (p + 1 < pattern.size() && pattern[p + 1] == '*') ||
-                          (p > 0 && pattern[p - 1] == '*');
-        if (both || (c != '/' && c != '.')) next[p] = true;
-      } else if (pattern[p] == '?') {
-        if (c != '/' && c != '.') next[p + 1] = true;
-      } else if (const std::size_t end = pattern[p] == '[' ? class_end(pattern, p, indices)
-                                                           : std::string_view::npos;
-                 end != std::string_view::npos) {
-        if (in_class(pattern.substr(p + 1, end - p - 1), c)) next[end + 1] = true;
-      } else if (pattern[p] == c) {
-        next[p + 1] = true;
-      }
+Pattern::Pattern(std::string_view text, bool indices)
+    : words_(text.size() / 64 + 1), end_(0), moves_(256 * words_, 0), star_(words_, 0), deep_(words_, 0) {
+  for (std::size_t i = 0; i < text.size(); ++end_) {
+    const std::size_t word = end_ / 64;
+    const Bits bit = Bits{1} << end_ % 64;
+    const auto lead_on = [&](std::size_t letter) { moves_[letter * words_ + word] |= bit; };
+    const std::size_t end = text[i] == '[' ? class_end(text, i, indices) : std::string_view::npos;
+    if (text[i] == '*') {
+      const std::size_t stars = std::min(text.find_first_not_of('*', i), text.size()) - i;
+      star_[word] |= bit;
+      if (stars > 1) deep_[word] |= bit;
+      i += stars;
+    } else if (text[i] == '?') {
+      for (std::size_t letter = 0; letter < 256; ++letter)
+        if (letter != '/' && letter != '.') lead_on(letter);
+      ++i;
+    } else if (end != std::string_view::npos) {
+      for (std::size_t letter = 0; letter < 256; ++letter)
+        if (in_class(text.substr(i + 1, end - i - 1), static_cast<char>(letter))) lead_on(letter);
+      i = end + 1;
+    } else {
+      lead_on(static_cast<unsigned char>(text[i]));
+      ++i;
     }
-    pass_stars(next);
-    now.swap(next);
   }
-  return now[pattern.size()];
+}
+
+bool Pattern::fits(std::string_view name) const {
+  Bits one = 0;
+  std::vector<Bits> more(words_ > 1 ? words_ : 0);
+  Bits* const places = words_ > 1 ? more.data() : &one;
+  places[0] = 1;
+  // No two stars are neighbours, so that one pass leads past all that may stand for nothing.
+  const auto pass_stars = [&] {
+    Bits carry = 0;
+    for (std::size_t w = 0; w < words_; ++w) {
+      const Bits past = places[w] & star_[w];
+      places[w] |= past << 1 | carry;
+      carry = past >> 63;
+    }
+  };
+  pass_stars();
+  for (const char c : name) {
+    const Bits* const moves = &moves_[static_cast<unsigned char>(c) * words_];
+    const std::vector<Bits>& stays = c == '/' || c == '.' ? deep_ : star_;
+    Bits carry = 0;
+    for (std::size_t w = 0; w < words_; ++w) {
+      const Bits moved = places[w] & moves[w];
+      places[w] = moved << 1 | carry | (places[w] & stays[w]);
+      carry = moved >> 63;
+    }
+    pass_stars();
+  }
+  return places[end_ / 64] >> end_ % 64 & 1;
 }
 
 bool is_pattern(std::string_view text, bool indices) {

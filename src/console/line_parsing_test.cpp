@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include <numbers>
 
 namespace sandlot::console {
@@ -38,6 +40,38 @@ TEST(Words, PatternsStopAtSlashesAndDotsUnlessDoubled) {
   EXPECT_TRUE(fits("rover[", "rover["));
   EXPECT_TRUE(fits("", ""));
   EXPECT_FALSE(fits("", "a"));
+}
+
+/// What a pattern stands for, letter by letter of both.
+bool fits_slowly(std::string_view pattern, std::string_view name) {
+  if (pattern.empty()) return name.empty();
+  const bool deep = pattern.substr(0, 2) == "**";
+  const auto stays = [&](char c) { return c != '/' && c != '.'; };
+  if (pattern[0] == '*')
+    return fits_slowly(pattern.substr(deep ? 2 : 1), name) ||
+           (!name.empty() && (deep || stays(name[0])) && fits_slowly(pattern, name.substr(1)));
+  return !name.empty() && (pattern[0] == '?' ? stays(name[0]) : pattern[0] == name[0]) &&
+         fits_slowly(pattern.substr(1), name.substr(1));
+}
+
+/// Also across the border of 64 places, where the bits of the matcher go on in the next word.
+TEST(Words, PatternsOfAnyLengthMeanWhatTheyStandFor) {
+  std::mt19937 random(1);
+  const auto pick = [&](std::string_view of) { return of[random() % of.size()]; };
+  int fitting = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::string pattern, name;
+    for (std::size_t k = random() % 5; k-- > 0;) pattern += pick("ab/*?"), name += pick("ab/.");
+    if (random() % 2) {  // the same letters in front of both, up to the border and over it
+      const std::size_t more = 58 + random() % 10;
+      pattern.insert(0, more, 'x'), name.insert(0, more, 'x');
+    }
+    for (std::size_t k = random() % 6; k-- > 0;) pattern += pick("ab*?"), name += pick("ab/");
+    const bool expected = fits_slowly(pattern, name);
+    ASSERT_EQ(fits(pattern, name), expected) << pattern << " " << name;
+    fitting += expected;
+  }
+  EXPECT_GT(fitting, 500);
 }
 
 TEST(Words, BracketsWithDigitsAreIndicesInPaths) {

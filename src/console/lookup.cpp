@@ -41,8 +41,9 @@ Result<std::vector<const Simulation::Entity*>> match_things(CommandCall& call, s
     out.push_back(thing);
     return out;
   }
+  const Pattern ready(pattern);
   for (const auto& entity : call.simulation().entities()) {
-    if (!fits(pattern, entity->instance.name)) continue;
+    if (!ready.fits(entity->instance.name)) continue;
     if (out.size() == most_matches) return too_many(pattern);
     out.push_back(entity.get());
   }
@@ -57,9 +58,10 @@ Result<std::vector<std::string>> match_devices(CommandCall& call, std::string_vi
   SL_TRY(check_length(pattern));
   std::vector<std::string> out, near;
   const std::string_view robot = pattern.substr(0, pattern.find('/'));
+  const Pattern ready(pattern);
   const auto look = [&](const Simulation::Entity& entity) {
     for (const auto& device : entity.devices) {
-      if (fits(pattern, device->path)) out.push_back(device->path);
+      if (ready.fits(device->path)) out.push_back(device->path);
       else near.push_back(device->path);
     }
     return out.size() <= most_matches;

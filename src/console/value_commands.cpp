@@ -89,17 +89,18 @@ Status gather(CommandCall& call, std::string_view pattern, std::vector<ValueEntr
   const Simulation& simulation = call.simulation();
   const bool whole_things = pattern.find('.') == std::string_view::npos;
   const bool plain = !is_pattern(pattern, true);
+  const Pattern ready(pattern, true);
   bool too_many = false;
-  const auto take = [&](ValueEntry entry) {
+  const auto take = [&](const ValueEntry& entry) {
     const std::string_view thing = thing_of(entry.path);
     const bool fitting = plain ? thing == pattern ||
                                      (thing.size() > pattern.size() && starts_with(thing, pattern) &&
                                       thing[pattern.size()] == '/' &&
                                       pattern.find('/') != std::string_view::npos)
-                               : fits(pattern, whole_things ? thing : std::string_view(entry.path), true);
+                               : ready.fits(whole_things ? thing : std::string_view(entry.path));
     if (!fitting) return;
     if (out.size() == most_matches) too_many = true;
-    else out.push_back(std::move(entry));
+    else out.push_back(entry);
   };
   if (robot_of(pattern) == "sim" || robot_of(pattern) == "values") {
     list_values(simulation, "", [&](ValueEntry entry) {
@@ -304,13 +305,14 @@ CommandResult cmd_set(CommandCall& call) {
   std::vector<Parameter> matching;
   std::vector<std::string> near;
   bool met_thing = false;
+  const Pattern ready_thing(thing), ready_path(path, true);
   const auto look = [&](const std::string& target) {
-    if (plain ? target != thing : !fits(thing, target)) return;
+    if (plain ? target != thing : !ready_thing.fits(target)) return;
     met_thing = true;
     for (Parameter& parameter : parameters.list(target)) {
       const std::string whole = parameter.address();
       const std::string_view own = std::string_view(whole).substr(target.size() + 1);
-      if (plain ? own == path : fits(path, own, true)) matching.push_back(std::move(parameter));
+      if (plain ? own == path : ready_path.fits(own)) matching.push_back(std::move(parameter));
       else if (near.size() < 200) near.push_back(whole);
     }
   };
