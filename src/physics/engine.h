@@ -259,7 +259,8 @@ class Engine {
 
   /// All State of one instance (bodies, joints, motors, sleep), independent of all other instances.
   virtual void save(InstanceId id, ByteWriter& w) const = 0;
-  /// @pre the same instances were added in the same order to a new engine; false: the bytes do not fit.
+  /// @pre the same instances were added in the same order to a new engine; false: the bytes do not fit, and the instance
+  ///      is in no state to go on with.
   virtual bool load(InstanceId id, ByteReader& r) = 0;
 
   virtual EngineCounters counters() const = 0;

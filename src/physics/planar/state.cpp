@@ -104,6 +104,16 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   if (!r.ok() || drive.link >= instance.bodies.size() || !is_rotation(q) || !is_rotation(tilt) ||
       !in_range(still_at) || !(std::abs(z_m) < 1e12) || drive.accel < 0 || drive.angular_accel < 0)
     return false;
+  // Which groups, wheels and constraints there are follows from attitude and height, so these come first.
+  instance.tilt = tilt;
+  instance.z_m = z_m;
+  if (instance.moves) {
+    drives_[id.index] = drive;
+    shape(id.index);
+  } else {
+    instance.still = std::make_unique<Instance::Still>(Instance::Still{.at = still_at, .q = q});
+    walls_fresh_ = false;
+  }
   std::vector<RigidGroup> groups(instance.groups.size());
   for (RigidGroup& l : groups) {
     visit_group(l, take);
@@ -131,7 +141,7 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
       continue;
     }
     visit_target(target, take);
-    if (!r.ok() || mode > 2) return false;
+    if (!r.ok() || mode > 2 || target.damping < 0 || target.inertia < 0 || target.friction < 0) return false;
     target.mode = static_cast<JointTarget::Mode>(mode);
   }
   std::vector<Vec2> wheels(instance.wheels.size());
@@ -140,15 +150,6 @@ bool PlanarEngine::load(InstanceId id, ByteReader& r) {
   for (JointConstraint& l : constraints) visit_constraint(l, take);
   if (!r.ok()) return false;
 
-  instance.tilt = tilt;
-  instance.z_m = z_m;
-  if (instance.moves) {
-    drives_[id.index] = drive;
-    shape(id.index);
-  } else {
-    instance.still = std::make_unique<Instance::Still>(Instance::Still{.at = still_at, .q = q});
-    walls_fresh_ = false;
-  }
   for (std::size_t i = 0; i < groups.size(); ++i) {
     RigidGroup& to = groups_[instance.groups[i]];
     const RigidGroup& from = groups[i];

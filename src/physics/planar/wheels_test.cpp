@@ -264,5 +264,25 @@ TEST(PlanarWheel, BetweenRailsAndWheelsPoseAndVelocityStay) {
   EXPECT_NEAR(norm(w.state(id).V_WB.linear - there.V_WB.linear), 0, 0.5 * 0.4 * 2 * h_s);
 }
 
+/// Attitude and height say which wheels stand on the ground: a robot that was laid on its side has others than at first.
+TEST(PlanarWheel, TheStateOfARobotThatFellFitsANewEngineWhereItStands) {
+  const auto model = cart({{0, 0.2}, {0, -0.2}});
+  World before, after;
+  const InstanceId id = before.add(model, at(0, 0)), again = after.add(model, at(0, 0));
+  before.run(5);
+  for (const double roll : {1.5, 0.0, 3.0}) {
+    before.engine.set_pose(id, pose_from_rpy({1, 2, 0.3}, {roll, 0, 0.5}));
+    before.run(1);
+    ByteWriter saved, loaded;
+    before.engine.save(id, saved);
+    ByteReader reader(saved.bytes());
+    ASSERT_TRUE(after.engine.load(again, reader)) << roll;
+    EXPECT_EQ(reader.remaining(), 0u) << roll;
+    after.engine.save(again, loaded);
+    EXPECT_EQ(saved.buffer(), loaded.buffer()) << roll;
+    EXPECT_EQ(after.engine.pose(again), before.engine.pose(id)) << roll;
+  }
+}
+
 }  // namespace
 }  // namespace sandlot::planar
