@@ -248,7 +248,17 @@ bool is_pose(const Pose& X) {
   return is_finite(X) && length > 1e-6 && length < 1e6;
 }
 
-/// Indices that the rest of the program follows without asking, and poses.
+/// As readers of files and builders leave them: engines take them for bounds.
+bool are_limits(double lower, double upper, double damping, double friction) {
+  return lower <= upper && damping >= 0 && friction >= 0;
+}
+bool consistent(const model::Joint& j) {
+  return are_limits(j.lower, j.upper, j.damping, j.friction) && j.max_effort >= 0 && j.max_velocity >= 0 &&
+         j.spring_stiffness >= 0 &&
+         (!j.second || are_limits(j.second->lower, j.second->upper, j.second->damping, j.second->friction));
+}
+
+/// Indices that the rest of the program follows without asking, poses and limits.
 bool consistent(const model::Model& m) {
   const auto links = static_cast<std::uint32_t>(m.links.size());
   if (links == 0) return false;
@@ -257,7 +267,7 @@ bool consistent(const model::Model& m) {
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
         (j.mimic && j.mimic->joint >= m.joints.size()) ||
-        (j.roller_of != model::Joint::no_joint && j.roller_of >= m.joints.size()))
+        (j.roller_of != model::Joint::no_joint && j.roller_of >= m.joints.size()) || !consistent(j))
       return false;
   for (const model::LinkLight& l : m.lights)
     if (l.link >= links) return false;

@@ -171,7 +171,7 @@ TEST(ModelBytes, EveryTruncationIsRefused) {
 }
 
 TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
-  for (int broken = 0; broken < 17; ++broken) {
+  for (int broken = 0; broken < 21; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -195,6 +195,10 @@ TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
     if (broken == 14) setup.gravity.y = -std::numeric_limits<double>::infinity();
     if (broken == 15) changed->links[0].collisions[0].surface.mu = 1e300;
     if (broken == 16) setup.zones[0].outline_W[1].x = 1e17;
+    if (broken == 17) changed->joints[0].max_effort = -1;
+    if (broken == 18) changed->joints[0].lower = 2.5;
+    if (broken == 19) changed->joints[0].second->friction = -1;
+    if (broken == 20) changed->joints[0].max_velocity = -1;
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;
