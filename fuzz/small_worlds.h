@@ -51,7 +51,7 @@ robots:
       compass: {kind: magnetometer, levels: [field, heading]}
       height: {kind: altimeter, position: "${noise}"}
       air: {kind: barometer, noise: "${noise}"}
-      heat: {kind: thermometer, response: 1, failures: [{from: 0.1 s, to: 1 s, kind: stuck}], clock: {jitter: 1 ms}}
+      heat: {kind: thermometer, response: 1, failures: [{from: 0.1 s, until: 1 s, kind: stuck}], clock: {jitter: 1 ms}}
       truth: {kind: ground_truth}
 )"},
     {"touch", "rigid", R"(
