@@ -5,6 +5,7 @@
 
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "model/rollers.h"
 
 namespace sandlot {
 namespace {
@@ -254,7 +255,7 @@ bool are_limits(double lower, double upper, double damping, double friction) {
 }
 bool consistent(const model::Joint& j) {
   return are_limits(j.lower, j.upper, j.damping, j.friction) && j.max_effort >= 0 && j.max_velocity >= 0 &&
-         j.spring_stiffness >= 0 &&
+         j.spring_stiffness >= 0 && (!j.rollers || model::is_wheel(*j.rollers)) &&
          (!j.second || are_limits(j.second->lower, j.second->upper, j.second->damping, j.second->friction));
 }
 

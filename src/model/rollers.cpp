@@ -1,6 +1,7 @@
 #include "model/rollers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/math.h"
@@ -140,6 +141,14 @@ Link link_of(const RollerWheel& w, const Barrel& barrel, const std::string& name
 }
 
 }  // namespace
+
+bool is_wheel(const RollerWheel& w) {
+  const auto length = [](double x) { return x > 1e-9 && x < 1e6; };
+  return length(w.radius_m) && length(w.roller_radius_m) && length(w.roller_length_m) &&
+         w.roller_radius_m < w.radius_m && w.count >= 1 && w.count <= most_rollers && w.rows >= 1 &&
+         w.rows <= most_rows && w.row_spacing_m >= 0 && w.row_spacing_m < 1e3 && std::abs(w.angle_rad) < 10 &&
+         w.roller_mass_kg >= 0 && w.bearing_friction_Nm >= 0 && w.bearing_friction_Nm < 1e9;
+}
 
 Status add_rollers(Model& model) {
   const std::size_t declared = model.joints.size();

@@ -18,4 +18,7 @@ namespace sandlot::model {
 /// it could not roll), with the joint's place.
 Status add_rollers(Model& model);
 
+/// Whether the numbers of a wheel are such that one can compute with it. That of a forged model may have any.
+bool is_wheel(const RollerWheel& wheel);
+
 }  // namespace sandlot::model

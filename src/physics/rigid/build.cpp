@@ -4,6 +4,7 @@
 #include "geometry/barrel.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "model/rollers.h"
 #include "physics/rigid/joints.h"
 #include "physics/rigid/library.h"
 #include "physics/rigid/rigid_engine.h"
@@ -136,7 +137,7 @@ Status RigidEngine::check(const model::Instance& instance) const {
     if (!(std::abs(joint.thread_pitch_m) < 1e6))
       return Error{"the thread pitch of joint '" + joint.name + "' is no length",
                    "give it in metres per turn", joint.place};
-    if (joint.rollers && !is_wheel(*joint.rollers))
+    if (joint.rollers && !model::is_wheel(*joint.rollers))
       return Error{"the wheel with rollers of joint '" + joint.name + "' has no sound sizes",
                    "lengths are positive numbers [m]", joint.place};
     if (joint.roller_of != model::Joint::no_joint &&

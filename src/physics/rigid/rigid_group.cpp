@@ -8,6 +8,8 @@ namespace {
 
 // Beyond these the library divides by what is next to nothing, and the first step ends with an infinite velocity.
 constexpr double least_mass_kg = 1e-40, most_mass_kg = 1e40, least_inertia_kgm2 = 1e-40;
+/// Of a decomposition of a tensor of inertia, relative to its diagonal: some hundred roundings.
+constexpr double least_pivot = 1e-13;
 
 }  // namespace
 
@@ -38,8 +40,11 @@ bool is_positive_definite(const Symmetric3& m) {
   const double minor2 = m.xx * m.yy - m.xy * m.xy;
   const double det = m.zz * minor2 - m.xx * m.yz * m.yz - m.yy * m.xz * m.xz + 2 * m.xy * m.xz * m.yz;
   const double trace = m.xx + m.yy + m.zz;
+  // ODE's own test is a Cholesky decomposition: it must not fail by rounding where this one does not.
+  const double pivot_yy = minor2 / m.xx, pivot_zz = det / minor2;
   // det / trace^2 is below the smallest principal moment, so that the inverse stays far from an overflow.
-  return m.xx > 0 && minor2 > 0 && det > least_inertia_kgm2 * trace * trace && std::isfinite(det);
+  return m.xx > 0 && pivot_yy > least_pivot * m.yy && pivot_zz > least_pivot * m.zz && m.yy > 0 && m.zz > 0 &&
+         det > least_inertia_kgm2 * trace * trace && std::isfinite(det);
 }
 
 namespace {

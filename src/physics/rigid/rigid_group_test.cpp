@@ -57,6 +57,9 @@ TEST(RigidGroup, ProductsOfInertiaTurnWithTheirFrame) {
   EXPECT_FALSE(is_positive_definite({1, 1, 1, 2, 0, 0}));
   EXPECT_FALSE(is_positive_definite({1, 1, -1, 0, 0, 0}));
   EXPECT_TRUE(is_positive_definite({1e-12, 1e-12, 1e-14, 0, 0, 0})) << "a grain of dust";
+  EXPECT_FALSE(is_positive_definite({1, 1, 1, 1 - 1e-15, 0, 0})) << "only by rounding";
+  EXPECT_FALSE(is_positive_definite({1, 1, 1, 0, 0, 1 - 1e-15})) << "only by rounding";
+  EXPECT_TRUE(is_positive_definite({1, 1, 1, 1 - 1e-12, 0, 0}));
   EXPECT_FALSE(is_positive_definite({1, 1, 1e-300, 0, 0, 0})) << "its inverse is next to infinite";
 }
 

@@ -39,14 +39,6 @@ void make_shapes(Wheel& wheel) {
 
 }  // namespace
 
-bool is_wheel(const model::RollerWheel& w) {
-  const auto length = [](double x) { return x > 1e-9 && x < 1e6; };
-  return length(w.radius_m) && length(w.roller_radius_m) && length(w.roller_length_m) &&
-         w.roller_radius_m < w.radius_m && w.rows >= 1 && w.rows <= 100 && w.row_spacing_m >= 0 &&
-         w.row_spacing_m < 1e3 && std::abs(w.angle_rad) < 10 && w.bearing_friction_Nm >= 0 &&
-         w.bearing_friction_Nm < 1e9;
-}
-
 void lock_rollers(const model::Model& model, RigidGroups& groups) {
   for (const model::Joint& joint : model.joints) {
     if (joint.roller_of == model::Joint::no_joint) continue;

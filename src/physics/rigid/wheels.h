@@ -32,9 +32,6 @@ namespace sandlot::rigid {
 /// solvers, little for the world.
 inline constexpr double awake_share = 0.2;
 
-/// Whether a wheel can be made of it at all; see model/rollers.h.
-bool is_wheel(const model::RollerWheel& wheel);
-
 /// Takes the rollers' masses and inertias into their wheels' groups.
 void lock_rollers(const model::Model& model, RigidGroups& groups);
 

@@ -171,7 +171,7 @@ TEST(ModelBytes, EveryTruncationIsRefused) {
 }
 
 TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
-  for (int broken = 0; broken < 21; ++broken) {
+  for (int broken = 0; broken < 22; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -199,6 +199,7 @@ TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
     if (broken == 18) changed->joints[0].lower = 2.5;
     if (broken == 19) changed->joints[0].second->friction = -1;
     if (broken == 20) changed->joints[0].max_velocity = -1;
+    if (broken == 21) changed->joints[0].rollers->count = 1 << 30;
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;
