@@ -12,6 +12,12 @@ namespace {
 
 constexpr int max_node_depth = 64;
 
+/// No engine and no camera can make a rotation of any other.
+bool is_pose(const Pose& X) {
+  const double length = norm(X.q);
+  return is_finite(X) && length > 1e-6 && length < 1e6;
+}
+
 /// Numbers of a model are finite: readers of files take 1e16 for "no limit".
 template <class T>
 bool is_finite_value(const T& x) {
@@ -202,6 +208,8 @@ void walk(Io& io, T& x) {
     shape(io, x);
   } else if constexpr (Fielded<Value>) {
     Value::fields(x, [&](const Field&, auto& member) { walk(io, member); });
+    if constexpr (Io::loading && std::is_same_v<Value, Pose>)
+      if (!is_pose(x)) io.r.fail();
   } else if constexpr (is_shared_list<Value>::value) {
     if constexpr (Io::loading) walk(io, x.edit());
     else walk(io, x.get());
@@ -243,12 +251,6 @@ bool is_timing(const model::Setup& s) {
 /// On errors.
 bool is_factor(double x) { return x >= 0 && x <= 1000; }
 
-/// An engine stops at an orientation that it cannot make a rotation of.
-bool is_pose(const Pose& X) {
-  const double length = norm(X.q);
-  return is_finite(X) && length > 1e-6 && length < 1e6;
-}
-
 /// As readers of files and builders leave them: engines take them for bounds.
 bool are_limits(double lower, double upper, double damping, double friction) {
   return lower <= upper && damping >= 0 && friction >= 0;
@@ -259,12 +261,10 @@ bool consistent(const model::Joint& j) {
          (!j.second || are_limits(j.second->lower, j.second->upper, j.second->damping, j.second->friction));
 }
 
-/// Indices that the rest of the program follows without asking, poses and limits.
+/// Indices that the rest of the program follows without asking, and limits.
 bool consistent(const model::Model& m) {
   const auto links = static_cast<std::uint32_t>(m.links.size());
   if (links == 0) return false;
-  for (const model::Link& l : m.links)
-    if (!is_pose(l.X_ML)) return false;
   for (const model::Joint& j : m.joints)
     if ((j.parent >= links && j.parent != model::world_link) || j.child >= links ||
         (j.mimic && j.mimic->joint >= m.joints.size()) ||
@@ -281,7 +281,7 @@ bool consistent(const model::Model& m) {
 
 bool consistent(const model::Instance& x) {
   if (x.motion && x.motion->keys.empty()) return false;
-  if (!is_pose(x.X_WM) || !is_factor(x.errors)) return false;
+  if (!is_factor(x.errors)) return false;
   for (const model::DeviceDecl& d : x.devices)
     if (d.link >= x.model->links.size()) return false;
   return true;

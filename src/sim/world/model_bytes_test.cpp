@@ -171,7 +171,7 @@ TEST(ModelBytes, EveryTruncationIsRefused) {
 }
 
 TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
-  for (int broken = 0; broken < 22; ++broken) {
+  for (int broken = 0; broken < 24; ++broken) {
     model::Setup setup = full_setup();
     auto changed = std::make_shared<model::Model>(*setup.instances[0].model);
     if (broken == 0) changed->joints[0].child = 2;
@@ -200,6 +200,8 @@ TEST(ModelBytes, IndicesOutOfTheModelAndNumbersThatAreNoneAreRefused) {
     if (broken == 19) changed->joints[0].second->friction = -1;
     if (broken == 20) changed->joints[0].max_velocity = -1;
     if (broken == 21) changed->joints[0].rollers->count = 1 << 30;
+    if (broken == 22) setup.instances[0].devices.edit()[0].X_LS.q = {1, 0, -1e14, 0};
+    if (broken == 23) changed->links[1].collisions[0].X_LC.q = {0, 0, 0, 0};
     setup.instances[0].model = changed;
     const auto bytes = bytes_of(setup);
     model::Setup read;
