@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include <numbers>
+
+#include "base/random.h"
 
 namespace sandlot::console {
 namespace {
@@ -56,17 +56,17 @@ bool fits_slowly(std::string_view pattern, std::string_view name) {
 
 /// Also across the border of 64 places, where the bits of the matcher go on in the next word.
 TEST(Words, PatternsOfAnyLengthMeanWhatTheyStandFor) {
-  std::mt19937 random(1);
-  const auto pick = [&](std::string_view of) { return of[random() % of.size()]; };
+  Stream random(1, 2, Purpose::experiment, 3);
+  const auto pick = [&](std::string_view of) { return of[random.bits32() % of.size()]; };
   int fitting = 0;
   for (int i = 0; i < 20'000; ++i) {
     std::string pattern, name;
-    for (std::size_t k = random() % 5; k-- > 0;) pattern += pick("ab/*?"), name += pick("ab/.");
-    if (random() % 2) {  // the same letters in front of both, up to the border and over it
-      const std::size_t more = 58 + random() % 10;
+    for (std::size_t k = random.bits32() % 5; k-- > 0;) pattern += pick("ab/*?"), name += pick("ab/.");
+    if (random.bits32() % 2) {  // the same letters in front of both, up to the border and over it
+      const std::size_t more = 58 + random.bits32() % 10;
       pattern.insert(0, more, 'x'), name.insert(0, more, 'x');
     }
-    for (std::size_t k = random() % 6; k-- > 0;) pattern += pick("ab*?"), name += pick("ab/");
+    for (std::size_t k = random.bits32() % 6; k-- > 0;) pattern += pick("ab*?"), name += pick("ab/");
     const bool expected = fits_slowly(pattern, name);
     ASSERT_EQ(fits(pattern, name), expected) << pattern << " " << name;
     fitting += expected;
