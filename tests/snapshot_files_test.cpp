@@ -37,7 +37,7 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
   EXPECT_EQ(contents(file), contents(scratch.file("a-000001.000.snapshot")))
       << "both are the state at the end";
 
-  // 0.3 s is no multiple: the next one is due at 0.5 s all the same.
+  // 0.3 s is not a multiple: the next one is due at 0.5 s all the same.
   const TestFolder second;
   const std::string mid = second.file("mid.snapshot"), again = second.file("a.snapshot");
   ASSERT_EQ(sandlot(run + "--duration 0.3s --snapshot " + mid).exit_code, 0);

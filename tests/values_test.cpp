@@ -93,7 +93,7 @@ TEST(Values, AConditionThatIsNoNumberFailsTheRun) {
   const Printed run = sandlot(
       "run scenarios/indoor.yaml --duration 1s --stop-when '1 / (sim.tick - 50) > 2'");
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.out, HasSubstr("a part of '1 / (sim.tick - 50) > 2' is no finite number at 0.5 s"));
+  EXPECT_THAT(run.out, HasSubstr("a part of '1 / (sim.tick - 50) > 2' is not a finite number at 0.5 s"));
 }
 
 TEST(Values, AConditionThatIsNoNumberAtTheBeginningFailsTheRunToo) {

@@ -69,7 +69,7 @@ void describe_value(const Field& f, const TypeInfo& type, const void* value, con
       const bool set = type.size(value) != 0;
       describe_value(f, *type.element, set ? type.at(value, 0) : type.blank(), path, out, true);
       if (!set && type.element->holds != Holds::fielded)
-        out.back().default_value.clear();  // unset is no value
+        out.back().default_value.clear();  // unset is not a value
       return;
     }
     case Holds::fielded: describe_struct(type, value, path + "/", f.unit, out, optional); return;

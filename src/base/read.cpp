@@ -54,8 +54,8 @@ Status read_choice(const Node& node, const TypeEdit& type, void* out, const std:
     names.emplace_back(name);
     if (node.text() == name) return type.set_choice(out, i), Status();
   }
-  return node.error("'" + node.text().substr(0, 40) + "' is no choice here", suggestion(node.text(), names),
-                    path);
+  return node.error("'" + node.text().substr(0, 40) + "' is not a choice here",
+                    suggestion(node.text(), names), path);
 }
 
 struct ReadOne final : Filler {

@@ -140,7 +140,7 @@ TEST(Read, EveryFaultIsNamedWithPlaceAndPath) {
   EXPECT_EQ(complaint(map("name", text("sixsix"))),
             "a.yaml:7:3: /name: text has 6 characters; at most 5 are allowed");
   EXPECT_EQ(complaint(map("colour", text("gren"))),
-            "a.yaml:7:3: /colour: 'gren' is no choice here; did you mean 'green'?");
+            "a.yaml:7:3: /colour: 'gren' is not a choice here; did you mean 'green'?");
   EXPECT_EQ(complaint(map("offset", list({"1", "2"}))),
             "a.yaml:7:3: /offset: expected a list of 3 values, found one of 2");
   EXPECT_EQ(complaint(map("offset", list({"0", "0", "2"}))),

@@ -8,7 +8,7 @@ namespace sandlot {
 Result<ValuePath> parse_value_path(std::string_view text) {
   constexpr std::size_t most_steps = 16, longest = 256;
   const auto wrong = [&](const std::string& what) {
-    return Error{"'" + std::string(text.substr(0, 80)) + "' is no path of a value: " + what,
+    return Error{"'" + std::string(text.substr(0, 80)) + "' is not a path of a value: " + what,
                  "such as ranges[3] or pose.position.x"};
   };
   if (text.empty() || text.size() > longest) return wrong(text.empty() ? "it is empty" : "it is too long");

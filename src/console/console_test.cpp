@@ -78,7 +78,7 @@ TEST(Console, WrongValuesAreAnsweredAtOnce) {
   EXPECT_TRUE(has(talk.refused("set rober1/laser.noise.white 1"), "did you mean 'rover1'"));
   EXPECT_TRUE(has(talk.refused("set rover1/laser.beams 10"), "fixed once the run has started"));
   EXPECT_TRUE(has(talk.refused("set rover1/laser.noise.white"), "needs more words"));
-  EXPECT_TRUE(has(talk.refused("set rover1 1"), "is no parameter"));
+  EXPECT_TRUE(has(talk.refused("set rover1 1"), "is not a parameter"));
 }
 
 TEST(Console, ControllersHaveParametersToo) {
@@ -330,8 +330,8 @@ TEST(Console, StoresAndLoads) {
   EXPECT_EQ(talk.ok("hash"), hash);
   talk.ok("store a.snapshot");  // a snapshot may be replaced
   std::ofstream(folder.path / "scenario.yaml") << "version: 1\n";
-  EXPECT_TRUE(has(talk.refused("store scenario.yaml"), "is no snapshot"));
-  EXPECT_TRUE(has(talk.refused("load scenario.yaml"), "is no snapshot"));
+  EXPECT_TRUE(has(talk.refused("store scenario.yaml"), "is not a snapshot"));
+  EXPECT_TRUE(has(talk.refused("load scenario.yaml"), "is not a snapshot"));
   EXPECT_TRUE(has(talk.refused("store ../a"), "not within the run's folder"));
   EXPECT_TRUE(has(talk.refused("store x/../../a"), "not within the run's folder"));
   EXPECT_TRUE(has(talk.refused("store /usr/a"), "not within the run's folder"));

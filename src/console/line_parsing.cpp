@@ -146,7 +146,7 @@ Result<double> take_quantity(std::span<const std::string>& words, const char* na
   std::string text = words.front();
   std::size_t taken = 1;
   double number = 0;
-  // "90 deg" as two words: the second is no number, so it can only be the unit of the first.
+  // "90 deg" as two words: the second is not a number, so it can only be the unit of the first.
   if (words.size() > 1 && parse_number(text, number) && !words[1].empty() &&
       (std::isalpha(static_cast<unsigned char>(words[1].front())) || words[1] == "%") &&
       parse_quantity(text + " " + words[1], unit)) {
@@ -185,7 +185,7 @@ Result<Color> read_color(std::string_view text) {
     if (text == each.name) return each.color;
     names.emplace_back(each.name);
   }
-  const Error wrong{"'" + std::string(text.substr(0, 40)) + "' is no colour",
+  const Error wrong{"'" + std::string(text.substr(0, 40)) + "' is not a colour",
                     "write #rrggbb, red,green,blue from 0 to 1, or a name: " + suggestion(text, names)};
   float parts[4] = {0, 0, 0, 1};
   if (!text.empty() && text.front() == '#') {

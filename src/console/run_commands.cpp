@@ -42,7 +42,7 @@ Status set_speed(CommandCall& call, std::string text) {
   if (!text.empty() && (text.back() == 'x' || text.back() == 'X')) text.pop_back();
   double factor = 0;
   if (!parse_number(text, factor))
-    return Error{"'" + text.substr(0, 40) + "' is no speed",
+    return Error{"'" + text.substr(0, 40) + "' is not a speed",
                  "1: real time; 0.001 to 1000; max: as fast as possible"};
   return call.session.set_speed(factor);
 }
@@ -58,7 +58,7 @@ Result<std::vector<std::byte>> read_snapshot(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in) return Error{"cannot read '" + file + "'"};
-  if (!is_snapshot(bytes)) return Error{"'" + file + "' is no snapshot", "load what `store` wrote"};
+  if (!is_snapshot(bytes)) return Error{"'" + file + "' is not a snapshot", "load what `store` wrote"};
   return bytes;
 }
 
@@ -91,7 +91,7 @@ CommandResult cmd_step(CommandCall& call) {
   double count = 1;
   if (!call.words.empty() && (!parse_number(call.words.front(), count) || !(count >= 1 && count <= 1e9) ||
                               count != std::floor(count)))
-    return Error{"'" + call.words.front().substr(0, 40) + "' is no number of ticks", "1 to 1e9"};
+    return Error{"'" + call.words.front().substr(0, 40) + "' is not a number of ticks", "1 to 1e9"};
   call.session.step(static_cast<std::uint64_t>(count));
   return std::optional(number_text(count) + (count == 1 ? " tick" : " ticks") + " from " +
                        std::to_string(call.simulation().tick_index()));
@@ -128,7 +128,7 @@ CommandResult cmd_store(CommandCall& call) {
   std::error_code failed;
   // Nobody shall lose a scenario to a slip.
   if (fs::exists(file, failed) && !is_snapshot_file(file))
-    return Error{"'" + file + "' is there and is no snapshot", "give another name"};
+    return Error{"'" + file + "' is there and is not a snapshot", "give another name"};
   const std::vector<std::byte> bytes = call.simulation().snapshot();
   SL_TRY(write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   return std::optional("stored in " + file + " " + at(call.simulation()));

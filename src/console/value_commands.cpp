@@ -281,7 +281,7 @@ CommandResult cmd_set(CommandCall& call) {
   if (!written.empty() && written.front() == '=') written = trim(written.substr(1));
   auto parsed = parse_yaml(written, "");
   if (!parsed)
-    return Error{"'" + std::string(written.substr(0, 60)) + "' is no value: " + parsed.error().what};
+    return Error{"'" + std::string(written.substr(0, 60)) + "' is not a value: " + parsed.error().what};
   if (parsed->is_null()) return Error{"a value is missing", "set ADDRESS VALUE"};
   Node value = std::move(*parsed);
   const std::string_view thing = thing_of(address);
@@ -293,7 +293,7 @@ CommandResult cmd_set(CommandCall& call) {
     return set_failure(call, thing, value, written);
   if (thing.size() == address.size() || thing.find('/') == std::string_view::npos) {
     if (!is_pattern(thing) || thing.size() == address.size())
-      return Error{"'" + std::string(address) + "' is no parameter",
+      return Error{"'" + std::string(address) + "' is not a parameter",
                    "write DEVICE.PARAMETER: rover/laser.noise.white"};
   }
   std::string_view path = address.substr(thing.size() + 1);

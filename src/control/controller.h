@@ -209,7 +209,7 @@ std::optional<std::string> caught(F&& f) {
     f();
     return std::nullopt;
   } catch (const std::exception& e) { return e.what(); } catch (...) {
-    return "something that is no std::exception";
+    return "something that is not a std::exception";
   }
 }
 

@@ -42,7 +42,7 @@ class Viewpoint {
 
   /// The picture at the end of the last tick. A robot's camera: the last one that it published; an empty
   /// picture if there is none yet.
-  /// Errors   the robot has gone, or the camera's messages are no pictures.
+  /// Errors   the robot has gone, or the camera's messages are not pictures.
   Result<assets::Picture> picture(Simulation& simulation);
   /// Pose of a viewpoint that is not a device, at the end of the last tick.
   Result<Pose> pose(Simulation& simulation);

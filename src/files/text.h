@@ -9,7 +9,7 @@
 namespace sandlot {
 
 /// Reads a whole file.
-/// Errors   missing, a directory or another thing that is no regular file, unreadable, over the limit: each its own,
+/// Errors   missing, a directory or another thing that is not a regular file, unreadable, over the limit: each its own,
 ///          and each answered before anything is read.
 Result<std::string> read_text_file(const std::string& path, std::size_t max_bytes);
 

@@ -116,7 +116,7 @@ class Parser {
     rest_ = rest_.subspan(1);
     if (out.info < 24) return out.n = out.info, out;
     if (out.info == indefinite) return out;
-    if (out.info > 27) return Error{"is no CBOR: a head of kind " + std::to_string(out.info)};
+    if (out.info > 27) return Error{"is not a CBOR: a head of kind " + std::to_string(out.info)};
     const std::size_t size = std::size_t{1} << (out.info - 24);
     if (rest_.size() < size) return ends();
     for (std::size_t i = 0; i < size; ++i) out.n = out.n << 8 | std::to_integer<std::uint64_t>(rest_[i]);
@@ -134,7 +134,7 @@ class Parser {
     while (!at_break()) {
       SL_ASSIGN(const Head piece, this->head());
       if (piece.major != head.major || piece.info == indefinite)
-        return Error{"is no CBOR: a piece of a string"};
+        return Error{"is not a CBOR: a piece of a string"};
       SL_TRY(string(piece, out));
     }
     return {};
@@ -183,7 +183,7 @@ class Parser {
         std::memcpy(&number, &head.n, sizeof number);
         return Json(number);
       }
-      default: return Error{"is no CBOR: simple value " + std::to_string(head.info)};
+      default: return Error{"is not a CBOR: simple value " + std::to_string(head.info)};
     }
   }
   Result<Json> item(int depth) {
@@ -191,7 +191,7 @@ class Parser {
     SL_ASSIGN(const Head head, this->head());
     const bool open_end = head.info == indefinite;
     if (open_end && (head.major < octets || head.major == tag))
-      return Error{"is no CBOR: a number without end"};
+      return Error{"is not a CBOR: a number without end"};
     switch (head.major) {
       case unsigned_integer: return Json(head.n);
       case negative_integer:
@@ -212,7 +212,7 @@ class Parser {
         Json object = Json::object();
         for (std::uint64_t i = 0; open_end ? !at_break() : i < head.n; ++i) {
           SL_ASSIGN(const Json key, item(depth + 1));
-          if (!key.is_string()) return Error{"CBOR has a key that is no text"};
+          if (!key.is_string()) return Error{"CBOR has a key that is not text"};
           SL_ASSIGN(Json value, item(depth + 1));
           object[key.get_ref<const std::string&>()] = std::move(value);
         }

@@ -5,7 +5,7 @@
 ///          little-endian), lists of uint8, byte or char byte strings; NaN and infinities are themselves.
 /// Input    any well-formed CBOR with the same content: lists as arrays or as typed arrays in either order, lengths
 ///          definite or not, floats of 16, 32 or 64 bits; other tags are passed over. The rest is as in json.h.
-/// Errors   as in json.h; bytes that end too soon or go on after the value, keys that are no text, more than 64 levels.
+/// Errors   as in json.h; bytes that end too soon or go on after the value, keys that are not text, more than 64 levels.
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -278,7 +278,7 @@ double number_at(Wire type, const std::byte* value) {
     case Wire::string:
     case Wire::message: break;
   }
-  SL_CHECK_MSG(false, "a string or a message is no number");
+  SL_CHECK_MSG(false, "a string or a message is not a number");
   return 0;
 }
 

@@ -257,9 +257,9 @@ TEST(Json, ErrorsNamePathAndRemedy) {
   EXPECT_EQ(json_error("std_msgs/UInt8MultiArray", R"({"data":"a*bc"})"), "/data: is not base64");
   EXPECT_EQ(json_error("sensor_msgs/JointState", R"({"name":"x"})"),
             "/name: must be a list of string, is string");
-  EXPECT_EQ(json_error("std_msgs/Bool", "{").substr(0, 11), "is no JSON:");
+  EXPECT_EQ(json_error("std_msgs/Bool", "{").substr(0, 11), "is not a JSON:");
   const std::string deep(100'000, '[');
-  EXPECT_EQ(json_error("std_msgs/Bool", deep).substr(0, 11), "is no JSON:");
+  EXPECT_EQ(json_error("std_msgs/Bool", deep).substr(0, 11), "is not a JSON:");
 }
 
 TEST(Cbor, ByHand) {
@@ -295,7 +295,7 @@ TEST(Cbor, ReadsOtherWaysOfSayingTheSame) {
     const std::string text = read(type, hex);
     return text.substr(std::min(text.size(), before_data.size()));
   };
-  EXPECT_EQ(list("std_msgs/Float64MultiArray", "9f 01 f5 ff"), "") << "a bool is no number";
+  EXPECT_EQ(list("std_msgs/Float64MultiArray", "9f 01 f5 ff"), "") << "a bool is not a number";
   EXPECT_EQ(list("std_msgs/Float64MultiArray", "9f 01 02 ff"), R"("data":[1,2]})");
   EXPECT_EQ(list("std_msgs/Float64MultiArray", "d8 51 48 3f800000 40000000"), R"("data":[1,2]})")
       << "big-endian";
@@ -304,7 +304,7 @@ TEST(Cbor, ReadsOtherWaysOfSayingTheSame) {
   EXPECT_EQ(list("std_msgs/UInt8MultiArray", "43 666f6f"), R"("data":"Zm9v"})");
   EXPECT_EQ(read("std_msgs/UInt8MultiArray", "d8 48 41 ff"), "/data/0: must be uint8, is -1.0");
   EXPECT_EQ(read("std_msgs/Float64MultiArray", "d8 56 47 00000000000000"),
-            "/data: is no whole number of elements");
+            "/data: is not a whole number of elements");
 }
 
 TEST(Cbor, WhatIsNoneIsRefused) {
@@ -315,12 +315,12 @@ TEST(Cbor, WhatIsNoneIsRefused) {
   EXPECT_EQ(error("9bffffffffffffffff00"), "CBOR ends too soon");
   EXPECT_EQ(error("9f00"), "CBOR ends too soon");
   EXPECT_EQ(error("0000"), "bytes go on after the CBOR value");
-  EXPECT_EQ(error("a10000"), "CBOR has a key that is no text");
+  EXPECT_EQ(error("a10000"), "CBOR has a key that is not text");
   EXPECT_EQ(error("3bffffffffffffffff"), "CBOR has an integer below -2^63");
-  EXPECT_EQ(error("1c"), "is no CBOR: a head of kind 28");
-  EXPECT_EQ(error("1f"), "is no CBOR: a number without end");
-  EXPECT_EQ(error("5f00ff"), "is no CBOR: a piece of a string");
-  EXPECT_EQ(error("ff"), "is no CBOR: simple value 31");
+  EXPECT_EQ(error("1c"), "is not a CBOR: a head of kind 28");
+  EXPECT_EQ(error("1f"), "is not a CBOR: a number without end");
+  EXPECT_EQ(error("5f00ff"), "is not a CBOR: a piece of a string");
+  EXPECT_EQ(error("ff"), "is not a CBOR: simple value 31");
   std::string deep, tags;
   for (int i = 0; i < 100'000; ++i) deep += "81", tags += "c1";
   EXPECT_EQ(error(deep), "CBOR is nested deeper than 64 levels");

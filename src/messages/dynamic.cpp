@@ -98,7 +98,7 @@ class Parser {
       if (bare.empty()) return {};
       if (!starts_with(bare, "MSG:")) return error(shown(bare) + " where 'MSG: pkg/Type' should be");
       const std::string name = short_name(trim(bare.substr(4)));
-      if (!is_type_name(name)) return error(shown(name) + " is no name of a type");
+      if (!is_type_name(name)) return error(shown(name) + " is not a name of a type");
       if (types_.size() >= max_types) return error("more than 1000 types");
       types_.emplace_back().name = long_name(name);
       repeated_ = !by_name_.emplace(name, &types_.back())
@@ -112,7 +112,7 @@ class Parser {
     const std::string_view code = hash < quote ? trim(bare.substr(0, hash)) : bare;
     if (code.empty() || repeated_) return {};
     const auto gap = code.find_first_of(" \t");
-    if (gap == std::string_view::npos) return error(shown(code) + " is no field");
+    if (gap == std::string_view::npos) return error(shown(code) + " is not a field");
     return declaration(code.substr(0, gap), trim(code.substr(gap)));
   }
 
@@ -121,11 +121,11 @@ class Parser {
     MessageInfo& owner = types_.back();
     const auto end = std::min(rest.find_first_of(" \t="), rest.size());
     const std::string_view name = rest.substr(0, end);
-    if (!is_name(name)) return error(shown(name) + " is no name of a field");
+    if (!is_name(name)) return error(shown(name) + " is not a name of a field");
     const std::string_view after = trim(rest.substr(end));
     if (!after.empty() && after[0] == '=') {
       const Wire wire = wire_named(type.substr(0, type.find('<')));
-      if (wire == Wire::message) return error(shown(type) + " is no type of a constant");
+      if (wire == Wire::message) return error(shown(type) + " is not a type of a constant");
       owner.constants.push_back({std::string(name), wire, std::string(trim(after.substr(1)))});
       return {};
     }
@@ -141,12 +141,12 @@ class Parser {
       field.count = size.empty() || starts_with(size, "<=") ? Count::sequence : Count::array;
       if (starts_with(size, "<=")) size.remove_prefix(2);
       if (!size.empty() && (!parse_size(size, field.length) || field.length == 0))
-        return error(shown(size) + " is no length of a list");
+        return error(shown(size) + " is not a length of a list");
     }
     if (const auto bound = type.find("<="); bound != std::string_view::npos) {
       std::size_t length = 0;
       if (type.substr(0, bound) != "string" || !parse_size(type.substr(bound + 2), length))
-        return error(shown(type) + " is no bounded string");
+        return error(shown(type) + " is not a bounded string");
       type = type.substr(0, bound);
     }
     if (type == "wstring" || type == "wchar") return error("wide strings are not supported");
@@ -309,7 +309,7 @@ class PathVisitor : public CdrVisitor {
 }  // namespace
 
 Result<DynamicSchema> DynamicSchema::parse(std::string_view type, std::string_view text) {
-  if (!is_type_name(short_name(type))) return Error{shown(type) + " is no name of a message type"};
+  if (!is_type_name(short_name(type))) return Error{shown(type) + " is not a name of a message type"};
   DynamicSchema schema;
   SL_TRY(Parser(schema.types_, type).run(text));
   schema.types_.front().schema = text;

@@ -142,19 +142,19 @@ TEST(Dynamic, ErrorsNameTheLine) {
   EXPECT_EQ(error_of("A a\n" + line + "\nMSG: my_msgs/A\nB b\n" + line + "\nMSG: my_msgs/B\nA[] a\n"),
             "schema: 'my_msgs/msg/A' contains itself");
   EXPECT_EQ(error_of("bool a\nint8 a\n"), "schema, line 2: two fields 'a'");
-  EXPECT_EQ(error_of("bool\n"), "schema, line 1: 'bool' is no field");
-  EXPECT_EQ(error_of("bool a-b\n"), "schema, line 1: 'a-b' is no name of a field");
+  EXPECT_EQ(error_of("bool\n"), "schema, line 1: 'bool' is not a field");
+  EXPECT_EQ(error_of("bool a-b\n"), "schema, line 1: 'a-b' is not a name of a field");
   EXPECT_EQ(error_of("wstring a\n"), "schema, line 1: wide strings are not supported");
   EXPECT_EQ(error_of("bool[ a\n"), "schema, line 1: a list without ']'");
-  EXPECT_EQ(error_of("bool[0] a\n"), "schema, line 1: '0' is no length of a list");
-  EXPECT_EQ(error_of("bool[-1] a\n"), "schema, line 1: '-1' is no length of a list");
-  EXPECT_EQ(error_of("bool[99999999999] a\n"), "schema, line 1: '99999999999' is no length of a list");
-  EXPECT_EQ(error_of("int8<=3 a\n"), "schema, line 1: 'int8<=3' is no bounded string");
-  EXPECT_EQ(error_of("Header A=3\n"), "schema, line 1: 'Header' is no type of a constant");
+  EXPECT_EQ(error_of("bool[0] a\n"), "schema, line 1: '0' is not a length of a list");
+  EXPECT_EQ(error_of("bool[-1] a\n"), "schema, line 1: '-1' is not a length of a list");
+  EXPECT_EQ(error_of("bool[99999999999] a\n"), "schema, line 1: '99999999999' is not a length of a list");
+  EXPECT_EQ(error_of("int8<=3 a\n"), "schema, line 1: 'int8<=3' is not a bounded string");
+  EXPECT_EQ(error_of("Header A=3\n"), "schema, line 1: 'Header' is not a type of a constant");
   EXPECT_EQ(error_of(line + "\nbool a\n"), "schema, line 2: 'bool a' where 'MSG: pkg/Type' should be");
   EXPECT_EQ(error_of(line), "schema, line 1: ends where 'MSG: pkg/Type' should be");
-  EXPECT_EQ(error_of(line + "\nMSG: A\n"), "schema, line 2: 'A' is no name of a type");
-  EXPECT_EQ(error_of("bool a\n", "Thing"), "'Thing' is no name of a message type");
+  EXPECT_EQ(error_of(line + "\nMSG: A\n"), "schema, line 2: 'A' is not a name of a type");
+  EXPECT_EQ(error_of("bool a\n", "Thing"), "'Thing' is not a name of a message type");
   EXPECT_EQ(error_of(std::string(1'000'001, '\n')), "schema, line 0: is longer than 1 MB");
 }
 

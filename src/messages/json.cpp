@@ -179,7 +179,7 @@ Error under(std::string_view key, Error error) {
 /// A list of numbers that came as bytes.
 Status set_bytes(const MessageField& field, Wire type, std::span<const std::byte> bytes, std::byte* place) {
   const std::size_t size = size_of(type);
-  if (bytes.size() % size) return Error{"is no whole number of elements"};
+  if (bytes.size() % size) return Error{"is not a whole number of elements"};
   const std::size_t count = bytes.size() / size;
   SL_ASSIGN(std::byte * to, room(field, count, place));
   if (type == field.type || (is_octet(type) && is_octet(field.type))) {
@@ -268,7 +268,7 @@ Status read_json(const MessageInfo& info, std::string_view text, void* message) 
   try {
     document = Json::parse(text);
   } catch (const Json::exception& e) {  // the library's only way to report the place
-    return Error{std::string("is no JSON: ") + e.what()};
+    return Error{std::string("is not a JSON: ") + e.what()};
   }
   return set_message(info, document, message);
 }

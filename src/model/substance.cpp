@@ -65,7 +65,7 @@ Result<NamedSubstance> from_numbers(std::string_view text) {
     at = std::min(text.find_first_of(" \t\n\r,[]", begin), text.size());
     double x = 0;
     if (count == n.size() || !parse_number(text.substr(begin, at - begin), x))
-      return Error{"'" + std::string(text.substr(0, 60)) + "' is no substance",
+      return Error{"'" + std::string(text.substr(0, 60)) + "' is not a substance",
                    "for example metal(0.5), plastic, rubber(20), foam(10), snow(0.5), or four numbers: "
                    "roughness, slip, hardness, elasticity"};
     n[count++] = x;
@@ -74,7 +74,7 @@ Result<NamedSubstance> from_numbers(std::string_view text) {
   const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
   if (count != n.size() || !within(s.roughness, 0, 100) || !within(s.slip, 0, 100) ||
       !within(s.hardness, 1e-6, 1e6) || !within(s.elasticity, 0, 1))
-    return Error{"'" + std::string(text.substr(0, 60)) + "' is no substance",
+    return Error{"'" + std::string(text.substr(0, 60)) + "' is not a substance",
                  "four numbers are roughness 0..100, slip 0..100, hardness above 0, elasticity 0..1"};
   return NamedSubstance{s, ""};
 }
@@ -89,7 +89,7 @@ Result<NamedSubstance> substance_from(std::string_view text) {
     if (open == std::string_view::npos) return from_preset(preset, preset.usual);
     double argument = 0;
     if (text.back() != ')' || !parse_number(text.substr(open + 1, text.size() - open - 2), argument))
-      return Error{"'" + std::string(text.substr(0, 60)) + "' is no substance",
+      return Error{"'" + std::string(text.substr(0, 60)) + "' is not a substance",
                    std::string("write ") + preset.name + "(" + number_text(preset.usual) + ")"};
     return from_preset(preset, argument);
   }

@@ -515,7 +515,7 @@ TEST(RangeStages, BeamsAtAnEdgeShowSomethingBetween) {
       ++changed[i % 10];
       between.push_back(static_cast<double>(seen[i]));
     }
-  for (int i = 0; i < 10; ++i) {  // at 4 | 1 alone: infinite neighbours and small steps are no edges
+  for (int i = 0; i < 10; ++i) {  // at 4 | 1 alone: infinite neighbours and small steps are not edges
     const double p = i == 2 || i == 3 ? 0.4 : 0;
     EXPECT_NEAR(changed[i], p * n, 5 * std::sqrt(p * (1 - p) * n)) << i;
   }

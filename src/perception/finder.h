@@ -5,7 +5,7 @@
 ///          at X_BS.
 /// Ball     its middle is where the ray of the patch's middle meets the plane of its radius; rays that hardly
 ///          fall (less than 1.5 degrees) meet it anywhere, so there the size of the patch decides. `visible`
-///          is the size seen of that expected; patches too small or too large for their place are no balls,
+///          is the size seen of that expected; patches too small or too large for their place are not balls,
 ///          nor are lines of mixed colour where two surfaces meet.
 /// Standing things (goals, robots, posts) have a lower edge at a known height. In each of up to 48 directions
 /// the lowest pixel of the

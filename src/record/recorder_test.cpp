@@ -129,7 +129,7 @@ TEST_F(RecorderTest, APipeThatNobodyEmptiesCostsMessagesAndNotTheRun) {
   simulation->add_observer(recorder->get());
   advance(*simulation, 3000);
   EXPECT_EQ(simulation->state_hash(), hash_without(3000));
-  ::close(reader);  // the writer's wait ends with a broken pipe, which is no end of the process
+  ::close(reader);  // the writer's wait ends with a broken pipe, which is not an end of the process
   const Status status = (*recorder)->finish();
   ASSERT_FALSE(status);
   EXPECT_THAT(status.error().what, testing::HasSubstr("pipe"));

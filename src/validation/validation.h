@@ -3,7 +3,7 @@
 ///
 /// Each measures through the engines' public border, with the settings a scenario has by default, and sets
 /// next to the measured number the one that follows from a formula, and the bound within which it has to lie.
-/// Bounds that are no rounding are those of the method (a time step, an iterative solver), and the text
+/// Bounds that are not a rounding are those of the method (a time step, an iterative solver), and the text
 /// states which.
 #include <string>
 #include <vector>

@@ -63,7 +63,7 @@ Result<Json> parse(std::string_view text) {
   };
   Json document = Json::parse(text, watch, false);
   if (document.is_discarded()) return Error{"a message that is not JSON"};
-  if (!document.is_object()) return Error{"a message that is no JSON object"};
+  if (!document.is_object()) return Error{"a message that is not a JSON object"};
   if (!twice.empty()) return Error{"a message with the key " + shown(twice) + " twice"};
   return document;
 }
@@ -108,7 +108,7 @@ class Reader {
     std::size_t place = 0;
     for (const Json& each : *list) {
       const std::string path = name_ + ": " + key + "[" + std::to_string(place++) + "]";
-      if (!each.is_object()) return Error{path + " is no object"};
+      if (!each.is_object()) return Error{path + " is not an object"};
       SL_TRY(take(Reader(each, path)));
     }
     return {};
@@ -306,7 +306,7 @@ Result<PlaybackControl> read_playback(ByteReader& r) {
   if (!read_counted(r, out.id) || r.remaining() != 0)
     return Error{"a playback control (binary op 3) whose length is wrong"};
   if (command > 1) return Error{"a playback control with the command " + std::to_string(command), "0 or 1"};
-  if (!std::isfinite(speed)) return Error{"a playback control whose speed is no number"};
+  if (!std::isfinite(speed)) return Error{"a playback control whose speed is not a number"};
   out.play = command == 0;
   out.speed = speed;
   if (has_seek) out.seek_ns = seek;

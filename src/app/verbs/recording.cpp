@@ -149,7 +149,7 @@ int topic_echo(const RecordingOptions& options) {
   const auto reader = open(options);
   if (!reader) return complain(reader.error());
   const mcap::Channel* const found = reader->find_channel(options.topic);
-  if (!found) return complain({"'' is no topic", "`sandlot topic list " + options.file + "` names them"});
+  if (!found) return complain({"'' is not a topic", "`sandlot topic list " + options.file + "` names them"});
   const mcap::Channel& channel = *found;
   const mcap::Schema* const schema = reader->schema_of(channel);
   const bool is_json = channel.message_encoding == "json";

@@ -83,7 +83,7 @@ class Reader {
       double meter = 1;
       const std::string* text = unit->attribute("meter");
       if (text && (!number(*text, meter) || !(meter > 0)))
-        return unit->error("meter='" + text->substr(0, 40) + "' is no length",
+        return unit->error("meter='" + text->substr(0, 40) + "' is not a length",
                            "give a positive number of metres");
       X = scaling({meter, meter, meter});
     }
@@ -106,7 +106,7 @@ class Reader {
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       if (!number(word, value))
         return element.error("<" + element.name + ">: '" + std::string(word.substr(0, 40)) +
-                             "' is no finite number");
+                             "' is not a finite number");
       out.push_back(value);
     }
     return {};
@@ -117,7 +117,8 @@ class Reader {
     std::int64_t value = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       if (!integer(word, value) || value < 0 || value > 0x7FFFFFFF)
-        return element.error("<" + element.name + ">: '" + std::string(word.substr(0, 40)) + "' is no index");
+        return element.error("<" + element.name + ">: '" + std::string(word.substr(0, 40)) +
+                             "' is not an index");
       out.push_back(static_cast<std::uint32_t>(value));
     }
     work_ += out.size();
@@ -249,7 +250,7 @@ class Reader {
     std::size_t count = 0;
     if (!read("count", 0, count) || !read("offset", 0, s.offset) || !read("stride", 1, s.stride) ||
         s.stride == 0)
-      return accessor->error("<accessor> has a count, offset or stride that is no number");
+      return accessor->error("<accessor> has a count, offset or stride that is not a number");
     s.count = s.values.size() > s.offset ? (s.values.size() - s.offset) / s.stride : 0;
     if (count > s.count)
       return accessor->error("<accessor> wants " + std::to_string(count) + " x " + std::to_string(s.stride) +
@@ -272,7 +273,7 @@ class Reader {
       std::int64_t offset = 0;
       const std::string text = value_of(input, "offset");
       if (!text.empty() && (!integer(text, offset) || offset < 0 || offset > 64))
-        return input.error("offset='" + text.substr(0, 40) + "' is no small number");
+        return input.error("offset='" + text.substr(0, 40) + "' is not a small number");
       const auto at = static_cast<std::size_t>(offset);
       out.stride = std::max(out.stride, at + 1);
       SL_TRY(use_uv(input, at));

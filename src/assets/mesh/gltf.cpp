@@ -87,7 +87,7 @@ class Reader {
     const Json* asset = member(json_, "asset");
     const std::string version = asset ? text_of(*asset, "version") : "";
     if (version.substr(0, 2) != "2.")
-      return out_.error(version.empty() ? "is no glTF file: it has no asset version"
+      return out_.error(version.empty() ? "is not a glTF file: it has no asset version"
                                         : "is glTF version " + version.substr(0, 20),
                         "version 2 is read");
     static constexpr std::string_view known[] = {"KHR_mesh_quantization", "KHR_texture_transform",
@@ -320,7 +320,7 @@ class Reader {
                           std::to_string(points.count));
       if (made[k] == none) {
         const Vec3 p{points.get(k, 0), points.get(k, 1), points.get(k, 2)};
-        if (!is_finite(p)) return out_.error("vertex " + std::to_string(k) + " is no number");
+        if (!is_finite(p)) return out_.error("vertex " + std::to_string(k) + " is not a number");
         std::array<float, 2> at{};  // v runs downwards in the file
         if (has_uv) at = {static_cast<float>(uv.get(k, 0)), static_cast<float>(1 - uv.get(k, 1))};
         made[k] = out_.vertex(X * p, at);
@@ -377,7 +377,7 @@ Status read_gltf(std::string_view bytes, Builder& out, Diagnostics& diagnostics)
     return out.error("its JSON part is too large", "keep buffers in a .bin file");
   const Json document = Json::parse(text, nullptr, false);
   if (document.is_discarded() || !document.is_object())
-    return out.error("is no glTF file: its JSON part is broken", "the file is cut off or damaged");
+    return out.error("is not a glTF file: its JSON part is broken", "the file is cut off or damaged");
   return Reader(document, binary, out, diagnostics).read();
 }
 

@@ -132,7 +132,7 @@ TEST(Mesh, TrianglesWithoutAreaAreDroppedAndNumbersMustBeNumbers) {
   std::string stl = stl_binary();
   const float nan = NAN;
   std::memcpy(stl.data() + 84 + 50 + 12, &nan, 4);
-  expect_says(complaint(stl, "a.stl"), "triangle 1 has a corner that is no number");
+  expect_says(complaint(stl, "a.stl"), "triangle 1 has a corner that is not a number");
   std::string dae = collada();
   dae.replace(dae.find("0 0 0 1 0 0"), 1, "NaN");
   expect_says(complaint(dae, "a.dae"), "no finite number");
@@ -166,7 +166,7 @@ TEST(Mesh, StlBinaryThatBeginsWithSolidAndAsciiOfSeveralSolids) {
   EXPECT_EQ(both.parts[1].first_triangle, 4u);
   expect_tetrahedron(parsed(two, "two.stl", {.submesh = "second"}));
   expect_says(complaint("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "a.stl"), "a.stl:4: ");
-  expect_says(complaint("hello", "a.stl"), "is no STL file");
+  expect_says(complaint("hello", "a.stl"), "is not a STL file");
 }
 
 TEST(Mesh, ColladaUnitsNodesAndMirrors) {
@@ -178,7 +178,7 @@ TEST(Mesh, ColladaUnitsNodesAndMirrors) {
   const TriangleMesh mirrored = parsed(collada("", "<matrix>-1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>"),
                                        "a.dae");
   expect_tetrahedron(mirrored, {-1, 1, 1}, {5, 0, 0});
-  expect_says(complaint(collada("<unit meter=\"0\"/>"), "a.dae"), "is no length");
+  expect_says(complaint(collada("<unit meter=\"0\"/>"), "a.dae"), "is not a length");
   expect_says(complaint(collada("", "<translate>1 2</translate>"), "a.dae"), "3 are needed");
 }
 

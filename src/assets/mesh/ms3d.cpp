@@ -12,7 +12,7 @@ struct Triangle {
 
 Status read_ms3d(std::string_view bytes, Builder& out) {
   Bytes in(bytes);
-  if (!in.has(14) || in.text(10) != "MS3D000000") return out.error("is no MS3D file");
+  if (!in.has(14) || in.text(10) != "MS3D000000") return out.error("is not a MS3D file");
   if (const auto version = in.get<std::int32_t>(); version != 3 && version != 4)
     return out.error("is MS3D version " + std::to_string(version), "versions 3 and 4 are read");
 
@@ -24,7 +24,7 @@ Status read_ms3d(std::string_view bytes, Builder& out) {
     in.skip(1);
     const auto x = in.get<float>(), y = in.get<float>(), z = in.get<float>();
     points.push_back({x, y, z});
-    if (!is_finite(points.back())) return out.error("vertex " + std::to_string(i) + " is no number");
+    if (!is_finite(points.back())) return out.error("vertex " + std::to_string(i) + " is not a number");
     in.skip(2);
   }
 

@@ -116,7 +116,7 @@ Status read_obj(std::string_view bytes, Builder& out, Diagnostics& diagnostics) 
   while (true) {
     const int here = in.line();
     if (!in.next_line(line)) break;
-    if (line.find('\0') != std::string_view::npos) return out.error("is no text file", "", here);
+    if (line.find('\0') != std::string_view::npos) return out.error("is not a text file", "", here);
     if (!line.empty() && line.back() == '\\') {  // goes on in the next line
       joined.clear();
       bool more = true;

@@ -74,7 +74,7 @@ struct Header {
 
 Status read_header(Words& in, Header& header, const Builder& out) {
   std::string_view line;
-  if (!in.next_line(line) || line != "ply") return out.error("is no PLY file", "", 1);
+  if (!in.next_line(line) || line != "ply") return out.error("is not a PLY file", "", 1);
   while (true) {
     const int here = in.line();
     const auto bad = [&] {
@@ -158,7 +158,7 @@ Status read_ply(std::string_view bytes, Builder& out) {
       }
       if (is_vertex) {
         if (!is_finite(p))
-          return out.error("vertex " + std::to_string(i) + " is no number", "", values.line());
+          return out.error("vertex " + std::to_string(i) + " is not a number", "", values.line());
         out.vertex(p, uv);
         ++vertices;
       } else if (is_face && corners.size() > 2) {

@@ -104,7 +104,7 @@ Result<std::string> Builder::read_beside(const std::string& name, int line) cons
   const std::string normal = beside("", file);
   if (file.empty() || file.front() == '/' || normal.substr(0, 2) == ".." ||
       file.find(':') != std::string::npos || file.find('\0') != std::string::npos)
-    return error("'" + name.substr(0, 80) + "' is not read: it is no file in the mesh's folder", "", line);
+    return error("'" + name.substr(0, 80) + "' is not read: it is not a file in the mesh's folder", "", line);
   auto bytes = read_text_file(beside(folder_of(path_), file), options_.max_bytes);
   if (!bytes)
     return error("'" + name.substr(0, 80) + "', which it names, " +

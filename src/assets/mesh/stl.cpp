@@ -28,7 +28,7 @@ Status read_binary(std::string_view bytes, std::uint32_t count, Builder& out) {
       const auto x = in.get<float>(), y = in.get<float>(), z = in.get<float>();
       const Vec3 p{x, y, z};
       if (!is_finite(p))
-        return out.error("triangle " + std::to_string(t) + " has a corner that is no number");
+        return out.error("triangle " + std::to_string(t) + " has a corner that is not a number");
       corner = out.vertex(p);
     }
     in.skip(2);
@@ -69,7 +69,7 @@ Status read_ascii(std::string_view bytes, Builder& out) {
     } else if (word == "endsolid") {
       in_solid = false;
     } else if (!word.empty() && word != "outer" && word != "endloop") {
-      return out.error("'" + word.substr(0, 40) + "' is no word of an STL file", "is the file damaged?",
+      return out.error("'" + word.substr(0, 40) + "' is not a word of an STL file", "is the file damaged?",
                        here);
     }
   }
@@ -89,7 +89,7 @@ Status read_stl(std::string_view bytes, Builder& out) {
     const bool text = solid && bytes.find('\0') == std::string_view::npos;
     if (fits || !text) return read_binary(bytes, count, out);
   } else if (!solid) {
-    return out.error("is no STL file", "an STL file begins with 'solid' or has a header of 84 bytes");
+    return out.error("is not a STL file", "an STL file begins with 'solid' or has a header of 84 bytes");
   }
   return read_ascii(bytes, out);
 }

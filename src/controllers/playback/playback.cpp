@@ -38,7 +38,7 @@ Result<std::vector<Sample>> read_samples(std::string_view text) {
       double number = 0;
       if (!parse_number(word, number) || !std::isfinite(number) || std::abs(number) > 1e9)
         return Error{
-            "row " + std::to_string(row) + ": '" + std::string(word.substr(0, 40)) + "' is no number here",
+            "row " + std::to_string(row) + ": '" + std::string(word.substr(0, 40)) + "' is not a number here",
             "a row is: time, vx, vy, wz"};
       numbers.push_back(number);
       if (numbers.size() > 4) break;

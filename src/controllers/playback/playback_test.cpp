@@ -86,8 +86,8 @@ TEST(Playback, RefusesWhatItCannotPlay) {
   EXPECT_EQ(complaint(" \n,\n"), "there are no samples");
   EXPECT_EQ(complaint("0 1 2"), "row 1 has 3 numbers");
   EXPECT_EQ(complaint("0 1 2 3 4"), "row 1 has more than 4 numbers");
-  EXPECT_EQ(complaint("0 1 2 3\n1 2 fast 4"), "row 2: 'fast' is no number here");
-  EXPECT_EQ(complaint("0 1 2 nan"), "row 1: 'nan' is no number here");
+  EXPECT_EQ(complaint("0 1 2 3\n1 2 fast 4"), "row 2: 'fast' is not a number here");
+  EXPECT_EQ(complaint("0 1 2 nan"), "row 1: 'nan' is not a number here");
   EXPECT_EQ(complaint("1 0 0 0\n0.5 0 0 0"), "row 2 is earlier than the one above it");
   Playback unread;
   unread.spec.file = "run.mcap";

@@ -10,7 +10,7 @@ namespace {
 Result<double> number_of(const Node& node, const std::string& device) {
   double value = 0;
   if (!node.is_scalar() || !parse_number(node.text(), value) || !std::isfinite(value))
-    return node.error("the order for '" + device + "' is no number",
+    return node.error("the order for '" + device + "' is not a number",
                       "write a number, true, false or [forward, left, turn]", "/steps");
   return value;
 }

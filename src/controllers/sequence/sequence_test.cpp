@@ -121,7 +121,7 @@ TEST(Sequence, RefusesWhatItCannotOrder) {
       << "no Float64 there";
   EXPECT_NE(complaint({step_at("0", {{"elbow", "true"}})}).find("'elbow'"), std::string::npos)
       << "no Bool there";
-  EXPECT_NE(complaint({step_at("0", {{"elbow", "fast"}})}).find("is no number"), std::string::npos);
+  EXPECT_NE(complaint({step_at("0", {{"elbow", "fast"}})}).find("is not a number"), std::string::npos);
   EXPECT_NE(complaint({step_at("2", {{"elbow", "1"}}), step_at("1", {{"elbow", "1"}})})
                 .find("before the one above"),
             std::string::npos);

@@ -112,7 +112,7 @@ Result<Curve> custom_curve(const Node& lens, Diagnostics& diagnostics) {
   const Node* const node = find(lens, "custom_function/fun");
   const std::string fun = text(node);
   if (node && fun != "tan" && fun != "sin" && fun != "id")
-    return node->error("'" + fun.substr(0, 40) + "' is no function of a lens", "write sin, tan or id");
+    return node->error("'" + fun.substr(0, 40) + "' is not a function of a lens", "write sin, tan or id");
   if (fun == "id") return Curve{Curve::Function::id, 1, c1 * f / c2};
   return Curve{fun == "sin" ? Curve::Function::sin : Curve::Function::tan, c2, c1 * f / c2};
 }
@@ -156,7 +156,7 @@ Status copy_lens(const Node& camera, Node& config, Diagnostics& diagnostics) {
   if (named == std::end(named_curves) && name != "custom") {
     std::vector<std::string> known{"gnomonical", "custom"};
     for (const NamedCurve& each : named_curves) known.emplace_back(each.sdf);
-    return type->error("'" + name.substr(0, 40) + "' is no type of a lens", suggestion(name, known));
+    return type->error("'" + name.substr(0, 40) + "' is not a type of a lens", suggestion(name, known));
   }
   Curve curve{};
   if (named != std::end(named_curves)) {

@@ -135,7 +135,7 @@ TEST(Sdf, ReadsWhatASurfaceIsMadeOf) {
   EXPECT_NE(r.warnings[0].find("rubber(60) is outside"), std::string::npos) << r.warnings[0];
 
   for (const auto& [surface, message] :
-       {std::pair{"<sandlot:substance>wood</sandlot:substance>", "'wood' is no substance"},
+       {std::pair{"<sandlot:substance>wood</sandlot:substance>", "'wood' is not a substance"},
         std::pair{"<sandlot:substance>foam(0)</sandlot:substance>", "no foam(0)"},
         std::pair{"<sandlot:skin><axis>0 0 0</axis><ratio>1</ratio></sandlot:skin>", "no length"},
         std::pair{"<sandlot:skin><axis>1 0 0</axis></sandlot:skin>", "no <ratio>"},

@@ -311,7 +311,7 @@ Status add_axis(const Robot& robot, const Xml& joint, const std::string& type, X
     const auto found = robot.joint_index.find(leader);
     if (found == robot.joint_index.end())
       return mimic->error("joint '" + joint.attribute("name")->substr(0, 60) + "' mimics '" +
-                              leader.substr(0, 60) + "', which is no joint",
+                              leader.substr(0, 60) + "', which is not a joint",
                           suggestion(leader, keys_of(robot.joint_index)));
     if (robot.joints[found->second] == &joint)
       return mimic->error("joint '" + leader.substr(0, 60) + "' mimics itself");

@@ -33,7 +33,7 @@ void PlanarEngine::relate(Roll& roll) const {
   const Instance& instance = instances_[roll.slot];
   const auto link = static_cast<std::size_t>(
       std::find(instance.bodies.begin(), instance.bodies.end(), roll.target.base) - instance.bodies.begin());
-  SL_CHECK_MSG(link < instance.bodies.size(), "the base is no body of the wheel's robot");
+  SL_CHECK_MSG(link < instance.bodies.size(), "the base is not a body of the wheel's robot");
   const Pose& X_HB = instance.plan->X_HL[link];
   const Vec3 x = rotate(X_HB.q, {1, 0, 0}), y = rotate(X_HB.q, {0, 1, 0});
   const Vec2 arm = Vec2{X_HB.p.x, X_HB.p.y} - instance.plan->groups[0].com_H;

@@ -135,7 +135,7 @@ Status RigidEngine::check(const model::Instance& instance) const {
                      "0 switches it off", joint.place};
     }
     if (!(std::abs(joint.thread_pitch_m) < 1e6))
-      return Error{"the thread pitch of joint '" + joint.name + "' is no length",
+      return Error{"the thread pitch of joint '" + joint.name + "' is not a length",
                    "give it in metres per turn", joint.place};
     if (joint.rollers && !model::is_wheel(*joint.rollers))
       return Error{"the wheel with rollers of joint '" + joint.name + "' has no sound sizes",
@@ -155,7 +155,7 @@ Status RigidEngine::check(const model::Instance& instance) const {
                      "a joint with an axis follows another one of its model", joint.place};
       if (!(std::abs(joint.mimic->multiplier) < 1e9 && std::abs(joint.mimic->offset) < 1e9 &&
             std::abs(joint.mimic->reference) < 1e9))
-        return Error{"the multiplier or offset of mimic joint '" + joint.name + "' is no sound number", "",
+        return Error{"the multiplier or offset of mimic joint '" + joint.name + "' is not a sound number", "",
                      joint.place};
     }
     const bool bounded = joint.type != model::JointType::fixed && joint.type != model::JointType::ball &&
@@ -171,7 +171,7 @@ Status RigidEngine::check(const model::Instance& instance) const {
     if (!is_limit(joint.max_effort) || !is_limit(joint.max_velocity) ||
         !(std::abs(joint.spring_reference) <= 1e16))
       return Error{"the largest effort or velocity of joint '" + joint.name +
-                       "', or the reference of its spring, is no sound number",
+                       "', or the reference of its spring, is not a sound number",
                    "limits are from 0 to 1e16", joint.place};
   }
   return {};
@@ -285,7 +285,7 @@ void RigidEngine::make_geoms(Instance& instance) {
   count += instance.wheels.size();
   moving += instance.wheels.size();
   // One space for the moving shapes of a robot: the world sorts robots, not wheels. What stands is sorted one
-  // by one, because the box around a house is no bound for its walls.
+  // by one, because the box around a house is not a bound for its walls.
   if (moving > 1) {
     instance.space = dSimpleSpaceCreate(space_);
     dSpaceSetCleanup(instance.space, 0);

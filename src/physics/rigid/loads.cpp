@@ -1,7 +1,7 @@
 /// Forces of contacts and loads of joints, for those requested before the sub-step.
 ///
 /// A contact, and a joint that moves, are rows of ODE, which reports the force of each row on demand. A fixed
-/// joint is no joint to ODE: what it joins is one body. Its load follows from Newton and Euler over the links
+/// joint is not a joint to ODE: what it joins is one body. Its load follows from Newton and Euler over the links
 /// behind it (those that hang on the child by fixed joints alone), with the acceleration that the sub-step
 /// gave their common body:
 ///

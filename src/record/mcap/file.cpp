@@ -86,7 +86,7 @@ Result<InputFile> InputFile::open(const std::string& path) {
   InputFile file(fd, 0, path);
   struct stat info {};
   if (::fstat(fd, &info) != 0) return failed("cannot read", path);
-  if (!S_ISREG(info.st_mode)) return Error{"cannot read '" + path + "': it is no ordinary file"};
+  if (!S_ISREG(info.st_mode)) return Error{"cannot read '" + path + "': it is not an ordinary file"};
   file.size_ = static_cast<std::uint64_t>(info.st_size);
   return file;
 }

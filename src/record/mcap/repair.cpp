@@ -40,7 +40,7 @@ ChunkIndex entry_of(const Walk::Piece& piece) {
           head.compression, head.stored_size, head.uncompressed_size};
 }
 
-/// What the file says at its end against what is in it. Parts that a foreign writer left out are no error.
+/// What the file says at its end against what is in it. Parts that a foreign writer left out are not an error.
 Status compare(const InputFile& file, std::uint64_t at, const Summary& declared, const Summary& found) {
   const auto same_part = [](const auto& declared_part, const auto& found_part) {
     return std::all_of(declared_part.begin(), declared_part.end(), [&](const auto& one) {

@@ -154,7 +154,7 @@ void Hub::advertise(ClientId id, Client& client, const foxglove::Advertise& requ
       return;
     }
     if (each.encoding != "cdr" && each.encoding != "json") {
-      refuse(id, "'" + each.encoding.substr(0, 60) + "' is no encoding of messages; cdr and json are");
+      refuse(id, "'" + each.encoding.substr(0, 60) + "' is not an encoding of messages; cdr and json are");
       continue;
     }
     Publication made;

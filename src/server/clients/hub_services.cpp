@@ -54,7 +54,7 @@ void Hub::call(ClientId id, Client& client, const foxglove::CallService& request
     return fail("more than " + std::to_string(most_calls) + " calls wait for their answers");
   const bool json = request.encoding == "json";
   if (!json && request.encoding != "cdr")
-    return fail("'" + request.encoding.substr(0, 60) + "' is no encoding of requests; cdr and json are");
+    return fail("'" + request.encoding.substr(0, 60) + "' is not an encoding of requests; cdr and json are");
   const MessageInfo& info = *type.request;
   const auto message = json ? message_from_json(info, {reinterpret_cast<const char*>(request.bytes.data()),
                                                        request.bytes.size()})

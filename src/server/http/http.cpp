@@ -305,7 +305,7 @@ std::string Url::authority() const {
 }
 
 Result<Url> read_url(std::string_view url) {
-  const Error error{fmt::format("\"{}\" is no address of a server", url),
+  const Error error{fmt::format("\"{}\" is not an address of a server", url),
                     "write ws://HOST:PORT/?token=TOKEN"};
   std::string_view rest = url;
   const auto colon = rest.find("://");

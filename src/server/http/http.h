@@ -74,7 +74,7 @@ bool etag_matches(std::string_view if_none_match, std::string_view etag);
 struct AnswerHead {
   int status = 200;
   std::string_view type;
-  std::optional<std::size_t> length;  ///< none: there is no body, and that is no fact about it (304)
+  std::optional<std::size_t> length;  ///< none: there is no body, and that says nothing about it (304)
   std::string_view etag;              ///< without quotes; empty: not to be stored
   std::string_view allow_origin;      ///< a site whose pages may read it; empty: none but ours
   std::string_view allow;             ///< with 405: the methods that there are

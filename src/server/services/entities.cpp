@@ -45,7 +45,7 @@ void get_entities(const ServiceContext& context, const GetEntities::Request& req
   if (!filters.tags.tags.empty())
     no.result = make_result(SimResult::feature_unsupported, "entities have no tags");
   if (filters.bounds.type != Bounds::empty)
-    no.result = make_result(SimResult::feature_unsupported, "bounds are no filter here");
+    no.result = make_result(SimResult::feature_unsupported, "bounds are not a filter here");
   if (!no.result.error_message.empty()) return reply(no);
   std::vector<std::uint8_t> categories;
   for (const EntityCategory& each : filters.categories) categories.push_back(each.category);

@@ -98,7 +98,7 @@ void check_speed(const Simulation& simulation, Findings& findings) {
       if (!takes_commands(*device)) continue;
       const auto speed = fastest_mps(device->decl, model);
       if (!speed) continue;
-      // What the robot stands on or passes below is no wall to it.
+      // What the robot stands on or passes below is not a wall to it.
       const double clearance = 0.1 * (top - bottom);
       const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall& w) {
         return w.top_m > bottom + clearance && w.bottom_m < top - clearance;

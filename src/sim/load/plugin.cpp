@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 /// The loader maps a file without asking whether it is all there, and a file that is cut short then ends the program
 /// with SIGBUS: this asks first.
 Status check_library(const std::string& file, std::span<const std::byte> bytes, const Place& place) {
-  const Error no_library{"'" + file + "' is no shared library for this machine", "", place};
+  const Error no_library{"'" + file + "' is not a shared library for this machine", "", place};
   const Error cut_short{"'" + file + "' is damaged: it is cut short", "build it again", place};
   Elf64_Ehdr header;
   if (bytes.size() < sizeof header) return no_library;
@@ -54,7 +54,7 @@ Result<std::vector<std::byte>> read_library(const std::string& file, const Place
   std::error_code failed;
   const std::uintmax_t size = fs::is_regular_file(file, failed) ? fs::file_size(file, failed) : 0;
   if (failed || size == 0 || size > max_bytes)
-    return Error{"'" + file + "' is no shared library", "name the .so file of a plugin", place};
+    return Error{"'" + file + "' is not a shared library", "name the .so file of a plugin", place};
   std::ifstream in(file, std::ios::binary);
   std::vector<std::byte> bytes(size);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
@@ -65,8 +65,8 @@ Result<std::vector<std::byte>> read_library(const std::string& file, const Place
 /// Checks the table of a library that has one and takes its content over.
 Result<Plugin> read_table(const std::string& file, const PluginTable* table, const Place& place) {
   if (!table || table->magic != plugin_magic || !table->name || !table->build_id)
-    return Error{"'" + file + "' is no Sandlot plugin", "export its controllers by SANDLOT_PLUGIN(name, ...)",
-                 place};
+    return Error{"'" + file + "' is not a Sandlot plugin",
+                 "export its controllers by SANDLOT_PLUGIN(name, ...)", place};
   Plugin plugin{file, table->name, table->build_id, 0, {}};
   const std::string rebuild = "build it again with this Sandlot's CMake package";
   if (table->api_version != static_cast<std::uint32_t>(controller_api_version))

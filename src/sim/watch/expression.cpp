@@ -232,7 +232,7 @@ class Expression::Parser {
     // With every input NaN, whatever depends on one is NaN: what breaks now is made of constants alone.
     const std::vector<double> unknown(out_.inputs_.size(), std::numeric_limits<double>::quiet_NaN());
     if (is_broken(out_.run(unknown, true)))
-      return lexer_.error(0, "a part of it that is all constants is no finite number",
+      return lexer_.error(0, "a part of it that is all constants is not a finite number",
                           "is it a division by 0?");
     return std::move(out_);
   }

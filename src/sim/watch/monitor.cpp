@@ -76,7 +76,7 @@ Result<std::optional<std::string>> Monitor::judge(Time now) {
       return Error{"event '" + event.decl.name + "': " +
                        // A comparison with infinity is a finite 0 or 1.
                        (std::isfinite(condition->value) ? "a part of '" : "'") + event.decl.when +
-                       "' is no finite number at " + number_text(now.s()) + " s",
+                       "' is not a finite number at " + number_text(now.s()) + " s",
                    "guard it, as in if(x == 0, 0, 1 / x)", event.decl.place};
     if (!condition || condition->value == 0) {
       event.holds = event.happened = false;

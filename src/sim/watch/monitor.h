@@ -4,7 +4,7 @@
 /// Named values are computed when they are asked for, in the order of their declaration; each may use those before it.
 /// Events are judged once per tick, in phase 7. An event happens when its condition has held (was other than 0) for
 /// `hold` without a break, and once per such stretch. No value (nothing measured yet) counts as "does not hold"; a
-/// value that is no finite number fails the run.
+/// value that is not a finite number fails the run.
 ///
 /// State   of the scenario's events: since when they hold, how often they happened. Events added later (from the
 ///         command line) are a matter of the observer, like the stop time, and no part of State.

@@ -186,7 +186,7 @@ Status Parameters::check(const Parameter& parameter, const Node& value) {
       if (!read) return std::move(read.error());
     } else if (info.type == "choice") {
       if (std::find(info.choices.begin(), info.choices.end(), value.text()) == info.choices.end())
-        return Error{"'" + value.text().substr(0, 40) + "' is no choice here",
+        return Error{"'" + value.text().substr(0, 40) + "' is not a choice here",
                      suggestion(value.text(), info.choices)};
     }
   }

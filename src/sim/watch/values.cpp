@@ -411,14 +411,14 @@ Error no_such(const Simulation& simulation, std::string_view address) {
   if (rest.empty()) {
     std::string example;
     if (!addresses.empty()) example = "name one of its values, such as " + addresses.front();
-    return {"'" + shown + "' is no number", example};
+    return {"'" + shown + "' is not a number", example};
   }
   // The parts of a group: everything that begins with it.
   std::vector<std::string> parts;
   for (const std::string& each : addresses)
     if (starts_with(each, std::string(address) + ".") || starts_with(each, std::string(address) + "["))
       parts.push_back(each);
-  if (!parts.empty()) return {"'" + shown + "' is no number but a group of them", suggestion("", parts)};
+  if (!parts.empty()) return {"'" + shown + "' is not a number but a group of them", suggestion("", parts)};
   return {"'" + std::string(thing) + "' has no value '" + std::string(rest.substr(0, 100)) + "'",
           suggestion(address, addresses)};
 }

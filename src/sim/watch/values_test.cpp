@@ -82,7 +82,7 @@ TEST(NamedValue, ErrorsNameWhatIsNear) {
       {"rover1.pose", "no number but a group of them; known are: rover1.pose.x"},
       {"rover1/laser.rages[3]", "did you mean 'rover1/laser.ranges[0]'?"},
       {"rover1/laser.ranges", "no number but a group"},
-      {"rover1", "is no number; name one of its values, such as rover1.pose.x"},
+      {"rover1", "is not a number; name one of its values, such as rover1.pose.x"},
       {"sim.tim", "did you mean 'sim.time'?"},
       {"rover1.joints.left_wheel_join.position", "did you mean 'rover1.joints.left_wheel_joint.position'?"},
       {"", "there is no ''"}};

@@ -195,7 +195,7 @@ struct PointMass {
   friend bool operator==(const PointMass&, const PointMass&) = default;
 };
 /// The masses that an instance's devices declare, presets included.
-/// Errors   masses on something that is not moved by forces; what is no mass.
+/// Errors   masses on something that is not moved by forces; what is not a mass.
 /// @param kind_of  the kind of a name; null: there is none
 Result<std::vector<PointMass>> masses_of_devices(const model::Instance& instance,
                                                  const std::function<const Kind*(std::string_view)>& kind_of);

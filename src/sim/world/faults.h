@@ -12,7 +12,7 @@
 /// noisy   Its errors, those of its commands included, are `factor` times as large: as if its key `errors` were.
 ///
 /// By order while the run goes on: the parameter `failure` of the device, whatever its kind, is stuck, dead, noisy or
-/// {kind: noisy, factor: 5}; `none` is no failure even if one is planned, `planned` follows the key `failures`. An order
+/// {kind: noisy, factor: 5}; `none` is not a failure even if one is planned, `planned` follows the key `failures`. An order
 /// holds until the next one.
 ///
 /// Inside the device life goes on: its samples are counted, its biases drift, so that it is as it would have been once a

@@ -341,7 +341,7 @@ TEST(Errors, AFactorIsANumberFrom0To1000) {
   };
   EXPECT_THAT(error_of("sim", "errors", "-1"), HasSubstr("must be in [0, 1000]"));
   EXPECT_THAT(error_of("rover1", "errors", "nan"), HasSubstr("/errors"));
-  EXPECT_THAT(error_of("rover1", "pose", "1"), HasSubstr("'pose' is no parameter"));
+  EXPECT_THAT(error_of("rover1", "pose", "1"), HasSubstr("'pose' is not a parameter"));
   EXPECT_THAT(error_of("rover9", "errors", "1"), HasSubstr("rover9"));
   // All together they are cut: 1000 * 1000 stays 1000.
   EXPECT_EQ(error_of("sim", "errors", "1000"), "");

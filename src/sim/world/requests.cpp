@@ -102,7 +102,7 @@ Status Simulation::Processor::operator()(const ParameterRequest& request) {
 /// Sets the factor on the errors of all devices of an entity, or of the world (null).
 Status Simulation::Processor::set_errors(Entity* entity, std::string_view field, const Node& value) {
   if (field != errors_field.key)
-    return Error{"'" + std::string(field.substr(0, 60)) + "' is no parameter of the whole", "errors is",
+    return Error{"'" + std::string(field.substr(0, 60)) + "' is not a parameter of the whole", "errors is",
                  value.place()};
   SL_ASSIGN(const double factor,
             read_number(value, errors_field, errors_field.min, errors_field.max, false, "/errors"));

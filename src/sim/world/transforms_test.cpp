@@ -41,7 +41,7 @@ TEST(Transforms, OfAFrameGoFromTheWorldToTheFirstLinkAndOnToTheOthers) {
   msg::TFMessage out;
   out.transforms.resize(7);  // of an earlier frame that had more
   transforms_of(frame, out);
-  ASSERT_EQ(out.transforms.size(), 3u) << "what never moves is no part of it";
+  ASSERT_EQ(out.transforms.size(), 3u) << "what never moves is not part of it";
   expect_at(out, "world", "rover/base_link", {1, 2, 0.12}, math::pi / 2);
   expect_at(out, "rover/base_link", "rover/left_wheel", {0, 0.15, -0.05}, 0);
   expect_at(out, "rover/base_link", "rover/right_wheel", {0, -0.15, -0.05}, 0);

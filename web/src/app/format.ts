@@ -46,7 +46,7 @@ export function formatRate(hz: number): string {
   return hz < 0.05 ? '–' : `${hz < 9.95 ? hz.toFixed(1) : Math.round(hz)} Hz`;
 }
 
-/** What a person typed: "0.5", "1e-3", "90 deg", "5 cm", "-3". Null when it is no number. Results are in SI units. */
+/** What a person typed: "0.5", "1e-3", "90 deg", "5 cm", "-3". Null when it is not a number. Results are in SI units. */
 export function parseNumber(text: string): number | null {
   const match = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(deg|°|rad|mm|cm|m|km|ms|s|%)?\s*$/.exec(text.replace('−', '-'));
   if (!match) return null;

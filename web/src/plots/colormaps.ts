@@ -27,7 +27,7 @@ export function colorTable(name: MapName): Uint8Array {
   return table;
 }
 
-/** Colours of values into RGBA pixels; what is no finite number becomes transparent. */
+/** Colours of values into RGBA pixels; what is not a finite number becomes transparent. */
 export function paint(values: ArrayLike<number>, min: number, max: number, table: Uint8Array, pixels: Uint8ClampedArray): void {
   const scale = max > min ? 255 / (max - min) : 0;
   for (let i = 0; i < values.length; i++) {

@@ -27,7 +27,7 @@ export interface GridBytes {
 const MESH_MAGIC = 0x314d4c53;
 const GRID_MAGIC = 0x31474c53;
 
-/** undefined: the bytes are no mesh. */
+/** undefined: the bytes are not a mesh. */
 export function readMesh(bytes: ArrayBuffer): MeshBytes | undefined {
   if (bytes.byteLength < 20) return undefined;
   const view = new DataView(bytes);

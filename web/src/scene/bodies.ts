@@ -58,7 +58,7 @@ export class Body implements PoseSlot {
     return this.kin.bounds;
   }
 
-  /** Takes what a message told; false when that is no pose. */
+  /** Takes what a message told; false when that is not a pose. */
   take(time_s: number, scratch: Float64Array): boolean {
     if (!this.kin.chain.place(this, this.world, scratch, this.instance.pose)) return false;
     const passed_s = time_s - this.time_s;

@@ -1,5 +1,5 @@
 // What floats over the scene: tools, cameras, overlays, video; the stick and the note of the robot that is driven; the veil while there
-// is no connection.
+// is not a connection.
 import type {Context} from '../app/context';
 import {remember, remembered} from '../app/settings';
 import {h, setReason, setText} from './dom';

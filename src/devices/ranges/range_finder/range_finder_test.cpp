@@ -107,7 +107,7 @@ TEST(RangeFinder, ABadSpecIsRefusedAtItsPlace) {
   EXPECT_EQ(rig.add("sonar", config({{"min_range", "5"}, {"max_range", "5"}})).error().text(),
             "robot.yaml:2:9: /max_range: max_range must be greater than min_range; min_range is 5 m");
   EXPECT_EQ(rig.add("sonar", config({{"radiation", "infra"}})).error().text(),
-            "robot.yaml:1:9: /radiation: 'infra' is no choice here; known are: ultrasound, infrared");
+            "robot.yaml:1:9: /radiation: 'infra' is not a choice here; known are: ultrasound, infrared");
 }
 
 Result<Spec> spec_of(const Node& element, Diagnostics& diagnostics) {

@@ -49,7 +49,7 @@ TEST(TextDisplay, WrapsScrollsAndClears) {
   EXPECT_EQ(screen.shown(), "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\x9f\xe2\x82\xac\n!")
       << "five characters, twelve bytes";
   ASSERT_TRUE(screen.order("\f" + std::string(1000, '\x80')));
-  EXPECT_LE(screen.shown().size(), 20u) << "bytes that are no character";
+  EXPECT_LE(screen.shown().size(), 20u) << "bytes that are not characters";
 }
 
 TEST(TextDisplay, IsClearedByItsService) {

@@ -159,7 +159,7 @@ Result<std::unique_ptr<WebSocketClient>> WebSocketClient::connect(const std::str
     return Error{fmt::format("{} refuses ({}): {}", at.authority(), response.result_int(),
                              why.empty() ? "no reason given" : why)};
   }
-  if (ec) return Error{fmt::format("{} is no server of ours: {}", at.authority(), ec.message())};
+  if (ec) return Error{fmt::format("{} is not a server of ours: {}", at.authority(), ec.message())};
 
   impl->io.restart();
   auto* const running = impl.get();

@@ -28,7 +28,7 @@ Status Transport::Impl::listen() {
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(options.address, "", tcp::resolver::passive, ec);
   if (ec || found.empty())
-    return Error{fmt::format("\"{}\" is no address of this machine", options.address),
+    return Error{fmt::format("\"{}\" is not an address of this machine", options.address),
                  "try 127.0.0.1, 0.0.0.0, ::1 or ::"};
   // localhost is often both ::1 and 127.0.0.1; everybody tries the latter.
   const auto v4 = std::find_if(found.begin(), found.end(),
@@ -216,7 +216,7 @@ std::uint16_t Transport::port() const { return impl_->bound.port(); }
 
 std::string Transport::url() const {
   auto address = impl_->bound.address();
-  // "Everywhere" is no address to go to; this machine's own is one of those that are meant.
+  // "Everywhere" is not an address to go to; this machine's own is one of those that are meant.
   if (address.is_unspecified()) {
     if (address.is_v4()) address = net::ip::address_v4::loopback();
     else address = net::ip::address_v6::loopback();
