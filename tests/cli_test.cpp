@@ -65,7 +65,14 @@ TEST(Cli, AMisspeltVerbOrOptionIsAnsweredWithTheNearest) {
   refused("render scenarios/indoor.yaml --sze=8x8", "there is no option '--sze'; did you mean '--size'?");
   refused("run scenarios/indoor.yaml --colour",
           "there is no option '--colour'; sandlot run --help lists the options");
-  refused("list devices camera", "'camera' is one word too many; sandlot list --help lists the options");
+  refused("demo indoor fast", "'fast' is one word too many; sandlot demo --help lists the options");
+  refused("list devices camra", "list devices: there is no 'camra'; did you mean 'camera'?");
+  refused("list levels camera", "list levels takes no names; leave 'camera' out");
+  refused("list messages Twits", "list messages: there is no type 'Twits'");
+  refused("list devices --schema", "--schema stands for the whole; leave 'devices' out");
+  refused("run scenarios/indoor.yaml --svg run.png", "--svg run.png: drawings are SVG; name it run.svg");
+  refused("run scenarios/indoor.yaml --record run.bag",
+          "--record run.bag: recordings are MCAP; name it run.mcap");
   refused("run scenarios/indoor.yaml --duration",
           "--duration needs a value; sandlot run --help lists the options");
   refused("run scenarios/indoor.yaml --seed x",
@@ -228,10 +235,10 @@ TEST(Cli, ARunThatIsRefusedLeavesTheLogOfTheOneBefore) {
 
 TEST(Cli, NoResultOfARunOverwritesAnotherOne) {
   const TestFolder scratch;
-  const std::string file = scratch.file("x.csv");
+  const std::string file = scratch.file("x.mcap");
   const Printed twice = sandlot(
       "run scenarios/indoor.yaml --headless --duration 1s --log-values sim.tick --log " + file +
-      " --record " + scratch.file("y/../x.csv"));
+      " --record " + scratch.file("y/../x.mcap"));
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_THAT(twice.out, HasSubstr("would overwrite"));
   const std::string scenario = scratch.write("s.yaml", "version: 1\nname: s\nrobots: []\n");
@@ -298,6 +305,17 @@ TEST(Cli, ListGivesTheNameOfAKindOnceAndAlignsItsColumns) {
   EXPECT_THAT(text, HasSubstr("\n  camera               image "));
   EXPECT_THAT(text, HasSubstr("\n                       objects "));
   EXPECT_THAT(sandlot("list devices").out, Not(HasSubstr("Levels: height")));
+}
+
+TEST(Cli, ListPrintsOneKindOrTypeWithAllItsFields) {
+  const std::string camera = sandlot("list devices camera").out;
+  EXPECT_EQ(camera.find("devices\n  camera  "), 0u);
+  EXPECT_THAT(camera, HasSubstr("\n    horizontal_fov "));
+  EXPECT_THAT(camera, Not(HasSubstr("\n  imu ")));
+  EXPECT_EQ(nlohmann::json::parse(sandlot("list rules goals impact --json").out)["rules"].size(), 2u);
+  const std::string twist = sandlot("list messages Twist").out;
+  EXPECT_EQ(twist.find("messages\n  geometry_msgs/msg/Twist\n    "), 0u);
+  EXPECT_THAT(twist, Not(HasSubstr("TwistStamped\n")));
 }
 
 TEST(Cli, InfoPrintsTheTree) {

@@ -104,7 +104,8 @@ struct ConvertOptions {
 int convert(const ConvertOptions& options);
 
 struct ListOptions {
-  std::string what;  ///< "" for everything
+  std::string what;                ///< "" for everything
+  std::vector<std::string> names;  ///< of what is listed: only these, with all there is to say of them
   bool verbose = false;
   bool json = false;
   bool markdown = false;

@@ -588,11 +588,12 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   CLI::App* const list_verb = app.add_subcommand("list",
                                                  "List the kinds of devices, controllers, engines, noise and "
                                                  "file formats, message types, and Gazebo plugins");
-  list_verb->add_option(
-      "what", list_options.what,
-      "devices, controllers, programs, engines, noise, image_noise, depth_noise, faults, builders, "
-      "formats (all of these if left "
-      "out), levels, messages or plugins");
+  list_verb->add_option("what", list_options.what,
+                        "devices, controllers, programs, media, rules, markers, engines, noise, image_noise, "
+                        "depth_noise, faults, "
+                        "builders, formats (all of these if left out), levels, messages or plugins");
+  list_verb->add_option("names", list_options.names,
+                        "Only the kinds of these names, or message types: as with --verbose");
   list_verb->add_flag("--verbose", list_options.verbose,
                       "Print every field with unit, range, default and meaning");
   add_json(*list_verb, list_options.json);
@@ -602,7 +603,7 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       ->add_option("--plugin", list_options.plugins,
                    "Shared library whose controllers are listed too; may be given several times")
       ->allow_extra_args(false);
-  list_verb->footer("Example: sandlot list devices --verbose");
+  list_verb->footer("Example: sandlot list devices camera");
   list_verb->callback([&] { result = list(list_options); });
 
   BenchOptions bench_options;

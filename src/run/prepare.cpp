@@ -30,6 +30,14 @@ Status check_apart(std::initializer_list<std::string> files) {
   return {};
 }
 
+/// Checks that a result's file does not claim another format: pictures of other kinds, other recordings.
+Status check_extension(const char* option, const std::string& file, const char* extension, const char* what) {
+  const std::filesystem::path path(file);
+  if (!path.has_extension() || path.extension() == extension) return {};
+  return Error{std::string(option) + " " + file + ": " + what,
+               "name it " + std::filesystem::path(path).replace_extension(extension).string()};
+}
+
 /// Fields that do not go together.
 Status check_spec(const RunSpec& spec) {
   if (spec.file.empty() == spec.from_file.empty())
@@ -49,6 +57,8 @@ Status check_spec(const RunSpec& spec) {
     return Error{"--duration: must be in [0, 1e9] s, is " + number_text(*spec.duration_s)};
   if (spec.rate && !(*spec.rate > 0 && *spec.rate <= 1e6))
     return Error{"--rate: must be in (0, 1e6], is " + number_text(*spec.rate)};
+  SL_TRY(check_extension("--svg", spec.drawing_file, ".svg", "drawings are SVG"));
+  SL_TRY(check_extension("--record", spec.record_file, ".mcap", "recordings are MCAP"));
   SL_TRY(check_snapshot_options(spec.snapshots));
   if (spec.film.file.empty() != spec.film.view.camera.empty())
     return Error{"--video and --camera go together: the film, and what takes it",

@@ -354,15 +354,44 @@ void print_members(const MessageInfo& type) {
 
 bool is_side_of_service(const MessageInfo& type) { return type.name.find("/srv/") != std::string::npos; }
 
-void print_messages(bool verbose) {
-  fmt::print("messages\n");
-  for (const MessageInfo* const type : all_messages()) {
-    if (is_side_of_service(*type)) continue;
+/// Types of messages and services, those of the names that were given, or all.
+struct Types {
+  std::vector<const MessageInfo*> messages;
+  std::vector<ServiceInfo> services;
+};
+Result<Types> choose_types(std::span<const std::string> names) {
+  Types all{{}, {all_services().begin(), all_services().end()}};
+  for (const MessageInfo* const type : all_messages())
+    if (!is_side_of_service(*type)) all.messages.push_back(type);
+  if (names.empty()) return all;
+  Types out;
+  std::vector<std::string> known;
+  for (const MessageInfo* const type : all.messages) known.push_back(type->name);
+  for (const ServiceInfo& service : all.services) known.emplace_back(service.name);
+  for (const std::string& name : names) {
+    // "Twist" is enough where only one package has it.
+    const auto named = [&](std::string_view full) {
+      return full == name || (name.find('/') == name.npos && full.ends_with("/" + name));
+    };
+    const std::size_t before = out.messages.size() + out.services.size();
+    for (const MessageInfo* const type : all.messages)
+      if (named(type->name)) out.messages.push_back(type);
+    for (const ServiceInfo& service : all.services)
+      if (named(service.name)) out.services.push_back(service);
+    if (out.messages.size() + out.services.size() == before)
+      return Error{"list messages: there is no type '" + name + "'", suggestion(name, known)};
+  }
+  return out;
+}
+
+void print_messages(const Types& types, bool verbose) {
+  if (!types.messages.empty()) fmt::print("messages\n");
+  for (const MessageInfo* const type : types.messages) {
     fmt::print("  {}\n", type->name);
     if (verbose) print_members(*type);
   }
-  fmt::print("services\n");
-  for (const ServiceInfo& service : all_services()) {
+  if (!types.services.empty()) fmt::print("services\n");
+  for (const ServiceInfo& service : types.services) {
     fmt::print("  {}\n", service.name);
     if (!verbose) continue;
     print_members(*service.request);
@@ -382,11 +411,10 @@ Json message_json(const MessageInfo& type) {
   return {{"name", type.name}, {"constants", constants}, {"fields", fields}};
 }
 
-Json messages_json() {
+Json messages_json(const Types& chosen) {
   Json types = Json::array(), services = Json::array();
-  for (const MessageInfo* const type : all_messages())
-    if (!is_side_of_service(*type)) types.push_back(message_json(*type));
-  for (const ServiceInfo& service : all_services())
+  for (const MessageInfo* const type : chosen.messages) types.push_back(message_json(*type));
+  for (const ServiceInfo& service : chosen.services)
     services.push_back({{"name", service.name},
                         {"request", message_json(*service.request)},
                         {"response", message_json(*service.response)}});
@@ -512,12 +540,30 @@ Result<std::vector<const ControllerKind*>> known_controllers(const ListOptions& 
   return out;
 }
 
+/// Leaves only the items of these names in a section; all of them when there are none.
+Status keep_named(Section& section, std::span<const std::string> names) {
+  if (names.empty()) return {};
+  std::vector<Item> kept;
+  std::vector<std::string> known;
+  for (const Item& item : section.items) known.push_back(item.name);
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      return Error{"list " + section.key + ": there is no '" + name + "'", suggestion(name, known)};
+    kept.push_back(section.items[static_cast<std::size_t>(found - known.begin())]);
+  }
+  section.items = std::move(kept);
+  return {};
+}
+
 }  // namespace
 
 int list(const ListOptions& options) {
   const auto known = known_controllers(options);
   if (!known) return complain(known.error());
   std::vector<Section> chosen = sections(*known);
+  if (options.schema && !options.what.empty())
+    return complain({"--schema stands for the whole", "leave '" + options.what + "' out"});
   if (options.schema) {
     std::vector<formats::KindFields> devices, controllers;
     for (const Kind* kind : device_kinds()) {
@@ -550,6 +596,9 @@ int list(const ListOptions& options) {
                                                 describe_fields<FaultsSpec>(), elements));
     return exit_ok;
   }
+  if (!options.names.empty() && (options.what == "plugins" || options.what == "levels"))
+    return complain(
+        {"list " + options.what + " takes no names", "leave '" + options.names.front() + "' out"});
   if (options.what == "plugins" && !options.markdown) {
     if (!options.json) return print_plugins(), exit_ok;
     Json rows = Json::array();
@@ -563,8 +612,10 @@ int list(const ListOptions& options) {
     return exit_ok;
   }
   if (options.what == "messages" && !options.markdown) {
-    if (options.json) fmt::print("{}\n", messages_json().dump(2));
-    else print_messages(options.verbose);
+    const auto types = choose_types(options.names);
+    if (!types) return complain(types.error());
+    if (options.json) fmt::print("{}\n", messages_json(*types).dump(2));
+    else print_messages(*types, options.verbose || !options.names.empty());
     return exit_ok;
   }
   if (!options.what.empty() && options.what != "levels") {
@@ -574,6 +625,7 @@ int list(const ListOptions& options) {
     if (chosen.empty())
       return complain(
           {"list: there is nothing called '" + options.what + "'", suggestion(options.what, names)});
+    if (Status status = keep_named(chosen.front(), options.names); !status) return complain(status.error());
   }
   if (options.json) {
     Json json;
@@ -584,7 +636,7 @@ int list(const ListOptions& options) {
   } else if (options.what == "levels") {
     print_levels();
   } else {
-    for (const Section& section : chosen) print_text(section, options.verbose);
+    for (const Section& section : chosen) print_text(section, options.verbose || !options.names.empty());
   }
   return exit_ok;
 }
