@@ -11,8 +11,8 @@ namespace sandlot::app {
 Result<std::unique_ptr<Simulation>> build(const std::string& file, const FileOptions& options,
                                           Diagnostics& diagnostics) {
   SL_ASSIGN(model::Setup setup,
-            load(file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
-  SL_TRY(record::resolve_playbacks(setup, options.paths));
+            record::load_with_playbacks(
+                file, {options.overrides, {}, {}, options.paths, options.skip_missing}, diagnostics));
   return Simulation::create(std::move(setup), {}, diagnostics);
 }
 

@@ -22,17 +22,6 @@ std::string at(const Simulation& simulation) {
   return "at " + readable(simulation.now().s()) + " s, tick " + std::to_string(simulation.tick_index());
 }
 
-const char* name_of(Session::State state) {
-  switch (state) {
-    case Session::State::playing: return "playing";
-    case Session::State::paused: return "paused";
-    case Session::State::seeking: return "seeking";
-    case Session::State::ended: return "ended";
-    case Session::State::failed: return "failed";
-  }
-  return "";
-}
-
 std::string speed_text(std::optional<double> speed) {
   return speed ? "real time x " + readable(*speed) : std::string("as fast as possible");
 }
@@ -80,7 +69,7 @@ CommandResult cmd_run(CommandCall& call) {
   if (!call.words.empty()) SL_TRY(set_speed(call, call.words.front()));
   const Session::Report report = call.session.report();
   if (report.state == Session::State::ended || report.state == Session::State::failed)
-    return Error{"the run has " + std::string(name_of(report.state)) + ": " + report.reason,
+    return Error{"the run has " + std::string(Session::name_of(report.state)) + ": " + report.reason,
                  report.may_not_rewind.empty() ? "reset it, or jump back" : ""};
   call.session.play();
   return std::optional(call.words.empty() ? "runs " + speed_text(report.speed)
@@ -169,7 +158,7 @@ CommandResult cmd_at(CommandCall& call) {
 CommandResult cmd_time(CommandCall& call) {
   const Session::Report report = call.session.report();
   std::string text = fmt::format("{} s, tick {}, {}", readable(call.simulation().now().s()),
-                                 call.simulation().tick_index(), name_of(report.state));
+                                 call.simulation().tick_index(), Session::name_of(report.state));
   if (!report.reason.empty()) text += " (" + report.reason + ")";
   text += ", " + speed_text(report.speed);
   if (report.state == Session::State::playing) text += fmt::format(", now x {:.3g}", report.real_time_factor);

@@ -193,13 +193,24 @@ Status resolve(Node& config, std::span<const std::string> paths, const Place& pl
 }  // namespace
 
 Status resolve_playbacks(model::Setup& setup, std::span<const std::string> paths) {
-  for (model::Instance& instance : setup.instances)
-    for (std::size_t i = 0; i < instance.controllers.size(); ++i) {
-      if (std::as_const(instance.controllers)[i].kind != "playback") continue;
-      model::ControllerDecl& controller = instance.controllers[i];
+  const auto resolve_all = [&](SharedList<model::ControllerDecl>& controllers) -> Status {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+      if (std::as_const(controllers)[i].kind != "playback") continue;
+      model::ControllerDecl& controller = controllers[i];
       SL_TRY(resolve(controller.config, paths, controller.place));
     }
+    return {};
+  };
+  for (model::Instance& instance : setup.instances) SL_TRY(resolve_all(instance.controllers));
+  for (model::TeamDecl& team : setup.teams) SL_TRY(resolve_all(team.controllers));
   return {};
+}
+
+Result<model::Setup> load_with_playbacks(const std::string& file, const LoadOptions& options,
+                                         Diagnostics& diagnostics) {
+  SL_ASSIGN(model::Setup setup, load(file, options, diagnostics));
+  SL_TRY(resolve_playbacks(setup, options.paths));
+  return setup;
 }
 
 }  // namespace sandlot::record

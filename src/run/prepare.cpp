@@ -76,15 +76,14 @@ Result<std::unique_ptr<Simulation>> make_world(const RunSpec& spec,
     if (spec.duration_s) simulation->set_stop(simulation->now() + Time::from_s(*spec.duration_s));
     return simulation;
   }
-  SL_ASSIGN(model::Setup setup, load(spec.file,
-                                     {.overrides = spec.overrides,
-                                      .seed = spec.seed,
-                                      .stop_s = spec.duration_s,
-                                      .paths = spec.paths,
-                                      .skip_missing = spec.skip_missing,
-                                      .errors = spec.errors.value_or(1)},
-                                     diagnostics));
-  SL_TRY(record::resolve_playbacks(setup, spec.paths));
+  SL_ASSIGN(model::Setup setup, record::load_with_playbacks(spec.file,
+                                                            {.overrides = spec.overrides,
+                                                             .seed = spec.seed,
+                                                             .stop_s = spec.duration_s,
+                                                             .paths = spec.paths,
+                                                             .skip_missing = spec.skip_missing,
+                                                             .errors = spec.errors.value_or(1)},
+                                                            diagnostics));
   const bool may_stop = !spec.stop_when.empty() ||
                         std::any_of(setup.events.begin(), setup.events.end(),
                                     [](const model::EventDecl& event) { return event.stop; });

@@ -45,8 +45,7 @@ Error no_slot(std::string_view device, const char* verb, const char* type,
 Result<std::unique_ptr<Simulation>> load_simulation(const std::string& file, const EmbedOptions& options,
                                                     Diagnostics* diagnostics) {
   Warnings warnings(diagnostics);
-  SL_ASSIGN(model::Setup setup, load(file, options.load, warnings.get()));
-  SL_TRY(record::resolve_playbacks(setup, options.load.paths));
+  SL_ASSIGN(model::Setup setup, record::load_with_playbacks(file, options.load, warnings.get()));
   return Simulation::create(std::move(setup), options.simulation, warnings.get());
 }
 

@@ -81,8 +81,7 @@ Result<std::unique_ptr<Stand>> Stand::make(const CalibrateOptions& options, bool
   how.overrides = options.overrides;
   how.paths = options.paths;
   how.seed = options.seed;
-  SL_ASSIGN(model::Setup setup, load(options.file, how, diagnostics));
-  SL_TRY(record::resolve_playbacks(setup, options.paths));
+  SL_ASSIGN(model::Setup setup, record::load_with_playbacks(options.file, how, diagnostics));
   setup.stop.reset();
   auto stand = std::make_unique<Stand>();
   stand->camera_ = options.camera;

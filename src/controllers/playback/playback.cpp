@@ -62,7 +62,7 @@ Status Playback::init(const Description& robot) {
     return spec.file.empty()
                ? Error{"there is nothing to play back", "give file: run.mcap, or samples", {}, "/file"}
                : Error{"the recording '" + spec.file + "' was not read",
-                       "read it into the setup first: record::resolve_playbacks, as load_simulation does",
+                       "load the scenario by record::load_with_playbacks, as load_simulation does",
                        {},
                        "/file"};
   auto read = read_samples(spec.samples);

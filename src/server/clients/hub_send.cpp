@@ -10,17 +10,6 @@
 namespace sandlot::server {
 namespace {
 
-const char* name_of(Session::State state) {
-  switch (state) {
-    case Session::State::playing: return "playing";
-    case Session::State::paused: return "paused";
-    case Session::State::seeking: return "seeking";
-    case Session::State::ended: return "ended";
-    case Session::State::failed: break;
-  }
-  return "failed";
-}
-
 template <class M>
 Payload cdr_of(const M& message) {
   auto bytes = std::make_shared<std::vector<std::byte>>();
@@ -194,7 +183,7 @@ void Hub::send_status() {
       else w.key(key).null();
     };
     w.object([&] {
-      w.key("state").text(name_of(report_.state));
+      w.key("state").text(Session::name_of(report_.state));
       w.key("time_s").real(report_.now.s());
       w.key("tick").integer(report_.tick);
       w.key("step_s").real(report_.step.s());

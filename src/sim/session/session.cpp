@@ -170,6 +170,17 @@ bool Session::post(std::function<void(Session&)> task) {
   return true;
 }
 
+const char* Session::name_of(State state) {
+  switch (state) {
+    case State::playing: return "playing";
+    case State::paused: return "paused";
+    case State::seeking: return "seeking";
+    case State::ended: return "ended";
+    case State::failed: break;
+  }
+  return "failed";
+}
+
 Session::Report Session::report() const {
   const std::lock_guard lock(mutex_);
   return report_;

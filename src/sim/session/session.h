@@ -69,6 +69,7 @@ class Session {
     ended,    ///< it has a reason to stop; a jump back continues from there
     failed,   ///< a tick failed
   };
+  static const char* name_of(State state);
   struct Options {
     Pace pace;
     bool paused = false;  ///< begins paused
