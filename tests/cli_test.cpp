@@ -68,7 +68,9 @@ TEST(Cli, AMisspeltVerbOrOptionIsAnsweredWithTheNearest) {
   refused("demo indoor fast", "'fast' is one word too many; sandlot demo --help lists the options");
   refused("list devices camra", "list devices: there is no 'camra'; did you mean 'camera'?");
   refused("list levels camera", "list levels takes no names; leave 'camera' out");
-  refused("list messages Twits", "list messages: there is no type 'Twits'");
+  refused(
+      "list messages geometry_msgs/msg/Twits",
+      "list messages: there is no type 'geometry_msgs/msg/Twits'; did you mean 'geometry_msgs/msg/Twist'?");
   refused("list devices --schema", "--schema stands for the whole; leave 'devices' out");
   refused("run scenarios/indoor.yaml --svg run.png", "--svg run.png: drawings are SVG; name it run.svg");
   refused("run scenarios/indoor.yaml --record run.bag",

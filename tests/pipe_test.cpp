@@ -114,7 +114,7 @@ TEST(Pipe, ErrorsReachTheUser) {
   const Printed wrong = run("command: [sh, -c, 'read a; read b; echo {}; read c; echo nonsense; sleep 9']");
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.out,
-              HasSubstr("program 'rover/controller' (pipe) failed at 0.1 s: the answer is not a JSON"));
+              HasSubstr("program 'rover/controller' (pipe) failed at 0.1 s: the answer is not JSON"));
   const Printed missing = run("command: [no-such-brain]");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.out, HasSubstr("s.yaml:8:17: cannot start 'no-such-brain': there is no such program"));

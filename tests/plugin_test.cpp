@@ -101,9 +101,9 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
   };
   refused("no/where.so", HasSubstr("looked for it in "));
   refused("nowhere", AllOf(HasSubstr("'nowhere' is not there"), HasSubstr("libnowhere.so")));
-  refused("bad.yaml", HasSubstr("no shared library"));
+  refused("bad.yaml", HasSubstr("not a shared library"));
   refused(fs::absolute(SANDLOT_BIN).string(), HasSubstr("cannot load"));  // a program, not a library
-  refused(plugins() + "/no_plugin.so", HasSubstr("is no Sandlot plugin"));
+  refused(plugins() + "/no_plugin.so", HasSubstr("is not a Sandlot plugin"));
   refused(plugins() + "/other_api.so",
           AllOf(HasSubstr("version 99"), HasSubstr("has version " + std::to_string(controller_api_version))));
   refused(plugins() + "/other_build.so", AllOf(HasSubstr("fast-math"), HasSubstr("this Sandlot as [")));
@@ -144,7 +144,7 @@ TEST(Plugin, AControllerThatThrowsEndsTheRunAndKeepsItsResults) {
 
   const Printed number = sandlot("run " + run("number"));
   EXPECT_EQ(number.exit_code, 1);
-  EXPECT_THAT(number.out, HasSubstr("no std::exception"));
+  EXPECT_THAT(number.out, HasSubstr("not a std::exception"));
 
   // In its first step: the run has begun, so it is still a run that failed.
   const std::string first = scratch.write(

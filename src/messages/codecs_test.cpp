@@ -257,9 +257,9 @@ TEST(Json, ErrorsNamePathAndRemedy) {
   EXPECT_EQ(json_error("std_msgs/UInt8MultiArray", R"({"data":"a*bc"})"), "/data: is not base64");
   EXPECT_EQ(json_error("sensor_msgs/JointState", R"({"name":"x"})"),
             "/name: must be a list of string, is string");
-  EXPECT_EQ(json_error("std_msgs/Bool", "{").substr(0, 11), "is not a JSON:");
+  EXPECT_EQ(json_error("std_msgs/Bool", "{").substr(0, 11), "is not JSON");
   const std::string deep(100'000, '[');
-  EXPECT_EQ(json_error("std_msgs/Bool", deep).substr(0, 11), "is not a JSON:");
+  EXPECT_EQ(json_error("std_msgs/Bool", deep).substr(0, 11), "is not JSON");
 }
 
 TEST(Cbor, ByHand) {

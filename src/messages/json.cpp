@@ -268,7 +268,7 @@ Status read_json(const MessageInfo& info, std::string_view text, void* message) 
   try {
     document = Json::parse(text);
   } catch (const Json::exception& e) {  // the library's only way to report the place
-    return Error{std::string("is not a JSON: ") + e.what()};
+    return Error{std::string("is not JSON: ") + e.what()};
   }
   return set_message(info, document, message);
 }

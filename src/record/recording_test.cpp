@@ -226,13 +226,14 @@ TEST(Playback, OrdersOfARecordedRobotLeadAnotherOneAlongTheSamePath) {
     return status ? "" : status.error().text();
   };
   // A team's are filled, too.
-  setup.teams.push_back({"red", {}, {}});
+  model::Setup other = test::arena("planar", 1);
+  other.teams.push_back({"red", {}, {}});
   model::ControllerDecl of_team;
   of_team.name = "player", of_team.kind = "playback";
   of_team.config = test::map({{"file", folder.file("r.mcap")}, {"commands", "rover2/drive"}});
-  setup.teams.back().controllers.push_back(of_team);
-  ASSERT_TRUE(resolve_playbacks(setup, {}));
-  EXPECT_NE(std::as_const(setup.teams.back().controllers)[0].config.find("samples"), nullptr);
+  other.teams.back().controllers.push_back(of_team);
+  ASSERT_TRUE(resolve_playbacks(other, {}));
+  EXPECT_NE(std::as_const(other.teams.back().controllers)[0].config.find("samples"), nullptr);
 
   const std::string file = folder.file("r.mcap");
   EXPECT_THAT(complaint({{"file", file}, {"topic", "/nowhere"}}),

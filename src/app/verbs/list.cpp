@@ -1,3 +1,4 @@
+/// long file: the tables of all that can be listed, as text, JSON, schema and reference page.
 #include <fmt/format.h>
 
 #include <algorithm>

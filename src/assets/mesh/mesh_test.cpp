@@ -135,7 +135,7 @@ TEST(Mesh, TrianglesWithoutAreaAreDroppedAndNumbersMustBeNumbers) {
   expect_says(complaint(stl, "a.stl"), "triangle 1 has a corner that is not a number");
   std::string dae = collada();
   dae.replace(dae.find("0 0 0 1 0 0"), 1, "NaN");
-  expect_says(complaint(dae, "a.dae"), "no finite number");
+  expect_says(complaint(dae, "a.dae"), "not a finite number");
 }
 
 TEST(Mesh, PolygonsAreCutIntoTheirTriangles) {
@@ -439,12 +439,12 @@ TEST_F(MeshFiles, NothingOutsideTheMeshsFolderIsRead) {
     EXPECT_EQ(mesh->parts[0].color, Color{});
     ASSERT_EQ(diagnostics.warnings.size(), 2u);
     expect_says(diagnostics.warnings[0].text(),
-                name == "gone.mtl" ? "does not exist" : "no file in the mesh's folder");
+                name == "gone.mtl" ? "does not exist" : "not a file in the mesh's folder");
   }
   std::string outside = gltf();
   const std::size_t from = outside.find("data:"), to = outside.find('"', from);
   outside.replace(from, to - from, "../../etc/passwd");
-  expect_says(complaint(outside, "a.gltf"), "no file in the mesh's folder");
+  expect_says(complaint(outside, "a.gltf"), "not a file in the mesh's folder");
 }
 
 TEST_F(MeshFiles, BuffersOfGltfComeFromBesideIt) {

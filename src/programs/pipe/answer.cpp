@@ -71,9 +71,9 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
   try {
     answer = Json::parse(line);
   } catch (const Json::exception& e) {  // the library's only way to report the place
-    return Error{std::string("the answer is no JSON: ") + e.what()};
+    return Error{std::string("the answer is not JSON: ") + e.what()};
   }
-  if (!answer.is_object()) return Error{"the answer is no JSON object", R"(such as {"orders": {}})"};
+  if (!answer.is_object()) return Error{"the answer is not a JSON object", R"(such as {"orders": {}})"};
   Command ordered;
   Program::Resumed out;
   for (const auto& [key, value] : answer.items()) {

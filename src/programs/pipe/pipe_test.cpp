@@ -168,7 +168,7 @@ TEST(PipeAnswer, OrdersSamplesAndWaits) {
 
 TEST(PipeAnswer, ErrorsNameWhatIsWrongAndOrderNothing) {
   Answers t;
-  EXPECT_THAT(t.error("drive!"), HasSubstr("the answer is not a JSON"));
+  EXPECT_THAT(t.error("drive!"), HasSubstr("the answer is not JSON"));
   EXPECT_THAT(t.error("[]"), HasSubstr("the answer is not a JSON object"));
   EXPECT_THAT(t.error(R"({"order": {}})"), HasSubstr("has the key 'order'"));
   EXPECT_THAT(t.error(R"({"orders": {"drive": {}, "driv": {}}})"),

@@ -184,9 +184,9 @@ TEST(Expression, ErrorsNameTheColumn) {
       {"", "it is empty"},
       {"   ", "it is empty"},
       {"()", "parenthesis"},
-      {"1/0", "no finite number"},
-      {"a.x + 0 * (1/0)", "no finite number"},
-      {"sqrt(0 - 1) > a.x", "no finite number"},
+      {"1/0", "not a finite number"},
+      {"a.x + 0 * (1/0)", "not a finite number"},
+      {"sqrt(0 - 1) > a.x", "not a finite number"},
       {"\x01", "a strange character"}};
   for (const auto& [text, words] : expected)
     EXPECT_NE(complaint(text).find(words), std::string::npos) << text << " -> " << complaint(text);

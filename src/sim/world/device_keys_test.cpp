@@ -186,7 +186,7 @@ TEST(MaxRate, TakesCommandsNoNearerThanItsPeriodAndCountsTheOthers) {
             "'robot1/mover' takes at most 20 commands per second");
 }
 
-/// 1 / 30 s is no whole number of nanoseconds: ticks as long as that, cut or rounded, do not come too soon.
+/// 1 / 30 s is not a whole number of nanoseconds: ticks as long as that, cut or rounded, do not come too soon.
 TEST(MaxRate, ToleratesANanosecond) {
   for (const std::int64_t step_ns : {33'333'333, 16'666'666}) {
     model::Setup setup = movers(map({{"max_rate", step_ns > 20'000'000 ? "30" : "60"}}));

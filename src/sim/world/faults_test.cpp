@@ -188,7 +188,7 @@ TEST(Faults, OrdersThatCannotBeAreRefused) {
   EXPECT_THAT(error_of("rover1/drive", Node::scalar("noisy")), HasSubstr("diff_drive has no errors"));
   EXPECT_THAT(error_of("rover1/laser", Node::scalar("ded")), HasSubstr("dead"));
   EXPECT_THAT(error_of("rover1/laser", map({{"kind", "noisy"}, {"factor", "-1"}})), HasSubstr("factor"));
-  EXPECT_THAT(error_of("rover1", Node::scalar("dead")), HasSubstr("no parameter of the whole"));
+  EXPECT_THAT(error_of("rover1", Node::scalar("dead")), HasSubstr("not a parameter of the whole"));
 }
 
 TEST(Faults, ANoisyDeviceErrsMoreByItsFactor) {
