@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "base/test_folder.h"
+
 namespace sandlot {
 namespace {
 
@@ -11,18 +13,14 @@ namespace fs = std::filesystem;
 
 class AtomicFileTest : public testing::Test {
  protected:
-  AtomicFileTest() : folder(testing::TempDir() + "atomic_file_test/") {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  ~AtomicFileTest() override { fs::remove_all(folder); }
   static std::string content_of(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder), {}); }
 
-  std::string folder;
+  const test::TestFolder made;
+  const std::string folder = made.path.string() + "/";
 };
 
 TEST_F(AtomicFileTest, AppearsWhenItIsCommitted) {
