@@ -103,9 +103,9 @@ Status gather(CommandCall& call, std::string_view pattern, std::vector<ValueEntr
     else out.push_back(entry);
   };
   if (robot_of(pattern) == "sim" || robot_of(pattern) == "values") {
-    list_values(simulation, "", [&](ValueEntry entry) {
+    list_values(simulation, "", [&](const ValueEntry& entry) {
       const std::string_view thing = thing_of(entry.path);
-      if (thing == "sim" || thing == "values") take(std::move(entry));
+      if (thing == "sim" || thing == "values") take(entry);
     });
   }
   const std::string_view robot = robot_of(pattern);
