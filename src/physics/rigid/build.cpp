@@ -183,6 +183,7 @@ Result<InstanceId> RigidEngine::add(const model::Instance& declared) {
   const model::Model& model = *declared.model;
   SL_ASSIGN(RigidGroups groups, group_links(model, declared.motion.has_value()));
   lock_rollers(model, groups);
+  SL_TRY(check_masses(model, groups));
   for (const RigidGroup& group : groups.groups)
     for (const std::uint32_t l : group.links)
       for (const model::Collision& c : model.links[l].collisions)

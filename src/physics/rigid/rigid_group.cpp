@@ -121,15 +121,26 @@ Result<RigidGroups> group_links(const model::Model& model, bool held) {
       continue;
     }
     add_masses(model, group);
+  }
+  SL_TRY(check_masses(model, result));
+  return result;
+}
+
+Status check_masses(const model::Model& model, const RigidGroups& groups) {
+  for (const RigidGroup& group : groups.groups) {
+    if (group.fixed) continue;
+    const model::Link& first = model.links[group.links.front()];
     if (!(group.mass_kg >= least_mass_kg && group.mass_kg <= most_mass_kg))
       return Error{"the mass of link '" + first.name + "' is not between 1e-40 and 1e40 kg",
                    "give it a mass, or make the model static", first.place};
-    if (!is_positive_definite(group.inertia_B))
+    Symmetric3 least = group.inertia_B;
+    least.xx -= group.spin_inertia, least.yy -= group.spin_inertia, least.zz -= group.spin_inertia;
+    if (!is_positive_definite(group.inertia_B) || !is_positive_definite(least))
       return Error{"the inertia of link '" + first.name + "' is not positive definite",
                    "ixx, iyy, izz must be positive, above 1e-39, and the products small against them",
                    first.place};
   }
-  return result;
+  return {};
 }
 
 }  // namespace sandlot::rigid

@@ -36,6 +36,7 @@ struct RigidGroup {
   double gravity_mass_kg = 0;  ///< of the links that gravity pulls at
   Vec3 gravity_point_B;        ///< where it pulls
   bool has_rollers = false;    ///< their masses are in it: see wheels.h
+  double spin_inertia = 0;     ///< [kg m^2] of all rollers: what the wheel lacks when all of them are awake
 };
 
 struct RigidGroups {
@@ -47,5 +48,7 @@ struct RigidGroups {
 ///          place of its first link.
 /// @param held  all links stand as if the model were static
 Result<RigidGroups> group_links(const model::Model& model, bool held = false);
+/// The errors that group_links() gives, for groups that have changed since.
+Status check_masses(const model::Model& model, const RigidGroups& groups);
 
 }  // namespace sandlot::rigid

@@ -68,6 +68,7 @@ void lock_rollers(const model::Model& model, RigidGroups& groups) {
     wheel.has_rollers = true;
     const double spin = spin_inertia(link, joint);
     roller.inertia_B = {spin, spin, spin, 0, 0, 0};
+    wheel.spin_inertia += spin;
     roller.mass_kg *= awake_share;
     roller.gravity_mass_kg *= awake_share;
   }
