@@ -71,13 +71,13 @@ CameraRays::CameraRays(const PictureJob& job) : job_(job), lens_(job.lens->lens(
   samples_ = e.samples;
   rolling_ = e.readout_s > 0;
   aperture_ = pinhole_ && e.aperture_m > 0;
-  moving_ = rolling_ || e.shutter_s > 0;
+  first_s_ = -e.shutter_s / 2;
+  last_s_ = e.readout_s + e.shutter_s / 2;
+  moving_ = last_s_ > first_s_;  // half of the shortest time is none
   if (moving_) {
     slices_ = e.slices > 0 ? e.slices : rolling_ ? 16 : 8;
     if (e.shutter_s > 0 && !rolling_) samples_ = std::max(samples_, slices_);
   }
-  first_s_ = -e.shutter_s / 2;
-  last_s_ = e.readout_s + e.shutter_s / 2;
   still_ = view(0);
   // A step that visits all strata of time in an order that has nothing to do with the places on the pixel.
   int step = std::max(1, static_cast<int>(0.618 * samples_));

@@ -442,6 +442,8 @@ TEST(Picture, TheSamePixelsForAnyNumberOfThreadsAndAgain) {
       job.exposure.shutter_s = 0.02;
       const Shot blurred(studio, job);
       EXPECT_NE(hash_of(first), hash_of(blurred));
+      job.exposure.shutter_s = 5e-324;  // half of which is zero
+      EXPECT_EQ(hash_of(first), hash_of(Shot(studio, job)));
       job.exposure.shutter_s = 0;
       EXPECT_EQ(hash_of(first), hash_of(Shot(studio, job)));
       job.key = 43;
