@@ -14,29 +14,49 @@
 
 namespace sandlot::embree {
 
+/// The valid rays whose numbers Embree takes; with others Debian's ends the process. They hit nothing, as those that are not
+/// valid. @return whether there are any
+inline bool keep_sound(const int* valid, const RTCRay8& ray, int* kept) {
+  const lanes::F most = lanes::broadcast(1e18f);
+  lanes::I sound = lanes::load<lanes::I>(valid) & (lanes::load<lanes::F>(ray.tfar) >= -most);
+  for (const float* const numbers :
+       {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z, ray.tnear}) {
+    const lanes::F number = lanes::load<lanes::F>(numbers);
+    sound &= (number >= -most) & (number <= most);
+  }
+  lanes::store(kept, sound);
+  return lanes::any(sound);
+}
+
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 inline void init_context(QueryContext& context) { rtcInitRayQueryContext(&context); }
 inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays.ray, sound)) return;
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   arguments.context = &context;
-  rtcIntersect8(valid, scene, &rays, &arguments);
+  rtcIntersect8(sound, scene, &rays, &arguments);
 }
 inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays.ray, sound)) return;
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   arguments.context = &context;
-  rtcIntersect8(valid, scene, &rays, &arguments);
+  rtcIntersect8(sound, scene, &rays, &arguments);
 }
 inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays, sound)) return;
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   arguments.context = &context;
-  rtcOccluded8(valid, scene, &rays, &arguments);
+  rtcOccluded8(sound, scene, &rays, &arguments);
 }
 #else
 using QueryContext = RTCIntersectContext;
@@ -45,18 +65,24 @@ inline void init_context(QueryContext& context) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
-  rtcIntersect8(valid, scene, &context, &rays);
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays.ray, sound)) return;
+  rtcIntersect8(sound, scene, &context, &rays);
 }
 /// For packets of neighbouring pixels.
 inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays.ray, sound)) return;
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid, scene, &context, &rays);
+  rtcIntersect8(sound, scene, &context, &rays);
 }
 /// Rays that hit have tfar < 0. Never coherent: with that flag Embree 3.13 does not come back from some
 /// packets.
 inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
+  alignas(32) int sound[lanes::width];
+  if (!keep_sound(valid, rays, sound)) return;
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  rtcOccluded8(valid, scene, &context, &rays);
+  rtcOccluded8(sound, scene, &context, &rays);
 }
 #endif
 

@@ -456,6 +456,19 @@ TEST(Picture, TheSamePixelsForAnyNumberOfThreadsAndAgain) {
   EXPECT_EQ(one, draw(4));
 }
 
+TEST(Picture, NothingIsSeenFromFartherThanNumbersReach) {
+  for (const double x : {-1e5, -1e19, -1e300}) {
+    Studio studio;
+    studio.glow(Sphere{1e4}, {{}, {}});
+    studio.light(model::Light::Type::directional, {{}, along({0.4, 0.2, -1})});
+    PictureJob job;
+    job.X_WS = {{x, 0, 0}, {}};
+    job.lens = pinhole(16, 16);
+    const Shot shot(studio, job);
+    EXPECT_EQ(shot.red(8, 8), x > -1e6 ? 255 : 0) << x;
+  }
+}
+
 TEST(Picture, SamplesDoNotMoveThePicture) {
   // An edge at a place between pixels: what the samples cover of the pixel is where it is cut.
   Studio studio;
