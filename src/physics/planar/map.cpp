@@ -83,6 +83,8 @@ void Map::file_discs() {
       16u, std::bit_ceil(static_cast<std::uint32_t>(std::sqrt(4.0 * static_cast<double>(count)))));
   if (disc_cells_.columns() != columns) disc_cells_.resize(cell_m_, columns, columns);
   area_ = wall_area_;
+  longest_walk_m_ = cell_m_ *
+                    static_cast<double>(std::max<std::size_t>(1024, 2 * (discs_.size() + walls_.size())));
   disc_cells_.build(count, [&](std::uint32_t k) {
     const Disc& disc = discs_[k];
     if (!(disc.radius_m > 0)) return HashGrid::Range{};
@@ -187,14 +189,16 @@ struct Map::Hit {
   }
 };
 
+inline void Map::meet_wall(const Ray& ray, std::uint32_t k, Hit& hit) const {
+  const Wall& wall = walls_[k];
+  const Heights h = wall.outline.heights;
+  if (wall.instance == ray.ignored || (ray.dz == 0 && (ray.z < h.min_m || ray.z > h.max_m))) return;
+  const Chord c = chord(wall.outline, edges_, ray.origin, ray.direction);
+  if (c.first <= c.last) hit.meet(ray, c, h, wall.body);
+}
+
 void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const {
-  for (const std::uint32_t k : walls) {
-    const Wall& wall = walls_[k];
-    const Heights h = wall.outline.heights;
-    if (wall.instance == ray.ignored || (ray.dz == 0 && (ray.z < h.min_m || ray.z > h.max_m))) continue;
-    const Chord c = chord(wall.outline, edges_, ray.origin, ray.direction);
-    if (c.first <= c.last) hit.meet(ray, c, h, wall.body);
-  }
+  for (const std::uint32_t k : walls) meet_wall(ray, k, hit);
 }
 
 void Map::meet_silhouette(const Ray& ray, std::uint32_t index, Hit& hit) const {
@@ -205,6 +209,18 @@ void Map::meet_silhouette(const Ray& ray, std::uint32_t index, Hit& hit) const {
     const Chord c = chord(part, silhouette.edges, ray.origin, ray.direction);
     if (c.first <= c.last) hit.meet(ray, c, part.heights, silhouette.bodies[i]);
   }
+}
+
+/// The same as a walk, without cells: those of a world with one thing lost far away are too many.
+void Map::meet_all(const Ray& ray, Hit& hit) const {
+  for (const Disc& disc : discs_) {
+    if (disc.instance == ray.ignored || !(disc.radius_m > 0) ||
+        disc_cells_.cover(around(disc.centre, disc.radius_m)).empty())
+      continue;
+    if (disc.silhouette == ~0u) hit.meet(ray, disc);
+    else meet_silhouette(ray, disc.silhouette, hit);
+  }
+  for (std::uint32_t k = 0; k < walls_.size(); ++k) meet_wall(ray, k, hit);
 }
 
 /// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly
@@ -241,12 +257,11 @@ template <bool with_walls>
 [[gnu::always_inline]] inline void Map::walk(const Ray& ray_in, const Start* shared, Hit& hit_out) const {
   const Ray ray = ray_in;
   Hit hit = hit_out;
-  double end = hit.t;
+  double begin = ray.min_m, end = hit.t;
   Start start;
   if (shared) {
     start = *shared;
   } else {
-    double begin = ray.min_m;
     if (!clip(ray, begin, end)) return;
     const Vec2 entry = ray.origin + begin * ray.direction;
     if (!(std::abs(entry.x) < 1e13 && std::abs(entry.y) < 1e13))
@@ -259,8 +274,12 @@ template <bool with_walls>
     end = std::min(end, ((d.x < 0 ? area_.low.x : area_.high.x) - ray.origin.x) * per.x);
     end = std::min(end, ((d.y < 0 ? area_.low.y : area_.high.y) - ray.origin.y) * per.y);
   }
-  double t_x = d.x != 0 ? (d.x < 0 ? start.low.x : start.high.x) * per.x : inf;
-  double t_y = d.y != 0 ? (d.y < 0 ? start.low.y : start.high.y) * per.y : inf;
+  // Nor from so far away that a step of one cell would be lost in rounding.
+  if (std::max(end - begin, 1e-8 * end) * (std::abs(d.x) + std::abs(d.y)) > longest_walk_m_) [[unlikely]]
+    return meet_all(ray_in, hit_out);
+  constexpr double level = 1e-300;  // 1 / d would be infinite, and 0 times that no number
+  double t_x = std::abs(d.x) > level ? (d.x < 0 ? start.low.x : start.high.x) * per.x : inf;
+  double t_y = std::abs(d.y) > level ? (d.y < 0 ? start.low.y : start.high.y) * per.y : inf;
   const double delta_x = cell_m_ * std::abs(per.x), delta_y = cell_m_ * std::abs(per.y);
   HashGrid::Walk discs = disc_cells_.walk_from(start.i, start.j),
                  walls = wall_cells_.walk_from(start.i, start.j);

@@ -81,7 +81,9 @@ class Map {
   void walk(const Ray& ray, const Start* shared, Hit& hit) const;
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
+  void meet_wall(const Ray& ray, std::uint32_t wall, Hit& hit) const;
   void meet_silhouette(const Ray& ray, std::uint32_t silhouette, Hit& hit) const;
+  void meet_all(const Ray& ray, Hit& hit) const;
 
   double cell_m_;
   std::vector<Wall> walls_;
@@ -94,6 +96,7 @@ class Map {
   std::vector<bool> walled_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
   Area wall_area_, area_;                  ///< of the walls, and of all there is
+  double longest_walk_m_ = 0;              ///< along x and y; beyond it, to look at everything is quicker
 };
 
 }  // namespace sandlot::planar

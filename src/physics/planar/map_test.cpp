@@ -70,6 +70,35 @@ TEST(PlanarRays, ShortOnesSeeWhatLongOnesSee) {
   EXPECT_FLOAT_EQ(many.see({0, 0, 0.1}, {1, 0, 0}, 0.4), static_cast<float>(0.3 - 0.003 * 59 - 0.01));
 }
 
+TEST(PlanarRays, SeeWhatIsLostFarAwayAndDoNotWalkThere) {
+  World w;
+  const auto can = model_of(Cylinder{0.25, 0.5});
+  w.add(can, at(2, 0));
+  w.add(model_of(Box{{1, 1, 1}}, true), at(5, 1, 0, 0.5));
+  w.add(model_of(Box{{1, 1, 1}}), at(0, -7, math::pi / 4, 0.5));
+  for (const double far_m : {1e3, 1e11}) {
+    const InstanceId lost = w.add(can, at(far_m, 2));
+    std::uint32_t body = 0;
+    EXPECT_EQ(w.see({0, 0, 0.1}, {1, 0, 0}, 2e12), 1.75f);
+    EXPECT_EQ(w.see({0, 1, 0.1}, {1, 0, 0}, 2e12), 4.5f);
+    EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {0, -1, 0}, 2e12), static_cast<float>(7 - std::sqrt(0.5)));
+    EXPECT_FLOAT_EQ(w.see({0, 2, 0.1}, {1, 0, 0}, 2e12, no_body, &body), static_cast<float>(far_m - 0.25));
+    EXPECT_EQ(body, w.engine.bodies(lost)[0].index);
+    EXPECT_FLOAT_EQ(w.see({-far_m, 0, 0.1}, {1, 0, 0}, 2e12), static_cast<float>(far_m + 1.75));
+    w.engine.remove(lost);
+  }
+  EXPECT_FLOAT_EQ(w.see({-1e18, 0, 0.1}, {1, 0, 0}, 1e19), 1e18f);
+}
+
+TEST(PlanarRays, MayBeNextToParallelToTheCells) {
+  World w;
+  w.add(robot_model(), at(30, 0));
+  for (const double aside : {5e-324, -5e-324, 1e-308, -1e-300, 1e-299}) {
+    EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {1, aside, 0}), 29.8f) << aside;
+    EXPECT_FLOAT_EQ(w.see({30, -30, 0.1}, {aside, 1, 0}), 29.8f) << aside;
+  }
+}
+
 TEST(PlanarRays, HeightsCount) {
   World w;
   w.add(robot_model(), at(3, 0));  // 0 .. 0.4
