@@ -2,8 +2,9 @@
 """Lists the sources of a compile database, or compiles those of the program alone, as far as syntax and types go.
 
 Usage: compile_commands.py BUILD --list
-       compile_commands.py BUILD --syntax JOBS      exits 1 and prints what the compiler says of those that fail; warnings
-                                                    and tests are left out (`./dev test debug` compiles tests alone)
+       compile_commands.py BUILD --syntax JOBS [N/OF]  exits 1 and prints what the compiler says of those that fail;
+                                                    warnings and tests are left out (`./dev test debug` compiles tests
+                                                    alone). N/OF: each OF-th source from the N-th on, counted from 0
 """
 import concurrent.futures
 import json
@@ -29,6 +30,9 @@ def main():
         print("\n".join(entry["file"] for entry in entries))
         return 0
     entries = [entry for entry in entries if "/src/" in entry["file"] and not entry["file"].endswith("_test.cpp")]
+    if len(sys.argv) > 4:
+        first, of = (int(number) for number in sys.argv[4].split("/"))
+        entries = entries[first::of]
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(int(sys.argv[3])) as pool:
         for file, code, said in pool.map(check, entries):
