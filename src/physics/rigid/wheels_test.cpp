@@ -210,7 +210,6 @@ TEST_P(OnGround, AnOmniRobotClimbsASlope) {
 }
 INSTANTIATE_TEST_SUITE_P(Grounds, OnGround, testing::Range(0, 4));
 
-/// A wheel on a robot that hangs upside down under a ceiling that gravity pulls it to: the same as below it.
 TEST(Wheels, LighterThanTheSpinOfTheirRollersAreRefused) {
   for (const double spin : {1e-6, 1.0}) {  // about their axes alone: no body has such a tensor
     model::Model m = robot_model({omni_mounts()[0]});
@@ -222,6 +221,7 @@ TEST(Wheels, LighterThanTheSpinOfTheirRollersAreRefused) {
   }
 }
 
+/// A wheel on a robot that hangs upside down under a ceiling that gravity pulls it to: the same as below it.
 TEST(Wheels, WorkUpsideDownAsTheyDoUpright) {
   const Quat over = quat_from_rpy(math::pi, 0, 0);
   World up(rigid::engine), down(rigid::engine, {}, {0, 0, 9.81});
