@@ -14,77 +14,77 @@
 
 namespace sandlot::embree {
 
-/// The valid rays whose numbers Embree takes; with others Debian's ends the process. They hit nothing, as those that are not
-/// valid. @return whether there are any
-inline bool keep_sound(const int* valid, const RTCRay8& ray, int* kept) {
-  const lanes::F most = lanes::broadcast(1e18f);
-  lanes::I sound = lanes::load<lanes::I>(valid) & (lanes::load<lanes::F>(ray.tfar) >= -most);
-  for (const float* const numbers :
-       {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z, ray.tnear}) {
-    const lanes::F number = lanes::load<lanes::F>(numbers);
-    sound &= (number >= -most) & (number <= most);
-  }
-  lanes::store(kept, sound);
-  return lanes::any(sound);
-}
-
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
+using Flags = RTCRayQueryFlags;
+inline constexpr Flags incoherent = RTC_RAY_QUERY_FLAG_INCOHERENT, coherent = RTC_RAY_QUERY_FLAG_COHERENT;
 inline void init_context(QueryContext& context) { rtcInitRayQueryContext(&context); }
-inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays.ray, sound)) return;
+inline void ask(const int* valid, RTCScene scene, QueryContext& context, Flags flags, RTCRayHit8& rays) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.flags = flags;
   arguments.context = &context;
-  rtcIntersect8(sound, scene, &rays, &arguments);
+  rtcIntersect8(valid, scene, &rays, &arguments);
 }
-inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays.ray, sound)) return;
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &context;
-  rtcIntersect8(sound, scene, &rays, &arguments);
-}
-inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays, sound)) return;
+inline void ask(const int* valid, RTCScene scene, QueryContext& context, Flags flags, RTCRay8& rays) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.flags = flags;
   arguments.context = &context;
-  rtcOccluded8(sound, scene, &rays, &arguments);
+  rtcOccluded8(valid, scene, &rays, &arguments);
 }
 #else
 using QueryContext = RTCIntersectContext;
-inline void init_context(QueryContext& context) {
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+using Flags = RTCIntersectContextFlags;
+inline constexpr Flags incoherent = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
+                       coherent = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+inline void init_context(QueryContext& context) { rtcInitIntersectContext(&context); }
+inline void ask(const int* valid, RTCScene scene, QueryContext& context, Flags flags, RTCRayHit8& rays) {
+  context.flags = flags;
+  rtcIntersect8(valid, scene, &context, &rays);
 }
+inline void ask(const int* valid, RTCScene scene, QueryContext& context, Flags flags, RTCRay8& rays) {
+  context.flags = flags;
+  rtcOccluded8(valid, scene, &context, &rays);
+}
+#endif
+
+/// Debian's Embree ends the process where a number of an origin or a direction is none or beyond 1.8e18.
+inline constexpr float most = 1e18f;
+
+/// Absolute values, to be added and held against `most`: a sum with something that is no number is none.
+inline lanes::F size(lanes::F x) { return lanes::F(lanes::I(x) & 0x7fffffff); }
+
+/// The valid rays that Embree can take. The others hit nothing.
+inline lanes::I sound(const int* valid, const RTCRay8& ray) {
+  const auto size_of = [](const float* numbers) { return size(lanes::load<lanes::F>(numbers)); };
+  // In pairs: the sums wait for each other less.
+  const lanes::F sum = ((size_of(ray.org_x) + size_of(ray.org_y)) +
+                        (size_of(ray.org_z) + size_of(ray.tnear))) +
+                       ((size_of(ray.dir_x) + size_of(ray.dir_y)) + size_of(ray.dir_z));
+  return lanes::load<lanes::I>(valid) & (sum <= most) & (lanes::load<lanes::F>(ray.tfar) >= -most);
+}
+
+template <class Packet>
+void ask_sound(lanes::I sound, RTCScene scene, QueryContext& context, Flags flags, Packet& rays) {
+  if (!lanes::any(sound)) return;
+  alignas(32) int valid[lanes::width];
+  lanes::store(valid, sound);
+  ask(valid, scene, context, flags, rays);
+}
+
 inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays.ray, sound)) return;
-  rtcIntersect8(sound, scene, &context, &rays);
+  ask_sound(sound(valid, rays.ray), scene, context, incoherent, rays);
 }
 /// For packets of neighbouring pixels.
 inline void intersect8_coherent(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays.ray, sound)) return;
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(sound, scene, &context, &rays);
+  ask_sound(sound(valid, rays.ray), scene, context, coherent, rays);
 }
 /// Rays that hit have tfar < 0. Never coherent: with that flag Embree 3.13 does not come back from some
 /// packets.
 inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
-  alignas(32) int sound[lanes::width];
-  if (!keep_sound(valid, rays, sound)) return;
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  rtcOccluded8(sound, scene, &context, &rays);
+  ask_sound(sound(valid, rays), scene, context, incoherent, rays);
 }
-#endif
 
 /// The widest instruction set that most machines have: one isa for all of them means one answer.
 inline const char* choose_isa() {

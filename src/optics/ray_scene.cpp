@@ -288,12 +288,14 @@ void RayScene::Impl::cast(const RayJob& job) const {
   lanes::store(packet.ray.org_z, lanes::broadcast(static_cast<float>(job.X_WS.p.z)));
   lanes::store(packet.ray.tnear, tnear);
   lanes::store(packet.ray.mask, lanes::broadcast(-1));
+  const Vec3 o = job.X_WS.p;
+  const bool begins = std::abs(o.x) + std::abs(o.y) + std::abs(o.z) + std::abs(job.min_m) <= embree::most &&
+                      job.max_m >= job.min_m;
 
   // A packet never holds rays of two jobs: the answer depends on the job alone.
   for (std::size_t first = 0; first < job.directions.size(); first += lanes::width) {
     const std::size_t count = std::min(job.directions.size() - first, std::size_t{lanes::width});
     alignas(32) int valid[lanes::width];
-    lanes::store(valid, I{0, 1, 2, 3, 4, 5, 6, 7} < lanes::broadcast(static_cast<int>(count)));
     // Lanes beyond the last ray repeat the first.
     const auto in = [&](std::size_t i) -> const Vec3& { return job.directions[first + (i < count ? i : 0)]; };
     const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)),
@@ -302,6 +304,8 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(packet.ray.dir_x, dx);
     lanes::store(packet.ray.dir_y, dy);
     lanes::store(packet.ray.dir_z, dz);
+    const I sound = embree::size(dx) + embree::size(dy) + embree::size(dz) <= embree::most;
+    lanes::store(valid, sound & (I{0, 1, 2, 3, 4, 5, 6, 7} < static_cast<int>(begins ? count : 0)));
     F tfar = tmax;
     I bodies = lanes::broadcast(static_cast<int>(no_body)), found = lanes::broadcast(nothing);
     for (const WorldPlane& plane : planes) {
@@ -317,7 +321,7 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(packet.hit.geomID, found);
     lanes::store(packet.hit.instID[0], lanes::broadcast(nothing));
     for (const Layer* layer : {&fixed, &moving})
-      if (layer->scene) embree::intersect8(valid, layer->scene, query, packet);
+      if (layer->scene) embree::ask(valid, layer->scene, query, embree::incoherent, packet);
     tfar = lanes::select(lanes::load<I>(packet.hit.geomID) == nothing, lanes::broadcast(infinity),
                          lanes::load<F>(packet.ray.tfar));
     lanes::store(job.distance_m.data() + first, tfar, static_cast<unsigned>(count));

@@ -59,6 +59,23 @@ TEST(RayScene, APlaneIsMetAtHeightOverSlope) {
   EXPECT_EQ(body, no_body);
 }
 
+TEST(RayScene, NothingIsMetOnWaysThatNumbersDoNotReach) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const bool moves : {false, true}) {
+    World world({shape(Sphere{1e4}, {}, 3, moves), shape(Box{{1, 1, 1}}, {0, 5e4, 0}, 4, moves)});
+    EXPECT_NEAR(world.see({-1e5, 0, 0}, {}, 0, 1e30), 9e4, 1);
+    for (const double x : {-1e19, -1e300, nan}) EXPECT_EQ(world.see({x, 0, 0}, {}, 0, 1e30), inf) << x;
+    EXPECT_EQ(world.see({-1e5, 0, 0}, {}, 1e19, 1e30), inf);
+    EXPECT_EQ(world.see({-1e5, 0, 0}, {}, 0, nan), inf);
+    for (const Vec3 way : {Vec3{nan, 0, 0}, Vec3{1e19, 0, 0}}) {
+      float distance = -1;
+      const RayJob job{{{-1e5, 0, 0}, {}}, {&way, 1}, 0, 1e30, no_body, {&distance, 1}, {}};
+      world.scene.cast({&job, 1});
+      EXPECT_EQ(distance, inf) << way.x;
+    }
+  }
+}
+
 TEST(RayScene, ASphereIsMetBeforeItsCentreByTheHalfChord) {
   World world({shape(Sphere{0.5}, {5, 0, 1}, 3)});
   for (const double offset : {0.0, 0.1, 0.3, 0.49}) {

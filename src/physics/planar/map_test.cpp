@@ -92,11 +92,13 @@ TEST(PlanarRays, SeeWhatIsLostFarAwayAndDoNotWalkThere) {
 
 TEST(PlanarRays, MayBeNextToParallelToTheCells) {
   World w;
-  w.add(robot_model(), at(30, 0));
-  for (const double aside : {5e-324, -5e-324, 1e-308, -1e-300, 1e-299}) {
-    EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {1, aside, 0}), 29.8f) << aside;
-    EXPECT_FLOAT_EQ(w.see({30, -30, 0.1}, {aside, 1, 0}), 29.8f) << aside;
-  }
+  for (const double x : {-30.0, 30.0}) w.add(robot_model(), at(x, 0)), w.add(robot_model(), at(0, x));
+  for (const double aside :
+       {5e-324, -5e-324, 1e-308, -1e-308, -1e-300, 1e-299})  // from a corner of the cells
+    for (const double ahead : {-1.0, 1.0}) {
+      EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {ahead, aside, 0}), 29.8f) << aside;
+      EXPECT_FLOAT_EQ(w.see({0, 0, 0.1}, {aside, ahead, 0}), 29.8f) << aside;
+    }
 }
 
 TEST(PlanarRays, HeightsCount) {
