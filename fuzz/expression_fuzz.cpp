@@ -15,6 +15,12 @@ struct Few final : sandlot::Names {
       if (text.substr(0, name.size()) == name) best = std::max(best, name.size());
     return best;
   }
+  std::size_t match_pattern(std::string_view text) const override {
+    std::size_t best = 0;
+    for (const std::string_view name : {"a*.x", "a*.y", "b*/c.r"})
+      if (text.substr(0, name.size()) == name) best = std::max(best, name.size());
+    return best;
+  }
   sandlot::Error unknown(std::string_view word) const override {
     return {"there is no '" + std::string(word) + "'", "", {}, ""};
   }
@@ -32,9 +38,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const double inf = std::numeric_limits<double>::infinity();
   for (const double x : {0.0, 1.0, -2.5, 1e300, inf, -inf, std::nan("")}) {
     const std::vector<double> inputs(expression->inputs().size(), x);
-    const auto first = expression->evaluate(inputs), second = expression->evaluate(inputs);
-    SL_CHECK(first.value == second.value || (std::isnan(first.value) && std::isnan(second.value)));
-    SL_CHECK(!first.finite || std::isfinite(first.value));
+    for (const std::size_t things : {0, 1, 3}) {
+      std::vector<std::vector<double>> numbers;
+      std::vector<sandlot::Expression::Table> tables;
+      for (const sandlot::Expression::Pattern& pattern : expression->patterns()) {
+        numbers.emplace_back(things * pattern.reads.size(), x);
+        if (things > 1) numbers.back().front() = sandlot::Expression::no_value();
+      }
+      for (const auto& each : numbers) tables.push_back({things, each});
+      const auto first = expression->evaluate(inputs, tables), second = expression->evaluate(inputs, tables);
+      SL_CHECK(first.value == second.value || (std::isnan(first.value) && std::isnan(second.value)));
+      SL_CHECK(!first.finite || first.absent || std::isfinite(first.value));
+    }
   }
   return 0;
 }

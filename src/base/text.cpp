@@ -92,6 +92,24 @@ bool is_one_of(std::string_view text, std::initializer_list<std::string_view> ca
 
 std::string_view first_part(std::string_view path) { return path.substr(0, path.find('/')); }
 
+bool fits_pattern(std::string_view name, std::string_view pattern) {
+  std::size_t star = std::string_view::npos, after_star = 0, n = 0, p = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      after_star = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p, ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++after_star;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
 bool starts_with(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;
 }

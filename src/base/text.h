@@ -29,6 +29,8 @@ std::string_view trim(std::string_view text);
 bool is_one_of(std::string_view text, std::initializer_list<std::string_view> candidates);
 /// The part before the first '/', or all of it: "robot1" of "robot1/laser".
 std::string_view first_part(std::string_view path);
+/// Whether a name fits a pattern, in which each `*` stands for any letters or none.
+bool fits_pattern(std::string_view name, std::string_view pattern);
 bool starts_with(std::string_view text, std::string_view prefix);
 std::vector<std::string_view> split(std::string_view text, char separator);
 

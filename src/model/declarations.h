@@ -2,6 +2,7 @@
 /// What files declare of a run: devices, controllers, plugins, named values, events and logs, each by its kind's or its
 /// own keys.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,15 +58,33 @@ struct ControllerDecl {
   }
 };
 
+/// What a team, or the whole run, is judged by: expressions over addresses.
+struct CriterionDecl {
+  std::string value;
+  std::string success;  ///< other than 0 at the end where the run succeeded; "": not asked
+  Place place, success_place;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"value", "", "Expression whose value at the end is the figure of merit.", 0, 0,
+                Field::required, 2000},
+          s.value);
+    visit(Field{"success", "", "Expression that is other than 0 at the end where the run succeeded.", 0, 0,
+                Field::none, 2000},
+          s.success);
+  }
+};
+
 /// Robots that programs of their own drive together. A robot names its team.
 struct TeamDecl {
   std::string name;  ///< address: unique among teams and instances
   SharedList<ControllerDecl> controllers;
   Place place;
+  std::optional<CriterionDecl> criterion;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the team."}, s.name);
     visit(Field{"controllers", "", "Control programs of the team."}, s.controllers);
+    visit(Field{"criterion", "", "What the team is judged by."}, s.criterion);
   }
 };
 

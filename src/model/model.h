@@ -184,6 +184,7 @@ struct Setup : Environment {
   std::vector<Instance> instances;
   std::vector<ValueDecl> values;
   std::vector<EventDecl> events;
+  std::optional<CriterionDecl> criterion;
   std::vector<std::string> addresses;
   std::optional<LogDecl> log;
   std::vector<SurfaceZone> zones;
@@ -213,6 +214,7 @@ struct Setup : Environment {
     visit(Field{"magnetic_field", "T", "Magnetic field in the world."}, s.magnetic_field_T);
     visit(Field{"values", "", "Named expressions."}, s.values);
     visit(Field{"events", "", "Conditions that are events."}, s.events);
+    visit(Field{"criterion", "", "What the run is judged by."}, s.criterion);
     visit(Field{"addresses", "", "Addresses in values and events; known even when their object is gone."},
           s.addresses);
     visit(Field{"media", "", "Media between robots."}, s.media);

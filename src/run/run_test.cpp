@@ -193,6 +193,72 @@ TEST_F(RunTest, WhatGoesWrongOnTheWayIsInTheSummary) {
   EXPECT_EQ(unwritten.ticks, 5u);
 }
 
+TEST_F(RunTest, IsJudgedByItsCriteria) {
+  const auto judged = [&](const std::string& criteria) {
+    EXPECT_TRUE(write_file(folder + "judged.yaml",
+                           "version: 1\nphysics: planar\ntime: {step: 10 ms}\nrobots:\n"
+                           "  - {name: red1, model: rover, team: red, pose: [2, 0, 0]}\n"
+                           "  - {name: red2, model: rover, team: red, pose: [4, 0, 0]}\n"
+                           "  - {name: blue1, model: rover, team: blue, pose: [8, 0, 0]}\n" +
+                               criteria));
+    return summary_of({.file = folder + "judged.yaml", .duration_s = 0.05});
+  };
+  const Summary s = judged(R"(
+values: {reds: mean(red*.pose.x)}
+criterion: {value: reds + blue1.pose.x, success: reds > 7}
+teams:
+  - {name: red, criterion: count(red*.pose.x > 3)}
+  - {name: blue, criterion: {value: max(blue*.pose.x), success: any(blue*.pose.x > 7)}}
+events: [{name: early, when: red.criterion > 0 and criterion > 10 and sim.time > 15 ms, once: true}]
+)");
+  EXPECT_EQ(s.criterion, 11);
+  EXPECT_EQ(s.success, false);
+  ASSERT_EQ(s.criteria.size(), 2u);
+  EXPECT_EQ(s.criteria[0].name, "red");
+  EXPECT_EQ(s.criteria[0].value.value, 1);
+  EXPECT_EQ(s.criteria[0].value.success, std::nullopt);
+  EXPECT_EQ(s.criteria[1].value.value, 8);
+  EXPECT_EQ(s.criteria[1].value.success, true);
+  ASSERT_EQ(s.events.size(), 1u);
+  EXPECT_EQ(s.events[0].first_s, 0.02);
+  EXPECT_THAT(as_text(s),
+              HasSubstr("criterion  11, no success\ncriterion  red: 1\ncriterion  blue: 8, success\n"));
+  EXPECT_EQ(as_json(s)["criteria"]["red"].dump(), R"({"value":1.0,"success":null})");
+
+  // What has no value at the end, and what is no number, keep the rest of the result.
+  const Summary empty = judged("criterion: mean(red*.pose.x where red*.pose.x > 5)\n");
+  EXPECT_EQ(empty.criterion, std::nullopt);
+  EXPECT_THAT(empty.errors, IsEmpty());
+  const Summary broken = judged("criterion: 1 / (red1.pose.x - 2)\n");
+  EXPECT_EQ(broken.criterion, std::nullopt);
+  EXPECT_EQ(broken.ticks, 5u);
+  EXPECT_THAT(broken.errors,
+              ElementsAre(HasSubstr(
+                  "judged.yaml:8:12: criterion: '1 / (red1.pose.x - 2)' is not a finite number at 0.05 s")));
+}
+
+TEST_F(RunTest, CriteriaThatCannotBeReadAreRefusedWithTheirPlace) {
+  const std::pair<const char*, const char*> expected[] = {
+      {"criterion: mean(rad*.pose.x)",
+       "bad.yaml:5:12: expression 'mean(rad*.pose.x)', column 6: nothing is called 'rad*'"},
+      {"criterion: criterion + 1", "there is no 'criterion'"},
+      {"criterion: 1 / 0", "is it a division by 0?"},
+      {"criterion: {success: 1}", "'value' is missing"},
+      {"criterion: {value: 1, succes: 1}", "did you mean 'success'?"},
+      {"criterion: [1]", "expected an expression"},
+      {"criterion: {value: 1, success: rover.x}", "bad.yaml:5:32: expression 'rover.x'"},
+      {"criterion: 1\nvalues: {criterion: 2}", "'criterion' cannot be the name of a value"},
+      {"teams: [{name: red, criterion: blue.criterion}]", "bad.yaml:5:32: expression 'blue.criterion'"},
+  };
+  for (const auto& [lines, words] : expected) {
+    ASSERT_TRUE(
+        write_file(folder + "bad.yaml",
+                   std::string("version: 1\nphysics: planar\nrobots:\n  - {name: rover, model: rover}\n") +
+                       lines + "\n"));
+    EXPECT_THAT(refusal({.file = folder + "bad.yaml", .duration_s = 0.01}), HasSubstr(words)) << lines;
+  }
+}
+
 TEST(Summary, HasTheKeysThatPeopleParseInTheirOrder) {
   Summary s;
   const auto keys = [](const nlohmann::ordered_json& json) {
@@ -203,7 +269,9 @@ TEST(Summary, HasTheKeysThatPeopleParseInTheirOrder) {
   const std::string always =
       "name physics seed ticks sim_seconds wall_seconds real_time_factor late_ticks phase_us end_tick "
       "end_time stopped "
-      "state_hash sub_hashes profile robots engine refused_commands refused_by_device events criterion teams "
+      "state_hash sub_hashes profile robots engine refused_commands refused_by_device events criterion "
+      "success "
+      "criteria teams "
       "warnings errors";
   EXPECT_EQ(keys(as_json(s)), always);
   s.video = {"a.mp4", 3};

@@ -8,54 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.h"
+#include "run/fields_json.h"
 #include "run/travel.h"
 #include "sim/session/session.h"
 #include "sim/watch/monitor.h"
 
 namespace sandlot {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <class T>
-Json value_json(const T& value);
-
-template <class T>
-Json list_json(const std::vector<T>& list) {
-  Json out = Json::array();
-  for (const T& each : list) out.push_back(value_json(each));
-  return out;
-}
-
-template <class T>
-Json list_json(const std::vector<Named<T>>& list) {
-  Json out = Json::object();
-  for (const Named<T>& each : list) out[each.name] = value_json(each.value);
-  return out;
-}
-
-template <class T>
-Json fields_json(const T& fielded) {
-  Json out;
-  T::fields(fielded, [&](const Field& field, const auto& member) {
-    using Member = std::remove_cvref_t<decltype(member)>;
-    if constexpr (is_optional<Member>::value) {
-      if constexpr (Fielded<typename Member::value_type>)
-        if (!member) return;
-    }
-    out[field.key] = value_json(member);
-  });
-  return out;
-}
-
-template <class T>
-Json value_json(const T& value) {
-  if constexpr (std::is_same_v<T, StateHash>) return hash_text(value.value);
-  else if constexpr (is_optional<T>::value) return value ? value_json(*value) : Json(nullptr);
-  else if constexpr (is_vector<T>::value) return list_json(value);
-  else if constexpr (Fielded<T>) return fields_json(value);
-  else return value;
-}
 
 double rounded(double x, double unit) { return std::round(x / unit) * unit; }
 
@@ -127,6 +86,15 @@ Summary summarise(const Simulation& simulation, const RunReport& report, const T
     EventSummary& added = out.events.emplace_back(EventSummary{event.decl.name, event.count, {}, {}});
     if (event.count > 0) added.first_s = event.first.s(), added.last_s = event.last.s();
   }
+  for (const Monitor::Criterion& criterion : simulation.monitor().criteria()) {
+    const auto value = simulation.monitor().judge(criterion);
+    const auto success = simulation.monitor().succeeds(criterion);
+    for (const Error* const error : {value ? nullptr : &value.error(), success ? nullptr : &success.error()})
+      if (error) out.errors.push_back(error->text());
+    const CriterionSummary found{value ? *value : std::nullopt, success ? *success : std::nullopt};
+    if (!criterion.team.empty()) out.criteria.push_back({criterion.team, found});
+    else out.criterion = found.value, out.success = found.success;
+  }
   std::map<std::string, std::vector<std::string>> teams;
   for (const model::Instance* instance : simulation.instances())
     if (!instance->team.empty()) teams[instance->team].push_back(instance->name);
@@ -160,6 +128,13 @@ std::string as_text(const Summary& s) {
     else if (event.count == 1) out += fmt::format("at {} s\n", *event.first_s);
     else out += fmt::format("{} times, first at {} s\n", event.count, *event.first_s);
   }
+  const auto judged = [](std::optional<double> value, std::optional<bool> success) {
+    return (value ? fmt::format("{:.6g}", *value) : "no value") +
+           (success ? *success ? ", success" : ", no success" : "") + "\n";
+  };
+  if (s.criterion || s.success) out += "criterion  " + judged(s.criterion, s.success);
+  for (const auto& [team, found] : s.criteria)
+    out += "criterion  " + team + ": " + judged(found.value, found.success);
   if (s.recording)
     out += fmt::format("recording  {}: {} messages, {:.2f} MB\n", s.recording->file, s.recording->messages,
                        1e-6 * static_cast<double>(s.recording->bytes));

@@ -89,6 +89,16 @@ struct EventSummary {
   }
 };
 
+struct CriterionSummary {
+  std::optional<double> value;
+  std::optional<bool> success;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"value", "1", "Figure of merit at the end; null when it has no value."}, s.value);
+    visit(Field{"success", "", "Whether the team succeeded; null when that is not asked."}, s.success);
+  }
+};
+
 struct VideoSummary {
   std::string file;
   std::uint64_t pictures = 0;
@@ -144,6 +154,8 @@ struct Summary {
   std::vector<Named<std::uint64_t>> refused_by_device;
   std::vector<EventSummary> events;
   std::optional<double> criterion;
+  std::optional<bool> success;
+  std::vector<Named<CriterionSummary>> criteria;
   std::vector<Named<std::vector<std::string>>> teams;
   std::vector<std::string> warnings, errors;
   std::optional<VideoSummary> video;
@@ -177,6 +189,9 @@ struct Summary {
           s.refused_by_device);
     visit(Field{"events", "", "Events of the scenario and of the run."}, s.events);
     visit(Field{"criterion", "1", "Figure of merit; null when none is defined."}, s.criterion);
+    visit(Field{"success", "", "Whether the run succeeded by its criterion; null when that is not asked."},
+          s.success);
+    visit(Field{"criteria", "1", "Figures of merit of the teams that are judged."}, s.criteria);
     visit(Field{"teams", "", "Names of the robots of each team."}, s.teams);
     visit(Field{"warnings", "", "Warnings, each with its remedy."}, s.warnings);
     visit(Field{"errors", "", "Errors that ended the run, or that results could not be written for."},

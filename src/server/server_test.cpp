@@ -156,6 +156,11 @@ TEST(Server, NumbersAreWatchedAtEveryTickAndAtARate) {
   const json wrong = viewer.call("/sandlot/watch", {{"values", {"rover1.pose.xx"}}, {"rate_hz", 0}});
   EXPECT_EQ(wrong["ok"], false);
   EXPECT_NE(wrong["text"].get<std::string>().find("rover1.pose.x"), std::string::npos) << wrong;
+  const json costly = viewer.call("/sandlot/watch",
+                                  {{"values", {"sum(min(rover*.pose.x - r*.pose.x))"}}, {"rate_hz", 0}});
+  EXPECT_EQ(costly["ok"], false);
+  EXPECT_NE(costly["text"].get<std::string>().find("aggregates within each other"), std::string::npos)
+      << costly;
   const json many = viewer.call("/sandlot/watch",
                                 {{"values", std::vector<std::string>(199, "sim.time")}, {"rate_hz", 0}});
   EXPECT_EQ(many["ok"], false) << "3 + 199 numbers are more than 200";

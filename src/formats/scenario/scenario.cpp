@@ -240,6 +240,23 @@ Result<RobotGroup> read_robot(const Node& node, spec::Robot& robot, const std::s
   return group;
 }
 
+/// What is judged, as an expression or as a map.
+Result<std::optional<model::CriterionDecl>> read_criterion(const Node& node, const std::string& path) {
+  if (node.is_null()) return std::optional<model::CriterionDecl>();
+  model::CriterionDecl criterion;
+  criterion.place = criterion.success_place = node.place();
+  if (node.is_map()) {
+    SL_TRY(read_fields(node, criterion, path));
+    criterion.place = node.find("value")->place();
+    if (const Node* const success = node.find("success")) criterion.success_place = success->place();
+  } else if (node.is_scalar() && node.text().size() <= 2000) {
+    criterion.value = node.text();
+  } else {
+    return wrong_type(node, "an expression, or a map with value and success", path);
+  }
+  return std::optional(std::move(criterion));
+}
+
 /// Teams, and that each robot's team is one of them.
 Status read_teams(const Node& node, const spec::Root& root, model::Setup& out) {
   std::vector<std::string> names;
@@ -256,7 +273,8 @@ Status read_teams(const Node& node, const spec::Root& root, model::Setup& out) {
                    path + "/name"};
     names.push_back(keys.name);
     SL_ASSIGN(auto controllers, read_controllers(keys, path));
-    out.teams.push_back({keys.name, std::move(controllers), place});
+    SL_ASSIGN(auto criterion, read_criterion(keys.criterion, path + "/criterion"));
+    out.teams.push_back({keys.name, std::move(controllers), place, std::move(criterion)});
   }
   for (std::size_t i = 0; i < root.robots.size() && !names.empty(); ++i) {
     const std::string& team = root.robots[i].instance.team;
@@ -318,7 +336,7 @@ Status read_physics(const Node& node, Scenario& out) {
   return {};
 }
 
-/// `values`, `events` and `log`: their expressions are read when the world they speak of is there.
+/// `values`, `events`, `criterion` and `log`: their expressions are read when the world they speak of is there.
 Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
   constexpr std::size_t most_values = 1000, longest = 2000;
   if (!root.values.is_map() && !root.values.is_null())
@@ -346,6 +364,7 @@ Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
     out.events.push_back({event.name, event.when, Time::from_s(event.hold_s), event.once, event.stop,
                           each.find("when")->place()});
   }
+  SL_ASSIGN(out.criterion, read_criterion(root.criterion, "/criterion"));
   if (!root.log) return {};
   const Node& log = *node.find("log");
   out.log = model::LogDecl{root.log->file, root.log->rate_hz, {}, log.place()};

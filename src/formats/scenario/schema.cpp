@@ -154,6 +154,9 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
   describe_as(keys["vars"], {{"type", "object"}});
   describe_as(keys["values"],
               {{"type", "object"}, {"additionalProperties", {{"type", {"string", "number"}}}}});
+  const Json criterion = {
+      {"anyOf", {Json{{"type", {"string", "number"}}}, object_of(describe_fields<model::CriterionDecl>())}}};
+  describe_as(keys["criterion"], criterion);
   describe_as(keys["include"], {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}});
   Json& robot = keys["robots"]["items"]["properties"];
   const Json model = {
@@ -173,6 +176,7 @@ std::string scenario_schema(std::span<const KindFields> devices, std::span<const
         {"x-unit", "Hz"}}}};
   const Json controller = kinds_of(controllers, named, true);
   Json& team = keys["teams"]["items"]["properties"];
+  describe_as(team["criterion"], criterion);
   for (Json* const owner : {&robot, &team}) {
     describe_as((*owner)["controller"], {{"anyOf", {Json{{"type", "string"}}, controller}}});
     describe_as((*owner)["controllers"], {{"type", "array"}, {"items", controller}});

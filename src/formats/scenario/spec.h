@@ -213,7 +213,7 @@ struct Root {
   std::vector<Team> teams;
   std::vector<Robot> robots;
   std::vector<LabelledObject> things;
-  Node values;
+  Node values, criterion;
   std::vector<Event> events;
   std::optional<Log> log;
   std::vector<Zone> zones;
@@ -252,6 +252,9 @@ struct Root {
     visit(Field{"values", "", "Expressions over addresses, by name."}, s.values);
     visit(Field{"events", "", "Events that happen when a condition holds.", 0, 0, Field::none, 1000},
           s.events);
+    visit(Field{"criterion", "",
+                "What the run is judged by: an expression over addresses, or a map with value and success."},
+          s.criterion);
     visit(Field{"log", "", "Values written to a CSV file."}, s.log);
     visit(Field{"record", "", "Recording of the run."}, s.setup.record);
     visit(

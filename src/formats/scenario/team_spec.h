@@ -11,6 +11,7 @@ struct Team {
   std::string name;
   Node controller;
   Node controllers;
+  Node criterion;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the team; robots name it as their team.", 0, 0, Field::required, 100},
@@ -23,6 +24,9 @@ struct Team {
     visit(Field{"controllers", "",
                 "Several controllers of the team: a list of maps with name, kind and the kind's keys."},
           s.controllers);
+    visit(Field{"criterion", "",
+                "What the team is judged by: an expression over addresses, or a map with value and success."},
+          s.criterion);
   }
 };
 

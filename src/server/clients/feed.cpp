@@ -226,7 +226,11 @@ Status Feed::watch(std::uint32_t channel, const std::vector<std::string>& values
   made.texts = values;
   for (const std::string& text : values) {
     SL_ASSIGN(ValueExpression value, ValueExpression::compile(session_.simulation(), text));
-    made.addresses.emplace_back(value.addresses().begin(), value.addresses().end());
+    // Of everybody's time: a scenario may spend it, whoever looks on may not.
+    if (value.nesting() > 1)
+      return Error{"'" + text + "' has aggregates within each other",
+                   "name it in the scenario, under values"};
+    made.addresses.push_back(value.addresses());
     made.values.emplace_back(std::move(value));
   }
   follow_session();

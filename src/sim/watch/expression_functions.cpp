@@ -1,5 +1,6 @@
 #include "sim/watch/expression_functions.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -13,11 +14,19 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t broken_bits = 0x7ff8'0000'0000'b10c;
 constexpr double broken = std::bit_cast<double>(broken_bits);
+constexpr std::uint64_t absent_bits = 0x7ff8'0000'0000'ab5e;
+constexpr double absent = std::bit_cast<double>(absent_bits);
+
+bool has_bits(double x, std::uint64_t bits) {
+  return (std::bit_cast<std::uint64_t>(x) & ~(std::uint64_t{1} << 63)) == bits;
+}
 
 /// The NaN that results from arguments of which one is NaN.
 double nan_of(const double* x, int n) {
   for (int i = 0; i < n; ++i)
     if (is_broken(x[i])) return broken;
+  for (int i = 0; i < n; ++i)
+    if (is_absent(x[i])) return absent;
   return nan;
 }
 bool any_nan(const double* x, int n) {
@@ -100,6 +109,59 @@ double choice(const double* x, int n, bool) {
 double minus(const double* x, int, bool) { return -x[0]; }
 double plus(const double* x, int, bool) { return x[0]; }
 
+// Aggregates. In the order of the things, so that rounding is always the same.
+
+using Values = std::span<double>;
+
+double total(Values x) {
+  double sum = 0;
+  for (const double each : x) sum += each;
+  return sum;
+}
+double count_of(Values x, double) {
+  return static_cast<double>(std::count_if(x.begin(), x.end(), [](double each) { return each != 0; }));
+}
+double any_of(Values x, double) { return count_of(x, 0) > 0; }
+double all_of(Values x, double) { return count_of(x, 0) == static_cast<double>(x.size()); }
+double sum_of(Values x, double) { return total(x); }
+double mean_of(Values x, double) { return x.empty() ? absent : total(x) / static_cast<double>(x.size()); }
+double least_of(Values x, double) { return x.empty() ? absent : *std::min_element(x.begin(), x.end()); }
+double most_of(Values x, double) { return x.empty() ? absent : *std::max_element(x.begin(), x.end()); }
+/// Of the sample: divided by n - 1.
+double deviation_of(Values x, double) {
+  if (x.size() < 2) return absent;
+  const double mean = mean_of(x, 0);
+  double squares = 0;
+  for (const double each : x) squares += (each - mean) * (each - mean);
+  return std::sqrt(squares / static_cast<double>(x.size() - 1));
+}
+/// Linear between the neighbours in order: type 7 of R. J. Hyndman, Y. Fan, Sample quantiles in statistical packages (1996).
+double quantile_of(Values x, double p) {
+  if (x.empty()) return absent;
+  std::sort(x.begin(), x.end());
+  const double place = p * static_cast<double>(x.size() - 1), below = std::floor(place);
+  const auto i = static_cast<std::size_t>(below);
+  return i + 1 < x.size() ? x[i] + (place - below) * (x[i + 1] - x[i]) : x[i];
+}
+double median_of(Values x, double) { return quantile_of(x, 0.5); }
+
+/// F with the rules for NaN and broken numbers.
+template <auto F>
+double aggregate(Values x, double parameter, bool mark_broken) {
+  const int n = static_cast<int>(x.size());
+  if (any_nan(x.data(), n)) return nan_of(x.data(), n);
+  const double result = F(x, parameter);
+  return is_absent(result) ? result : checked(result, x.data(), n, mark_broken);
+}
+
+constexpr AggregateRule aggregates[] = {
+    {"count", false, aggregate<count_of>},   {"sum", false, aggregate<sum_of>},
+    {"mean", false, aggregate<mean_of>},     {"deviation", false, aggregate<deviation_of>},
+    {"min", false, aggregate<least_of>},     {"max", false, aggregate<most_of>},
+    {"median", false, aggregate<median_of>}, {"quantile", true, aggregate<quantile_of>},
+    {"any", false, aggregate<any_of>},       {"all", false, aggregate<all_of>},
+};
+
 constexpr int any_number = 400;
 
 constexpr FunctionRule functions[] = {
@@ -165,12 +227,15 @@ const Rule* find(std::span<const Rule> rules, std::string_view Rule::*name, std:
 
 }  // namespace
 
-bool is_broken(double x) {
-  return (std::bit_cast<std::uint64_t>(x) & ~(std::uint64_t{1} << 63)) == broken_bits;
-}
+bool is_broken(double x) { return has_bits(x, broken_bits); }
+bool is_absent(double x) { return has_bits(x, absent_bits); }
+double Expression::no_value() { return absent; }
 
 const FunctionRule* find_function(std::string_view name) {
   return find<FunctionRule>(functions, &FunctionRule::name, name);
+}
+const AggregateRule* find_aggregate(std::string_view name) {
+  return find<AggregateRule>(aggregates, &AggregateRule::name, name);
 }
 const OperatorRule* find_binary(std::string_view sign) {
   return find<OperatorRule>(binary, &OperatorRule::sign, sign);

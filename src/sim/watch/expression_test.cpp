@@ -23,6 +23,22 @@ struct Few final : Names {
       if (text.substr(0, name.size()) == name) best = std::max(best, name.size());
     return best;
   }
+  /// Rows of x, y and a range that only some have.
+  static constexpr double gone = -99;
+  std::map<std::string, std::vector<std::vector<double>>> things{
+      {"t*", {{1, 2, gone}, {2, 0, 5}, {3, 4, 7}, {6, 1, gone}}},
+      {"u*", {{2.5, 0, 1}, {5, 0, 1}}},
+      {"zero*", {}}};
+  static int column(std::string_view read) {
+    return read == ".x" ? 0 : read == ".y" ? 1 : read == "/laser.d" ? 2 : -1;
+  }
+  std::size_t match_pattern(std::string_view text) const override {
+    for (const auto& [name, rows] : things)
+      for (const std::string_view read : {".x", ".y", "/laser.d"})
+        if (text.substr(0, name.size()) == name && text.substr(name.size(), read.size()) == read)
+          return name.size() + read.size();
+    return 0;
+  }
   Error unknown(std::string_view word) const override { return {"there is no '" + std::string(word) + "'"}; }
 };
 
@@ -33,7 +49,19 @@ Expression::Evaluated result(const std::string& text) {
   if (!expression) return {std::nan(""), false};
   std::vector<double> inputs;
   for (const std::string& input : expression->inputs()) inputs.push_back(names.values.at(input));
-  return expression->evaluate(inputs);
+  std::vector<std::vector<double>> numbers;
+  std::vector<Expression::Table> tables;
+  for (const Expression::Pattern& pattern : expression->patterns()) {
+    numbers.emplace_back();
+    for (const auto& row : names.things.at(pattern.things))
+      for (const std::string& read : pattern.reads) {
+        const double x = row[static_cast<std::size_t>(Few::column(read))];
+        numbers.back().push_back(x == Few::gone ? Expression::no_value() : x);
+      }
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    tables.push_back({names.things.at(expression->patterns()[i].things).size(), numbers[i]});
+  return expression->evaluate(inputs, tables);
 }
 double value(const std::string& text) { return result(text).value; }
 std::string complaint(const std::string& text) {
@@ -105,7 +133,8 @@ TEST(Expression, FunctionsAreOurs) {
   // None is left untested.
   for (const Expression::Function& f : Expression::functions()) {
     const std::string name(f.call, std::string_view(f.call).find('(') + 1);
-    bool tested = name == "if(";
+    // Those of things have a test of their own, as does if().
+    bool tested = name == "if(" || std::string_view(f.call).find("where") != std::string_view::npos;
     for (const auto& [text, number] : expected) tested = tested || text.substr(0, name.size()) == name;
     EXPECT_TRUE(tested) << name;
   }
@@ -136,6 +165,93 @@ TEST(Expression, InputsAreListedOnce) {
   ASSERT_TRUE(expression);
   EXPECT_EQ(std::vector<std::string>(expression->inputs().begin(), expression->inputs().end()),
             (std::vector<std::string>{"b.x", "a.x"}));
+}
+
+TEST(Expression, AggregatesGoOverThings) {
+  const std::map<std::string, double> expected{
+      {"count(t*.x > 1.5)", 3},
+      {"count(t*.x > 1.5 where t*.y > 0.5)", 2},
+      {"sum(t*.x)", 12},
+      {"mean(t*.x)", 3},
+      {"2*mean(t*.x)*2", 12},
+      {"deviation(t*.x)", std::sqrt((4.0 + 1 + 0 + 9) / 3)},
+      {"min(t*.x)", 1},
+      {"max(t*.x where t*.y != 1)", 3},
+      {"max(-t*.x)", -1},
+      {"median(t*.x)", 2.5},
+      {"quantile(t*.x, 0)", 1},
+      {"quantile(t*.x, 1)", 6},
+      {"quantile(t*.x, 0.9)", 3 + 0.7 * 3},
+      {"quantile(t*.x where t*.x < 5, 0.5)", 2},
+      {"any(t*.x > 5)", 1},
+      {"any(t*.x > 7)", 0},
+      {"all(t*.x > 0)", 1},
+      {"all(t*.x > 1)", 0},
+      {"sum(t*/laser.d)", 12},  // of those that have one
+      {"count(t*/laser.d > 0)", 2},
+      {"all(t*/laser.d > 1)", 1},
+      {"mean(t*.x where t*/laser.d > 5)", 3},
+      {"sum(hypot(t*.x - a.x, t*.y))", std::sqrt(8.0) + 1 + 4 + std::sqrt(10.0)},
+      {"sum(t*.x * gap) + b.x", 28},
+      {"sum(max(t*.x, a.x))", 3 + 3 + 3 + 6},
+      {"max(mean(t*.x), mean(u*.x))", 3.75},
+      {"count(zero*.x > 0) + sum(zero*.x) + any(zero*.x)", 0},
+      {"all(zero*.x)", 1},
+      {"a.x*count(t*.x > 2)", 6},
+      {"sum(min(abs(t*.x - u*.x)))", 1.5 + 0.5 + 0.5 + 1},  // how far each t is from the nearest u
+      {"max(min(abs(t*.x - u*.x)) where t*.y > 0)", 1.5},
+      {"mean(count(t*.x > u*.x where t*.y < 3))", (0.0 + 0 + 0 + 2) / 4},  // over t, which comes first
+      {"mean(count(u*.x < t*.x where t*.y < 3))", (1.0 + 1) / 2},          // over u
+      {"count(min(abs(t*.x - u*.x + gap - gap) where u*.x > a.x) < 2.5)", 2},
+  };
+  for (const auto& [text, number] : expected) EXPECT_DOUBLE_EQ(value(text), number) << text;
+  for (const char* const text : {"mean(zero*.x)", "min(zero*.x)", "deviation(t*.x where t*.x > 5)",
+                                 "1 + max(zero*.x)", "mean(zero*.x) > 3", "if(mean(zero*.x) > 3, 1, 2)"})
+    EXPECT_TRUE(result(text).absent) << text;
+  EXPECT_EQ(result("if(count(zero*.x) == 0, 7, mean(zero*.x))").value, 7);
+  EXPECT_FALSE(result("1 / count(zero*.x) > 3").finite);
+  EXPECT_FALSE(result("sum(1 / (t*.x - 1))").finite);
+  EXPECT_FALSE(result("count(1 / (t*.x - 1) > 0)").finite);
+  EXPECT_EQ(value("count(1 / (t*.x - 1) > 0 where t*.x != 1)"), 3);
+  EXPECT_FALSE(result("count(none > t*.x)").finite);
+}
+
+TEST(Expression, AggregatesListWhatTheyReadOnce) {
+  const auto expression = Expression::compile(
+      "mean(min(t*.x - u*.x + b.x) where t*.y > a.x) + sum(t*.x) + b.x", Few());
+  ASSERT_TRUE(expression);
+  EXPECT_EQ(std::vector<std::string>(expression->inputs().begin(), expression->inputs().end()),
+            (std::vector<std::string>{"b.x", "a.x"}));
+  ASSERT_EQ(expression->patterns().size(), 3u);
+  EXPECT_EQ(expression->patterns()[0].things, "t*");
+  EXPECT_EQ(expression->patterns()[0].reads, (std::vector<std::string>{".x", ".y"}));
+  EXPECT_EQ(expression->patterns()[1].things, "u*");
+  EXPECT_EQ(expression->patterns()[2].things, "t*");
+}
+
+TEST(Expression, AggregatesSayWhatIsWrongWithThem) {
+  const std::vector<std::pair<const char*, const char*>> expected{
+      {"t*.x > 1", "column 1: 't*.x' is a value of several things"},
+      {"max(t*.x, 1)", "column 5: 't*.x' is a value of several things"},
+      {"count(a.x > 1)", "column 1: 'count' goes over no things of its own"},
+      {"mean(t*.x - u*.x)", "'u*.x' is of other things than t*"},
+      {"mean(t*.x, 1)", "'mean' of things takes one value"},
+      {"quantile(t*.x)", "a number from 0 to 1 is missing"},
+      {"quantile(t*.x, 2)", "here belongs a number from 0 to 1"},
+      {"quantile(t*.x, a.x)", "here belongs a number from 0 to 1"},
+      {"min(a.x where b.x)", "'where' belongs into an aggregate"},
+      {"a.x where b.x", "'where' belongs into an aggregate"},
+      {"mean(where t*.x)", "'where' belongs into an aggregate"},
+      {"mean()", "this parenthesis"},
+      {"mean(t*.x", "a ')' is missing"},
+      {"mean(z*.x)", "there is no 'z*.x'"},
+      {"mean", "'mean' is a function"},
+      {"sum(t*.x * (1/0))", "not a finite number"},
+      {"count(t*.x where 1/0)", "not a finite number"},
+      {"sum(sum(sum(sum(t*.x - u*.x))))", "aggregates are more than 3 deep"},
+      {"t*", "column 1: there is no 't'"}};
+  for (const auto& [text, words] : expected)
+    EXPECT_NE(complaint(text).find(words), std::string::npos) << text << " -> " << complaint(text);
 }
 
 TEST(Expression, NothingUndefinedPassesForAnAnswer) {

@@ -7,15 +7,31 @@
 
 namespace sandlot {
 
-Status Monitor::add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
-                    std::vector<std::string>& known) {
+namespace {
+
+Error no_finite_number(const std::string& what, const Place& place, double value,
+                       const std::string& expression, Time now) {
+  return {what + ": " +
+              // A comparison with infinity is a finite 0 or 1.
+              (std::isfinite(value) ? "a part of '" : "'") + expression + "' is not a finite number at " +
+              number_text(now.s()) + " s",
+          "guard it, as in if(x == 0, 0, 1 / x)", place};
+}
+
+std::string title(const Monitor::Criterion& criterion) {
+  return criterion.team.empty() ? "criterion" : "criterion of team " + criterion.team;
+}
+
+}  // namespace
+
+Status Monitor::add(const model::Setup& setup, std::vector<std::string>& known) {
   const std::vector<std::string> before = known;
   const auto note = [&](const ValueExpression& expression) {
     for (const std::string& address : expression.addresses())
       if (std::find(known.begin(), known.end(), address) == known.end()) known.push_back(address);
   };
-  for (const model::ValueDecl& decl : values) {
-    if (Expression::is_reserved(decl.name))
+  for (const model::ValueDecl& decl : setup.values) {
+    if (Expression::is_reserved(decl.name) || (decl.name == "criterion" && setup.criterion))
       return Error{"'" + decl.name + "' cannot be the name of a value: it means something in expressions",
                    "give it another name", decl.place};
     SL_ASSIGN(ValueExpression expression,
@@ -25,11 +41,51 @@ Status Monitor::add(std::span<const model::ValueDecl> values, std::span<const mo
     values_.push_back(std::move(expression));
     computed_.emplace_back();
   }
-  for (const model::EventDecl& decl : events) {
+  // Compiled before any is there: none can speak of another, or of itself.
+  std::vector<Criterion> criteria;
+  const auto add_criterion = [&](const std::string& team, const model::CriterionDecl& decl) -> Status {
+    SL_ASSIGN(ValueExpression value, ValueExpression::compile(simulation_, decl.value, decl.place, before));
+    note(value);
+    criteria.push_back({team, decl, std::move(value), {}});
+    if (decl.success.empty()) return {};
+    SL_ASSIGN(criteria.back().success,
+              ValueExpression::compile(simulation_, decl.success, decl.success_place, before));
+    note(*criteria.back().success);
+    return {};
+  };
+  if (setup.criterion) SL_TRY(add_criterion("", *setup.criterion));
+  for (const model::TeamDecl& team : setup.teams)
+    if (team.criterion) SL_TRY(add_criterion(team.name, *team.criterion));
+  criteria_ = std::move(criteria);
+  for (const model::EventDecl& decl : setup.events) {
     SL_TRY(add_event(decl, true, before));
     note(events_.back().condition);
   }
   return {};
+}
+
+const Monitor::Criterion* Monitor::find_criterion(std::string_view team) const {
+  for (const Criterion& criterion : criteria_)
+    if (criterion.team == team) return &criterion;
+  return nullptr;
+}
+
+Result<std::optional<double>> Monitor::judge(const Criterion& criterion) const {
+  const auto result = criterion.value.evaluate();
+  if (!result) return std::optional<double>();
+  if (!result->finite)
+    return no_finite_number(title(criterion), criterion.decl.place, result->value, criterion.decl.value,
+                            simulation_.now());
+  return std::optional(result->value);
+}
+
+Result<std::optional<bool>> Monitor::succeeds(const Criterion& criterion) const {
+  if (!criterion.success) return std::optional<bool>();
+  const auto result = criterion.success->evaluate();
+  if (result && !result->finite)
+    return no_finite_number("success by the " + title(criterion), criterion.decl.success_place, result->value,
+                            criterion.decl.success, simulation_.now());
+  return std::optional(result && result->value != 0);
 }
 
 Status Monitor::add_event(model::EventDecl decl, bool declared, std::span<const std::string> known) {
@@ -73,11 +129,8 @@ Result<std::optional<std::string>> Monitor::judge(Time now) {
   for (Event& event : events_) {
     const auto condition = event.condition.evaluate();
     if (condition && !condition->finite)
-      return Error{"event '" + event.decl.name + "': " +
-                       // A comparison with infinity is a finite 0 or 1.
-                       (std::isfinite(condition->value) ? "a part of '" : "'") + event.decl.when +
-                       "' is not a finite number at " + number_text(now.s()) + " s",
-                   "guard it, as in if(x == 0, 0, 1 / x)", event.decl.place};
+      return no_finite_number("event '" + event.decl.name + "'", event.decl.place, condition->value,
+                              event.decl.when, now);
     if (!condition || condition->value == 0) {
       event.holds = event.happened = false;
       continue;

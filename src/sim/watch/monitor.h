@@ -6,6 +6,8 @@
 /// `hold` without a break, and once per such stretch. No value (nothing measured yet) counts as "does not hold"; a
 /// value that is not a finite number fails the run.
 ///
+/// Criteria are what a run or a team is judged by. They are computed when they are asked for, and no part of State.
+///
 /// State   of the scenario's events: since when they hold, how often they happened. Events added later (from the
 ///         command line) are a matter of the observer, like the stop time, and no part of State.
 #include <optional>
@@ -39,17 +41,33 @@ class Monitor {
     }
   };
 
+  /// What a team, or with team "" the whole run, is judged by.
+  struct Criterion {
+    std::string team;
+    model::CriterionDecl decl;
+    mutable ValueExpression value;
+    mutable std::optional<ValueExpression> success;
+  };
+
   explicit Monitor(const Simulation& simulation) : simulation_(simulation) {}
-  /// Compiles values and then events. The addresses they use are appended to `known`, which also makes addresses
+  /// Compiles values, then criteria and events: each may use what is before it. The addresses they use are appended to `known`, which also makes addresses
   /// acceptable that name nothing now.
-  Status add(std::span<const model::ValueDecl> values, std::span<const model::EventDecl> events,
-             std::vector<std::string>& known);
+  Status add(const model::Setup& setup, std::vector<std::string>& known);
   Status add_event(model::EventDecl decl, bool declared, std::span<const std::string> known);
 
   std::optional<std::uint32_t> find_value(std::string_view name) const;
   const std::vector<std::string>& value_names() const { return names_; }
   /// The present value of a named value.
   std::optional<double> value(std::uint32_t index) const;
+
+  /// The run's own, if it has one, and then those of the teams.
+  const std::vector<Criterion>& criteria() const { return criteria_; }
+  /// Null where that team, or with "" the run, is not judged.
+  const Criterion* find_criterion(std::string_view team) const;
+  /// The present value; nothing while something it reads has none. Errors: it is no finite number.
+  Result<std::optional<double>> judge(const Criterion& criterion) const;
+  /// Whether the run succeeds as things are; nothing where that is not asked. Errors as above.
+  Result<std::optional<bool>> succeeds(const Criterion& criterion) const;
 
   const std::vector<Event>& events() const { return events_; }
   std::vector<Event>& events() { return events_; }
@@ -68,6 +86,7 @@ class Monitor {
   mutable std::vector<std::optional<double>> computed_;
   mutable std::uint32_t computing_ = 0;  ///< values below this index are those of now
   std::vector<Event> events_;
+  std::vector<Criterion> criteria_;
   std::vector<std::string> happened_;
 };
 

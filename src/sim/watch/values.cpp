@@ -46,7 +46,7 @@ bool NamedValue::resolve() {
   const auto [thing, rest] = cut(address_);
   if (rest.empty()) {
     const auto named = simulation_->monitor().find_value(address_);
-    if (!named) return false;
+    if (!named) return address_ == "criterion" && resolve_criterion("");
     index_ = *named;
     return take(What::named, 0, number(0, ""));
   }
@@ -71,6 +71,7 @@ bool NamedValue::resolve() {
     return resolve_element(*part->element);
   const Simulation::Entity* const entity = simulation_->find_entity(first_part(thing));
   if (!entity) {
+    if (rest == "criterion" && resolve_criterion(thing)) return true;
     const auto* const of_team = simulation_->programs_of(first_part(thing));
     return of_team && resolve_programs(*of_team, thing);
   }
@@ -85,6 +86,11 @@ bool NamedValue::resolve() {
       }
   }
   return resolve_programs(entity->programs, thing);
+}
+
+bool NamedValue::resolve_criterion(std::string_view team) {
+  team_ = team;
+  return simulation_->monitor().find_criterion(team) && take(What::criterion, 0, number(0, ""));
 }
 
 bool NamedValue::resolve_topic(const TopicBase& topic) {
@@ -207,6 +213,11 @@ ValueFound NamedValue::look() const {
     case What::named: {
       const auto value = simulation_->monitor().value(index_);
       return value ? number(*value, "") : ValueFound{Is::absent};
+    }
+    case What::criterion: {
+      const Monitor::Criterion* const criterion = simulation_->monitor().find_criterion(team_);
+      const auto value = simulation_->monitor().judge(*criterion);
+      return value && *value ? number(**value, "") : ValueFound{Is::absent};
     }
     case What::model_pose: return value_at(engine.pose(entity_->id), rest);
     case What::body_pose: return value_at(engine.states()[index_].X_WB, rest);
@@ -365,12 +376,14 @@ void list_element(const WorldElements::Part& part, const ValueVisit& visit) {
   part.element->list_values(ValuePart::state, lister.under(part.path, "state"));
 }
 
-/// What an unknown address was meant to be.
-Error no_such(const Simulation& simulation, std::string_view address) {
+}  // namespace
+
+Error no_such_value(const Simulation& simulation, std::string_view address) {
   const std::string shown(address.substr(0, 100));
   const auto [thing, rest] = cut(address);
   const Simulation::Entity* const entity = simulation.find_entity(first_part(thing));
   std::vector<std::string> things{"sim"};
+  if (simulation.monitor().find_criterion("")) things.emplace_back("criterion");
   if (!simulation.monitor().value_names().empty()) things.emplace_back("values");
   for (const std::string& name : simulation.monitor().value_names()) things.push_back(name);
   const WorldElements::Part* const part = simulation.elements().find_part(thing);
@@ -423,46 +436,10 @@ Error no_such(const Simulation& simulation, std::string_view address) {
           suggestion(address, addresses)};
 }
 
-std::string_view without_slash(std::string_view address) {
-  return starts_with(address, "/") ? address.substr(1) : address;
-}
-
-}  // namespace
-
-/// The words of expressions: addresses, as far as they reach.
-class SimulationNames final : public Names {
- public:
-  SimulationNames(const Simulation& simulation, std::span<const std::string> known)
-      : simulation_(simulation), known_(known) {}
-
-  std::size_t match(std::string_view text) const override {
-    const auto in_address = [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) ||
-             std::string_view("_./-[]").find(c) != std::string_view::npos;
-    };
-    std::size_t end = 0;
-    while (end < text.size() && end < longest_address && in_address(text[end])) ++end;
-    // A '/' or '-' may belong to the name or be an operator: the longest that names something wins.
-    for (std::size_t n = end; n > 0; --n) {
-      if (n < end && text[n] != '/' && text[n] != '-') continue;
-      const std::string_view candidate = text.substr(0, n);
-      if (std::find(known_.begin(), known_.end(), candidate) != known_.end()) return n;
-      if (NamedValue(simulation_, std::string(candidate)).resolve()) return n;
-    }
-    return 0;
-  }
-  Error unknown(std::string_view word) const override { return no_such(simulation_, word); }
-
- private:
-  static constexpr std::size_t longest_address = 300;
-  const Simulation& simulation_;
-  std::span<const std::string> known_;
-};
-
 Result<NamedValue> NamedValue::find(const Simulation& simulation, std::string_view address) {
   address = without_slash(trim(address));
   NamedValue value(simulation, std::string(address));
-  if (!value.resolve()) return no_such(simulation, address);
+  if (!value.resolve()) return no_such_value(simulation, address);
   return value;
 }
 
@@ -486,6 +463,14 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
              value.value_or(0)});
     }
   }
+  for (const Monitor::Criterion& criterion : simulation.monitor().criteria()) {
+    if (!entity.empty() && entity != criterion.team) continue;
+    const auto value = simulation.monitor().judge(criterion);
+    const bool is = value && value->has_value();
+    visit({criterion.team.empty() ? "criterion" : criterion.team + ".criterion", "",
+           criterion.team.empty() ? "What the run is judged by." : "What the team is judged by.",
+           is ? Is::value : Is::absent, is ? **value : 0});
+  }
   for (const WorldElements::Part& part : simulation.elements().parts())
     if (entity.empty() || entity == first_part(part.path)) list_element(part, visit);
   for (const auto& each : simulation.entities()) {
@@ -495,29 +480,6 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
   Lister lister(visit);
   for (const Simulation::Team& team : simulation.teams())
     if (entity.empty() || team.decl.name == entity) list_programs(team.programs, lister);
-}
-
-Result<ValueExpression> ValueExpression::compile(const Simulation& simulation, std::string_view text,
-                                                 const Place& place, std::span<const std::string> known) {
-  SL_ASSIGN(Expression expression,
-            Expression::compile(without_slash(trim(text)), SimulationNames(simulation, known), place));
-  std::vector<NamedValue> inputs;
-  for (const std::string& address : expression.inputs())
-    inputs.push_back(NamedValue::find_or_wait(simulation, address));
-  return ValueExpression(std::move(expression), std::move(inputs));
-}
-
-std::string ValueExpression::unit() const {
-  return inputs_.size() == 1 && inputs_.front().address() == text() ? inputs_.front().unit() : "";
-}
-
-std::optional<Expression::Evaluated> ValueExpression::evaluate() {
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const auto value = inputs_[i].read();
-    if (!value) return std::nullopt;
-    numbers_[i] = *value;
-  }
-  return expression_.evaluate(numbers_);
 }
 
 }  // namespace sandlot

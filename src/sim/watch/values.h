@@ -3,6 +3,7 @@
 ///
 ///   sim.time|tick|revision|errors                   simulated time [s], tick, revision of the Model, factor on all errors
 ///   values.NAME or NAME                             a value that the scenario names
+///   criterion, red.criterion                        what the run and team red are judged by
 ///   rover.pose.x|y|z|roll|pitch|yaw                 of the model frame in the world [m, rad]
 ///   rover.twist.linear.x, .angular.z                of the first link, in the world [m/s, rad/s]
 ///   rover.errors                                    factor on the errors of all its devices
@@ -16,6 +17,8 @@
 ///   rover/controller.PATH                           a program: a parameter, else its state, else steps
 ///   rover/controller/estimate.PATH                  a message that the program publishes, by the topic's name
 ///   red/coach.PATH                                  a program of team red, and its topics, likewise
+///   red*.pose.x, red*/laser.PATH                    in aggregates alone: of every robot or object whose name fits, in the order
+///                                                   in which they came into the world
 ///
 /// Reading changes nothing. An address once found follows its thing through spawns, deletions and level changes; what
 /// is gone, has not been measured yet or lies beyond the end of a list has no value.
@@ -54,6 +57,7 @@ class NamedValue {
     all_errors,
     errors,
     named,
+    criterion,
     model_pose,
     body_pose,
     body_twist,
@@ -78,6 +82,7 @@ class NamedValue {
   bool resolve_thing(const Simulation::Entity& entity);
   bool resolve_device(const Simulation::Device& device);
   bool resolve_program(const Simulation::ProgramEntry& program);
+  bool resolve_criterion(std::string_view team);
   /// A topic by its name, or a program by its path.
   bool resolve_topic(const TopicBase& topic);
   bool resolve_programs(const Simulation::ProgramEntries& programs, std::string_view thing);
@@ -96,12 +101,21 @@ class NamedValue {
   const Simulation::ProgramEntry* program_ = nullptr;
   const TopicBase* topic_ = nullptr;
   const Element* element_ = nullptr;
+  std::string team_;         ///< of a criterion
   std::uint32_t index_ = 0;  ///< of a body, joint or named value
 };
 
 /// Calls `visit` for every address of one entity (a robot or object with all its devices), or of the whole simulation
 /// when `entity` is "". Lists of numbers are one entry. Static things are left out of the whole.
 void list_values(const Simulation& simulation, std::string_view entity, const ValueVisit& visit);
+
+/// The error for an address that names nothing: what it was meant to be.
+Error no_such_value(const Simulation& simulation, std::string_view address);
+
+/// "rover.pose.x" of "/rover.pose.x": people copy the names of topics.
+inline std::string_view without_slash(std::string_view address) {
+  return address.substr(0, 1) == "/" ? address.substr(1) : address;
+}
 
 /// An expression over a simulation's values.
 class ValueExpression {
@@ -110,18 +124,31 @@ class ValueExpression {
   static Result<ValueExpression> compile(const Simulation& simulation, std::string_view text,
                                          const Place& place = {}, std::span<const std::string> known = {});
   const std::string& text() const { return expression_.text(); }
-  std::span<const std::string> addresses() const { return expression_.inputs(); }
+  int nesting() const { return expression_.nesting(); }
+  /// What it reads: addresses, and those of aggregates with their `*`.
+  std::vector<std::string> addresses() const;
   /// The unit when the expression is nothing but an address; "" else.
   std::string unit() const;
   /// Nothing when one of the addresses has no value now.
   std::optional<Expression::Evaluated> evaluate();
 
  private:
-  ValueExpression(Expression expression, std::vector<NamedValue> inputs)
-      : expression_(std::move(expression)), inputs_(std::move(inputs)), numbers_(inputs_.size()) {}
+  /// Values of the things of a pattern, found anew when the Model has changed.
+  struct Population {
+    std::optional<std::uint64_t> revision;
+    std::size_t things = 0;
+    std::vector<NamedValue> values;
+    std::vector<double> numbers;
+  };
+  ValueExpression(const Simulation& simulation, Expression expression);
+  void look(const Expression::Pattern& pattern, Population& population) const;
+
+  const Simulation* simulation_;
   Expression expression_;
   std::vector<NamedValue> inputs_;
   std::vector<double> numbers_;
+  std::vector<Population> populations_;  ///< one per pattern
+  std::vector<Expression::Table> tables_;
 };
 
 }  // namespace sandlot

@@ -236,5 +236,48 @@ TEST(Monitor, ARestoredRunAcceptsWhatIsGone) {
   advance(*restored, 1);
 }
 
+std::optional<double> evaluated(ValueExpression& expression) {
+  const auto result = expression.evaluate();
+  return result ? std::optional(result->value) : std::nullopt;
+}
+
+TEST(ValueExpression, AggregatesFollowThingsThatComeAndGo) {
+  const auto simulation = build(arena("planar", 3));
+  advance(*simulation, 5);
+  auto sum = ValueExpression::compile(*simulation, "sum(rover*.pose.x)");
+  ASSERT_TRUE(sum) << sum.error().text();
+  EXPECT_EQ(sum->addresses(), std::vector<std::string>{"rover*.pose.x"});
+  auto nearest = ValueExpression::compile(*simulation,
+                                          "mean(rover*/laser.ranges[0] where rover*.errors > 0)");
+  ASSERT_TRUE(nearest) << nearest.error().text();
+  const auto x = [&](int i) { return read(*simulation, "rover" + std::to_string(i) + ".pose.x"); };
+  EXPECT_EQ(evaluated(*sum), 0 + x(1) + x(2) + x(3));
+  double ranges = 0;
+  for (int i = 1; i <= 3; ++i) ranges += read(*simulation, "rover" + std::to_string(i) + "/laser.ranges[0]");
+  EXPECT_EQ(evaluated(*nearest), ranges / 3);
+  simulation->submit(DeleteRequest{"rover2"});
+  advance(*simulation, 1);
+  EXPECT_EQ(evaluated(*sum), 0 + x(1) + x(3));
+  for (const char* const name : {"rover1", "rover3"}) simulation->submit(DeleteRequest{name});
+  advance(*simulation, 1);
+  EXPECT_EQ(evaluated(*sum), 0);
+  EXPECT_EQ(evaluated(*nearest), std::nullopt);
+}
+
+TEST(ValueExpression, APatternThatFitsNothingIsRefusedUnlessItIsKnown) {
+  const auto simulation = build(arena("planar", 1));
+  const auto complaint = [&](const std::string& text) {
+    const auto compiled = ValueExpression::compile(*simulation, text);
+    return compiled ? "" : compiled.error().text();
+  };
+  EXPECT_NE(complaint("mean(rovr*.pose.x)").find("nothing is called 'rovr*'"), std::string::npos);
+  EXPECT_NE(complaint("mean(rover*.pse.x)").find("nothing called 'rover*' has a value '.pse.x'"),
+            std::string::npos);
+  const std::vector<std::string> known{"rovr*.pose.x"};
+  auto waiting = ValueExpression::compile(*simulation, "count(rovr*.pose.x > 0)", {}, known);
+  ASSERT_TRUE(waiting) << waiting.error().text();
+  EXPECT_EQ(evaluated(*waiting), 0);
+}
+
 }  // namespace
 }  // namespace sandlot

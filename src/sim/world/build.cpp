@@ -77,7 +77,7 @@ Status Simulation::build(Diagnostics& diagnostics, bool restored) {
   SL_TRY(programs_.add_teams(entities_, now_, diagnostics));
   scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(elements_.build(options_, restored, setup_.addresses));
-  SL_TRY(monitor_->add(setup_.values, setup_.events, setup_.addresses));
+  SL_TRY(monitor_->add(setup_, setup_.addresses));
   return {};
 }
 
