@@ -108,6 +108,7 @@ struct RunFlags {
   std::vector<std::string> sets;
   std::string log_values, log_rate, video_size;
   bool headless = false;
+  CLI::Option* threads = nullptr;
 
   void add_to(CLI::App& verb) {
     CLI::Option* const without = verb.add_flag("--headless", headless, "Run without a page");
@@ -129,10 +130,10 @@ struct RunFlags {
     verb.add_option("--errors", options.spec.errors,
                     "Factor on the errors of all devices, in addition to factors in the scenario; 0: exact")
         ->check(CLI::Range(0.0, 1000.0));
-    verb.add_option("--threads", options.spec.threads,
-                    "Threads; 0: as many as the machine has. The result does not depend on it")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
+    threads = verb.add_option("--threads", options.spec.threads,
+                              "Threads; 0: as many as the machine has. The result does not depend on it")
+                  ->check(CLI::Range(0, 1024))
+                  ->capture_default_str();
     verb.add_option("--set", sets,
                     "Change the scenario before it is loaded: path=value, such as physics=planar or "
                     "'robots[0].pose=[1, 2, 0]'")
@@ -188,6 +189,7 @@ struct RunFlags {
       return Error{"--paused: nobody could let the run go on", "add --port 8765"};
     SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.spec.rate));
     options.spec.log_values = split_list(log_values);
+    if (threads->count() > 0) options.at_a_time = options.spec.threads;
     if (!log_rate.empty()) {
       auto hz = parse_quantity(log_rate, "Hz");
       if (!hz) return Error{"--log-rate: " + hz.error().what, hz.error().fix};
@@ -347,6 +349,11 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
                        "Continue from a snapshot instead of a file");
   run_verb->add_flag("--allow-programs", run_flags.options.spec.allow_programs,
                      "With --from: start the programs that the snapshot names, in processes of their own");
+  run_verb->add_option(
+      "--repeat", run_flags.options.repeat,
+      "Run it so many times, with one seed after the other, and print what all give together: mean, "
+      "deviation, interval and success rate of its criteria. As many at a time as the machine has "
+      "processors, or as --threads says");
   run_flags.add_to(*run_verb);
   run_flags.options.hooks = hooks;
   run_verb->footer(

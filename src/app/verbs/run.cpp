@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 
 #include "app/commands.h"
@@ -10,10 +11,34 @@
 #include "app/serve.h"
 #include "base/json_text.h"
 #include "base/log.h"
+#include "run/repeat.h"
 
 namespace sandlot::app {
 
+namespace {
+
+/// Runs of one seed after the other.
+int run_again(const RunOptions& options) {
+  if (options.hooks) return complain({"--repeat: a program that embeds Sandlot repeats its runs itself", ""});
+  if (options.serve) return complain({"--port and --repeat: a page shows one run", "leave one of them out"});
+  RepeatSpec spec{.run = options.spec, .count = *options.repeat, .at_a_time = options.at_a_time};
+  const bool shows = isatty(STDERR_FILENO);
+  std::atomic<int> shown = -1;
+  catch_interrupts();
+  const auto all = repeat(spec, [&](int ended) {
+    if (shows && shown.exchange(ended) != ended) std::fprintf(stderr, "\r%d of %d runs", ended, spec.count);
+    return !interrupted();
+  });
+  if (shows) std::fputs("\r\033[K", stderr);
+  if (!all) return complain(all.error());
+  std::fputs(options.json ? (json_text(as_json(*all)) + "\n").c_str() : as_text(*all).c_str(), stdout);
+  return all->failed == 0 && static_cast<int>(all->runs.size()) == spec.count ? exit_ok : exit_failed;
+}
+
+}  // namespace
+
 int run(const RunOptions& options) {
+  if (options.repeat) return run_again(options);
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);

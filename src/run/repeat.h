@@ -1,0 +1,118 @@
+#pragma once
+/// Runs of one scenario with one seed after the other, and what they give together: other noise, other placements, the same law.
+///
+///   RepeatSpec spec{.run = {.file = "scenarios/clearing.yaml"}, .count = 50};
+///   Result<RepeatSummary> all = repeat(spec);
+///
+/// Each run is the one that `sandlot run --seed N` gives, to the same state hash; how many run at a time changes nothing but the
+/// time it takes. Intervals are those of statistics/intervals.h.
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "run/run.h"
+
+namespace sandlot {
+
+struct RepeatSpec {
+  RunSpec run;  ///< writes no files; its seed, or the scenario's, is the first one
+  int count = 1;
+  int at_a_time = 0;         ///< 0: as many as the machine has processors
+  double confidence = 0.95;  ///< of the intervals
+};
+
+/// Mean of a figure over runs.
+struct Estimate {
+  std::uint64_t count = 0;
+  std::optional<double> mean, deviation, low, high, min, max;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"count", "1", "Runs that have a value."}, s.count);
+    visit(Field{"mean", "", "Mean."}, s.mean);
+    visit(Field{"deviation", "", "Standard deviation."}, s.deviation);
+    visit(Field{"low", "", "Lower end of Student's interval of the mean."}, s.low);
+    visit(Field{"high", "", "Upper end of it."}, s.high);
+    visit(Field{"min", "", "Smallest."}, s.min);
+    visit(Field{"max", "", "Largest."}, s.max);
+  }
+};
+
+struct SuccessRate {
+  std::uint64_t successes = 0, count = 0;
+  std::optional<double> rate, low, high;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"successes", "1", "Runs that succeeded."}, s.successes);
+    visit(Field{"count", "1", "Runs that ended without an error."}, s.count);
+    visit(Field{"rate", "1", "Part of them that succeeded."}, s.rate);
+    visit(Field{"low", "1", "Lower end of Wilson's interval."}, s.low);
+    visit(Field{"high", "1", "Upper end of it."}, s.high);
+  }
+};
+
+struct JudgedRuns {
+  Estimate criterion;
+  std::optional<SuccessRate> success;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"criterion", "", "Figure of merit."}, s.criterion);
+    visit(Field{"success", "", "How often it succeeded; left out when that is not asked."}, s.success);
+  }
+};
+
+struct RepeatedRun {
+  std::uint64_t seed = 0;
+  double end_s = 0;
+  std::string stopped;
+  StateHash state_hash;
+  std::optional<double> criterion;
+  std::optional<bool> success;
+  std::vector<Named<CriterionSummary>> criteria;
+  std::vector<std::string> errors;  ///< it does not count when there are some
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"seed", "", "Seed."}, s.seed);
+    visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
+    visit(Field{"stopped", "", "Reason for the end."}, s.stopped);
+    visit(Field{"state_hash", "", "Hash of the whole state."}, s.state_hash);
+    visit(Field{"criterion", "1", "Figure of merit."}, s.criterion);
+    visit(Field{"success", "", "Whether the run succeeded."}, s.success);
+    visit(Field{"criteria", "1", "Figures of merit of the teams that are judged."}, s.criteria);
+    visit(Field{"errors", "", "Errors; such a run counts in no figure."}, s.errors);
+  }
+};
+
+struct RepeatSummary {
+  std::string name, physics;
+  double wall_s = 0, confidence = 0;
+  std::uint64_t failed = 0;
+  std::optional<JudgedRuns> all;
+  std::vector<Named<JudgedRuns>> teams;
+  Estimate end_s;
+  std::vector<RepeatedRun> runs;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the scenario."}, s.name);
+    visit(Field{"physics", "", "Name of the engine."}, s.physics);
+    visit(Field{"wall_seconds", "s", "Time that all took."}, s.wall_s);
+    visit(Field{"confidence", "1", "Of the intervals."}, s.confidence);
+    visit(Field{"failed", "1", "Runs with errors."}, s.failed);
+    visit(Field{"all", "", "By the criterion of the scenario; left out when it has none."}, s.all);
+    visit(Field{"teams", "", "By the criteria of the teams."}, s.teams);
+    visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
+    visit(Field{"runs", "", "Each run, in order of the seeds."}, s.runs);
+  }
+};
+
+/// @param keep_going  asked between and within runs, from several threads, with how many have ended; false: what has ended counts
+/// Errors  of the spec and its files: nothing was run. Later ones: RepeatedRun::errors
+Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(int ended)>& keep_going = {});
+
+nlohmann::ordered_json as_json(const RepeatSummary& summary);
+/// Half a dozen lines for people.
+std::string as_text(const RepeatSummary& summary);
+
+}  // namespace sandlot
