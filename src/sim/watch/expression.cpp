@@ -184,7 +184,7 @@ class Lexer {
       }
       if (plain == "true" || plain == "false") return take_number(plain == "true", plain.size());
       if (plain == "pi") return take_number(math::pi, plain.size());
-      if (plain == "where") return take(Token::Kind::where, plain.size());
+      if (plain == "where" && after_value_) return take(Token::Kind::where, plain.size());
       return name(rest);
     }
     if (plain == "pi" && names_.match(rest) == 0) return take_number(math::pi, plain.size());  // pi/2
@@ -570,7 +570,7 @@ std::span<const Expression::Function> Expression::functions() { return function_
 
 bool Expression::is_reserved(std::string_view word) {
   if (find_function(word)) return true;
-  for (const std::string_view other : {"and", "or", "not", "where", "pi", "true", "false", "sim", "values"})
+  for (const std::string_view other : {"and", "or", "not", "pi", "true", "false", "sim", "values"})
     if (word == other) return true;
   return false;
 }

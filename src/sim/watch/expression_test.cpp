@@ -241,7 +241,7 @@ TEST(Expression, AggregatesSayWhatIsWrongWithThem) {
       {"quantile(t*.x, a.x)", "here belongs a number from 0 to 1"},
       {"min(a.x where b.x)", "'where' belongs into an aggregate"},
       {"a.x where b.x", "'where' belongs into an aggregate"},
-      {"mean(where t*.x)", "'where' belongs into an aggregate"},
+      {"mean(where t*.x)", "there is no 'where'"},
       {"mean()", "this parenthesis"},
       {"mean(t*.x", "a ')' is missing"},
       {"mean(z*.x)", "there is no 'z*.x'"},
