@@ -120,11 +120,11 @@ void add_figures(RepeatSummary& out) {
     ends.add({run.end_s, {}});
     all.add({run.criterion, run.success});
     judged = judged || run.criterion || run.success;
-    for (const auto& [team, found] : run.criteria) {
+    for (const Named<CriterionSummary>& of : run.criteria) {
       auto known = std::find_if(teams.begin(), teams.end(),
-                                [&](const auto& each) { return each.name == team; });
-      if (known == teams.end()) known = teams.insert(teams.end(), {team, Figures(out.confidence)});
-      known->value.add(found);
+                                [&](const auto& each) { return each.name == of.name; });
+      if (known == teams.end()) known = teams.insert(teams.end(), {of.name, Figures(out.confidence)});
+      known->value.add(of.value);
     }
   }
   out.end_s = ends.estimate();
