@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const double inf = std::numeric_limits<double>::infinity();
   for (const double x : {0.0, 1.0, -2.5, 1e300, inf, -inf, std::nan("")}) {
     const std::vector<double> inputs(expression->inputs().size(), x);
-    for (const std::size_t things : {0, 1, 3}) {
+    for (const std::size_t things : {0u, 1u, 3u}) {
       std::vector<std::vector<double>> numbers;
       std::vector<sandlot::Expression::Table> tables;
       for (const sandlot::Expression::Pattern& pattern : expression->patterns()) {
