@@ -10,8 +10,6 @@ namespace sandlot::statistics {
 
 struct Interval {
   double low = 0, high = 0;
-  /// Whether two intervals have a number in common.
-  friend bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b.low <= a.high; }
 };
 
 /// Student's interval of the mean; from -infinity to infinity for fewer than two numbers.

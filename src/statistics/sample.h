@@ -1,8 +1,7 @@
 #pragma once
 /// Sample: count, mean and spread of numbers, without the numbers.
 ///
-/// Source   B. P. Welford, Note on a method for calculating corrected sums of squares (1962); merging by T. F. Chan et al.,
-///          Updating formulae and a pairwise algorithm for computing sample variances (1979).
+/// Source   B. P. Welford, Note on a method for calculating corrected sums of squares (1962).
 /// Limits   numbers that are not finite are the caller's to leave out.
 #include <algorithm>
 #include <cmath>
@@ -19,20 +18,6 @@ class Sample {
     squares_ += apart * (x - mean_);
     min_ = count_ == 1 ? x : std::min(min_, x);
     max_ = count_ == 1 ? x : std::max(max_, x);
-  }
-  void merge(const Sample& other) {
-    if (other.count_ == 0) return;
-    if (count_ == 0) {
-      *this = other;
-      return;
-    }
-    const double mine = static_cast<double>(count_), theirs = static_cast<double>(other.count_),
-                 all = mine + theirs, apart = other.mean_ - mean_;
-    mean_ += apart * theirs / all;
-    squares_ += other.squares_ + apart * apart * mine * theirs / all;
-    count_ += other.count_;
-    min_ = std::min(min_, other.min_);
-    max_ = std::max(max_, other.max_);
   }
 
   std::uint64_t count() const { return count_; }

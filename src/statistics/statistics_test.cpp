@@ -24,23 +24,6 @@ TEST(Sample, KeepsItsDigitsFarFromZero) {
   EXPECT_DOUBLE_EQ(sample.variance(), 30);
 }
 
-TEST(Sample, OfPartsIsThatOfTheWhole) {
-  Sample whole, first, second, empty;
-  for (int i = 0; i < 20; ++i) {
-    const double x = i * i * 0.1 - i;
-    whole.add(x);
-    (i < 7 ? first : second).add(x);
-  }
-  first.merge(empty);
-  empty.merge(first);
-  empty.merge(second);
-  EXPECT_EQ(empty.count(), whole.count());
-  EXPECT_NEAR(empty.mean(), whole.mean(), 1e-14);
-  EXPECT_NEAR(empty.variance(), whole.variance(), 1e-13);
-  EXPECT_EQ(empty.min(), whole.min());
-  EXPECT_EQ(empty.max(), whole.max());
-}
-
 TEST(Intervals, OfTheMeanAreStudents) {
   Sample sample;
   for (int i = 0; i < 10; ++i) sample.add(i);               // variance 82.5 / 9
@@ -69,12 +52,6 @@ TEST(Intervals, OfProbabilitiesAreWilsons) {
     EXPECT_NEAR(mirrored.high, 1 - found.low, 1e-12);
   }
   EXPECT_EQ(wilson_interval(0, 0).high, 1);
-}
-
-TEST(Intervals, OverlapWhereTheyShareANumber) {
-  EXPECT_TRUE(overlap(Interval{0, 1}, Interval{1, 2}));
-  EXPECT_TRUE(overlap(Interval{0, 3}, Interval{1, 2}));
-  EXPECT_FALSE(overlap(Interval{0, 1}, Interval{1.1, 2}));
 }
 
 }  // namespace
