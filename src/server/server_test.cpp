@@ -166,6 +166,25 @@ TEST(Server, NumbersAreWatchedAtEveryTickAndAtARate) {
   EXPECT_EQ(many["ok"], false) << "3 + 199 numbers are more than 200";
 }
 
+TEST(Server, AViewersAggregatesReadSoMuchTogether) {
+  Running run(test::arena("planar", 50), {.paused = true});
+  run.go();
+  Viewer one(run.url()), other(run.url());
+  const std::string sum = "sum(rover*.pose.x + rover*.pose.y + rover*.pose.z + rover*.errors";  // 200 values
+  const auto watch = [&](Viewer& viewer, int count) {
+    return viewer.call(
+        "/sandlot/watch",
+        {{"values", std::vector<std::string>(static_cast<std::size_t>(count), sum + ")")}, {"rate_hz", 0}});
+  };
+  EXPECT_EQ(watch(one, 60)["ok"], true);
+  const json refused = watch(one, 41);
+  EXPECT_EQ(refused["ok"], false);
+  EXPECT_NE(refused["text"].get<std::string>().find("reads 20200 values; at most 20000"), std::string::npos)
+      << refused;
+  EXPECT_EQ(watch(one, 40)["ok"], true);
+  EXPECT_EQ(watch(other, 100)["ok"], true) << "another viewer has its own share";
+}
+
 TEST(Server, AWatchIsItsClientsOwnAndGoesWithItsSubscription) {
   Running run(one_rover(), {.paused = true});
   run.go();

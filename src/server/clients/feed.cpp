@@ -218,8 +218,10 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   if (batch.frame || batch.commands || !batch.messages.empty()) mailbox_->push(std::move(batch));
 }
 
-Status Feed::watch(std::uint32_t channel, const std::vector<std::string>& values, double rate_hz) {
+Status Feed::watch(ClientId viewer, std::uint32_t channel, const std::vector<std::string>& values,
+                   double rate_hz) {
   Watch made;
+  made.viewer = viewer;
   made.channel = channel;
   made.rate_hz = rate_hz;
   made.begin = session_.simulation().now();
@@ -230,10 +232,18 @@ Status Feed::watch(std::uint32_t channel, const std::vector<std::string>& values
     if (value.nesting() > 1)
       return Error{"'" + text + "' has aggregates within each other",
                    "name it in the scenario, under values"};
+    made.reads += value.reads();
     made.addresses.push_back(value.addresses());
     made.values.emplace_back(std::move(value));
   }
   follow_session();
+  std::size_t reads = made.reads;
+  for (const Watch& watch : watches_)
+    if (watch.viewer == viewer) reads += watch.reads;
+  if (reads > most_reads)
+    return Error{"what is watched reads " + std::to_string(reads) + " values; at most " +
+                     std::to_string(most_reads) + " can be read",
+                 "name it in the scenario, under values"};
   watches_.push_back(std::move(made));
   return {};
 }

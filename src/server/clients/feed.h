@@ -12,11 +12,15 @@
 
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
+#include "server/http/transport.h"
 #include "sim/session/session.h"
 #include "sim/watch/values.h"
 #include "wire/scene.h"
 
 namespace sandlot::server {
+
+/// Values that the expressions a viewer watches may read at each sample, those of aggregates counted.
+inline constexpr std::size_t most_reads = 20'000;
 
 /// What all clients together have subscribed to.
 struct SubscriptionSummary {
@@ -50,8 +54,10 @@ class Feed final : public Observer {
   /// Viewers do not know the latest tick yet, and no frame is coming. From any thread.
   bool stale() const { return stale_; }
 
+  /// @param viewer   whose aggregates go over at most most_reads values together
   /// @param channel  that the numbers go to. An error names the nearest address
-  Status watch(std::uint32_t channel, const std::vector<std::string>& values, double rate_hz);
+  Status watch(ClientId viewer, std::uint32_t channel, const std::vector<std::string>& values,
+               double rate_hz);
   void unwatch(std::uint32_t channel);
 
   Wants wants() const override;
@@ -67,7 +73,9 @@ class Feed final : public Observer {
     Clock::time_point next;            ///< previews: none before
   };
   struct Watch {
+    ClientId viewer = 0;
     std::uint32_t channel = 0;
+    std::size_t reads = 0;  ///< when it was compiled
     double rate_hz = 0;
     Time begin;
     std::int64_t sample = 0;

@@ -122,7 +122,7 @@ void Hub::watch(ClientId id, const std::vector<std::string>& values, double rate
   const std::uint32_t channel = next_channel_++;
   const bool posted = post(
       [feed = feed_, mailbox = mailbox_, id, channel, values, rate_hz, done = std::move(done)](Session&) {
-        const Status status = feed->watch(channel, values, rate_hz);
+        const Status status = feed->watch(id, channel, values, rate_hz);
         mailbox->push([id, channel, count = values.size(), status, done](Hub& hub) {
           hub.open_watch(id, channel, count, status, done);
         });

@@ -17,7 +17,7 @@ Error no_such_things(const Simulation& simulation, std::string_view address) {
     names.push_back(entity->instance.name);
     if (fits_pattern(names.back(), pattern))
       return {"nothing called '" + pattern + "' has a value '" + std::string(address.substr(cut, 100)) + "'",
-              "`sandlot list values SCENARIO` shows those there are"};
+              "`sandlot info FILE --values` lists those there are"};
   }
   return {"nothing is called '" + pattern + "'", suggestion(pattern, names)};
 }
@@ -36,13 +36,19 @@ class SimulationNames final : public Names {
     });
   }
   std::size_t match_pattern(std::string_view text) const override {
+    // Nonsense about a large world must not keep it waiting.
+    int tries = 50'000;
     return longest(text, [&](std::string_view candidate) {
       const std::size_t cut = candidate.find_first_of("./");
       if (cut == std::string_view::npos || candidate.find('*', cut) != std::string_view::npos) return false;
-      for (const auto& entity : simulation_.entities())
-        if (fits_pattern(entity->instance.name, candidate.substr(0, cut)) &&
-            NamedValue(simulation_, entity->instance.name + std::string(candidate.substr(cut))).resolve())
+      for (const auto& entity : simulation_.entities()) {
+        const bool can_have_it = candidate[cut] == '.' || !entity->devices.empty() ||
+                                 !entity->programs.empty();
+        if (!can_have_it || !fits_pattern(entity->instance.name, candidate.substr(0, cut))) continue;
+        if (tries-- <= 0) return false;
+        if (NamedValue(simulation_, entity->instance.name + std::string(candidate.substr(cut))).resolve())
           return true;
+      }
       return false;
     });
   }
@@ -97,6 +103,14 @@ std::vector<std::string> ValueExpression::addresses() const {
   for (const Expression::Pattern& pattern : expression_.patterns())
     for (const std::string& read : pattern.reads) all.push_back(pattern.things + read);
   return all;
+}
+
+std::size_t ValueExpression::reads() const {
+  std::size_t sum = inputs_.size();
+  for (const Expression::Pattern& pattern : expression_.patterns())
+    for (const auto& entity : simulation_->entities())
+      if (fits_pattern(entity->instance.name, pattern.things)) sum += pattern.reads.size();
+  return sum;
 }
 
 std::string ValueExpression::unit() const {

@@ -125,6 +125,8 @@ class ValueExpression {
                                          const Place& place = {}, std::span<const std::string> known = {});
   const std::string& text() const { return expression_.text(); }
   int nesting() const { return expression_.nesting(); }
+  /// Values that an evaluation reads in the world as it is.
+  std::size_t reads() const;
   /// What it reads: addresses, and those of aggregates with their `*`.
   std::vector<std::string> addresses() const;
   /// The unit when the expression is nothing but an address; "" else.
