@@ -25,7 +25,18 @@ std::string title(const Monitor::Criterion& criterion) {
 }  // namespace
 
 Status Monitor::add(const model::Setup& setup, std::vector<std::string>& known) {
-  const std::vector<std::string> before = known;
+  // A restored world may speak of what is gone, but never of a value or criterion that comes later: that could speak
+  // of this one.
+  std::vector<std::string> before = known;
+  std::erase_if(before, [&](const std::string& address) {
+    const bool of_team = std::any_of(
+        setup.teams.begin(), setup.teams.end(),
+        [&](const model::TeamDecl& team) { return address == team.name + ".criterion"; });
+    return of_team || address == "criterion" ||
+           std::any_of(setup.values.begin(), setup.values.end(), [&](const model::ValueDecl& value) {
+             return address == value.name || address == "values." + value.name;
+           });
+  });
   const auto note = [&](const ValueExpression& expression) {
     for (const std::string& address : expression.addresses())
       if (std::find(known.begin(), known.end(), address) == known.end()) known.push_back(address);

@@ -50,8 +50,8 @@ class Monitor {
   };
 
   explicit Monitor(const Simulation& simulation) : simulation_(simulation) {}
-  /// Compiles values, then criteria and events: each may use what is before it. The addresses they use are appended to `known`, which also makes addresses
-  /// acceptable that name nothing now.
+  /// Compiles values, then criteria and events: each may use what is before it. The addresses they use are appended to
+  /// `known`, which also makes addresses acceptable that name nothing now.
   Status add(const model::Setup& setup, std::vector<std::string>& known);
   Status add_event(model::EventDecl decl, bool declared, std::span<const std::string> known);
 

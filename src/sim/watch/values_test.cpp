@@ -236,6 +236,24 @@ TEST(Monitor, ARestoredRunAcceptsWhatIsGone) {
   advance(*restored, 1);
 }
 
+TEST(Monitor, ARestoredRunSpeaksOfNoValueThatComesLater) {
+  const auto simulation = build(arena("planar", 1));
+  for (const auto& [value, criterion, address] :
+       {std::tuple{"b + 1", "1", "b"}, std::tuple{"values.b", "1", "values.b"},
+        std::tuple{"criterion", "1", "criterion"}, std::tuple{"red.criterion", "1", "red.criterion"}}) {
+    model::Setup setup;
+    setup.values = {{"a", value, {}}, {"b", "2", {}}};
+    setup.criterion = {criterion, "", {}};
+    setup.teams.emplace_back().name = "red";
+    setup.teams.back().criterion = {"3", "", {}};
+    std::vector<std::string> known{address};  // as a forged file may have it
+    EXPECT_FALSE(Monitor(*simulation).add(setup, known)) << address;
+    setup.values.front().expression = "1";
+    const Status well = Monitor(*simulation).add(setup, known);
+    EXPECT_TRUE(well) << well.error().text();
+  }
+}
+
 std::optional<double> evaluated(ValueExpression& expression) {
   const auto result = expression.evaluate();
   return result ? std::optional(result->value) : std::nullopt;
