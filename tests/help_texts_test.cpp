@@ -22,6 +22,8 @@
 #include "noise/image_noise.h"
 #include "physics/engine.h"
 #include "programs/programs.h"
+#include "run/repeat.h"
+#include "sim/watch/expression.h"
 #include "sim/world/device_keys.h"
 #include "sim/world/faults.h"
 
@@ -191,6 +193,18 @@ TEST(HelpTexts, OfScenarioKeysStandAlone) {
   std::vector<HelpText> texts;
   add_descriptions(nlohmann::json::parse(formats::scenario_schema()), "scenario", texts);
   EXPECT_GT(texts.size(), 70u);
+  EXPECT_EQ(faults_of(texts), "");
+}
+
+TEST(HelpTexts, OfSummariesAndExpressionsStandAlone) {
+  std::vector<HelpText> texts;
+  add_fields("summary", describe_fields<Summary>(), texts);
+  add_fields("repeated", describe_fields<RepeatSummary>(), texts);
+  add_fields("run", describe_fields<RepeatedRun>(), texts);
+  add_fields("judged", describe_fields<JudgedRuns>(), texts);
+  for (const Expression::Function& function : Expression::functions())
+    texts.push_back({function.call, function.help});
+  EXPECT_GT(texts.size(), 50u);
   EXPECT_EQ(faults_of(texts), "");
 }
 

@@ -137,7 +137,6 @@ void add_figures(RepeatSummary& out) {
 Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(int ended)>& keep_going) {
   SL_TRY(check(spec));
   RepeatSummary out;
-  out.confidence = spec.confidence;
   std::uint64_t first_seed = 0;
   {
     Diagnostics diagnostics;

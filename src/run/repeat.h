@@ -5,7 +5,7 @@
 ///   Result<RepeatSummary> all = repeat(spec);
 ///
 /// Each run is the one that `sandlot run --seed N` gives, to the same state hash; how many run at a time changes nothing but the
-/// time it takes. Intervals are those of statistics/intervals.h.
+/// time it takes. Intervals are those of statistics/intervals.h, for 95 %.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -20,8 +20,7 @@ namespace sandlot {
 struct RepeatSpec {
   RunSpec run;  ///< writes no files; its seed, or the scenario's, is the first one
   int count = 1;
-  int at_a_time = 0;         ///< 0: as many as the machine has processors
-  double confidence = 0.95;  ///< of the intervals
+  int at_a_time = 0;  ///< 0: as many as the machine has processors
 };
 
 /// Mean of a figure over runs.
@@ -31,12 +30,12 @@ struct Estimate {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"count", "1", "Runs that have a value."}, s.count);
-    visit(Field{"mean", "", "Mean."}, s.mean);
-    visit(Field{"deviation", "", "Standard deviation."}, s.deviation);
+    visit(Field{"mean", "", "Mean over the runs."}, s.mean);
+    visit(Field{"deviation", "", "Standard deviation over the runs, by n - 1."}, s.deviation);
     visit(Field{"low", "", "Lower end of Student's interval of the mean."}, s.low);
-    visit(Field{"high", "", "Upper end of it."}, s.high);
-    visit(Field{"min", "", "Smallest."}, s.min);
-    visit(Field{"max", "", "Largest."}, s.max);
+    visit(Field{"high", "", "Upper end of Student's interval of the mean."}, s.high);
+    visit(Field{"min", "", "Smallest value of a run."}, s.min);
+    visit(Field{"max", "", "Largest value of a run."}, s.max);
   }
 };
 
@@ -47,9 +46,9 @@ struct SuccessRate {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"successes", "1", "Runs that succeeded."}, s.successes);
     visit(Field{"count", "1", "Runs that ended without an error."}, s.count);
-    visit(Field{"rate", "1", "Part of them that succeeded."}, s.rate);
+    visit(Field{"rate", "1", "Part of the counted runs that succeeded."}, s.rate);
     visit(Field{"low", "1", "Lower end of Wilson's interval."}, s.low);
-    visit(Field{"high", "1", "Upper end of it."}, s.high);
+    visit(Field{"high", "1", "Upper end of Wilson's interval."}, s.high);
   }
 };
 
@@ -74,20 +73,20 @@ struct RepeatedRun {
   std::vector<std::string> errors;  ///< it does not count when there are some
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"seed", "", "Seed."}, s.seed);
+    visit(Field{"seed", "", "Seed of the run."}, s.seed);
     visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
-    visit(Field{"stopped", "", "Reason for the end."}, s.stopped);
+    visit(Field{"stopped", "", "Reason for the end of the run."}, s.stopped);
     visit(Field{"state_hash", "", "Hash of the whole state."}, s.state_hash);
-    visit(Field{"criterion", "1", "Figure of merit."}, s.criterion);
+    visit(Field{"criterion", "1", "Figure of merit at the end; null when it has no value."}, s.criterion);
     visit(Field{"success", "", "Whether the run succeeded."}, s.success);
     visit(Field{"criteria", "1", "Figures of merit of the teams that are judged."}, s.criteria);
-    visit(Field{"errors", "", "Errors; such a run counts in no figure."}, s.errors);
+    visit(Field{"errors", "", "Errors that ended the run; it counts in no figure then."}, s.errors);
   }
 };
 
 struct RepeatSummary {
   std::string name, physics;
-  double wall_s = 0, confidence = 0;
+  double wall_s = 0, confidence = 0.95;
   std::uint64_t failed = 0;
   std::optional<JudgedRuns> all;
   std::vector<Named<JudgedRuns>> teams;
@@ -98,12 +97,12 @@ struct RepeatSummary {
     visit(Field{"name", "", "Name of the scenario."}, s.name);
     visit(Field{"physics", "", "Name of the engine."}, s.physics);
     visit(Field{"wall_seconds", "s", "Time that all took."}, s.wall_s);
-    visit(Field{"confidence", "1", "Of the intervals."}, s.confidence);
+    visit(Field{"confidence", "1", "Confidence of the intervals."}, s.confidence);
     visit(Field{"failed", "1", "Runs with errors."}, s.failed);
-    visit(Field{"all", "", "By the criterion of the scenario; left out when it has none."}, s.all);
-    visit(Field{"teams", "", "By the criteria of the teams."}, s.teams);
+    visit(Field{"all", "", "Runs by the criterion of the scenario; left out when it has none."}, s.all);
+    visit(Field{"teams", "", "Runs by the criteria of the teams."}, s.teams);
     visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
-    visit(Field{"runs", "", "Each run, in order of the seeds."}, s.runs);
+    visit(Field{"runs", "", "All runs, in order of their seeds."}, s.runs);
   }
 };
 

@@ -52,7 +52,7 @@ struct RobotSummary {
   std::vector<Named<double>> joints;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Name."}, s.name);
+    visit(Field{"name", "", "Name of the robot."}, s.name);
     visit(Field{"distance_m", "m", "Distance driven in the horizontal plane, to the millimetre."},
           s.distance_m);
     visit(Field{"extent_m", "m", "Size in x and y of the box around the path, to the millimetre."},
@@ -82,7 +82,7 @@ struct EventSummary {
   std::optional<double> first_s, last_s;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"name", "", "Name."}, s.name);
+    visit(Field{"name", "", "Name of the event."}, s.name);
     visit(Field{"count", "1", "Times that the event happened."}, s.count);
     visit(Field{"first", "s", "Simulated time of the first one; null for none."}, s.first_s);
     visit(Field{"last", "s", "Simulated time of the last one; null for none."}, s.last_s);

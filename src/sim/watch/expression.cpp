@@ -31,8 +31,8 @@ constexpr Expression::Function function_list[] = {
     {"clamp(x, low, high)", "x, at least low and at most high."},
     {"hypot(x, y, ...)", "Square root of the sum of squares."},
     {"sin(x)", "Sine of an angle [rad]."},
-    {"cos(x)", "Cosine."},
-    {"tan(x)", "Tangent."},
+    {"cos(x)", "Cosine of an angle [rad]."},
+    {"tan(x)", "Tangent of an angle [rad]."},
     {"asin(x)", "Arc sine [rad]."},
     {"acos(x)", "Arc cosine [rad]."},
     {"atan(x)", "Arc tangent [rad]."},
@@ -42,14 +42,15 @@ constexpr Expression::Function function_list[] = {
     {"degrees(x)", "From rad to degrees."},
     {"radians(x)", "From degrees to rad."},
     {"if(condition, x, y)", "x where the condition holds, else y."},
-    {"count(x where c)", "Of how many things, such as robot*, x holds; `where c` leaves out others."},
+    {"count(x where c)",
+     "Number of things, such as robot*, for which x holds; `where c` takes some of them only."},
     {"sum(x where c)", "Sum over things: sum(box*.pose.x)."},
     {"mean(x where c)", "Mean over things."},
-    {"deviation(x where c)", "Standard deviation over things, as of a sample."},
+    {"deviation(x where c)", "Standard deviation over things, by n - 1."},
     {"min(x where c)", "The smallest of a value of things."},
     {"max(x where c)", "The largest of a value of things."},
-    {"median(x where c)", "Half of the things have less."},
-    {"quantile(x where c, p)", "The part p of the things has less."},
+    {"median(x where c)", "The value that half of the things are below."},
+    {"quantile(x where c, p)", "The value that the part p of the things is below, p from 0 to 1."},
     {"any(x where c)", "1 where x holds of one of the things."},
     {"all(x where c)", "1 where x holds of every one of the things."},
 };
@@ -470,6 +471,11 @@ class Expression::Parser {
       SL_ASSIGN(Aggregate::Part condition, part());
       a.where.push_back(std::move(condition));
     }
+    if (patterns_[a.pattern].things.empty() && open_.size() > 1)
+      return lexer_.error(
+          column, "'" + name + "' goes over no things of its own",
+          "the first pattern belongs to the aggregate around it; give what is in here a name under "
+          "values, and use that");
     if (patterns_[a.pattern].things.empty())
       return lexer_.error(column, "'" + name + "' goes over no things of its own",
                           "name some by a * in a name: " + name + "(robot*.pose.x)");

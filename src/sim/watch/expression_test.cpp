@@ -234,6 +234,8 @@ TEST(Expression, AggregatesSayWhatIsWrongWithThem) {
       {"t*.x > 1", "column 1: 't*.x' is a value of several things"},
       {"max(t*.x, 1)", "column 5: 't*.x' is a value of several things"},
       {"count(a.x > 1)", "column 1: 'count' goes over no things of its own"},
+      {"mean(t*.x - mean(t*.x))",
+       "the first pattern belongs to the aggregate around it; give what is in here a name"},
       {"mean(t*.x - u*.x)", "'u*.x' is of other things than t*"},
       {"mean(t*.x, 1)", "'mean' of things takes one value"},
       {"quantile(t*.x)", "a number from 0 to 1 is missing"},
