@@ -273,6 +273,45 @@ test("a recording plays with its timeline", { skip }, async () => {
   assert.ok(player.summary.compared_ticks >= 200);
 });
 
+test("a field takes nothing before the value that holds has come", { skip }, async () => {
+  const run = await Served.start(["run", makeYard(scratch)], scratch);
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+  const held = [];
+  let holding = true;
+  await context.routeWebSocket(/.*/, (ws) => {
+    const server = ws.connectToServer();
+    server.onMessage((message) => {
+      if (holding && typeof message === "string" && message.includes('"parameterValues"')) held.push(() => ws.send(message));
+      else ws.send(message);
+    });
+  });
+  const shown = await context.newPage();
+  shown.setDefaultTimeout(60000);
+  await shown.goto(run.url);
+  await shown.locator(row("rover")).click();
+  await shown.locator(by("tree-filter")).fill("rover laser");
+  await shown.locator(row("rover/laser")).click();
+  const field = shown.locator(by("param-rover/laser.noise.white"));
+  await field.waitFor();
+  await until("an answer that is held back", () => held.length > 0);
+  assert.equal(await field.isDisabled(), true);
+  assert.equal(await field.inputValue(), "");
+  holding = false;
+  for (const send of held) send();
+  await until("a field to type in", () => field.isEnabled());
+  assert.notEqual(await field.inputValue(), "");
+  await field.fill("0.125");
+  await field.press("Enter");
+  const viewer = await watch(run.ws);
+  await until("the new value", async () => {
+    viewer.client.getParameters(["rover/laser.noise.white"], "form");
+    return viewer.parameters.get("rover/laser.noise.white") === 0.125;
+  });
+  viewer.close();
+  await context.close();
+  assert.equal(await run.stop(), 0, run.error);
+});
+
 test("media, rules and programs of teams are listed with the world, with their parameters and values", { skip }, async () => {
   const yard = readFileSync(makeYard(scratch), "utf8").replace("name: idle,", "name: idle, team: red,");
   const file = scratch.write("parts.yaml", `${yard}teams:

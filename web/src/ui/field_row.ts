@@ -64,10 +64,16 @@ export class FieldRow {
 
   setReason(reason: string | null): void {
     this.reason = this.view.tunable ? reason : 'Fixed while running';
-    this.input.disabled = this.reason !== null;
-    if (this.slider) this.slider.disabled = this.reason !== null;
-    setTitle(this.input, this.reason ?? this.view.help);
+    this.showReason();
     this.showBack();
+  }
+
+  /** Nothing can be typed before the value that holds is known: it would come into the middle of what is typed. */
+  private showReason(): void {
+    const off = this.reason !== null || this.shown === undefined;
+    this.input.disabled = off;
+    if (this.slider) this.slider.disabled = off;
+    setTitle(this.input, this.reason ?? (off ? 'Its value is on the way' : this.view.help));
   }
 
   private showBack(): void {
@@ -76,7 +82,9 @@ export class FieldRow {
 
   /** The value that holds, as the server says. What somebody is typing just now stays. */
   show(value: ParameterValue): void {
+    const first = this.shown === undefined;
     this.shown = value;
+    if (first) this.showReason();
     if (this.pending > 0) return;
     const typing = document.activeElement === this.input && this.element.classList.contains('typing');
     if (!typing) {
