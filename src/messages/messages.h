@@ -10,6 +10,7 @@
 #include "messages/geometry_msgs.h"
 #include "messages/nav_msgs.h"
 #include "messages/sandlot_msgs.h"
+#include "messages/sandlot_radio.h"
 #include "messages/sandlot_speech.h"
 #include "messages/sensor_msgs.h"
 #include "messages/sensor_ranges.h"
