@@ -139,7 +139,7 @@ struct LabelledObject {
     visit(Field{"model", "", "Model of the thing, in the same forms as that of a robot.", 0, 0,
                 Field::required},
           s.model);
-    visit(Field{"count", "1", "Number of things.", 1, max_robots}, s.count);
+    visit(Field{"count", "1", "Number of things; 0: none.", 0, max_robots}, s.count);
     visit(Field{"pose", "m", "Pose of the thing, in the same forms as that of a robot."}, s.pose);
     visit(Field{"distribution", "", "Places of several things."}, s.distribution);
     visit(label_field, s.instance.label);
@@ -169,7 +169,7 @@ struct Robot {
                 "builder and its parameters, or builder:NAME?key=value.",
                 0, 0, Field::required},
           s.model);
-    visit(Field{"count", "1", "Number of robots.", 1, max_robots}, s.count);
+    visit(Field{"count", "1", "Number of robots; 0: none.", 0, max_robots}, s.count);
     visit(
         Field{"pose", "m", "Pose at the start: [x, y, yaw], [x, y, z, roll, pitch, yaw] or a map of these."},
         s.pose);

@@ -82,6 +82,7 @@ Result<std::vector<Pose>> Placer::place(const formats::RobotGroup& group) {
   const auto at = [](double x, double y, double z, double yaw) {
     return Pose{{x, y, z}, quat_from_rpy(0, 0, yaw)};
   };
+  if (group.count == 0) return poses;
   switch (placement.kind) {
     case formats::Placement::Kind::pose:
       if (group.count > 1)
