@@ -12,6 +12,7 @@
   builder(armband)                \
   builder(hexapod)                \
   builder(diff_robot)             \
+  builder(blade_robot)            \
   builder(skid_robot)             \
   builder(ackermann_robot)        \
   builder(omni_robot)             \
@@ -23,6 +24,7 @@
   builder(octagon_playground)     \
   builder(terrain)                \
   builder(box_pile)               \
+  builder(block)                  \
   builder(soccer_goal)            \
   builder(seesaw)                 \
   builder(stairs)
