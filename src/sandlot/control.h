@@ -3,3 +3,4 @@
 #include "base/math.h"  // the same bits on every machine, unlike <cmath>
 #include "control/controller.h"
 #include "control/plugin.h"
+#include "control/steering.h"
