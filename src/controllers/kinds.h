@@ -2,10 +2,18 @@
 /// The controllers that come with Sandlot: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_CONTROLLERS(controller) \
+  controller(carrier)                   \
+  controller(carriers)                  \
+  controller(clearing)                  \
   controller(diffusion)                 \
+  controller(disturber)                 \
+  controller(footballer)                \
+  controller(forager)                   \
   controller(formation)                 \
   controller(odometry_estimator)        \
   controller(playback)                  \
+  controller(predator)                  \
+  controller(prey)                      \
   controller(seeker)                    \
   controller(sequence)                  \
   controller(sine)                      \
