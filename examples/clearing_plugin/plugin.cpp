@@ -1,0 +1,12 @@
+// The clearing law that comes with Sandlot, outside its tree: the same text, in a shared library of its own.
+#include "clearing.h"
+
+namespace {
+using namespace sandlot;
+using controllers::clearing::Clearing;
+
+constexpr ControllerKind my_clearing = make_controller<Clearing>(
+    {.name = "my_clearing", .help = "Pushes scattered objects into an area, from a plugin."});
+}  // namespace
+
+SANDLOT_PLUGIN("clearing_plugin", &my_clearing)
