@@ -137,6 +137,13 @@ struct ValidateOptions {
 };
 int validate(const ValidateOptions& options);
 
+struct ReproduceOptions {
+  std::string paper, out;     ///< name of the paper; folder for page and tables
+  std::optional<int> repeat;  ///< runs per condition; unset: as many as the paper's line says
+  int at_a_time = 0;          ///< of those; 0: as many as the machine has processors
+};
+int reproduce(const ReproduceOptions& options);
+
 int doctor(bool json);
 
 struct RecordingOptions {

@@ -637,6 +637,22 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   validate_verb->footer("Example: sandlot validate friction");
   validate_verb->callback([&] { result = validate(validate_options); });
 
+  ReproduceOptions reproduce_options;
+  CLI::App* const reproduce_verb = app.add_subcommand(
+      "reproduce", "Make the experiment of a paper, its figures and tables beside the paper's statements");
+  reproduce_verb->add_option("paper", reproduce_options.paper, "Name of the paper: cooperation")->required();
+  reproduce_verb
+      ->add_option("--out", reproduce_options.out, "Folder to write index.html and the tables (CSV) into")
+      ->required();
+  reproduce_verb->add_option("--repeat", reproduce_options.repeat,
+                             "Runs of each condition, with seeds that follow each other");
+  reproduce_verb
+      ->add_option("--at-a-time", reproduce_options.at_a_time,
+                   "Runs at the same time; as many as the machine has processors if left out")
+      ->check(CLI::NonNegativeNumber);
+  reproduce_verb->footer("Example: sandlot reproduce cooperation --out report");
+  reproduce_verb->callback([&] { result = reproduce(reproduce_options); });
+
   RecordingOptions recording_options;
   DurationOption from, to;
   CLI::App* const topic_verb = app.add_subcommand("topic", "Look into a recording: list, echo, hz, export");

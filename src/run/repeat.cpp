@@ -85,22 +85,10 @@ class Figures {
     JudgedRuns out;
     out.criterion = estimate();
     if (asked_ == 0) return out;
-    const auto interval = statistics::wilson_interval(successes_, asked_, confidence_);
-    out.success = SuccessRate{successes_, asked_,
-                              static_cast<double>(successes_) / static_cast<double>(asked_), interval.low,
-                              interval.high};
+    out.success = with_interval({successes_, asked_, {}, {}, {}}, confidence_);
     return out;
   }
-  Estimate estimate() const {
-    Estimate out;
-    out.count = sample_.count();
-    if (out.count == 0) return out;
-    out.mean = sample_.mean(), out.min = sample_.min(), out.max = sample_.max();
-    if (out.count == 1) return out;
-    const auto interval = statistics::mean_interval(sample_, confidence_);
-    out.deviation = sample_.deviation(), out.low = interval.low, out.high = interval.high;
-    return out;
-  }
+  Estimate estimate() const { return estimate_of(sample_, confidence_); }
 
  private:
   double confidence_;
@@ -133,6 +121,25 @@ void add_figures(RepeatSummary& out) {
 }
 
 }  // namespace
+
+Estimate estimate_of(const statistics::Sample& sample, double confidence) {
+  Estimate out;
+  out.count = sample.count();
+  if (out.count == 0) return out;
+  out.mean = sample.mean(), out.min = sample.min(), out.max = sample.max();
+  if (out.count == 1) return out;
+  const auto interval = statistics::mean_interval(sample, confidence);
+  out.deviation = sample.deviation(), out.low = interval.low, out.high = interval.high;
+  return out;
+}
+
+SuccessRate with_interval(SuccessRate counts, double confidence) {
+  const auto interval = statistics::wilson_interval(counts.successes, counts.count, confidence);
+  if (counts.count > 0)
+    counts.rate = static_cast<double>(counts.successes) / static_cast<double>(counts.count);
+  counts.low = interval.low, counts.high = interval.high;
+  return counts;
+}
 
 Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(int ended)>& keep_going) {
   SL_TRY(check(spec));

@@ -14,6 +14,7 @@
 
 #include "base/result.h"
 #include "run/run.h"
+#include "statistics/sample.h"
 
 namespace sandlot {
 
@@ -39,6 +40,9 @@ struct Estimate {
   }
 };
 
+/// Mean, spread and Student's interval of a sample.
+Estimate estimate_of(const statistics::Sample& sample, double confidence = 0.95);
+
 struct SuccessRate {
   std::uint64_t successes = 0, count = 0;
   std::optional<double> rate, low, high;
@@ -51,6 +55,9 @@ struct SuccessRate {
     visit(Field{"high", "1", "Upper end of Wilson's interval."}, s.high);
   }
 };
+
+/// The same with rate and Wilson's interval of its counts.
+SuccessRate with_interval(SuccessRate counts, double confidence = 0.95);
 
 struct JudgedRuns {
   Estimate criterion;

@@ -1,0 +1,60 @@
+#include "app/papers/page.h"
+
+#include <fmt/format.h>
+
+#include "draw/plan.h"
+
+namespace sandlot::app {
+namespace {
+
+constexpr const char* style =
+    "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 "
+    "1rem;color:#222;background:#fff}"
+    "h1{font-size:1.6rem}h2{font-size:1.25rem;margin-top:2.2rem}"
+    ".table{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;margin:1rem 0}"
+    "th,td{border-bottom:1px solid #ddd;padding:.3rem .7rem;text-align:left;vertical-align:top}"
+    "th{border-bottom:2px solid #888}figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto}"
+    "figcaption{font-size:.9rem;color:#555}";
+
+}  // namespace
+
+ReportPage::ReportPage(std::string_view title, std::string_view source) : title_(title) {
+  body_ = fmt::format("<h1>{}</h1>\n<p>{}</p>\n", draw::xml_text(title), draw::xml_text(source));
+}
+
+void ReportPage::heading(std::string_view text) {
+  body_ += fmt::format("<h2>{}</h2>\n", draw::xml_text(text));
+}
+
+void ReportPage::paragraph(std::string_view text) {
+  body_ += fmt::format("<p>{}</p>\n", draw::xml_text(text));
+}
+
+void ReportPage::table(const std::vector<std::string>& names,
+                       const std::vector<std::vector<std::string>>& rows) {
+  body_ += "<div class=\"table\"><table>\n<tr>";
+  for (const std::string& name : names) body_ += fmt::format("<th>{}</th>", draw::xml_text(name));
+  body_ += "</tr>\n";
+  for (const auto& row : rows) {
+    body_ += "<tr>";
+    for (const std::string& cell : row) body_ += fmt::format("<td>{}</td>", draw::xml_text(cell));
+    body_ += "</tr>\n";
+  }
+  body_ += "</table></div>\n";
+}
+
+void ReportPage::figure(std::string_view svg, std::string_view caption) {
+  // A prolog has no place within HTML.
+  if (const std::size_t begin = svg.find("<svg"); begin != std::string_view::npos) svg.remove_prefix(begin);
+  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, draw::xml_text(caption));
+}
+
+std::string ReportPage::html() const {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>{}</title>\n<style>{}</style></head>\n<body>\n{}</body>\n</"
+      "html>\n",
+      draw::xml_text(title_), style, body_);
+}
+
+}  // namespace sandlot::app

@@ -1,0 +1,25 @@
+#pragma once
+/// Report page: one HTML file with text, tables and SVG figures in it, which needs no network.
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sandlot::app {
+
+class ReportPage {
+ public:
+  ReportPage(std::string_view title, std::string_view source);
+  void heading(std::string_view text);
+  void paragraph(std::string_view text);
+  /// A table; cells are plain text.
+  void table(const std::vector<std::string>& names, const std::vector<std::vector<std::string>>& rows);
+  /// An SVG, with a caption.
+  void figure(std::string_view svg, std::string_view caption);
+  /// The whole file.
+  std::string html() const;
+
+ private:
+  std::string body_, title_;
+};
+
+}  // namespace sandlot::app

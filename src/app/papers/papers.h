@@ -1,0 +1,56 @@
+#pragma once
+/// Papers whose experiments `sandlot reproduce` makes again: a function each, and one line in the table of papers.cpp.
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/papers/page.h"
+#include "base/result.h"
+#include "run/repeat.h"
+
+namespace sandlot::app {
+
+/// A condition of an experiment: one scenario, with its overrides, run again and again.
+struct Condition {
+  std::string name;
+  std::string scenario;                                       ///< "clearing"
+  std::vector<std::pair<std::string, std::string>> settings;  ///< as --set takes them
+};
+
+/// What an experiment needs from the command.
+struct ReproduceContext {
+  int repeat = 20;
+  std::string out;  ///< folder; it is there
+  /// Runs a condition, with progress on the terminal.
+  std::function<Result<RepeatSummary>(const Condition&)> runs;
+  /// The drawing of one run of a condition, from above, after it has ended or after `until_s`.
+  std::function<Result<std::string>(const Condition&, double until_s)> drawing;
+  /// Writes a text file into the folder.
+  std::function<Status(const std::string& name, std::string_view text)> write;
+};
+
+struct Paper {
+  const char* name;
+  const char* title;
+  int repeat;      ///< runs per condition, unless the command says another number
+  int conditions;  ///< how many there are, for the progress
+  Status (*make)(const ReproduceContext& context, ReportPage& page);
+};
+
+std::span<const Paper> papers();
+
+Status make_cooperation(const ReproduceContext& context, ReportPage& page);
+
+/// --- what reports share ---
+
+/// "0.93 (0.85 to 0.97)": a mean or a rate with its interval.
+std::string text_of(const Estimate& estimate, int digits = 3);
+std::string text_of(const SuccessRate& rate);
+/// Difference of two conditions, run by run of one seed: b - a of `figure`, which may have no value.
+Estimate paired_difference(const RepeatSummary& a, const RepeatSummary& b,
+                           const std::function<std::optional<double>(const RepeatedRun&)>& figure);
+/// All runs of conditions as CSV: condition, seed, criterion, success, end time, state hash.
+std::string csv_of(const std::vector<std::pair<std::string, const RepeatSummary*>>& conditions);
+
+}  // namespace sandlot::app
