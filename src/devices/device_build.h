@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/result.h"
 #include "base/time.h"
+#include "devices/energy.h"
 #include "media/inbox.h"
 #include "messages/command_queue.h"
 #include "messages/topic.h"
@@ -112,6 +113,8 @@ struct DeviceBuild {
   double errors = 1;                               ///< factor on the errors, in addition to the device's own
   ImageEncoder encode_image = nullptr;             ///< null in tests of kinds alone
   std::span<const model::ElementDecl> media = {};  ///< of the world
+  EnergyMeter* energy = nullptr;                   ///< null: the robot has no battery
+  EnergyAccount* account = nullptr;  ///< of the robot, for its battery; null for all other kinds
 
   BodyId body() const { return bodies[decl.link]; }
   /// Frame of the sensor in messages: "robot1/laser".

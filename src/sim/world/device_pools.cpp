@@ -15,6 +15,9 @@
 namespace sandlot {
 namespace {
 
+/// Totals of energy that a snapshot may hold [J].
+constexpr double most_energy_J = 1e18;
+
 /// Collects what a device creates while it is built.
 struct SlotMaker final : TopicMaker {
   std::vector<SimulationParts::Slot> topics, commands;
@@ -103,13 +106,32 @@ std::string encode_image(int width, int height, int channels, std::span<const st
 
 void DevicePools::add_kind(const Kind& kind) {
   SL_CHECK(kind.api_version == device_api_version);
-  pools_.push_back({&kind, kind.create_pool(), {}, {}, {}, {}, {}, {}, {}});
+  pools_.emplace_back();
+  pools_.back().kind = &kind;
+  pools_.back().pool = kind.create_pool();
 }
 
 const Kind* DevicePools::find_kind(std::string_view name) const {
   const auto found = std::find_if(pools_.begin(), pools_.end(),
                                   [&](const Pool& pool) { return name == pool.kind->name; });
   return found == pools_.end() ? nullptr : found->kind;
+}
+
+Status DevicePools::open_account(Entity& entity, const Engine& engine) {
+  const model::DeviceDecl* battery = nullptr;
+  for (const model::DeviceDecl& decl : std::as_const(entity.instance.devices)) {
+    const Kind* const kind = find_kind(decl.kind);
+    if (!kind || !kind->stores_energy) continue;
+    if (battery)
+      return Error{"robot '" + entity.instance.name + "' has two batteries, '" + battery->name + "' and '" +
+                       decl.name + "'",
+                   "keep one, with the capacity of both", decl.place};
+    battery = &decl;
+  }
+  if (!battery) return {};
+  entity.energy = EnergyLedger::open(*entity.instance.model, engine.bodies(entity.id));
+  ledger_.add(*entity.energy);
+  return {};
 }
 
 Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
@@ -135,6 +157,16 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   const bool has_errors = kind_has_errors || (keys && keys->spec.command_errors);
   SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, has_errors, kind->name));
 
+  Owned<EnergyMeter> meter;
+  if (entity.energy) {
+    meter = std::make_unique<EnergyMeter>();
+    meter->account = entity.energy.get();
+    const bool commanded = std::any_of(kind->levels.begin(), kind->levels.end(),
+                                       [](const LevelInfo& level) { return *level.command != '\0'; });
+    meter->uses_by_commands = commanded;
+    meter->uses_by_samples = !commanded && (kind->phases & phase_sense) != 0;
+  }
+
   SlotMaker maker;
   const DeviceBuild build{
       .decl = decl,
@@ -154,6 +186,8 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
       .errors = setup_.errors * entity.instance.errors,
       .encode_image = encode_image,
       .media = setup_.media,
+      .energy = meter.get(),
+      .account = kind->stores_energy ? entity.energy.get() : nullptr,
   };
   if (Status added = pool->pool->add(build); !added) {
     if (auto slip = unknown_key(decl.config, *kind)) return std::move(*slip);
@@ -204,6 +238,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   device->errors = build.errors;
   device->faults = std::move(faults);
   device->keys = std::move(keys);
+  device->energy = std::move(meter);
   if (device->keys) {
     Status begun = device->keys->begin(*device, *kind, rate_hz, kind->phases & phase_sense,
                                        entity.instance.model->joints.size(), setup_.seed);
@@ -214,6 +249,10 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
     ++pool->keyed;
   }
   if (device->faults) ++pool->faulty;
+  if (device->energy) {
+    ++pool->metered;
+    entity.energy->meters.push_back(device->energy.get());
+  }
   pool->devices.push_back(device.get());
   pool->all.push_back(index);
   pool->levels.push_back(levels);
@@ -237,6 +276,10 @@ void DevicePools::remove(const Device& device) {
   pool.since.pop_back();
   if (device.faults) --pool.faulty;
   if (device.keys) --pool.keyed;
+  if (device.energy) {
+    --pool.metered;
+    std::erase(device.energy->account->meters, device.energy.get());
+  }
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
 
@@ -297,14 +340,22 @@ Status DevicePools::request_sample(Device& device, Time at) {
 }
 
 ValueFound DevicePools::value(const Device& device, ValuePart part, std::span<const ValueStep> path) const {
+  const auto is_there = [](const ValueFound& each) {
+    return each.is == ValueFound::Is::value || each.is == ValueFound::Is::compound;
+  };
   const ValueFound found = pools_[device.kind].pool->value(device.index, part, path);
-  if (!device.keys || found.is == ValueFound::Is::value || found.is == ValueFound::Is::compound) return found;
+  if (is_there(found)) return found;
+  if (device.energy && part == ValuePart::state)
+    if (const ValueFound drawn = value_at(device.energy->state, path); is_there(drawn)) return drawn;
+  if (!device.keys) return found;
   const ValueFound common = value_at(part, device.keys->spec, device.keys->state, path);
-  return common.is == ValueFound::Is::value || common.is == ValueFound::Is::compound ? common : found;
+  return is_there(common) ? common : found;
 }
 
 void DevicePools::list_values(const Device& device, ValuePart part, const ValueVisit& visit) const {
   pools_[device.kind].pool->list_values(device.index, part, visit);
+  if (device.energy && part == ValuePart::state)
+    sandlot::list_values(device.energy->state, "", "", "", visit);
   if (!device.keys) return;
   const bool kind_has_errors = pools_[device.kind].pool->has_errors();
   sandlot::list_values(part, device.keys->spec, device.keys->state, [&](ValueEntry entry) {
@@ -345,9 +396,41 @@ double DevicePools::all_errors(const Device& device, Time now) const {
 void DevicePools::actuate(const Context& context) {
   for (Pool& pool : pools_)
     if (pool.keyed > 0) prepare_commands(pool, context);
+  if (!ledger_.empty()) drain(context);
   for (Pool& pool : pools_)
     if ((pool.kind->phases & phase_actuate) && !pool.devices.empty())
       pool.pool->actuate(context, {acting(pool, context, true), pool.sample, pool.levels, pool.since});
+  if (!ledger_.empty()) ledger_.begin_physics(context.engine);
+}
+
+/// What devices draw all the time, for the tick that begins.
+void DevicePools::drain(const Context& context) {
+  ledger_.begin_tick();
+  const Time begin = context.now - context.tick;
+  for (const Pool& pool : pools_) {
+    if (pool.metered == 0) continue;
+    for (Device* const device : pool.devices)
+      if (device->energy && device->energy->rates.drain_W > 0 &&
+          !(device->faults && device->faults->at(begin).dead))
+        device->energy->draw(device->energy->rates.drain_W * context.tick.s());
+  }
+}
+
+/// Draws for the samples that are due, and has the batteries pay for the tick. @pre what is due has been found
+void DevicePools::settle(const Context& context) {
+  for (const Pool& pool : pools_) {
+    if (pool.metered == 0 || !(pool.kind->phases & phase_sense)) continue;
+    for (const std::uint32_t index : pool.due) {
+      Device& device = *pool.devices[index];
+      if (device.energy && device.energy->uses_by_samples && device.energy->rates.per_use_J > 0 &&
+          !(device.faults && device.faults->at(context.now).dead))
+        device.energy->draw(device.energy->rates.per_use_J);
+    }
+  }
+  ledger_.after_physics(context.engine, context.tick.s(), norm(setup_.gravity));
+  for (const Pool& pool : pools_)
+    if ((pool.kind->phases & phase_settle) && !pool.devices.empty())
+      pool.pool->settle(context, {pool.all, pool.sample, pool.levels, pool.since});
 }
 
 void DevicePools::pre_substep(const Context& context, double h_s) {
@@ -362,6 +445,7 @@ void DevicePools::post_substep(const Context& context, double h_s) {
     if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
       pool.pool->post_substep(context, {acting(pool, context, false), pool.sample, pool.levels, pool.since},
                               h_s);
+  if (!ledger_.empty()) ledger_.after_substep(context.engine, h_s);
 }
 
 /// Lists the devices whose sample is due at `now`, and plans their next one.
@@ -390,12 +474,16 @@ void DevicePools::find_due(Pool& pool, Time now, Time step) const {
 }
 
 void DevicePools::sense(const Context& context) {
-  for (Pool& pool : pools_) {
-    if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
-    find_due(pool, context.now, context.tick);
+  const auto for_sensing = [&](auto&& work) {
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_sense) && !pool.devices.empty()) work(pool);
+  };
+  for_sensing([&](Pool& pool) { find_due(pool, context.now, context.tick); });
+  if (!ledger_.empty()) settle(context);
+  for_sensing([&](Pool& pool) {
     if (pool.keyed > 0) sense_keyed(pool, context);
     else sense_due(pool, context);
-  }
+  });
 }
 
 void DevicePools::sense_due(Pool& pool, const Context& context) const {
@@ -492,10 +580,11 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
   if (device.inbox()) device.inbox()->save(w);
+  if (device.energy) write(w, device.energy->state);
   if (device.keys) {
     const std::size_t at = w.size();
     write(w, std::uint64_t{0});
-    device.keys->save(w);
+    device.keys->save(device, w);
     const std::uint64_t size = w.size() - at - 8;
     std::memcpy(w.buffer().data() + at, &size, 8);
   }
@@ -526,6 +615,13 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
   if (device.inbox()) device.inbox()->load(r);
+  if (device.energy) {
+    EnergyMeter::State& meter = device.energy->state;
+    read(r, meter);
+    for (const double number : {meter.drawn_J, meter.missing_J, meter.pending_J})
+      if (!(std::abs(number) <= most_energy_J)) return r.fail();
+    if (meter.missing_J < 0) return r.fail();
+  }
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

@@ -192,6 +192,13 @@ Status adds_no_mass(const SimulationParts::Device& device) {
                "declare the device with the robot and keep it, or leave mass out"};
 }
 
+/// Devices are connected to the battery of their robot when they are built.
+Status is_no_battery(const Kind* kind, const std::string& device) {
+  if (!kind || !kind->stores_energy) return {};
+  return Error{"'" + device + "' is a battery, which neither comes nor goes while the run goes on",
+               "declare it with the robot and keep it"};
+}
+
 }  // namespace
 
 /// The instance's own list of devices is extended as well, so that a snapshot taken later builds the same robot. A program
@@ -202,6 +209,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
   if (request.device.link >= entity->instance.model->links.size())
     return Error{"model '" + entity->instance.model->name + "' has no link " +
                  std::to_string(request.device.link)};
+  SL_TRY(is_no_battery(sim.devices_.find_kind(request.device.kind), request.device.name));
   Diagnostics ignored;
   SL_TRY(sim.devices_.add(*entity, request.device, *sim.engine_, sim.now_, ignored));
   Status fits = adds_no_mass(*entity->devices.back());
@@ -226,6 +234,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
 Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   SL_ASSIGN(Device* const device, device_named(request.device));
   SL_TRY(adds_no_mass(*device));
+  SL_TRY(is_no_battery(&sim.devices_.kind(*device), device->path));
   Entity& entity = sim.entity_of(*device);
   for (const auto& other : entity.devices)
     for (const auto& order : other->orders())
