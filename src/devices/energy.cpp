@@ -39,6 +39,7 @@ EnergyAccount::Bill EnergyAccount::bill() const {
 void EnergyAccount::settle(double drawn_share, double given_share) {
   for (EnergyMeter* meter : meters) {
     EnergyMeter::State& state = meter->state;
+    state.share = drawn_share;
     if (state.pending_J > 0) {
       const double paid = drawn_share * state.pending_J;
       state.drawn_J += paid;

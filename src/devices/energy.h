@@ -41,13 +41,14 @@ struct EnergyAccount;
 class EnergyMeter {
  public:
   struct State {
-    double drawn_J = 0, missing_J = 0, pending_J = 0;
+    double drawn_J = 0, missing_J = 0, pending_J = 0, share = 1;
 
     static void fields(auto& s, auto&& visit) {
       visit(Field{"drawn", "J", "Energy drawn from the battery so far, less what was given back."},
             s.drawn_J);
       visit(Field{"missing", "J", "Energy that the battery could not deliver."}, s.missing_J);
       visit(Field{"pending", "J", "Energy drawn while sensing, to be paid with the next tick."}, s.pending_J);
+      visit(Field{"share", "1", "Share of what was drawn in the latest tick that was delivered."}, s.share);
     }
   };
   /// From the common keys of devices.

@@ -28,6 +28,12 @@ struct EntityView {
   std::uint64_t serial = 0;  ///< creation order over the whole run: nothing else ever has it
 };
 
+/// The battery of a robot.
+struct BatteryView {
+  double energy_J = 0, fraction = 0;  ///< left; the charge as a share of the whole
+  bool empty = false;
+};
+
 class WorldView {
  public:
   virtual ~WorldView() = default;
@@ -39,6 +45,8 @@ class WorldView {
   virtual const Marker* find_marker(std::string_view name) const = 0;
   /// Paths of the devices of an entity that take commands: "robot1/drive".
   virtual std::vector<std::string> actuators(const EntityView& entity) const = 0;
+  /// Nothing: it has no battery.
+  virtual std::optional<BatteryView> battery(const EntityView&) const { return std::nullopt; }
   /// "/robot1/laser/ranges", or "robot1/laser" for a device's first topic; null: there is none.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
   /// The present value of an expression that was compiled for an element while it was built (ElementBuild::watch). Nothing:

@@ -620,7 +620,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     read(r, meter);
     for (const double number : {meter.drawn_J, meter.missing_J, meter.pending_J})
       if (!(std::abs(number) <= most_energy_J)) return r.fail();
-    if (meter.missing_J < 0) return r.fail();
+    if (meter.missing_J < 0 || !(meter.share >= 0 && meter.share <= 1)) return r.fail();
   }
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {

@@ -180,6 +180,12 @@ std::vector<std::string> WorldElements::actuators(const EntityView& view) const 
   return out;
 }
 
+std::optional<BatteryView> WorldElements::battery(const EntityView& view) const {
+  const SimulationParts::Entity* const entity = sim_.find_entity(view.instance->name);
+  if (!entity || !entity->energy) return std::nullopt;
+  return BatteryView{entity->energy->energy_J, entity->energy->fraction, entity->energy->empty};
+}
+
 const Marker* WorldElements::find_marker(std::string_view name) const {
   for (const NamedMarker& each : markers_)
     if (each.name == name) return each.marker.get();
