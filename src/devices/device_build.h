@@ -29,6 +29,14 @@ struct LevelInfo {
   const char* help;
 };
 
+/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
+/// take precedence.
+struct Preset {
+  const char* name;  ///< "sick_lms200"
+  const char* help;  ///< one sentence, with the source of the numbers
+  const char* keys;  ///< a map in YAML
+};
+
 /// Destination of a device's orders; the simulation gives it.
 class OrderSink {
  public:

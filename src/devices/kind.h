@@ -45,14 +45,6 @@ namespace sandlot {
 /// Bumped when the structs below change; plugins built against another version are refused.
 inline constexpr int device_api_version = 9;
 
-/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
-/// take precedence.
-struct Preset {
-  const char* name;  ///< "sick_lms200"
-  const char* help;  ///< one sentence, with the source of the numbers
-  const char* keys;  ///< a map in YAML
-};
-
 /// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
 /// For actuate, pre_substep and post_substep every device is due.
 template <class Device>
@@ -108,13 +100,8 @@ class PoolBase {
   virtual bool fits(std::uint32_t index) const = 0;
 };
 
-enum Phases : unsigned {
-  phase_actuate = 1,
-  phase_pre_substep = 2,
-  phase_sense = 4,
-  phase_post_substep = 8,
-  phase_settle = 16
-};
+enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
+inline constexpr unsigned phase_settle = 16;
 
 /// A kind of device. Function pointers and constants only, so that a plugin can fill one.
 struct Kind {

@@ -15,9 +15,6 @@
 namespace sandlot {
 namespace {
 
-/// Totals of energy that a snapshot may hold [J].
-constexpr double most_energy_J = 1e18;
-
 /// Collects what a device creates while it is built.
 struct SlotMaker final : TopicMaker {
   std::vector<SimulationParts::Slot> topics, commands;
@@ -117,23 +114,6 @@ const Kind* DevicePools::find_kind(std::string_view name) const {
   return found == pools_.end() ? nullptr : found->kind;
 }
 
-Status DevicePools::open_account(Entity& entity, const Engine& engine) {
-  const model::DeviceDecl* battery = nullptr;
-  for (const model::DeviceDecl& decl : std::as_const(entity.instance.devices)) {
-    const Kind* const kind = find_kind(decl.kind);
-    if (!kind || !kind->stores_energy) continue;
-    if (battery)
-      return Error{"robot '" + entity.instance.name + "' has two batteries, '" + battery->name + "' and '" +
-                       decl.name + "'",
-                   "keep one, with the capacity of both", decl.place};
-    battery = &decl;
-  }
-  if (!battery) return {};
-  entity.energy = EnergyLedger::open(*entity.instance.model, engine.bodies(entity.id));
-  ledger_.add(*entity.energy);
-  return {};
-}
-
 Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
                         Diagnostics& diagnostics) {
   model::DeviceDecl decl = declared;
@@ -158,14 +138,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, has_errors, kind->name));
 
   Owned<EnergyMeter> meter;
-  if (entity.energy) {
-    meter = std::make_unique<EnergyMeter>();
-    meter->account = entity.energy.get();
-    const bool commanded = std::any_of(kind->levels.begin(), kind->levels.end(),
-                                       [](const LevelInfo& level) { return *level.command != '\0'; });
-    meter->uses_by_commands = commanded;
-    meter->uses_by_samples = !commanded && (kind->phases & phase_sense) != 0;
-  }
+  if (entity.energy) meter = meter_of(entity, *kind);
 
   SlotMaker maker;
   const DeviceBuild build{
@@ -403,36 +376,6 @@ void DevicePools::actuate(const Context& context) {
   if (!ledger_.empty()) ledger_.begin_physics(context.engine);
 }
 
-/// What devices draw all the time, for the tick that begins.
-void DevicePools::drain(const Context& context) {
-  ledger_.begin_tick();
-  const Time begin = context.now - context.tick;
-  for (const Pool& pool : pools_) {
-    if (pool.metered == 0) continue;
-    for (Device* const device : pool.devices)
-      if (device->energy && device->energy->rates.drain_W > 0 &&
-          !(device->faults && device->faults->at(begin).dead))
-        device->energy->draw(device->energy->rates.drain_W * context.tick.s());
-  }
-}
-
-/// Draws for the samples that are due, and has the batteries pay for the tick. @pre what is due has been found
-void DevicePools::settle(const Context& context) {
-  for (const Pool& pool : pools_) {
-    if (pool.metered == 0 || !(pool.kind->phases & phase_sense)) continue;
-    for (const std::uint32_t index : pool.due) {
-      Device& device = *pool.devices[index];
-      if (device.energy && device.energy->uses_by_samples && device.energy->rates.per_use_J > 0 &&
-          !(device.faults && device.faults->at(context.now).dead))
-        device.energy->draw(device.energy->rates.per_use_J);
-    }
-  }
-  ledger_.after_physics(context.engine, context.tick.s(), norm(setup_.gravity));
-  for (const Pool& pool : pools_)
-    if ((pool.kind->phases & phase_settle) && !pool.devices.empty())
-      pool.pool->settle(context, {pool.all, pool.sample, pool.levels, pool.since});
-}
-
 void DevicePools::pre_substep(const Context& context, double h_s) {
   for (Pool& pool : pools_)
     if ((pool.kind->phases & phase_pre_substep) && !pool.devices.empty())
@@ -615,13 +558,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
   if (device.inbox()) device.inbox()->load(r);
-  if (device.energy) {
-    EnergyMeter::State& meter = device.energy->state;
-    read(r, meter);
-    for (const double number : {meter.drawn_J, meter.missing_J, meter.pending_J})
-      if (!(std::abs(number) <= most_energy_J)) return r.fail();
-    if (meter.missing_J < 0 || !(meter.share >= 0 && meter.share <= 1)) return r.fail();
-  }
+  if (device.energy && !load_meter(*device.energy, r)) return r.fail();
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

@@ -109,6 +109,8 @@ class DevicePools {
   bool has_errors(const Device& device) const;
   void prepare_commands(Pool& pool, const Context& context) const;
   void find_due(Pool& pool, Time now, Time step) const;
+  static std::unique_ptr<EnergyMeter> meter_of(Entity& entity, const Kind& kind);
+  static bool load_meter(EnergyMeter& meter, ByteReader& r);
   void drain(const Context& context);
   void settle(const Context& context);
   void sense_due(Pool& pool, const Context& context) const;

@@ -181,9 +181,13 @@ std::vector<std::string> WorldElements::actuators(const EntityView& view) const 
 }
 
 std::optional<BatteryView> WorldElements::battery(const EntityView& view) const {
-  const SimulationParts::Entity* const entity = sim_.find_entity(view.instance->name);
-  if (!entity || !entity->energy) return std::nullopt;
-  return BatteryView{entity->energy->energy_J, entity->energy->fraction, entity->energy->empty};
+  const auto entities = sim_.entities();
+  const auto found = std::lower_bound(
+      entities.begin(), entities.end(), view.serial,
+      [](const auto& each, std::uint64_t serial) { return each->serial < serial; });
+  if (found == entities.end() || (*found)->serial != view.serial || !(*found)->energy) return std::nullopt;
+  const EnergyAccount& account = *(*found)->energy;
+  return BatteryView{account.energy_J, account.fraction, account.empty};
 }
 
 const Marker* WorldElements::find_marker(std::string_view name) const {
