@@ -47,6 +47,11 @@ class WorldView {
   virtual std::vector<std::string> actuators(const EntityView& entity) const = 0;
   /// Nothing: it has no battery.
   virtual std::optional<BatteryView> battery(const EntityView&) const { return std::nullopt; }
+  /// Present value of a property that the scenario gives an entity. Nothing: it has none of that name.
+  static std::optional<double> property(const EntityView& entity, std::string_view name) {
+    const model::PropertyDecl* const found = entity.instance->find_property(name);
+    return found ? std::optional(found->value) : std::nullopt;
+  }
   /// "/robot1/laser/ranges", or "robot1/laser" for a device's first topic; null: there is none.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
   /// The present value of an expression that was compiled for an element while it was built (ElementBuild::watch). Nothing:
@@ -71,6 +76,8 @@ class ElementBuild {
   /// Errors name the nearest entity. An entity may be gone when a world is restored: then there is none.
   virtual Status expect_entity(std::string_view name, const char* key) const = 0;
   virtual Status expect_marker(std::string_view name, const char* key) const = 0;
+  /// Some robot or object has a property of that name.
+  virtual Status expect_property(std::string_view name, const char* key) const = 0;
   /// Compiles an expression over the world's values (docs/values.md), for WorldView::value.
   virtual Result<std::uint32_t> watch(std::string_view expression, const char* key) const = 0;
   /// Error about a key of the spec, at the key's place in its file.

@@ -259,7 +259,7 @@ model::Setup busy(const char* engine) {
                                         {"resistance", "0.5"}})));
     if (rigid && robot.name == "rover2") {
       robot.controllers = {};
-      model::SharedList<model::DeviceDecl> devices;
+      std::vector<model::DeviceDecl> devices;
       for (const model::DeviceDecl& each : std::as_const(robot.devices))
         if (each.name != "drive") devices.push_back(each);
       for (const char* joint : {"left_wheel_joint", "right_wheel_joint"}) {

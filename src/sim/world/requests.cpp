@@ -36,6 +36,7 @@ struct Simulation::Processor {
   Result<Device*> device_named(const std::string& path);
   Status deliver(Device& device, std::string_view level, const CommandRequest& command);
   Status set_errors(Entity* entity, std::string_view field, const Node& value);
+  static Status set_property(model::PropertyDecl& property, const Node& value);
 };
 
 Status Simulation::process(Request& request, const Source& source, std::vector<std::byte>& response) {
@@ -94,9 +95,20 @@ Status Simulation::Processor::operator()(const ParameterRequest& request) {
   if (const WorldElements::Part* const part = sim.elements_.find_part(request.target))
     return part->element->set_parameter(request.field, request.value);
   if (request.target == "sim") return set_errors(nullptr, request.field, request.value);
-  if (Entity* const entity = sim.find_entity(request.target))
+  if (Entity* const entity = sim.find_entity(request.target)) {
+    for (model::PropertyDecl& each : entity->instance.properties)
+      if (each.name == request.field) return set_property(each, request.value);
     return set_errors(entity, request.field, request.value);
+  }
   return no_device_or_program(request.target);
+}
+
+/// Sets a property of the user's own, within its range.
+Status Simulation::Processor::set_property(model::PropertyDecl& property, const Node& value) {
+  const Field field{"value", property.unit.c_str(), ""};
+  SL_ASSIGN(property.value,
+            read_number(value, field, property.min, property.max, false, "/" + property.name));
+  return {};
 }
 
 /// Sets the factor on the errors of all devices of an entity, or of the world (null).

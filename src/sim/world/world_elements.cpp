@@ -66,6 +66,19 @@ struct WorldElements::Build final : ElementBuild {
     return error(key, "there is no marker '" + std::string(name.substr(0, 100)) + "'",
                  names.empty() ? "declare it: markers: [{kind: disc, name: ...}]" : suggestion(name, names));
   }
+  Status expect_property(std::string_view name, const char* key) const override {
+    std::vector<std::string> names;
+    for (const auto& each : elements.sim_.entities())
+      for (const model::PropertyDecl& property : each->instance.properties) {
+        if (property.name == name) return {};
+        names.push_back(property.name);
+      }
+    if (restored) return {};
+    return error(key, "no robot or object has a property '" + std::string(name.substr(0, 100)) + "'",
+                 names.empty() ? "declare it: robots: [{properties: {" + std::string(name.substr(0, 100)) +
+                                     ": {value: 100, min: 0}}}]"
+                               : suggestion(name, names));
+  }
   Result<std::uint32_t> watch(std::string_view expression, const char* key) const override {
     const Node* const node = decl.config.find(key);
     SL_ASSIGN(ValueExpression compiled,
