@@ -4,5 +4,7 @@
 #define SANDLOT_RULES(rule) \
   rule(goals)               \
   rule(impact)              \
-  rule(place)
+  rule(place)               \
+  rule(set)                 \
+  rule(statistics)
 // clang-format on
