@@ -195,7 +195,10 @@ robots:
   - name: cart
     model: cart
     devices:
-      mover: {kind: body_velocity, initial_linear: [0.2, 0, 0]}
+      mover: {kind: body_velocity, initial_linear: [0.2, 0, 0], drain_per_use: 1 J, efficiency: 0.5}
+      battery: {kind: battery, capacity: 2 J, resistance: 0.1, drain: 3 W}
+      charger: {kind: charger, power: 5 W}
+    properties: {fuel: {value: 5, unit: kg, min: 0, max: 10}}
       screen: {kind: text_display, rows: 2, columns: 5, mass: 100 g}
 )"},
     {"elements", "rigid", R"(
@@ -205,7 +208,8 @@ markers:
   - {kind: disc, name: spot, centre: [2, 0], radius: 0.3}
 rules:
   - {kind: goals, object: ball, goals: [{marker: goal, team: wind}], place: [0.5, 0, 0.11]}
-  - {kind: impact, threshold: 0.01}
+  - {kind: impact, threshold: 0.01, property: health}
+  - {kind: energy, restart: 0.2}
   - {kind: place, object: ball, when: ball.pose.y > 1, place: [0.5, 0, 0.11]}
   - {kind: set, when: ball.pose.y > 1, set: [{parameter: rules/impact.threshold, value: 0.02 Ns}]}
   - {kind: statistics, value: ball.pose.x, bins: 3, quantiles: [0.5]}
@@ -213,7 +217,8 @@ things: [{name: ball, model: msl_ball, pose: [0.25, 0, 0.11]}]
 robots:
   - name: cart
     model: cart
-    devices: {voice: {kind: voice}, ear: {kind: ear}}
+    devices: {voice: {kind: voice}, ear: {kind: ear}, battery: {kind: battery, capacity: 1 J, drain: 2 W}}
+    properties: {health: 3}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {voice: hello}}, {at: 0.29 s, orders: {voice: again}}]}
 )"},
     {"shapes", "rigid", R"(

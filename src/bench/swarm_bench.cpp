@@ -32,13 +32,41 @@ namespace {
 constexpr double radius_m = 0.085, reach_m = 0.1, speed_mps = 0.2;
 constexpr int substeps = 10, beams = 24;
 
-std::unique_ptr<Simulation> ours(int robots) {
+/// Gives each robot a battery from which all its devices drain.
+void add_batteries(model::Setup& setup) {
+  const auto keys = [](Node config, std::initializer_list<std::pair<const char*, const char*>> entries) {
+    for (const auto& [key, text] : entries) config.set(key, Node::scalar(text));
+    return config;
+  };
+  const Node battery = keys(Node::map(), {{"capacity", "10 kJ"}, {"voltage", "7.4"}, {"resistance", "0.1"}});
+  SharedList<model::DeviceDecl> equipped;
+  const void* declared = nullptr;
+  for (model::Instance& robot : setup.instances) {
+    if (!robot.is_robot) continue;
+    // Those that are declared alike stay alike.
+    if (const void* const list = std::as_const(robot).devices.data(); list != declared || !declared) {
+      declared = list;
+      std::vector<model::DeviceDecl> devices = std::as_const(robot).devices.get();
+      for (model::DeviceDecl& decl : devices)
+        decl.config = keys(decl.config, {{"drain", "0.1 W"}, {"drain_per_use", "1 mJ"}});
+      model::DeviceDecl more;
+      more.name = more.kind = "battery";
+      more.config = battery;
+      devices.push_back(std::move(more));
+      equipped = std::move(devices);
+    }
+    robot.devices = equipped;
+  }
+}
+
+std::unique_ptr<Simulation> ours(int robots, bool batteries = false) {
   Diagnostics diagnostics;
   const std::vector<formats::Override> overrides{{"robots.count", std::to_string(robots)}};
   LoadOptions options;
   options.overrides = overrides;
   auto setup = load(own_folder("scenarios") + "/swarm.yaml", options, diagnostics);
   SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
+  if (batteries) add_batteries(*setup);
   auto made = Simulation::create(std::move(*setup), {}, diagnostics);
   SL_CHECK_MSG(made, made ? "" : made.error().text().c_str());
   return std::move(*made);
@@ -158,6 +186,16 @@ std::vector<Row> swarm() {
   }
   rows.push_back(
       row("P1 cost of a robot among 10,000, to that among 100", "us", cost_us, cost_of_100_us, 1.5));
+  {
+    const auto powered = ours(1000, true), plain = ours(1000);
+    const auto run = [](Simulation& sim) {
+      for (int i = 0; i < 20; ++i) SL_CHECK(sim.tick());
+    };
+    const Timing t = compare(
+        9, [&] { run(*powered); }, [&] { run(*plain); });
+    rows.push_back(row("P1 swarm of 1000 with batteries, to that without, per robot and tick", "us",
+                       t.ours_s * 50, t.reference_s * 50, 1.1));
+  }
   const double begin = thread_seconds();
   const auto sim = ours(100'000);
   const double loaded_s = thread_seconds() - begin;

@@ -16,7 +16,8 @@ class PictureScene;  // optics/picture.h
 
 namespace sandlot {
 
-class TopicBase;  // messages/topic.h
+class TopicBase;     // messages/topic.h
+class EnergyLedger;  // devices/energy.h
 
 /// Topics of other devices, for devices that work with another one, such as a pan-tilt unit with its camera. What one
 /// device orders of another is declared when it is built: DeviceBuild::order.
@@ -60,6 +61,7 @@ struct Context {
   optics::PictureScene* pictures = nullptr;               ///< draws the visuals as they are at `now`
   std::span<const LabelledObject> labelled_objects = {};  ///< for detectors
   const TopicFinder* topics = nullptr;                    ///< null in tests of single kinds alone
+  const EnergyLedger* energy = nullptr;  ///< batteries of the world, for chargers; null likewise
 };
 
 }  // namespace sandlot

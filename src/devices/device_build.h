@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/result.h"
 #include "base/time.h"
+#include "devices/energy.h"
 #include "media/inbox.h"
 #include "messages/command_queue.h"
 #include "messages/topic.h"
@@ -26,6 +27,14 @@ struct LevelInfo {
   const char* message;  ///< ROS type published on <device>/<level>, or ""
   const char* command;  ///< ROS type accepted on <device>/<level>/command, or ""
   const char* help;
+};
+
+/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
+/// take precedence.
+struct Preset {
+  const char* name;  ///< "sick_lms200"
+  const char* help;  ///< one sentence, with the source of the numbers
+  const char* keys;  ///< a map in YAML
 };
 
 /// Destination of a device's orders; the simulation gives it.
@@ -112,6 +121,8 @@ struct DeviceBuild {
   double errors = 1;                               ///< factor on the errors, in addition to the device's own
   ImageEncoder encode_image = nullptr;             ///< null in tests of kinds alone
   std::span<const model::ElementDecl> media = {};  ///< of the world
+  EnergyMeter* energy = nullptr;                   ///< null: the robot has no battery
+  EnergyAccount* account = nullptr;  ///< of the robot, for its battery; null for all other kinds
 
   BodyId body() const { return bodies[decl.link]; }
   /// Frame of the sensor in messages: "robot1/laser".

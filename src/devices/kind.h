@@ -9,6 +9,8 @@
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
 ///     static void sense(PoolView<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
+///     static void settle(PoolView<Device>, const Context&);   // batteries: between physics and sensing, once per tick
+///     void restored();      // only where something beside State follows from it: called after State was loaded
 ///     bool fits() const;    // only where sizes in State or messages are trusted: false refuses a snapshot
 ///   };
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
@@ -41,15 +43,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 8;
-
-/// Ready-made keys of a kind under a name, mostly a product's: `preset: sick_lms200`. The user's own keys
-/// take precedence.
-struct Preset {
-  const char* name;  ///< "sick_lms200"
-  const char* help;  ///< one sentence, with the source of the numbers
-  const char* keys;  ///< a map in YAML
-};
+inline constexpr int device_api_version = 9;
 
 /// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
 /// For actuate, pre_substep and post_substep every device is due.
@@ -88,6 +82,7 @@ class PoolBase {
   virtual void actuate(const Context& context, const Due& due) = 0;
   virtual void pre_substep(const Context& context, const Due& due, double h_s) = 0;
   virtual void post_substep(const Context& context, const Due& due, double h_s) = 0;
+  virtual void settle(const Context& context, const Due& due) = 0;
   virtual void sense(const Context& context, const Due& due) = 0;
   /// State handed over when the active levels of a device change from `before` to `after`.
   virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
@@ -106,6 +101,7 @@ class PoolBase {
 };
 
 enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
+inline constexpr unsigned phase_settle = 16;
 
 /// A kind of device. Function pointers and constants only, so that a plugin can fill one.
 struct Kind {
@@ -124,6 +120,7 @@ struct Kind {
   std::span<const Preset> presets = {};
   std::span<const DeviceService> services = {};
   bool needs_render_scene = false;  ///< its devices look at Context::pictures or Context::labelled_objects
+  bool stores_energy = false;  ///< its devices are batteries: one per robot, DeviceBuild::account is theirs
   int api_version = device_api_version;
   // Filled by make_kind:
   unsigned phases = 0;
@@ -186,6 +183,9 @@ class DevicePool final : public PoolBase {
       errors_.run(devices_, due.due, [&] { Device::post_substep(view(due), context, h_s); });
     }
   }
+  void settle([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
+    if constexpr (requires { &Device::settle; }) Device::settle(view(due), context);
+  }
   void sense([[maybe_unused]] const Context& context, [[maybe_unused]] const Due& due) override {
     if constexpr (requires { &Device::sense; }) {
       errors_.run(devices_, due.due, [&] { Device::sense(view(due), context); });
@@ -234,7 +234,8 @@ class DevicePool final : public PoolBase {
       if (!(spec.errors >= 0 && spec.errors <= 1e6)) r.fail();
     }
     set_spec(d, std::move(spec));
-    if (!fits(index)) r.fail();
+    if (!fits(index)) return r.fail();
+    if constexpr (requires { d.restored(); }) d.restored();
   }
   bool fits([[maybe_unused]] std::uint32_t index) const override {
     if constexpr (requires { devices_[index].fits(); }) return devices_[index].fits();
@@ -275,6 +276,7 @@ constexpr Kind make_kind(Kind kind) {
   kind.phases = (requires { &Device::actuate; } ? phase_actuate : 0u) |
                 (requires { &Device::pre_substep; } ? phase_pre_substep : 0u) |
                 (requires { &Device::post_substep; } ? phase_post_substep : 0u) |
+                (requires { &Device::settle; } ? phase_settle : 0u) |
                 (requires { &Device::sense; } ? phase_sense : 0u);
   kind.describe = [] { return describe_fields<typename Device::Spec>(); };
   kind.create_pool = []() -> std::unique_ptr<PoolBase> { return std::make_unique<DevicePool<Device>>(); };

@@ -5,9 +5,11 @@
   device(ackermann_drive)       \
   device(altimeter)             \
   device(barometer)             \
+  device(battery)               \
   device(body_velocity)         \
   device(boundingbox_camera)    \
   device(camera)                \
+  device(charger)               \
   device(color_sensor)          \
   device(contact)               \
   device(dc_motor)              \

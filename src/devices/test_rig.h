@@ -150,6 +150,8 @@ class Rig : public TopicMaker {
   std::vector<LabelledObject> things;
   const TopicFinder* finder = nullptr;
   ImageEncoder encoder = nullptr;
+  EnergyMeter* energy = nullptr;     ///< of the next devices
+  EnergyAccount* account = nullptr;  ///< of a battery
   Time now, tick;
   std::uint64_t tick_index = 0, seed = 1;
   Vec3 gravity_mps2{0, 0, -9.81}, magnetic_field_T{};
@@ -172,7 +174,7 @@ class Rig : public TopicMaker {
     const std::string path = "robot1/" + name;
     SL_TRY(pool->add({decl, instance, path, entity_key(path), seed, engine->body_ids, engine->joint_ids,
                       engine->what, tick, level_bits, *this, gravity_mps2, geography, magnetic_field_T, 1,
-                      encoder, media}));
+                      encoder, media, energy, account}));
     all.push_back(static_cast<std::uint32_t>(all.size()));
     levels.push_back(level_bits);
     sample.push_back(0);

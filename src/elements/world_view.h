@@ -28,6 +28,12 @@ struct EntityView {
   std::uint64_t serial = 0;  ///< creation order over the whole run: nothing else ever has it
 };
 
+/// The battery of a robot.
+struct BatteryView {
+  double energy_J = 0, fraction = 0;  ///< left; the charge as a share of the whole
+  bool empty = false;
+};
+
 class WorldView {
  public:
   virtual ~WorldView() = default;
@@ -39,6 +45,13 @@ class WorldView {
   virtual const Marker* find_marker(std::string_view name) const = 0;
   /// Paths of the devices of an entity that take commands: "robot1/drive".
   virtual std::vector<std::string> actuators(const EntityView& entity) const = 0;
+  /// Nothing: it has no battery.
+  virtual std::optional<BatteryView> battery(const EntityView&) const { return std::nullopt; }
+  /// Present value of a property that the scenario gives an entity. Nothing: it has none of that name.
+  static std::optional<double> property(const EntityView& entity, std::string_view name) {
+    const model::PropertyDecl* const found = entity.instance->find_property(name);
+    return found ? std::optional(found->value) : std::nullopt;
+  }
   /// "/robot1/laser/ranges", or "robot1/laser" for a device's first topic; null: there is none.
   virtual const TopicBase* find_topic(std::string_view name) const = 0;
   /// The present value of an expression that was compiled for an element while it was built (ElementBuild::watch). Nothing:
@@ -63,6 +76,8 @@ class ElementBuild {
   /// Errors name the nearest entity. An entity may be gone when a world is restored: then there is none.
   virtual Status expect_entity(std::string_view name, const char* key) const = 0;
   virtual Status expect_marker(std::string_view name, const char* key) const = 0;
+  /// Some robot or object has a property of that name.
+  virtual Status expect_property(std::string_view name, const char* key) const = 0;
   /// Compiles an expression over the world's values (docs/values.md), for WorldView::value.
   virtual Result<std::uint32_t> watch(std::string_view expression, const char* key) const = 0;
   /// The parts of a parameter's address, "red1/drive.failure", for a ParameterRequest. Errors: there is no such parameter, or it

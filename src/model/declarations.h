@@ -41,6 +41,22 @@ struct DeviceDecl {
   }
 };
 
+/// A property of a robot or object that the user gives it, such as fuel or health: a number that rules and people change while
+/// the run goes on, within its range.
+struct PropertyDecl {
+  std::string name, unit;
+  double value = 0;  ///< now; at the start that of the file
+  double min = -1e12, max = 1e12;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the property."}, s.name);
+    visit(Field{"unit", "", "Unit of the value."}, s.unit);
+    visit(Field{"value", "", "Present value."}, s.value);
+    visit(Field{"min", "", "Least value."}, s.min);
+    visit(Field{"max", "", "Greatest value."}, s.max);
+  }
+};
+
 struct ControllerDecl {
   std::string name;  ///< unique within its robot; "controller" by default
   std::string kind;

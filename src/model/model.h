@@ -103,7 +103,14 @@ struct Instance {
   SharedList<ControllerDecl> controllers;
   std::optional<Motion> motion;
   double errors = 1;
+  std::vector<PropertyDecl> properties;
   Place place;
+
+  const PropertyDecl* find_property(std::string_view property) const {
+    for (const PropertyDecl& each : properties)
+      if (each.name == property) return &each;
+    return nullptr;
+  }
 
   /// All but the model, which instances share.
   static void fields(auto& s, auto&& visit) {
@@ -118,6 +125,7 @@ struct Instance {
     visit(Field{"devices", "", "Devices of the model, with the changes of the scenario."}, s.devices);
     visit(Field{"controllers", "", "Control programs."}, s.controllers);
     visit(Field{"motion", "", "Path that it follows whatever happens to it."}, s.motion);
+    visit(Field{"properties", "", "Properties of the user's own."}, s.properties);
   }
 };
 

@@ -282,6 +282,8 @@ bool consistent(const model::Model& m) {
 bool consistent(const model::Instance& x) {
   if (x.motion && x.motion->keys.empty()) return false;
   if (!is_factor(x.errors)) return false;
+  for (const model::PropertyDecl& each : x.properties)
+    if (!(each.value >= each.min && each.value <= each.max)) return false;
   for (const model::DeviceDecl& d : x.devices)
     if (d.link >= x.model->links.size()) return false;
   return true;

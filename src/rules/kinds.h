@@ -2,6 +2,7 @@
 /// The kinds of rules there are: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_RULES(rule) \
+  rule(energy)              \
   rule(goals)               \
   rule(impact)              \
   rule(place)               \

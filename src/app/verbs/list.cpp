@@ -144,7 +144,7 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
                  "`command_errors: {linear: [{gaussian: {std: 1 cm/s}}]}`.",
                  {}};
   common.items.push_back({"device",
-                          "Mass, limit of activations, delay and errors of commands. A kind with a key "
+                          "Mass, limit of activations, delay, errors of commands and drains. A kind with a key "
                           "`errors` of its own has that one.",
                           describe_fields<DeviceKeysSpec>(),
                           {},

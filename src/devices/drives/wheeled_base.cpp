@@ -454,12 +454,14 @@ void actuate(Drive drive, std::uint32_t levels, const Context& context) {
          .wz_radps = of_base.turn,
          .max_accel_mps2 = drive.spec.max_linear_acceleration_mps2,
          .max_angular_accel_radps2 = drive.spec.max_angular_acceleration_radps2});
+    if (base.energy) base.energy->ride(context.actuation.drives.back());
     if (engine_rolls(base)) roll_wheels(base, context.actuation.rolls);
   } else if (drive.state.handover & hand_base) {
     context.actuation.drives.push_back({.base = base.body, .active = false});
     for (const Wheel& wheel : base.wheels)  // those without a motor were turned by the ideal level
       if (!wheel.driven) context.actuation.joints.push_back({.joint = wheel.joint});
   }
+  if (base.energy && level != ideal && !drive.spec.motor) base.energy->turn_joints();
   drive.state.handover = 0;
 }
 
@@ -525,6 +527,7 @@ void post_substep(Drive drive, std::uint32_t levels, const Context& context, dou
     state.power_W += joint.effort * joint.velocity;
   }
   state.energy_J += state.power_W * h_s;
+  if (drive.base.energy && drive.spec.motor) drive.base.energy->draw(state.power_W * h_s);
 }
 
 void sense(Drive drive, std::uint32_t levels, const Context& context) {

@@ -31,7 +31,8 @@
 ///          inertia, friction and inductance of `motor:` count where the voltage is set: with `control:` and
 ///          with effort commands.
 /// Power    sum of torque times speed of all joints, negative while they brake; with `motor:` plus the copper
-///          losses. None on level `ideal`.
+///          losses. None on level `ideal`. From a battery the drive draws this `power` if it has a `motor:`; without one its
+///          mechanical work (devices/energy.h).
 /// Time     a command acts from its tick on; after `command_timeout` without a new one wheels and base stop.
 ///          Odometry counts in every tick, on exact arcs.
 /// Limits   even ground; steering axes through the wheel's middle; no play. The twist of the odometry is from
@@ -220,6 +221,7 @@ struct Pivot {
 struct Base {
   const char* noun = "";  ///< "a Mecanum drive", for errors
   BodyId body;
+  EnergyMeter* energy = nullptr;
   Capabilities engine;
   double dx_m = 0, dy_m = 0;  ///< D in B
   std::vector<Wheel> wheels;

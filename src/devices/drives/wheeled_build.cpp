@@ -228,6 +228,13 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
                        "write 'odometry: least_squares'");
   state.wheels.resize(base.wheels.size());
   state.pivots.resize(base.pivots.size());
+  base.energy = build.energy;
+  if (base.energy) {
+    base.energy->can_ride();
+    for (const Wheel& wheel : base.wheels)
+      if (wheel.has_joint && wheel.driven) base.energy->can_turn(wheel.joint);
+    for (const Pivot& pivot : base.pivots) base.energy->can_turn(pivot.joint);
+  }
   if (build.levels == 1u << rollers) state.handover = hand_wheels;
   base.turns.resize(base.wheels.size());
   base.running.resize(base.wheels.size());

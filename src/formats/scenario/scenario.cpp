@@ -174,13 +174,50 @@ Result<Module> read_module(const Node& node, spec::Module& keys, const std::stri
   return module;
 }
 
-/// What robots and things have in common: name, model, number and place.
+/// Properties of the user's own. Their names are addresses of the robot.
+Result<std::vector<model::PropertyDecl>> read_properties(const Node& node, const std::string& path) {
+  constexpr std::size_t most = 1000;
+  std::vector<model::PropertyDecl> out;
+  if (node.is_null()) return out;
+  if (!node.is_map()) return wrong_type(node, "a map of names to values", path);
+  if (node.entries().size() > most) return node.error("there are more than 1000 properties", "", path);
+  for (const Node::Entry& entry : node.entries()) {
+    const std::string at = path + "/" + entry.key;
+    if (!is_identifier(entry.key) || entry.key.size() > 100)
+      return Error{"'" + entry.key.substr(0, 60) + "' cannot be the name of a property",
+                   "letters, digits and _, no digit first", entry.key_place, path};
+    for (const char* taken : {"pose", "twist", "errors", "links", "joints", "criterion"})
+      if (entry.key == taken)
+        return Error{"'" + entry.key + "' is an address of every robot", "give the property another name",
+                     entry.key_place, path};
+    spec::Property keys;
+    if (entry.value.is_map()) SL_TRY(read_fields(entry.value, keys, at));
+    else keys.value = entry.value;
+    model::PropertyDecl property{.name = entry.key, .unit = keys.unit};
+    const Field field{"value", property.unit.c_str(), ""};
+    const auto number = [&](const Node& written, double& to, const char* key) -> Status {
+      if (written.is_null()) return {};
+      SL_ASSIGN(to, read_number(written, field, field.min, field.max, false, at + key));
+      return {};
+    };
+    SL_TRY(number(keys.min, property.min, "/min"));
+    SL_TRY(number(keys.max, property.max, "/max"));
+    if (property.max < property.min) return keys.max.error("max is below min", "", at + "/max");
+    SL_ASSIGN(property.value,
+              read_number(keys.value, field, property.min, property.max, false, at + "/value"));
+    out.push_back(std::move(property));
+  }
+  return out;
+}
+
+/// What robots and things have in common: name, model, number, place and properties.
 template <class Keys>
 Result<RobotGroup> read_group(const Node& node, const Keys& keys, const char* what, const std::string& path) {
   RobotGroup group;
   const Node* const name = node.find("name");
   group.instance = keys.instance;
   group.instance.place = name ? name->place() : node.place();
+  SL_ASSIGN(group.instance.properties, read_properties(keys.properties, path + "/properties"));
   if (keys.name.empty())
     return node.error("the " + std::string(what) + "'s name is empty", "", path + "/name");
   group.name = keys.name;

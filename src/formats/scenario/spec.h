@@ -123,6 +123,23 @@ inline constexpr Field label_field{
     "label",     "", "What detectors call it, such as ball; its model's name if left out.", 0, 0,
     Field::none, 100};
 
+inline constexpr Field properties_field{
+    "properties", "", "Properties by name, such as fuel: a number, or a map with value, unit, min and max."};
+
+/// Property of a robot or a thing.
+struct Property {
+  Node value, min, max;
+  std::string unit = "1";
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"value", "", "Value at the start, in the unit or with a unit.", 0, 0, Field::required},
+          s.value);
+    visit(Field{"unit", "", "Unit of the value.", 0, 0, Field::none, 30}, s.unit);
+    visit(Field{"min", "", "Least value."}, s.min);
+    visit(Field{"max", "", "Greatest value."}, s.max);
+  }
+};
+
 /// Object in the world that is not a robot.
 struct LabelledObject {
   std::string name;
@@ -130,6 +147,7 @@ struct LabelledObject {
   int count = 1;
   Node pose;
   std::optional<Distribution> distribution;
+  Node properties;
   model::Instance instance;  ///< label
 
   static void fields(auto& s, auto&& visit) {
@@ -143,6 +161,7 @@ struct LabelledObject {
     visit(Field{"pose", "m", "Pose of the thing, in the same forms as that of a robot."}, s.pose);
     visit(Field{"distribution", "", "Places of several things."}, s.distribution);
     visit(label_field, s.instance.label);
+    visit(properties_field, s.properties);
   }
 };
 
@@ -159,6 +178,7 @@ struct Robot {
   std::vector<std::string> joint_controllers;
   Node devices;
   std::optional<double> rate_hz;
+  Node properties;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot; with count > 1 the stem of name1, name2, ...", 0, 0,
@@ -199,6 +219,7 @@ struct Robot {
                 "where neither the scenario nor the model gives a rate.",
                 1e-3, 1e5},
           s.rate_hz);
+    visit(properties_field, s.properties);
   }
 };
 

@@ -2,11 +2,14 @@
 ///
 /// Damage     of a robot grows by the part of each sub-step's impulse over the threshold. Above the limit its actuators fail,
 ///            as if each had the failure `dead`.
+/// Property   with `property: health` the damage of a tick times `per_damage` is taken from that property of the robot, as far as
+///            its least value; robots without it keep theirs. At the least value their actuators fail, too.
 /// Impulse    of all contacts of two bodies in one sub-step together; so a blow that the engine spreads over several sub-steps
 ///            counts less than one blow of the same sum, and the threshold belongs to the length of a sub-step.
 /// Limits     contacts within one robot count for nothing.
 #include <algorithm>
 
+#include "base/text.h"
 #include "rules/rule.h"
 
 namespace sandlot::rules::impact {
@@ -15,6 +18,8 @@ namespace {
 struct Spec {
   double threshold_Ns = 1;
   double limit_Ns = 0;
+  std::string property;
+  double per_damage = 1;
   std::vector<std::string> robots;
 
   static void fields(auto& s, auto&& visit) {
@@ -24,6 +29,12 @@ struct Spec {
     visit(Field{"limit", "Ns", "Damage at which the actuators of a robot fail; 0: never.", 0, 1e9,
                 Field::tunable},
           s.limit_Ns);
+    visit(Field{"property", "", "Property of the robots that damage lowers, such as health.", 0, 0,
+                Field::none, 100},
+          s.property);
+    visit(Field{"per_damage", "1", "Loss of the property [its unit per Ns] per damage.", 0, 1e9,
+                Field::tunable},
+          s.per_damage);
     visit(Field{"robots", "", "Names of the robots that take damage; all if left out.", 0, 0, Field::none,
                 10'000},
           s.robots);
@@ -63,9 +74,15 @@ struct Impact {
     Vec3 impulse;
   };
   std::vector<Blow> blows;  ///< of this tick
+  struct Loss {
+    std::uint64_t robot;
+    double damage_Ns;
+  };
+  std::vector<Loss> losses;  ///< of this tick
 
   Status init(const ElementBuild& build) {
     for (const std::string& name : spec.robots) SL_TRY(build.expect_entity(name, "robots"));
+    if (!spec.property.empty()) return build.expect_property(spec.property, "property");
     return {};
   }
   bool fits() const {
@@ -107,6 +124,7 @@ struct Impact {
 
   void judge(const RuleContext& context, RuleActions& actions) {
     collect(context);
+    losses.clear();
     for (std::size_t i = 0; i < blows.size();) {
       const Blow& first = blows[i];
       Vec3 sum;
@@ -117,14 +135,36 @@ struct Impact {
       const double impulse = norm(sum);
       if (!(impulse > spec.threshold_Ns)) continue;
       Damage& damage = damage_of(first.robot);
+      note_loss(first.robot, impulse - spec.threshold_Ns);
       damage.sum_Ns += impulse - spec.threshold_Ns;
       damage.hardest_Ns = std::max(damage.hardest_Ns, impulse);
       ++damage.blows;
     }
+    for (const Loss& loss : losses) take_from_property(context, loss, actions);
     if (spec.limit_Ns <= 0) return;
     for (Damage& damage : state.robots)
       if (!damage.broken && damage.sum_Ns >= spec.limit_Ns)
         damage.broken = break_down(context, damage.robot, actions);
+  }
+
+  void note_loss(std::uint64_t robot, double damage_Ns) {
+    if (spec.property.empty()) return;
+    if (losses.empty() || losses.back().robot != robot) losses.push_back({robot, 0});
+    losses.back().damage_Ns += damage_Ns;
+  }
+
+  void take_from_property(const RuleContext& context, const Loss& loss, RuleActions& actions) {
+    for (const EntityView& entity : context.world.entities()) {
+      if (entity.serial != loss.robot) continue;
+      const model::PropertyDecl* const property = entity.instance->find_property(spec.property);
+      if (!property) return;
+      const double left = std::max(property->min, property->value - spec.per_damage * loss.damage_Ns);
+      if (left == property->value) return;
+      actions.request(
+          ParameterRequest{entity.instance->name, spec.property, Node::scalar(number_text(left))});
+      Damage& damage = damage_of(loss.robot);
+      if (left == property->min && !damage.broken) damage.broken = break_down(context, loss.robot, actions);
+    }
   }
 
   static bool break_down(const RuleContext& context, std::uint64_t serial, RuleActions& actions) {

@@ -124,6 +124,12 @@ bool NamedValue::resolve_thing(const Simulation::Entity& entity) {
   const model::Model& model = *entity.instance.model;
   const std::string& first = path_.front().key;
   if (first == "errors" && path_.size() == 1) return take(What::errors, 1, number(0, "1"));
+  const auto& properties = entity.instance.properties;
+  for (std::size_t i = 0; i < properties.size() && path_.size() == 1; ++i) {
+    if (properties[i].name != first) continue;
+    index_ = static_cast<std::uint32_t>(i);
+    return take(What::property, 1, number(0, properties[i].unit.c_str()));
+  }
   if (first == "links" && path_.size() > 2) {
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       if (sanitised(model.links[i].name) != path_[1].key) continue;
@@ -210,6 +216,7 @@ ValueFound NamedValue::look() const {
     case What::revision: return number(static_cast<double>(simulation_->revision()), "");
     case What::all_errors: return number(simulation_->setup().errors, "");
     case What::errors: return number(entity_->instance.errors, "");
+    case What::property: return number(entity_->instance.properties[index_].value, "");
     case What::named: {
       const auto value = simulation_->monitor().value(index_);
       return value ? number(*value, "") : ValueFound{Is::absent};
@@ -302,6 +309,8 @@ void list_thing(const Simulation& simulation, const Simulation::Entity& entity, 
   if (!entity.devices.empty())
     visit({name + ".errors", "1", "Factor on the errors of all its devices.", Is::value,
            entity.instance.errors});
+  for (const model::PropertyDecl& each : entity.instance.properties)
+    visit({name + "." + each.name, each.unit, "", Is::value, each.value});
   if (model.links.size() > 1)
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       const std::string link = name + ".links." + sanitised(model.links[i].name);

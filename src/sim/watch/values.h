@@ -7,6 +7,7 @@
 ///   rover.pose.x|y|z|roll|pitch|yaw                 of the model frame in the world [m, rad]
 ///   rover.twist.linear.x, .angular.z                of the first link, in the world [m/s, rad/s]
 ///   rover.errors                                    factor on the errors of all its devices
+///   rover.fuel                                      a property that the scenario gives it
 ///   rover.links.NAME.pose.x, .twist.linear.x        of a link, in the world
 ///   rover.joints.NAME.position|velocity|effort      [rad or m, ... per s, Nm or N]
 ///   rover/laser.PATH                                a device: its reading, else a parameter, else its state, else
@@ -56,6 +57,7 @@ class NamedValue {
     revision,
     all_errors,
     errors,
+    property,
     named,
     criterion,
     model_pose,
@@ -102,7 +104,7 @@ class NamedValue {
   const TopicBase* topic_ = nullptr;
   const Element* element_ = nullptr;
   std::string team_;         ///< of a criterion
-  std::uint32_t index_ = 0;  ///< of a body, joint or named value
+  std::uint32_t index_ = 0;  ///< of a body, joint, property or named value
 };
 
 /// Calls `visit` for every address of one entity (a robot or object with all its devices), or of the whole simulation

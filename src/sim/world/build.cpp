@@ -117,7 +117,7 @@ Status Simulation::add_entity(model::Instance instance, Diagnostics& diagnostics
   if (added.instance.motion) guided_.push_back(&added);
   by_name_[added.instance.name] = &added;
   elements_.entities_changed();
-  Status status;
+  Status status = devices_.open_account(added, *engine_);
   for (const model::DeviceDecl& decl : std::as_const(added.instance.devices))
     if (status) status = devices_.add(added, decl, *engine_, now_, diagnostics);
   for (auto& device : added.devices)
@@ -161,6 +161,7 @@ void Simulation::remove_entity(std::size_t index) {
   // From the back, so that the indices still to be removed stay right.
   for (auto device = entity.devices.rbegin(); device != entity.devices.rend(); ++device)
     devices_.remove(**device);
+  devices_.close_account(entity);
   engine_->remove(entity.id);
   by_name_.erase(entity.instance.name);
   std::erase(guided_, &entity);

@@ -70,9 +70,12 @@ Status DevicePools::deliver(Device& device, Slot& slot, std::span<const std::byt
     if (device.keys) device.keys->count_refused();
     return explain ? Error{"'" + device.path + "' has failed"} : Error{};
   }
-  if (device.keys)
-    return device.keys->take_command(device, static_cast<std::size_t>(&slot - device.commands.data()), bytes,
-                                     now, all_errors(device, now), explain);
+  if (device.keys) {
+    SL_TRY(device.keys->take_command(device, static_cast<std::size_t>(&slot - device.commands.data()), bytes,
+                                     now, all_errors(device, now), explain));
+    if (device.energy && device.energy->uses_by_commands) device.energy->draw(device.energy->rates.per_use_J);
+    return {};
+  }
   if (!explain && slot.queued && is_full(*slot.topic)) return Error{};
   SL_TRY(slot.topic->assign(bytes));
   slot.topic->stamp = now;

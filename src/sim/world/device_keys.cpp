@@ -80,8 +80,38 @@ Result<std::unique_ptr<DeviceKeys>> take_device_keys(Node& config, bool kind_has
   return keys;
 }
 
-Status DeviceKeys::begin(const Device& device, const Kind& kind, double sample_hz, bool samples,
-                         std::size_t joints, std::uint64_t seed) {
+/// Judges the keys about energy.
+template <class Report>
+Status DeviceKeys::begin_energy(const Device& device, const Kind& kind, Report&& error) const {
+  const EnergyMeter::Rates& rates = spec.energy;
+  const struct {
+    const char* key;
+    bool set;
+  } keys[] = {{"drain", rates.drain_W > 0},
+              {"drain_per_use", rates.per_use_J > 0},
+              {"efficiency", rates.efficiency != 1},
+              {"rolling_resistance", rates.rolling_resistance > 0}};
+  for (const auto& each : keys)
+    if (each.set && !device.energy)
+      return error(each.key, "the robot of '" + device.path + "' has no battery to draw from",
+                   "give it a device of kind battery, or leave " + std::string(each.key) + " out");
+  if (!device.energy) return {};
+  const EnergyMeter& meter = *device.energy;
+  if (rates.per_use_J > 0 && !meter.uses_by_commands && !meter.uses_by_samples)
+    return error("drain_per_use", "a " + std::string(kind.name) + " takes neither commands nor samples",
+                 "give it a drain");
+  if (rates.efficiency != 1 && !meter.moves)
+    return error("efficiency",
+                 "a " + std::string(kind.name) + " does no work that is drawn by its efficiency",
+                 "leave efficiency out");
+  if (rates.rolling_resistance > 0 && !meter.rides)
+    return error("rolling_resistance", "a " + std::string(kind.name) + " does not drive on rails",
+                 "leave rolling_resistance out");
+  return {};
+}
+
+Status DeviceKeys::begin(Device& device, const Kind& kind, double sample_hz, bool samples, std::size_t joints,
+                         std::uint64_t seed) {
   const auto error = [&](const char* key, std::string what, std::string fix) {
     Place place = device.decl.place;
     for (const auto& [name, written] : places)
@@ -104,6 +134,8 @@ Status DeviceKeys::begin(const Device& device, const Kind& kind, double sample_h
   if (spec.errors != 1 && !spec.command_errors && spec.delay_s == 0)
     return error("errors", "this " + device.decl.kind + " has no errors that a factor could change",
                  "give it command_errors or a delay, or leave errors out");
+  SL_TRY(begin_energy(device, kind, error));
+  if (device.energy) device.energy->rates = spec.energy;
   if (!spec.command_errors) return {};
 
   std::array<bool, quantity_count> there{};
@@ -316,7 +348,9 @@ void DeviceKeys::publish_messages(Device& device, Time now, bool dead) {
 
 // -------------------------------------------------------------------------------------------------------------- State
 
-void DeviceKeys::save(ByteWriter& w) const {
+void DeviceKeys::save(const Device& device, ByteWriter& w) const {
+  if (device.energy)
+    EnergyMeter::Rates::fields(spec.energy, [&](const Field&, const double& number) { write(w, number); });
   write_tunables(w, spec);
   write(w, spec.errors);
   write(w, state);
@@ -359,6 +393,13 @@ bool DeviceKeys::load_line(std::vector<Held>& line, ByteReader& r, std::size_t s
 }
 
 bool DeviceKeys::load(Device& device, ByteReader& r, Time now, const std::function<bool()>& fits) {
+  if (device.energy) {
+    EnergyMeter::Rates::fields(spec.energy, [&](const Field& field, double& number) {
+      read(r, number);
+      if (!(number >= field.min && number <= field.max)) r.fail();
+    });
+    device.energy->rates = spec.energy;
+  }
   read_tunables(r, spec);
   read(r, spec.errors);
   read(r, state);
@@ -409,9 +450,15 @@ Status set_device_key(SimulationParts::Device& device, std::string_view field, c
     return Error{"'" + device.path + "' has no '" + key + "' that could change",
                  "give it to the device in the scenario", value.place()};
   DeviceKeys& keys = *device.keys;
+  bool about_energy = false;
+  EnergyMeter::Rates::fields(keys.spec.energy,
+                             [&](const Field& each, const double&) { about_energy |= key == each.key; });
+  if (about_energy && !device.energy)
+    return Error{"the robot of '" + device.path + "' has no battery to draw from", "", value.place()};
   DeviceKeysSpec changed = keys.spec;
   SL_TRY(set_tunable(changed, field, value));
   keys.spec = std::move(changed);
+  if (device.energy) device.energy->rates = keys.spec.energy;
   return {};
 }
 
@@ -423,7 +470,9 @@ std::vector<FieldInfo> device_key_fields(const Kind& kind) {
   const bool has_errors = std::any_of(own.begin(), own.end(),
                                       [](const FieldInfo& field) { return field.path == errors_field.key; });
   for (FieldInfo& field : describe_fields<DeviceKeysSpec>()) {
-    if (!takes_commands && starts_with(field.path, "command_errors")) continue;
+    if (!takes_commands && (starts_with(field.path, "command_errors") || field.path == "efficiency" ||
+                            field.path == "rolling_resistance"))
+      continue;
     if (has_errors && field.path == errors_field.key) continue;
     out.push_back(std::move(field));
   }

@@ -6,6 +6,10 @@
 ///   delay: 50 ms                # from a command to its effect, from a measurement to its message
 ///   command_errors: {linear: [{proportional: {std: 5 %}}, {lag: {time_constant: 0.1 s}}], angular: [...]}
 ///   errors: 0.5                 # factor on command_errors and delay, of kinds that have no such key themselves
+///   drain: 0.5 W                # drawn from the battery of its robot all the time
+///   drain_per_use: 0.2 J        # drawn per activation in addition
+///   efficiency: 60 %            # of a drive or motor without a model of its current: mechanical work per energy drawn
+///   rolling_resistance: 0.02    # of a drive on rails: force per weight
 ///
 /// mass      A point mass at the device's place on its link, before the engine makes the robot: the link's centre of mass
 ///           moves, its inertia grows by the parallel-axis theorem. Fixed from then on: a device with a mass is neither
@@ -21,12 +25,19 @@
 ///           channel of its own. In every tick the chains make what the device follows of the latest command, with dt the
 ///           length of the tick. Before the first command speeds, efforts, voltages and duty cycles begin at 0; positions
 ///           begin with the first command. A switch to a level that takes the same quantities keeps the command.
+/// drain     Drawn as long as the device is not dead, in every tick. What the battery cannot deliver is counted
+///           (devices/energy.h), and does not stop the device: the rule `energy` does.
+/// drain_per_use
+///           Per command that the device takes, of kinds whose levels take commands; per sample that it takes, of all others.
+///           A command counts when it is taken, even if it is on its way for a while yet. A dead device takes no samples.
+/// efficiency, rolling_resistance
+///           See devices/energy.h.
 /// Random    Stream(seed, device, Purpose::actuation, tick).
 /// Limits    the components of a joint command are counted by place: orders of several commands that name joints in another
 ///           order exchange channels. At most most_held commands or messages of a device are on the way, at most
 ///           most_held_bytes of them; more are refused and counted.
 /// Errors    a rate above max_rate (of devices without commands), keys without effect on the device, quantities that its
-///           commands do not have.
+///           commands do not have, a drain on a robot without a battery.
 /// State     of devices with such keys: tunable keys, what is on the way, the latest command, chains, refusals.
 /// Cost      nothing for devices without such keys; delayed messages are copied twice, and hashed while they are on the way.
 #include <array>
@@ -75,6 +86,7 @@ struct DeviceKeysSpec {
   double mass_kg = 0, max_rate_hz = 0, delay_s = 0;
   std::optional<CommandErrorsSpec> command_errors;
   double errors = 1;  ///< of kinds that have no such key themselves
+  EnergyMeter::Rates energy;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"mass", "kg", "Mass of the device, added to its link as a point mass.", 0, 1e6}, s.mass_kg);
@@ -86,6 +98,7 @@ struct DeviceKeysSpec {
           s.delay_s);
     visit(Field{"command_errors", "", "Errors of what the device makes of its commands."}, s.command_errors);
     visit(errors_field, s.errors);
+    EnergyMeter::Rates::fields(s.energy, visit);
   }
 };
 
@@ -111,7 +124,7 @@ class DeviceKeys {
   std::vector<std::pair<std::string, Place>> places;  ///< of the keys that were written
 
   /// Judges the keys by the device they were given to, and makes ready. @param sample_hz  0: none, or one per tick
-  Status begin(const Device& device, const Kind& kind, double sample_hz, bool samples, std::size_t joints,
+  Status begin(Device& device, const Kind& kind, double sample_hz, bool samples, std::size_t joints,
                std::uint64_t seed);
 
   /// Takes a command for a slot of the device: now, or on its way. Refusals are counted.
@@ -139,7 +152,7 @@ class DeviceKeys {
   void publish_messages(Device& device, Time now, bool dead);
   bool delays_messages() const { return spec.delay_s > 0 || !messages_.empty(); }
 
-  void save(ByteWriter& w) const;
+  void save(const Device& device, ByteWriter& w) const;
   /// @param fits  whether the device can go on with the messages that its topics hold now
   bool load(Device& device, ByteReader& r, Time now, const std::function<bool()>& fits);
 
@@ -158,6 +171,8 @@ class DeviceKeys {
   void corrupt_command(Device& device, const Turn& turn);
   Slot* target_of(Device& device, std::size_t slot) const;
   bool load_line(std::vector<Held>& line, ByteReader& r, std::size_t slots);
+  template <class Report>
+  Status begin_energy(const Device& device, const Kind& kind, Report&& error) const;
 
   std::size_t levels_ = 0;
   std::vector<Held> commands_, messages_, spare_;

@@ -103,7 +103,9 @@ std::string encode_image(int width, int height, int channels, std::span<const st
 
 void DevicePools::add_kind(const Kind& kind) {
   SL_CHECK(kind.api_version == device_api_version);
-  pools_.push_back({&kind, kind.create_pool(), {}, {}, {}, {}, {}, {}, {}});
+  pools_.emplace_back();
+  pools_.back().kind = &kind;
+  pools_.back().pool = kind.create_pool();
 }
 
 const Kind* DevicePools::find_kind(std::string_view name) const {
@@ -135,6 +137,9 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   const bool has_errors = kind_has_errors || (keys && keys->spec.command_errors);
   SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, has_errors, kind->name));
 
+  Owned<EnergyMeter> meter;
+  if (entity.energy) meter = meter_of(entity, *kind);
+
   SlotMaker maker;
   const DeviceBuild build{
       .decl = decl,
@@ -154,6 +159,8 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
       .errors = setup_.errors * entity.instance.errors,
       .encode_image = encode_image,
       .media = setup_.media,
+      .energy = meter.get(),
+      .account = kind->stores_energy ? entity.energy.get() : nullptr,
   };
   if (Status added = pool->pool->add(build); !added) {
     if (auto slip = unknown_key(decl.config, *kind)) return std::move(*slip);
@@ -204,6 +211,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   device->errors = build.errors;
   device->faults = std::move(faults);
   device->keys = std::move(keys);
+  device->energy = std::move(meter);
   if (device->keys) {
     Status begun = device->keys->begin(*device, *kind, rate_hz, kind->phases & phase_sense,
                                        entity.instance.model->joints.size(), setup_.seed);
@@ -214,6 +222,10 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
     ++pool->keyed;
   }
   if (device->faults) ++pool->faulty;
+  if (device->energy) {
+    ++pool->metered;
+    entity.energy->meters.push_back(device->energy.get());
+  }
   pool->devices.push_back(device.get());
   pool->all.push_back(index);
   pool->levels.push_back(levels);
@@ -237,6 +249,10 @@ void DevicePools::remove(const Device& device) {
   pool.since.pop_back();
   if (device.faults) --pool.faulty;
   if (device.keys) --pool.keyed;
+  if (device.energy) {
+    --pool.metered;
+    std::erase(device.energy->account->meters, device.energy.get());
+  }
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
 
@@ -297,14 +313,22 @@ Status DevicePools::request_sample(Device& device, Time at) {
 }
 
 ValueFound DevicePools::value(const Device& device, ValuePart part, std::span<const ValueStep> path) const {
+  const auto is_there = [](const ValueFound& each) {
+    return each.is == ValueFound::Is::value || each.is == ValueFound::Is::compound;
+  };
   const ValueFound found = pools_[device.kind].pool->value(device.index, part, path);
-  if (!device.keys || found.is == ValueFound::Is::value || found.is == ValueFound::Is::compound) return found;
+  if (is_there(found)) return found;
+  if (device.energy && part == ValuePart::state)
+    if (const ValueFound drawn = value_at(device.energy->state, path); is_there(drawn)) return drawn;
+  if (!device.keys) return found;
   const ValueFound common = value_at(part, device.keys->spec, device.keys->state, path);
-  return common.is == ValueFound::Is::value || common.is == ValueFound::Is::compound ? common : found;
+  return is_there(common) ? common : found;
 }
 
 void DevicePools::list_values(const Device& device, ValuePart part, const ValueVisit& visit) const {
   pools_[device.kind].pool->list_values(device.index, part, visit);
+  if (device.energy && part == ValuePart::state)
+    sandlot::list_values(device.energy->state, "", "", "", visit);
   if (!device.keys) return;
   const bool kind_has_errors = pools_[device.kind].pool->has_errors();
   sandlot::list_values(part, device.keys->spec, device.keys->state, [&](ValueEntry entry) {
@@ -345,9 +369,11 @@ double DevicePools::all_errors(const Device& device, Time now) const {
 void DevicePools::actuate(const Context& context) {
   for (Pool& pool : pools_)
     if (pool.keyed > 0) prepare_commands(pool, context);
+  if (!ledger_.empty()) drain(context);
   for (Pool& pool : pools_)
     if ((pool.kind->phases & phase_actuate) && !pool.devices.empty())
       pool.pool->actuate(context, {acting(pool, context, true), pool.sample, pool.levels, pool.since});
+  if (!ledger_.empty()) ledger_.begin_physics(context.engine);
 }
 
 void DevicePools::pre_substep(const Context& context, double h_s) {
@@ -362,6 +388,7 @@ void DevicePools::post_substep(const Context& context, double h_s) {
     if ((pool.kind->phases & phase_post_substep) && !pool.devices.empty())
       pool.pool->post_substep(context, {acting(pool, context, false), pool.sample, pool.levels, pool.since},
                               h_s);
+  if (!ledger_.empty()) ledger_.after_substep(context.engine, h_s);
 }
 
 /// Lists the devices whose sample is due at `now`, and plans their next one.
@@ -390,12 +417,16 @@ void DevicePools::find_due(Pool& pool, Time now, Time step) const {
 }
 
 void DevicePools::sense(const Context& context) {
-  for (Pool& pool : pools_) {
-    if (!(pool.kind->phases & phase_sense) || pool.devices.empty()) continue;
-    find_due(pool, context.now, context.tick);
+  const auto for_sensing = [&](auto&& work) {
+    for (Pool& pool : pools_)
+      if ((pool.kind->phases & phase_sense) && !pool.devices.empty()) work(pool);
+  };
+  for_sensing([&](Pool& pool) { find_due(pool, context.now, context.tick); });
+  if (!ledger_.empty()) settle(context);
+  for_sensing([&](Pool& pool) {
     if (pool.keyed > 0) sense_keyed(pool, context);
     else sense_due(pool, context);
-  }
+  });
 }
 
 void DevicePools::sense_due(Pool& pool, const Context& context) const {
@@ -492,10 +523,11 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   for (const Slot& slot : device.topics) slot.topic->save(w);
   for (const Slot& slot : device.commands) slot.topic->save(w);
   if (device.inbox()) device.inbox()->save(w);
+  if (device.energy) write(w, device.energy->state);
   if (device.keys) {
     const std::size_t at = w.size();
     write(w, std::uint64_t{0});
-    device.keys->save(w);
+    device.keys->save(device, w);
     const std::uint64_t size = w.size() - at - 8;
     std::memcpy(w.buffer().data() + at, &size, 8);
   }
@@ -526,6 +558,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }
   if (device.inbox()) device.inbox()->load(r);
+  if (device.energy && !load_meter(*device.energy, r)) return r.fail();
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

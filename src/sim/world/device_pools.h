@@ -27,6 +27,11 @@ class DevicePools {
   explicit DevicePools(const model::Setup& setup) : setup_(setup) {}
   void add_kind(const Kind& kind);
 
+  /// Opens the account of a robot with a battery, before its devices are built.
+  /// Errors   two batteries.
+  Status open_account(Entity& entity, const Engine& engine);
+  void close_account(const Entity& entity) { ledger_.remove(entity.energy.get()); }
+  const EnergyLedger& energy() const { return ledger_; }
   /// Builds a device at the end of its pool and of `entity.devices`.
   /// Errors   unknown kind, a name given twice, wrong keys, a rate above the tick rate; nothing has changed then.
   Status add(Entity& entity, const model::DeviceDecl& declared, const Engine& engine, Time now,
@@ -94,8 +99,9 @@ class DevicePools {
     std::vector<std::uint32_t> all, due, levels;  ///< `levels` per device: a copy of Device::levels
     std::vector<std::uint64_t> sample;
     std::vector<Time> since;
-    std::uint32_t faulty = 0;  ///< number of devices with faults
-    std::uint32_t keyed = 0;   ///< number of devices with common keys
+    std::uint32_t faulty = 0;   ///< number of devices with faults
+    std::uint32_t keyed = 0;    ///< number of devices with common keys
+    std::uint32_t metered = 0;  ///< number of devices whose robots have a battery
   };
   static std::span<const std::uint32_t> acting(Pool& pool, const Context& context, bool release_dead);
   /// Product of all factors on a device's errors, a failure's included.
@@ -103,6 +109,10 @@ class DevicePools {
   bool has_errors(const Device& device) const;
   void prepare_commands(Pool& pool, const Context& context) const;
   void find_due(Pool& pool, Time now, Time step) const;
+  static std::unique_ptr<EnergyMeter> meter_of(Entity& entity, const Kind& kind);
+  static bool load_meter(EnergyMeter& meter, ByteReader& r);
+  void drain(const Context& context);
+  void settle(const Context& context);
   void sense_due(Pool& pool, const Context& context) const;
   void sense_faulty(Pool& pool, const Context& context) const;
   void sense_keyed(Pool& pool, const Context& context) const;
@@ -111,6 +121,7 @@ class DevicePools {
 
   const model::Setup& setup_;
   std::vector<Pool> pools_;
+  EnergyLedger ledger_;
 };
 
 }  // namespace sandlot

@@ -35,6 +35,7 @@ struct SimulationParts {
     // Read with every command.
     DeepConst<std::shared_ptr<Faults>> faults;  ///< null: it has none
     std::shared_ptr<DeviceKeys> keys;           ///< null: it has none of the common keys
+    Owned<EnergyMeter> energy;                  ///< null: its robot has no battery
     std::uint64_t key = 0;
     std::uint32_t kind = 0;   ///< index of its pool
     std::uint32_t index = 0;  ///< in its pool
@@ -110,7 +111,8 @@ struct SimulationParts {
     model::Instance instance;
     InstanceId id;
     std::uint64_t key = 0;
-    std::uint64_t serial = 0;  ///< creation order over the whole run
+    std::uint64_t serial = 0;     ///< creation order over the whole run
+    Owned<EnergyAccount> energy;  ///< null: it has no battery
     std::vector<Owned<Device>> devices;
     ProgramEntries programs;
     /// The model without the masses of devices, of an instance whose devices have some; else null.

@@ -36,6 +36,7 @@ struct Simulation::Processor {
   Result<Device*> device_named(const std::string& path);
   Status deliver(Device& device, std::string_view level, const CommandRequest& command);
   Status set_errors(Entity* entity, std::string_view field, const Node& value);
+  static Status set_property(model::PropertyDecl& property, const Node& value);
 };
 
 Status Simulation::process(Request& request, const Source& source, std::vector<std::byte>& response) {
@@ -94,9 +95,20 @@ Status Simulation::Processor::operator()(const ParameterRequest& request) {
   if (const WorldElements::Part* const part = sim.elements_.find_part(request.target))
     return part->element->set_parameter(request.field, request.value);
   if (request.target == "sim") return set_errors(nullptr, request.field, request.value);
-  if (Entity* const entity = sim.find_entity(request.target))
+  if (Entity* const entity = sim.find_entity(request.target)) {
+    for (model::PropertyDecl& each : entity->instance.properties)
+      if (each.name == request.field) return set_property(each, request.value);
     return set_errors(entity, request.field, request.value);
+  }
   return no_device_or_program(request.target);
+}
+
+/// Sets a property of the user's own, within its range.
+Status Simulation::Processor::set_property(model::PropertyDecl& property, const Node& value) {
+  const Field field{"value", property.unit.c_str(), ""};
+  SL_ASSIGN(property.value,
+            read_number(value, field, property.min, property.max, false, "/" + property.name));
+  return {};
 }
 
 /// Sets the factor on the errors of all devices of an entity, or of the world (null).
@@ -192,6 +204,13 @@ Status adds_no_mass(const SimulationParts::Device& device) {
                "declare the device with the robot and keep it, or leave mass out"};
 }
 
+/// Devices are connected to the battery of their robot when they are built.
+Status is_no_battery(const Kind* kind, const std::string& device) {
+  if (!kind || !kind->stores_energy) return {};
+  return Error{"'" + device + "' is a battery, which neither comes nor goes while the run goes on",
+               "declare it with the robot and keep it"};
+}
+
 }  // namespace
 
 /// The instance's own list of devices is extended as well, so that a snapshot taken later builds the same robot. A program
@@ -202,6 +221,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
   if (request.device.link >= entity->instance.model->links.size())
     return Error{"model '" + entity->instance.model->name + "' has no link " +
                  std::to_string(request.device.link)};
+  SL_TRY(is_no_battery(sim.devices_.find_kind(request.device.kind), request.device.name));
   Diagnostics ignored;
   SL_TRY(sim.devices_.add(*entity, request.device, *sim.engine_, sim.now_, ignored));
   Status fits = adds_no_mass(*entity->devices.back());
@@ -226,6 +246,7 @@ Status Simulation::Processor::operator()(const LoadDeviceRequest& request) {
 Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   SL_ASSIGN(Device* const device, device_named(request.device));
   SL_TRY(adds_no_mass(*device));
+  SL_TRY(is_no_battery(&sim.devices_.kind(*device), device->path));
   Entity& entity = sim.entity_of(*device);
   for (const auto& other : entity.devices)
     for (const auto& order : other->orders())

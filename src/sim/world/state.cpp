@@ -176,7 +176,10 @@ void Simulation::for_each_state(Visit&& visit) const {
   for (const WorldElements::Part& part : elements_.parts())
     visit(part.path, part.key, [&](ByteWriter& w) { elements_.save(part, w); });
   for (const auto& entity : entities_) {
-    visit(entity->instance.name, entity->key, [&](ByteWriter& w) { engine_->save(entity->id, w); });
+    visit(entity->instance.name, entity->key, [&](ByteWriter& w) {
+      engine_->save(entity->id, w);
+      for (const model::PropertyDecl& each : entity->instance.properties) write(w, each.value);
+    });
     for (const auto& device : entity->devices)
       visit(device->path, device->key, [&](ByteWriter& w) { devices_.save(*device, w); });
     for (const auto& program : entity->programs)
@@ -302,7 +305,12 @@ Result<std::unique_ptr<Simulation>> Simulation::restore(std::span<const std::byt
   for (std::size_t i = 0; i < sim->entities_.size(); ++i) {
     Entity& entity = *sim->entities_[i];
     ByteReader bodies = read_block(r);
-    if (!sim->engine_->load(entity.id, bodies) || !whole(bodies))
+    bool fits = sim->engine_->load(entity.id, bodies);
+    for (model::PropertyDecl& each : entity.instance.properties) {
+      read(bodies, each.value);
+      fits = fits && each.value >= each.min && each.value <= each.max;
+    }
+    if (!fits || !whole(bodies))
       return damaged("the bodies of '" + entity.instance.name + "' cannot be read");
     for (auto& device : entity.devices) {
       ByteReader state = read_block(r);

@@ -39,6 +39,7 @@ Status Simulation::tick(std::optional<Time> measured) {
 Context Simulation::context() {
   Context all{now_, step_, tick_, setup_.seed, *engine_, rays(), actuation_, emissions_};
   all.topics = this;
+  all.energy = &devices_.energy();
   if (RenderScene* const render_scene = scenes_.render_scene()) {
     all.pictures = &render_scene->pictures;
     all.labelled_objects = render_scene->labelled_objects;

@@ -68,6 +68,19 @@ struct WorldElements::Build final : ElementBuild {
     return error(key, "there is no marker '" + std::string(name.substr(0, 100)) + "'",
                  names.empty() ? "declare it: markers: [{kind: disc, name: ...}]" : suggestion(name, names));
   }
+  Status expect_property(std::string_view name, const char* key) const override {
+    std::vector<std::string> names;
+    for (const auto& each : elements.sim_.entities())
+      for (const model::PropertyDecl& property : each->instance.properties) {
+        if (property.name == name) return {};
+        names.push_back(property.name);
+      }
+    if (restored) return {};
+    return error(key, "no robot or object has a property '" + std::string(name.substr(0, 100)) + "'",
+                 names.empty() ? "declare it: robots: [{properties: {" + std::string(name.substr(0, 100)) +
+                                     ": {value: 100, min: 0}}}]"
+                               : suggestion(name, names));
+  }
   Result<std::uint32_t> watch(std::string_view expression, const char* key) const override {
     const Node* const node = decl.config.find(key);
     SL_ASSIGN(ValueExpression compiled,
@@ -220,6 +233,16 @@ std::vector<std::string> WorldElements::actuators(const EntityView& view) const 
   for (const auto& device : entity->devices)
     if (!device->commands.empty()) out.push_back(device->path);
   return out;
+}
+
+std::optional<BatteryView> WorldElements::battery(const EntityView& view) const {
+  const auto entities = sim_.entities();
+  const auto found = std::lower_bound(
+      entities.begin(), entities.end(), view.serial,
+      [](const auto& each, std::uint64_t serial) { return each->serial < serial; });
+  if (found == entities.end() || (*found)->serial != view.serial || !(*found)->energy) return std::nullopt;
+  const EnergyAccount& account = *(*found)->energy;
+  return BatteryView{account.energy_J, account.fraction, account.empty};
 }
 
 const Marker* WorldElements::find_marker(std::string_view name) const {

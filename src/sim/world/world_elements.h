@@ -87,6 +87,7 @@ class WorldElements final : public WorldView {
   std::span<const EntityView> entities() const override;
   const EntityView* find_entity(std::string_view name) const override;
   std::vector<std::string> actuators(const EntityView& entity) const override;
+  std::optional<BatteryView> battery(const EntityView& entity) const override;
   const Marker* find_marker(std::string_view name) const override;
   const TopicBase* find_topic(std::string_view name) const override;
   std::optional<double> value(std::uint32_t watched) const override;

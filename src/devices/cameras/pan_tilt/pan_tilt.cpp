@@ -349,8 +349,12 @@ Result<Unit> Unit::create(const DeviceBuild& build, Spec spec) {
   unit.joint_state = build.publish<msg::JointState>(always, "state");
   unit.status = build.publish<msg::PanTiltState>(always, "status");
   unit.joint_state->message.header.frame_id = unit.status->message.header.frame_id = build.frame_id();
-  for (const Axis* axis : {&unit.pan, &unit.tilt})
-    if (axis->there) unit.joint_state->message.name.push_back(axis->name);
+  unit.energy = build.energy;
+  for (const Axis* axis : {&unit.pan, &unit.tilt}) {
+    if (!axis->there) continue;
+    unit.joint_state->message.name.push_back(axis->name);
+    if (unit.energy) unit.energy->can_turn(axis->id);
+  }
   return unit;
 }
 
@@ -359,6 +363,7 @@ void Unit::actuate(PoolView<Unit> pool, const Context& context) {
     Unit& unit = pool.all[index];
     State& state = unit.state;
     if (!state.begun) hold(unit, context), state.begun = true;
+    if (unit.energy) unit.energy->turn_joints();
     const auto fresh = [&](const TopicBase& slot, std::size_t which) {
       const bool is = slot.count != state.taken[which];
       state.taken[which] = slot.count;

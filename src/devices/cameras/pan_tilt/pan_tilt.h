@@ -142,6 +142,7 @@ struct Unit {
     std::string name;
   };
   Axis pan, tilt;
+  EnergyMeter* energy = nullptr;  ///< draws its mechanical work (devices/energy.h)
   std::uint32_t eye_body = 0;
   Pose X_LE;  ///< the eye on its link
   std::string objects_topic, robot;

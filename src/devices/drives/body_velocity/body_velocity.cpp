@@ -35,6 +35,8 @@ Result<Mover> Mover::create(const DeviceBuild& build, Spec spec) {
     return Error{"the engine '" + std::string(build.engine.name) + "' has no ideal drives"};
   Mover mover{spec};
   mover.base = build.bodies.front();
+  mover.energy = build.energy;
+  if (mover.energy) mover.energy->can_ride();
   mover.state.vx_mps = spec.initial_linear_mps.x;
   mover.state.vy_mps = spec.initial_linear_mps.y;
   mover.state.wz_radps = spec.initial_angular_radps.z;
@@ -64,6 +66,7 @@ void Mover::actuate(PoolView<Mover> pool, const Context& context) {
          .wz_radps = late ? 0 : state.wz_radps,
          .max_accel_mps2 = mover.spec.max_acceleration_mps2,
          .max_angular_accel_radps2 = mover.spec.max_angular_acceleration_radps2});
+    if (mover.energy) mover.energy->ride(context.actuation.drives.back());
   }
 }
 

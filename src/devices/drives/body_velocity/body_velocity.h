@@ -5,6 +5,7 @@
 /// Command  level `ideal`: geometry_msgs/Twist in the frame of the model's first link; linear x and y and
 ///          angular z count, the robot stays on the plane it stands on.
 /// Time     a command acts from the tick it arrives in, until the next one or for `command_timeout`.
+/// Energy   draws its mechanical work on rails (devices/energy.h).
 /// Limits   in the plane only: z, roll and pitch are physics' own. Obstacles stop it with a force of mass
 ///          times max_acceleration.
 /// Noise    none.
@@ -60,6 +61,7 @@ struct Mover {
   State state;
 
   BodyId base;
+  EnergyMeter* energy = nullptr;
   Topic<msg::Twist>* command = nullptr;
 
   static Result<Mover> create(const DeviceBuild& build, Spec spec);

@@ -126,11 +126,13 @@ void Drive::actuate(PoolView<Drive> pool, const Context& context) {
            .wz_radps = wanted.omega_radps,
            .max_accel_mps2 = drive.spec->max_linear_acceleration_mps2,
            .max_angular_accel_radps2 = drive.spec->max_angular_acceleration_radps2});
+      if (drive.energy) drive.energy->ride(context.actuation.drives.back());
       if (drive.engine.rolls) roll_wheels(drive, context.actuation.rolls);
     } else if (drive.state.release) {
       context.actuation.drives.push_back({.base = drive.base, .active = false});
       drive.state.release = 0;
     }
+    if (drive.energy && !is_ideal(pool.levels[index])) drive.energy->turn_joints();
   }
 }
 
@@ -285,6 +287,12 @@ Result<Drive> Drive::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
   drive.dy_m = 0.5 * (left.centre_B.y + right.centre_B.y);
   drive.left = std::move(left.wheels);
   drive.right = std::move(right.wheels);
+  drive.energy = build.energy;
+  if (drive.energy) {
+    drive.energy->can_ride();
+    for (const auto* wheels : {&drive.left, &drive.right})
+      for (const Wheel& wheel : *wheels) drive.energy->can_turn(wheel.joint);
+  }
   drive.max_wheel_speed_radps = 1e16;
   for (const auto* wheels : {&drive.left, &drive.right})
     for (const Wheel& wheel : *wheels)

@@ -13,6 +13,7 @@
 /// Time     odometry is integrated in every tick on exact arcs (kinematics/differential.h) and published at
 ///          `rate`. A command acts from the tick it arrives in; after `command_timeout` without a new one the
 ///          drive stops.
+/// Energy   draws its mechanical work (devices/energy.h): on rails, or of its wheels' motors.
 /// Limits   no motor model, no systematic errors of radius and separation, no covariance (zeros).
 /// Cost     one arc per tick and drive, none without odometry; no allocation. On an engine that rolls wheels
 ///          itself (Capabilities::rolls) the level `ideal` costs nothing per sub-step.
@@ -114,6 +115,7 @@ struct Drive {
   State state;
 
   BodyId base;
+  EnergyMeter* energy = nullptr;
   Capabilities engine;
   kinematics::Differential geometry;
   double dx_m = 0, dy_m = 0;  ///< D in B

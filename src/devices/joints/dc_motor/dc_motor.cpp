@@ -87,6 +87,7 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   }
   Motor motor{std::move(spec)};
   motor.joint = build.joints[index];
+  motor.energy = build.energy;
   const char* const names[] = {"velocity", "position", "voltage", "pwm", "effort"};
   for (std::uint32_t level = 0; level < level_count; ++level) {
     motor.command[level] = build.accept<msg::Float64>(level, names[level]);
@@ -132,6 +133,7 @@ void Motor::post_substep(PoolView<Motor> pool, const Context& context, double h_
     state.mean_current_A = flow.mean_A;
     state.terminal_V = flow.terminal_V;
     state.current_A = flow.current_A;
+    if (motor.energy) motor.energy->draw(flow.mean_A * flow.terminal_V * h_s);
     if (!state.powered) continue;
     state.loop_since_s += h_s;
     state.loop_due_s -= h_s;

@@ -25,6 +25,8 @@
 ///          is an implicit damping and no step is too long. Inertia and friction are the engine's
 ///          (physics/engine.h, JointTarget).
 /// Noise    quantisation by the encoder.
+/// Energy   draws terminal voltage times current from the robot's battery, and gives it back while it brakes; what
+///          `supply_resistance` costs is not drawn: that of the battery stands for it.
 /// Limits   no iron losses, saturation, temperature, commutation ripple, gear play or elasticity; regenerated
 ///          current flows back into the supply.
 /// Cost     one exponential per sub-step if L > 0, no allocation.
@@ -108,6 +110,7 @@ struct Motor {
   State state;
 
   JointId joint;
+  EnergyMeter* energy = nullptr;
   Winding winding;  ///< of the running sub-step
   std::array<Topic<msg::Float64>*, level_count> command{};
   std::array<Topic<msg::MotorState>*, level_count> message{};

@@ -143,6 +143,8 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   }
   Motor motor{std::move(spec)};
   motor.joint = build.joints[index];
+  motor.energy = build.energy;
+  if (motor.energy) motor.energy->can_turn(motor.joint);
   const bool bounded = joint.type != JointType::continuous;
   motor.lower = bounded ? joint.lower : -1e16;
   motor.upper = bounded ? joint.upper : 1e16;
@@ -169,6 +171,7 @@ void Motor::actuate(PoolView<Motor> pool, const Context& context) {
     const JointState& joint = joints[motor.joint.index];
     start_or_stop(motor, level, joint, context.actuation.joints);
     take_command(motor, level, joint);
+    if (motor.energy && motor.state.powered == following) motor.energy->turn_joints();
   }
 }
 

@@ -21,6 +21,7 @@
 /// Switch   the new level starts at the present angle, speed or effort and holds it until its first command;
 ///          an integral (if the gains have one) starts where the effort continues without a jump.
 /// Noise    none: the loop sees the true angle and speed.
+/// Energy   draws its mechanical work (devices/energy.h).
 /// Limits   no electrical dynamics, back-EMF, gear play or thermal limit.
 /// Cost     one PID step per sub-step, no allocation.
 /// Errors   a joint that is not there or has no single degree of freedom; an engine without simulated joints;
@@ -111,6 +112,7 @@ struct Motor {
   State state;
 
   JointId joint;
+  EnergyMeter* energy = nullptr;
   double lower = 0, upper = 0;  ///< of the joint
   double joint_effort = 0, joint_velocity = 0;
   std::array<Topic<msg::Float64>*, 3> command{};

@@ -180,6 +180,9 @@ Result<Trajectory> Trajectory::create(const DeviceBuild& build, Spec spec) {
     device.joints.push_back({build.joints[index], bounded ? joint.lower : -1e16, bounded ? joint.upper : 1e16,
                              joint.max_effort, joint.max_velocity});
   }
+  device.energy = build.energy;
+  if (device.energy)
+    for (const Joint& joint : device.joints) device.energy->can_turn(joint.id);
   device.command = build.accept<msg::JointTrajectory>(0, "trajectory");
   return device;
 }
@@ -205,6 +208,7 @@ void Trajectory::actuate(PoolView<Trajectory> pool, const Context& context) {
       device.state.held = 0;
     }
     take_command(device, context.now - context.tick);
+    if (device.energy && device.state.held) device.energy->turn_joints();
   }
 }
 

@@ -81,6 +81,7 @@ struct Trajectory {
     double lower, upper, max_effort, max_velocity;
   };
   std::vector<Joint> joints;
+  EnergyMeter* energy = nullptr;  ///< draws its mechanical work (devices/energy.h)
   Topic<msg::JointTrajectory>* command = nullptr;
 
   static Result<Trajectory> create(const DeviceBuild& build, Spec spec);
