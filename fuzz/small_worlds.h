@@ -211,6 +211,8 @@ rules:
   - {kind: impact, threshold: 0.01, property: health}
   - {kind: energy, restart: 0.2}
   - {kind: place, object: ball, when: ball.pose.y > 1, place: [0.5, 0, 0.11]}
+  - {kind: set, when: ball.pose.y > 1, set: [{parameter: rules/impact.threshold, value: 0.02 Ns}]}
+  - {kind: statistics, value: ball.pose.x, bins: 3, quantiles: [0.5]}
 things: [{name: ball, model: msl_ball, pose: [0.25, 0, 0.11]}]
 robots:
   - name: cart

@@ -37,6 +37,7 @@ struct RunOptions {
   bool json = false;             ///< print the summary as JSON instead of text
   const Hooks* hooks = nullptr;  ///< C++ functions of an embedding program
   std::optional<int> repeat;     ///< so many runs, with seeds that follow each other
+  std::string store;             ///< file that keeps their results; "": none
   int at_a_time = 0;             ///< of those; 0: as many as the machine has processors
 };
 int run(const RunOptions& options);

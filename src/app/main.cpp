@@ -354,6 +354,10 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       "Run it so many times, with one seed after the other, and print what all give together: mean, "
       "deviation, interval and success rate of its criteria. As many at a time as the machine has "
       "processors, or as --threads says");
+  run_verb->add_option("--store", run_flags.options.store,
+                       "With --repeat: SQLite file that keeps the result of each run. Seeds that are in it "
+                       "are not run again, so an interrupted "
+                       "series goes on");
   run_flags.add_to(*run_verb);
   run_flags.options.hooks = hooks;
   run_verb->footer(

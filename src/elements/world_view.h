@@ -80,6 +80,14 @@ class ElementBuild {
   virtual Status expect_property(std::string_view name, const char* key) const = 0;
   /// Compiles an expression over the world's values (docs/values.md), for WorldView::value.
   virtual Result<std::uint32_t> watch(std::string_view expression, const char* key) const = 0;
+  /// The parts of a parameter's address, "red1/drive.failure", for a ParameterRequest. Errors: there is no such parameter, or it
+  /// does not take the value.
+  /// @param value  "": not known yet
+  struct ParameterName {
+    std::string target, field;
+  };
+  virtual Result<ParameterName> expect_parameter(std::string_view address, const std::string& value,
+                                                 const char* key) const = 0;
   /// Error about a key of the spec, at the key's place in its file.
   Error error(const char* key, std::string what, std::string fix) const {
     const Node* const node = decl.config.find(key);

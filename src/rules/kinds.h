@@ -5,5 +5,7 @@
   rule(energy)              \
   rule(goals)               \
   rule(impact)              \
-  rule(place)
+  rule(place)               \
+  rule(set)                 \
+  rule(statistics)
 // clang-format on

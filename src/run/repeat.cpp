@@ -4,13 +4,21 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <chrono>
+#include <fstream>
+#include <iterator>
+#include <mutex>
 #include <thread>
 
+#include "base/hash.h"
+#include "base/program.h"
+#include "base/text.h"
 #include "run/fields_json.h"
 #include "run/prepare.h"
 #include "sim/watch/monitor.h"
 #include "statistics/intervals.h"
+#include "statistics/store.h"
 
 namespace sandlot {
 namespace {
@@ -71,6 +79,86 @@ RepeatedRun one_run(RunSpec spec, std::uint64_t seed, const std::function<bool()
   out.criteria = summary->criteria;
   out.errors = summary->errors;
   return out;
+}
+
+/// What runs with other seeds share: the world as it begins with seed 0 (plugins by the hash of their files), what steers and
+/// ends the runs, and the code of this program. Programs in processes of their own count by their command line alone.
+Result<std::string> fingerprint(const RunSpec& spec) {
+  RunSpec one = spec;
+  one.seed = 0;
+  one.may_be_endless = true;
+  Diagnostics diagnostics;
+  SL_ASSIGN(const PreparedRun prepared, prepare(one, {}, diagnostics));
+  const model::Setup& setup = prepared.simulation->setup();
+  std::uint64_t hash = hash64(std::span<const std::byte>(prepared.simulation->snapshot()));
+  const auto add = [&](std::string_view text) { hash = hash_combine(hash, hash64(text)); };
+  const auto add_file = [&](const std::string& file) -> Status {
+    std::ifstream in(file, std::ios::binary);
+    add(std::string(std::istreambuf_iterator<char>(in), {}));
+    return in ? Status() : Error{"'" + file + "' cannot be read"};
+  };
+  add(Simulation::profile());
+  add(setup.stop ? std::to_string(setup.stop->ns) : "endless");
+  add(spec.stop_when);
+  for (const std::string& line : spec.commands) add(line);
+  if (!spec.script_file.empty()) SL_TRY(add_file(spec.script_file));
+  for (const std::string& file : program_files()) SL_TRY(add_file(file));
+  return fmt::format("{:016x}", hash);
+}
+
+/// Settings of the command line, for people who read the store.
+std::string settings_of(const RunSpec& spec) {
+  std::string out;
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
+  for (const formats::Override& each : spec.overrides) add(each.path + "=" + each.value);
+  if (spec.duration_s) add("duration " + number_text(*spec.duration_s) + " s");
+  if (!spec.stop_when.empty()) add("stop when " + spec.stop_when);
+  if (spec.errors) add("errors " + number_text(*spec.errors));
+  for (const std::string& line : spec.commands) add(line);
+  if (!spec.script_file.empty()) add("script " + spec.script_file);
+  return out;
+}
+
+statistics::StoredRun as_stored(const RepeatedRun& run) {
+  statistics::StoredRun out{
+      run.seed, run.end_s, run.stopped, fmt::format("{:016x}", run.state_hash.value), {}};
+  out.criteria.push_back({"", run.criterion, run.success});
+  for (const auto& [team, judged] : run.criteria)
+    out.criteria.push_back({team, judged.value, judged.success});
+  return out;
+}
+RepeatedRun from_stored(const statistics::StoredRun& stored) {
+  RepeatedRun out;
+  out.seed = stored.seed, out.end_s = stored.end_s, out.stopped = stored.stopped, out.stored = true;
+  std::from_chars(stored.state_hash.data(), stored.state_hash.data() + stored.state_hash.size(),
+                  out.state_hash.value, 16);
+  for (const statistics::StoredCriterion& each : stored.criteria) {
+    if (each.team.empty()) out.criterion = each.value, out.success = each.success;
+    else out.criteria.push_back({each.team, CriterionSummary{each.value, each.success}});
+  }
+  return out;
+}
+
+/// The series' part of the store of results.
+struct Store {
+  statistics::ResultStore results;
+  std::int64_t experiment = 0;
+  std::mutex mutex = {};
+  std::optional<Error> failed = {};
+
+  void add(const RepeatedRun& run) {
+    const std::lock_guard lock(mutex);
+    if (failed || !run.errors.empty()) return;
+    if (Status added = results.add(experiment, as_stored(run)); !added) failed = std::move(added.error());
+  }
+};
+
+Result<std::unique_ptr<Store>> open_store(const RepeatSpec& spec, const RepeatSummary& summary) {
+  SL_ASSIGN(std::string print, fingerprint(spec.run));
+  SL_ASSIGN(auto results, statistics::ResultStore::open(spec.store_file));
+  SL_ASSIGN(const std::int64_t experiment,
+            results.experiment({std::move(print), summary.name, summary.physics, settings_of(spec.run)}));
+  return std::unique_ptr<Store>(new Store{std::move(results), experiment});
 }
 
 /// Figures of runs, one after the other.
@@ -160,6 +248,13 @@ Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(in
   std::vector<std::optional<RepeatedRun>> runs(count);
   std::atomic<std::size_t> next = 0;
   std::atomic<int> ended = 0;
+  std::unique_ptr<Store> store;
+  if (!spec.store_file.empty()) {
+    SL_ASSIGN(store, open_store(spec, out));
+    SL_ASSIGN(const auto known, store->results.runs(store->experiment, first_seed, count));
+    for (const statistics::StoredRun& each : known) runs[each.seed - first_seed] = from_stored(each);
+    ended = static_cast<int>(known.size());
+  }
   std::atomic<bool> stopped = false;
   const auto may_go_on = [&] {
     if (!stopped && keep_going && !keep_going(ended)) stopped = true;
@@ -167,8 +262,10 @@ Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(in
   };
   const auto work = [&] {
     for (std::size_t i = next++; i < count && may_go_on(); i = next++) {
+      if (runs[i]) continue;
       RepeatedRun run = one_run(spec.run, first_seed + i, may_go_on);
       if (stopped) return;  // it may have been cut short
+      if (store) store->add(run);
       runs[i] = std::move(run);
       ++ended;
     }
@@ -184,6 +281,7 @@ Result<RepeatSummary> repeat(const RepeatSpec& spec, const std::function<bool(in
     if (run) out.runs.push_back(std::move(*run));
   out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   add_figures(out);
+  if (store && store->failed) out.store_error = store->failed->text();
   return out;
 }
 
@@ -216,6 +314,9 @@ std::string as_text(const RepeatSummary& s) {
                       last = s.runs.empty() ? 0 : s.runs.back().seed;
   out += fmt::format("scenario   {} ({})\n", s.name, s.physics);
   out += fmt::format("runs       {}, seeds {} to {}, in {:.3g} s\n", s.runs.size(), first, last, s.wall_s);
+  if (const auto stored = std::count_if(s.runs.begin(), s.runs.end(),
+                                        [](const auto& run) { return run.stored; }))
+    out += fmt::format("stored     {} of them were not run again\n", stored);
   if (s.all) out += judged("criterion  ", *s.all);
   for (const auto& [team, runs] : s.teams) out += judged("criterion  " + team + ": ", runs);
   if (!s.all && s.teams.empty()) out += "criterion  the scenario has none: docs/values.md\n";
@@ -226,6 +327,7 @@ std::string as_text(const RepeatSummary& s) {
     if (!run.errors.empty() && listed++ < most_listed)
       out += fmt::format("failed     seed {}: {}\n", run.seed, run.errors.front());
   if (s.failed > most_listed) out += fmt::format("           ... {} failed in all\n", s.failed);
+  if (!s.store_error.empty()) out += "not stored " + s.store_error + "\n";
   return out;
 }
 

@@ -5,7 +5,8 @@
 ///   Result<RepeatSummary> all = repeat(spec);
 ///
 /// Each run is the one that `sandlot run --seed N` gives, to the same state hash; how many run at a time changes nothing but the
-/// time it takes. Intervals are those of statistics/intervals.h, for 95 %.
+/// time it takes. With a store, seeds whose results it holds are not run again: those of the same world, program and settings
+/// (fingerprint). Intervals are those of statistics/intervals.h, for 95 %.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,6 +23,8 @@ struct RepeatSpec {
   RunSpec run;  ///< writes no files; its seed, or the scenario's, is the first one
   int count = 1;
   int at_a_time = 0;  ///< 0: as many as the machine has processors
+  std::string
+      store_file;  ///< results of earlier runs, to which those of this one are added (statistics/store.h); "": none
 };
 
 /// Mean of a figure over runs.
@@ -77,6 +80,7 @@ struct RepeatedRun {
   std::optional<double> criterion;
   std::optional<bool> success;
   std::vector<Named<CriterionSummary>> criteria;
+  bool stored = false;              ///< it was in the store, and was not run again
   std::vector<std::string> errors;  ///< it does not count when there are some
 
   static void fields(auto& s, auto&& visit) {
@@ -87,6 +91,7 @@ struct RepeatedRun {
     visit(Field{"criterion", "1", "Figure of merit at the end; null when it has no value."}, s.criterion);
     visit(Field{"success", "", "Whether the run succeeded."}, s.success);
     visit(Field{"criteria", "1", "Figures of merit of the teams that are judged."}, s.criteria);
+    visit(Field{"stored", "", "Whether the result was taken from the store of results."}, s.stored);
     visit(Field{"errors", "", "Errors that ended the run; it counts in no figure then."}, s.errors);
   }
 };
@@ -99,6 +104,7 @@ struct RepeatSummary {
   std::vector<Named<JudgedRuns>> teams;
   Estimate end_s;
   std::vector<RepeatedRun> runs;
+  std::string store_error;  ///< why results were not stored; "": they were, or there is no store
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the scenario."}, s.name);
@@ -110,6 +116,7 @@ struct RepeatSummary {
     visit(Field{"teams", "", "Runs by the criteria of the teams."}, s.teams);
     visit(Field{"end_time", "s", "Simulated time at the end."}, s.end_s);
     visit(Field{"runs", "", "All runs, in order of their seeds."}, s.runs);
+    visit(Field{"store_error", "", "Reason why results were not stored; empty: none."}, s.store_error);
   }
 };
 

@@ -97,6 +97,43 @@ TEST(Repeat, RunsThatFailAreToldAndCountInNoFigure) {
   EXPECT_THAT(as_text(all), HasSubstr("is not a finite number"));
 }
 
+TEST(Repeat, SeedsThatAreInTheStoreAreNotRunAgain) {
+  const TestFolder folder;
+  const std::string file = scattered(folder, "criterion: rover1.pose.x\n");
+  RepeatSpec spec{.run = {.file = file, .seed = 3}, .count = 4, .store_file = folder.file("results.db")};
+  const RepeatSummary first = repeated(spec);
+  spec.count = 6;
+  const RepeatSummary second = repeated(spec);
+  ASSERT_EQ(second.runs.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(second.runs[i].seed, 3 + i);
+    EXPECT_EQ(second.runs[i].stored, i < 4) << i;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_FALSE(first.runs[i].stored);
+    EXPECT_EQ(second.runs[i].state_hash, first.runs[i].state_hash);
+    EXPECT_EQ(second.runs[i].criterion, first.runs[i].criterion);
+    EXPECT_EQ(second.runs[i].end_s, first.runs[i].end_s);
+  }
+  EXPECT_THAT(as_text(second), HasSubstr("stored     4 of them were not run again"));
+  // Other seeds of the same world belong to the same series; another end is another series.
+  spec.run.seed = 5, spec.count = 5;
+  const RepeatSummary shifted = repeated(spec);
+  EXPECT_TRUE(shifted.runs[3].stored);
+  EXPECT_FALSE(shifted.runs[4].stored);
+  spec.run.duration_s = 0.02;
+  EXPECT_FALSE(repeated(spec).runs[0].stored);
+  // A run without the store gives the same.
+  EXPECT_EQ(repeated({.run = {.file = file, .seed = 3}, .count = 1}).runs[0].state_hash,
+            first.runs[0].state_hash);
+}
+
+TEST(Repeat, AFileThatIsNoStoreIsRefusedBeforeTheFirstRun) {
+  const TestFolder folder;
+  const std::string file = scattered(folder, "criterion: 1\n");
+  EXPECT_THAT(refusal({.run = {.file = file}, .store_file = file}), HasSubstr("is not a store of results"));
+}
+
 TEST(Repeat, EndsWhenItIsToldTo) {
   const TestFolder folder;
   const auto all = repeat(

@@ -249,7 +249,26 @@ void write_instance(JsonWriter& w, const Simulation& simulation, const Simulatio
   });
 }
 
-/// What belongs to no robot: media, rules, programs of teams; each list only where it has something.
+/// What the run and its teams are judged by, with the address of the present value.
+void write_criteria(JsonWriter& w, const model::Setup& setup) {
+  const auto judged = [](const model::TeamDecl& team) { return team.criterion.has_value(); };
+  if (!setup.criterion && std::none_of(setup.teams.begin(), setup.teams.end(), judged)) return;
+  const auto write = [&](const std::string& team, const model::CriterionDecl& criterion) {
+    w.object([&] {
+      w.key("team").text(team);
+      w.key("address").text(team.empty() ? "criterion" : team + ".criterion");
+      w.key("value").text(criterion.value);
+      if (!criterion.success.empty()) w.key("success").text(criterion.success);
+    });
+  };
+  w.key("criteria").list([&] {
+    if (setup.criterion) write("", *setup.criterion);
+    for (const model::TeamDecl& team : setup.teams)
+      if (team.criterion) write(team.name, *team.criterion);
+  });
+}
+
+/// What belongs to no robot: media, rules, criteria, programs of teams; each list only where it has something.
 void write_parts(JsonWriter& w, const Simulation& simulation) {
   for (const char* const list : {"media", "rules"}) {
     const auto& all = simulation.elements().parts();
@@ -260,6 +279,7 @@ void write_parts(JsonWriter& w, const Simulation& simulation) {
         if (is_of(part)) write_part(w, part.path.substr(std::strlen(list) + 1), part.path, part.kind);
     });
   }
+  write_criteria(w, simulation.setup());
   if (simulation.teams().empty()) return;
   w.key("teams").list([&] {
     for (const Simulation::Team& team : simulation.teams())

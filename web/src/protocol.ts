@@ -188,6 +188,15 @@ export interface Zone {
   hole: boolean;
 }
 
+/** What the run (team '') or a team is judged by. */
+export interface Criterion {
+  team: string;
+  /** Of its present value. */
+  address: string;
+  value: string;
+  success?: string;
+}
+
 export interface World {
   revision: number;
   epoch: number;
@@ -203,6 +212,7 @@ export interface World {
   markers?: Marker[];
   media?: Part[];
   rules?: Part[];
+  criteria?: Criterion[];
   teams?: Team[];
   models: Model[];
   instances: Instance[];

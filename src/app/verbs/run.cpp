@@ -21,7 +21,10 @@ namespace {
 int run_again(const RunOptions& options) {
   if (options.hooks) return complain({"--repeat: a program that embeds Sandlot repeats its runs itself", ""});
   if (options.serve) return complain({"--port and --repeat: a page shows one run", "leave one of them out"});
-  RepeatSpec spec{.run = options.spec, .count = *options.repeat, .at_a_time = options.at_a_time};
+  RepeatSpec spec{.run = options.spec,
+                  .count = *options.repeat,
+                  .at_a_time = options.at_a_time,
+                  .store_file = options.store};
   const bool shows = isatty(STDERR_FILENO);
   std::atomic<int> shown = -1;
   catch_interrupts();
@@ -32,13 +35,17 @@ int run_again(const RunOptions& options) {
   if (shows) std::fputs("\r\033[K", stderr);
   if (!all) return complain(all.error());
   std::fputs(options.json ? (json_text(as_json(*all)) + "\n").c_str() : as_text(*all).c_str(), stdout);
-  return all->failed == 0 && static_cast<int>(all->runs.size()) == spec.count ? exit_ok : exit_failed;
+  return all->failed == 0 && all->store_error.empty() && static_cast<int>(all->runs.size()) == spec.count
+             ? exit_ok
+             : exit_failed;
 }
 
 }  // namespace
 
 int run(const RunOptions& options) {
   if (options.repeat) return run_again(options);
+  if (!options.store.empty())
+    return complain({"--store: it keeps the results of repeated runs", "add --repeat 50"});
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);

@@ -4,7 +4,9 @@
 #include <set>
 
 #include "base/text.h"
+#include "sim/watch/parameters.h"
 #include "sim/watch/values.h"
+#include "sim/world/lookup.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -88,6 +90,46 @@ struct WorldElements::Build final : ElementBuild {
         addresses.push_back(address);
     elements.watched_.push_back(std::move(compiled));
     return static_cast<std::uint32_t>(elements.watched_.size() - 1);
+  }
+
+  Result<ParameterName> expect_parameter(std::string_view address, const std::string& value,
+                                         const char* key) const override {
+    const std::string quoted = "'" + std::string(address.substr(0, 100)) + "'";
+    const auto parameter = parse_parameter(address);
+    if (!parameter)
+      return error(key, quoted + " is not the address of a parameter",
+                   "write it as in rover/laser.noise[0].white");
+    const auto& [target, field, unit, in_list] = *parameter;
+    ParameterName name{target, field};
+    if (restored || is_element(target) || target == "sim" || elements.sim_.find_entity(target)) return name;
+    Parameters parameters(elements.sim_);
+    std::vector<Parameter> settable = parameters.list(target);
+    if (settable.empty() && !is_program(target))
+      if (auto device = device_named(elements.sim_, target); !device)
+        return error(key, device.error().what, device.error().fix);
+    if (field == failure_field && !is_program(target)) return name;
+    std::vector<std::string> known;
+    for (const Parameter& each : settable) known.push_back(each.address());
+    if (std::find(known.begin(), known.end(), parameter->address()) == known.end())
+      return error(key, quoted + " is not a parameter that can be set while the run goes on",
+                   suggestion(address, known));
+    if (Status fits = value.empty() ? Status() : parameters.check(*parameter, Node::scalar(value)); !fits)
+      return error(key, quoted + ": " + fits.error().what, fits.error().fix);
+    return name;
+  }
+  bool is_program(std::string_view path) const {
+    const auto* const programs = elements.sim_.programs_of(first_part(path));
+    return programs && std::any_of(programs->begin(), programs->end(),
+                                   [&](const auto& each) { return each->path == path; });
+  }
+  /// Media and rules may be named before they are made.
+  bool is_element(std::string_view target) const {
+    const auto lists = [&](const char* list, std::span<const model::ElementDecl> declared) {
+      return std::any_of(declared.begin(), declared.end(), [&](const model::ElementDecl& each) {
+        return target == list + sanitised(each.name);
+      });
+    };
+    return lists("media/", elements.sim_.setup().media) || lists("rules/", elements.sim_.setup().rules);
   }
 
   const WorldElements& elements;

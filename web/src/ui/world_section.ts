@@ -1,14 +1,18 @@
 // What the inspector shows while nothing is selected: the world in numbers, and what one may do first.
 import type {Context} from '../app/context';
 import {formatNumber} from '../app/format';
-import type {World} from '../protocol';
+import {Watch} from '../app/watcher';
+import type {Criterion, World} from '../protocol';
 import {h, setReason} from './dom';
 import {icon} from './icons';
 import {keyLabel} from '../app/actions';
+import {teamColor} from './teams';
 import {driveOf} from './teleop';
+import {draggableValue} from './values';
 
 export class WorldSection {
   readonly element: HTMLElement;
+  private watch: Watch | null = null;
   private readonly steered: {button: HTMLButtonElement; title: string}[] = [];
 
   constructor(private readonly context: Context, world: World) {
@@ -32,6 +36,7 @@ export class WorldSection {
     };
     this.element = h('div', {},
         h('section', {class: 'block'}, h('dl', {class: 'facts'}, ...facts.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {class: 'mono'}, value)]))),
+        ...(world.criteria === undefined ? [] : [this.judgedBy(world.criteria, world)]),
         h('section', {class: 'block'}, h('h3', {}, 'Start here'),
           ...(driven === undefined ? [] : [row(`Drive ${first}`, 'gamepad', '', true, withFirst('robots.drive'))]), ...(first === undefined ? [] : [row(`Follow ${first}`, 'follow', '', false, withFirst('robots.follow'))]),
           row('Pull things about', 'pull', 'ctrl+drag', true, () => actions.run('tool.pull')),
@@ -40,6 +45,29 @@ export class WorldSection {
           row('All keys', 'help', 'h', false, () => actions.run('page.help'))),
         h('p', {class: 'hint-line faint'}, 'Select a robot or an object, in the list or in the scene, for its numbers and its settings.'));
     this.steering();
+  }
+
+  /** The present value of each criterion; it can be dragged to a plot. */
+  private judgedBy(criteria: Criterion[], world: World): HTMLElement {
+    const cells = criteria.map((criterion) => {
+      const cell = h('dd', {class: 'mono', title: 'Drag it to a plot'}, '–');
+      draggableValue(cell, criterion.address, '');
+      return cell;
+    });
+    this.watch = new Watch(this.context.client, criteria.map((criterion) => criterion.address), 4, (_, values) => {
+      for (const [i, cell] of cells.entries()) cell.textContent = Number.isFinite(values[i]) ? formatNumber(values[i], 4) : '–';
+    });
+    const name = (criterion: Criterion): HTMLElement => {
+      const goal = criterion.success === undefined ? '' : `; succeeded when ${criterion.success}`;
+      const label = h('dt', {title: criterion.value + goal}, criterion.team === '' ? 'This run' : criterion.team);
+      if (criterion.team !== '') label.style.color = teamColor(criterion.team, world);
+      return label;
+    };
+    return h('section', {class: 'block'}, h('h3', {}, 'Judged by'), h('dl', {class: 'facts'}, ...criteria.flatMap((criterion, i) => [name(criterion), cells[i]])));
+  }
+
+  close(): void {
+    this.watch?.close();
   }
 
   steering(): void {

@@ -1,0 +1,113 @@
+/// Rules that count and set, against what can be said beforehand.
+#include "sim/world/test_elements.h"
+
+namespace sandlot::test {
+namespace {
+
+TEST(Statistics, OfAValueOverTimeAreThoseOfItsSamples) {
+  model::Setup setup = weightless();
+  Node config = map({{"value", "sim.time + 0.01"}, {"interval", "100 ms"}, {"bins", "4"}});
+  config.set("quantiles", numbers({0.5}));
+  setup.rules.push_back(element("statistics", config, "clock"));
+  const auto simulation = build(setup);
+  advance(*simulation, 100);
+  // Samples at 0, 0.1, ... 1 s: 0.01, 0.11, ... 1.01. The sample variance of 0 ... 10 is 11.
+  EXPECT_EQ(value(*simulation, "rules/clock.count"), 11);
+  EXPECT_NEAR(value(*simulation, "rules/clock.mean"), 0.51, 1e-14);
+  EXPECT_NEAR(value(*simulation, "rules/clock.deviation"), 0.1 * std::sqrt(11.0), 1e-14);
+  EXPECT_NEAR(value(*simulation, "rules/clock.min"), 0.01, 1e-15);
+  EXPECT_NEAR(value(*simulation, "rules/clock.max"), 1.01, 1e-15);
+  // .01 .11 .21 | .31 .41 | .51 .61 .71 | .81 .91 | 1.01
+  const double histogram[] = {3, 2, 3, 2};
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(value(*simulation, ("rules/clock.histogram[" + std::to_string(i) + "]").c_str()), histogram[i])
+        << i;
+  EXPECT_EQ(value(*simulation, "rules/clock.above"), 1);
+  // Half of 11 numbers: 5 lie in the first two bins, half a number of three in the third.
+  EXPECT_NEAR(value(*simulation, "rules/clock.quantiles[0]"), 0.5 + 0.25 * 0.5 / 3, 1e-14);
+}
+
+TEST(Statistics, OfEachThingCountAllThingsAtEverySample) {
+  model::Setup setup = weightless();
+  const auto ball = one_shape("ball", Sphere{0.1}, 1);
+  for (const double x_m : {1.0, 2.0, 6.0})
+    setup.instances.push_back(
+        placed("ball" + std::to_string(static_cast<int>(x_m)), ball, {{x_m, 0, 0}, {}}));
+  Node config = map({{"each", "ball*.pose.x"}, {"interval", "50 ms"}, {"from", "20 ms"}, {"bins", "2"}});
+  config.set("range", numbers({0, 4}));
+  setup.rules.push_back(element("statistics", config));
+  const auto simulation = build(setup);
+  advance(*simulation, 1);
+  EXPECT_EQ(value(*simulation, "rules/statistics.count"), 0);
+  advance(*simulation, 7);  // samples at 20 and 70 ms
+  EXPECT_EQ(value(*simulation, "rules/statistics.samples"), 2);
+  EXPECT_EQ(value(*simulation, "rules/statistics.count"), 6);
+  EXPECT_NEAR(value(*simulation, "rules/statistics.mean"), 3, 1e-14);
+  // 4 + 1 + 9 per sample, by n - 1 = 5.
+  EXPECT_NEAR(value(*simulation, "rules/statistics.deviation"), std::sqrt(2 * 14 / 5.0), 1e-14);
+  EXPECT_EQ(value(*simulation, "rules/statistics.histogram[0]"), 2);
+  EXPECT_EQ(value(*simulation, "rules/statistics.histogram[1]"),
+            2);  // 2 belongs to the bin that begins there
+  EXPECT_EQ(value(*simulation, "rules/statistics.above"), 2);
+  for (const char* name : {"ball1", "ball2", "ball6"}) simulation->submit(DeleteRequest{name});
+  advance(*simulation, 5);
+  EXPECT_EQ(value(*simulation, "rules/statistics.skipped"), 1);
+}
+
+TEST(Statistics, WhatCannotBeCountedIsRefused) {
+  const auto refusal = [](Node config) {
+    model::Setup setup = weightless();
+    setup.rules.push_back(element("statistics", std::move(config)));
+    return refused(std::move(setup));
+  };
+  EXPECT_NE(refusal(Node::map()).find("neither `value` nor `each`"), std::string::npos);
+  EXPECT_NE(refusal(map({{"value", "sim.time"}, {"each", "a*.pose.x"}})).find("both"), std::string::npos);
+  EXPECT_NE(
+      refusal(with(map({{"value", "sim.time"}, {"bins", "3"}}), "range", numbers({2, 2}))).find("empty"),
+      std::string::npos);
+  EXPECT_NE(refusal(with(map({{"value", "sim.time"}}), "quantiles", numbers({0.5}))).find("histogram"),
+            std::string::npos);
+}
+
+TEST(Set, ChangesParametersInTheTickAfterItsConditionBegan) {
+  model::Setup setup = talkers({10});
+  Node rule = map({{"when", "sim.time >= 0.05 and sim.time < 0.08 or sim.time >= 0.1"}});
+  rule.set("set",
+           list({map({{"parameter", "media/air.threshold"}, {"value", "55 dB"}}),
+                 map({{"parameter", "listener1/ear.threshold"}, {"expression", "10 + 100 * sim.time"}}),
+                 map({{"parameter", "speaker/voice.failure"}, {"value", "dead"}})}));
+  setup.rules.push_back(element("set", rule));
+  setup.rules.push_back(element("set", with(rule, "once", Node::scalar("true")), "first"));
+  const auto simulation = build(setup);
+  advance(*simulation, 5);
+  EXPECT_EQ(value(*simulation, "rules/set.count"), 1);
+  EXPECT_EQ(value(*simulation, "media/air.threshold"), 40);
+  advance(*simulation, 1);
+  EXPECT_EQ(value(*simulation, "media/air.threshold"), 55);
+  EXPECT_NEAR(value(*simulation, "listener1/ear.threshold"), 15, 1e-13);
+  say(*simulation, "I am dead");
+  advance(*simulation, 5);  // 0.11 s: the condition has begun again at 0.1 s
+  EXPECT_EQ(value(*simulation, "media/air.words"), 0);
+  EXPECT_EQ(value(*simulation, "rules/set.count"), 2);
+  EXPECT_EQ(value(*simulation, "rules/first.count"), 1);
+  EXPECT_NEAR(value(*simulation, "listener1/ear.threshold"), 20, 1e-13);
+}
+
+TEST(Set, ParametersThatAreNotThereAreRefusedWithTheNearest) {
+  const auto refusal = [](const char* parameter, const char* given, const char* text) {
+    model::Setup setup = talkers({10});
+    setup.rules.push_back(element("set", with(map({{"when", "sim.time > 1"}}), "set",
+                                              list({map({{"parameter", parameter}, {given, text}})}))));
+    return refused(std::move(setup));
+  };
+  EXPECT_EQ(refusal("speaker/voice.loudness", "value", "3 dB"), "");
+  EXPECT_NE(refusal("speaker/voice.loudnes", "value", "3").find("speaker/voice.loudness"), std::string::npos);
+  EXPECT_NE(refusal("speaker/voice.loudness", "value", "loud").find("loud"), std::string::npos);
+  EXPECT_NE(refusal("speaker/voices.loudness", "value", "3").find("speaker/voice"), std::string::npos);
+  EXPECT_NE(refusal("speaker", "value", "3").find("not the address"), std::string::npos);
+  EXPECT_NE(refusal("speaker/voice.max_length", "value", "3").find("cannot"), std::string::npos);
+  EXPECT_NE(refusal("speaker/voice.loudness", "expression", "sim.tim").find("sim.time"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sandlot::test
