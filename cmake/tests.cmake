@@ -61,6 +61,13 @@ foreach(source IN LISTS sources)
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test_plugins)
   list(APPEND plugins plugin_${name})
 endforeach()
+# The example that has the same law as a controller of ours.
+add_library(plugin_clearing MODULE examples/clearing_plugin/plugin.cpp examples/clearing_plugin/clearing.cpp)
+target_link_libraries(plugin_clearing PRIVATE sandlot_library)
+target_compile_definitions(plugin_clearing PRIVATE SANDLOT_CONTROL_FLAGS)
+set_target_properties(plugin_clearing PROPERTIES PREFIX "" OUTPUT_NAME clearing_plugin CXX_VISIBILITY_PRESET hidden
+  LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test_plugins)
+list(APPEND plugins plugin_clearing)
 target_compile_options(plugin_other_build PRIVATE -ffast-math)
 file(GLOB sources CONFIGURE_DEPENDS tests/*_test.cpp)
 set(libraries ${sandlot_layers})

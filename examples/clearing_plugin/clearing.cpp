@@ -4,21 +4,26 @@
 #include <charconv>
 #include <cmath>
 
+namespace my_clearing {
 
-namespace sandlot::controllers::clearing {
+using namespace sandlot;
 namespace {
 
 using steering::flat, steering::heading_of;
 
 constexpr double back_off_s = 0.9, back_off_mps = 0.25;
 constexpr double progress_m = 0.05;
-constexpr double behind_m = 0.05;        // off the line through object and destination, when pushing begins
-constexpr double aligned_rad = 0.12;     // off the direction to the destination, when pushing begins
-constexpr double heading_gain = 1.5;     // pushing: towards the destination
-constexpr double offset_gain = 2.5;      // pushing: towards the side to which the object slides
-constexpr double least_turn_m = 0.35;    // pushing: radius of the narrowest arc, on which the object stays at the blade
-constexpr double private_m = 0.6;        // without anything to do: distance kept from others
-constexpr Time resend = Time::from_s(0.5), forget = Time::from_s(2);
+constexpr double behind_m = 0.05;     // off the line through object and destination, when pushing begins
+constexpr double aligned_rad = 0.12;  // off the direction to the destination, when pushing begins
+constexpr double heading_gain = 1.5;  // pushing: towards the destination
+constexpr double offset_gain = 2.5;   // pushing: towards the side to which the object slides
+constexpr double least_turn_m =
+    0.35;  // pushing: radius of the narrowest arc, on which the object stays at the blade
+constexpr double private_m = 0.6;                  // without anything to do: distance kept from others
+constexpr std::uint64_t to_send = 1, to_wait = 2;  // uses of random numbers
+constexpr Time forget = Time::from_s(2);
+constexpr double soonest_s = 0.2,
+                 latest_s = 0.6;  // from one message to the next: at random, lest two robots keep colliding
 
 /// "box3 1250"; false for anything else, such as what bit errors have made of it.
 bool parse(const std::vector<std::uint8_t>& data, std::string_view& object, std::uint32_t& bid_mm) {
@@ -66,7 +71,7 @@ void Clearing::hear(const Observation& obs, const msg::ObjectPoseArray& world) {
 
 /// Sends the choice when it is another, and now and then.
 void Clearing::tell(const View& view, Command& cmd) {
-  if (state.object == state.sent_object && view.now - state.sent < resend) return;
+  if (state.object == state.sent_object && view.now < state.resend) return;
   std::array<char, 16> digits{};
   const msg::ObjectPose* const object = steering::find(view.world, state.object);
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(),
@@ -78,7 +83,8 @@ void Clearing::tell(const View& view, Command& cmd) {
   packet.data.insert(packet.data.end(), digits.data(), end);
   cmd.set(sender, packet);
   state.sent_object = state.object;
-  state.sent = view.now;
+  Stream random = view.random.fork(to_send);
+  state.resend = view.now + Time::from_s(random.uniform(soonest_s, latest_s));
 }
 
 /// Distance of an object from where it counts as inside; negative within.
@@ -123,6 +129,8 @@ const msg::ObjectPose* Clearing::choose(const View& view) {
   state.object = best->name;
   state.nearest_m = outside_m(*best);
   state.progress = view.now;
+  Stream random = view.random.fork(to_wait);
+  state.patience_s = spec.patience_s * random.uniform(0.75, 1.25);
   state.phase = Phase::approach;
   return best;
 }
@@ -136,7 +144,8 @@ Vec3 Clearing::way(const View& view, Vec3 to) {
   discs.clear();
   for (const msg::ObjectPose& other : view.world.objects)
     if (other.name != name)
-      discs.push_back({other.pose.p, other.label == spec.objects ? spec.object_clearance_m : spec.robot_clearance_m});
+      discs.push_back(
+          {other.pose.p, other.label == spec.objects ? spec.object_clearance_m : spec.robot_clearance_m});
   return steering::way_around(view.X_WB.p, to, discs);
 }
 
@@ -164,8 +173,7 @@ msg::Twist Clearing::push(const msg::ObjectPose& object, const View& view) const
   const double widest = spec.push_speed_mps / least_turn_m;
   msg::Twist twist;
   twist.linear.x = spec.push_speed_mps;
-  twist.angular.z =
-      std::clamp(heading_gain * goal + offset_gain * math::atan2(at.y, at.x), -widest, widest);
+  twist.angular.z = std::clamp(heading_gain * goal + offset_gain * math::atan2(at.y, at.x), -widest, widest);
   return twist;
 }
 
@@ -187,8 +195,7 @@ msg::Twist Clearing::decide(const View& view) {
     if (view.now < state.backing_until) return {.linear = {-back_off_mps, 0, 0}};
     state.phase = state.object.empty() ? Phase::choose : Phase::approach;
   }
-  const msg::ObjectPose* object =
-      state.object.empty() ? nullptr : steering::find(view.world, state.object);
+  const msg::ObjectPose* object = state.object.empty() ? nullptr : steering::find(view.world, state.object);
   if (object && taken(state.object, bid_mm(*object, view), view.now)) {
     const bool touching = state.phase == Phase::push;
     ++state.yielded;
@@ -209,14 +216,15 @@ msg::Twist Clearing::decide(const View& view) {
     state.nearest_m = outside_m(*object);
     state.progress = view.now;
   }
-  if (object && view.now - state.progress > Time::from_s(spec.patience_s)) {
+  if (object && view.now - state.progress > Time::from_s(state.patience_s)) {
     state.left_alone = state.object;
-    state.left_alone_until = view.now + Time::from_s(spec.patience_s);
+    state.left_alone_until = view.now + Time::from_s(state.patience_s);
     state.object.clear();
     return back_off(view.now), msg::Twist{};
   }
   // An object that is not reported in this picture is not forgotten: the robot stands until it is seen again.
-  if (!object && !state.object.empty() && view.now - state.progress <= Time::from_s(spec.patience_s)) return {};
+  if (!object && !state.object.empty() && view.now - state.progress <= Time::from_s(state.patience_s))
+    return {};
   if (!object) {
     state.object.clear();
     state.phase = Phase::choose;
@@ -235,10 +243,10 @@ void Clearing::step(const Observation& obs, Command& cmd) {
   const auto seen = obs.get(camera);
   const msg::ObjectPose* const self = seen.valid ? steering::find(seen.message, name) : nullptr;
   if (!self) return cmd.set(drive, msg::Twist());
-  const View view{obs.now(), seen.message, self->pose};
+  const View view{obs.now(), seen.message, self->pose, obs.random()};
   if (!spec.radio.empty()) hear(obs, seen.message);
   cmd.set(drive, decide(view));
   if (!spec.radio.empty()) tell(view, cmd);
 }
 
-}  // namespace sandlot::controllers::clearing
+}  // namespace my_clearing

@@ -11,7 +11,7 @@
 ///                        the side to which the object slides;
 ///            4           when it leaves the steering zone, back off and go to 2;
 ///            5           when it is inside, back off and go to 1.
-///          An object that has not come nearer for `patience` is left to itself for as long again. Without anything to do the
+///          An object that has not come nearer for `patience`, a quarter more or less by chance, is left to itself for as long again. Without anything to do the
 ///          robot keeps away from others.
 /// Team     each robot sends the object that it has chosen with a bid, its distance (0 once it pushes): "box3 1250" [mm]. Of two
 ///          bids for one object the smaller wins, of equal ones the robot whose name precedes; the other chooses again. A claim
@@ -26,7 +26,9 @@
 
 #include <sandlot/control.h>
 
-namespace sandlot::controllers::clearing {
+namespace my_clearing {
+
+using namespace sandlot;
 
 struct Spec {
   std::string camera, drive, radio;
@@ -38,12 +40,12 @@ struct Spec {
   double push_speed_mps = 0.25;
   double turn_speed_radps = 2.5;
   double standoff_m = 0.34;
-  double reach_m = 0.3;
+  double reach_m = 0.48;
   double zone_m = 0.09;
   double zone_angle_rad = 0.7;
   double object_clearance_m = 0.26;
   double robot_clearance_m = 0.36;
-  double patience_s = 25;
+  double patience_s = 20;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
@@ -56,30 +58,34 @@ struct Spec {
     visit(Field{"objects", "", "Label of the objects to move.", 0, 0, Field::none, 100}, s.objects);
     visit(Field{"destination", "m", "Middle of the destination: x y.", -1e6, 1e6, tunable}, s.destination_m);
     visit(Field{"radius", "m", "Radius of the destination.", 0.01, 1e4, tunable}, s.radius_m);
-    visit(Field{"margin", "m", "Distance from the edge of the destination at which an object counts as inside.",
-                0, 100, tunable},
-          s.margin_m);
+    visit(
+        Field{"margin", "m", "Distance from the edge of the destination at which an object counts as inside.",
+              0, 100, tunable},
+        s.margin_m);
     visit(Field{"speed", "m/s", "Speed on the way to an object.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"push_speed", "m/s", "Speed of pushing.", 0, 100, tunable}, s.push_speed_mps);
     visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
-    visit(Field{"standoff", "m", "Distance of the place behind an object from the object.", 0.01, 100, tunable},
-          s.standoff_m);
+    visit(
+        Field{"standoff", "m", "Distance of the place behind an object from the object.", 0.01, 100, tunable},
+        s.standoff_m);
     visit(Field{"reach", "m", "Steering zone: largest distance of the object ahead.", 0.01, 100, tunable},
           s.reach_m);
     visit(Field{"zone", "m", "Steering zone: largest distance of the object to either side.", 0.001, 100,
                 tunable},
           s.zone_m);
     visit(Field{"zone_angle", "rad",
-                "Steering zone: largest angle between the heading and the direction to the destination.", 0.01,
-                3.2, tunable},
+                "Steering zone: largest angle between the heading and the direction to the destination.",
+                0.01, 3.2, tunable},
           s.zone_angle_rad);
     visit(Field{"object_clearance", "m", "Distance kept from objects on the way.", 0, 100, tunable},
           s.object_clearance_m);
     visit(Field{"robot_clearance", "m", "Distance kept from robots on the way.", 0, 100, tunable},
           s.robot_clearance_m);
-    visit(Field{"patience", "s", "Time without progress after which another object is chosen.", 0.1, 1e6,
-                tunable},
-          s.patience_s);
+    visit(
+        Field{"patience", "s",
+              "Time without progress after which another object is chosen; a quarter more or less by chance.",
+              0.1, 1e6, tunable},
+        s.patience_s);
   }
 };
 
@@ -112,11 +118,12 @@ struct State {
   std::string object;
   double nearest_m = 0;  ///< of the object to the destination
   Time progress;         ///< when it last came nearer
+  double patience_s = 0;
   Time backing_until;
   std::string left_alone;
   Time left_alone_until;
   std::string sent_object;
-  Time sent;
+  Time resend;
   std::uint32_t delivered = 0, slid = 0, yielded = 0;
   std::vector<Claim> claims;
 
@@ -125,11 +132,12 @@ struct State {
     visit(Field{"object", "", "Chosen object; empty: none."}, s.object);
     visit(Field{"nearest", "m", "Smallest distance of the object from the destination."}, s.nearest_m);
     visit(Field{"progress", "s", "Time at which the object last came nearer."}, s.progress);
+    visit(Field{"patience_now", "s", "Patience with this object."}, s.patience_s);
     visit(Field{"backing_until", "s", "Time at which backing off ends."}, s.backing_until);
     visit(Field{"left_alone", "", "Object that did not come nearer."}, s.left_alone);
     visit(Field{"left_alone_until", "s", "Time until which it is left to itself."}, s.left_alone_until);
     visit(Field{"sent_object", "", "Object in the message sent last."}, s.sent_object);
-    visit(Field{"sent", "s", "Time of the message sent last."}, s.sent);
+    visit(Field{"resend", "s", "Time at which the choice is sent again."}, s.resend);
     visit(Field{"delivered", "1", "Objects that it has pushed into the destination."}, s.delivered);
     visit(Field{"slid", "1", "Times that an object left the steering zone."}, s.slid);
     visit(Field{"yielded", "1", "Times that it left an object to a team-mate."}, s.yielded);
@@ -138,8 +146,8 @@ struct State {
 };
 
 struct Clearing {
-  using Spec = clearing::Spec;
-  using State = clearing::State;
+  using Spec = my_clearing::Spec;
+  using State = my_clearing::State;
   static constexpr std::size_t most_claims = 64;
   Spec spec;
   State state;
@@ -160,6 +168,7 @@ struct Clearing {
     Time now;
     const msg::ObjectPoseArray& world;
     const Pose& X_WB;
+    Stream random;
   };
   void hear(const Observation& obs, const msg::ObjectPoseArray& world);
   void tell(const View& view, Command& cmd);
@@ -177,4 +186,4 @@ struct Clearing {
   msg::Twist decide(const View& view);
 };
 
-}  // namespace sandlot::controllers::clearing
+}  // namespace my_clearing

@@ -3,10 +3,10 @@
 
 namespace {
 using namespace sandlot;
-using controllers::clearing::Clearing;
+using my_clearing::Clearing;
 
-constexpr ControllerKind my_clearing = make_controller<Clearing>(
+constexpr ControllerKind kind = make_controller<Clearing>(
     {.name = "my_clearing", .help = "Pushes scattered objects into an area, from a plugin."});
 }  // namespace
 
-SANDLOT_PLUGIN("clearing_plugin", &my_clearing)
+SANDLOT_PLUGIN("clearing_plugin", &kind)

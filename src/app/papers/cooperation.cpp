@@ -66,6 +66,10 @@ bool apart(const SuccessRate& a, const SuccessRate& b) {
   return a.low && b.high && b.low && a.high && (*a.low > *b.high || *b.low > *a.high);
 }
 
+bool apart(const Estimate& a, const Estimate& b) {
+  return a.low && b.high && b.low && a.high && (*a.low > *b.high || *b.low > *a.high);
+}
+
 std::string compared(const RepeatSummary& a, const RepeatSummary& b) {
   const auto x = success(a), y = success(b);
   if (!x || !y) return "no run has a value";
@@ -191,34 +195,41 @@ Status predator_prey(const ReproduceContext& context, ReportPage& page) {
           rates,
           {.title = "Runs in which the prey is caught", .x_label = "%", .range = {{0, 100}}, .mark = {}}),
       "Rates with Wilson's 95 % intervals; one colour per strategy of the predators.");
-  // Each strategy over all of the other side.
+  // Each strategy over all of the other side, by the time until the catch or the end.
   const auto pooled = [&](std::size_t first, std::size_t step) {
-    SuccessRate sum;
+    statistics::Sample times;
     for (std::size_t k = 0; k < 3; ++k)
-      if (const auto rate = success(all[first + k * step].runs))
-        sum.successes += rate->successes, sum.count += rate->count;
-    return with_interval(sum);
+      for (const RepeatedRun& run : all[first + k * step].runs.runs)
+        if (run.errors.empty()) times.add(run.end_s);
+    return estimate_of(times);
   };
   const auto ranking = [&](const char* side, const auto& strategies, bool predators) {
     struct Entry {
       std::string name;
-      SuccessRate rate;
+      Estimate time;
     };
     std::vector<Entry> entries;
     for (std::size_t i = 0; i < 3; ++i)
       entries.push_back({strategies[i], predators ? pooled(3 * i, 1) : pooled(i, 3)});
     std::stable_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
-      const double x = a.rate.rate.value_or(0), y = b.rate.rate.value_or(0);
-      return predators ? x > y : x < y;
+      const double x = a.time.mean.value_or(0), y = b.time.mean.value_or(0);
+      return predators ? x < y : x > y;
     });
     std::vector<std::vector<std::string>> ranked;
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      ranked.push_back({fmt::format("{}", i + 1), entries[i].name, text_of(entries[i].rate),
-                        i + 1 == entries.size()                       ? ""
-                        : apart(entries[i].rate, entries[i + 1].rate) ? "the intervals do not overlap"
+    std::vector<IntervalRow> drawn;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const bool last = i + 1 == entries.size();
+      ranked.push_back({fmt::format("{}", i + 1), entries[i].name, text_of(entries[i].time),
+                        last                                          ? ""
+                        : apart(entries[i].time, entries[i + 1].time) ? "the intervals do not overlap"
                                                                       : "the intervals overlap"});
-    page.paragraph(fmt::format("Strategies of the {}, over all of the other side:", side));
-    page.table({"rank", "strategy", "caught", "against the next"}, ranked);
+      drawn.push_back(estimate_row(entries[i].name, entries[i].time, predators ? 0 : 1));
+    }
+    page.paragraph(fmt::format(
+        "Strategies of the {}, the best first: time until the catch or the end, over all strategies of the other side.", side));
+    page.table({"rank", "strategy", "time [s], mean and Student's interval", "against the next"}, ranked);
+    page.figure(draw::draw_intervals(drawn, {.title = fmt::format("Strategies of the {}", side), .x_label = "s", .range = {}, .mark = {}}),
+                "Mean time until the catch, or the end, with Student's 95 % intervals.");
   };
   ranking("predators", hunts, true);
   ranking("prey", escapes, false);

@@ -10,7 +10,7 @@ namespace sandlot::app {
 namespace {
 
 constexpr Paper all[] = {
-    {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 20, make_cooperation},
+    {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 19, make_cooperation},
 };
 
 }  // namespace

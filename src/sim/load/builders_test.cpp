@@ -160,6 +160,9 @@ TEST(Builders, WeighWhatTheirParametersSay) {
       {"hexapod?mass=2", 2},
       {"hexapod?mass=2&knees=true", 2},
       {"diff_robot?mass=8", 8},
+      {"blade_robot?mass=3", 3},
+      {"block?mass=0.7", 0.7},
+      {"block?mass=0.7&form=cylinder", 0.7},
       {"skid_robot?mass=8", 8},
       {"ackermann_robot?mass=8", 8},
       {"omni_robot?mass=8&wheels=4", 8 + 4 * 0.08},  // rollers: 2 fifths of a fortieth per wheel
@@ -244,6 +247,7 @@ TEST(Builders, RefuseImpossibleParametersByTheirKey) {
   EXPECT_THAT(refusal("box_pile?smallest=0.5"), HasSubstr("/smallest: "));
   EXPECT_THAT(refusal("box_pile?length=0.2"), HasSubstr("/largest: "));
   EXPECT_THAT(refusal("diff_robot?track=0.1"), HasSubstr("/track: "));
+  EXPECT_THAT(refusal("blade_robot?radius=0.04"), HasSubstr("/radius: "));
   EXPECT_THAT(refusal("skid_robot?wheelbase=0.1"), HasSubstr("/wheelbase: "));
   EXPECT_THAT(refusal("ackermann_robot?track=0.2"), HasSubstr("/track: "));
   EXPECT_THAT(refusal("omni_robot?wheels=16"), HasSubstr("/radius: the wheels would touch"));

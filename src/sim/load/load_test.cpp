@@ -194,6 +194,19 @@ TEST_F(Files, AGroupInAGridIsCentredAndSpaced) {
   EXPECT_NEAR(norm(setup->instances[2].X_WM.p - setup->instances[1].X_WM.p), 2, 1e-12);
 }
 
+TEST_F(Files, AnEmptyGroupIsLeftOutAndMovesNobody) {
+  for (const std::string place : {"pose: [1, 2, 0]", "distribution: {grid: {spacing: 1}}",
+                                  "distribution: {uniform: {width: 3, height: 3}}"}) {
+    const std::string others = "- {name: b, model: models/bot, count: 3, distribution: {uniform: {width: 9, height: 9}}}\n";
+    const auto with = load_text("robots:\n- {name: a, model: models/bot, count: 0, " + place + "}\n" + others);
+    const auto without = load_text("robots:\n" + others);
+    ASSERT_TRUE(with) << with.error().text();
+    ASSERT_EQ(with->instances.size(), 4u) << place;
+    for (std::size_t i = 1; i < 4; ++i)
+      EXPECT_EQ(with->instances[i].X_WM.p, without->instances[i].X_WM.p) << place;
+  }
+}
+
 TEST_F(Files, ARandomGroupKeepsItsClearanceAndDependsOnTheSeedAlone) {
   const std::string robots =
       "robots: [{name: a, model: models/bot, count: 40, distribution: {uniform: {centre: [0, 0, 0], width: "

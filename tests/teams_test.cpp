@@ -1,0 +1,132 @@
+/// Scenarios of teams, by the command: they end as they should, a law gives one hash as part of Sandlot and as a plugin, and
+/// `reproduce` writes one page that needs no network.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "command.h"
+
+namespace sandlot::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Teams, TwoPushersClearTheYardOnBothEngines) {
+  for (const char* const engine : {"planar", "rigid"}) {
+    const auto s = summary_of(std::string("scenarios/clearing.yaml --set boxes=2 --set physics=") + engine);
+    ASSERT_FALSE(s.contains("failed")) << s["failed"];
+    EXPECT_EQ(s["criterion"], 1.0) << engine;
+    EXPECT_EQ(s["success"], true) << engine;
+    EXPECT_LT(s["end_time"], 120) << engine;
+  }
+}
+
+TEST(Teams, AGroupMayBeEmptyAndMovesNothingElse) {
+  const auto without = summary_of("scenarios/clearing.yaml --duration 100ms");
+  const auto with = summary_of("scenarios/clearing.yaml --duration 100ms --set disturbers=1");
+  ASSERT_FALSE(without.contains("failed")) << without["failed"];
+  ASSERT_EQ(without["robots"].size(), 2u);
+  ASSERT_EQ(with["robots"].size(), 3u);
+  EXPECT_EQ(without["sub_hashes"]["box1"], with["sub_hashes"]["box1"]);
+}
+
+TEST(Teams, TheClearingLawIsTheSameAsAPlugin) {
+  // Its text: all lines but those that name the place it is in.
+  const auto same = [](const std::string& file) {
+    std::string ours = read_file("src/controllers/clearing/" + file);
+    ours = std::regex_replace(ours, std::regex("#include \"controllers/clearing/clearing.h\""), "#include \"clearing.h\"");
+    ours = std::regex_replace(ours, std::regex("#include \"control/controller.h\""), "#include <sandlot/control.h>");
+    ours = std::regex_replace(ours, std::regex("\n#include \"(control/steering|base/math).h\""), "");
+    ours = std::regex_replace(ours, std::regex("namespace sandlot::controllers::clearing \\{"),
+                              "namespace my_clearing {\n\nusing namespace sandlot;");
+    ours = std::regex_replace(ours, std::regex("namespace sandlot::controllers::clearing"), "namespace my_clearing");
+    ours = std::regex_replace(ours, std::regex("= clearing::"), "= my_clearing::");
+    ours = std::regex_replace(ours, std::regex("\n\n\n"), "\n\n");
+    EXPECT_EQ(ours, read_file("examples/clearing_plugin/" + file));
+  };
+  same("clearing.h");
+  same("clearing.cpp");
+
+  const std::string plugins = (fs::absolute(SANDLOT_BIN).parent_path() / "test_plugins").string();
+  const std::string text = read_file("examples/clearing_plugin/clearing.yaml");
+  const TestFolder scratch;
+  const auto run = [&](const std::string& kind) {
+    return summary_of(scratch.write(kind + ".yaml", std::regex_replace(text, std::regex("kind: my_clearing"), "kind: " + kind)) +
+                      " --path " + plugins);
+  };
+  const auto plugin = run("my_clearing"), built_in = run("clearing");
+  ASSERT_FALSE(plugin.contains("failed")) << plugin["failed"];
+  ASSERT_FALSE(built_in.contains("failed")) << built_in["failed"];
+  EXPECT_EQ(plugin["success"], true);
+  EXPECT_EQ(plugin["state_hash"], built_in["state_hash"]);
+}
+
+TEST(Teams, PredatorsCatchAPreyThatFlees) {
+  const auto s = summary_of("scenarios/predator_prey.yaml");
+  ASSERT_FALSE(s.contains("failed")) << s["failed"];
+  EXPECT_EQ(s["success"], true);
+  EXPECT_EQ(s["criterion"], s["end_time"]);
+}
+
+TEST(Teams, TheBeamArrivesByBidsAndByOneProgram) {
+  for (const char* const control : {"bids", "central"}) {
+    const auto s = summary_of(std::string("scenarios/transport.yaml --set control=") + control);
+    ASSERT_FALSE(s.contains("failed")) << s["failed"];
+    EXPECT_EQ(s["success"], true) << control;
+  }
+}
+
+TEST(Teams, OneRobotAloneCannotMoveTheBeam) {
+  const auto s = summary_of(
+      "scenarios/transport.yaml --duration 20s --set 'robots.hauler.count=1' --set 'vars.own={bids: {kind: carrier, load: beam, "
+      "destination: [1.8, 0], posts: [0.25], radio: radio}}' --stop-when 'abs(beam.pose.x + 0.8) > 2 cm'");
+  ASSERT_FALSE(s.contains("failed")) << s["failed"];
+  EXPECT_EQ(s["end_time"], 20.0);
+}
+
+TEST(Teams, ForagersBringSomeItemsHomeAndNoneIsEmpty) {
+  const auto s = summary_of("scenarios/foraging.yaml --set items=4");
+  ASSERT_FALSE(s.contains("failed")) << s["failed"];
+  EXPECT_EQ(s["success"], true);
+}
+
+TEST(Teams, FootballersScore) {
+  const auto s = summary_of("scenarios/football.yaml --duration 60s");
+  ASSERT_FALSE(s.contains("failed")) << s["failed"];
+  EXPECT_EQ(s["criteria"].size(), 2u);
+}
+
+TEST(Reproduce, NamesWhatItDoesNotKnow) {
+  const TestFolder scratch;
+  const Printed wrong = sandlot("reproduce cooperatoin --out " + scratch.file("out"));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.out, HasSubstr("there is no paper 'cooperatoin'; did you mean 'cooperation'?"));
+  EXPECT_EQ(sandlot("reproduce cooperation --repeat 0 --out " + scratch.file("out")).exit_code, 2);
+  EXPECT_EQ(sandlot("reproduce cooperation --out /dev/null/out").exit_code, 2);
+  EXPECT_EQ(sandlot("reproduce cooperation").exit_code, 2);
+}
+
+TEST(LongReproduce, CooperationIsOnePageWithoutANetwork) {
+  const TestFolder scratch;
+  const Printed made = sandlot("reproduce cooperation --repeat 2 --out " + scratch.file("out"));
+  ASSERT_EQ(made.exit_code, 0) << made.out;
+  const std::string html = read_file(scratch.file("out/index.html"));
+  for (const char* const text : {"rigid, disturber, no radio", "lead / hide", "bids by radio", "the paper", "<svg"})
+    EXPECT_THAT(html, HasSubstr(text));
+  for (const char* const text : {"src=\"http", "href=\"http", "<script", "<link", "drawing.svg"})
+    EXPECT_THAT(html, Not(HasSubstr(text)));
+  for (const char* const file : {"clearing.csv", "predator_prey.csv", "transport.csv"})
+    EXPECT_THAT(read_file(scratch.file(std::string("out/") + file)), HasSubstr("condition,seed,criterion,success"));
+  EXPECT_FALSE(fs::exists(scratch.file("out/drawing.svg")));
+}
+
+}  // namespace
+}  // namespace sandlot::test
