@@ -1,5 +1,5 @@
 #pragma once
-/// Clearing: pushes scattered objects into an area, one after the other, alone or with team-mates that say which one they take.
+/// Clearing: pushes scattered objects into an area, one after the other, alone or in agreement with team-mates.
 ///
 /// Reads    an ObjectPoseArray in the frame of the world, in which the robot finds itself by its name, objects by their label
 ///          and others by what is left (overhead_camera); with `radio`, a RadioReceptionArray.
@@ -52,7 +52,7 @@ struct Spec {
     visit(Field{"camera", "", "Camera above the field to use; empty: the only one.", 0, 0, Field::none, 1000},
           s.camera);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
-    visit(Field{"radio", "", "Radio by which team-mates hear of the chosen object; empty: none.", 0, 0,
+    visit(Field{"radio", "", "Radio that sends the chosen object to team-mates; empty: none.", 0, 0,
                 Field::none, 1000},
           s.radio);
     visit(Field{"objects", "", "Label of the objects to move.", 0, 0, Field::none, 100}, s.objects);
@@ -103,13 +103,13 @@ inline std::span<const EnumName<Phase>> enum_names(Phase) {
 struct Claim {
   std::string robot, object;
   std::uint32_t bid_mm = 0;
-  Time heard;
+  Time received;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"robot", "", "Name of the team-mate."}, s.robot);
     visit(Field{"object", "", "Object that it has chosen; empty: none."}, s.object);
     visit(Field{"bid", "mm", "Distance of the team-mate from the object; 0: it pushes it."}, s.bid_mm);
-    visit(Field{"heard", "s", "Time of the message."}, s.heard);
+    visit(Field{"received", "s", "Time of the message."}, s.received);
   }
 };
 
@@ -170,8 +170,8 @@ struct Clearing {
     const Pose& X_WB;
     Stream random;
   };
-  void hear(const Observation& obs, const msg::ObjectPoseArray& world);
-  void tell(const View& view, Command& cmd);
+  void receive(const Observation& obs, const msg::ObjectPoseArray& world);
+  void send(const View& view, Command& cmd);
   Vec3 destination() const { return {spec.destination_m[0], spec.destination_m[1], 0}; }
   double outside_m(const msg::ObjectPose& object) const;
   std::uint32_t bid_mm(const msg::ObjectPose& object, const View& view) const;

@@ -74,7 +74,7 @@ struct Member {
   std::int32_t post = no_post;
   bool ready = false;
   std::vector<double> bids;  ///< per post
-  Time heard;
+  Time received;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"robot", "", "Name of the robot."}, s.robot);
@@ -84,7 +84,7 @@ struct Member {
     visit(Field{"post", "1", "Post that it has taken; -1: none."}, s.post);
     visit(Field{"ready", "", "Whether it stands at its post."}, s.ready);
     visit(Field{"bids", "m", "Bids for the posts."}, s.bids);
-    visit(Field{"heard", "s", "Time of its message."}, s.heard);
+    visit(Field{"received", "s", "Time of its message."}, s.received);
   }
 };
 

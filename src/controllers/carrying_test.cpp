@@ -87,7 +87,7 @@ TEST(Carrying, TheLoadOfARobotIsTheSpeedThatItDoesNotReach) {
 using Rig = FieldRig<carrier::Carrier>;
 carrier::Spec spec() { return {.keys = keys()}; }
 
-TEST(Carrier, TellsWhatItHasAndBids) {
+TEST(Carrier, SendsWhatItHasAndBids) {
   Rig rig(spec());
   rig.put("beam", "beam", 0, 0);
   rig.put("me", "hauler", -1.25, 0.5);

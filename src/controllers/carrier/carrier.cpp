@@ -78,27 +78,27 @@ bool Carrier::fits() const {
          state.own.post >= no_post && state.own.post < post_count;
 }
 
-void Carrier::hear(const Observation& obs) {
+void Carrier::receive(const Observation& obs) {
   const auto heard = obs.get(receiver);
   if (!heard.valid || !heard.fresh) return;
   for (const msg::RadioReception& packet : heard.message.packets) {
     if (packet.from == name) continue;
     auto known = std::find_if(state.others.begin(), state.others.end(),
                               [&](const Member& other) { return other.robot == packet.from; });
-    Member told;
-    if (!parse(packet.data, spec.keys.posts_m.size(), told)) continue;
+    Member sent;
+    if (!parse(packet.data, spec.keys.posts_m.size(), sent)) continue;
     if (known == state.others.end()) {
       if (state.others.size() >= most_robots) continue;
       state.others.emplace_back();
       known = state.others.end() - 1;
     }
-    told.robot = packet.from;
-    told.heard = obs.now();
-    *known = std::move(told);
+    sent.robot = packet.from;
+    sent.received = obs.now();
+    *known = std::move(sent);
   }
 }
 
-void Carrier::tell(const Observation& obs, Command& cmd) {
+void Carrier::send(const Observation& obs, Command& cmd) {
   if (obs.now() < state.resend) return;
   msg::RadioPacket packet;
   const Member& own = state.own;
@@ -114,7 +114,7 @@ void Carrier::tell(const Observation& obs, Command& cmd) {
 }
 
 void Carrier::step(const Observation& obs, Command& cmd) {
-  hear(obs);
+  receive(obs);
   const auto seen = obs.get(camera);
   const msg::ObjectPose* const self = seen.valid ? steering::find(seen.message, name) : nullptr;
   const msg::ObjectPose* const beam = seen.valid ? steering::find(seen.message, spec.keys.load) : nullptr;
@@ -133,13 +133,13 @@ void Carrier::step(const Observation& obs, Command& cmd) {
   members.clear();
   members.push_back(&own);
   for (const Member& other : state.others)
-    if (obs.now() - other.heard <= forget) members.push_back(&other);
+    if (obs.now() - other.received <= forget) members.push_back(&other);
   settle(members, spec.keys.posts_m.size(), posts);
   if (posts[0] != own.post) ++state.settled;
   own.post = posts[0];
   own.ready = own.post != no_post &&
               (state.pushing || at_post(spec.keys, load, self->pose, static_cast<std::size_t>(own.post)));
-  // All posts are manned: by those who say so of themselves.
+  // All posts are manned: as their robots report.
   std::size_t manned = 0;
   for (std::size_t k = 0; k < spec.keys.posts_m.size(); ++k)
     manned += std::any_of(members.begin(), members.end(), [&](const Member* member) {
@@ -150,7 +150,7 @@ void Carrier::step(const Observation& obs, Command& cmd) {
                                            discs);
   state.effort.ordered_mps = order.linear.x;
   cmd.set(drive, order);
-  tell(obs, cmd);
+  send(obs, cmd);
 }
 
 extern const ControllerKind kind;

@@ -1,13 +1,13 @@
 #pragma once
-/// Carrier: pushes a long load with team-mates; each decides for itself, by what all tell each other.
+/// Carrier: pushes a long load with team-mates; each decides for itself, by what all send each other.
 ///
 /// Reads    an ObjectPoseArray in the frame of the world, in which the robot finds itself and the load by their names
 ///          (overhead_camera); a RadioReceptionArray; with `battery`, a BatteryState.
 /// Orders   a Twist for a drive that can turn on the spot, and a RadioPacket.
 /// Method   controllers/carrying.h. Each sends charge, health, load, its post, whether it stands there, and a bid for each post:
 ///          "87 100 12 0 1 1250 2480" [%, %, %, post, 0 or 1, mm ...]. Each settles all roles by the same rule from what it has
-///          heard; who has not been heard for a second takes no part.
-/// Limits   for a moment two may think that they have one post, until they have heard each other. Health is 100 %.
+///          received; who has sent nothing for a second takes no part.
+/// Limits   for a moment two may think that they have one post, until their messages have arrived. Health is 100 %.
 /// Cost     robots times posts squared, no allocation once its lists have grown.
 /// Errors   no camera, drive, radio or battery of these names.
 /// Source   the negotiation of team-mates about their resources: Simulator for cooperation and competition of mobile robots,
@@ -35,12 +35,12 @@ struct State {
   std::vector<carrying::Member> others;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"own", "", "What it tells of itself."}, s.own);
+    visit(Field{"own", "", "Own values, as they are sent."}, s.own);
     visit(Field{"effort", "", "Its motion, compared to what was ordered."}, s.effort);
     visit(Field{"resend", "s", "Time of the next message."}, s.resend);
     visit(Field{"pushing", "", "Whether it pushes."}, s.pushing);
     visit(Field{"settled", "1", "Times that its post has changed."}, s.settled);
-    visit(Field{"others", "", "What the others have told of themselves."}, s.others);
+    visit(Field{"others", "", "Values received from the others."}, s.others);
   }
 };
 
@@ -65,8 +65,8 @@ struct Carrier {
   bool fits() const;
 
  private:
-  void hear(const Observation& obs);
-  void tell(const Observation& obs, Command& cmd);
+  void receive(const Observation& obs);
+  void send(const Observation& obs, Command& cmd);
 };
 
 extern const ControllerKind kind;

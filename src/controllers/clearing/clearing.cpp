@@ -48,7 +48,7 @@ Status Clearing::init(const Description& robot) {
   return {};
 }
 
-void Clearing::hear(const Observation& obs, const msg::ObjectPoseArray& world) {
+void Clearing::receive(const Observation& obs, const msg::ObjectPoseArray& world) {
   const auto heard = obs.get(receiver);
   if (!heard.valid || !heard.fresh) return;
   for (const msg::RadioReception& packet : heard.message.packets) {
@@ -65,12 +65,12 @@ void Clearing::hear(const Observation& obs, const msg::ObjectPoseArray& world) {
     }
     known->object.assign(object);
     known->bid_mm = bid_mm;
-    known->heard = obs.now();
+    known->received = obs.now();
   }
 }
 
 /// Sends the choice when it is another, and now and then.
-void Clearing::tell(const View& view, Command& cmd) {
+void Clearing::send(const View& view, Command& cmd) {
   if (state.object == state.sent_object && view.now < state.resend) return;
   std::array<char, 16> digits{};
   const msg::ObjectPose* const object = steering::find(view.world, state.object);
@@ -101,7 +101,7 @@ std::uint32_t Clearing::bid_mm(const msg::ObjectPose& object, const View& view) 
 /// Whether a team-mate has the better claim.
 bool Clearing::taken(const std::string& object, std::uint32_t bid_mm, Time now) const {
   return std::any_of(state.claims.begin(), state.claims.end(), [&](const Claim& claim) {
-    return claim.object == object && now - claim.heard < forget &&
+    return claim.object == object && now - claim.received < forget &&
            (claim.bid_mm < bid_mm || (claim.bid_mm == bid_mm && claim.robot < name));
   });
 }
@@ -244,9 +244,9 @@ void Clearing::step(const Observation& obs, Command& cmd) {
   const msg::ObjectPose* const self = seen.valid ? steering::find(seen.message, name) : nullptr;
   if (!self) return cmd.set(drive, msg::Twist());
   const View view{obs.now(), seen.message, self->pose, obs.random()};
-  if (!spec.radio.empty()) hear(obs, seen.message);
+  if (!spec.radio.empty()) receive(obs, seen.message);
   cmd.set(drive, decide(view));
-  if (!spec.radio.empty()) tell(view, cmd);
+  if (!spec.radio.empty()) send(view, cmd);
 }
 
 }  // namespace sandlot::controllers::clearing
