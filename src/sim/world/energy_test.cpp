@@ -285,7 +285,7 @@ model::Setup busy(const char* engine) {
 void run(Simulation& simulation, std::uint64_t until) {
   while (simulation.tick_index() < until) {
     const std::uint64_t tick = simulation.tick_index();
-    if (simulation.find_entity("rover2")->devices.size() > 5 && tick % 40 == 2)
+    if (std::as_const(simulation).find_entity("rover2")->devices.size() > 5 && tick % 40 == 2)
       for (const char* joint : {"left_wheel_joint", "right_wheel_joint"})
         simulation.submit(CommandRequest{std::string("rover2/") + joint, msg::Float64::ros_type,
                                          command_bytes(msg::Float64{tick % 80 < 40 ? 8.0 : -3.0})});
@@ -331,7 +331,7 @@ TEST(Energy, HasNoBytesInWorldsWithoutBatteries) {
   // The bytes of a device: with a battery beside it 4 numbers more, and those of its keys.
   const auto size_of = [](model::Setup setup) {
     const auto simulation = build(std::move(setup));
-    for (const auto& device : simulation->find_entity("robot1")->devices)
+    for (const auto& device : std::as_const(*simulation).find_entity("robot1")->devices)
       if (device->decl.name == "mover") return device->energy ? 1 : 0;
     return -1;
   };
