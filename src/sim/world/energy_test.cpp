@@ -454,6 +454,75 @@ TEST(EnergyRule, StopsAnEmptyRobotUntilItIsCharged) {
   EXPECT_GT(speed_of(*simulation), 0.9);
 }
 
+// ---------------------------------------------------------------------------------------------------------- properties
+
+model::Setup fuelled() {
+  model::Setup setup = movers({}, 2);
+  setup.instances.back().properties = {{"fuel", "kg", 5, 0, 10}, {"points", "1", 0}};
+  setup.values.push_back({"left", "robot2.fuel / 2", {}});
+  return setup;
+}
+
+TEST(Property, IsAValueSetWithinItsRangeAndState) {
+  const auto simulation = build(fuelled());
+  EXPECT_EQ(value(*simulation, "robot2.fuel"), 5);
+  EXPECT_EQ(NamedValue::find(*simulation, "robot2.fuel")->unit(), "kg");
+  EXPECT_EQ(value(*simulation, "left"), 2.5);
+  EXPECT_FALSE(NamedValue::find(*simulation, "robot1.fuel"));
+  const std::uint64_t before = by_path(*simulation)["robot2"];
+  simulation->submit(ParameterRequest{"robot2", "fuel", Node::scalar("3000 g")});
+  simulation->submit(ParameterRequest{"robot2", "fuel", Node::scalar("11")});
+  simulation->submit(ParameterRequest{"robot1", "fuel", Node::scalar("1")});
+  simulation->submit(ParameterRequest{"robot2", "points", Node::scalar("nan")});
+  advance(*simulation, 1);
+  EXPECT_TRUE(simulation->outcomes()[0].status);
+  EXPECT_THAT(simulation->outcomes()[1].status.error().text(), HasSubstr("/fuel: must be in [0, 10]"));
+  EXPECT_FALSE(simulation->outcomes()[2].status);
+  EXPECT_FALSE(simulation->outcomes()[3].status);
+  EXPECT_EQ(value(*simulation, "robot2.fuel"), 3);
+  EXPECT_NE(by_path(*simulation)["robot2"], before);
+  const auto restored = again(*simulation);
+  EXPECT_EQ(value(*restored, "robot2.fuel"), 3);
+  EXPECT_EQ(restored->state_hash(), simulation->state_hash());
+  // A copy that is spawned carries its own.
+  model::Instance copy = std::as_const(*simulation).find_entity("robot2")->declared();
+  copy.name = "copy";
+  copy.X_WM.p.x = 9;
+  simulation->submit(SpawnRequest{std::move(copy)});
+  advance(*simulation, 1);
+  simulation->submit(ParameterRequest{"copy", "fuel", Node::scalar("1")});
+  advance(*simulation, 1);
+  EXPECT_EQ(value(*simulation, "copy.fuel"), 1);
+  EXPECT_EQ(value(*simulation, "robot2.fuel"), 3);
+}
+
+TEST(Property, OfHealthIsLoweredByImpactsAndItsEndIsThatOfTheActuators) {
+  // A puck of 2 kg at 3 m/s meets a wall: 6 Ns, of which 4 Ns are damage; 10 points per Ns.
+  model::Setup setup = movers({});
+  setup.instances.push_back(placed("wall", one_shape("wall", Box{{0.2, 4, 1}}, 0), {{1, 0, 0.5}, {}}));
+  setup.instances[1].properties = {{"health", "1", 100, 0, 100}};
+  model::ElementDecl rule;
+  rule.name = rule.kind = "impact";
+  rule.config = map({{"threshold", "2"}, {"property", "health"}, {"per_damage", "10"}});
+  setup.rules.push_back(rule);
+  const auto simulation = build(setup);
+  drive(*simulation, 3);
+  advance(*simulation, 40);
+  const double damage_Ns = value(*simulation, "rules/impact.robots[0].sum");
+  EXPECT_GT(damage_Ns, 3.9);
+  EXPECT_NEAR(value(*simulation, "robot1.health"), std::max(0.0, 100 - 10 * damage_Ns), 1e-9);
+  setup.rules.back().config.set("per_damage", Node::scalar("50"));
+  const auto broken = build(setup);
+  drive(*broken, 3);
+  advance(*broken, 45);
+  EXPECT_EQ(value(*broken, "robot1.health"), 0);
+  drive(*broken, -1);
+  advance(*broken, 1);
+  EXPECT_FALSE(broken->outcomes().back().status) << "the drive has failed";
+  setup.rules.back().config.set("property", Node::scalar("helth"));
+  EXPECT_THAT(error_of(setup), HasSubstr("did you mean 'health'?"));
+}
+
 // -------------------------------------------------------------------------------------------------------------- errors
 
 TEST(Energy, NamesWhatIsWrong) {
