@@ -221,6 +221,20 @@ robots:
     properties: {health: 3}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {voice: hello}}, {at: 0.29 s, orders: {voice: again}}]}
 )"},
+    {"radios", "planar", R"(
+media:
+  - {kind: radio, model: log_distance, access: csma, bandwidth: 5 kbit/s, fading: 2, modulation: fsk, drop: 0.1, delay: 5 ms}
+  - {kind: infrared}
+robots:
+  - name: one
+    model: scout
+    devices:
+      radio: {kind: radio, levels: [packets, bits]}
+      light: {kind: infrared}
+      buoy: {kind: range_bearing, beacon_rate: 20, range_noise: {std: 0.1}}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {radio: hello}}, {at: 0.29 s, orders: {radio: again, light: on}}]}
+  - {name: two, model: scout, pose: [0.5, 0, 0], devices: {radio: {kind: radio}, buoy: {kind: range_bearing}}}
+)"},
     {"shapes", "rigid", R"(
 things: [{name: ball, model: msl_ball, pose: [0, 0, 0.5]}]
 )"},

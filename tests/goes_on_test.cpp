@@ -128,6 +128,32 @@ events:
 )",
      .add = "copy of rover1 as late 3 3",
      .more = "set media/breeze.velocity [4, 0, 0]"},
+    {.name = "Radio",
+     .text = R"(physics: planar
+time: {step: 10 ms, control_interval: 4, stop: 2 s}
+media:
+  - {kind: radio, model: log_distance, access: csma, bandwidth: 2 kbit/s, shadowing: 4, fading: 2, modulation: fsk,
+     bit_error_rate: 0.002, drop: 0.1, capture: 3, delay: 15 ms}
+  - {kind: infrared}
+robots:
+  - name: rover
+    count: 4
+    model: @rover
+    distribution: {uniform: {width: 4, height: 4, clearance: 0.3}}
+    devices:
+      radio: {kind: radio, levels: [packets, bits]}
+      light: {kind: infrared, half_angle: 90 deg, acceptance: 180 deg}
+      buoy: {kind: range_bearing, medium: radio, beacon_rate: 3, range_noise: {std: 5 cm}}
+    controllers:
+      - {kind: wander}
+      - {name: caller, kind: sequence, repeat: 0.3 s, steps: [{at: 0.05 s, orders: {radio: Here, light: There}}]}
+events:
+  - {name: delivered, when: media/radio.delivered > 5}
+  - {name: damaged, when: media/radio.damaged > 0}
+  - {name: lit, when: media/infrared.delivered > 3}
+)",
+     .add = "copy of rover1 as late 3 3",
+     .more = "set media/radio.drop 0.5"},
 };
 
 class GoesOn : public testing::TestWithParam<Scenario> {

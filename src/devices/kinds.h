@@ -22,6 +22,7 @@
   device(ground_sensor)         \
   device(ground_truth)          \
   device(imu)                   \
+  device(infrared)              \
   device(joint_motor)           \
   device(joint_state)           \
   device(joint_trajectory)      \
@@ -36,6 +37,8 @@
   device(overhead_camera)       \
   device(pan_tilt)              \
   device(proximity)             \
+  device(radio)                 \
+  device(range_bearing)         \
   device(range_finder)          \
   device(rgbd_camera)           \
   device(segmentation_camera)   \

@@ -3,5 +3,7 @@
 // clang-format off
 #define SANDLOT_MARKERS(marker) \
   marker(disc)                  \
+  marker(grid)                  \
+  marker(line)                  \
   marker(polygon)
 // clang-format on

@@ -7,9 +7,11 @@
 ///     Spec spec; State state;
 ///     Status init(const ElementBuild&);              // checks what ranges alone cannot
 ///     bool contains(Vec3 point_W) const;             // seen from above
-///     std::vector<Vec3> outline_W() const;           // corners, counter-clockwise, for drawing
+///     bool meets(const RoundedHull& hull) const;     // likewise
+///     std::vector<std::vector<Vec3>> outlines_W() const;    // simple polygons that cover the area, for drawing
 ///   };
-/// and `const MarkerKind kind = make_marker<Disc>({...})`. A Spec has a member `color` (color_field).
+/// and `const MarkerKind kind = make_marker<Disc>({...})`. A Spec has the members `color` and `visible` (color_field,
+/// visible_field).
 #include <array>
 #include <memory>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "base/element.h"
 #include "elements/world_view.h"
 #include "geometry/color.h"
+#include "geometry/rounded_hull.h"
 
 namespace sandlot {
 
@@ -27,9 +30,14 @@ class Marker : public Element {
   virtual Status init(const ElementBuild& build) = 0;
   /// Whether a point lies above or below the area.
   virtual bool contains(Vec3 point_W) const = 0;
-  /// Corners of the area, counter-clockwise, for drawing; a curve is approximated.
-  virtual std::vector<Vec3> outline_W() const = 0;
+  /// Whether an outline, seen from above, shares a point with the area.
+  virtual bool meets(const RoundedHull& hull) const = 0;
+  /// Simple polygons that together cover the area, each counter-clockwise, for drawing; a curve is approximated. They may
+  /// overlap.
+  virtual std::vector<std::vector<Vec3>> outlines_W() const = 0;
   virtual Color color() const = 0;
+  /// Whether the area is painted on the ground, for cameras and sensors of the ground.
+  virtual bool visible() const = 0;
 };
 
 struct MarkerKind {
@@ -48,7 +56,9 @@ class MarkerAdapter final : public ElementAdapter<Marker, M> {
     return this->element_.init(build);
   }
   bool contains(Vec3 point_W) const override { return this->element_.contains(point_W); }
-  std::vector<Vec3> outline_W() const override { return this->element_.outline_W(); }
+  bool meets(const RoundedHull& hull) const override { return this->element_.meets(hull); }
+  std::vector<std::vector<Vec3>> outlines_W() const override { return this->element_.outlines_W(); }
+  bool visible() const override { return this->element_.spec.visible; }
   Color color() const override {
     const auto& [r, g, b] = this->element_.spec.color;
     return {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b), 1};
@@ -62,9 +72,11 @@ constexpr MarkerKind make_marker(MarkerKind kind) {
   return kind;
 }
 
-/// Key that every kind of marker has.
-inline constexpr Field color_field{"color", "",
-                                   "Colour of the area on the page: red, green and blue, each 0 to 1.", 0, 1};
+/// Keys that every kind of marker has.
+inline constexpr Field color_field{"color", "", "Colour of the area: red, green and blue, each 0 to 1.", 0,
+                                   1};
+inline constexpr Field visible_field{
+    "visible", "", "Whether the area is painted on the ground, where cameras and ground sensors see it."};
 
 std::span<const MarkerKind* const> marker_kinds();
 

@@ -4,6 +4,7 @@
 /// A device asks for one while it is built (DeviceBuild::receive) and empties it when it senses; so rates, failures, errors and
 /// levels work on a receiver as on any sensor. The inbox is State of the device.
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,9 @@ class Inbox {
   /// @param medium  index in the world's list
   Inbox(std::uint32_t medium, std::size_t limit) : medium_(medium), limit_(limit) {}
   std::uint32_t medium() const { return medium_; }
+  /// Restricts what media deliver to one channel. No State: the device tunes again in every actuate phase.
+  void tune(std::int32_t channel) { channel_ = channel; }
+  bool is_tuned_to(std::int32_t channel) const { return !channel_ || *channel_ == channel; }
 
   /// For media. A full inbox loses what comes.
   void put(Delivery delivery) {
@@ -67,6 +71,7 @@ class Inbox {
   std::size_t limit_;
   std::vector<Delivery> items_;
   std::uint64_t arrived_ = 0, lost_ = 0;
+  std::optional<std::int32_t> channel_;  ///< empty: all
 };
 
 }  // namespace sandlot

@@ -27,7 +27,7 @@ struct RadioReception {
   double rssi = 0;
   std::vector<std::uint8_t> data;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"stamp", "s", "Time at which its last bit arrived."}, s.stamp);
+    visit(Field{"stamp", "s", "Time of arrival: the last bit, and the delay of the medium."}, s.stamp);
     visit(Field{"from", "", "Name of the robot that sent it."}, s.from);
     visit(Field{"to", "", "Name of the robot or team that it is for; empty: all."}, s.to);
     visit(Field{"channel", "1", "Channel on which it came."}, s.channel);

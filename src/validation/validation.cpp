@@ -17,6 +17,7 @@ const std::vector<Validation>& validations() {
        drives},
       {"switching", "A drive whose level is switched while it moves.", switching},
       {"odometry", "Wheel odometry by least squares and by Kabsch, with and without slip.", odometry},
+      {"radio", "Received power, air time, bit errors, ALOHA and CSMA.", radio},
       {"friction", "Inclines, sliding, rolling, pushing, piles at rest.", friction},
   };
   return all;

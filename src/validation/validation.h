@@ -61,6 +61,7 @@ Section friction();   ///< inclines, sliding, rolling, piles at rest
 Section drives();     ///< each drive at each level on each engine
 Section odometry();   ///< of wheels that slip
 Section switching();  ///< of a drive's level, on the way
+Section radio();      ///< propagation, times, errors and access of the medium
 Section surfaces();   ///< substances, belts, skins, zones
 
 }  // namespace sandlot::validation

@@ -267,8 +267,10 @@ TEST(World, HasMarkersWithTheirCornersAndColours) {
   config.set("color", numbers({"1", "0.5", "0"}));
   setup.markers.push_back({"goal", "polygon", config, {}});
   const Json markers = Json::parse(writer.write(*build(setup), 2))["markers"];
-  EXPECT_EQ(markers,
-            Json::parse(R"([{"name":"goal","color":[1,0.5,0,1],"corners":[[2,0,0],[0,1,0],[0,0,0]]}])"));
+  EXPECT_EQ(
+      markers,
+      Json::parse(
+          R"([{"name":"goal","color":[1,0.5,0,1],"painted":false,"outlines":[[[2,0,0],[0,1,0],[0,0,0]]]}])"));
 }
 
 TEST(World, NumbersStayWhenTheWorldIsBuiltAnew) {

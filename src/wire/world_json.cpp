@@ -115,8 +115,12 @@ void write_marker(JsonWriter& w, const WorldElements::NamedMarker& each) {
   w.object([&] {
     w.key("name").text(each.name);
     write_color(w.key("color"), each.marker->color());
-    w.key("corners").list([&] {
-      for (const Vec3& corner : each.marker->outline_W()) write_vector(w, corner);
+    w.key("painted").flag(each.marker->visible());
+    w.key("outlines").list([&] {
+      for (const std::vector<Vec3>& outline : each.marker->outlines_W())
+        w.list([&] {
+          for (const Vec3& corner : outline) write_vector(w, corner);
+        });
     });
   });
 }

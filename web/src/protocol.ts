@@ -172,7 +172,10 @@ export interface Kind {
 export interface Marker {
   name: string;
   color: [number, number, number, number];
-  corners: [number, number, number][];
+  /** Whether it is painted on the ground, where cameras see it. */
+  painted: boolean;
+  /** Simple polygons that together cover the area; they may overlap. */
+  outlines: [number, number, number][][];
 }
 
 /** A part of the ground with a surface of its own. */

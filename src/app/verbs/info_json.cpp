@@ -123,6 +123,8 @@ Json of(const Simulation::DeviceView& view, const Simulation::Device& device, co
     out["max_rate_hz"] = keys.max_rate_hz;
     out["delay_s"] = keys.delay_s;
     out["command_errors"] = keys.command_errors.has_value();
+    out["drain_W"] = keys.energy.drain_W;
+    out["drain_per_use_J"] = keys.energy.per_use_J;
   }
   if (!kind.services.empty()) {
     Json& services = out["services"] = Json::object();

@@ -165,6 +165,8 @@ std::string keys_text(const Simulation::Device& device) {
   if (spec.max_rate_hz > 0) out.push_back(fmt::format("at most {:.4g} Hz", spec.max_rate_hz));
   if (spec.delay_s > 0) out.push_back(fmt::format("delay {:.4g} s", spec.delay_s));
   if (spec.command_errors) out.emplace_back("errors of commands");
+  if (spec.energy.drain_W > 0) out.push_back(fmt::format("drain {:.4g} W", spec.energy.drain_W));
+  if (spec.energy.per_use_J > 0) out.push_back(fmt::format("{:.4g} J per use", spec.energy.per_use_J));
   if (spec.errors != 1) out.push_back(fmt::format("errors {:.4g}", spec.errors));
   return joined(out, ", ");
 }

@@ -23,6 +23,10 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
   };
   if (const auto to = robot.actuator<msg::String>(entry.key); to && entry.value.is_scalar())
     return Sequence::Order{at_s, Sequence::Words{*to, {entry.value.text()}}};
+  if (const auto to = robot.actuator<msg::RadioPacket>(entry.key); to && entry.value.is_scalar()) {
+    const std::string& text = entry.value.text();
+    return Sequence::Order{at_s, Sequence::Packet{*to, {"", {text.begin(), text.end()}}}};
+  }
   if (entry.value.is_scalar() && (entry.value.text() == "true" || entry.value.text() == "false")) {
     Sequence::Switch order{.value = {entry.value.text() == "true"}};
     auto to = robot.actuator<msg::Bool>(entry.key);
@@ -90,7 +94,7 @@ void Sequence::step(const Observation& obs, Command& cmd) {
 extern const ControllerKind kind;
 constinit const ControllerKind kind = make_controller<Sequence>({
     .name = "sequence",
-    .help = "Sends commands to joints, drives, grippers and voices at set times.",
+    .help = "Sends commands to joints, drives, grippers, voices and radios at set times.",
 });
 
 }  // namespace sandlot::controllers::sequence

@@ -109,6 +109,23 @@ TEST(Sequence, TrueAndFalseAreBool) {
   }
 }
 
+TEST(Sequence, ATextForARadioIsAPacketForAll) {
+  Sequence controller;
+  controller.spec.steps = list_of({step_at("0", {{"radio", "hello"}})});
+  Description robot = description();
+  robot.actuators.push_back({"radio", "send", msg::RadioPacket::ros_type, 3, {}});
+  ASSERT_TRUE(controller.init(robot));
+  const Observation obs(Time{}, {}, {}, Stream(1, 2, Purpose::controller, 3));
+  Command cmd;
+  controller.step(obs, cmd);
+  ASSERT_EQ(cmd.orders().size(), 1u);
+  ByteReader r(cmd.bytes(cmd.orders()[0]));
+  msg::RadioPacket packet;
+  read(r, packet);
+  EXPECT_EQ(packet.to, "");
+  EXPECT_EQ(std::string(packet.data.begin(), packet.data.end()), "hello");
+}
+
 TEST(Sequence, RefusesWhatItCannotOrder) {
   const auto complaint = [](std::vector<Node> steps) {
     Sequence controller;

@@ -186,7 +186,7 @@ Result<std::vector<model::PropertyDecl>> read_properties(const Node& node, const
     if (!is_identifier(entry.key) || entry.key.size() > 100)
       return Error{"'" + entry.key.substr(0, 60) + "' cannot be the name of a property",
                    "letters, digits and _, no digit first", entry.key_place, path};
-    for (const char* taken : {"pose", "twist", "errors", "links", "joints", "criterion"})
+    for (const char* taken : {"pose", "twist", "errors", "in", "overlaps", "links", "joints", "criterion"})
       if (entry.key == taken)
         return Error{"'" + entry.key + "' is an address of every robot", "give the property another name",
                      entry.key_place, path};

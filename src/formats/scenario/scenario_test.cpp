@@ -38,6 +38,21 @@ robots:
       laser: {kind: laser_scanner, beams: ${beams}, cost: $${5}}
 )";
 
+TEST(Scenario, ReadsPropertiesWithTheirUnits) {
+  const auto s = parse(
+      "version: 1\nrobots:\n- {name: a, model: m.sdf, properties: {fuel: {value: 500 g, unit: kg, max: 10}, "
+      "points: 3}}\n"
+      "things: [{name: b, model: m.sdf, properties: {food: 1}}]\n");
+  ASSERT_TRUE(s) << s.error().text();
+  const auto& properties = s->robots[0].instance.properties;
+  ASSERT_EQ(properties.size(), 2u);
+  EXPECT_EQ(properties[0].name, "fuel");
+  EXPECT_EQ(properties[0].unit, "kg");
+  EXPECT_EQ(properties[0].value, 0.5);
+  EXPECT_EQ(properties[0].max, 10);
+  EXPECT_EQ(properties[1].value, 3);
+}
+
 TEST(Scenario, ReadsTheWholeForm) {
   const auto s = parse(indoor);
   ASSERT_TRUE(s) << s.error().text();

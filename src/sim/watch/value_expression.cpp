@@ -15,9 +15,11 @@ Error no_such_things(const Simulation& simulation, std::string_view address) {
   std::vector<std::string> names;
   for (const auto& entity : simulation.entities()) {
     names.push_back(entity->instance.name);
-    if (fits_pattern(names.back(), pattern))
-      return {"nothing called '" + pattern + "' has a value '" + std::string(address.substr(cut, 100)) + "'",
-              "`sandlot info FILE --values` lists those there are"};
+    if (!fits_pattern(names.back(), pattern)) continue;
+    if (address.substr(cut, 1) == ".")
+      if (auto error = no_such_marker(simulation, address.substr(cut + 1))) return std::move(*error);
+    return {"nothing called '" + pattern + "' has a value '" + std::string(address.substr(cut, 100)) + "'",
+            "`sandlot info FILE --values` lists those there are"};
   }
   return {"nothing is called '" + pattern + "'", suggestion(pattern, names)};
 }

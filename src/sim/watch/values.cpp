@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "markers/footprint.h"
 #include "sim/watch/monitor.h"
 
 namespace sandlot {
@@ -130,6 +131,10 @@ bool NamedValue::resolve_thing(const Simulation::Entity& entity) {
     index_ = static_cast<std::uint32_t>(i);
     return take(What::property, 1, number(0, properties[i].unit.c_str()));
   }
+  if ((first == "in" || first == "overlaps") && path_.size() == 2) {
+    marker_ = simulation_->elements().find_marker(path_[1].key);
+    return marker_ && take(first == "in" ? What::inside : What::overlap, 2, number(0, "1"));
+  }
   if (first == "links" && path_.size() > 2) {
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       if (sanitised(model.links[i].name) != path_[1].key) continue;
@@ -229,6 +234,8 @@ ValueFound NamedValue::look() const {
     case What::model_pose: return value_at(engine.pose(entity_->id), rest);
     case What::body_pose: return value_at(engine.states()[index_].X_WB, rest);
     case What::body_twist: return value_at(engine.states()[index_].V_WB, rest);
+    case What::inside: return number(marker_->contains(engine.pose(entity_->id).p), "");
+    case What::overlap: return number(overlaps(*marker_, engine, *entity_->instance.model, entity_->id), "");
     case What::joint: {
       const JointState& joint = engine.joint_states()[index_];
       const char what = rest.front().key.front();
@@ -311,6 +318,12 @@ void list_thing(const Simulation& simulation, const Simulation::Entity& entity, 
            entity.instance.errors});
   for (const model::PropertyDecl& each : entity.instance.properties)
     visit({name + "." + each.name, each.unit, "", Is::value, each.value});
+  for (const WorldElements::NamedMarker& each : simulation.elements().markers()) {
+    visit({name + ".in." + each.name, "1", "Whether its origin lies in the area.", Is::value,
+           each.marker->contains(engine.pose(entity.id).p) ? 1.0 : 0.0});
+    visit({name + ".overlaps." + each.name, "1", "Whether a part of its collisions lies over the area.",
+           Is::value, overlaps(*each.marker, engine, model, entity.id) ? 1.0 : 0.0});
+  }
   if (model.links.size() > 1)
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       const std::string link = name + ".links." + sanitised(model.links[i].name);
@@ -387,6 +400,18 @@ void list_element(const WorldElements::Part& part, const ValueVisit& visit) {
 
 }  // namespace
 
+std::optional<Error> no_such_marker(const Simulation& simulation, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  const std::string_view what = path.substr(0, dot);
+  if ((what != "in" && what != "overlaps") || dot == std::string_view::npos) return std::nullopt;
+  const std::string_view name = path.substr(dot + 1);
+  std::vector<std::string> names;
+  for (const WorldElements::NamedMarker& each : simulation.elements().markers()) names.push_back(each.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+  return Error{"there is no marker '" + std::string(name.substr(0, 100)) + "'",
+               names.empty() ? "declare it: markers: [{kind: disc, name: ...}]" : suggestion(name, names)};
+}
+
 Error no_such_value(const Simulation& simulation, std::string_view address) {
   const std::string shown(address.substr(0, 100));
   const auto [thing, rest] = cut(address);
@@ -419,6 +444,8 @@ Error no_such_value(const Simulation& simulation, std::string_view address) {
     for (const std::string& each : things) known = known || each == thing;
   }
   if (!known) return {"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, things)};
+  if (entity && entity->instance.name == thing)
+    if (auto error = no_such_marker(simulation, rest)) return std::move(*error);
   std::vector<std::string> addresses;
   if (thing == "sim") addresses = {"sim.time", "sim.tick", "sim.revision", "sim.errors"};
   if (thing == "values")

@@ -8,6 +8,7 @@
 ///   rover.twist.linear.x, .angular.z                of the first link, in the world [m/s, rad/s]
 ///   rover.errors                                    factor on the errors of all its devices
 ///   rover.fuel                                      a property that the scenario gives it
+///   rover.in.AREA, rover.overlaps.AREA              1 when its origin, a part of its collisions, lies in a marker; else 0
 ///   rover.links.NAME.pose.x, .twist.linear.x        of a link, in the world
 ///   rover.joints.NAME.position|velocity|effort      [rad or m, ... per s, Nm or N]
 ///   rover/laser.PATH                                a device: its reading, else a parameter, else its state, else
@@ -24,7 +25,7 @@
 /// Reading changes nothing. An address once found follows its thing through spawns, deletions and level changes; what
 /// is gone, has not been measured yet or lies beyond the end of a list has no value.
 /// Threads   read() belongs to the thread that calls tick(), between ticks or in observers and rules.
-/// Cost      read() compares names along the path, and allocates only after the Model has changed.
+/// Cost      read() compares names along the path, and allocates only after the Model has changed, and for overlaps.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,6 +64,8 @@ class NamedValue {
     model_pose,
     body_pose,
     body_twist,
+    inside,
+    overlap,
     joint,
     topic,
     topic_count,
@@ -103,6 +106,7 @@ class NamedValue {
   const Simulation::ProgramEntry* program_ = nullptr;
   const TopicBase* topic_ = nullptr;
   const Element* element_ = nullptr;
+  const Marker* marker_ = nullptr;
   std::string team_;         ///< of a criterion
   std::uint32_t index_ = 0;  ///< of a body, joint, property or named value
 };
@@ -113,6 +117,9 @@ void list_values(const Simulation& simulation, std::string_view entity, const Va
 
 /// The error for an address that names nothing: what it was meant to be.
 Error no_such_value(const Simulation& simulation, std::string_view address);
+
+/// The error for "in.AREA" or "overlaps.AREA" of something, where AREA is not a marker.
+std::optional<Error> no_such_marker(const Simulation& simulation, std::string_view path);
 
 /// "rover.pose.x" of "/rover.pose.x": people copy the names of topics.
 inline std::string_view without_slash(std::string_view address) {

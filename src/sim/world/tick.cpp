@@ -25,7 +25,7 @@ Status Simulation::tick(std::optional<Time> measured) {
     ++tick_;
     update_scene();   // 4  new poses into the scenes
     deliver_media();  // 5  emissions of this tick reach the inboxes of their receivers
-    sense();          // 6  sensors that are due take their samples
+    sense();          // 6  batteries pay for the tick, and sensors that are due take their samples
     judge();          // 7  rules, events and stop conditions
     control();        // 8  programs decide; their orders act in the next tick
     publish();        // 9  the immutable frame to observers

@@ -267,10 +267,16 @@ model::Setup everything() {
   model::Setup setup = arena("rigid", 2);
   setup.media.push_back(element("wind", with(Node::map(), "velocity", numbers({2, 1, 0}))));
   setup.media.push_back(element("shout", map({{"speed", "20"}}), "air"));
+  setup.media.push_back(element("radio", map({{"bandwidth", "2e3"}, {"bit_error_rate", "0.01"}}), "ether"));
+  setup.media.push_back(element("infrared", Node::map(), "light"));
   for (model::Instance& each : setup.instances) {
     if (!each.is_robot) continue;
     each.devices.push_back(device("voice", "voice"));
     each.devices.push_back(device("ear", "ear", map({{"rate", "5"}})));
+    each.devices.push_back(device("radio", "radio"));
+    each.devices.push_back(
+        device("lamp", "infrared", map({{"half_angle", "90 deg"}, {"acceptance", "180 deg"}})));
+    each.devices.push_back(device("buoy", "range_bearing", map({{"medium", "ether"}, {"beacon_rate", "3"}})));
   }
   setup.instances.push_back(placed("ball", one_shape("ball", Sphere{0.1}, 0.5), {{0, 0, 0.1}, {}}));
   setup.markers.push_back(
@@ -291,11 +297,19 @@ model::Setup everything() {
   return setup;
 }
 
+void transmit(Simulation& simulation, const std::string& text, const char* device) {
+  ByteWriter w;
+  write(w, msg::RadioPacket{"", {text.begin(), text.end()}});
+  simulation.submit(CommandRequest{device, msg::RadioPacket::ros_type, {w.bytes().begin(), w.bytes().end()}});
+}
+
 /// The world up to tick `ticks`, with a word and a kick now and then.
 void play(Simulation& simulation, std::uint64_t until) {
   while (simulation.tick_index() < until) {
     const std::uint64_t tick = simulation.tick_index();
     if (tick % 10 == 3) say(simulation, "at " + std::to_string(tick), "rover1");
+    if (tick % 12 == 5) transmit(simulation, "at " + std::to_string(tick), "rover2/radio");
+    if (tick % 12 == 5) transmit(simulation, "flash", "rover1/lamp");
     if (tick % 25 == 7) simulation.submit(PullRequest{"ball", "", {}, {1, 0.2, 0.1}, Time::from_s(0.05)});
     advance(simulation, 1);
   }
@@ -306,6 +320,8 @@ TEST(WorldElements, GoOnFromASnapshotInAnyNumberOfThreads) {
   play(*whole, 75);
   ASSERT_GT(value(*whole, "rules/goals.scored[0]"), 0);
   ASSERT_GT(value(*whole, "media/air.words"), 0);
+  ASSERT_GT(value(*whole, "media/ether.delivered"), 3);
+  ASSERT_GT(value(*whole, "media/light.delivered"), 3);
   for (const std::uint64_t at : {24u, 33u, 48u}) {
     const auto first = build(everything());
     play(*first, at);

@@ -3,7 +3,7 @@ import * as THREE from 'three';
 /** The renderer as all of the scene expects it; null where there is no WebGL. */
 export function makeRenderer(): THREE.WebGLRenderer | null {
   try {
-    const renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+    const renderer = new THREE.WebGLRenderer({ antialias: true, stencil: true, powerPreference: 'high-performance' });
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = THREE.PCFSoftShadowMap;
     renderer.shadowMap.autoUpdate = false;

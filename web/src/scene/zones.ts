@@ -16,7 +16,7 @@ export class Zones {
   setWorld(world: World): void {
     this.clear();
     for (const zone of world.zones ?? []) this.add(zone);
-    for (const marker of world.markers ?? []) this.addMarker(marker);
+    (world.markers ?? []).forEach((marker, i) => this.addMarker(marker, i));
   }
 
   dispose(): void {
@@ -38,21 +38,24 @@ export class Zones {
     const outline = zone.corners.length > 0
       ? new THREE.Shape(zone.corners.map(([x, y]) => new THREE.Vector2(x, y)))
       : new THREE.Shape().absarc(zone.centre[0], zone.centre[1], zone.radius_m, 0, 2 * Math.PI, false);
-    const box = this.addPatch(zone.name, outline, colorOf(zone), 0.4);
+    const box = this.addPatch(zone.name, [outline], colorOf(zone), 0.4);
     this.addArrows(zone, box);
   }
 
-  private addMarker(marker: Marker): void {
+  private addMarker(marker: Marker, index: number): void {
     const [r, g, b, a] = marker.color;
-    const outline = new THREE.Shape(marker.corners.map(([x, y]) => new THREE.Vector2(x, y)));
-    this.addPatch(marker.name, outline, new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), 0.35 * a);
+    const outlines = marker.outlines.map((outline) => new THREE.Shape(outline.map(([x, y]) => new THREE.Vector2(x, y))));
+    const color = new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
+    // Where its outlines overlap, a pixel is drawn once: the stencil holds the number of the marker that was drawn last.
+    this.addPatch(marker.name, outlines, color, (marker.painted ? 0.9 : 0.35) * a, 1 + (index % 255));
   }
 
   /** @returns the box about the patch */
-  private addPatch(name: string, outline: THREE.Shape, color: THREE.Color, opacity: number): THREE.Box3 {
-    const geometry = new THREE.ShapeGeometry(outline, 48);
+  private addPatch(name: string, outlines: THREE.Shape[], color: THREE.Color, opacity: number, stencil = 0): THREE.Box3 {
+    const geometry = new THREE.ShapeGeometry(outlines, 48);
     const material = new THREE.MeshBasicMaterial({
       color, transparent: true, opacity, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2,
+      stencilWrite: stencil > 0, stencilRef: stencil, stencilFunc: THREE.NotEqualStencilFunc, stencilZPass: THREE.ReplaceStencilOp,
     });
     const patch = new THREE.Mesh(geometry, material);
     patch.position.z = HEIGHT_M;

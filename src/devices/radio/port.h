@@ -1,0 +1,94 @@
+#pragma once
+/// Port: what devices that send and receive packets have in common: names, inbox, orders.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "devices/kind.h"
+#include "media/packet.h"
+#include "messages/messages.h"
+
+namespace sandlot {
+
+struct Port {
+  static constexpr std::size_t most_received = 1000;  ///< packets that wait for the next sample
+  static constexpr std::uint32_t always = 31;         ///< a level beyond all: whatever is active
+
+  std::uint32_t medium = 0;
+  std::uint64_t key = 0;
+  BodyId body;
+  Pose X_LS;
+  std::string robot, team, address;
+  Inbox* inbox = nullptr;
+  EnergyMeter* energy = nullptr;  ///< null: the robot has no battery
+  std::vector<std::byte> bytes;   ///< of the packet that is being sent, kept for its memory
+
+  void begin(const DeviceBuild& build, std::uint32_t of_medium, const std::string& own_address) {
+    medium = of_medium;
+    key = build.key;
+    body = build.body();
+    X_LS = build.decl.X_LS;
+    robot = build.instance.name.substr(0, most_packet_name);
+    team = build.instance.team;
+    address = own_address;
+    inbox = build.receive(medium, most_received);
+    energy = build.energy;
+  }
+  bool is_for_us(std::string_view to) const {
+    return to.empty() || to == robot || (!team.empty() && to == team) || (!address.empty() && to == address);
+  }
+  Pose pose(const Engine& engine) const { return engine.states()[body.index].X_WB * X_LS; }
+
+  /// Gives a packet to the medium.
+  /// @param emission  strength, channel, direction and time
+  /// @param head      number and focus
+  /// @param per_bit_J  drawn from the robot's battery per bit of data
+  /// @pre  names and data within the limits of media/packet.h
+  void emit(const Context& context, Emission emission, const PacketHead& head, std::string_view to,
+            std::span<const std::uint8_t> data, double per_bit_J) {
+    if (energy && per_bit_J > 0) energy->draw(8 * static_cast<double>(data.size()) * per_bit_J);
+    write_packet(head, robot, to, data, bytes);
+    emission.medium = medium;
+    emission.emitter = key;
+    emission.body = body;
+    emission.point_W = pose(context.engine).p;
+    context.emissions.emit(emission, bytes);
+  }
+};
+
+inline constexpr Field energy_per_bit_field{
+    "energy_per_bit", "J", "Energy drawn from the robot's battery per bit of data sent.", 0, 1e6,
+    Field::tunable};
+
+/// Orders to send that a device has taken so far.
+struct SendCounts {
+  std::uint64_t sent = 0, refused = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"sent", "1", "Packets given to the medium."}, s.sent);
+    visit(Field{"refused", "1", "Packets refused: too long, or with too long a name."}, s.refused);
+  }
+  bool takes(const msg::RadioPacket& packet, int max_size) {
+    if (packet.data.size() <= static_cast<std::size_t>(max_size) && packet.to.size() <= most_packet_name)
+      return true;
+    ++refused;
+    return false;
+  }
+};
+
+/// Adds a packet to a message whose first `used` entries are in use, with the memory of what was there.
+inline void add_reception(msg::RadioReceptionArray& message, std::size_t& used, const Delivery& delivery,
+                          const PacketView& packet, double rssi_dBm) {
+  if (used == message.packets.size()) message.packets.emplace_back();
+  msg::RadioReception& to = message.packets[used++];
+  to.stamp = delivery.at;
+  to.from = packet.from;
+  to.to = packet.to;
+  to.channel = delivery.channel;
+  to.rssi = rssi_dBm;
+  to.data.assign(packet.data.begin(), packet.data.end());
+}
+
+}  // namespace sandlot
