@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "sim/watch/parameters.h"
 #include "sim/watch/values.h"
+#include "sim/world/faults.h"
 #include "sim/world/lookup.h"
 #include "sim/world/simulation.h"
 
