@@ -14,7 +14,9 @@ struct WorldContent : model::Environment {
   std::vector<model::Instance>
       instances;                     ///< of a model file: exactly one, at the pose that the file gives it
   std::optional<double> max_step_s;  ///< longest physics step that the file asks for
-  Node physics;                      ///< keys of `physics:` of the engine rigid; null when the file has none
+  std::vector<model::ElementDecl> media;
+  double endpoint_power_dBm = 20;  ///< with which the radios of these media send
+  Node physics;                    ///< keys of `physics:` of the engine rigid; null when the file has none
 
   bool is_world() const { return !world_name.empty(); }
 };

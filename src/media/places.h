@@ -42,13 +42,30 @@ class Places {
   const Vec3& point(std::uint32_t receiver) const { return points_[receiver]; }
   /// Fills `out` with the receivers within a distance in the plane, and some beyond it, in creation order.
   void find_near(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
+    if (!find_around(p, distance_m, out)) std::sort(out.begin(), out.end());
+  }
+  /// Fills `out` with the receivers within a distance, in creation order.
+  void find_within(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
+    const bool sorted = find_around(p, distance_m, out);
+    // With a margin for rounding, so that callers decide by the distance itself.
+    const double squared_m2 = distance_m * distance_m * (1 + 1e-9);
+    std::erase_if(out, [&](std::uint32_t index) {
+      const Vec3 way = points_[index] - p;
+      return !(dot(way, way) <= squared_m2);
+    });
+    if (!sorted) std::sort(out.begin(), out.end());
+  }
+
+ private:
+  /// Fills `out` with the receivers in the cells about a point. @return whether they are in creation order
+  bool find_around(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
     out.clear();
     const planar::Area area{{p.x - distance_m, p.y - distance_m}, {p.x + distance_m, p.y + distance_m}};
     if (area.low.x <= whole_.low.x && area.low.y <= whole_.low.y && area.high.x >= whole_.high.x &&
         area.high.y >= whole_.high.y) {
       out.resize(points_.size());
       std::iota(out.begin(), out.end(), 0u);
-      return;
+      return true;
     }
     const planar::HashGrid::Range range = grid_.cover(area);
     for (std::int64_t j = range.y0; j <= range.y1; ++j)
@@ -56,10 +73,9 @@ class Places {
         const auto found = grid_.in_slot(grid_.slot(i, j));
         out.insert(out.end(), found.begin(), found.end());
       }
-    std::sort(out.begin(), out.end());
+    return false;
   }
 
- private:
   std::vector<Vec3> points_;
   planar::Area whole_;  ///< about all of them
   planar::HashGrid grid_;

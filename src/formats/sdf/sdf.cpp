@@ -7,6 +7,7 @@
 #include "base/math.h"
 #include "base/text.h"
 #include "files/text.h"
+#include "formats/sdf/comms.h"
 #include "formats/sdf/document.h"
 #include "formats/sdf/model_reader.h"
 
@@ -183,6 +184,8 @@ Status read_world(const Xml& world, const Reading& in, WorldContent& out) {
       SL_ASSIGN(model::Light light, read_light(child, in));
       out.lights.push_back(std::move(light));
     } else if (child.name == "plugin" && !is_standard_plugin(child)) {
+      SL_ASSIGN(const bool is_comms, read_comms(child, in, out));
+      if (is_comms) continue;
       const std::string* const plugin = child.attribute("name");
       in.notes.warn(child,
                     "plugin '" + (plugin ? plugin->substr(0, 100) : "") + "' of the world is not used");
@@ -191,6 +194,7 @@ Status read_world(const Xml& world, const Reading& in, WorldContent& out) {
                          "put it into a <model>");
     }
   }
+  connect_endpoints(out);
   return {};
 }
 

@@ -318,6 +318,47 @@ TEST(Sdf, TurnsSensorsAndPluginsIntoDevices) {
   EXPECT_EQ(d[6].config.find("noise")->find("white")->text(), "1 cm");
 }
 
+TEST(Sdf, GazebosCommunicationIsARadio) {
+  const std::string endpoint =
+      "<model name='box'>" + link("l") +
+      "<plugin filename='gz-sim-comms-endpoint-system' "
+      "name='gz::sim::systems::CommsEndpoint'><address>addr1</address></plugin></model>";
+  const Read r = parse(
+      world("<plugin filename='gz-sim-rf-comms-system' name='gz::sim::systems::RFComms'>"
+            "<range_config><max_range>500000.0</max_range><fading_exponent>1.5</fading_exponent>"
+            "<l0>42</l0><sigma>9</sigma></range_config>"
+            "<radio_config><capacity>1000000</capacity><tx_power>21</tx_power>"
+            "<noise_floor>-85</noise_floor><modulation>QPSK</modulation></radio_config></plugin>" +
+            endpoint));
+  ASSERT_TRUE(r.content) << r.error;
+  EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
+  ASSERT_EQ(r.content->media.size(), 1u);
+  const model::ElementDecl& medium = r.content->media[0];
+  EXPECT_EQ(medium.kind, "radio");
+  const auto key = [&](const char* name) { return medium.config.find(name)->text(); };
+  EXPECT_EQ(key("model"), "log_distance");
+  EXPECT_EQ(std::stod(key("range")), 500000);
+  EXPECT_EQ(key("exponent"), "1.5");
+  EXPECT_EQ(key("reference_loss"), "42");
+  EXPECT_EQ(key("fading"), "3");
+  EXPECT_EQ(std::stod(key("bandwidth")), 1e6);
+  EXPECT_EQ(key("noise_floor"), "-85");
+  EXPECT_EQ(key("modulation"), "qpsk");
+  const model::DeviceDecl device = r.content->instances.at(0).devices.at(0);
+  EXPECT_EQ(device.kind, "radio");
+  EXPECT_EQ(device.config.find("address")->text(), "addr1");
+  EXPECT_EQ(device.config.find("power")->text(), "21");
+  const Read perfect = parse(world(
+      "<plugin filename='gz-sim-perfect-comms-system' name='gz::sim::systems::PerfectComms'/>" + endpoint));
+  ASSERT_TRUE(perfect.content) << perfect.error;
+  EXPECT_EQ(perfect.content->media.at(0).name, "perfect_comms");
+  // Without a medium an endpoint stays what it was.
+  const Read none = parse(world(endpoint));
+  ASSERT_TRUE(none.content) << none.error;
+  EXPECT_TRUE(none.content->media.empty());
+  EXPECT_EQ(none.content->instances.at(0).devices.at(0).kind, "");
+}
+
 TEST(Sdf, NamesWhatIsNotUsedOnce) {
   const Read r = parse(world(
       "<model name='m'>\n<link name='l'>\n<collision "

@@ -73,7 +73,7 @@ struct Infrared {
     const auto packet = read_packet({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     if (!packet) return;
     const double order = packet->head.lambertian_order;
-    places.find_near(emission.point_W, spec.range_m, to.receivers);
+    places.find_within(emission.point_W, spec.range_m, to.receivers);
     double farthest_m = 0;
     const auto is_dark = [&](std::uint32_t index) {
       const Receiver& receiver = context.receivers[index];

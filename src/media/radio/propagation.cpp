@@ -125,7 +125,7 @@ void look(const Spec& spec, const Start& start, const Places& places, const Medi
   const Vec3 from_W = places.point(start.sender);
   const double limit_m = reach_m(spec, start.power_dBm), least_dBm = floor_dBm(spec);
   const bool by_distance = spec.model == Model::log_distance;
-  places.find_near(from_W, limit_m, to.receivers);
+  places.find_within(from_W, limit_m, to.receivers);
   double farthest_m = 0;
   const auto is_out = [&](std::uint32_t index) {
     if (index == start.sender || !context.receivers[index].inbox->is_tuned_to(start.channel)) return true;

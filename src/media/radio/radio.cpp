@@ -102,10 +102,8 @@ struct Radio {
     if (context.emissions.empty() && state.senders.empty() && state.signals.empty()) return;
     unpack(context);
     take(context);
-    if (!active.empty()) {
-      places.update(context);
-      send(context);
-    }
+    places.update(context);
+    if (!active.empty()) send(context);
     judge(context);
     pack(context);
   }
@@ -449,7 +447,7 @@ struct Radio {
       head.wrong_bits = flip_bits(payload.last(data), p, random);
       if (head.wrong_bits > 0) write_head(head, payload);
     }
-    const Vec3 way_W = point_of(head) - context.pose(receiver).p;
+    const Vec3 way_W = point_of(head) - places.point(index);
     const double distance_m = norm(way_W);
     if (distance_m > 0) delivery.direction_W = way_W * (1 / distance_m);
     ++sums[Count::delivered];

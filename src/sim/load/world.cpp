@@ -11,6 +11,7 @@ Status take_world(formats::WorldContent content, const SearchPath& path, model::
     instance.is_robot = instance.is_robot || !instance.devices.empty();
     setup.instances.push_back(std::move(instance));
   }
+  setup.media.insert(setup.media.begin(), content.media.begin(), content.media.end());
   static_cast<model::Environment&>(setup) = std::move(content);
   return {};
 }
