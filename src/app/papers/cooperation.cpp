@@ -99,7 +99,7 @@ Status clearing(const ReproduceContext& context, ReportPage& page) {
   page.paragraph(
       "Two robots with a blade push six boxes, placed at random, into a disc. They see all by one camera "
       "above the yard. Criterion: "
-      "the share of boxes inside; a run succeeds when all are inside within five minutes. All conditions "
+      "the share of boxes inside; a run succeeds when all are inside within 90 s. All conditions "
       "have the same seeds, so that "
       "boxes and robots begin in the same places.");
   SL_ASSIGN(const std::string begin, context.drawing(all[0].condition, 30));
@@ -225,11 +225,16 @@ Status predator_prey(const ReproduceContext& context, ReportPage& page) {
                                                                       : "the intervals overlap"});
       drawn.push_back(estimate_row(entries[i].name, entries[i].time, predators ? 0 : 1));
     }
-    page.paragraph(fmt::format(
-        "Strategies of the {}, the best first: time until the catch or the end, over all strategies of the other side.", side));
+    page.paragraph(
+        fmt::format("Strategies of the {}, the best first: time until the catch or the end, over all "
+                    "strategies of the other side.",
+                    side));
     page.table({"rank", "strategy", "time [s], mean and Student's interval", "against the next"}, ranked);
-    page.figure(draw::draw_intervals(drawn, {.title = fmt::format("Strategies of the {}", side), .x_label = "s", .range = {}, .mark = {}}),
-                "Mean time until the catch, or the end, with Student's 95 % intervals.");
+    page.figure(
+        draw::draw_intervals(
+            drawn,
+            {.title = fmt::format("Strategies of the {}", side), .x_label = "s", .range = {}, .mark = {}}),
+        "Mean time until the catch, or the end, with Student's 95 % intervals.");
   };
   ranking("predators", hunts, true);
   ranking("prey", escapes, false);
@@ -249,7 +254,7 @@ Status transport(const ReproduceContext& context, ReportPage& page) {
   SL_TRY(write_csv(context, "transport.csv", all));
   page.heading("Section 1: cooperation, distributed or centralised");
   page.paragraph(
-      "Three robots move a beam that none of them can move alone. Distributed: each tells the others its "
+      "Four robots move a beam that none of them can move alone. Distributed: each tells the others its "
       "charge, health and load by radio, "
       "and all settle their roles by bids. Centralised: one program gives the roles. Criterion: time of "
       "delivery.");

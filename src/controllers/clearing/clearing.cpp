@@ -21,7 +21,8 @@ constexpr double least_turn_m =
     0.35;  // pushing: radius of the narrowest arc, on which the object stays at the blade
 constexpr double private_m = 0.6;                  // without anything to do: distance kept from others
 constexpr std::uint64_t to_send = 1, to_wait = 2;  // uses of random numbers
-constexpr Time forget = Time::from_s(2);
+constexpr double moved_m = 0.06, moved_rad = 0.35;
+constexpr Time forget = Time::from_s(2), jam = Time::from_s(3);
 constexpr double soonest_s = 0.2,
                  latest_s = 0.6;  // from one message to the next: at random, lest two robots keep colliding
 
@@ -140,6 +141,18 @@ void Clearing::back_off(Time now) {
   state.backing_until = now + Time::from_s(back_off_s);
 }
 
+/// Whether it has hardly moved for a while, though it is on its way: something is in between.
+bool Clearing::jammed(const View& view) {
+  const Vec3 now{view.X_WB.p.x, view.X_WB.p.y, yaw_of(view.X_WB.q)};
+  const bool moved = norm(flat(now - state.stood)) > moved_m ||
+                     std::abs(math::wrap_angle(now.z - state.stood.z)) > moved_rad;
+  if (moved || state.phase == Phase::choose || state.phase == Phase::back_off) {
+    state.stood = now;
+    state.stood_since = view.now;
+  }
+  return view.now - state.stood_since > jam;
+}
+
 Vec3 Clearing::way(const View& view, Vec3 to) {
   discs.clear();
   for (const msg::ObjectPose& other : view.world.objects)
@@ -194,6 +207,10 @@ msg::Twist Clearing::decide(const View& view) {
   if (state.phase == Phase::back_off) {
     if (view.now < state.backing_until) return {.linear = {-back_off_mps, 0, 0}};
     state.phase = state.object.empty() ? Phase::choose : Phase::approach;
+  }
+  if (jammed(view)) {
+    ++state.jammed;
+    return back_off(view.now), msg::Twist{};
   }
   const msg::ObjectPose* object = state.object.empty() ? nullptr : steering::find(view.world, state.object);
   if (object && taken(state.object, bid_mm(*object, view), view.now)) {

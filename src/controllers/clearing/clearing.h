@@ -119,11 +119,13 @@ struct State {
   Time progress;         ///< when it last came nearer
   double patience_s = 0;
   Time backing_until;
+  Vec3 stood;  ///< x, y [m] and heading [rad] since when it has hardly moved
+  Time stood_since;
   std::string left_alone;
   Time left_alone_until;
   std::string sent_object;
   Time resend;
-  std::uint32_t delivered = 0, slid = 0, yielded = 0;
+  std::uint32_t delivered = 0, slid = 0, yielded = 0, jammed = 0;
   std::vector<Claim> claims;
 
   static void fields(auto& s, auto&& visit) {
@@ -133,6 +135,8 @@ struct State {
     visit(Field{"progress", "s", "Time at which the object last came nearer."}, s.progress);
     visit(Field{"patience_now", "s", "Patience with this object."}, s.patience_s);
     visit(Field{"backing_until", "s", "Time at which backing off ends."}, s.backing_until);
+    visit(Field{"stood", "m", "Place and heading, as z, that it has hardly left since."}, s.stood);
+    visit(Field{"stood_since", "s", "Time at which it came to that place."}, s.stood_since);
     visit(Field{"left_alone", "", "Object that did not come nearer."}, s.left_alone);
     visit(Field{"left_alone_until", "s", "Time until which it is left to itself."}, s.left_alone_until);
     visit(Field{"sent_object", "", "Object in the message sent last."}, s.sent_object);
@@ -140,6 +144,7 @@ struct State {
     visit(Field{"delivered", "1", "Objects that it has pushed into the destination."}, s.delivered);
     visit(Field{"slid", "1", "Times that an object left the steering zone."}, s.slid);
     visit(Field{"yielded", "1", "Times that it left an object to a team-mate."}, s.yielded);
+    visit(Field{"jammed", "1", "Times that it did not get away from where it was."}, s.jammed);
     visit(Field{"claims", "", "Objects that team-mates have chosen."}, s.claims);
   }
 };
@@ -178,6 +183,7 @@ struct Clearing {
   bool in_zone(const msg::ObjectPose& object, const View& view) const;
   const msg::ObjectPose* choose(const View& view);
   void back_off(Time now);
+  bool jammed(const View& view);
   Vec3 way(const View& view, Vec3 to);
   msg::Twist approach(const msg::ObjectPose& object, const View& view);
   msg::Twist push(const msg::ObjectPose& object, const View& view) const;
