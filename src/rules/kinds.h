@@ -4,5 +4,6 @@
 #define SANDLOT_RULES(rule) \
   rule(goals)               \
   rule(impact)              \
-  rule(place)
+  rule(place)               \
+  rule(zone)
 // clang-format on
