@@ -235,6 +235,22 @@ robots:
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {radio: hello}}, {at: 0.29 s, orders: {radio: again, light: on}}]}
   - {name: two, model: scout, pose: [0.5, 0, 0], devices: {radio: {kind: radio}, buoy: {kind: range_bearing}}}
 )"},
+    {"acting", "planar", R"(
+markers:
+  - {kind: line, name: track, points: [[-1, 0], [1, 0]], width: 0.2, visible: true}
+  - {kind: grid, name: tiles, size: [1, 1], spacing: 0.5, width: 0.05}
+rules: [{kind: zone, marker: track, overlaps: true}]
+things: [{name: ball, model: msl_ball, pose: [0.4, 0, 0.11]}]
+robots:
+  - name: cart
+    model: cart
+    devices:
+      go: {kind: heading_drive}
+      foot: {kind: kicker, reach: 1, opening: 60 deg}
+      lamp: {kind: lamp, levels: [brightness, color]}
+      eyes: {kind: agent_eyes}
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {foot: 0.1, go: [0.3, 1]}}, {at: 0.29 s, orders: {foot: 0.05}}]}
+)"},
     {"shapes", "rigid", R"(
 things: [{name: ball, model: msl_ball, pose: [0, 0, 0.5]}]
 )"},

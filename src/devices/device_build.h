@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "base/time.h"
 #include "devices/energy.h"
+#include "devices/scene_light.h"
 #include "media/inbox.h"
 #include "messages/command_queue.h"
 #include "messages/topic.h"
@@ -95,6 +96,7 @@ class TopicMaker {
   virtual void adopt_frame(std::string, const Pose&) {}
   virtual void adopt_order(std::unique_ptr<DeviceOrder> order) = 0;
   virtual void adopt_inbox(std::unique_ptr<Inbox> inbox) = 0;
+  virtual void adopt_light(std::unique_ptr<SceneLight> light) = 0;
 };
 
 /// Pixels (rows from the top, 1 or 3 channels) as a file's bytes; given by sim, which knows the formats.
@@ -183,6 +185,13 @@ struct DeviceBuild {
     Inbox* const inbox = made.get();
     topics.adopt_inbox(std::move(made));
     return inbox;
+  }
+  /// A light of the scene on the device's link, off until it is set; it lives as long as the device. Once per device.
+  SceneLight* shine(model::Light light) const {
+    auto made = std::make_unique<SceneLight>(decl.link, std::move(light));
+    SceneLight* const shining = made.get();
+    topics.adopt_light(std::move(made));
+    return shining;
   }
   /// Error about a key of the spec: at the key's place in its file, or at the device's where the key is not
   /// written.

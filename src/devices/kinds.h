@@ -3,6 +3,7 @@
 // clang-format off
 #define SANDLOT_DEVICES(device) \
   device(ackermann_drive)       \
+  device(agent_eyes)            \
   device(altimeter)             \
   device(barometer)             \
   device(battery)               \
@@ -21,11 +22,14 @@
   device(gripper)               \
   device(ground_sensor)         \
   device(ground_truth)          \
+  device(heading_drive)         \
   device(imu)                   \
   device(infrared)              \
   device(joint_motor)           \
   device(joint_state)           \
   device(joint_trajectory)      \
+  device(kicker)                \
+  device(lamp)                  \
   device(laser_scanner)         \
   device(laser_scanner_3d)      \
   device(light_sensor)          \

@@ -18,6 +18,7 @@ struct LabelledObject {
   std::string label;  ///< its class, such as ball: the scenario's, else the model's name
   std::string team;   ///< "" for none
   bool is_robot = false;
+  double mass_kg = 0;  ///< of all links; 0 for what forces do not move
   bool moves = false;  ///< false: it stands as it was placed until the world's next revision
   Color color;
   std::uint32_t instance = 0;         ///< as images name it; > 0, never given twice in a run

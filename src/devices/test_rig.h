@@ -144,6 +144,7 @@ class Rig : public TopicMaker {
   std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< declared by the devices; a test connects them
   std::map<std::string, Pose> frames;                ///< in addition to the sensors' own, as X_SF
   std::unique_ptr<Inbox> inbox;                      ///< of the latest device
+  std::unique_ptr<SceneLight> light;                 ///< likewise
   std::vector<model::ElementDecl> media;
   const RayCaster* rays = nullptr;
   optics::PictureScene* pictures = nullptr;
@@ -243,6 +244,7 @@ class Rig : public TopicMaker {
   void adopt_frame(std::string name, const Pose& X_SF) override { frames[name] = X_SF; }
   void adopt_order(std::unique_ptr<DeviceOrder> order) override { orders.push_back(std::move(order)); }
   void adopt_inbox(std::unique_ptr<Inbox> made) override { inbox = std::move(made); }
+  void adopt_light(std::unique_ptr<SceneLight> made) override { light = std::move(made); }
 
  private:
   void keep(std::unique_ptr<TopicBase> made) {

@@ -9,6 +9,7 @@
 /// All types by name: messages/registry.h.
 #include "messages/geometry_msgs.h"
 #include "messages/nav_msgs.h"
+#include "messages/sandlot_acting.h"
 #include "messages/sandlot_msgs.h"
 #include "messages/sandlot_radio.h"
 #include "messages/sandlot_speech.h"

@@ -7,5 +7,6 @@
   rule(impact)              \
   rule(place)               \
   rule(set)                 \
-  rule(statistics)
+  rule(statistics)          \
+  rule(zone)
 // clang-format on

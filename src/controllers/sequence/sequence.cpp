@@ -43,6 +43,12 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
     return Sequence::Order{at_s, number};
   }
   const std::vector<Node>& items = entry.value.items();
+  if (const auto to = robot.actuator<msg::SpeedHeading>(entry.key); to && items.size() == 2) {
+    Sequence::Course course{.to = *to, .value = {}};
+    SL_ASSIGN(course.value.speed, number_of(items[0], entry.key));
+    SL_ASSIGN(course.value.heading, number_of(items[1], entry.key));
+    return Sequence::Order{at_s, course};
+  }
   if (items.empty() || items.size() > 3)
     return entry.value.error(
         "the order for '" + entry.key + "' has " + std::to_string(items.size()) + " numbers",

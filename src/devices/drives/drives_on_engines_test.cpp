@@ -154,6 +154,7 @@ struct World : TopicMaker {
   }
   void adopt_order(std::unique_ptr<DeviceOrder>) override { ADD_FAILURE() << "it gives no orders"; }
   void adopt_inbox(std::unique_ptr<Inbox>) override {}
+  void adopt_light(std::unique_ptr<SceneLight>) override {}
   void adopt_command(std::unique_ptr<TopicBase> made, std::uint32_t) override {
     topics[made->name()] = std::move(made);
   }

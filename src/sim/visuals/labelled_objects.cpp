@@ -63,6 +63,8 @@ std::vector<LabelledObject> labelled_objects_of(std::span<const Owned<Simulation
     thing.team = instance.team;
     thing.is_robot = instance.is_robot;
     thing.moves = !instance.model->is_static || instance.motion.has_value();
+    if (!instance.model->is_static && !instance.motion)
+      for (const model::Link& link : instance.model->links) thing.mass_kg += link.inertial.mass_kg;
     thing.color = color_of(*instance.model);
     thing.instance = picture_instance(*entity);
     for (const BodyId body : engine.bodies(entity->id)) thing.bodies.push_back(body.index);

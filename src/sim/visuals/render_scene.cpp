@@ -49,9 +49,11 @@ optics::SurfaceAppearance RenderScene::look_of(const model::Visual& visual, Diag
 }
 
 void RenderScene::rebuild(std::span<const Owned<SimulationParts::Entity>> entities, const Engine& engine,
-                          const model::Setup& setup, Diagnostics& diagnostics) {
+                          const model::Setup& setup, std::span<const GroundPaint> paint,
+                          Diagnostics& diagnostics) {
   std::vector<optics::PictureShape> shapes;
-  std::vector<optics::PictureLight> lights;
+  fixed_lights_.clear();
+  lamps_.clear();
   for (const auto& entity : entities) {
     const model::Model& model = *entity->instance.model;
     const auto bodies = engine.bodies(entity->id);
@@ -60,14 +62,32 @@ void RenderScene::rebuild(std::span<const Owned<SimulationParts::Entity>> entiti
       for (const model::Visual& visual : model.links[link].visuals)
         shapes.push_back({bodies[link].index, visual.X_LC, visual.shape, bodies[link].index, moves,
                           look_of(visual, diagnostics), visual.cast_shadows, picture_instance(*entity), 0});
-    for (const model::LinkLight& each : model.lights) lights.push_back({bodies[each.link].index, each.light});
+    for (const model::LinkLight& each : model.lights)
+      fixed_lights_.push_back({bodies[each.link].index, each.light});
+    for (const auto& device : entity->devices)
+      if (const SceneLight* const light = device->light())
+        lamps_.push_back({light, bodies[light->link()].index, {}});
   }
   const auto standing = static_cast<std::uint32_t>(engine.states().size());
-  for (const model::Light& light : setup.lights) lights.push_back({standing, light});
+  for (const model::Light& light : setup.lights) fixed_lights_.push_back({standing, light});
+  for (const GroundPaint& each : paint) {
+    optics::SurfaceAppearance appearance;
+    appearance.diffuse = each.color;
+    shapes.push_back({standing, {}, each.shape, no_body, false, std::move(appearance), false, 0, 0});
+  }
   pictures.set_shapes(shapes);
-  pictures.set_lights(lights);
+  set_lights();
   pictures.set_surroundings({setup.background, setup.ambient});
   labelled_objects = labelled_objects_of(entities, engine);
+}
+
+void RenderScene::set_lights() {
+  std::vector<optics::PictureLight> lights = fixed_lights_;
+  for (Lamp& lamp : lamps_) {
+    lamp.shown = lamp.light->factors();
+    if (!lamp.light->is_off()) lights.push_back({lamp.group, lamp.light->now()});
+  }
+  pictures.set_lights(lights);
 }
 
 void RenderScene::update(const Engine& engine, std::uint64_t tick, std::uint64_t revision) {
@@ -83,6 +103,9 @@ void RenderScene::update(const Engine& engine, std::uint64_t tick, std::uint64_t
   frame_.X_WG.back() = {};
   velocities_.back() = {};
   pictures.update(frame_, velocities_);
+  if (std::any_of(lamps_.begin(), lamps_.end(),
+                  [](const Lamp& lamp) { return !(lamp.shown == lamp.light->factors()); }))
+    set_lights();
 }
 
 }  // namespace sandlot

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "optics/picture.h"
+#include "sim/visuals/ground_paint.h"
 #include "sim/visuals/labelled_objects.h"
 
 namespace sandlot {
@@ -21,8 +22,8 @@ class RenderScene {
 
   /// Takes over what stands in the world now. A texture that cannot be read is a warning and a checker.
   void rebuild(std::span<const Owned<SimulationParts::Entity>> entities, const Engine& engine,
-               const model::Setup& setup, Diagnostics& diagnostics);
-  /// The poses and velocities of this tick.
+               const model::Setup& setup, std::span<const GroundPaint> paint, Diagnostics& diagnostics);
+  /// The poses and velocities of this tick, and the lights of devices.
   void update(const Engine& engine, std::uint64_t tick, std::uint64_t revision);
 
  private:
@@ -31,6 +32,16 @@ class RenderScene {
   optics::SurfaceAppearance look_of(const model::Visual& visual, Diagnostics& diagnostics);
 
   std::map<std::string, TexturePointer> textures_;  ///< by file: kept while the world is, read once
+  /// A light of a device, as it was handed to the pictures.
+  struct Lamp {
+    const SceneLight* light;
+    std::uint32_t group;
+    Color shown;
+  };
+  void set_lights();
+
+  std::vector<optics::PictureLight> fixed_lights_;  ///< all but those of devices
+  std::vector<Lamp> lamps_;
   SceneFrame frame_;
   std::vector<Velocity> velocities_;
 };

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "model/motion.h"
 #include "programs/programs.h"
+#include "sim/visuals/ground_paint.h"
 #include "sim/visuals/render_scene.h"
 #include "sim/watch/monitor.h"
 #include "sim/world/simulation.h"
@@ -75,8 +76,9 @@ Status Simulation::build(Diagnostics& diagnostics, bool restored) {
   for (model::Instance& instance : std::exchange(setup_.instances, {}))
     SL_TRY(add_entity(std::move(instance), diagnostics));
   SL_TRY(programs_.add_teams(entities_, now_, diagnostics));
-  scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(elements_.build(options_, restored, setup_.addresses));
+  scenes_.paint(ground_paint_of(elements_.markers()));
+  scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(monitor_->add(setup_, setup_.addresses));
   return {};
 }

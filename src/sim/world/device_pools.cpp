@@ -34,6 +34,10 @@ struct SlotMaker final : TopicMaker {
     SL_CHECK_MSG(!extras.inbox, "a device has one inbox");
     extras.inbox = std::move(made);
   }
+  void adopt_light(std::unique_ptr<SceneLight> made) override {
+    SL_CHECK_MSG(!extras.light, "a device has one light");
+    extras.light = std::move(made);
+  }
 };
 
 /// The error for a key that a device of the kind does not have. The kind's reader knows its own keys alone; this one also
@@ -524,6 +528,7 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   for (const Slot& slot : device.commands) slot.topic->save(w);
   if (device.inbox()) device.inbox()->save(w);
   if (device.energy) write(w, device.energy->state);
+  if (device.light()) device.light()->save(w);
   if (device.keys) {
     const std::size_t at = w.size();
     write(w, std::uint64_t{0});
@@ -559,6 +564,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
   }
   if (device.inbox()) device.inbox()->load(r);
   if (device.energy && !load_meter(*device.energy, r)) return r.fail();
+  if (device.light()) device.light()->load(r);
   PoolBase& pool = *pools_[device.kind].pool;
   if (!device.keys) {
     pool.load(device.index, r);

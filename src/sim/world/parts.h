@@ -25,9 +25,10 @@ struct SimulationParts {
   /// What few devices have.
   struct DeviceExtras {
     std::unique_ptr<Inbox> inbox;                      ///< null: it receives from no medium
+    std::unique_ptr<SceneLight> light;                 ///< null: it does not shine
     std::vector<std::pair<std::string, Pose>> frames;  ///< in addition to its own, as X_SF
     std::vector<std::unique_ptr<DeviceOrder>> orders;  ///< that it gives to other devices
-    bool empty() const { return !inbox && frames.empty() && orders.empty(); }
+    bool empty() const { return !inbox && !light && frames.empty() && orders.empty(); }
   };
   struct Device {
     explicit Device(std::shared_ptr<const model::DeviceDecl> declared)
@@ -48,6 +49,7 @@ struct SimulationParts {
     std::string path;
 
     Inbox* inbox() const { return extras ? extras->inbox.get() : nullptr; }
+    SceneLight* light() const { return extras ? extras->light.get() : nullptr; }
     std::span<const std::pair<std::string, Pose>> frames() const {
       return extras ? std::span(extras->frames) : std::span<const std::pair<std::string, Pose>>();
     }

@@ -270,6 +270,9 @@ Status Simulation::Processor::operator()(const UnloadDeviceRequest& request) {
   sim.elements_.entities_changed();
   entity.instance.devices.erase(static_cast<std::size_t>(index));
   ++sim.revision_;
+  Diagnostics ignored;
+  if (taken->light())
+    sim.scenes_.rebuild_render_scene(sim.entities_, sim.devices_.need_render_scene(), ignored);
   return {};
 }
 

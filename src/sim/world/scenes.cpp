@@ -1,5 +1,6 @@
 #include "sim/world/scenes.h"
 
+#include "sim/visuals/ground_paint.h"
 #include "sim/visuals/render_scene.h"
 
 namespace sandlot {
@@ -14,6 +15,8 @@ void Scenes::use(const Engine& engine) {
   ray_scene_ = std::make_unique<RayScene>();
   rays_ = ray_scene_.get();
 }
+
+void Scenes::paint(std::vector<GroundPaint> paint) { paint_ = std::move(paint); }
 
 void Scenes::rebuild(Entities entities, std::uint64_t revision, bool needed, Diagnostics& diagnostics) {
   rebuild_ray_scene(entities, revision);
@@ -39,7 +42,7 @@ void Scenes::rebuild_ray_scene(Entities entities, std::uint64_t revision) {
 void Scenes::rebuild_render_scene(Entities entities, bool needed, Diagnostics& diagnostics) {
   if (!render_scene_ && !needed) return;
   if (!render_scene_) render_scene_ = std::make_unique<RenderScene>();
-  render_scene_->rebuild(entities, *engine_, setup_, diagnostics);
+  render_scene_->rebuild(entities, *engine_, setup_, paint_, diagnostics);
 }
 
 void Scenes::update(std::uint64_t tick, std::uint64_t revision) {

@@ -2,6 +2,7 @@
 /// Scenes: the world as rays hit it (collisions) and, once somebody needs it, as cameras draw it (visuals). Not State.
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "optics/ray_scene.h"
 #include "sim/world/parts.h"
@@ -9,6 +10,7 @@
 namespace sandlot {
 
 class RenderScene;
+struct GroundPaint;  // sim/visuals/ground_paint.h
 
 class Scenes {
  public:
@@ -19,6 +21,8 @@ class Scenes {
   ~Scenes();
   /// Rays are the engine's own where it casts some. The engine must outlive the scenes.
   void use(const Engine& engine);
+  /// Areas that the visuals show on the ground, before the first rebuild().
+  void paint(std::vector<GroundPaint> paint);
 
   const RayCaster& rays() const { return *rays_; }
   /// Null as long as nobody needs it.
@@ -41,6 +45,7 @@ class Scenes {
   const RayCaster* rays_ = nullptr;
   SceneFrame frame_;
   std::unique_ptr<RenderScene> render_scene_;
+  std::vector<GroundPaint> paint_;
 };
 
 }  // namespace sandlot

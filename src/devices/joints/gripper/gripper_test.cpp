@@ -62,6 +62,7 @@ struct World : TopicMaker {
   }
   void adopt_order(std::unique_ptr<DeviceOrder>) override { ADD_FAILURE() << "it gives no orders"; }
   void adopt_inbox(std::unique_ptr<Inbox>) override {}
+  void adopt_light(std::unique_ptr<SceneLight>) override {}
   void adopt_command(std::unique_ptr<TopicBase> topic, std::uint32_t) override {
     topics[topic->name()] = std::move(topic);
   }
