@@ -1,19 +1,21 @@
 /// energy: what a robot does whose battery is empty.
 ///
-/// Empty      of a robot's battery: nothing is left in it. With `empty: stop` its actuators fail, as if each had the failure
-///            `dead`, from the next tick on; with `nothing` it is only counted.
+/// Empty      of a robot's battery: nothing is left in it. With `empty: stop` the robot is put to rest where it is, once, as by
+///            brakes that lock, and its actuators fail, as if each had the failure `dead`, from the next tick on. With `coast`
+///            they fail alone: wheels without friction roll on. With `nothing` it is only counted.
 /// Restart    when the charge of a robot that was stopped is `restart` or more, its actuators follow their planned failures
 ///            again, which are mostly none.
-/// Limits     an actuator that something else made fail while the robot was stopped works again, too.
+/// Limits     a robot that is put to rest lets go of what it grips; pushed, it rolls. An actuator that something else made fail while the robot was stopped works again, too.
 #include <algorithm>
 
 #include "rules/rule.h"
 
 namespace sandlot::rules::energy {
 
-enum class Empty : std::uint8_t { stop, nothing };
+enum class Empty : std::uint8_t { stop, coast, nothing };
 inline std::span<const EnumName<Empty>> enum_names(Empty) {
-  static constexpr EnumName<Empty> names[] = {{"stop", Empty::stop}, {"nothing", Empty::nothing}};
+  static constexpr EnumName<Empty> names[] = {
+      {"stop", Empty::stop}, {"coast", Empty::coast}, {"nothing", Empty::nothing}};
   return names;
 }
 
@@ -25,7 +27,9 @@ struct Spec {
   std::vector<std::string> robots;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"empty", "", "Behaviour of a robot without energy: its actuators fail, or nothing happens."},
+    visit(Field{"empty", "",
+                "Behaviour of a robot without energy: it stands and its actuators fail, they fail alone, or "
+                "nothing."},
           s.empty);
     visit(Field{"restart", "1", "Charge from which on a robot that was stopped works again.", 0, 1,
                 Field::tunable},
@@ -89,7 +93,9 @@ struct Energy {
       if (battery->empty && !holds(state.empty, robot.serial)) ++state.count;
       set(state.empty, robot.serial, battery->empty);
       const bool stopped = holds(state.stopped, robot.serial);
-      if (!stopped && battery->empty && spec.empty == Empty::stop) {
+      if (!stopped && battery->empty && spec.empty != Empty::nothing) {
+        if (spec.empty == Empty::stop)
+          actions.request(PoseRequest{robot.instance->name, context.world.pose(robot)});
         order(context, robot, "dead", actions);
         set(state.stopped, robot.serial, true);
       } else if (stopped && !battery->empty && battery->fraction >= spec.restart) {

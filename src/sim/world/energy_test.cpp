@@ -454,6 +454,24 @@ TEST(EnergyRule, StopsAnEmptyRobotUntilItIsCharged) {
   EXPECT_GT(speed_of(*simulation), 0.9);
 }
 
+TEST(EnergyRule, PutsAMovingRobotToRestOrLetsItCoast) {
+  for (const char* empty : {"stop", "coast", "nothing"}) {
+    model::Setup setup = powered(map({{"capacity", "2 J"}}), map({{"drain", "2 W"}}), {}, "rigid");
+    setup.instances[0].X_WM.p.z = -1;  // nothing rubs
+    model::ElementDecl rule;
+    rule.name = rule.kind = "energy";
+    rule.config = map({{"empty", empty}});
+    setup.rules.push_back(rule);
+    const auto simulation = build(std::move(setup));
+    drive(*simulation, 0.5);
+    advance(*simulation, 150);
+    EXPECT_NEAR(speed_of(*simulation), empty == std::string("stop") ? 0 : 0.5, 1e-6) << empty;
+    drive(*simulation, 0.2);
+    advance(*simulation, 1);
+    EXPECT_EQ(bool(simulation->outcomes().back().status), empty == std::string("nothing")) << empty;
+  }
+}
+
 // ---------------------------------------------------------------------------------------------------------- properties
 
 model::Setup fuelled() {
