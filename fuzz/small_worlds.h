@@ -246,7 +246,7 @@ robots:
     model: cart
     devices:
       go: {kind: heading_drive}
-      foot: {kind: kicker, reach: 1, opening: 60 deg}
+      foot: {kind: kicker, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 1, opening: 60 deg}
       lamp: {kind: lamp, levels: [brightness, color]}
       eyes: {kind: agent_eyes}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {foot: 0.1, go: [0.3, 1]}}, {at: 0.29 s, orders: {foot: 0.05}}]}

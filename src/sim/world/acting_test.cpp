@@ -360,6 +360,27 @@ TEST(AgentEyes, RangeViewLabelsAndWallsHideThings) {
   }
 }
 
+TEST(AgentEyes, LinksOfTheOwnRobotHideNothing) {
+  for (const char* const engine : {"rigid", "planar"}) {
+    model::Setup setup = agents(Node::map(), engine);
+    // A screen of 1 m before the eyes, on a link of its own.
+    auto screened = std::make_shared<model::Model>(*setup.instances[0].model);
+    model::Link screen = one_shape("screen", Box{{0.02, 1, 0.4}}, 1)->links[0];
+    screen.name = "screen";
+    screen.X_ML.p = {0.3, 0, 0};
+    screened->links.push_back(screen);
+    model::Joint joint;
+    joint.name = "mount";
+    joint.type = model::JointType::fixed;
+    joint.parent = 0;
+    joint.child = 1;
+    screened->joints.push_back(joint);
+    setup.instances[0].model = screened;
+    const auto simulation = build(setup);
+    EXPECT_EQ(reading<msg::VisibleObjectArray>(*simulation, "agent/eyes").objects.size(), 2u) << engine;
+  }
+}
+
 // --------------------------------------------------------------------------------------------------- heading_drive
 
 model::Setup heading(const char* engine, Node keys) {

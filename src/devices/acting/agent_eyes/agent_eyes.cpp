@@ -35,8 +35,30 @@ Result<AgentEyes> AgentEyes::create(const DeviceBuild& build, Spec spec) {
   return eyes;
 }
 
+std::uint32_t AgentEyes::first_body(const Pose& X_WS, Vec3 place_W, double behind_m,
+                                    const LabelledObject* self, const Context& context) const {
+  const Vec3 place_S = rotate_inverse(X_WS.q, place_W - X_WS.p), direction = normalised(place_S, {1, 0, 0});
+  double from_m = 0;
+  for (int own = 0; own < 8; ++own) {
+    float hit_m = 0;
+    std::uint32_t hit = no_body;
+    const RayJob job{.X_WS = X_WS,
+                     .directions = {&direction, 1},
+                     .min_m = from_m,
+                     .max_m = norm(place_S) + behind_m,
+                     .ignore_body = body.index,
+                     .distance_m = {&hit_m, 1},
+                     .body = {&hit, 1}};
+    context.rays.cast({&job, 1});
+    if (!std::isfinite(hit_m)) return no_body;
+    if (!self || !is_part(*self, hit)) return hit;
+    from_m = static_cast<double>(hit_m) + 1e-4;  // a link of its own does not hide anything
+  }
+  return no_body;
+}
+
 bool AgentEyes::sees(const LabelledObject& target, const Pose& X_WS, Vec3 middle_W,
-                     const Context& context) const {
+                     const LabelledObject* self, const Context& context) const {
   const Pose& X_WB = context.engine.states()[target.bodies.front()].X_WB;
   const Vec3 ahead_W = normalised(middle_W - X_WS.p, {1, 0, 0});
   const Vec3 side_W = normalised(cross({0, 0, 1}, ahead_W), {0, 1, 0}), up_W = cross(ahead_W, side_W);
@@ -45,26 +67,12 @@ bool AgentEyes::sees(const LabelledObject& target, const Pose& X_WS, Vec3 middle
   const Vec3 side = side_W * (0.8 * reach(side_W)), up = up_W * (0.8 * reach(up_W));
   const std::array<Vec3, 5> places_W{middle_W, middle_W + side, middle_W - side, middle_W + up,
                                      middle_W - up};
-  std::array<Vec3, 5> directions;
-  double farthest = 0;
+  const double behind = reach(ahead_W);
   for (std::size_t i = 0; i < places_W.size(); ++i) {
-    const Vec3 place_S = rotate_inverse(X_WS.q, places_W[i] - X_WS.p);
-    directions[i] = normalised(place_S, {1, 0, 0});
-    farthest = std::max(farthest, norm(place_S));
+    const std::uint32_t met = first_body(X_WS, places_W[i], behind, self, context);
+    if (met == no_body ? i == 0 : is_part(target, met)) return true;
   }
-  std::array<float, 5> hit_m;
-  std::array<std::uint32_t, 5> hit;
-  const RayJob job{.X_WS = X_WS,
-                   .directions = directions,
-                   .min_m = 0,
-                   .max_m = farthest + reach(ahead_W),
-                   .ignore_body = body.index,
-                   .distance_m = hit_m,
-                   .body = hit};
-  context.rays.cast({&job, 1});
-  for (std::size_t i = 0; i < places_W.size(); ++i)
-    if (std::isfinite(hit_m[i]) && is_part(target, hit[i])) return true;
-  return !std::isfinite(hit_m[0]);
+  return false;
 }
 
 void AgentEyes::sense(PoolView<AgentEyes> pool, const Context& context) {
@@ -75,14 +83,17 @@ void AgentEyes::sense(PoolView<AgentEyes> pool, const Context& context) {
     const Pose X_WS = states[eyes.body.index].X_WB * eyes.X_LS;
     std::vector<msg::VisibleObject>& reported = eyes.objects->message.objects;
     std::size_t count = 0;
+    const auto own = std::find_if(context.labelled_objects.begin(), context.labelled_objects.end(),
+                                  [&](const LabelledObject& each) { return is_part(each, eyes.body.index); });
+    const LabelledObject* const self = own == context.labelled_objects.end() ? nullptr : &*own;
     for (const LabelledObject& target : context.labelled_objects) {
-      if (!reports(spec, target) || is_part(target, eyes.body.index)) continue;
+      if (!reports(spec, target) || &target == self) continue;
       const BodyState& state = states[target.bodies.front()];
       const Vec3 middle_W = state.X_WB * (0.5 * (target.bounds_B.low + target.bounds_B.high));
       const Vec3 middle_S = rotate_inverse(X_WS.q, middle_W - X_WS.p);
       const double range = norm(middle_S), bearing = math::atan2(middle_S.y, middle_S.x);
       if (range > spec.range_m || std::abs(bearing) > spec.fov_rad / 2) continue;
-      if (!spec.through_walls && !eyes.sees(target, X_WS, middle_W, context)) continue;
+      if (!spec.through_walls && !eyes.sees(target, X_WS, middle_W, self, context)) continue;
       if (count == reported.size())
         reported.emplace_back();  // else: the place of an earlier sample and its memory
       msg::VisibleObject& object = reported[count++];

@@ -6,8 +6,9 @@
 /// Output   level `objects`: sandlot_msgs/VisibleObjectArray: name, label, team, colour, pose, velocity, size and mass of each robot
 ///          and object, the own robot left out, whose middle is within `range` and `fov`; of those that cannot move only with
 ///          `fixed`. In order of creation.
-/// Sight    a ray to the middle of its bounds and to four places at 0.8 of its extent, left, right, up and down, or one
-///          of them, meets it first; or the middle ray meets nothing, as in a goal. With `through_walls`: whatever stands between.
+/// Sight    a ray to the middle of its bounds, or to one of four places at 0.8 of its extent to the left, right, top and bottom,
+///          meets it first; or the middle ray meets nothing, as in a goal. Links of the own robot hide nothing. With
+///          `through_walls`: whatever stands between.
 /// Time     the end of the tick.
 /// Noise    none: see the levels objects and world of cameras for detectors with errors.
 /// Limits   sizes are those of the declared pose of all joints. On the engine planar, objects are upright prisms to rays.
@@ -48,7 +49,12 @@ struct AgentEyes {
 
   static Result<AgentEyes> create(const DeviceBuild& build, Spec spec);
   static void sense(PoolView<AgentEyes> pool, const Context& context);
-  bool sees(const LabelledObject& target, const Pose& X_WS, Vec3 middle_W, const Context& context) const;
+  /// @param self  the own robot; null: it has no bounds
+  bool sees(const LabelledObject& target, const Pose& X_WS, Vec3 middle_W, const LabelledObject* self,
+            const Context& context) const;
+  /// The body that a ray to a place meets first, as far as `behind_m` behind it; none of `self`.
+  std::uint32_t first_body(const Pose& X_WS, Vec3 place_W, double behind_m, const LabelledObject* self,
+                           const Context& context) const;
 };
 
 extern const Kind kind;
