@@ -138,7 +138,7 @@ const msg::ObjectPose* Clearing::choose(const View& view) {
 
 void Clearing::back_off(Time now) {
   state.phase = Phase::back_off;
-  state.backing_until = now + Time::from_s(back_off_s);
+  state.backing_until = state.stood_since = now + Time::from_s(back_off_s);
 }
 
 /// Whether it has hardly moved for a while, though it is on its way: something is in between.

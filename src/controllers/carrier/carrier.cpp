@@ -135,10 +135,12 @@ void Carrier::step(const Observation& obs, Command& cmd) {
   for (const Member& other : state.others)
     if (obs.now() - other.received <= forget) members.push_back(&other);
   settle(members, spec.keys.posts_m.size(), posts);
+  // Who has just got a post is not there yet, even while the others push.
+  const bool stays = state.pushing && own.ready && posts[0] == own.post;
   if (posts[0] != own.post) ++state.settled;
   own.post = posts[0];
   own.ready = own.post != no_post &&
-              (state.pushing || at_post(spec.keys, load, self->pose, static_cast<std::size_t>(own.post)));
+              (stays || at_post(spec.keys, load, self->pose, static_cast<std::size_t>(own.post)));
   // All posts are manned: as their robots report.
   std::size_t manned = 0;
   for (std::size_t k = 0; k < spec.keys.posts_m.size(); ++k)

@@ -120,12 +120,30 @@ TEST(Clearing, LeavesAnObjectAloneThatDoesNotComeNearer) {
   rig.put("other", "box", 9.5, 0);
   rig.step(0);
   EXPECT_EQ(rig.controller.state.object, "box");
-  rig.step(7.4);  // 10 s, a quarter more or less
+  // It moves all the time, so that it is not jammed. 10 s, a quarter more or less:
+  rig.put("me", "pusher", 4.9, 0);
+  rig.step(7.4);
   EXPECT_EQ(rig.controller.state.object, "box");
+  rig.put("me", "pusher", 4.8, 0);
   rig.step(12.6);
   rig.step(13.6);
   EXPECT_EQ(rig.controller.state.object, "other");
   EXPECT_EQ(rig.controller.state.left_alone, "box");
+}
+
+TEST(Clearing, BacksOffWhenItDoesNotGetAway) {
+  Rig rig(spec());
+  rig.put("me", "pusher", 3, 0);
+  rig.put("box", "box", 2, 0);
+  for (const double now_s : {1.0, 2.0, 3.0, 4.0}) rig.step(now_s);
+  EXPECT_EQ(rig.controller.state.jammed, 0u);
+  rig.step(4.1);  // for more than three seconds
+  EXPECT_EQ(rig.controller.state.jammed, 1u);
+  rig.step(4.5);
+  EXPECT_LT(rig.twist().linear.x, 0);
+  rig.step(5.1);
+  EXPECT_EQ(rig.controller.state.object, "box");
+  EXPECT_EQ(rig.controller.state.phase, Phase::approach);
 }
 
 TEST(Clearing, OfTwoBidsTheSmallerWins) {
