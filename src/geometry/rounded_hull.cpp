@@ -43,7 +43,8 @@ RoundedHull rounded_hull(std::span<const SilhouetteDisc> discs) {
   RoundedHull hull;
   std::vector<Vec2> centres;
   for (const SilhouetteDisc& disc : discs) {
-    centres.push_back(disc.centre);
+    if (std::find(centres.begin(), centres.end(), disc.centre) == centres.end())
+      centres.push_back(disc.centre);
     hull.radius_m = std::max(hull.radius_m, disc.radius_m);
   }
   hull.corners = convex_hull_2d(centres);

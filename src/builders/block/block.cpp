@@ -24,7 +24,7 @@ struct Spec {
         Field{"form", "", "Form of the block. A cylinder stands upright; its diameter is its size along x."},
         s.form);
     visit(Field{"size", "m", "Size along x, y and z.", 1e-3, 1e3}, s.size_m);
-    visit(Field{"mass", "kg", "Mass.", 1e-4, 1e6}, s.mass_kg);
+    visit(Field{"mass", "kg", "Mass of the block.", 1e-4, 1e6}, s.mass_kg);
     visit(Field{"friction", "1", "Coefficient of friction of its surface.", 0, 1e3}, s.friction);
     visit(Field{"color", "1", "Colour: red, green and blue.", 0, 1}, s.color);
   }

@@ -86,13 +86,13 @@ void Carriers::step(const Observation& obs, Command& cmd) {
   std::size_t manned = 0;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     Member& member = state.members[i];
-    // Who has just got a post is not there yet, even while the others push.
-    const bool stays = state.pushing && member.ready && posts[i] == member.post;
-    if (posts[i] != member.post) ++state.settled;
+    const bool stays = posts[i] == member.post;
+    if (!stays) ++state.settled;
     member.post = posts[i];
     const msg::ObjectPose* const self = steering::find(seen.message, robots[i].name);
     member.ready = self && member.post != no_post &&
-                   (stays || at_post(spec, load, self->pose, static_cast<std::size_t>(member.post)));
+                   ((state.pushing && stays) ||
+                    at_post(spec, load, self->pose, static_cast<std::size_t>(member.post)));
     manned += member.ready;
   }
   state.pushing = manned == spec.posts_m.size();

@@ -45,7 +45,7 @@ struct Spec {
     visit(
         Field{"field", "m", "Size of the field about the origin along x and y, between its walls.", 0.1, 1e6},
         s.field_m);
-    visit(Field{"speed", "m/s", "Speed.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"speed", "m/s", "Driving speed.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
     visit(Field{"behind", "m", "Distance of the place behind the ball from the ball.", 0.01, 100, tunable},
           s.behind_m);

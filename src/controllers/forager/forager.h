@@ -51,7 +51,7 @@ struct Spec {
     visit(Field{"low_charge", "1", "Charge below which the robot goes to a station.", 0, 1, tunable},
           s.low_charge);
     visit(Field{"full_charge", "1", "Charge at which it leaves the station.", 0, 1, tunable}, s.full_charge);
-    visit(Field{"speed", "m/s", "Speed.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"speed", "m/s", "Driving speed.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
     visit(Field{"grip", "m", "Distance of an item ahead at which the gripper closes.", 0.01, 100, tunable},
           s.grip_m);

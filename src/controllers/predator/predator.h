@@ -46,7 +46,7 @@ struct Spec {
           s.camera);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
     visit(Field{"prey", "", "Label of the prey.", 0, 0, Field::none, 100}, s.prey);
-    visit(Field{"speed", "m/s", "Speed.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"speed", "m/s", "Driving speed.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
     visit(Field{"horizon", "s", "Longest time ahead for which the prey is expected to keep its velocity.", 0,
                 1000, tunable},

@@ -53,7 +53,7 @@ struct Spec {
     visit(Field{"yard", "m",
                 "Size of the yard about the origin along x and y, between its walls; 0: no walls.", 0, 1e6},
           s.yard_m);
-    visit(Field{"speed", "m/s", "Speed.", 0, 100, tunable}, s.speed_mps);
+    visit(Field{"speed", "m/s", "Driving speed.", 0, 100, tunable}, s.speed_mps);
     visit(Field{"turn_speed", "rad/s", "Largest turning rate.", 0.01, 100, tunable}, s.turn_speed_radps);
     visit(Field{"alarm", "m", "Distance of a predator within which it moves.", 0, 1e4, tunable}, s.alarm_m);
     visit(Field{"swerve", "rad", "Angle to either side with zigzag.", 0, 1.5, tunable}, s.swerve_rad);

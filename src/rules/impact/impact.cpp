@@ -32,8 +32,7 @@ struct Spec {
     visit(Field{"property", "", "Property of the robots that damage lowers, such as health.", 0, 0,
                 Field::none, 100},
           s.property);
-    visit(Field{"per_damage", "1", "Loss of the property [its unit per Ns] per damage.", 0, 1e9,
-                Field::tunable},
+    visit(Field{"per_damage", "1", "Loss of the property [its unit per Ns] per damage.", 0, 1e9},
           s.per_damage);
     visit(Field{"robots", "", "Names of the robots that take damage; all if left out.", 0, 0, Field::none,
                 10'000},

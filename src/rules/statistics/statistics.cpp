@@ -61,7 +61,7 @@ struct State {
     visit(Field{"below", "1", "Numbers below the histogram's range."}, s.below);
     visit(Field{"above", "1", "Numbers at or above the upper end of the histogram's range."}, s.above);
     visit(Field{"histogram", "1", "Numbers in each bin; its lower end belongs to a bin."}, s.histogram);
-    visit(Field{"quantiles", "", "Quantiles in the order of the key, from the histogram."}, s.quantiles);
+    visit(Field{"quantile", "", "Quantiles in the order of the key, from the histogram."}, s.quantiles);
     visit(Field{"next", "s", "Time of the next sample."}, s.next);
   }
 };

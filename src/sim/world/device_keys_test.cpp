@@ -493,7 +493,7 @@ TEST(DeviceKeys, ForgedStateIsRefusedOrHarmless) {
   int refused = 0, taken = 0;
   for (const auto* device : {&drive, &laser}) {
     w.clear();
-    device->keys->save(w);
+    device->keys->save(*device, w);
     const std::vector<std::byte> good(w.bytes().begin(), w.bytes().end());
     for (int round = 0; round < 300; ++round) {
       std::vector<std::byte> forged = good;

@@ -9,6 +9,7 @@
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 #include "sim/world/simulation.h"
+#include "sim/world/test_movers.h"
 
 namespace sandlot::test {
 
@@ -29,22 +30,6 @@ inline Node with(Node node, const char* key, const Node& value) {
 
 inline model::ElementDecl element(const char* kind, Node config, const char* name = nullptr) {
   return {name ? name : kind, kind, std::move(config), {}};
-}
-
-inline model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map(),
-                                Pose X_LS = {}) {
-  model::DeviceDecl decl;
-  decl.name = name;
-  decl.kind = kind;
-  decl.X_LS = X_LS;
-  decl.config = std::move(config);
-  return decl;
-}
-
-inline double value(const Simulation& simulation, const char* address) {
-  auto found = NamedValue::find(simulation, address);
-  if (!found) ADD_FAILURE() << found.error().text();
-  return found ? found->read().value_or(NAN) : NAN;
 }
 
 inline std::string refused(model::Setup setup) {

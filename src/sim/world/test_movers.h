@@ -20,7 +20,8 @@ inline Node list_of(std::initializer_list<std::pair<const char*, Node>> stages) 
   return out;
 }
 
-inline model::DeviceDecl device(const char* name, const char* kind, Node config, Pose X_LS = {}) {
+inline model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map(),
+                                Pose X_LS = {}) {
   model::DeviceDecl decl;
   decl.name = name;
   decl.kind = kind;
