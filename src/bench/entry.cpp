@@ -28,7 +28,9 @@ constexpr Suite suites[] = {
 /// A ratio this much over its budget is a mistake in the code; less may be the machine's other work.
 constexpr double guard_factor = 2;
 
-bool exceeds_guard(const bench::Row& row) { return row.ratio > guard_factor * row.budget; }
+bool exceeds_guard(const bench::Row& row) {
+  return row.ratio > (row.guard > 0 ? row.guard : guard_factor * row.budget);
+}
 
 nlohmann::ordered_json as_json(const bench::Row& row) {
   return {{"name", row.name},   {"value", row.value},   {"unit", row.unit}, {"reference", row.reference},

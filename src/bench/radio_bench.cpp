@@ -108,7 +108,7 @@ std::vector<Row> radio() {
       });
   SL_CHECK(found > 0);
   return {row("radio, per delivery, 1000 robots, 10 in reach", "ns",
-              1e9 * (run.ours_s - run.reference_s) / deliveries, 1e9 * bare.reference_s / count, 3)};
+              1e9 * (run.ours_s - run.reference_s) / deliveries, 1e9 * bare.reference_s / count, 3, 18)};
 }
 
 }  // namespace sandlot::bench
