@@ -42,12 +42,15 @@ TEST(Teams, TheClearingLawIsTheSameAsAPlugin) {
   // Its text: all lines but those that name the place it is in.
   const auto same = [](const std::string& file) {
     std::string ours = read_file("src/controllers/clearing/" + file);
-    ours = std::regex_replace(ours, std::regex("#include \"controllers/clearing/clearing.h\""), "#include \"clearing.h\"");
-    ours = std::regex_replace(ours, std::regex("#include \"control/controller.h\""), "#include <sandlot/control.h>");
+    ours = std::regex_replace(ours, std::regex("#include \"controllers/clearing/clearing.h\""),
+                              "#include \"clearing.h\"");
+    ours = std::regex_replace(ours, std::regex("#include \"control/controller.h\""),
+                              "#include <sandlot/control.h>");
     ours = std::regex_replace(ours, std::regex("\n#include \"(control/steering|base/math).h\""), "");
     ours = std::regex_replace(ours, std::regex("namespace sandlot::controllers::clearing \\{"),
                               "namespace my_clearing {\n\nusing namespace sandlot;");
-    ours = std::regex_replace(ours, std::regex("namespace sandlot::controllers::clearing"), "namespace my_clearing");
+    ours = std::regex_replace(ours, std::regex("namespace sandlot::controllers::clearing"),
+                              "namespace my_clearing");
     ours = std::regex_replace(ours, std::regex("= clearing::"), "= my_clearing::");
     ours = std::regex_replace(ours, std::regex("\n\n\n"), "\n\n");
     EXPECT_EQ(ours, read_file("examples/clearing_plugin/" + file));
@@ -59,7 +62,8 @@ TEST(Teams, TheClearingLawIsTheSameAsAPlugin) {
   const std::string text = read_file("examples/clearing_plugin/clearing.yaml");
   const TestFolder scratch;
   const auto run = [&](const std::string& kind) {
-    return summary_of(scratch.write(kind + ".yaml", std::regex_replace(text, std::regex("kind: my_clearing"), "kind: " + kind)) +
+    return summary_of(scratch.write(kind + ".yaml", std::regex_replace(text, std::regex("kind: my_clearing"),
+                                                                       "kind: " + kind)) +
                       " --path " + plugins);
   };
   const auto plugin = run("my_clearing"), built_in = run("clearing");
@@ -86,7 +90,8 @@ TEST(Teams, TheBeamArrivesByBidsAndByOneProgram) {
 
 TEST(Teams, OneRobotAloneCannotMoveTheBeam) {
   const auto s = summary_of(
-      "scenarios/transport.yaml --duration 20s --set 'robots.hauler.count=1' --set 'vars.own={bids: {kind: carrier, load: beam, "
+      "scenarios/transport.yaml --duration 20s --set 'robots.hauler.count=1' --set 'vars.own={bids: {kind: "
+      "carrier, load: beam, "
       "destination: [1.8, 0], posts: [0.25], radio: radio}}' --stop-when 'abs(beam.pose.x + 0.8) > 2 cm'");
   ASSERT_FALSE(s.contains("failed")) << s["failed"];
   EXPECT_EQ(s["end_time"], 20.0);
@@ -119,12 +124,14 @@ TEST(LongReproduce, CooperationIsOnePageWithoutANetwork) {
   const Printed made = sandlot("reproduce cooperation --repeat 2 --out " + scratch.file("out"));
   ASSERT_EQ(made.exit_code, 0) << made.out;
   const std::string html = read_file(scratch.file("out/index.html"));
-  for (const char* const text : {"rigid, disturber, no radio", "lead / hide", "bids by radio", "the paper", "<svg"})
+  for (const char* const text :
+       {"rigid, disturber, no radio", "lead / hide", "bids by radio", "the paper", "<svg"})
     EXPECT_THAT(html, HasSubstr(text));
   for (const char* const text : {"src=\"http", "href=\"http", "<script", "<link", "drawing.svg"})
     EXPECT_THAT(html, Not(HasSubstr(text)));
   for (const char* const file : {"clearing.csv", "predator_prey.csv", "transport.csv"})
-    EXPECT_THAT(read_file(scratch.file(std::string("out/") + file)), HasSubstr("condition,seed,criterion,success"));
+    EXPECT_THAT(read_file(scratch.file(std::string("out/") + file)),
+                HasSubstr("condition,seed,criterion,success"));
   EXPECT_FALSE(fs::exists(scratch.file("out/drawing.svg")));
 }
 

@@ -143,13 +143,14 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
                  "160 g`, `delay: 50 ms`, "
                  "`command_errors: {linear: [{gaussian: {std: 1 cm/s}}]}`.",
                  {}};
-  common.items.push_back({"device",
-                          "Mass, limit of activations, delay, errors of commands and drains. A kind with a key "
-                          "`errors` of its own has that one.",
-                          describe_fields<DeviceKeysSpec>(),
-                          {},
-                          {},
-                          {}});
+  common.items.push_back(
+      {"device",
+       "Mass, limit of activations, delay, errors of commands and drains. A kind with a key "
+       "`errors` of its own has that one.",
+       describe_fields<DeviceKeysSpec>(),
+       {},
+       {},
+       {}});
   Section faults{
       "faults",
       "Faults",

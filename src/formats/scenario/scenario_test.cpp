@@ -159,8 +159,9 @@ TEST(Scenario, SetSaysWhatIsWrongWithItsPath) {
             "--set vars.sped=3: no variable 'sped'; did you mean 'speed'?");
   EXPECT_EQ(error_of(indoor, {{"robots[1].count", "3"}}),
             "--set robots[1].count=3: 'robots' has 1 element; the last one is robots[0]");
-  EXPECT_EQ(error_of(indoor, {{"robots.count", "-3"}}),
-            "--set robots.count=-3: /robots/0/count: must be in [0, 1e+06], is -3; Number of robots; 0: none.");
+  EXPECT_EQ(
+      error_of(indoor, {{"robots.count", "-3"}}),
+      "--set robots.count=-3: /robots/0/count: must be in [0, 1e+06], is -3; Number of robots; 0: none.");
   EXPECT_NE(error_of(indoor, {{"time.step.x", "3"}}).find("has no 'x' in it"), std::string::npos);
   EXPECT_NE(error_of(indoor, {{"seed", "[1"}}).find("--set seed=[1: the value cannot be read"),
             std::string::npos);

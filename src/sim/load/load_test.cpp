@@ -197,8 +197,10 @@ TEST_F(Files, AGroupInAGridIsCentredAndSpaced) {
 TEST_F(Files, AnEmptyGroupIsLeftOutAndMovesNobody) {
   for (const std::string place : {"pose: [1, 2, 0]", "distribution: {grid: {spacing: 1}}",
                                   "distribution: {uniform: {width: 3, height: 3}}"}) {
-    const std::string others = "- {name: b, model: models/bot, count: 3, distribution: {uniform: {width: 9, height: 9}}}\n";
-    const auto with = load_text("robots:\n- {name: a, model: models/bot, count: 0, " + place + "}\n" + others);
+    const std::string others =
+        "- {name: b, model: models/bot, count: 3, distribution: {uniform: {width: 9, height: 9}}}\n";
+    const auto with = load_text("robots:\n- {name: a, model: models/bot, count: 0, " + place + "}\n" +
+                                others);
     const auto without = load_text("robots:\n" + others);
     ASSERT_TRUE(with) << with.error().text();
     ASSERT_EQ(with->instances.size(), 4u) << place;
