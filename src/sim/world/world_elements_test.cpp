@@ -245,7 +245,7 @@ TEST(Impact, ARestingRobotTakesNoDamageAndAFallBreaksIt) {
   // over the contacts of chassis and wheels.
   const auto resting = build(falling("0", 0.001));
   advance(*resting, 300);
-  const auto damage = NamedValue::find(*resting, "rules/impact.robots[0].sum");
+  auto damage = NamedValue::find(*resting, "rules/impact.robots[0].sum");
   ASSERT_TRUE(damage);
   EXPECT_FALSE(damage->read());
   const auto fallen = build(falling("4", 0.5));
