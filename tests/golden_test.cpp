@@ -43,6 +43,13 @@ constexpr Golden goldens[] = {
     {"scenarios/ball.yaml", "3ffb74f0db5c4412"},
     {"scenarios/ball.yaml --set level=objects", "d2d4824f6b4bb10f"},
     {"scenarios/formation.yaml", "f39e7746684f0ac7"},
+    {"scenarios/clearing.yaml --set disturbers=1", "ff300f60f36d0072"},
+    {"scenarios/clearing.yaml --set physics=rigid --duration 20s", "3e4ca7f1ce10f70d"},
+    {"scenarios/predator_prey.yaml", "899b439fe5e946ba"},
+    {"scenarios/transport.yaml --duration 20s", "a3134e8ce296b47d"},
+    {"scenarios/foraging.yaml --duration 20s", "3375fe3ab4f73060"},
+    {"scenarios/football.yaml --duration 20s", "7dad86600804512b"},
+    {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
 };
 
 class GoldenRun : public testing::TestWithParam<Golden> {};
