@@ -14,7 +14,7 @@ struct RadioPacket {
   std::vector<std::uint8_t> data;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"to", "", "Name of the robot or team that it is for; empty: all."}, s.to);
-    visit(Field{"data", "", "Content."}, s.data);
+    visit(Field{"data", "", "Content of the packet."}, s.data);
   }
 };
 
@@ -60,7 +60,7 @@ struct RangeBearing {
     visit(Field{"range", "m", "Measured distance."}, s.range);
     visit(Field{"bearing", "rad", "Measured direction about z, 0 along x of the receiver."}, s.bearing);
     visit(Field{"elevation", "rad", "Measured direction above the receiver's xy plane."}, s.elevation);
-    visit(Field{"data", "", "Content."}, s.data);
+    visit(Field{"data", "", "Content of the packet."}, s.data);
   }
 };
 

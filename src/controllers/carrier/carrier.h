@@ -36,7 +36,7 @@ struct State {
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"own", "", "Own values, as they are sent."}, s.own);
-    visit(Field{"effort", "", "Its motion, compared to what was ordered."}, s.effort);
+    visit(Field{"effort", "", "Motion of the robot compared to what was ordered."}, s.effort);
     visit(Field{"resend", "s", "Time of the next message."}, s.resend);
     visit(Field{"pushing", "", "Whether it pushes."}, s.pushing);
     visit(Field{"settled", "1", "Times that its post has changed."}, s.settled);

@@ -62,6 +62,20 @@ inline constexpr Field energy_per_bit_field{
     "energy_per_bit", "J", "Energy drawn from the robot's battery per bit of data sent.", 0, 1e6,
     Field::tunable};
 
+/// Keys that radios and infrared ports share, the last in their lists.
+void visit_packet_keys(auto& s, auto&& visit) {
+  visit(Field{"channel", "1", "Channel on which it sends and receives.", 0, 100'000, Field::tunable},
+        s.channel);
+  visit(Field{"max_size", "B", "Greatest number of bytes in a packet.", 1, most_packet_data}, s.max_size);
+  visit(Field{"queue", "1", "Number of orders that it takes per tick.", 1, most_queued_orders}, s.queue);
+  visit(Field{"promiscuous", "", "Whether it publishes packets that are for others, too.", 0, 1,
+              Field::tunable},
+        s.promiscuous);
+  visit(energy_per_bit_field, s.energy_per_bit_J);
+  visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick in which a packet has come.", 0, 1e6},
+        s.rate_hz);
+}
+
 /// Orders to send that a device has taken so far.
 struct SendCounts {
   std::uint64_t sent = 0, refused = 0;

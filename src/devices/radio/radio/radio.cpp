@@ -38,16 +38,7 @@ struct Spec {
                 0, Field::none, most_packet_name},
           s.address);
     visit(Field{"power", "dBm", "Power with which it sends.", -200, 100, Field::tunable}, s.power_dBm);
-    visit(Field{"channel", "1", "Channel on which it sends and receives.", 0, 100'000, Field::tunable},
-          s.channel);
-    visit(Field{"max_size", "B", "Greatest number of bytes in a packet.", 1, most_packet_data}, s.max_size);
-    visit(Field{"queue", "1", "Number of orders that it takes per tick.", 1, most_queued_orders}, s.queue);
-    visit(Field{"promiscuous", "", "Whether it publishes packets that are for others, too.", 0, 1,
-                Field::tunable},
-          s.promiscuous);
-    visit(energy_per_bit_field, s.energy_per_bit_J);
-    visit(Field{"rate", "Hz", "Samples per second; 0: one in every tick in which a packet has come.", 0, 1e6},
-          s.rate_hz);
+    visit_packet_keys(s, visit);
   }
 };
 
