@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/parallel.h"
+
 namespace sandlot {
 namespace {
 
@@ -15,6 +17,9 @@ double inertia_about_z(const model::Inertial& inertial, const Pose& X_BL) {
                      2 * (o.x * u.x * u.y + o.y * u.x * u.z + o.z * u.y * u.z);
   return own + inertial.mass_kg * (p.x * p.x + p.y * p.y);
 }
+
+/// Accounts that a thread serves at a time.
+constexpr std::size_t accounts_at_a_time = 256;
 
 struct PlanarVelocity {
   double x = 0, y = 0, turn = 0;
@@ -63,54 +68,60 @@ std::unique_ptr<EnergyAccount> EnergyLedger::open(const model::Model& model, std
   return account;
 }
 
-template <class Visit>
-void EnergyLedger::for_each_rider(Visit&& visit) const {
-  for (EnergyAccount* account : accounts_)
-    for (EnergyMeter* meter : account->meters)
-      if (meter->rails_.active) visit(*account, *meter);
+void EnergyLedger::add(EnergyMeter& meter) {
+  meter.account_->meters.push_back(&meter);
+  if (meter.moves()) movers_.push_back(&meter);
 }
 
-void EnergyLedger::begin_tick() {
-  for (EnergyAccount* account : accounts_)
-    for (EnergyMeter* meter : account->meters) meter->rails_.active = meter->turning_ = false;
+void EnergyLedger::remove(const EnergyMeter& meter) {
+  std::erase(meter.account_->meters, &meter);
+  std::erase(movers_, &meter);
+}
+
+void EnergyLedger::begin_tick(double tick_s) {
+  for (EnergyMeter* const meter : movers_) meter->rails_.active = meter->turning_ = false;
+  parallel_for(accounts_.size(), accounts_at_a_time, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (EnergyMeter* const meter : accounts_[i]->meters) meter->draw(meter->drain_W_ * tick_s);
+  });
 }
 
 void EnergyLedger::begin_physics(const Engine& engine) {
   bodies_.clear();
-  any_turning_ = false;
-  for (const EnergyAccount* account : accounts_)
-    for (const EnergyMeter* meter : account->meters) {
-      if (meter->rails_.active) bodies_.push_back(account->base.index);
-      any_turning_ = any_turning_ || meter->turning_;
-    }
+  riders_.clear();
+  turners_.clear();
+  for (EnergyMeter* const meter : movers_) {
+    if (meter->turning_) turners_.push_back(meter);
+    if (!meter->rails_.active) continue;
+    riders_.push_back(meter);
+    bodies_.push_back(meter->account_->base.index);
+  }
   before_.resize(bodies_.size());
   if (!bodies_.empty()) engine.states_of(bodies_, before_);
 }
 
 void EnergyLedger::after_substep(const Engine& engine, double h_s) {
-  if (!any_turning_) return;
+  if (turners_.empty()) return;
   const auto joints = engine.joint_states();
-  for (const EnergyAccount* account : accounts_)
-    for (EnergyMeter* meter : account->meters) {
-      if (!meter->turning_) continue;
-      double work_J = 0;
-      for (const JointId id : meter->joints) {
-        const JointState& joint = joints[id.index];
-        work_J += std::max(0.0, joint.effort * joint.velocity * h_s);
-      }
-      meter->draw_work(work_J);
+  for (EnergyMeter* const meter : turners_) {
+    double work_J = 0;
+    for (const JointId id : meter->joints_) {
+      const JointState& joint = joints[id.index];
+      work_J += std::max(0.0, joint.effort * joint.velocity * h_s);
     }
+    meter->draw_work(work_J);
+  }
 }
 
 void EnergyLedger::after_physics(const Engine& engine, double tick_s, double gravity_mps2) {
-  if (bodies_.empty()) return;
+  if (riders_.empty()) return;
   after_.resize(bodies_.size());
   engine.states_of(bodies_, after_);
-  std::size_t i = 0;
-  for_each_rider([&](const EnergyAccount& account, EnergyMeter& meter) {
+  const auto draw_work = [&](std::size_t i) {
+    EnergyMeter& meter = *riders_[i];
+    const EnergyAccount& account = *meter.account_;
     const DriveTarget& to = meter.rails_;
     const PlanarVelocity a = in_plane(before_[i]), b = in_plane(after_[i]);
-    ++i;
     const PlanarVelocity mean{0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.turn + b.turn)};
     const double dx = to.vx_mps - a.x, dy = to.vy_mps - a.y, change = std::sqrt(dx * dx + dy * dy);
     const double most = to.max_accel_mps2 * tick_s;
@@ -120,10 +131,13 @@ void EnergyLedger::after_physics(const Engine& engine, double tick_s, double gra
                          std::clamp(to.wz_radps - a.turn, -most_turn, most_turn);
     const double speed = std::sqrt(mean.x * mean.x + mean.y * mean.y);
     const double power_W = push * (dx * mean.x + dy * mean.y) + twist * mean.turn +
-                           meter.rates.rolling_resistance * account.mass_kg * gravity_mps2 * speed;
+                           meter.rates_.rolling_resistance * account.mass_kg * gravity_mps2 * speed;
     meter.draw_work(power_W * tick_s);
+  };
+  parallel_for(riders_.size(), accounts_at_a_time, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) draw_work(i);
   });
-  bodies_.clear();
+  riders_.clear();
 }
 
 }  // namespace sandlot

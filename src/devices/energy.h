@@ -21,7 +21,7 @@
 /// Short    an empty battery, or one that cannot deliver so much power, pays a part of each draw, the same of all; the rest is
 ///          counted as missing. Devices need not know.
 /// Limits   rails: coupling of turning and moving by a centre of mass off the base's origin; what others push.
-/// Cost     a few additions per meter and tick; nothing for robots without a battery. No allocation in a tick.
+/// Cost     a few additions per meter and tick, over all threads; nothing for robots without a battery. No allocation in a tick.
 #include <algorithm>
 #include <memory>
 #include <span>
@@ -37,8 +37,8 @@ namespace sandlot {
 
 struct EnergyAccount;
 
-/// What a device has drawn from the battery of its robot.
-class EnergyMeter {
+/// What a device has drawn from the battery of its robot. What every tick reads lies on its first cache line.
+class alignas(64) EnergyMeter {
  public:
   struct State {
     double drawn_J = 0, missing_J = 0, pending_J = 0, share = 1;
@@ -73,33 +73,51 @@ class EnergyMeter {
     }
   };
 
+  /// What `drain_per_use` counts.
+  enum class Use : std::uint8_t { nothing, commands, samples };
+
+  explicit EnergyMeter(EnergyAccount* account = nullptr, Use use = Use::nothing)
+      : account_(account), use_(use) {}
+
   /// Draws energy [J]; below 0: gives back.
   void draw(double energy_J) { state.pending_J += energy_J; }
+  void draw_for_use() { draw(rates_.per_use_J); }
   /// In actuate: the device moves its robot on rails in this tick.
   void ride(const DriveTarget& target) { rails_ = target; }
-  /// In actuate: the motors of `joints` work in this tick, as the engine computes it.
+  /// In actuate: the motors of its joints work in this tick, as the engine computes it.
   void turn_joints() { turning_ = true; }
   /// In create: what the device will call. Motors are added up.
-  void can_ride() { moves = rides = true; }
-  void can_turn(JointId joint) {
-    moves = true;
-    joints.push_back(joint);
+  void can_ride() { rides_ = true; }
+  void can_turn(JointId joint) { joints_.push_back(joint); }
+  bool rides() const { return rides_; }
+  /// Whether it does mechanical work.
+  bool moves() const { return rides_ || !joints_.empty(); }
+
+  EnergyAccount* account() const { return account_; }
+  Use use() const { return use_; }
+  const Rates& rates() const { return rates_; }
+  void set_rates(const Rates& rates) {
+    rates_ = rates;
+    set_dead(false);
   }
-  void draw_work(double work_J) {
-    if (work_J > 0) draw(work_J / rates.efficiency);
-  }
+  /// A dead device drains nothing. Said again in each tick of those that may fail.
+  void set_dead(bool dead) { drain_W_ = dead ? 0 : rates_.drain_W; }
 
   State state;
-  Rates rates;
-  bool moves = false, rides = false;  ///< it does mechanical work; on rails
-  std::vector<JointId> joints;        ///< whose motors it has
-  EnergyAccount* account = nullptr;
-  bool uses_by_commands = false, uses_by_samples = false;  ///< what `drain_per_use` counts
 
  private:
   friend class EnergyLedger;
+  void draw_work(double work_J) {
+    if (work_J > 0) draw(work_J / rates_.efficiency);
+  }
+
+  double drain_W_ = 0;
+  EnergyAccount* account_;
+  Use use_;
+  bool rides_ = false, turning_ = false;
+  Rates rates_;
   DriveTarget rails_{.active = false};
-  bool turning_ = false;
+  std::vector<JointId> joints_;  ///< whose motors it has
 };
 
 /// Account of a robot with a battery.
@@ -142,18 +160,19 @@ class EnergyLedger {
   static std::unique_ptr<EnergyAccount> open(const model::Model& model, std::span<const BodyId> bodies);
   void add(EnergyAccount& account) { accounts_.push_back(&account); }
   void remove(const EnergyAccount* account) { std::erase(accounts_, account); }
-  void begin_tick();                                                             ///< before the actuators act
-  void begin_physics(const Engine& engine);                                      ///< after they have
+  /// A device that is complete, and one that goes.
+  void add(EnergyMeter& meter);
+  void remove(const EnergyMeter& meter);
+  void begin_tick(double tick_s);            ///< before the actuators act: what devices draw all the time
+  void begin_physics(const Engine& engine);  ///< after they have
   void after_substep(const Engine& engine, double h_s);                          ///< work of joints
   void after_physics(const Engine& engine, double tick_s, double gravity_mps2);  ///< work of rails
 
  private:
-  template <class Visit>
-  void for_each_rider(Visit&& visit) const;
-
   std::vector<EnergyAccount*> accounts_;
-  bool any_turning_ = false;
-  std::vector<std::uint32_t> bodies_;  ///< bases on rails in this tick
+  std::vector<EnergyMeter*> movers_;            ///< of devices that do mechanical work
+  std::vector<EnergyMeter*> riders_, turners_;  ///< those that do in this tick
+  std::vector<std::uint32_t> bodies_;           ///< bases of the riders
   std::vector<BodyState> before_, after_;
 };
 

@@ -57,7 +57,7 @@ bool DevicePools::takes_commands(const Device& device, Time now) {
 void DevicePools::prepare_commands(Pool& pool, const Context& context) const {
   const Time begin = context.now - context.tick;
   for (Device* const device : pool.devices) {
-    if (!device->keys || device->commands.empty()) continue;
+    if (!device->keys_act || device->commands.empty()) continue;
     device->keys->prepare_commands(
         *device, {begin, context.tick, context.tick_index, context.seed, all_errors(*device, begin)},
         takes_commands(*device, begin));
@@ -70,16 +70,24 @@ Status DevicePools::deliver(Device& device, Slot& slot, std::span<const std::byt
     if (device.keys) device.keys->count_refused();
     return explain ? Error{"'" + device.path + "' has failed"} : Error{};
   }
-  if (device.keys) {
-    SL_TRY(device.keys->take_command(device, static_cast<std::size_t>(&slot - device.commands.data()), bytes,
-                                     now, all_errors(device, now), explain));
-    if (device.energy && device.energy->uses_by_commands) device.energy->draw(device.energy->rates.per_use_J);
+  const auto take = [&]() -> Status {
+    if (!explain && slot.queued && is_full(*slot.topic)) return Error{};
+    SL_TRY(slot.topic->assign(bytes));
+    slot.topic->stamp = now;
+    ++slot.topic->count;
     return {};
+  };
+  if (!device.keys) return take();
+  const auto index = static_cast<std::size_t>(&slot - device.commands.data());
+  Status taken = device.keys_act
+                     ? device.keys->take_command(device, index, bytes, now, all_errors(device, now), explain)
+                     : take();
+  if (!taken) {
+    device.keys->count_refused();
+    return taken;
   }
-  if (!explain && slot.queued && is_full(*slot.topic)) return Error{};
-  SL_TRY(slot.topic->assign(bytes));
-  slot.topic->stamp = now;
-  ++slot.topic->count;
+  device.keys->state.accepted = now;
+  if (device.energy && device.energy->use() == EnergyMeter::Use::commands) device.energy->draw_for_use();
   return {};
 }
 

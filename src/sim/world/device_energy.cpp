@@ -25,13 +25,12 @@ Status DevicePools::open_account(Entity& entity, const Engine& engine) {
 }
 
 std::unique_ptr<EnergyMeter> DevicePools::meter_of(Entity& entity, const Kind& kind) {
-  auto meter = std::make_unique<EnergyMeter>();
-  meter->account = entity.energy.get();
   const bool commanded = std::any_of(kind.levels.begin(), kind.levels.end(),
                                      [](const LevelInfo& level) { return *level.command != '\0'; });
-  meter->uses_by_commands = commanded;
-  meter->uses_by_samples = !commanded && (kind.phases & phase_sense) != 0;
-  return meter;
+  const bool sampled = !commanded && (kind.phases & phase_sense) != 0;
+  return std::make_unique<EnergyMeter>(entity.energy.get(), commanded ? EnergyMeter::Use::commands
+                                                            : sampled ? EnergyMeter::Use::samples
+                                                                      : EnergyMeter::Use::nothing);
 }
 
 /// False: the bytes are no state of a meter.
@@ -48,15 +47,13 @@ bool DevicePools::load_meter(EnergyMeter& meter, ByteReader& r) {
 
 /// What devices draw all the time, for the tick that begins.
 void DevicePools::drain(const Context& context) {
-  ledger_.begin_tick();
   const Time begin = context.now - context.tick;
   for (const Pool& pool : pools_) {
-    if (pool.metered == 0) continue;
+    if (pool.metered == 0 || pool.faulty == 0) continue;
     for (Device* const device : pool.devices)
-      if (device->energy && device->energy->rates.drain_W > 0 &&
-          !(device->faults && device->faults->at(begin).dead))
-        device->energy->draw(device->energy->rates.drain_W * context.tick.s());
+      if (device->energy && device->faults) device->energy->set_dead(device->faults->at(begin).dead);
   }
+  ledger_.begin_tick(context.tick.s());
 }
 
 /// Draws for the samples that are due, and has the batteries pay for the tick. @pre what is due has been found
@@ -64,10 +61,12 @@ void DevicePools::settle(const Context& context) {
   for (const Pool& pool : pools_) {
     if (pool.metered == 0 || !(pool.kind->phases & phase_sense)) continue;
     for (const std::uint32_t index : pool.due) {
-      Device& device = *pool.devices[index];
-      if (device.energy && device.energy->uses_by_samples && device.energy->rates.per_use_J > 0 &&
-          !(device.faults && device.faults->at(context.now).dead))
-        device.energy->draw(device.energy->rates.per_use_J);
+      EnergyMeter* const meter = pool.meters[index];
+      if (!meter || meter->use() != EnergyMeter::Use::samples) continue;
+      if (pool.faulty > 0)
+        if (const auto& faults = pool.devices[index]->faults; faults && faults->at(context.now).dead)
+          continue;
+      meter->draw_for_use();
     }
   }
   ledger_.after_physics(context.engine, context.tick.s(), norm(setup_.gravity));

@@ -97,14 +97,14 @@ Status DeviceKeys::begin_energy(const Device& device, const Kind& kind, Report&&
                    "give it a device of kind battery, or leave " + std::string(each.key) + " out");
   if (!device.energy) return {};
   const EnergyMeter& meter = *device.energy;
-  if (rates.per_use_J > 0 && !meter.uses_by_commands && !meter.uses_by_samples)
+  if (rates.per_use_J > 0 && meter.use() == EnergyMeter::Use::nothing)
     return error("drain_per_use", "a " + std::string(kind.name) + " takes neither commands nor samples",
                  "give it a drain");
-  if (rates.efficiency != 1 && !meter.moves)
+  if (rates.efficiency != 1 && !meter.moves())
     return error("efficiency",
                  "a " + std::string(kind.name) + " does no work that is drawn by its efficiency",
                  "leave efficiency out");
-  if (rates.rolling_resistance > 0 && !meter.rides)
+  if (rates.rolling_resistance > 0 && !meter.rides())
     return error("rolling_resistance", "a " + std::string(kind.name) + " does not drive on rails",
                  "leave rolling_resistance out");
   return {};
@@ -135,7 +135,7 @@ Status DeviceKeys::begin(Device& device, const Kind& kind, double sample_hz, boo
     return error("errors", "this " + device.decl.kind + " has no errors that a factor could change",
                  "give it command_errors or a delay, or leave errors out");
   SL_TRY(begin_energy(device, kind, error));
-  if (device.energy) device.energy->rates = spec.energy;
+  if (device.energy) device.energy->set_rates(spec.energy);
   if (!spec.command_errors) return {};
 
   std::array<bool, quantity_count> there{};
@@ -181,26 +181,20 @@ Status DeviceKeys::begin(Device& device, const Kind& kind, double sample_hz, boo
 
 Status DeviceKeys::take_command(Device& device, std::size_t slot, std::span<const std::byte> bytes, Time now,
                                 double all_errors, bool explain) {
-  const auto judge = [&]() -> Status {
-    if (spec.max_rate_hz > 0 && state.accepted >= Time{} &&
-        (now - state.accepted).ns + 1 < period_ns(spec.max_rate_hz))
-      return explain ? Error{"'" + device.path + "' takes at most " + number_text(spec.max_rate_hz) +
-                             " commands per second"}
-                     : Error{};
-    const Time delay = Time::from_s(spec.delay_s * all_errors);
-    if (delay <= Time{} && commands_.empty()) {
-      if (!explain && is_full(*device.commands[slot].topic)) return Error{};
-      return apply(device, slot, bytes, now);
-    }
-    SL_TRY(device.commands[slot].topic->check(bytes));
-    if (!hold(commands_, now + delay, slot, bytes))
-      return explain ? Error{"'" + device.path + "' has too many commands on their way"} : Error{};
-    return {};
-  };
-  Status status = judge();
-  if (status) state.accepted = now;
-  else count_refused();
-  return status;
+  if (spec.max_rate_hz > 0 && state.accepted >= Time{} &&
+      (now - state.accepted).ns + 1 < period_ns(spec.max_rate_hz))
+    return explain ? Error{"'" + device.path + "' takes at most " + number_text(spec.max_rate_hz) +
+                           " commands per second"}
+                   : Error{};
+  const Time delay = Time::from_s(spec.delay_s * all_errors);
+  if (delay <= Time{} && commands_.empty()) {
+    if (!explain && is_full(*device.commands[slot].topic)) return Error{};
+    return apply(device, slot, bytes, now);
+  }
+  SL_TRY(device.commands[slot].topic->check(bytes));
+  if (!hold(commands_, now + delay, slot, bytes))
+    return explain ? Error{"'" + device.path + "' has too many commands on their way"} : Error{};
+  return {};
 }
 
 Status DeviceKeys::take_request(const Device& device, Time at, Time last, bool first) {
@@ -398,7 +392,7 @@ bool DeviceKeys::load(Device& device, ByteReader& r, Time now, const std::functi
       read(r, number);
       if (!(number >= field.min && number <= field.max)) r.fail();
     });
-    device.energy->rates = spec.energy;
+    device.energy->set_rates(spec.energy);
   }
   read_tunables(r, spec);
   read(r, spec.errors);
@@ -458,7 +452,7 @@ Status set_device_key(SimulationParts::Device& device, std::string_view field, c
   DeviceKeysSpec changed = keys.spec;
   SL_TRY(set_tunable(changed, field, value));
   keys.spec = std::move(changed);
-  if (device.energy) device.energy->rates = keys.spec.energy;
+  if (device.energy) device.energy->set_rates(keys.spec.energy);
   return {};
 }
 

@@ -127,7 +127,12 @@ class DeviceKeys {
   Status begin(Device& device, const Kind& kind, double sample_hz, bool samples, std::size_t joints,
                std::uint64_t seed);
 
-  /// Takes a command for a slot of the device: now, or on its way. Refusals are counted.
+  /// Whether commands or messages do not simply pass.
+  bool act() const {
+    return spec.max_rate_hz > 0 || spec.delay_s > 0 || spec.command_errors || !commands_.empty() ||
+           !messages_.empty();
+  }
+  /// Takes a command for a slot of the device: now, or on its way.
   /// @param explain  false: errors without text
   Status take_command(Device& device, std::size_t slot, std::span<const std::byte> bytes, Time now,
                       double all_errors, bool explain);

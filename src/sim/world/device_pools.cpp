@@ -223,14 +223,15 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
       pool->pool->remove(index);
       return begun;
     }
-    ++pool->keyed;
   }
   if (device->faults) ++pool->faulty;
   if (device->energy) {
     ++pool->metered;
-    entity.energy->meters.push_back(device->energy.get());
+    ledger_.add(*device->energy);
   }
+  note_keys(*device);
   pool->devices.push_back(device.get());
+  pool->meters.push_back(device->energy.get());
   pool->all.push_back(index);
   pool->levels.push_back(levels);
   pool->sample.push_back(0);
@@ -246,16 +247,17 @@ void DevicePools::remove(const Device& device) {
   Pool& pool = pools_[device.kind];
   pool.pool->remove(device.index);
   pool.devices.erase(pool.devices.begin() + device.index);
+  pool.meters.erase(pool.meters.begin() + device.index);
   pool.all.pop_back();
   pool.timing.erase(pool.timing.begin() + device.index);
   pool.levels.erase(pool.levels.begin() + device.index);
   pool.sample.pop_back();
   pool.since.pop_back();
   if (device.faults) --pool.faulty;
-  if (device.keys) --pool.keyed;
+  if (device.keys_act) --pool.keyed;
   if (device.energy) {
     --pool.metered;
-    std::erase(device.energy->account->meters, device.energy.get());
+    ledger_.remove(*device.energy);
   }
   for (std::uint32_t i = device.index; i < pool.devices.size(); ++i) pool.devices[i]->index = i;
 }
@@ -274,6 +276,13 @@ void DevicePools::plan_next_sample(const Device& device) {
   when.rate_hz = pools_[device.kind].pool->rate_hz(device.index);
   when.due = when.rate_hz > 0 ? due_time(when.start, static_cast<std::int64_t>(when.sample), when.rate_hz)
                               : Time{};
+}
+
+/// Keys that ask for nothing between a command and its device, or a sample and its message, are passed by.
+void DevicePools::note_keys(Device& device) {
+  const bool act = device.keys && device.keys->act();
+  if (act != device.keys_act) pools_[device.kind].keyed += act ? 1u : ~0u;
+  device.keys_act = act;
 }
 
 void DevicePools::set_active_levels(Device& device, std::uint32_t levels) {
@@ -302,7 +311,11 @@ Status DevicePools::set_levels(Device& device, std::span<const std::string> name
 
 Status DevicePools::set_parameter(Device& device, std::string_view field, const Node& value) {
   PoolBase& pool = *pools_[device.kind].pool;
-  if (is_device_key(field, pool.has_errors())) return set_device_key(device, field, value);
+  if (is_device_key(field, pool.has_errors())) {
+    SL_TRY(set_device_key(device, field, value));
+    note_keys(device);
+    return {};
+  }
   SL_TRY(pool.set_parameter(device.index, field, value));
   plan_next_sample(device);
   return {};
@@ -444,7 +457,7 @@ void DevicePools::sense_keyed(Pool& pool, const Context& context) const {
   const auto for_delayed = [&](std::span<const std::uint32_t> indices, auto&& work) {
     for (const std::uint32_t index : indices) {
       Device& device = *pool.devices[index];
-      if (device.keys && device.keys->delays_messages()) work(device);
+      if (device.keys_act && device.keys->delays_messages()) work(device);
     }
   };
   for_delayed(pool.due, [](Device& device) { device.keys->remember_messages(device); });
@@ -576,6 +589,7 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
     pool.load(device.index, r);
     const auto fits = [&] { return pool.fits(device.index); };
     if (!r.ok() || !device.keys->load(device, common, now, fits) || common.remaining() != 0) r.fail();
+    note_keys(device);
   }
   if (r.ok()) plan_next_sample(device);
 }

@@ -95,12 +95,13 @@ class DevicePools {
     const Kind* kind = nullptr;
     std::unique_ptr<PoolBase> pool;
     std::vector<Device*> devices;
+    std::vector<EnergyMeter*> meters;             ///< per device; null: its robot has no battery
     std::vector<Timing> timing;                   ///< per device
     std::vector<std::uint32_t> all, due, levels;  ///< `levels` per device: a copy of Device::levels
     std::vector<std::uint64_t> sample;
     std::vector<Time> since;
     std::uint32_t faulty = 0;   ///< number of devices with faults
-    std::uint32_t keyed = 0;    ///< number of devices with common keys
+    std::uint32_t keyed = 0;    ///< number of devices whose common keys change commands or messages
     std::uint32_t metered = 0;  ///< number of devices whose robots have a battery
   };
   static std::span<const std::uint32_t> acting(Pool& pool, const Context& context, bool release_dead);
@@ -117,6 +118,7 @@ class DevicePools {
   void sense_faulty(Pool& pool, const Context& context) const;
   void sense_keyed(Pool& pool, const Context& context) const;
   void plan_next_sample(const Device& device);
+  void note_keys(Device& device);
   void set_active_levels(Device& device, std::uint32_t levels);
 
   const model::Setup& setup_;

@@ -41,6 +41,7 @@ struct SimulationParts {
     std::uint32_t kind = 0;   ///< index of its pool
     std::uint32_t index = 0;  ///< in its pool
     std::uint32_t levels = 1;
+    bool keys_act = false;  ///< DeviceKeys::act(), when they last changed
     std::vector<Slot> topics, commands;
     std::unique_ptr<DeviceExtras> extras;                  ///< null: it has none
     double errors = 1;                                     ///< the world's factor on errors times the robot's

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/parallel.h"
+
 namespace sandlot::battery {
 namespace {
 
@@ -81,7 +83,10 @@ void Battery::show() const {
 }
 
 void Battery::settle(PoolView<Battery> pool, const Context& context) {
-  for (const std::uint32_t index : pool.due) pool.all[index].pay(context.tick.s());
+  constexpr std::size_t at_a_time = 256;
+  parallel_for(pool.due.size(), at_a_time, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) pool.all[pool.due[i]].pay(context.tick.s());
+  });
 }
 
 void Battery::pay(double dt_s) {

@@ -27,7 +27,7 @@ void Charger::find_near(const Context& context) {
   const Vec3 here = states.front().X_WB * p_LS;
   for (std::size_t i = 0; i < accounts.size(); ++i) {
     EnergyAccount* const account = accounts[i];
-    if (energy && account == energy->account) continue;
+    if (energy && account == energy->account()) continue;
     const Vec3 to = states[i + 1].X_WB * account->p_LS - here;
     if (dot(to, to) <= spec.reach_m * spec.reach_m) near.push_back(account);
   }
