@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -39,23 +40,30 @@ class Inbox {
   std::uint32_t medium() const { return medium_; }
   /// Restricts what media deliver to one channel. No State: the device tunes again in every actuate phase.
   void tune(std::int32_t channel) { channel_ = channel; }
-  bool is_tuned_to(std::int32_t channel) const { return !channel_ || *channel_ == channel; }
+  /// Empty: all.
+  std::optional<std::int32_t> channel() const { return channel_; }
 
-  /// For media. A full inbox loses what comes.
-  void put(Delivery delivery) {
+  /// For media: room for one more, to be filled whole; it still holds what once was there, for its memory. Null: the inbox is
+  /// full, and what comes is lost.
+  Delivery* add() {
     ++arrived_;
-    if (items_.size() < limit_) items_.push_back(std::move(delivery));
-    else ++lost_;
+    if (used_ >= limit_) return ++lost_, nullptr;
+    if (used_ == items_.size()) items_.emplace_back();
+    return &items_[used_++];
+  }
+  void put(Delivery delivery) {
+    if (Delivery* const to = add()) *to = std::move(delivery);
   }
   /// For the device, in its sense phase: what has come since the last clear(), in order of arrival.
-  std::span<const Delivery> items() const { return items_; }
-  void clear() { items_.clear(); }
+  std::span<const Delivery> items() const { return {items_.data(), used_}; }
+  void clear() { used_ = 0; }
 
   std::uint64_t arrived() const { return arrived_; }  ///< so far, lost ones included
   std::uint64_t lost() const { return lost_; }        ///< because it was full
 
   void save(ByteWriter& w) const {
-    write(w, items_);
+    write(w, static_cast<std::uint32_t>(used_));
+    for (const Delivery& each : items()) write(w, each);
     write(w, arrived_);
     write(w, lost_);
   }
@@ -63,13 +71,15 @@ class Inbox {
     read(r, items_);
     read(r, arrived_);
     read(r, lost_);
-    if (items_.size() > limit_) r.fail();
+    used_ = items_.size();
+    if (used_ > limit_) r.fail();
   }
 
  private:
   std::uint32_t medium_;
   std::size_t limit_;
-  std::vector<Delivery> items_;
+  std::vector<Delivery> items_;  ///< the first `used_` of them
+  std::size_t used_ = 0;
   std::uint64_t arrived_ = 0, lost_ = 0;
   std::optional<std::int32_t> channel_;  ///< empty: all
 };

@@ -1,12 +1,12 @@
 #pragma once
-/// Places of the receivers of a medium in a tick, in a grid that finds those near a point.
+/// Places of the receivers of a medium in a tick, in a grid that finds those near a point, with what decides whether they hear.
 ///
-/// Cost     update: a pass over the receivers, on all threads, and one over the cells; about four receivers per cell. No heap
-///          after warm-up.
+/// Cost     update: a pass over the receivers, on all threads, and one over the cells; about four receivers per cell. A query
+///          looks at all receivers of the cells about its circle, and sorts those within it. No heap after warm-up.
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "media/medium.h"
@@ -18,66 +18,67 @@ namespace sandlot::media {
 class Places {
  public:
   void update(const MediumContext& context) {
-    points_.resize(context.receivers.size());
-    parallel_for(points_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) points_[i] = context.pose(context.receivers[i]).p;
+    all_.resize(context.receivers.size());
+    parallel_for(all_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Receiver& receiver = context.receivers[i];
+        all_[i] = {context.pose(receiver).p, receiver.key, receiver.inbox->channel()};
+      }
     });
     whole_ = {};
-    if (points_.empty()) return;
-    whole_ = {{points_[0].x, points_[0].y}, {points_[0].x, points_[0].y}};
-    for (const Vec3& point : points_) {
-      whole_.low = {std::min(whole_.low.x, point.x), std::min(whole_.low.y, point.y)};
-      whole_.high = {std::max(whole_.high.x, point.x), std::max(whole_.high.y, point.y)};
+    if (all_.empty()) return;
+    whole_ = {{all_[0].p_W.x, all_[0].p_W.y}, {all_[0].p_W.x, all_[0].p_W.y}};
+    for (const Place& each : all_) {
+      whole_.low = {std::min(whole_.low.x, each.p_W.x), std::min(whole_.low.y, each.p_W.y)};
+      whole_.high = {std::max(whole_.high.x, each.p_W.x), std::max(whole_.high.y, each.p_W.y)};
     }
     // About four receivers per cell, were they spread evenly.
     const auto cells = std::bit_ceil(
-        static_cast<std::uint32_t>(std::sqrt(static_cast<double>(points_.size()) / 4)) + 1);
+        static_cast<std::uint32_t>(std::sqrt(static_cast<double>(all_.size()) / 4)) + 1);
     const double length_m = std::max(whole_.high.x - whole_.low.x, whole_.high.y - whole_.low.y);
     grid_.resize(std::max(length_m / cells, 1e-3), cells, cells);
-    grid_.build(static_cast<std::uint32_t>(points_.size()), [&](std::uint32_t i) {
-      const Vec2 at{points_[i].x, points_[i].y};
+    grid_.build(static_cast<std::uint32_t>(all_.size()), [&](std::uint32_t i) {
+      const Vec2 at{all_[i].p_W.x, all_[i].p_W.y};
       return grid_.cover({at, at});
     });
   }
-  const Vec3& point(std::uint32_t receiver) const { return points_[receiver]; }
-  /// Fills `out` with the receivers within a distance in the plane, and some beyond it, in creation order.
-  void find_near(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
-    if (!find_around(p, distance_m, out)) std::sort(out.begin(), out.end());
+  const Vec3& point(std::uint32_t receiver) const { return all_[receiver].p_W; }
+  std::uint64_t key(std::uint32_t receiver) const { return all_[receiver].key; }
+  /// Whether a receiver listens to a channel.
+  bool hears(std::uint32_t receiver, std::int32_t channel) const {
+    return all_[receiver].channel.value_or(channel) == channel;
   }
   /// Fills `out` with the receivers within a distance, in creation order.
-  void find_within(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
-    const bool sorted = find_around(p, distance_m, out);
+  void find_within(Vec3 p_W, double distance_m, std::vector<std::uint32_t>& out) const {
+    out.clear();
     // With a margin for rounding, so that callers decide by the distance itself.
     const double squared_m2 = distance_m * distance_m * (1 + 1e-9);
-    std::erase_if(out, [&](std::uint32_t index) {
-      const Vec3 way = points_[index] - p;
-      return !(dot(way, way) <= squared_m2);
-    });
-    if (!sorted) std::sort(out.begin(), out.end());
-  }
-
- private:
-  /// Fills `out` with the receivers in the cells about a point. @return whether they are in creation order
-  bool find_around(Vec3 p, double distance_m, std::vector<std::uint32_t>& out) const {
-    out.clear();
-    const planar::Area area{{p.x - distance_m, p.y - distance_m}, {p.x + distance_m, p.y + distance_m}};
+    const auto take = [&](std::uint32_t index) {
+      const Vec3 way = all_[index].p_W - p_W;
+      if (dot(way, way) <= squared_m2) out.push_back(index);
+    };
+    const planar::Area area{{p_W.x - distance_m, p_W.y - distance_m},
+                            {p_W.x + distance_m, p_W.y + distance_m}};
     if (area.low.x <= whole_.low.x && area.low.y <= whole_.low.y && area.high.x >= whole_.high.x &&
         area.high.y >= whole_.high.y) {
-      out.resize(points_.size());
-      std::iota(out.begin(), out.end(), 0u);
-      return true;
+      for (std::uint32_t i = 0; i < all_.size(); ++i) take(i);
+      return;
     }
     const planar::HashGrid::Range range = grid_.cover(area);
     for (std::int64_t j = range.y0; j <= range.y1; ++j)
-      for (std::int64_t i = range.x0; i <= range.x1; ++i) {
-        const auto found = grid_.in_slot(grid_.slot(i, j));
-        out.insert(out.end(), found.begin(), found.end());
-      }
-    return false;
+      for (std::int64_t i = range.x0; i <= range.x1; ++i)
+        for (const std::uint32_t index : grid_.in_slot(grid_.slot(i, j))) take(index);
+    std::sort(out.begin(), out.end());
   }
 
-  std::vector<Vec3> points_;
-  planar::Area whole_;  ///< about all of them
+ private:
+  struct Place {
+    Vec3 p_W;
+    std::uint64_t key = 0;
+    std::optional<std::int32_t> channel;  ///< empty: all
+  };
+  std::vector<Place> all_;  ///< per receiver
+  planar::Area whole_;      ///< about all of them
   planar::HashGrid grid_;
 };
 

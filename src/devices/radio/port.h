@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "devices/radio/refill.h"
 #include "media/packet.h"
 #include "messages/messages.h"
 
@@ -92,11 +93,10 @@ struct SendCounts {
   }
 };
 
-/// Adds a packet to a message whose first `used` entries are in use, with the memory of what was there.
-inline void add_reception(msg::RadioReceptionArray& message, std::size_t& used, const Delivery& delivery,
-                          const PacketView& packet, double rssi_dBm) {
-  if (used == message.packets.size()) message.packets.emplace_back();
-  msg::RadioReception& to = message.packets[used++];
+/// Adds a packet to a message.
+inline void add_reception(msg::RadioReceptionArray& message, Refill<msg::RadioReception>& refill,
+                          const Delivery& delivery, const PacketView& packet, double rssi_dBm) {
+  msg::RadioReception& to = refill.next(message.packets);
   to.stamp = delivery.at;
   to.from = packet.from;
   to.to = packet.to;

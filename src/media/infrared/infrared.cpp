@@ -77,7 +77,7 @@ struct Infrared {
     double farthest_m = 0;
     const auto is_dark = [&](std::uint32_t index) {
       const Receiver& receiver = context.receivers[index];
-      if (receiver.key == emission.emitter || !receiver.inbox->is_tuned_to(emission.channel)) return true;
+      if (receiver.key == emission.emitter || !places.hears(index, emission.channel)) return true;
       const Vec3 way_W = places.point(index) - emission.point_W;
       const double distance_m = norm(way_W);
       if (!(distance_m <= spec.range_m)) return true;
@@ -122,12 +122,14 @@ struct Infrared {
         continue;
       }
       ++state.delivered;
-      receiver.inbox->put({.at = emission.at + Time::from_s(to.distances_m[i] / light_mps),
-                           .emitter = emission.emitter,
-                           .channel = emission.channel,
-                           .strength = to.strengths_Wpm2[i],
-                           .direction_W = to.directions[i] * -1.0,
-                           .payload = {first, first + bytes.size()}});
+      Delivery* const delivery = receiver.inbox->add();
+      if (!delivery) continue;
+      delivery->at = emission.at + Time::from_s(to.distances_m[i] / light_mps);
+      delivery->emitter = emission.emitter;
+      delivery->channel = emission.channel;
+      delivery->strength = to.strengths_Wpm2[i];
+      delivery->direction_W = to.directions[i] * -1.0;
+      delivery->payload.assign(first, first + bytes.size());
     }
   }
 

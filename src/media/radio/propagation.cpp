@@ -128,13 +128,13 @@ void look(const Spec& spec, const Start& start, const Places& places, const Medi
   places.find_within(from_W, limit_m, to.receivers);
   double farthest_m = 0;
   const auto is_out = [&](std::uint32_t index) {
-    if (index == start.sender || !context.receivers[index].inbox->is_tuned_to(start.channel)) return true;
+    if (index == start.sender || !places.hears(index, start.channel)) return true;
     const double distance_m = norm(places.point(index) - from_W);
     if (!(distance_m <= limit_m)) return true;
     double power_dBm = start.power_dBm;
     if (by_distance) {
       power_dBm -= path_loss_dB(spec, distance_m);
-      const std::uint64_t key = context.receivers[index].key;
+      const std::uint64_t key = places.key(index);
       if (spec.shadowing_dB > 0) power_dBm -= shadowing_dB(spec, context.seed, sender.key, key);
       if (spec.fading_dB > 0) power_dBm -= fading_dB(spec, context.seed, sender.key, key, start.number);
     }

@@ -110,11 +110,23 @@ struct Radio {
 
   // ------------------------------------------------------------------------------------------- State, in and out
 
-  static std::optional<std::uint32_t> index_of(const MediumContext& context, std::uint64_t key) {
-    const Receiver* const found = context.find_receiver(key);
-    if (!found) return std::nullopt;
-    return static_cast<std::uint32_t>(found - context.receivers.data());
-  }
+  /// Finds the receivers of keys that come mostly in the order of receivers.
+  class Finder {
+   public:
+    explicit Finder(const MediumContext& context) : context_(context) {}
+    /// Its index; nothing: it is gone.
+    std::optional<std::uint32_t> find(std::uint64_t key) {
+      for (std::uint32_t i = latest_; i < std::min<std::size_t>(latest_ + 2, context_.receivers.size()); ++i)
+        if (context_.receivers[i].key == key) return latest_ = i;
+      const Receiver* const found = context_.find_receiver(key);
+      if (!found) return std::nullopt;
+      return latest_ = static_cast<std::uint32_t>(found - context_.receivers.data());
+    }
+
+   private:
+    const MediumContext& context_;
+    std::uint32_t latest_ = 0;
+  };
 
   /// Distributes State to the receivers. What belongs to radios that are gone is forgotten.
   void unpack(const MediumContext& context) {
@@ -124,14 +136,15 @@ struct Radio {
     touched.clear();
     active.clear();
     on_the_way = 0;
+    Finder finder(context);
     for (Sender& each : state.senders)
-      if (const auto index = index_of(context, each.radio)) {
+      if (const auto index = finder.find(each.radio)) {
         senders[*index] = std::move(each);
         if (!senders[*index].queue.empty()) active.push_back(*index);
         touch(*index);
       }
     for (const Signal& each : state.signals)
-      if (const auto index = index_of(context, each.receiver)) add(*index, each);
+      if (const auto index = finder.find(each.receiver)) add(*index, each);
   }
 
   static void sort_once(std::vector<std::uint32_t>& indices) {
@@ -171,8 +184,9 @@ struct Radio {
   /// Puts the packets of this tick into the queues of their radios.
   void take(const MediumContext& context) {
     constexpr std::uint64_t use = 0x7374617274;  // "start"
+    Finder finder(context);
     for (const Emission& emission : context.emissions) {
-      const auto index = index_of(context, emission.emitter);
+      const auto index = finder.find(emission.emitter);
       const std::span<const std::byte> bytes = context.buffer.bytes(emission);
       const auto* const first = reinterpret_cast<const std::uint8_t*>(bytes.data());
       const auto packet = read_packet({first, bytes.size()});
@@ -331,7 +345,7 @@ struct Radio {
       const Time air = air_time(state.transmissions[number - state.first].packet);
       Signal signal{.transmission = number, .channel = start.channel};
       if (spec.half_duplex) {
-        signal.receiver = context.receivers[start.sender].key;
+        signal.receiver = places.key(start.sender);
         signal.start = start.at, signal.end = start.at + air;
         signal.own = 1;
         add(start.sender, signal);
@@ -343,7 +357,7 @@ struct Radio {
           continue;
         }
         const std::uint32_t index = reached[i].receivers[k];
-        signal.receiver = context.receivers[index].key;
+        signal.receiver = places.key(index);
         signal.start = start.at + Time::from_s(reached[i].distances_m[k] / spec.speed_mps);
         signal.end = signal.start + air;
         signal.power_dBm = reached[i].powers_dBm[k];
@@ -425,36 +439,42 @@ struct Radio {
                const MediumContext& context, std::array<std::uint64_t, counts>& sums) const {
     constexpr std::uint64_t use = 0x72656365697665;  // "receive"
     const Transmission& sent = state.transmissions[signal.transmission - state.first];
-    const Receiver& receiver = context.receivers[index];
-    PacketHead head = read_packet(sent.packet)->head;
-    const bool by_chance = spec.drop > 0 || spec.bit_error_rate > 0 || spec.modulation != Modulation::none;
-    Delivery delivery{.at = signal.end + Time::from_s(spec.delay_s),
-                      .emitter = sent.emitter,
-                      .channel = signal.channel,
-                      .strength = signal.power_dBm,
-                      .payload = sent.packet};
-    const std::size_t data = read_packet(sent.packet)->data.size();
-    if (by_chance) {
-      Stream random(context.seed, hash_combine(hash_combine(sent.emitter, receiver.key), use),
-                    Purpose::medium, head.number);
-      if (random.uniform() < spec.drop) return void(++sums[Count::dropped]);
-      double p = spec.bit_error_rate;
-      if (spec.modulation != Modulation::none) {
-        const double noise_mW = milliwatts(spec.noise_floor_dBm) + interference_mW;
-        p = both(p, error_rate(spec.modulation, milliwatts(signal.power_dBm) / noise_mW));
-      }
-      const std::span<std::uint8_t> payload(delivery.payload);
-      head.wrong_bits = flip_bits(payload.last(data), p, random);
-      if (head.wrong_bits > 0) write_head(head, payload);
+    const PacketView packet = *read_packet(sent.packet);
+    const std::size_t data = packet.data.size();
+    Inbox& inbox = *context.receivers[index].inbox;
+    double p = spec.bit_error_rate;
+    if (spec.modulation != Modulation::none) {
+      const double noise_mW = milliwatts(spec.noise_floor_dBm) + interference_mW;
+      p = both(p, error_rate(spec.modulation, milliwatts(signal.power_dBm) / noise_mW));
     }
-    const Vec3 way_W = point_of(head) - places.point(index);
-    const double distance_m = norm(way_W);
-    if (distance_m > 0) delivery.direction_W = way_W * (1 / distance_m);
+    std::optional<Stream> random;
+    if (spec.drop > 0 || spec.bit_error_rate > 0 || spec.modulation != Modulation::none) {
+      random.emplace(context.seed, hash_combine(hash_combine(sent.emitter, places.key(index)), use),
+                     Purpose::medium, packet.head.number);
+      if (random->uniform() < spec.drop) return void(++sums[Count::dropped]);
+    }
     ++sums[Count::delivered];
     sums[Count::bits] += 8 * data;
-    sums[Count::wrong_bits] += head.wrong_bits;
-    sums[Count::damaged] += head.wrong_bits > 0;
-    receiver.inbox->put(std::move(delivery));
+    // A full inbox loses the packet, but not its part in the statistics of the air.
+    Delivery* const room = inbox.add();
+    Delivery lost;
+    Delivery& delivery = room ? *room : lost;
+    delivery.at = signal.end + Time::from_s(spec.delay_s);
+    delivery.emitter = sent.emitter;
+    delivery.channel = signal.channel;
+    delivery.strength = signal.power_dBm;
+    delivery.payload.assign(sent.packet.begin(), sent.packet.end());
+    if (random) {
+      PacketHead head = packet.head;
+      const std::span<std::uint8_t> payload(delivery.payload);
+      head.wrong_bits = flip_bits(payload.last(data), p, *random);
+      if (head.wrong_bits > 0) write_head(head, payload);
+      sums[Count::wrong_bits] += head.wrong_bits;
+      sums[Count::damaged] += head.wrong_bits > 0;
+    }
+    const Vec3 way_W = point_of(packet.head) - places.point(index);
+    const double distance_m = norm(way_W);
+    delivery.direction_W = distance_m > 0 ? way_W * (1 / distance_m) : Vec3{};
   }
 };
 

@@ -96,7 +96,7 @@ struct Shout {
     if (level_dB(word.strength, 0) < spec.threshold_dB) return;
     // A little farther than the level carries, so that rounding leaves nobody out: the level itself decides.
     const double carries_m = math::exp((word.strength - spec.threshold_dB) * std::numbers::ln10 / 20);
-    places.find_near(word.point_W, 1.001 * carries_m, to.receivers);
+    places.find_within(word.point_W, 1.001 * carries_m, to.receivers);
     double farthest_m = 0;
     const auto is_out = [&](std::uint32_t index) {
       if (context.receivers[index].body == word.body) return true;  // its own voice

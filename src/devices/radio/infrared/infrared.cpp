@@ -72,6 +72,7 @@ struct Infrared {
   double order = 0;  ///< m
   double least_cos = -1;
   CommandQueue<msg::RadioPacket>* orders = nullptr;
+  Refill<msg::RadioReception> refill;
   Topic<msg::RadioReceptionArray>* topic = nullptr;
 
   static Result<Infrared> create(const DeviceBuild& build, Spec spec) {
@@ -117,7 +118,6 @@ struct Infrared {
 
   void sample(const Context& context) {
     const Vec3 axis_W = rotate(port.pose(context.engine).q, {1, 0, 0});
-    std::size_t used = 0;
     for (const Delivery& delivery : port.inbox->items()) {
       const double cosine = dot(axis_W, delivery.direction_W);
       if (least_cos >= 0 && !(cosine > 0 && cosine >= least_cos)) continue;
@@ -128,11 +128,11 @@ struct Infrared {
       const auto packet = read_packet(delivery.payload);
       if (!packet || !(spec.promiscuous || port.is_for_us(packet->to))) continue;
       ++state.received;
-      add_reception(topic->message, used, delivery, *packet, power_dBm);
+      add_reception(topic->message, refill, delivery, *packet, power_dBm);
     }
     port.inbox->clear();
-    if (spec.rate_hz == 0 && used == 0) return;
-    topic->message.packets.resize(used);
+    if (spec.rate_hz == 0 && refill.used() == 0) return;
+    refill.finish(topic->message.packets);
     topic->publish(context.now);
   }
 

@@ -60,6 +60,7 @@ struct Radio {
   State state;
   Port port;
   CommandQueue<msg::RadioPacket>* orders = nullptr;
+  Refill<msg::RadioReception> refills[2];
   Topic<msg::RadioReceptionArray>* topics[2] = {};
 
   static Result<Radio> create(const DeviceBuild& build, Spec spec) {
@@ -100,7 +101,6 @@ struct Radio {
   }
 
   void sample(std::uint32_t levels, const Context& context) {
-    std::size_t used[2] = {};
     std::size_t came = 0;
     for (const Delivery& delivery : port.inbox->items()) {
       const auto packet = read_packet(delivery.payload);
@@ -110,15 +110,15 @@ struct Radio {
       state.damaged += damaged;
       for (const Level level : {packets, bits}) {
         if (!(levels >> level & 1) || (level == packets && damaged)) continue;
-        add_reception(topics[level]->message, used[level], delivery, *packet, delivery.strength);
+        add_reception(topics[level]->message, refills[level], delivery, *packet, delivery.strength);
         ++came;
       }
     }
     port.inbox->clear();
     if (spec.rate_hz == 0 && came == 0) return;
     for (const Level level : {packets, bits}) {
-      if (!(levels >> level & 1) || (spec.rate_hz == 0 && used[level] == 0)) continue;
-      topics[level]->message.packets.resize(used[level]);
+      if (!(levels >> level & 1) || (spec.rate_hz == 0 && refills[level].used() == 0)) continue;
+      refills[level].finish(topics[level]->message.packets);
       topics[level]->publish(context.now);
     }
   }

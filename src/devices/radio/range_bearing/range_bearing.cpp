@@ -87,6 +87,7 @@ struct RangeBearing {
   Port port;
   bool is_radio = true;
   Topic<msg::RadioPacket>* order = nullptr;
+  Refill<msg::RangeBearing> refill;
   Topic<msg::RangeBearingArray>* topic = nullptr;
 
   static Result<RangeBearing> create(const DeviceBuild& build, Spec spec) {
@@ -159,20 +160,18 @@ struct RangeBearing {
   void sample(const Context& context) {
     const Pose X_SW = inverse(port.pose(context.engine));
     std::vector<msg::RangeBearing>& neighbours = topic->message.neighbours;
-    std::size_t used = 0;
     for (const Delivery& delivery : port.inbox->items()) {
       const auto packet = read_packet(delivery.payload);
       if (!packet || packet->head.wrong_bits > 0 || !port.is_for_us(packet->to)) continue;
-      if (used == neighbours.size()) neighbours.emplace_back();
-      msg::RangeBearing& to = neighbours[used++];
+      msg::RangeBearing& to = refill.next(neighbours);
       to.stamp = delivery.at;
       to.from = packet->from;
       to.data.assign(packet->data.begin(), packet->data.end());
       measure(X_SW * point_of(packet->head), delivery.emitter, packet->head.number, context, to);
     }
     port.inbox->clear();
-    if (spec.rate_hz == 0 && used == 0) return;
-    neighbours.resize(used);
+    if (spec.rate_hz == 0 && refill.used() == 0) return;
+    refill.finish(neighbours);
     topic->publish(context.now);
   }
 
