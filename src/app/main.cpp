@@ -310,19 +310,25 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   }
   if (!unknown.empty()) return "'" + unknown.front() + "' is one word too many; " + help;
   if (!verbs.empty()) return "a verb is needed; " + help;
-  // The library's own words, where they leave open what would be right: "--errors: Value -1 not in range 0.000000 to 1.000000".
+  // The library's own words, where they leave open what would be right: "--errors: Value -1 not in range 0.000000 to 1.000000",
+  // in newer versions "[0 - 1000]".
   const std::string what = error.what(), option = what.substr(0, what.find(':')), type = error.get_name();
   if (type == "ArgumentMismatch" && what.find(" missing") != std::string::npos)
     return option + " needs a value; " + help;
   if (type == "ArgumentMismatch" && what.find("At Most") != std::string::npos)
     return option + " is given more than once; " + help;
-  const std::size_t value = what.find(": Value "), range = what.find(" not in range "),
-                    to = what.rfind(" to ");
-  double low = 0, high = 0;
-  if (value < range && range < to && to != std::string::npos &&
-      parse_number(what.substr(range + 14, to - range - 14), low) && parse_number(what.substr(to + 4), high))
-    return fmt::format("{}: must be in [{}, {}], is {}", option, number_text(low), number_text(high),
-                       what.substr(value + 8, range - value - 8));
+  const std::size_t value = what.find(": Value "), range = what.find(" not in range ");
+  if (value < range && range != std::string::npos) {
+    std::string limits = what.substr(range + 14);
+    if (limits.starts_with('[') && limits.ends_with(']')) limits = limits.substr(1, limits.size() - 2);
+    const bool dash = limits.find(" - ") != std::string::npos;
+    const std::size_t between = limits.find(dash ? " - " : " to ");
+    double low = 0, high = 0;
+    if (between != std::string::npos && parse_number(limits.substr(0, between), low) &&
+        parse_number(limits.substr(between + (dash ? 3 : 4)), high))
+      return fmt::format("{}: must be in [{}, {}], is {}", option, number_text(low), number_text(high),
+                         what.substr(value + 8, range - value - 8));
+  }
   if (const std::size_t equals = what.find(" = "); type == "ConversionError" && equals != std::string::npos) {
     const std::size_t flag = what.find(": ") + 2;
     return what.substr(flag, equals - flag) + ": '" + what.substr(equals + 3) + "' is not a number; " + help;

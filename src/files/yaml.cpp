@@ -235,7 +235,7 @@ Result<Node> parse_yaml(std::string_view text, const std::string& file, const Te
           "within {} and [], a text with brackets or commas needs quotes; everywhere one that begins "
           "with @, `, % or a closing bracket",
           {name, e.mark.line + 1, e.mark.column + 1}};
-    if (e.msg == "the referenced anchor is not defined")
+    if (e.msg.starts_with("the referenced anchor is not defined"))  // newer versions add the name
       return Error{"no anchor of that name stands before this alias",
                    "write &name at the value that *name shall repeat; a text that begins with * needs quotes",
                    {name, e.mark.line + 1, e.mark.column + 1}};
