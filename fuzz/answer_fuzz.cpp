@@ -1,11 +1,11 @@
-/// Any bytes as an answer of a process at a pipe: what is read orders only what is there, and nothing when it is refused.
+/// Any bytes as an answer of a program outside: what is read orders only what is there, and nothing when it is refused.
 #include "base/check.h"
 #include "messages/messages.h"
-#include "programs/pipe/answer.h"
+#include "programs/answer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sandlot;
-  using namespace sandlot::programs::pipe;
+  using namespace sandlot::programs;
   static const std::vector<Named> readings{{"laser", 0, msg::LaserScan::ros_type},
                                            {"drive", 1, msg::Odometry::ros_type}};
   static const std::vector<Named> actuators{{"drive", 0, msg::Twist::ros_type},

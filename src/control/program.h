@@ -45,6 +45,9 @@ class Outside {
   virtual bool connected() const = 0;
   /// Whether connect() may be called for a run that was restored; false: the program stays without orders.
   virtual bool connects_again() const = 0;
+  /// A client of a server answers, not a process that the run starts: what it needs to answer comes to it between two ticks,
+  /// so that it is waited for before the next tick begins.
+  virtual bool is_client() const { return false; }
   /// An observation was sent that is not answered yet.
   virtual bool expects_answer() const = 0;
   virtual Clock::time_point deadline() const = 0;

@@ -3,5 +3,6 @@
 /// knows their names.
 // clang-format off
 #define SANDLOT_PROGRAMS(program) \
-  program(pipe)
+  program(pipe) \
+  program(remote)
 // clang-format on

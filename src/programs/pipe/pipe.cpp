@@ -113,13 +113,7 @@ Program::Resumed Pipe::answer(const OutsideAnswer& answer, std::span<const Topic
 
 Program::Resumed Pipe::react(const std::string& why, Command& cmd) {
   if (spec_.on_miss == OnMiss::end) return {.failure = "the process " + why};
-  if (spec_.on_miss == OnMiss::stop)
-    for (const Named& actuator : actuators_) {
-      if (!actuator.any_level) continue;
-      if (actuator.type == msg::Twist::ros_type) cmd.set_bytes(actuator.index, command_bytes(msg::Twist()));
-      if (actuator.type == msg::TwistStamped::ros_type)
-        cmd.set_bytes(actuator.index, command_bytes(msg::TwistStamped()));
-    }
+  if (spec_.on_miss == OnMiss::stop) stop_drives(actuators_, cmd);
   return {};
 }
 

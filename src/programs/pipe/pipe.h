@@ -6,7 +6,7 @@
 ///              since the line before, by device. A first line describes the robot: {"robot": "rover", "period": 0.1,
 ///              "readings": [{"name": "laser", "type": "sensor_msgs/msg/LaserScan"}, ...], "actuators": [...]}; it comes again
 ///              when devices come or go, and expects no answer.
-/// Answer       one line per observation, see answer.h; its orders act at the beginning of the next tick, as those of every
+/// Answer       one line per observation, see programs/answer.h; its orders act at the beginning of the next tick, as those of every
 ///              controller. What it writes to standard error goes to the log.
 /// Deadline     in wall time from the observation on. An answer that comes later acts with the next one. Until an answer
 ///              has come no other observation is sent; `on_miss` is what the robot does meanwhile.
@@ -17,17 +17,10 @@
 /// Limits       a line has at most 1 MB, at most 64 lines of standard error are logged per step.
 /// Cost         the messages as JSON, and the wait for the answer.
 #include "control/program.h"
-#include "programs/pipe/answer.h"
+#include "programs/answer.h"
 #include "programs/pipe/child.h"
 
 namespace sandlot::programs::pipe {
-
-enum class OnMiss : std::uint8_t { hold, stop, end };
-inline std::span<const EnumName<OnMiss>> enum_names(OnMiss) {
-  static constexpr EnumName<OnMiss> names[] = {
-      {"hold", OnMiss::hold}, {"stop", OnMiss::stop}, {"end", OnMiss::end}};
-  return names;
-}
 
 enum class AfterRestore : std::uint8_t { restart, detach };
 inline std::span<const EnumName<AfterRestore>> enum_names(AfterRestore) {

@@ -35,6 +35,12 @@ Session::~Session() {
   for (Observer* observer : observers_) simulation_->remove_observer(observer);
 }
 
+void Session::wake() {
+  const std::lock_guard lock(mutex_);
+  woken_ = true;
+  changed_.notify_all();
+}
+
 /// Applies an order under the lock and wakes the loop.
 void Session::post_order(const std::function<void()>& apply) {
   {

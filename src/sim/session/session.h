@@ -116,6 +116,8 @@ class Session {
   using Answer = std::function<void(const Result<std::vector<std::byte>>&)>;
   Result<std::uint64_t> call(CallRequest request, Source source, Answer answer);
 
+  /// Has the loop look again whether what it waits for has come: a client's answer.
+  void wake();
   /// Calls `task` on the simulation's thread, between two ticks, also while the run is paused. False: too many wait, or
   /// run() has returned; it will not be called then.
   bool post(std::function<void(Session&)> task);

@@ -225,6 +225,16 @@ void Session::wait_for_order() {
 /// @param measured  set to the length of the tick where the clock measures it
 /// @return false: it is not due yet; something else came first
 bool Session::wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time>& measured) {
+  // Clients' time runs from the step on, whenever the tick is due.
+  if (!options_.input_log && !rerunning()) {
+    simulation_->connect_programs();
+    if (const auto deadline = simulation_->await_clients()) {
+      set_state(State::playing);
+      std::unique_lock lock(mutex_);
+      changed_.wait_until(lock, std::min(*deadline, Clock::now() + nap), [&] { return woken_; });
+      return false;
+    }
+  }
   std::unique_lock lock(mutex_);
   const bool hurried = seek_ == Seek::active || mode_ == Mode::stepping;
   // The clock is that of the present world. An input log holds the lengths of its ticks: it is paced like a fixed clock.

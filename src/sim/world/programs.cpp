@@ -165,8 +165,10 @@ std::optional<Error> Programs::step(Entities entities, Time now, bool control_st
     if (entry->failure && !failed) failed = failure_of(*entry, now);
   }
   awaited_.clear();
+  awaited_clients_.clear();
   for (ProgramEntry* const entry : outside_)
-    if (std::find(due.begin(), due.end(), entry) != due.end()) awaited_.push_back(entry);
+    if (std::find(due.begin(), due.end(), entry) != due.end())
+      (entry->program->outside()->is_client() ? awaited_clients_ : awaited_).push_back(entry);
   return failed;
 }
 

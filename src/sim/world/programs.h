@@ -77,6 +77,11 @@ class Programs {
   /// Waits until those that stepped in this tick have answered or their deadlines are over. What came is input of the next
   /// tick: an AnswerRequest each. To be called outside of parallel work.
   void await_answers();
+  /// Of those that clients answer, without waiting: takes what has come. @return until when an answer is awaited; nothing: no
+  /// longer, and the next tick may begin
+  std::optional<Outside::Clock::time_point> await_clients();
+  /// At the beginning of a tick: clients that have not answered have missed it.
+  void end_waiting_for_clients();
   /// Acts on an answer. @return why the program cannot go on
   std::optional<Error> answer(ProgramEntry& entry, const OutsideAnswer& answer, Time now);
 
@@ -116,6 +121,8 @@ class Programs {
   /// @return whether one of them ended or failed
   bool step_batch(std::span<ProgramEntry* const> batch, Time now) const;
   void ask_again(ProgramEntry& entry, Time now);
+  void submit_answer(const ProgramEntry& entry, OutsideAnswer answer);
+  bool take_answers(ProgramEntry& entry);
   static void take(ProgramEntry& entry, Program::Resumed resumed);
   static Error failure_of(const ProgramEntry& entry, Time now);
   void prefetch_orders(std::size_t i) const;
@@ -132,7 +139,8 @@ class Programs {
   /// due at other times; those with topics.
   std::vector<ProgramEntry*> all_, running_, timed_, publishing_;
   std::vector<ProgramEntry*> outside_,
-      awaited_;  ///< those that run outside; those of them that stepped in this tick
+      awaited_,          ///< those that run outside; those of them that stepped in this tick, of processes
+      awaited_clients_;  ///< and of clients
   bool connected_ = false;
   std::vector<std::uint64_t> sources_;  ///< per entry of all_: Source::id of its orders
   std::vector<ProgramEntry*> due_;

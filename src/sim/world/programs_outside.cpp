@@ -18,7 +18,7 @@ Status Programs::connect(Entities entities, Time now, bool allowed, bool restore
   for (ProgramEntry* const entry : outside_) {
     Outside& outside = *entry->program->outside();
     if (entry->ended || outside.connected()) continue;
-    if (!allowed) {
+    if (!allowed && !outside.is_client()) {
       warn(*entry, "this run may not start programs; run the scenario itself, or add --allow-programs");
       continue;
     }
@@ -42,32 +42,54 @@ void Programs::ask_again(ProgramEntry& entry, Time now) {
   if (entry.ended || entry.wait->waiting_for != Program::Waiting::outside) return;
   const Stream random(setup_.seed, entry.key, Purpose::controller, entry.steps - 1);
   entry.program->resume({now, entry.topics, entry.seen, random}, entry.command);
-  awaited_.push_back(&entry);
+  (entry.program->outside()->is_client() ? awaited_clients_ : awaited_).push_back(&entry);
+}
+
+void Programs::submit_answer(const ProgramEntry& entry, OutsideAnswer answer) {
+  if (answer.kind == OutsideAnswer::Kind::gone)
+    log::warning("program '" + entry.path + "' (" + entry.decl.kind + ") is gone: " +
+                 std::string(reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()));
+  commands_.submit(AnswerRequest{entry.path, std::move(answer)}, {});
+}
+
+/// Takes what has come. @return whether nothing more is awaited
+bool Programs::take_answers(ProgramEntry& entry) {
+  Outside& outside = *entry.program->outside();
+  while (outside.expects_answer()) {
+    auto answer = outside.receive();
+    if (!answer) return false;
+    submit_answer(entry, std::move(*answer));
+  }
+  return true;
+}
+
+std::optional<Outside::Clock::time_point> Programs::await_clients() {
+  std::erase_if(awaited_clients_, [&](ProgramEntry* entry) { return take_answers(*entry); });
+  std::optional<Outside::Clock::time_point> latest;
+  for (ProgramEntry* const entry : awaited_clients_) {
+    const auto deadline = entry->program->outside()->deadline();
+    if (Outside::Clock::now() < deadline) latest = latest ? std::min(*latest, deadline) : deadline;
+  }
+  return latest;
+}
+
+void Programs::end_waiting_for_clients() {
+  for (ProgramEntry* const entry : awaited_clients_)
+    if (!take_answers(*entry)) submit_answer(*entry, {OutsideAnswer::Kind::missed, {}});
+  awaited_clients_.clear();
 }
 
 void Programs::await_answers() {
   if (awaited_.empty()) return;
   using Clock = Outside::Clock;
-  const auto submit = [&](const ProgramEntry& entry, OutsideAnswer answer) {
-    if (answer.kind == OutsideAnswer::Kind::gone)
-      log::warning("program '" + entry.path + "' (" + entry.decl.kind + ") is gone: " +
-                   std::string(reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()));
-    commands_.submit(AnswerRequest{entry.path, std::move(answer)}, {});
-  };
   std::vector<Outside::Watched> watched;
   std::vector<pollfd> polled;
   while (true) {
     // In the order of the programs, so that what is there in time has one order.
     std::erase_if(awaited_, [&](ProgramEntry* entry) {
-      Outside& outside = *entry->program->outside();
-      while (outside.expects_answer()) {
-        auto answer = outside.receive();
-        if (!answer) break;
-        submit(*entry, std::move(*answer));
-      }
-      if (!outside.expects_answer()) return true;
-      if (Clock::now() < outside.deadline()) return false;
-      submit(*entry, {OutsideAnswer::Kind::missed, {}});
+      if (take_answers(*entry)) return true;
+      if (Clock::now() < entry->program->outside()->deadline()) return false;
+      submit_answer(*entry, {OutsideAnswer::Kind::missed, {}});
       return true;
     });
     if (awaited_.empty()) return;

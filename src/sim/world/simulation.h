@@ -77,9 +77,24 @@ class Simulation final : public SimulationParts, public TopicFinder {
   const std::optional<std::string>& stop_reason() const { return stop_reason_; }
   const model::Setup& setup() const { return setup_; }
 
+  /// Calls visit(program, outside) for all programs that run outside this process.
+  template <class Visit>
+  void for_each_outside(Visit&& visit) {
+    const auto each = [&](ProgramEntries& programs) {
+      for (auto& program : programs)
+        if (Outside* const outside = program->program->outside()) visit(std::as_const(*program), *outside);
+    };
+    for (auto& entity : entities_) each(entity->programs);
+    for (Team& team : programs_.teams()) each(team.programs);
+  }
+
   /// Connects programs that run outside this process, where the options allow it; else a warning each. create() has done
   /// so if it was allowed; for a restored world, call it where the log of what came from outside ends.
   void connect_programs();
+  /// Takes what clients have answered that drive robots in step with the run, without waiting. The next tick counts those who
+  /// have not as late.
+  /// @return until when an answer is awaited; nothing: the next tick may begin
+  std::optional<std::chrono::steady_clock::time_point> await_clients() { return programs_.await_clients(); }
 
   /// Queues a request for the next tick. @return its sequence number
   std::uint64_t submit(Request request, Source source = {}) {

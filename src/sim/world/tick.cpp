@@ -14,6 +14,7 @@ namespace sandlot {
 /// Each phase reads the results of the phases before it; see docs/architecture.md, section 4.
 Status Simulation::tick(std::optional<Time> measured) {
   if (!status_) return status_;
+  programs_.end_waiting_for_clients();
   arena_->execute([&] {
     set_step(measured);
     process_commands();    // 1  requests from outside, then those of rules and orders of programs

@@ -1,10 +1,11 @@
 #pragma once
-/// Answers of a process at a pipe: one line of JSON each.
+/// Answers of programs outside this process, as JSON: lines of a pipe, messages of a remote client.
 ///
 ///   {"orders": {"drive": {"linear": {"x": 0.3}}}, "samples": ["eye"], "wait": 2.5}
 ///
 /// orders   messages for devices, by the device's name, `device/level` or, of a device that takes several types,
-///          `device/Type`; in the order of the line. Fields that are left out keep their defaults.
+///          `device/Type`. Fields that are left out keep their defaults. Where the order of messages matters, or a device
+///          takes several, as a radio does, a list of pairs: [["radio", {...}], ["radio", {...}]].
 /// samples  devices that shall take a sample although none is due.
 /// wait     the next observation: at this time [s], or with the next message of the reading of this name; left out or null:
 ///          at the next control step.
@@ -18,7 +19,15 @@
 
 #include "control/program.h"
 
-namespace sandlot::programs::pipe {
+namespace sandlot::programs {
+
+/// Reaction of a robot to an answer that does not come in time.
+enum class OnMiss : std::uint8_t { hold, stop, end };
+inline std::span<const EnumName<OnMiss>> enum_names(OnMiss) {
+  static constexpr EnumName<OnMiss> names[] = {
+      {"hold", OnMiss::hold}, {"stop", OnMiss::stop}, {"end", OnMiss::end}};
+  return names;
+}
 
 /// A reading or an actuator, by the names that JSON has for it.
 struct Named {
@@ -36,4 +45,7 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
                                      std::span<const Named> actuators,
                                      std::span<const TopicBase* const> forms, Command& cmd);
 
-}  // namespace sandlot::programs::pipe
+/// Orders all drives among the actuators to stand still.
+void stop_drives(std::span<const Named> actuators, Command& cmd);
+
+}  // namespace sandlot::programs

@@ -1,4 +1,4 @@
-#include "programs/pipe/answer.h"
+#include "programs/answer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "messages/command.h"
 
-namespace sandlot::programs::pipe {
+namespace sandlot::programs {
 namespace {
 
 using Json = nlohmann::json;
@@ -76,20 +76,31 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
   if (!answer.is_object()) return Error{"the answer is not a JSON object", R"(such as {"orders": {}})"};
   Command ordered;
   Program::Resumed out;
+  const auto order = [&](const std::string& name, const Json& message) -> Status {
+    SL_ASSIGN(const Named* const actuator, find(actuators, name, "actuator"));
+    const TopicBase* const form = actuator->index < forms.size() ? forms[actuator->index] : nullptr;
+    if (!form) return Error{"'" + name + "' takes no orders now"};
+    auto bytes = command_from_json(*form, message.dump());
+    if (!bytes) {
+      bytes.error().what = "order for '" + name + "': " + bytes.error().what;
+      return std::move(bytes.error());
+    }
+    ordered.set_bytes(actuator->index, *bytes);
+    return {};
+  };
   for (const auto& [key, value] : answer.items()) {
     if (key == "orders") {
-      if (!value.is_object()) return wrong("orders", "an object of messages by device");
+      if (!value.is_object() && !value.is_array())
+        return wrong("orders", "an object of messages by device, or a list of pairs of both");
       if (value.size() > most_orders) return Error{"the answer has more than 1000 orders"};
-      for (const auto& [name, message] : value.items()) {
-        SL_ASSIGN(const Named* const actuator, find(actuators, name, "actuator"));
-        const TopicBase* const form = actuator->index < forms.size() ? forms[actuator->index] : nullptr;
-        if (!form) return Error{"'" + name + "' takes no orders now"};
-        auto bytes = command_from_json(*form, message.dump());
-        if (!bytes) {
-          bytes.error().what = "order for '" + name + "': " + bytes.error().what;
-          return std::move(bytes.error());
+      if (value.is_object()) {
+        for (const auto& [name, message] : value.items()) SL_TRY(order(name, message));
+      } else {
+        for (const Json& each : value) {
+          if (!each.is_array() || each.size() != 2 || !each[0].is_string())
+            return wrong("orders", "a list of pairs of a device's name and a message");
+          SL_TRY(order(each[0].get<std::string>(), each[1]));
         }
-        ordered.set_bytes(actuator->index, *bytes);
       }
     } else if (key == "samples") {
       if (!value.is_array() || value.size() > most_orders)
@@ -122,4 +133,13 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
   return out;
 }
 
-}  // namespace sandlot::programs::pipe
+void stop_drives(std::span<const Named> actuators, Command& cmd) {
+  for (const Named& actuator : actuators) {
+    if (!actuator.any_level) continue;
+    if (actuator.type == msg::Twist::ros_type) cmd.set_bytes(actuator.index, command_bytes(msg::Twist()));
+    if (actuator.type == msg::TwistStamped::ros_type)
+      cmd.set_bytes(actuator.index, command_bytes(msg::TwistStamped()));
+  }
+}
+
+}  // namespace sandlot::programs

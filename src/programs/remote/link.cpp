@@ -1,0 +1,95 @@
+#include "programs/remote/link.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sandlot::programs::remote {
+
+void Link::attach(Client client) {
+  const std::lock_guard lock(mutex_);
+  client_ = std::move(client);
+  ++attachments_;
+  answer_.reset();
+  figures_.attached = true;
+  told_ = false;
+  tell();
+}
+
+void Link::detach(std::string why) {
+  const std::lock_guard lock(mutex_);
+  if (!client_) return;
+  client_.reset();
+  figures_.attached = false;
+  if (step_ && !answer_) answer_ = Error{std::move(why)};
+}
+
+Status Link::answer(std::uint64_t step, std::string text) {
+  const std::lock_guard lock(mutex_);
+  if (text.size() > most_answer) return Error{"an answer has at most 1 MiB"};
+  if (!step_ || !told_ || answer_)
+    return Error{"step " + std::to_string(step) + " does not wait for an answer"};
+  if (step != step_->number)
+    return Error{"step " + std::to_string(step_->number) + " waits for an answer, not " +
+                 std::to_string(step)};
+  answer_ = std::move(text);
+  const double latency_s = std::chrono::duration<double>(Clock::now() - told_at_).count();
+  ++figures_.answers;
+  figures_.latency_s = latency_s;
+  figures_.mean_latency_s += (latency_s - figures_.mean_latency_s) / static_cast<double>(figures_.answers);
+  figures_.longest_latency_s = std::max(figures_.longest_latency_s, latency_s);
+  return {};
+}
+
+void Link::release() {
+  const std::lock_guard lock(mutex_);
+  tell();
+}
+
+/// @pre the mutex is held
+void Link::tell() {
+  if (!step_ || !client_ || std::exchange(told_, true)) return;
+  told_at_ = Clock::now();
+  ++figures_.steps;
+  client_->step(*step_);
+}
+
+Link::Figures Link::figures() const {
+  const std::lock_guard lock(mutex_);
+  return figures_;
+}
+
+std::optional<double> Link::deadline_s() const {
+  const std::lock_guard lock(mutex_);
+  return client_ ? std::optional(client_->deadline_s) : std::nullopt;
+}
+
+std::uint64_t Link::attachments() const {
+  const std::lock_guard lock(mutex_);
+  return attachments_;
+}
+
+void Link::put(const Step& step) {
+  const std::lock_guard lock(mutex_);
+  step_ = step;
+  told_ = false;
+  answer_.reset();
+}
+
+void Link::count_miss() {
+  const std::lock_guard lock(mutex_);
+  ++figures_.misses;
+}
+
+void Link::refuse(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (client_) client_->refused(why);
+}
+
+std::optional<Result<std::string>> Link::take() {
+  const std::lock_guard lock(mutex_);
+  if (!answer_) return std::nullopt;
+  step_.reset();
+  return std::exchange(answer_, std::nullopt);
+}
+
+}  // namespace sandlot::programs::remote

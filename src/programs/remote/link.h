@@ -1,0 +1,80 @@
+#pragma once
+/// Link between a remote program, on the simulation's thread, and those who bring its client's messages: the server.
+///
+/// A client is attached with a deadline and functions that tell it of steps. In each control step the program puts the
+/// step into the link; when the messages of the tick are on their way to the client, release() tells the client. The
+/// client answers with the number of the step.
+///
+/// Threads   any; clients are told on the thread that calls release() or attach().
+/// Waiting   who answers wakes the session: Session::wake().
+/// Limits    one answer waits at most; an answer has at most most_answer bytes.
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "base/time.h"
+
+namespace sandlot::programs::remote {
+
+class Link {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t most_answer = std::size_t{1} << 20;
+
+  struct Step {
+    std::uint64_t number = 0;
+    Time now;
+    std::uint64_t random = 0;  ///< of the program's own, one per step
+  };
+  /// What the page and the summary show of a client.
+  struct Figures {
+    std::uint64_t steps = 0, answers = 0, misses = 0;
+    double latency_s = 0, mean_latency_s = 0, longest_latency_s = 0;  ///< from a step to its answer
+    bool attached = false;
+  };
+
+  // --- for the server ---
+  /// What a client is told; on the thread of the simulation.
+  struct Client {
+    double deadline_s = 0;
+    std::function<void(const Step&)> step;
+    std::function<void(const std::string& why)> refused;  ///< its answer could not be carried out
+  };
+  /// A client takes the program over. It is told at once of a step that waits.
+  void attach(Client client);
+  void detach(std::string why);
+  /// Errors: no step waits for an answer, another one does, it is too long.
+  Status answer(std::uint64_t step, std::string text);
+  /// The messages of the tick are on their way: the client may be told of the step.
+  void release();
+  Figures figures() const;
+
+  // --- for the program ---
+  /// That of the client attached now.
+  std::optional<double> deadline_s() const;
+  /// Counts the clients that came.
+  std::uint64_t attachments() const;
+  void put(const Step& step);
+  void count_miss();
+  void refuse(const std::string& why);
+  /// The answer that has come. An error: the client has gone without one.
+  std::optional<Result<std::string>> take();
+
+ private:
+  void tell();
+
+  mutable std::mutex mutex_;
+  std::optional<Client> client_;
+  std::uint64_t attachments_ = 0;
+  std::optional<Step> step_;  ///< that waits for its answer
+  bool told_ = false;
+  Clock::time_point told_at_;
+  std::optional<Result<std::string>> answer_;
+  Figures figures_;
+};
+
+}  // namespace sandlot::programs::remote

@@ -1,0 +1,128 @@
+#include "programs/remote/remote.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sandlot::programs::remote {
+namespace {
+
+std::vector<std::byte> bytes_of(std::string_view text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+Status Remote::init(const Description& robot, const Node& config, Outputs&) {
+  SL_ASSIGN(spec_, read_spec<Spec>(config));
+  readings_ = names_of(robot.readings);
+  actuators_ = names_of(robot.actuators);
+  return {};
+}
+
+Status Remote::set_parameter(std::string_view path, const Node& value) {
+  Spec changed = spec_;
+  SL_TRY(set_tunable(changed, path, value));
+  spec_ = std::move(changed);
+  return {};
+}
+
+void Remote::save(ByteWriter& w) const {
+  write_tunables(w, spec_);
+  write(w, state_);
+}
+
+void Remote::load(ByteReader& r) {
+  read_tunables(r, spec_);
+  read(r, state_);
+}
+
+Status Remote::connect() {
+  connected_ = true;
+  waiting_ = gave_up_ = false;
+  return {};
+}
+
+void Remote::adopt(Outside& before) {
+  Remote& old = static_cast<Remote&>(before);
+  link_ = old.link_;
+  connected_ = std::exchange(old.connected_, false);
+  waiting_ = old.waiting_;
+  gave_up_ = old.gave_up_;
+  known_attachments_ = old.known_attachments_;
+  step_ = old.step_;
+  begun_ = old.begun_;
+  deadline_ = old.deadline_;
+}
+
+/// From the step on; of the first one, until a client has come.
+void Remote::set_deadline() {
+  const auto wall = [](double s) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+  };
+  const std::optional<double> client_s = link_->deadline_s();
+  if (const std::uint64_t came = link_->attachments(); came != known_attachments_) {
+    known_attachments_ = came;
+    gave_up_ = false;
+    if (client_s) begun_ = Clock::now();  // its time begins when it has come
+  }
+  if (client_s) deadline_ = begun_ + wall(std::min(*client_s, spec_.deadline_s));
+  else deadline_ = gave_up_ || known_attachments_ > 0 ? begun_ : begun_ + wall(spec_.patience_s);
+}
+
+Program::Resumed Remote::resume(const Observation& obs, Command&) {
+  if (connected_) {
+    begun_ = Clock::now();
+    Stream random = obs.random();
+    if (!std::exchange(waiting_, true)) link_->put({step_++, obs.now(), random.bits64()});
+    set_deadline();
+  }
+  return {.waiting_for = Waiting::outside};
+}
+
+std::optional<OutsideAnswer> Remote::receive() {
+  if (!connected_) return std::nullopt;
+  auto answer = link_->take();
+  set_deadline();
+  if (!answer) return std::nullopt;
+  waiting_ = false;
+  if (*answer) return OutsideAnswer{OutsideAnswer::Kind::message, bytes_of(**answer)};
+  return OutsideAnswer{OutsideAnswer::Kind::message, {}};  // it went away: nothing is ordered
+}
+
+Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms,
+                                Command& cmd) {
+  const auto miss = [&](const char* why) -> Resumed {
+    ++state_.misses;
+    gave_up_ = true;
+    link_->count_miss();
+    if (spec_.on_miss == OnMiss::end) return {.failure = why};
+    if (spec_.on_miss == OnMiss::stop) stop_drives(actuators_, cmd);
+    return {};
+  };
+  switch (answer.kind) {
+    case OutsideAnswer::Kind::message: {
+      if (answer.bytes.empty()) return miss("the client has gone");
+      ++state_.answers;
+      auto read = read_answer({reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()},
+                              readings_, actuators_, forms, cmd);
+      if (read) return std::move(*read);
+      ++state_.refused;
+      link_->refuse(read.error().text());
+      return {};
+    }
+    case OutsideAnswer::Kind::missed: return miss("the client sent no answer in time");
+    case OutsideAnswer::Kind::gone: break;
+  }
+  return {.waiting_for = Waiting::nothing};
+}
+
+extern const ProgramKind kind;
+constinit const ProgramKind kind{
+    .name = "remote",
+    .help = "A client of the server drives the robot or the team, in lockstep with the run.",
+    .describe = [] { return describe_fields<Spec>(); },
+    .create = []() -> std::unique_ptr<Program> { return std::make_unique<Remote>(); },
+};
+
+}  // namespace sandlot::programs::remote

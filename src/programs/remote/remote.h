@@ -1,0 +1,100 @@
+#pragma once
+/// Remote: a robot or team whose program is a client of the server: in lockstep, or free-running.
+///
+///   controller: remote
+///   controller: {remote: {deadline: 50 ms, on_miss: stop}}
+///
+/// Lockstep     in each control step the client is told of the step, when the messages of the tick are on their way to it, and
+///              its answer (programs/answer.h) acts at the beginning of the next tick, as the orders of every controller do.
+/// Deadline     in wall time from the step on: the client's own, at most `deadline`. An answer that comes later acts with
+///              the next step. Until it has come the client is told of no other step; `on_miss` is what the robot does meanwhile.
+/// No client    the first step waits up to `patience` for one to come; after that none waits until one has. Steps without a
+///              client count as missed.
+/// Free running clients that give no word of lockstep send commands, which act in the tick after they came; the
+///              program then waits for nothing.
+/// Refused      answers that cannot be carried out order nothing and are counted; the run goes on.
+/// Determinism  answers are input from outside and logged, also that none came in time: replays and rewound runs get them
+///              from there, without a client.
+/// State        numbers of answers, misses and refusals.
+/// Cost         the wait for the answer.
+#include "control/program.h"
+#include "programs/answer.h"
+#include "programs/remote/link.h"
+
+namespace sandlot::programs::remote {
+
+struct Spec {
+  double deadline_s = 1, patience_s = 60;
+  OnMiss on_miss = OnMiss::stop;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"deadline", "s", "Longest wall time within which an answer is expected.", 1e-3, 60,
+                Field::tunable},
+          s.deadline_s);
+    visit(Field{"patience", "s", "Wall time for which the first step waits for a client.", 0, 1e5,
+                Field::tunable},
+          s.patience_s);
+    visit(Field{"on_miss", "",
+                "Reaction to an answer that does not come in time. hold: the last orders stay; stop: drives "
+                "are ordered to stand still; end: the run ends.",
+                0, 0, Field::tunable},
+          s.on_miss);
+  }
+};
+
+struct State {
+  std::uint64_t answers = 0, misses = 0, refused = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"answers", "1", "Number of answers."}, s.answers);
+    visit(Field{"misses", "1", "Number of steps without an answer in time."}, s.misses);
+    visit(Field{"refused", "1", "Number of answers that could not be carried out."}, s.refused);
+  }
+};
+
+class Remote final : public Program, public Outside {
+ public:
+  Status init(const Description& robot, const Node& config, Outputs& out) override;
+  Resumed resume(const Observation& obs, Command& cmd) override;
+  Resumed answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms, Command& cmd) override;
+  Outside* outside() override { return this; }
+  Status set_parameter(std::string_view path, const Node& value) override;
+  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
+    return value_at(part, spec_, state_, path);
+  }
+  void list_values(ValuePart part, const ValueVisit& visit) const override {
+    sandlot::list_values(part, spec_, state_, visit);
+  }
+  void save(ByteWriter& w) const override;
+  void load(ByteReader& r) override;
+
+  Status connect() override;
+  bool connected() const override { return connected_; }
+  bool connects_again() const override { return true; }
+  bool is_client() const override { return true; }
+  bool expects_answer() const override { return connected_ && waiting_; }
+  Clock::time_point deadline() const override { return deadline_; }
+  void watched(std::vector<Watched>&) const override {}
+  void adopt(Outside& before) override;
+  std::optional<OutsideAnswer> receive() override;
+
+  /// For the server. It lives as long as somebody holds it.
+  const std::shared_ptr<Link>& link() const { return link_; }
+  double longest_deadline_s() const { return spec_.deadline_s; }
+
+ private:
+  void set_deadline();
+
+  Spec spec_;
+  State state_;
+  std::vector<Named> readings_, actuators_;
+
+  // The connection; none of it is State.
+  std::shared_ptr<Link> link_ = std::make_shared<Link>();
+  bool connected_ = false, waiting_ = false, gave_up_ = false;
+  std::uint64_t known_attachments_ = 0;
+  std::uint64_t step_ = 0;
+  Clock::time_point begun_, deadline_;
+};
+
+}  // namespace sandlot::programs::remote
