@@ -26,13 +26,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
 
   const std::string token = "the token";
+  const std::vector<Token> tokens{{token, {.role = Role::admin}}};
   for (const bool loopback : {false, true}) {
-    const auto who = admit(first, second, token, loopback);
+    const auto who = admit(first, second, tokens, loopback);
     SL_CHECK((who.status == 0) == who.why.empty());
-    if (!who.may_steer) continue;
+    if (!who.access.is_admin()) continue;
     const auto given = query_value(first, "token");
     SL_CHECK((given && *given == token) || second.find(token) != second.npos);
-    SL_CHECK(!admit(first, second, "", false).may_steer);
+    SL_CHECK(!admit(first, second, {}, false).access.is_admin());
   }
 
   const std::vector<std::string> origins{"https://app.example", std::string(second)};

@@ -27,7 +27,8 @@ struct ServeOptions {
   int port = 0;            ///< 0: any that is free
   bool next_free = false;  ///< when the port is taken, try the next ones
   std::string address = "127.0.0.1";
-  std::string token;  ///< "": made where one is needed
+  std::string token;        ///< of administrators; "": made where one is needed
+  std::string tokens_file;  ///< app/tokens.h; "": none
   std::vector<std::string> origins;
 };
 

@@ -70,6 +70,8 @@ struct ServeFlags {
                     "Address to listen at; elsewhere than on this machine a token is needed to steer")
         ->capture_default_str();
     verb.add_option("--token", options.token, "Token that allows to steer; one is made where none is given");
+    verb.add_option("--tokens", options.tokens_file,
+                    "File with tokens of administrators, spectators, robots and teams; docs/clients.md");
     verb.add_option(
             "--allow-origin", options.origins,
             "Another site whose pages may connect: https://app.example.org; may be given several times")
@@ -82,9 +84,11 @@ struct ServeFlags {
       out = options;
       return {};
     }
-    if (!options.token.empty() || !options.origins.empty() || options.address != ServeOptions().address)
-      return Error{"--address, --token and --allow-origin say who may look at the page, but there is none",
-                   "add --port 8765"};
+    if (!options.token.empty() || !options.tokens_file.empty() || !options.origins.empty() ||
+        options.address != ServeOptions().address)
+      return Error{
+          "--address, --token, --tokens and --allow-origin say who may look at the page, but there is none",
+          "add --port 8765"};
     return {};
   }
 };

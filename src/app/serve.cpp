@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/remote_console.h"
+#include "app/tokens.h"
 #include "run/outputs.h"
 #include "server/http/http.h"
 #include "server/server.h"
@@ -42,10 +43,16 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   transport.port = static_cast<std::uint16_t>(options.port);
   transport.next_free = options.next_free;
   transport.origins = options.origins;
-  transport.token = options.token;
-  if (transport.token.empty() && !server::is_loopback_name(options.address)) {
-    SL_ASSIGN(transport.token, make_token());
+  if (!options.tokens_file.empty()) { SL_ASSIGN(transport.tokens, load_tokens(options.tokens_file)); }
+  std::string admins = options.token;
+  for (const server::Token& each : transport.tokens)
+    if (each.access.is_admin() && admins.empty()) admins = each.secret;
+  // Somebody has to be able to steer.
+  if (admins.empty() && (!transport.tokens.empty() || !server::is_loopback_name(options.address))) {
+    SL_ASSIGN(admins, make_token());
   }
+  if (!admins.empty() && !server::find_token(admins, transport.tokens))
+    transport.tokens.push_back({admins, {.role = server::Role::admin}});
   for (const std::string& origin : options.origins)
     if (server::judge_origin(origin, "", std::span(&origin, 1)) == server::Origin::foreign)
       return Error{"--allow-origin: '" + origin + "' is not an origin", "write https://app.example.org"};
@@ -59,7 +66,7 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
     };
   SL_ASSIGN(auto server, server::Server::start(server_options, session, console));
   std::fprintf(stderr, "page: %s%s\n", server->url().c_str(),
-               transport.token.empty() ? "" : ("?token=" + url_encoded(transport.token)).c_str());
+               admins.empty() ? "" : ("?token=" + url_encoded(admins)).c_str());
   return Served(std::move(server));
 }
 

@@ -4,6 +4,8 @@
 
 #include "base/log.h"
 #include "server/clients/hub.h"
+#include "server/faces/foxglove.h"
+#include "server/faces/rosbridge.h"
 
 namespace sandlot::server {
 namespace {
@@ -73,14 +75,19 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   Impl* const self = impl.get();
   TransportOptions transport = options.transport;
   for (const std::string_view name : foxglove::subprotocols) transport.subprotocols.emplace_back(name);
+  transport.none_offered = transport.raw_json = true;  // clients of rosbridge come so
   // The transport's thread runs before start() has returned; it waits until the hub knows the transport.
   const auto ready = std::make_shared<std::promise<void>>();
   const std::shared_future<void> is_ready = ready->get_future().share();
   Handler handler;
   handler.get = [self](std::string_view target) { return self->get(target); };
-  handler.connected = [self, is_ready](ClientId id, bool may_steer, std::string_view) {
+  handler.connected = [self, is_ready](ClientId id, const Access& access, std::string_view subprotocol) {
     is_ready.wait();
-    self->hub.connected(id, may_steer);
+    const bool tcp = subprotocol == "tcp", rosbridge = tcp || subprotocol.empty();
+    self->hub.connected(id, access, [=](Hub& hub, Transport& to, ClientId client) -> std::unique_ptr<Face> {
+      if (rosbridge) return std::make_unique<RosbridgeFace>(hub, to, client, tcp);
+      return std::make_unique<FoxgloveFace>(hub, to, client);
+    });
   };
   handler.message = [self, is_ready](ClientId id, std::span<const std::byte> bytes, bool text) {
     is_ready.wait();
@@ -96,6 +103,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   };
   SL_ASSIGN(impl->owned, Transport::start(transport, std::move(handler)));
   impl->hub.use(*impl->owned);
+  // Clients find the world's topics from their first word on.
+  impl->hub.send_world({.inventory = take_inventory(session.simulation(), session.epoch())});
   impl->transport = impl->owned.get();
   impl->mailbox->open([self] { self->wake(&Hub::drain); });
   impl->others_on_change = session.on_change;

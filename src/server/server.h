@@ -31,6 +31,8 @@ struct ServerOptions {
   std::string name;     ///< of the run, shown by viewers
   std::string version;  ///< of Sandlot
   double poses_hz = 30;
+  double watchdog_s =
+      1;  ///< a robot whose client commands nothing for so long, by the wall clock, is stopped
   struct Recording {
     std::string file;
     std::uint64_t messages = 0, bytes = 0;

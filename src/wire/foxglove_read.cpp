@@ -2,70 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/bytes.h"
 #include "base/text.h"
+#include "wire/bounded_json.h"
 
 namespace sandlot::foxglove {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr int most_depth = 32;
+using wire::shown;
+
 /// Commas and brackets in one text: a bound on the values that parsing it makes.
 constexpr std::size_t most_marks = 8 * most_entries;
 
-/// What a client wrote, as an error sentence may repeat it.
-std::string shown(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (text.size() > 60 ? "...'" : "'");
-}
-
-/// Judges how deep and how large the document will be before anything is made of it.
-Status check_size(std::string_view text) {
-  if (text.size() > most_text_bytes)
-    return Error{"a message of " + std::to_string(text.size()) + " bytes",
-                 "at most " + std::to_string(most_text_bytes)};
-  int depth = 0;
-  std::size_t marks = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      else if (c == '"') quoted = false;
-      continue;
-    }
-    if (c == '"') quoted = true;
-    else if (c == '[' || c == '{') ++depth, ++marks;
-    else if (c == ']' || c == '}') --depth;
-    else if (c == ',') ++marks;
-    if (depth > most_depth)
-      return Error{"a message nested more than " + std::to_string(most_depth) + " deep"};
-    if (marks > most_marks) return Error{"a message of more than " + std::to_string(most_marks) + " values"};
-  }
-  return {};
-}
-
 Result<Json> parse(std::string_view text) {
-  SL_TRY(check_size(text));
-  std::vector<std::set<std::string>> keys;
-  std::string twice;
-  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      twice = parsed.get<std::string>();
-    return true;
-  };
-  Json document = Json::parse(text, watch, false);
-  if (document.is_discarded()) return Error{"a message that is not JSON"};
-  if (!document.is_object()) return Error{"a message that is not a JSON object"};
-  if (!twice.empty()) return Error{"a message with the key " + shown(twice) + " twice"};
-  return document;
+  return wire::read_object(text, {.bytes = most_text_bytes, .values = most_marks});
 }
 
 /// One message, with sentences about what is wrong with it.

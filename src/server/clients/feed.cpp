@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "messages/sandlot_msgs.h"
+#include "programs/remote/link.h"
 #include "server/clients/hub.h"
 #include "server/clients/parameters.h"
 #include "server/clients/preview.h"
@@ -216,7 +217,12 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   for (const Watch& watch : watches_)
     if (watch.sampled_at != batch.now) stale_ = true;
   if (batch.frame || batch.commands || !batch.messages.empty()) mailbox_->push(std::move(batch));
+  for (const auto& link : links_) link->release();
 }
+
+void Feed::add_link(std::shared_ptr<programs::remote::Link> link) { links_.push_back(std::move(link)); }
+
+void Feed::remove_link(const std::shared_ptr<programs::remote::Link>& link) { std::erase(links_, link); }
 
 Status Feed::watch(ClientId viewer, std::uint32_t channel, const std::vector<std::string>& values,
                    double rate_hz) {

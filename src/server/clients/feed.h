@@ -17,6 +17,10 @@
 #include "sim/watch/values.h"
 #include "wire/scene.h"
 
+namespace sandlot::programs::remote {
+class Link;
+}
+
 namespace sandlot::server {
 
 /// Values that the expressions a viewer watches may read at each sample, those of aggregates counted.
@@ -59,6 +63,10 @@ class Feed final : public Observer {
   Status watch(ClientId viewer, std::uint32_t channel, const std::vector<std::string>& values,
                double rate_hz);
   void unwatch(std::uint32_t channel);
+
+  /// A program whose client is told of each step behind the messages of its tick.
+  void add_link(std::shared_ptr<programs::remote::Link> link);
+  void remove_link(const std::shared_ptr<programs::remote::Link>& link);
 
   Wants wants() const override;
   void on_frame(const std::shared_ptr<const Frame>& frame) override;
@@ -103,6 +111,7 @@ class Feed final : public Observer {
   std::vector<SubscribedTopic> topics_;
   std::size_t previews_ = 0;  ///< of them
   std::vector<Watch> watches_;
+  std::vector<std::shared_ptr<programs::remote::Link>> links_;
   std::vector<std::byte> scratch_;
 
   bool inventory_sent_ = false, world_sent_ = false, static_sent_ = false;  ///< in their present form

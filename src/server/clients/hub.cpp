@@ -17,13 +17,6 @@ constexpr std::size_t portion = 256;             ///< channels in one message
 constexpr std::size_t patient_bytes = 4u << 20;  ///< so much may wait when more channels are advertised
 constexpr int most_refusals_per_s = 20;
 
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
-
 }  // namespace
 
 Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::shared_ptr<Mailbox> mailbox,
@@ -46,6 +39,10 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
   add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
+  for (const Service& row : services()) {
+    const std::uint32_t number = next_service_++;
+    services_[number] = {{number, row.name, *row.type}, &row, "", nullptr};
+  }
 }
 
 std::uint32_t Hub::add_channel(ChannelKind kind, const char* topic, const char* encoding,
@@ -53,14 +50,8 @@ std::uint32_t Hub::add_channel(ChannelKind kind, const char* topic, const char* 
   const std::uint32_t id = next_channel_++;
   Channel& made = channels_[id];
   made.kind = kind;
-  made.advertised = {id, topic, encoding, schema, "", ""};
-  if (made.advertised.encoding == "json") {
-    made.advertised.schema = R"({"type":"object"})";
-    made.advertised.schema_encoding = "jsonschema";
-  } else if (made.advertised.encoding == "cdr") {
-    made.advertised.schema = find_message(schema).value()->schema;
-    made.advertised.schema_encoding = "ros2msg";
-  }
+  made.info = {id, topic, encoding, schema, nullptr};
+  if (made.info.encoding == "cdr") made.info.type = find_message(schema).value();
   if (kind != ChannelKind::device && kind != ChannelKind::watch) fixed_[static_cast<std::size_t>(kind)] = id;
   return id;
 }
@@ -70,27 +61,33 @@ Hub::Client* Hub::find(ClientId id) {
   return found == clients_.end() ? nullptr : &found->second;
 }
 
-void Hub::connected(ClientId id, bool may_steer) {
+const Hub::Client* Hub::find(ClientId id) const {
+  const auto found = clients_.find(id);
+  return found == clients_.end() ? nullptr : &found->second;
+}
+
+const Access& Hub::access(ClientId id) const {
+  static const Access nobody;
+  const Client* const client = find(id);
+  return client ? client->access : nobody;
+}
+
+/// Who drives robots sees their topics and the time.
+bool Hub::may_see(const Client& client, ClientId id, const Channel& channel) const {
+  if (channel.owner != 0) return channel.owner == id;
+  if (!client.access.is_scoped()) return true;
+  if (channel.kind == ChannelKind::clock || channel.kind == ChannelKind::status) return true;
+  if (channel.kind != ChannelKind::device) return false;
+  return client.access.drives(first_part(std::string_view(channel.info.topic).substr(1)));
+}
+
+void Hub::connected(ClientId id, Access access, const MakeFace& make_face) {
   Client& client = clients_[id];
-  client.may_steer = may_steer;
+  client.access = std::move(access);
   client.budgeted = client.refusals_since = Clock::now();
-  foxglove::ServerInfo info;
-  info.name = options_.name;
-  info.capabilities = {"clientPublish",   "time",  "parameters", "parametersSubscribe", "services",
-                       "connectionGraph", "assets"};
-  info.encodings = {"cdr", "json"};
-  info.metadata = {{"ROS_DISTRO", "humble"},
-                   {"sandlot_version", options_.version},
-                   {"sandlot_role", may_steer ? "admin" : "spectator"}};
-  info.session_id = session_id_;
-  transport_->send_text(id, foxglove::server_info(info));
-  std::vector<foxglove::Service> offered;
-  for (const Service& service : services())
-    offered.push_back(
-        offered_service(static_cast<std::uint32_t>(offered.size() + 1), service.name, *service.type));
-  for (const auto& [number, service] : device_services_)
-    offered.push_back(offered_service(number, service.name, service.type));
-  transport_->send_text(id, foxglove::advertise_services(offered));
+  client.face = make_face(*this, *transport_, id);
+  client.face->welcome(client.access);
+  client.face->add_services(offered_services(id));
   advertise_waiting(id, client);
   subscriptions_changed_ = true;
   graph_changed_ = true;
@@ -100,6 +97,7 @@ void Hub::connected(ClientId id, bool may_steer) {
 void Hub::disconnected(ClientId id) {
   Client* const client = find(id);
   if (!client) return;
+  end_claim(id, *client, "the client has gone");
   const auto subscriptions = std::move(client->subscriptions);
   for (const auto& [subscription, channel] : subscriptions) leave_channel(id, channel, subscription);
   std::vector<std::uint32_t> watches;
@@ -112,23 +110,21 @@ void Hub::disconnected(ClientId id) {
   flush();
 }
 
-bool Hub::refuse(ClientId id, const std::string& why, std::string_view about) {
+void Hub::refuse(ClientId id, const std::string& why, std::string_view about) {
   ++counts_.refused;
   Client* const client = find(id);
-  if (!client) return false;
+  if (!client) return;
   const auto now = Clock::now();
   if (now > client->refusals_since + 1s) {
     client->refusals_since = now;
     client->errors = 0;
     if (client->refusals_unsent > 0)
-      transport_->send_text(id, foxglove::status(Level::error, std::to_string(client->refusals_unsent) +
-                                                                   " more requests were refused"));
+      client->face->report(Level::error,
+                           std::to_string(client->refusals_unsent) + " more requests were refused", {});
     client->refusals_unsent = 0;
   }
-  if (++client->errors <= most_refusals_per_s)
-    transport_->send_text(id, foxglove::status(Level::error, why, about));
+  if (++client->errors <= most_refusals_per_s) client->face->report(Level::error, why, about);
   else ++client->refusals_unsent;
-  return false;
 }
 
 bool Hub::within_budget(ClientId id, Client& client) {
@@ -136,8 +132,10 @@ bool Hub::within_budget(ClientId id, Client& client) {
   const double passed_s = std::chrono::duration<double>(now - client.budgeted).count();
   client.budgeted = now;
   client.budget = std::min(most_requests_per_s, client.budget + passed_s * most_requests_per_s);
-  if (client.budget < 1)
-    return refuse(id, "more than " + number_text(most_requests_per_s) + " requests in a second");
+  if (client.budget < 1) {
+    refuse(id, "more than " + number_text(most_requests_per_s) + " requests in a second");
+    return false;
+  }
   client.budget -= 1;
   return true;
 }
@@ -145,121 +143,73 @@ bool Hub::within_budget(ClientId id, Client& client) {
 void Hub::message(ClientId id, std::span<const std::byte> bytes, bool text) {
   Client* const client = find(id);
   if (!client) return;
-  const auto read = text ? foxglove::read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()})
-                         : foxglove::read_binary(bytes);
-  const auto* const called = read ? std::get_if<foxglove::CallService>(&*read) : nullptr;
-  if (!within_budget(id, *client)) {
-    if (called)
-      transport_->send_text(id,
-                            foxglove::service_failure(called->service, called->call, "too many requests"));
-    return;
-  }
-  if (!read) {
-    refuse(id, read.error().text());
-    return;
-  }
-  handle(id, *client, *read);
+  if (within_budget(id, *client)) client->face->message(bytes, text);
+  else client->face->over_budget(bytes, text);
   flush();
 }
 
-void Hub::handle(ClientId id, Client& client, const foxglove::ClientMessage& message) {
-  std::visit(Overloaded{
-                 [&](const foxglove::Subscribe& m) { subscribe(id, client, m); },
-                 [&](const foxglove::Unsubscribe& m) {
-                   for (const std::uint32_t each : m.ids) unsubscribe(id, client, each);
-                 },
-                 [&](const foxglove::Advertise& m) { advertise(id, client, m); },
-                 [&](const foxglove::Unadvertise& m) {
-                   for (const std::uint32_t each : m.ids) client.publications.erase(each);
-                   graph_changed_ = true;
-                 },
-                 [&](const foxglove::GetParameters& m) { get_parameters(id, client, m); },
-                 [&](const foxglove::SetParameters& m) { set_parameters(id, client, m); },
-                 [&](const foxglove::SubscribeParameters& m) {
-                   if (m.names.empty()) {
-                     client.all_parameters = m.subscribe;
-                     if (!m.subscribe) client.parameters.clear();
-                   }
-                   for (const std::string& name : m.names) {
-                     if (!m.subscribe) client.parameters.erase(name);
-                     else if (client.parameters.size() < most_subscriptions) client.parameters.insert(name);
-                     else return void(refuse(id, "more than 10000 parameters are subscribed to"));
-                   }
-                   subscriptions_changed_ = true;
-                 },
-                 [&](const foxglove::SubscribeGraph& m) {
-                   client.graph = m.subscribe;
-                   if (m.subscribe) send_graph(true);
-                 },
-                 [&](const foxglove::FetchAsset& m) { fetch(id, m); },
-                 [&](const foxglove::ClientData& m) { publish(id, client, m); },
-                 [&](const foxglove::CallService& m) { call(id, client, m); },
-                 [&](const foxglove::PlaybackControl&) {
-                   refuse(id, "playback control is not known here; say it to /sandlot/console");
-                 },
-             },
-             message);
+const ChannelInfo* Hub::find_channel(ClientId id, std::uint32_t number) const {
+  const Client* const client = find(id);
+  const auto found = channels_.find(number);
+  return client && found != channels_.end() && may_see(*client, id, found->second) ? &found->second.info
+                                                                                   : nullptr;
 }
 
-void Hub::subscribe(ClientId id, Client& client, const foxglove::Subscribe& request) {
-  std::size_t too_many = 0, refused = 0;
-  std::string why;
-  const auto no = [&](std::string text) {
-    if (refused++ == 0) why = std::move(text);
-  };
-  for (const auto& [subscription, channel_id] : request.subscriptions) {
-    if (client.subscriptions.size() >= most_subscriptions) {
-      ++too_many;
-      continue;
-    }
-    const auto found = channels_.find(channel_id);
-    if (found == channels_.end() || (found->second.owner != 0 && found->second.owner != id)) {
-      no("there is no channel " + std::to_string(channel_id));
-      continue;
-    }
-    Channel& to = found->second;
-    if (client.subscriptions.count(subscription) > 0) {
-      no("subscription " + std::to_string(subscription) + " is there already");
-      continue;
-    }
-    if (std::any_of(to.subscribers.begin(), to.subscribers.end(),
-                    [&](const Subscriber& each) { return each.client == id; })) {
-      no("channel " + std::to_string(channel_id) + " is subscribed to already");
-      continue;
-    }
-    client.subscriptions[subscription] = channel_id;
-    Subscriber made{id, subscription, false};
-    switch (to.kind) {
-      case ChannelKind::device:
-      case ChannelKind::watch: initial_.latest.push_back(channel_id); break;
-      case ChannelKind::world: initial_.world = true; break;
-      case ChannelKind::transforms_static: initial_.transforms_static = true; break;
-      case ChannelKind::poses: initial_.frame = true; break;
-      case ChannelKind::status: break;
-      case ChannelKind::transforms:
-      case ChannelKind::clock:
-      case ChannelKind::contacts:
-        initial_.frame = true;
-        made.initial_state_sent = true;
-        break;
-      default: made.initial_state_sent = true;
-    }
-    to.subscribers.push_back(made);
-    if (to.kind == ChannelKind::status) send_status();
+const ChannelInfo* Hub::find_channel(ClientId id, std::string_view topic) const {
+  const Client* const client = find(id);
+  for (const auto& [number, each] : channels_)
+    if (each.info.topic == topic && client && may_see(*client, id, each)) return &each.info;
+  return nullptr;
+}
+
+std::vector<const ChannelInfo*> Hub::channels(ClientId id) const {
+  std::vector<const ChannelInfo*> out;
+  const Client* const client = find(id);
+  for (const auto& [number, each] : channels_)
+    if (client && may_see(*client, id, each)) out.push_back(&each.info);
+  return out;
+}
+
+Status Hub::subscribe(ClientId id, std::uint32_t subscription, std::uint32_t channel_id) {
+  Client& client = clients_.at(id);
+  if (!find_channel(id, channel_id)) return Error{"there is no channel " + std::to_string(channel_id)};
+  Channel& to = channels_.at(channel_id);
+  if (client.subscriptions.count(subscription) > 0)
+    return Error{"subscription " + std::to_string(subscription) + " is there already"};
+  if (std::any_of(to.subscribers.begin(), to.subscribers.end(),
+                  [&](const Subscriber& each) { return each.client == id; }))
+    return Error{"channel " + std::to_string(channel_id) + " is subscribed to already"};
+  if (client.subscriptions.size() >= most_subscriptions)
+    return Error{"more than " + std::to_string(most_subscriptions) + " subscriptions"};
+  client.subscriptions[subscription] = channel_id;
+  Subscriber made{id, subscription, false};
+  switch (to.kind) {
+    case ChannelKind::device:
+    case ChannelKind::watch: initial_.latest.push_back(channel_id); break;
+    case ChannelKind::world: initial_.world = true; break;
+    case ChannelKind::transforms_static: initial_.transforms_static = true; break;
+    case ChannelKind::poses: initial_.frame = true; break;
+    case ChannelKind::status: break;
+    case ChannelKind::transforms:
+    case ChannelKind::clock:
+    case ChannelKind::contacts:
+      initial_.frame = true;
+      made.initial_state_sent = true;
+      break;
+    default: made.initial_state_sent = true;
   }
+  to.subscribers.push_back(made);
+  if (to.kind == ChannelKind::status) send_status();
   subscriptions_changed_ = true;
   graph_changed_ = true;
-  if (refused > 0)
-    refuse(id, refused == 1 ? why : why + ", and " + std::to_string(refused - 1) + " more were refused");
-  if (too_many > 0)
-    refuse(id, std::to_string(too_many) + " subscriptions beyond " + std::to_string(most_subscriptions) +
-                   " were refused");
+  return {};
 }
 
-void Hub::unsubscribe(ClientId id, Client& client, std::uint32_t subscription) {
+Status Hub::unsubscribe(ClientId id, std::uint32_t subscription) {
+  Client& client = clients_.at(id);
   const auto found = client.subscriptions.find(subscription);
   if (found == client.subscriptions.end())
-    return void(refuse(id, "there is no subscription " + std::to_string(subscription)));
+    return Error{"there is no subscription " + std::to_string(subscription)};
   const std::uint32_t channel_id = found->second;
   client.subscriptions.erase(found);
   leave_channel(id, channel_id, subscription);
@@ -267,10 +217,34 @@ void Hub::unsubscribe(ClientId id, Client& client, std::uint32_t subscription) {
   if (left != channels_.end() && left->second.owner != 0) {
     const std::uint32_t gone[] = {channel_id};
     remove_channel(channel_id);
-    transport_->send_text(id, foxglove::unadvertise(gone));
+    client.face->remove_channels(gone);
   }
   subscriptions_changed_ = true;
   graph_changed_ = true;
+  return {};
+}
+
+Status Hub::subscribe_parameters(ClientId id, const std::vector<std::string>& names, bool subscribe) {
+  Client& client = clients_.at(id);
+  if (client.access.is_scoped()) return Error{"parameters are for administrators and spectators"};
+  if (names.empty()) {
+    client.all_parameters = subscribe;
+    if (!subscribe) client.parameters.clear();
+  }
+  for (const std::string& name : names) {
+    if (!subscribe) client.parameters.erase(name);
+    else if (client.parameters.size() < most_subscriptions) client.parameters.insert(name);
+    else return Error{"more than 10000 parameters are subscribed to"};
+  }
+  subscriptions_changed_ = true;
+  return {};
+}
+
+void Hub::subscribe_graph(ClientId id, bool subscribe) {
+  Client& client = clients_.at(id);
+  if (client.access.is_scoped()) return refuse(id, "the graph is for administrators and spectators");
+  client.graph = subscribe;
+  if (subscribe) send_graph(true);
 }
 
 void Hub::leave_channel(ClientId id, std::uint32_t channel_id, std::uint32_t subscription) {
@@ -297,38 +271,23 @@ void Hub::remove_channel(std::uint32_t id) {
 /// Advertises in portions: ten thousand robots have many channels, and a queue has an end.
 void Hub::advertise_waiting(ClientId id, Client& client) {
   while (client.advertised_below < next_channel_ && transport_->waiting_bytes(id) < patient_bytes) {
-    std::vector<foxglove::Channel> batch;
+    std::vector<const ChannelInfo*> batch;
     auto next = channels_.lower_bound(client.advertised_below);
     for (; next != channels_.end() && batch.size() < portion; ++next)
-      if (next->second.owner == 0) batch.push_back(next->second.advertised);
+      if (next->second.owner == 0 && may_see(client, id, next->second)) batch.push_back(&next->second.info);
     client.advertised_below = next == channels_.end() ? next_channel_ : next->first;
-    if (!batch.empty()) transport_->send_text(id, foxglove::advertise(batch));
+    if (!batch.empty()) client.face->add_channels(batch);
   }
-}
-
-void Hub::fetch(ClientId id, const foxglove::FetchAsset& request) {
-  constexpr std::string_view scheme = "sandlot://";
-  std::vector<std::byte> out;
-  if (starts_with(request.uri, scheme)) {
-    const auto body = assets_.get(std::string_view(request.uri).substr(scheme.size()));
-    out = body ? foxglove::asset(request.request, *body->bytes)
-               : foxglove::asset_error(request.request, body.error().text());
-  } else {
-    out = foxglove::asset_error(request.request,
-                                "assets are called as the world names them: sandlot://mesh/a5");
-  }
-  if (out.size() > 4 && out[5] != std::byte{0}) ++counts_.refused;
-  transport_->send(id, {}, std::make_shared<const std::vector<std::byte>>(std::move(out)), false, false);
 }
 
 bool Hub::post(std::function<void(Session&)> task) { return session_.post(std::move(task)); }
 
 /// Brings changed subscriptions to the simulation's thread.
-void Hub::flush() {
+void Hub::flush(bool at_once) {
   const bool initial_wanted = initial_.frame || initial_.world || initial_.transforms_static ||
                               !initial_.latest.empty();
   const auto now = Clock::now();
-  if ((!subscriptions_changed_ && !initial_wanted) || now < flushed_ + flush_pause) return;
+  if ((!subscriptions_changed_ && !initial_wanted) || (now < flushed_ + flush_pause && !at_once)) return;
   // What the simulation's thread has to copy from now on.
   auto summary = std::make_shared<SubscriptionSummary>();
   summary->clients = !clients_.empty();
@@ -343,7 +302,7 @@ void Hub::flush() {
     if (client.all_parameters || !client.parameters.empty()) summary->parameters = true;
   for (const auto& [id, each] : channels_)
     if (each.kind == ChannelKind::device && !each.subscribers.empty())
-      summary->topics.emplace_back(id, each.advertised.topic);
+      summary->topics.emplace_back(id, each.info.topic);
   std::sort(initial_.latest.begin(), initial_.latest.end());
   const bool posted = post([feed = feed_, summary, initial = initial_](Session&) {
     feed->set_subscriptions(summary);
@@ -372,6 +331,7 @@ void Hub::timer() {
     looked_ = now;
   }
   for (auto& [id, client] : clients_) advertise_waiting(id, client);
+  watch_claims();
   // Watches whose subscriber has not come.
   std::vector<std::uint32_t> unused;
   for (auto& [id, each] : channels_) {
@@ -381,7 +341,7 @@ void Hub::timer() {
   }
   for (const std::uint32_t id : unused) {
     const std::uint32_t gone[] = {id};
-    transport_->send_text(channels_.at(id).owner, foxglove::unadvertise(gone));
+    if (const Client* const owner = find(channels_.at(id).owner)) owner->face->remove_channels(gone);
     remove_channel(id);
   }
   if (graph_changed_ && now >= graph_sent_ + 1s) send_graph(false);

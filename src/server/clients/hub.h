@@ -1,5 +1,6 @@
 #pragma once
-/// The clients of the Foxglove protocol: channels, subscriptions, services, parameters, publishing. docs/viewer_protocol.md.
+/// Hub: what all clients of a server share, whatever they speak: channels, subscriptions, services, parameters, publishing,
+/// rights, sessions of those who drive robots. A protocol is a face (server/clients/face.h).
 ///
 /// Threads   the transport's, for everything. The run is reached through Session's orders, submit() and post(); answers come
 ///           back by the Mailbox.
@@ -14,20 +15,22 @@
 #include <vector>
 
 #include "messages/tf2_msgs.h"
+#include "server/clients/face.h"
 #include "server/clients/feed.h"
 #include "server/server.h"
 #include "server/services/service.h"
 #include "wire/foxglove.h"
 #include "wire/scene.h"
 
+namespace sandlot::programs::remote {
+class Link;
+}
+
 namespace sandlot::server {
 
 inline constexpr std::size_t most_subscriptions = 10'000, most_publications = 1000, most_calls = 100,
                              most_watched = 200, most_watched_by_all = 2000;
 inline constexpr double most_requests_per_s = 500;
-
-/// A service as clients are told of it.
-foxglove::Service offered_service(std::uint32_t number, std::string name, const ServiceInfo& type);
 
 class Hub final : private ServiceHost {
  public:
@@ -37,7 +40,8 @@ class Hub final : private ServiceHost {
   void use(Transport& transport) { transport_ = &transport; }
 
   // --- called by the transport ---
-  void connected(ClientId id, bool may_steer);
+  using MakeFace = std::function<std::unique_ptr<Face>(Hub&, Transport&, ClientId)>;
+  void connected(ClientId id, Access access, const MakeFace& make_face);
   void message(ClientId id, std::span<const std::byte> bytes, bool text);
   void disconnected(ClientId id);
   void timer();
@@ -45,12 +49,83 @@ class Hub final : private ServiceHost {
   void drain();
   void state_changed();
 
+  // --- called by faces ---
+  const ServerOptions& options() const { return options_; }
+  const std::string& session_id() const { return session_id_; }
+  const wire::Assets& assets() const { return assets_; }
+  const Session::Report& report() const { return report_; }
+  const Access& access(ClientId id) const;
+  /// A refusal: told to the client, unless it has had many in this second, and counted.
+  void refuse(ClientId id, const std::string& why, std::string_view about = {});
+  /// The public channels that the client may see, in portions as its queue has room; it is told of others as they come.
+  const ChannelInfo* find_channel(ClientId id, std::uint32_t number) const;
+  const ChannelInfo* find_channel(ClientId id, std::string_view topic) const;
+  std::vector<const ChannelInfo*> channels(ClientId id) const;
+  /// @param subscription  the face's own number for it
+  Status subscribe(ClientId id, std::uint32_t subscription, std::uint32_t channel);
+  Status unsubscribe(ClientId id, std::uint32_t subscription);
+
+  /// What a client publishes on, once it has been judged.
+  struct Publication {
+    std::string topic, type;
+    std::shared_ptr<const Inventory> world;  ///< that `target` is of
+    Inventory::Target target;
+  };
+  enum class Encoding : std::uint8_t { cdr, json };
+  /// Whether the client may publish there; a world that is not known yet is judged with the first message.
+  Status judge(ClientId id, const Publication& publication) const;
+  void advertise(ClientId id, std::uint32_t number, Publication publication);
+  bool unadvertise(ClientId id, std::uint32_t number);
+  Publication* find_publication(ClientId id, std::uint32_t number);
+  void publish(ClientId id, Publication& publication, std::span<const std::byte> bytes, Encoding encoding);
+
+  std::vector<const ServiceOffer*> offered_services(ClientId id) const;
+  const ServiceOffer* find_service(ClientId id, std::uint32_t number) const;
+  const ServiceOffer* find_service(ClientId id, std::string_view name) const;
+  /// @param answer  called once on the transport's thread, if the client is still there
+  using Answer = std::function<void(Face&, const ServiceCall::Outcome&)>;
+  void call(ClientId id, const ServiceOffer& service, const AnyMessage& request, Answer answer);
+
+  void get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about);
+  void set_parameters(ClientId id, const std::vector<foxglove::Parameter>& parameters,
+                      const std::string& about);
+  /// @param names  empty: all
+  Status subscribe_parameters(ClientId id, const std::vector<std::string>& names, bool subscribe);
+  void subscribe_graph(ClientId id, bool subscribe);
+  foxglove::Graph graph() const;
+
+  // --- sessions of clients that drive robots; hub_sessions.cpp ---
+  struct ClaimRequest {
+    std::string robot, team;  ///< one of them
+    std::string token;
+    bool lockstep = false;
+    double deadline_s = 1;
+  };
+  /// Makes the client the one that drives a robot or a team; from now on it sees and does no more than that.
+  /// @param claimed  called on the transport's thread, with the remote programs that it answers for in lockstep
+  struct ClaimedProgram {
+    std::string path;
+    double control_period_s = 0;
+  };
+  using Claimed = std::function<void(Face&, const Result<std::vector<ClaimedProgram>>&)>;
+  void claim(ClientId id, const ClaimRequest& request, Claimed claimed);
+  void release(ClientId id);
+  /// Ends a step of a client in lockstep. @param orders, samples  JSON of programs/answer.h; "": none
+  Status done(ClientId id, std::uint64_t step, const std::string& program, const std::string& orders,
+              const std::string& samples);
+
   // --- called by tasks in the mailbox ---
+  struct ProgramLink {
+    ClaimedProgram program;
+    std::shared_ptr<programs::remote::Link> link;
+  };
+  void hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> links, const Claimed& claimed);
+  void tell_step(ClientId id, const StepNotice& step);
   void send_world(const WorldUpdate& update);
   /// The latest messages to those who have just subscribed; from now on they get what comes.
   void send_latest(std::span<const ChannelMessage> latest, std::span<const std::uint32_t> channels);
   void send_parameters(std::span<const foxglove::Parameter> changed);
-  void answer(ClientId client, const Payload& response, bool text);
+  void answer(ClientId client, const std::function<void(Face&)>& tell);
   void answer_parameters(ClientId client, const std::string& id, std::span<const foxglove::Parameter> values,
                          std::span<const std::string> errors);
   void report_refusal(ClientId client, const std::string& why);
@@ -62,6 +137,7 @@ class Hub final : private ServiceHost {
     std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
+  void count_refused() { ++counts_.refused; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -86,20 +162,15 @@ class Hub final : private ServiceHost {
   };
   struct Channel {
     ChannelKind kind = ChannelKind::device;
-    foxglove::Channel advertised;
+    ChannelInfo info;
     ClientId owner = 0;  ///< of a watch; 0: everybody may subscribe
     std::size_t numbers = 0;
     Clock::time_point unused_since;  ///< of a watch without its subscriber
     std::vector<Subscriber> subscribers;
   };
-  struct Publication {
-    std::string topic, type;
-    bool json = false;
-    std::shared_ptr<const Inventory> world;  ///< that `target` is of
-    Inventory::Target target;
-  };
   struct Client {
-    bool may_steer = false;
+    Access access;
+    std::unique_ptr<Face> face;
     std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< id: channel
     std::map<std::uint32_t, Publication> publications;
     std::set<std::string> parameters;
@@ -108,6 +179,19 @@ class Hub final : private ServiceHost {
     std::uint32_t advertised_below = 0;  ///< it knows the public ones below this number
     double budget = most_requests_per_s;
     Clock::time_point budgeted;
+    /// Of one that drives robots.
+    struct Claim {
+      std::uint64_t number = 0;  ///< of all claims
+      ClaimRequest request;
+      Access before;  ///< what it may do when the claim ends
+      std::vector<ProgramLink> links;
+      std::map<std::string, std::string>
+          orders;  ///< by program: what was published since its step, as JSON pairs
+      Clock::time_point commanded;
+      bool moving = false;  ///< it has commanded something since it was stopped
+    };
+    std::optional<Claim> claim;
+    int wrong_tokens = 0;
     std::uint64_t refusals_unsent = 0;  ///< errors of this second that were not sent
     int errors = 0;
     Clock::time_point refusals_since;
@@ -125,19 +209,16 @@ class Hub final : private ServiceHost {
   bool subscribed(ChannelKind kind) { return !channel(kind).subscribers.empty(); }
   Client* find(ClientId id);
   bool within_budget(ClientId id, Client& client);
-  bool refuse(ClientId id, const std::string& why, std::string_view about = {});
-  void handle(ClientId id, Client& client, const foxglove::ClientMessage& message);
-  void subscribe(ClientId id, Client& client, const foxglove::Subscribe& request);
-  void unsubscribe(ClientId id, Client& client, std::uint32_t subscription);
+  const Client* find(ClientId id) const;
+  bool may_see(const Client& client, ClientId id, const Channel& channel) const;
   void leave_channel(ClientId id, std::uint32_t channel_id, std::uint32_t subscription);
   void remove_channel(std::uint32_t id);
   void advertise_waiting(ClientId id, Client& client);
-  void fetch(ClientId id, const foxglove::FetchAsset& request);
-  void flush();
+  void flush(bool now = false);
   bool post(std::function<void(Session&)> task) override;
 
   // hub_send.cpp
-  bool send(Subscriber& to, Time stamp, const Payload& bytes, bool droppable);
+  bool send(const Subscriber& to, const Outgoing& message, bool droppable);
   void send_to_all(Channel& channel, Time stamp, const Payload& bytes, bool droppable = true);
   void send_time(Time now);
   void send_status();
@@ -146,13 +227,14 @@ class Hub final : private ServiceHost {
   void adopt(const Inventory& inventory);
 
   // hub_services.cpp
-  void call(ClientId id, Client& client, const foxglove::CallService& request);
-  /// Services of devices have the numbers behind those of the table.
+  /// A row of the table, or, with the numbers behind those, a service of a device.
   struct OfferedService {
-    std::string name, device;
+    ServiceOffer offer;
+    const Service* row = nullptr;
+    std::string device;
     const DeviceService* service = nullptr;
-    ServiceInfo type;
   };
+  bool may_call(const Client& client, const OfferedService& service) const;
   void adopt_services(const Inventory& inventory);
   void call_device(ClientId id, const OfferedService& offered, const AnyMessage& request,
                    const std::shared_ptr<ServiceCall>& call);
@@ -166,15 +248,19 @@ class Hub final : private ServiceHost {
                   const WatchDone& done);
   void end_waiting();
 
+  // hub_sessions.cpp
+  Result<Access> access_of_claim(ClientId id, const ClaimRequest& request);
+  Status make_room(ClientId id, const Access& access, const std::string& token);
+  void attach(ClientId id, const Claimed& claimed);
+  void end_claim(ClientId id, Client& client, const std::string& why);
+  void stop_robots(ClientId id, Client& client);
+  void watch_claims();
+  bool collect(Client& client, const Publication& publication, std::span<const std::byte> command);
+
   // hub_publish.cpp
-  void get_parameters(ClientId id, Client& client, const foxglove::GetParameters& request);
-  void set_parameters(ClientId id, Client& client, const foxglove::SetParameters& request);
   foxglove::Parameter own_parameter(const std::string& name) const;
   void send_own_parameters();
-  void advertise(ClientId id, Client& client, const foxglove::Advertise& request);
-  void publish(ClientId id, Client& client, const foxglove::ClientData& data);
   void send_graph(bool to_everybody);
-  foxglove::Graph graph() const;
 
   Session& session_;
   Console& console_;
@@ -189,9 +275,10 @@ class Hub final : private ServiceHost {
   std::array<std::uint32_t, static_cast<std::size_t>(ChannelKind::count_)> fixed_{};
   std::map<std::pair<std::string, std::string>, std::uint32_t> devices_;  ///< channels by topic and type
   std::uint32_t next_channel_ = 1;
-  std::map<std::uint32_t, OfferedService> device_services_;
+  std::map<std::uint32_t, OfferedService> services_;
   std::uint32_t next_service_ = 1;
   std::map<ClientId, Client> clients_;
+  std::uint64_t claims_ = 0;
   std::size_t watched_ = 0;
 
   Session::Report report_;

@@ -54,7 +54,7 @@ void Hub::send_parameters(std::span<const Parameter> changed) {
     std::vector<Parameter> chosen;
     for (const Parameter& each : changed)
       if (client.all_parameters || client.parameters.count(each.name) > 0) chosen.push_back(each);
-    if (!chosen.empty()) transport_->send_text(id, foxglove::parameter_values(chosen));
+    if (!chosen.empty()) client.face->tell_parameters(chosen, {});
   }
 }
 
@@ -65,26 +65,27 @@ void Hub::answer_parameters(ClientId id, const std::string& about, std::span<con
   if (client->calls > 0) --client->calls;
   for (const std::string& each : errors)
     if (!each.empty()) refuse(id, each, about);
-  transport_->send_text(id, foxglove::parameter_values(values, about));
+  client->face->tell_parameters(values, about);
 }
 
-void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParameters& request) {
-  if (client.calls >= most_calls)
-    return void(refuse(id, "too many requests wait for their answers", request.id));
+void Hub::get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about) {
+  Client& client = clients_.at(id);
+  if (client.access.is_scoped()) return refuse(id, "parameters are for administrators and spectators", about);
+  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about);
   // Each is looked up on the simulation's thread.
-  if (request.names.size() > most_named_parameters)
-    return void(
-        refuse(id, "more than " + std::to_string(most_named_parameters) + " parameters are requested by name",
-               request.id));
+  if (names.size() > most_named_parameters)
+    return refuse(id,
+                  "more than " + std::to_string(most_named_parameters) + " parameters are requested by name",
+                  about);
   ++client.calls;
   const auto answer = std::make_shared<ParameterAnswer>();
   answer->mailbox = mailbox_;
   answer->client = id;
-  answer->id = request.id;
-  if (request.names.empty()) answer->values = {own_parameter(speed_name), own_parameter(paused_name)};
-  for (const std::string& name : request.names)
+  answer->id = about;
+  if (names.empty()) answer->values = {own_parameter(speed_name), own_parameter(paused_name)};
+  for (const std::string& name : names)
     if (is_own(name)) answer->values.push_back(own_parameter(name));
-  post([answer, names = request.names](Session& session) {
+  post([answer, names](Session& session) {
     const Simulation& simulation = session.simulation();
     if (names.empty() && !list_parameters(simulation, answer->values))
       answer->errors.push_back("there are more than " + std::to_string(most_parameters) +
@@ -95,19 +96,20 @@ void Hub::get_parameters(ClientId id, Client& client, const foxglove::GetParamet
   });
 }
 
-void Hub::set_parameters(ClientId id, Client& client, const foxglove::SetParameters& request) {
-  if (!client.may_steer) return void(refuse(id, "a spectator may not set parameters", request.id));
-  if (client.calls >= most_calls)
-    return void(refuse(id, "too many requests wait for their answers", request.id));
+void Hub::set_parameters(ClientId id, const std::vector<Parameter>& parameters, const std::string& about) {
+  Client& client = clients_.at(id);
+  if (!client.access.is_admin())
+    return refuse(id, std::string("a ") + name_of(client.access.role) + " may not set parameters", about);
+  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about);
   ++client.calls;
   const auto answer = std::make_shared<ParameterAnswer>();
   answer->mailbox = mailbox_;
   answer->client = id;
-  answer->id = request.id;
-  answer->values.resize(request.parameters.size());
-  answer->errors.resize(request.parameters.size());
-  for (std::size_t i = 0; i < request.parameters.size(); ++i) {
-    const Parameter& parameter = request.parameters[i];
+  answer->id = about;
+  answer->values.resize(parameters.size());
+  answer->errors.resize(parameters.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
     answer->values[i].name = parameter.name;
     std::string& error = answer->errors[i];
     if (is_own(parameter.name)) {
@@ -142,55 +144,56 @@ void Hub::set_parameters(ClientId id, Client& client, const foxglove::SetParamet
   }
 }
 
-void Hub::advertise(ClientId id, Client& client, const foxglove::Advertise& request) {
-  if (!client.may_steer) return void(refuse(id, "a spectator may not publish"));
-  for (const foxglove::Advertise::Each& each : request.channels) {
-    if (client.publications.count(each.id) > 0) {
-      refuse(id, "channel " + std::to_string(each.id) + " is advertised already");
-      continue;
-    }
-    if (client.publications.size() >= most_publications) {
-      refuse(id, "more than " + std::to_string(most_publications) + " channels are advertised");
-      return;
-    }
-    if (each.encoding != "cdr" && each.encoding != "json") {
-      refuse(id, "'" + each.encoding.substr(0, 60) + "' is not an encoding of messages; cdr and json are");
-      continue;
-    }
-    Publication made;
-    made.topic = each.topic;
-    made.type = each.schema_name;
-    made.json = each.encoding == "json";
-    if (const auto target = inventory_->target(made.topic, made.type);
-        !target && !inventory_->topics.empty()) {
-      refuse(id, target.error().text());
-      continue;
-    }
-    client.publications.emplace(each.id, std::move(made));
-    graph_changed_ = true;
-  }
+Status Hub::judge(ClientId id, const Publication& publication) const {
+  const Access& who = access(id);
+  if (who.role == Role::spectator) return Error{"a spectator may not publish"};
+  if (inventory_->topics.empty() && !who.is_scoped()) return {};
+  const auto target = inventory_->target(publication.topic, publication.type);
+  if (!target) return target.error();
+  if (!who.may_command(target->address))
+    return Error{std::string("a ") + name_of(who.role) + " may not command '" + target->address + "'"};
+  return {};
 }
 
-void Hub::publish(ClientId id, Client& client, const foxglove::ClientData& data) {
-  if (!client.may_steer) return void(refuse(id, "a spectator may not publish"));
-  const auto found = client.publications.find(data.channel);
-  if (found == client.publications.end())
-    return void(refuse(id, "channel " + std::to_string(data.channel) + " was not advertised"));
-  Publication& publication = found->second;
+void Hub::advertise(ClientId id, std::uint32_t number, Publication publication) {
+  clients_.at(id).publications[number] = std::move(publication);
+  graph_changed_ = true;
+}
+
+bool Hub::unadvertise(ClientId id, std::uint32_t number) {
+  graph_changed_ = true;
+  return clients_.at(id).publications.erase(number) > 0;
+}
+
+Hub::Publication* Hub::find_publication(ClientId id, std::uint32_t number) {
+  auto& all = clients_.at(id).publications;
+  const auto found = all.find(number);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+void Hub::publish(ClientId id, Publication& publication, std::span<const std::byte> bytes,
+                  Encoding encoding) {
   if (publication.world != inventory_) {  // levels may have changed, and with them who takes it
+    if (Status allowed = judge(id, publication); !allowed) return refuse(id, allowed.error().text());
     const auto target = inventory_->target(publication.topic, publication.type);
-    if (!target) return void(refuse(id, target.error().text()));
+    if (!target) return refuse(id, target.error().text());
     publication.world = inventory_;
     publication.target = *target;
   }
   const Inventory::Slot& slot = *publication.target.slot;
-  auto bytes = publication.json
-                   ? command_from_json(*slot.blank,
-                                       {reinterpret_cast<const char*>(data.bytes.data()), data.bytes.size()})
-                   : command_from_cdr(*slot.blank, data.bytes);
-  if (!bytes) return void(refuse(id, publication.topic + ": " + bytes.error().text()));
+  auto command = encoding == Encoding::json
+                     ? command_from_json(*slot.blank,
+                                         {reinterpret_cast<const char*>(bytes.data()), bytes.size()})
+                     : command_from_cdr(*slot.blank, bytes);
+  if (!command) return refuse(id, publication.topic + ": " + command.error().text());
+  Client& client = clients_.at(id);
+  if (client.claim) {
+    client.claim->commanded = Clock::now();
+    client.claim->moving = true;
+    if (client.claim->request.lockstep && collect(client, publication, *command)) return;
+  }
   const auto queued = session_.submit(
-      CommandRequest{publication.target.address, slot.info->name, std::move(*bytes)},
+      CommandRequest{publication.target.address, slot.info->name, std::move(*command)},
       {Source::Kind::robot, id}, [mailbox = mailbox_, id](const Status& status) {
         if (!status)
           mailbox->push([id, why = status.error().text()](Hub& hub) { hub.report_refusal(id, why); });
@@ -204,7 +207,7 @@ foxglove::Graph Hub::graph() const {
   for (const Inventory::Topic& topic : inventory_->topics) published[topic.name].push_back(topic.device);
   for (const auto& [id, each] : channels_)
     if (each.kind != ChannelKind::device && each.owner == 0)
-      published[each.advertised.topic].emplace_back("sandlot");
+      published[each.info.topic].emplace_back("sandlot");
   for (const Inventory::Slot& slot : inventory_->slots) subscribed[slot.name].push_back(slot.device);
   for (const Inventory::Program& program : inventory_->programs) {
     for (const std::string& topic : program.reads) subscribed[topic].push_back(program.path);
@@ -213,7 +216,7 @@ foxglove::Graph Hub::graph() const {
   for (const auto& [id, each] : channels_)
     if (each.owner == 0)
       for (const Subscriber& subscriber : each.subscribers)
-        subscribed[each.advertised.topic].push_back("viewer " + std::to_string(subscriber.client));
+        subscribed[each.info.topic].push_back("viewer " + std::to_string(subscriber.client));
   for (const auto& [id, client] : clients_)
     for (const auto& [channel, publication] : client.publications) {
       const auto target = inventory_->target(publication.topic, publication.type);
@@ -222,9 +225,8 @@ foxglove::Graph Hub::graph() const {
   foxglove::Graph out;
   for (auto& [name, ids] : published) out.published.push_back(Named{name, std::move(ids)});
   for (auto& [name, ids] : subscribed) out.subscribed.push_back(Named{name, std::move(ids)});
-  for (const Service& service : services()) out.services.push_back(Named{service.name, {"sandlot"}});
-  for (const auto& [number, service] : device_services_)
-    out.services.push_back(Named{service.name, {service.device}});
+  for (const auto& [number, service] : services_)
+    out.services.push_back(Named{service.offer.name, {service.row ? "sandlot" : service.device}});
   return out;
 }
 
@@ -254,8 +256,7 @@ void Hub::send_graph(bool to_everybody) {
                        !same(graph_.services, now.services);
   graph_ = std::move(now);
   if (!changed && !to_everybody) return;
-  const std::string text = foxglove::graph_update(graph_, removed);
-  for (const ClientId id : lookers) transport_->send_text(id, text);
+  for (const ClientId id : lookers) clients_.at(id).face->tell_graph(graph_, removed);
 }
 
 }  // namespace sandlot::server

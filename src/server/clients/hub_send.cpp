@@ -19,31 +19,39 @@ Payload cdr_of(const M& message) {
 
 }  // namespace
 
-bool Hub::send(Subscriber& to, Time stamp, const Payload& bytes, bool droppable) {
-  const auto head = foxglove::message_header(to.id, stamp);
-  return transport_->send(to.client, head, bytes, false, droppable);
+bool Hub::send(const Subscriber& to, const Outgoing& message, bool droppable) {
+  const Client* const client = find(to.client);
+  return client && client->face->deliver(to.id, message, droppable);
 }
 
 void Hub::send_to_all(Channel& channel, Time stamp, const Payload& bytes, bool droppable) {
-  for (Subscriber& each : channel.subscribers)
-    if (each.initial_state_sent) send(each, stamp, bytes, droppable);
+  const Outgoing message(channel.info, stamp, bytes);
+  for (const Subscriber& each : channel.subscribers)
+    if (each.initial_state_sent) send(each, message, droppable);
 }
 
 void Hub::send_time(Time now) {
   time_sent_ = Clock::now();
-  const auto bytes = std::make_shared<const std::vector<std::byte>>(foxglove::time(now));
+  Payload shared;
   for (const auto& [id, client] : clients_)
-    if (!client.subscriptions.empty()) transport_->send(id, {}, bytes, false, true);
+    if (!client.subscriptions.empty()) client.face->tell_time(now, shared);
 }
 
 void Hub::send_world(const WorldUpdate& update) {
-  if (update.inventory) adopt(*update.inventory);
-  if (update.inventory) inventory_ = update.inventory;
+  if (update.inventory) {
+    const bool other_world = inventory_->epoch != update.inventory->epoch;
+    adopt(*update.inventory);
+    inventory_ = update.inventory;
+    // Its programs are others: they are answered for by the same clients.
+    if (other_world)
+      for (const auto& [id, client] : clients_)
+        if (client.claim && client.claim->request.lockstep) attach(id, nullptr);
+  }
   const auto latch = [&](ChannelKind kind, const Payload& payload, Payload& last) {
     if (!payload) return;
+    const Outgoing message(channel(kind).info, update.now, payload);
     for (Subscriber& each : channel(kind).subscribers)
-      if (!each.initial_state_sent || payload != last)
-        each.initial_state_sent = send(each, update.now, payload, false);
+      if (!each.initial_state_sent || payload != last) each.initial_state_sent = send(each, message, false);
     last = payload;
   };
   latch(ChannelKind::world, update.world, world_);
@@ -71,7 +79,7 @@ void Hub::adopt(const Inventory& inventory) {
       std::vector<std::uint32_t> known;
       for (const std::uint32_t each : gone)
         if (each < client.advertised_below) known.push_back(each);
-      if (!known.empty()) transport_->send_text(id, foxglove::unadvertise(known));
+      if (!known.empty()) client.face->remove_channels(known);
     }
   }
   devices_ = std::move(now);
@@ -85,8 +93,9 @@ void Hub::send_latest(std::span<const ChannelMessage> latest, std::span<const st
   for (const ChannelMessage& message : latest) {
     const auto found = channels_.find(message.channel);
     if (found == channels_.end()) continue;
-    for (Subscriber& each : found->second.subscribers)
-      if (!each.initial_state_sent) send(each, message.stamp, message.bytes, true);
+    const Outgoing outgoing(found->second.info, message.stamp, message.bytes);
+    for (const Subscriber& each : found->second.subscribers)
+      if (!each.initial_state_sent) send(each, outgoing, true);
   }
   for (const std::uint32_t id : channels) {
     const auto found = channels_.find(id);
@@ -134,9 +143,11 @@ void Hub::send_poses(const Batch& batch) {
   const auto has_initial_state = [](const Subscriber& each) { return each.initial_state_sent; };
   if (std::any_of(subscribers.begin(), subscribers.end(), has_initial_state)) {
     auto bytes = std::make_shared<std::vector<std::byte>>();
-    if (poses_.write(*batch.frame, batch.epoch, false, *bytes))
+    if (poses_.write(*batch.frame, batch.epoch, false, *bytes)) {
+      const Outgoing message(channel(ChannelKind::poses).info, batch.now, bytes);
       for (Subscriber& each : subscribers)
-        if (each.initial_state_sent) each.initial_state_sent = send(each, batch.now, bytes, true);
+        if (each.initial_state_sent) each.initial_state_sent = send(each, message, true);
+    }
   }
   if (std::all_of(subscribers.begin(), subscribers.end(), has_initial_state)) return;
   // Who has missed something needs all; but not before there is room for it.
@@ -145,7 +156,7 @@ void Hub::send_poses(const Batch& batch) {
   for (Subscriber& each : subscribers) {
     if (each.initial_state_sent || transport_->waiting_bytes(each.client) > room_bytes) continue;
     if (bytes->empty()) poses_.write(*batch.frame, batch.epoch, true, *bytes);
-    each.initial_state_sent = send(each, batch.now, bytes, true);
+    each.initial_state_sent = send(each, {channel(ChannelKind::poses).info, batch.now, bytes}, true);
   }
 }
 
@@ -215,10 +226,11 @@ void Hub::send_status() {
     });
     return payload_of(out);
   };
-  const Payload admins = write(true), spectators = write(false);
+  const ChannelInfo& info = channel(ChannelKind::status).info;
+  const Outgoing admins(info, report_.now, write(true)), others(info, report_.now, write(false));
   for (Subscriber& each : subscribers) {
     const Client* const client = find(each.client);
-    const bool sent = send(each, report_.now, client && client->may_steer ? admins : spectators, true);
+    const bool sent = send(each, client && client->access.is_admin() ? admins : others, true);
     each.initial_state_sent = each.initial_state_sent || sent;
   }
 }
@@ -233,11 +245,11 @@ void Hub::send_log(std::uint8_t level, const std::string& text) {
   send_to_all(channel(ChannelKind::log), report_.now, cdr_of(log), true);
 }
 
-void Hub::answer(ClientId id, const Payload& response, bool text) {
+void Hub::answer(ClientId id, const std::function<void(Face&)>& tell) {
   Client* const client = find(id);
   if (!client) return;
   if (client->calls > 0) --client->calls;
-  transport_->send(id, {}, response, text, false);
+  tell(*client->face);
 }
 
 void Hub::report_refusal(ClientId client, const std::string& why) { refuse(client, why); }

@@ -1,74 +1,60 @@
-/// Services over the Foxglove protocol: calls, their answers, and what the services need of the server.
+/// Services: calls, their answers, and what the services need of the server.
 #include "base/text.h"
-#include "messages/cdr.h"
-#include "messages/json.h"
 #include "server/clients/hub.h"
 
 namespace sandlot::server {
-namespace {
 
-/// The bytes that carry a service's outcome, and whether they are a text message.
-std::pair<Payload, bool> encode(const ServiceCall::Outcome& outcome, const MessageInfo& type,
-                                std::uint32_t service, std::uint32_t call, const std::string& encoding) {
-  if (!outcome) return {payload_of(foxglove::service_failure(service, call, outcome.error().text())), true};
-  std::string json;
-  std::span<const std::byte> body = *outcome;
-  if (encoding == "json") {
-    const Status written = cdr_to_json(type, *outcome, json);
-    SL_CHECK_MSG(written, "what was written just now can be read");
-    body = std::as_bytes(std::span(json));
-  }
-  return {std::make_shared<const std::vector<std::byte>>(
-              foxglove::service_response(service, call, encoding, body)),
-          false};
+/// Those of devices are for who drives the robot; administrators' are not for others.
+bool Hub::may_call(const Client& client, const OfferedService& service) const {
+  if (!service.row) return client.access.may_command(service.device);
+  return client.access.is_admin() || (service.row->right == Right::watch && !client.access.is_scoped());
 }
 
-}  // namespace
-
-foxglove::Service offered_service(std::uint32_t number, std::string name, const ServiceInfo& type) {
-  const auto side = [](const MessageInfo& message) {
-    return foxglove::Service::Side{"cdr", message.name, "ros2msg", message.schema};
-  };
-  return {number, std::move(name), type.name, side(*type.request), side(*type.response)};
+std::vector<const ServiceOffer*> Hub::offered_services(ClientId id) const {
+  std::vector<const ServiceOffer*> out;
+  const Client* const client = find(id);
+  // Spectators are told of what they may not call, too: their viewers show it.
+  for (const auto& [number, each] : services_)
+    if (client && (!client->access.is_scoped() || may_call(*client, each))) out.push_back(&each.offer);
+  return out;
 }
 
-void Hub::call(ClientId id, Client& client, const foxglove::CallService& request) {
+const ServiceOffer* Hub::find_service(ClientId id, std::uint32_t number) const {
+  const Client* const client = find(id);
+  const auto found = services_.find(number);
+  if (!client || found == services_.end()) return nullptr;
+  return !client->access.is_scoped() || may_call(*client, found->second) ? &found->second.offer : nullptr;
+}
+
+const ServiceOffer* Hub::find_service(ClientId id, std::string_view name) const {
+  for (const auto& [number, each] : services_)
+    if (each.offer.name == name) return find_service(id, number);
+  return nullptr;
+}
+
+void Hub::call(ClientId id, const ServiceOffer& service, const AnyMessage& request, Answer answer) {
+  Client& client = clients_.at(id);
+  const OfferedService& offered = services_.at(service.number);
   const auto fail = [&](const std::string& why) {
     ++counts_.refused;
-    transport_->send_text(id, foxglove::service_failure(request.service, request.call, why));
+    answer(*client.face, Error{why});
   };
-  const Service* const row = request.service > 0 && request.service <= services().size()
-                                 ? &services()[request.service - 1]
-                                 : nullptr;
-  const auto of_device = device_services_.find(request.service);
-  if (!row && of_device == device_services_.end())
-    return fail("there is no service " + std::to_string(request.service));
-  const std::string name = row ? row->name : of_device->second.name;
-  const ServiceInfo& type = row ? *row->type : of_device->second.type;
-  if ((!row || row->right == Right::steer) && !client.may_steer) {
-    fail("a spectator may not call " + name);
-    refuse(id, "a spectator may not call " + name);
-    return;
+  if (!may_call(client, offered)) {
+    const std::string why = std::string("a ") + name_of(client.access.role) + " may not call " + service.name;
+    fail(why);
+    return refuse(id, why);
   }
   if (client.calls >= most_calls)
     return fail("more than " + std::to_string(most_calls) + " calls wait for their answers");
-  const bool json = request.encoding == "json";
-  if (!json && request.encoding != "cdr")
-    return fail("'" + request.encoding.substr(0, 60) + "' is not an encoding of requests; cdr and json are");
-  const MessageInfo& info = *type.request;
-  const auto message = json ? message_from_json(info, {reinterpret_cast<const char*>(request.bytes.data()),
-                                                       request.bytes.size()})
-                            : message_from_cdr(info, request.bytes);
-  if (!message) return fail(name + ": " + message.error().text());
   ++client.calls;
-  const auto send = [mailbox = mailbox_, id, type = type.response, service_id = request.service,
-                     call = request.call, encoding = request.encoding](const ServiceCall::Outcome& outcome) {
-    auto [bytes, text] = encode(outcome, *type, service_id, call, encoding);
-    mailbox->push([id, bytes = std::move(bytes), text = text](Hub& hub) { hub.answer(id, bytes, text); });
-  };
-  const auto waiting = std::make_shared<ServiceCall>(send);
-  if (row) row->call({*this, id, client.may_steer}, *message, waiting);
-  else call_device(id, of_device->second, *message, waiting);
+  const auto waiting = std::make_shared<ServiceCall>(
+      [mailbox = mailbox_, id, answer = std::move(answer)](ServiceCall::Outcome outcome) {
+        mailbox->push([id, answer, outcome = std::move(outcome)](Hub& hub) {
+          hub.answer(id, [&](Face& face) { answer(face, outcome); });
+        });
+      });
+  if (offered.row) offered.row->call({*this, id, client.access.is_admin()}, request, waiting);
+  else call_device(id, offered, request, waiting);
 }
 
 /// A call of a device's service is a request to the run, which answers when a tick has carried it out.
@@ -85,29 +71,31 @@ void Hub::call_device(ClientId id, const OfferedService& offered, const AnyMessa
 
 /// Follows the devices of the world: the services of those that came and went.
 void Hub::adopt_services(const Inventory& inventory) {
-  if (next_service_ == 1) next_service_ = static_cast<std::uint32_t>(services().size()) + 1;
   std::map<std::string, std::uint32_t> known;
-  for (const auto& [number, each] : device_services_) known.emplace(each.name, number);
-  std::vector<std::uint32_t> gone;
-  std::vector<foxglove::Service> fresh;
+  for (const auto& [number, each] : services_)
+    if (!each.row) known.emplace(each.offer.name, number);
+  std::vector<std::uint32_t> gone, fresh;
   for (const Inventory::Service& each : inventory.services) {
     if (const auto found = known.find(each.name);
-        found != known.end() && device_services_.at(found->second).service == each.service) {
+        found != known.end() && services_.at(found->second).service == each.service) {
       known.erase(found);
       continue;
     }
     const std::uint32_t number = next_service_++;
     const ServiceInfo type{each.service->type, &each.service->request(), &each.service->response()};
-    device_services_[number] = {each.name, each.device, each.service, type};
-    fresh.push_back(offered_service(number, each.name, type));
+    services_[number] = {{number, each.name, type}, nullptr, each.device, each.service};
+    fresh.push_back(number);
   }
   for (const auto& [name, number] : known) {
-    device_services_.erase(number);
+    services_.erase(number);
     gone.push_back(number);
   }
   for (const auto& [id, client] : clients_) {
-    if (!gone.empty()) transport_->send_text(id, foxglove::unadvertise_services(gone));
-    if (!fresh.empty()) transport_->send_text(id, foxglove::advertise_services(fresh));
+    if (!gone.empty()) client.face->remove_services(gone);
+    std::vector<const ServiceOffer*> offers;
+    for (const std::uint32_t number : fresh)
+      if (const ServiceOffer* const offer = find_service(id, number)) offers.push_back(offer);
+    if (!offers.empty()) client.face->add_services(offers);
   }
 }
 
@@ -147,10 +135,10 @@ void Hub::open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, 
   made.numbers = values;
   made.unused_since = Clock::now();
   const MessageInfo& info = *find_message("sandlot_msgs/msg/Samples").value();
-  made.advertised = {
-      channel_id, "/sandlot/watch/" + std::to_string(channel_id), "cdr", info.name, info.schema, "ros2msg"};
-  transport_->send_text(id, foxglove::advertise(std::span(&made.advertised, 1)));
-  done(made.advertised.topic);
+  made.info = {channel_id, "/sandlot/watch/" + std::to_string(channel_id), "cdr", info.name, &info};
+  const ChannelInfo* const advertised[] = {&made.info};
+  client->face->add_channels(advertised);
+  done(made.info.topic);
 }
 
 void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> reached,

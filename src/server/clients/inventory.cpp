@@ -48,7 +48,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
           out->topics.push_back({output.topic->name(), &output.topic->info(), program->path});
   };
   for (const auto& entity : simulation.entities()) {
-    if (entity->instance.is_robot) out->robots.push_back(entity->instance.name);
+    if (entity->instance.is_robot) out->robots.push_back({entity->instance.name, entity->instance.team});
     for (const auto& device : entity->devices) {
       for (const Simulation::Slot& slot : device->topics)
         out->topics.push_back({slot.topic->name(), &slot.topic->info(), device->path});

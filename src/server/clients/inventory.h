@@ -41,7 +41,10 @@ struct Inventory {
   std::vector<Slot> slots;
   std::vector<Service> services;
   std::vector<Program> programs;
-  std::vector<std::string> robots;
+  struct Robot {
+    std::string name, team;
+  };
+  std::vector<Robot> robots;
 
   /// Where a message that a client calls so goes: "/rover/drive/ideal/command", "/rover/drive" (its active level),
   /// "/rover/cmd_vel" (the active drive that takes a Twist or TwistStamped). Errors name the nearest.

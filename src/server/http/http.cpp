@@ -242,7 +242,14 @@ std::string_view choose_subprotocol(std::string_view offered, std::span<const st
   return {};
 }
 
-Admission admit(std::string_view query, std::string_view authorization, std::string_view token,
+const Token* find_token(std::string_view secret, std::span<const Token> tokens) {
+  const Token* found = nullptr;
+  for (const Token& each : tokens)
+    if (same_secret(secret, each.secret) && !each.secret.empty()) found = &each;
+  return found;
+}
+
+Admission admit(std::string_view query, std::string_view authorization, std::span<const Token> tokens,
                 bool on_loopback) {
   const auto role = query_value(query, "role");
   if (!role) return {.status = 400, .why = role.error().what};
@@ -255,10 +262,14 @@ Admission admit(std::string_view query, std::string_view authorization, std::str
   constexpr std::string_view scheme = "bearer ";
   if (secret.empty() && same_without_case(authorization.substr(0, scheme.size()), scheme))
     secret = trimmed(authorization.substr(scheme.size()));
-  if (!token.empty() && !secret.empty() && !same_secret(secret, token))
+  if (tokens.empty())
+    return {.access = {.role = on_loopback && role_wanted == "admin" ? Role::admin : Role::spectator}};
+  const Token* const token = secret.empty() ? nullptr : find_token(secret, tokens);
+  if (!secret.empty() && !token)
     return {.status = 401, .why = "this is not the token; without one you may look, but not steer"};
-  const bool known = token.empty() ? on_loopback : !secret.empty();
-  return {.may_steer = known && role_wanted == "admin"};
+  Admission out;
+  if (token && role_wanted == "admin") out.access = token->access;
+  return out;
 }
 
 bool etag_matches(std::string_view if_none_match, std::string_view etag) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "server/http/access.h"
 
 namespace sandlot::server {
 
@@ -58,14 +59,16 @@ std::string_view choose_subprotocol(std::string_view offered, std::span<const st
 
 /// Who somebody is that asks for a WebSocket.
 struct Admission {
-  bool may_steer = false;
+  Access access;
   int status = 0;   ///< not 0: refused with this HTTP status
   std::string why;  ///< and with this sentence
 };
 /// @param authorization  the header's value, or empty
-/// @param token          what must be known; empty: nothing
-Admission admit(std::string_view query, std::string_view authorization, std::string_view token,
+/// @param tokens         who brings one has its access. None: on loopback everybody is an administrator, elsewhere nobody
+Admission admit(std::string_view query, std::string_view authorization, std::span<const Token> tokens,
                 bool on_loopback);
+/// Null: it is none of them. Takes as long whichever it is.
+const Token* find_token(std::string_view secret, std::span<const Token> tokens);
 
 /// Whether a value of If-None-Match names the etag (given without quotes).
 bool etag_matches(std::string_view if_none_match, std::string_view etag);

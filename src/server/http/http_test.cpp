@@ -113,9 +113,11 @@ TEST(Http, TheServersPreferenceChoosesTheSubprotocol) {
 TEST(Http, AdmitsByToken) {
   const auto who = [](std::string_view query, std::string_view authorization, std::string_view token,
                       bool loopback) -> std::string {
-    const auto a = admit(query, authorization, token, loopback);
+    std::vector<Token> tokens;
+    if (!token.empty()) tokens.push_back({std::string(token), {.role = Role::admin}});
+    const auto a = admit(query, authorization, tokens, loopback);
     EXPECT_EQ(a.status == 0, a.why.empty());
-    return a.status != 0 ? std::to_string(a.status) : a.may_steer ? "admin" : "spectator";
+    return a.status != 0 ? std::to_string(a.status) : name_of(a.access.role);
   };
   // no token is set
   EXPECT_EQ(who("", "", "", true), "admin");

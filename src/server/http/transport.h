@@ -9,6 +9,8 @@
 /// Refused   (counted, answered with a reason and an HTTP status) what is no HTTP, heads over 16 KiB, bodies, methods but GET and HEAD,
 ///           requests with another site's Origin or, on loopback, a Host that is not loopback's (DNS rebinding); WebSockets with no known
 ///           sub-protocol, a wrong token, beyond `most_clients`; requests that take longer than `handshake_s`.
+/// TCP       a connection whose first byte is `{` carries JSON objects both ways, with a line break behind each of ours. It gets text
+///           messages alone; its good-bye is a last object.
 /// Closed    (counted as refused, with a code and a reason) clients whose messages are over the limits of wire/foxglove.h (spectators: 1 MiB,
 ///           whatever the kind) or more than 2000 a second for long, or that are no WebSocket frames.
 /// Gone      a client that is silent for `silence_s` although it was sent pings; an HTTP connection that asks nothing for `idle_s`.
@@ -22,6 +24,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "server/http/access.h"
 
 namespace sandlot::server {
 
@@ -35,11 +38,14 @@ inline Payload payload_of(std::string_view text) {
 
 struct TransportOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8765;  ///< 0: any that is free
-  bool next_free = false;     ///< when it is taken, try the 20 after it
-  std::string token;          ///< who brings it may steer; "": on loopback everybody may, elsewhere nobody
+  std::uint16_t port = 8765;         ///< 0: any that is free
+  bool next_free = false;            ///< when it is taken, try the 20 after it
+  std::vector<Token> tokens;         ///< none: on loopback everybody may steer, elsewhere nobody
   std::vector<std::string> origins;  ///< other sites whose pages may connect: "https://app.example.org"
   std::vector<std::string> subprotocols;
+  bool none_offered = false;  ///< whether a WebSocket may come without a sub-protocol
+  bool raw_json =
+      false;  ///< whether a connection may begin with `{`: JSON objects over TCP, one behind the other
   std::size_t most_clients = 64;
   std::size_t queue_bytes = 32u << 20;
   std::size_t most_sockets = 256;  ///< with those that speak HTTP
@@ -62,7 +68,8 @@ struct HttpAnswer {
 struct Handler {
   /// `target` is decoded, begins with "/" and has neither query nor "..".
   std::function<HttpAnswer(std::string_view target)> get;
-  std::function<void(ClientId, bool may_steer, std::string_view subprotocol)> connected;
+  /// @param subprotocol  "": the client offered none; "tcp": it sends JSON objects without a WebSocket
+  std::function<void(ClientId, const Access&, std::string_view subprotocol)> connected;
   std::function<void(ClientId, std::span<const std::byte> bytes, bool text)> message;
   std::function<void(ClientId)> disconnected;
   /// About 30 times a second, for what is due by the wall clock.

@@ -262,7 +262,7 @@ TEST(Transport, SpeaksIpv6) {
 }
 
 TEST(Transport, WebSocketsAreRefusedWithAReason) {
-  const auto t = start({.token = "secret", .most_clients = 2});
+  const auto t = start({.tokens = {{"secret", {.role = Role::admin}}}, .most_clients = 2});
   const auto port = ":" + std::to_string(t->port());
   const std::tuple<int, std::string, std::string_view> cases[] = {
       {400, handshake("/", ""), "one, two"},
@@ -315,11 +315,12 @@ TEST(Transport, WebSocketsAreRefusedWithAReason) {
 TEST(Transport, RolesAndSubprotocolsAreTold) {
   std::mutex mutex;
   std::string log;
-  const Handler handler{.connected = [&](ClientId, bool may_steer, std::string_view name) {
+  const Handler handler{.connected = [&](ClientId, const Access& access, std::string_view name) {
     const std::lock_guard lock(mutex);
-    log += std::string(may_steer ? "admin " : "spectator ") + std::string(name) + "; ";
+    log += std::string(name_of(access.role)) + " " + std::string(name) + "; ";
   }};
-  const auto t = start({.token = "s+/=", .origins = {"https://lab.example"}}, handler);
+  const auto t = start({.tokens = {{"s+/=", {.role = Role::admin}}}, .origins = {"https://lab.example"}},
+                       handler);
   const auto port = ":" + std::to_string(t->port());
   std::vector<Socket> sockets;
   const auto connect = [&](const std::string& request) {

@@ -29,7 +29,7 @@ struct Echo {
     options.port = 0;
     options.subprotocols = {"one"};
     Handler handler;
-    handler.connected = [this](ClientId id, bool, std::string_view) {
+    handler.connected = [this](ClientId id, const Access&, std::string_view) {
       const std::lock_guard lock(mutex);
       came.push_back(id);
     };
@@ -162,7 +162,7 @@ TEST(WebSocket, MalformedFramesEndTheirClientWithTheRightCode) {
 }
 
 TEST(WebSocket, LimitsOfMessages) {
-  Echo echo({.token = "t", .queue_bytes = 40u << 20});
+  Echo echo({.tokens = {{"t", {.role = Role::admin}}}, .queue_bytes = 40u << 20});
   const auto admin = echo.client("?token=t");
   const auto all = [&](std::size_t size, bool text) {
     EXPECT_TRUE(admin->send(std::vector<std::byte>(size, std::byte{'x'}), text));
@@ -428,7 +428,7 @@ TEST(WebSocket, ManyThreadsMaySendWhileClientsComeAndGoAndTheServerStops) {
 }
 
 TEST(WebSocketClient, SaysWhyItCannotConnect) {
-  Echo echo({.token = "t"});
+  Echo echo({.tokens = {{"t", {.role = Role::admin}}}});
   const auto why = [](const std::string& url, double timeout_s = 5) {
     const auto c = WebSocketClient::connect(url, "one", timeout_s);
     return c ? "connected" : c.error().text();

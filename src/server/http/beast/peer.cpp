@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -20,6 +21,7 @@
 #include "server/http/beast/impl.h"
 #include "server/http/http.h"
 #include "wire/foxglove.h"
+#include "wire/json_stream.h"
 
 namespace sandlot::server {
 namespace {
@@ -60,8 +62,12 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   HttpAnswer answer;
   std::size_t written = 0, lingered = 0;
 
+  // JSON over TCP instead of a WebSocket
+  std::optional<wire::JsonStream> raw;
+
   // WebSocket
-  bool may_steer = false, writing = false, pinging = false, flood = false, close_sent = false;
+  Access access;
+  bool writing = false, pinging = false, flood = false, close_sent = false;
   std::string subprotocol;
   std::shared_ptr<Queue> queue;
   Message current;
@@ -105,6 +111,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                                if (ec) return end();
                                buffer.commit(n);
                                impl.bytes_in += n;
+                               const auto* const byte = static_cast<const char*>(buffer.cdata().data());
+                               if (first && impl.options.raw_json && *byte == '{') return begin_raw();
                                read_request();
                              }));
   }
@@ -231,15 +239,88 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                              }));
   }
 
+  // --- JSON over TCP ---
+  void begin_raw() {
+    first = false;
+    if (impl.clients >= impl.options.most_clients || impl.stopping) {
+      ++impl.refused;
+      return end();
+    }
+    access = admit("", "", impl.options.tokens, impl.on_loopback()).access;
+    ++impl.clients;
+    queue = std::make_shared<Queue>();
+    error_code ignored;
+    socket().set_option(net::socket_base::keep_alive(true), ignored);
+    socket().set_option(tcp::no_delay(true), ignored);
+    raw.emplace(foxglove::most_text_bytes);
+    subprotocol = "tcp";
+    opened();
+  }
+
+  void take_raw() {
+    raw->append({static_cast<const char*>(buffer.cdata().data()), buffer.size()});
+    buffer.clear();
+    while (stage == Stage::open) {
+      const auto next = raw->next();
+      if (!next) return refuse_client(ws::close_code::bad_payload, next.error().what);
+      if (!*next) return;
+      if (!allowed()) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
+      if (impl.handler.message) impl.handler.message(id, std::as_bytes(std::span(**next)), true);
+    }
+  }
+
+  void read_raw() {
+    take_raw();
+    if (stage != Stage::open) return;
+    socket().async_read_some(buffer.prepare(64 << 10), guarded([this](error_code ec, std::size_t n) {
+                               if (ec) return end();
+                               impl.bytes_in += n;
+                               heard = Clock::now();
+                               buffer.commit(n);
+                               if (n < 256 && !allowed())
+                                 return refuse_client(ws::close_code::policy_error,
+                                                      "more than 2000 messages a second");
+                               read_raw();
+                             }));
+  }
+
+  void write_raw() {
+    static constexpr char line_break = '\n';
+    const std::size_t from = std::min(written, current.head.size()), body = written - from,
+                      left = current.body() - std::min(body, current.body());
+    const std::array<net::const_buffer, 3> rest{
+        net::buffer(current.head) + from,
+        net::const_buffer(left > 0 ? current.payload->data() + body : nullptr, left),
+        net::const_buffer(&line_break, 1)};
+    socket().async_write_some(rest, guarded([this](error_code ec, std::size_t n) {
+                                if (ec) return end();
+                                written += n;
+                                impl.bytes_out += n;
+                                progress = Clock::now();
+                                if (written < current.size() + 1) return write_raw();
+                                end_message();
+                              }));
+  }
+
+  void end_message() {
+    writing = false;
+    {
+      const std::lock_guard lock(impl.mutex);
+      queue->bytes -= std::min(queue->bytes, current.weight());
+    }
+    current = {};
+    flush();
+  }
+
   // --- WebSocket ---
   void upgrade(const Target& target) {
     const auto& options = impl.options;
     const auto offered = header(http::field::sec_websocket_protocol);
     subprotocol = choose_subprotocol(offered, options.subprotocols);
-    if (subprotocol.empty() && !options.subprotocols.empty())
+    if (subprotocol.empty() && !options.subprotocols.empty() && !(offered.empty() && options.none_offered))
       return refuse(400, fmt::format("no known sub-protocol was offered; known are: {}",
                                      fmt::join(options.subprotocols, ", ")));
-    const auto admission = admit(target.query, header(http::field::authorization), options.token,
+    const auto admission = admit(target.query, header(http::field::authorization), options.tokens,
                                  impl.on_loopback());
     if (admission.status != 0) return refuse(admission.status, admission.why);
     if (buffer.size() > 0) return refuse(400, "a WebSocket begins after the answer to its handshake");
@@ -247,7 +328,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       return refuse(503,
                     fmt::format("there are {} viewers already, which is the limit", options.most_clients));
     if (impl.stopping) return refuse(503, "the server is going away");
-    may_steer = admission.may_steer;
+    access = admission.access;
     ++impl.clients;
     queue = std::make_shared<Queue>();
     enter(Stage::upgrade, options.handshake_s);
@@ -256,7 +337,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       if (!name.empty()) response.set(http::field::sec_websocket_protocol, name);
     }));
     stream.auto_fragment(false);
-    stream.read_message_max(may_steer ? foxglove::most_binary_bytes : foxglove::most_text_bytes);
+    stream.read_message_max(access.is_admin() ? foxglove::most_binary_bytes : foxglove::most_text_bytes);
     stream.control_callback([this](ws::frame_type, beast::string_view) {
       heard = Clock::now();
       if (!allowed()) flood = true;  // closed at the next beat: not from within Beast's reading
@@ -274,15 +355,16 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void opened() {
     stage = Stage::open;
     heard = progress = bucket_time = Clock::now();
-    buffer = beast::flat_buffer(foxglove::most_binary_bytes + (64 << 10));
+    if (!raw) buffer = beast::flat_buffer(foxglove::most_binary_bytes + (64 << 10));
     ++impl.accepted;
     ++impl.open_clients;
     {
       const std::lock_guard lock(impl.mutex);
       impl.queues.emplace(id, queue);
     }
-    if (impl.handler.connected) impl.handler.connected(id, may_steer, subprotocol);
-    read();
+    if (impl.handler.connected) impl.handler.connected(id, access, subprotocol);
+    if (raw) read_raw();
+    else read();
   }
 
   void read() {
@@ -344,6 +426,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     }
     written = 0;
     progress = Clock::now();
+    if (raw) return current.text ? write_raw() : end_message();
     stream.text(current.text);
     write_slice();
   }
@@ -367,13 +450,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                                 heard = Clock::now();
                               progress = Clock::now();
                               if (!last) return write_slice();
-                              writing = false;
-                              {
-                                const std::lock_guard lock(impl.mutex);
-                                queue->bytes -= std::min(queue->bytes, current.weight());
-                              }
-                              current = {};
-                              flush();
+                              end_message();
                             }));
   }
 
@@ -412,6 +489,12 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void send_close() {
     if (close_sent) return;
     close_sent = true;
+    if (raw) {
+      head = fmt::format("{{\"op\":\"status\",\"level\":\"error\",\"msg\":\"{}\"}}\n",
+                         std::string_view(farewell.reason.data(), farewell.reason.size()));
+      net::async_write(socket(), net::buffer(head), guarded([this](error_code, std::size_t) { end(); }));
+      return;
+    }
     stream.async_close(farewell, guarded([this](error_code) { end(); }));
   }
 
@@ -426,7 +509,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       socket().cancel(ignored);
       return;
     }
-    if (!stream.is_open()) {
+    if (!raw && !stream.is_open()) {
       // Beast has begun to close: the client did, or broke the protocol.
       stage = Stage::closing;
       close_sent = true;
@@ -441,6 +524,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
         log::debug("a viewer that reads nothing is closed");
         end();
       }
+    } else if (raw) {  // it has no pings; the system looks whether the other side is there
     } else if (silent_s > impl.options.silence_s) {
       end();
     } else if (silent_s > impl.options.silence_s / 3 && !pinging && now >= next_ping) {

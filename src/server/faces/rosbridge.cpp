@@ -1,0 +1,410 @@
+#include "server/faces/rosbridge.h"
+
+#include <algorithm>
+
+#include "base/json_writer.h"
+#include "base/text.h"
+#include "messages/json.h"
+
+namespace sandlot::server {
+namespace {
+
+using namespace std::chrono_literals;
+using rosbridge::Compression;
+
+constexpr auto fragment_patience = 10s;
+constexpr std::size_t most_fragments = 10'000;
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+/// "/chatter" of "chatter": clients leave the slash out.
+std::string with_slash(std::string_view name) {
+  return starts_with(name, "/") ? std::string(name) : "/" + std::string(name);
+}
+
+std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
+
+}  // namespace
+
+double RosbridgeFace::Subscription::throttle_s() const {
+  double least = 1e9;
+  for (const auto& [id, each] : throttles_s) least = std::min(least, each);
+  return least;
+}
+
+bool RosbridgeFace::send_text(std::string text, std::size_t fragment_size, bool droppable) {
+  if (fragment_size == 0 || text.size() <= fragment_size)
+    return transport_.send(client_, {}, payload_of(text), true, droppable);
+  for (std::string& each : rosbridge::fragments(text, fragment_size, std::to_string(++fragments_sent_)))
+    if (!transport_.send(client_, {}, payload_of(each), true, false)) return false;
+  return true;
+}
+
+// ------------------------------------------------------------------------------------------------ what the hub says
+
+bool RosbridgeFace::deliver(std::uint32_t, const Outgoing& message, bool droppable) {
+  const auto found = subscriptions_.find(message.channel.topic);
+  if (found == subscriptions_.end() || !message.channel.type) return true;
+  Subscription& to = found->second;
+  if (const double throttle_s = to.throttle_s(); throttle_s > 0) {
+    const auto now = Clock::now();
+    if (now < to.next) return true;
+    to.next = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(throttle_s));
+  }
+  const auto in_form = [&](Outgoing::Form form, auto&& write) -> const Payload& {
+    Payload& made = message.form(form);
+    if (!made) made = write();
+    return made;
+  };
+  const std::string& topic = message.channel.topic;
+  const MessageInfo& type = *message.channel.type;
+  if (to.compression == Compression::cbor || to.compression == Compression::cbor_raw) {
+    const bool raw = to.compression == Compression::cbor_raw;
+    const Payload& made = in_form(raw ? Outgoing::Form::cbor_raw : Outgoing::Form::cbor, [&] {
+      return std::make_shared<const std::vector<std::byte>>(
+          raw ? rosbridge::publish_cbor_raw(topic, message.stamp, *message.bytes)
+              : rosbridge::publish_cbor(topic, type, *message.bytes));
+    });
+    return transport_.send(client_, {}, made, false, droppable);
+  }
+  const Payload& made = in_form(
+      Outgoing::Form::json, [&] { return payload_of(rosbridge::publish_json(topic, type, *message.bytes)); });
+  if (to.fragment_size == 0 || made->size() <= to.fragment_size)
+    return transport_.send(client_, {}, made, true, droppable);
+  return send_text({reinterpret_cast<const char*>(made->data()), made->size()}, to.fragment_size, droppable);
+}
+
+void RosbridgeFace::remove_channels(std::span<const std::uint32_t> numbers) {
+  for (const std::uint32_t number : numbers)
+    std::erase_if(subscriptions_, [&](const auto& each) { return each.second.channel == number; });
+}
+
+void RosbridgeFace::report(foxglove::Level level, std::string_view text, std::string_view about) {
+  const auto ours = level == foxglove::Level::info      ? rosbridge::Level::info
+                    : level == foxglove::Level::warning ? rosbridge::Level::warning
+                                                        : rosbridge::Level::error;
+  if (ours >= level_) transport_.send_text(client_, rosbridge::status(ours, text, about));
+}
+
+void RosbridgeFace::tell_step(const StepNotice& step) {
+  transport_.send_text(client_, rosbridge::tick(step.program, step.number, step.now, step.random));
+}
+
+// --------------------------------------------------------------------------------------------- what the client says
+
+/// A call is answered, so that nobody waits for it.
+void RosbridgeFace::over_budget(std::span<const std::byte> bytes, bool text) {
+  const auto read = text ? rosbridge::read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()})
+                         : rosbridge::read_binary(bytes);
+  if (!read) return;
+  if (const auto* const call = std::get_if<rosbridge::CallService>(&read->operation))
+    transport_.send_text(client_, rosbridge::service_response(call->service, read->id,
+                                                              rosbridge::quoted("too many requests"), false));
+}
+
+void RosbridgeFace::message(std::span<const std::byte> bytes, bool text) {
+  const auto read = text ? rosbridge::read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()})
+                         : rosbridge::read_binary(bytes);
+  if (!read) return refuse(read.error().text(), {});
+  handle(*read);
+}
+
+void RosbridgeFace::handle(const rosbridge::ClientMessage& message) {
+  const std::string& id = message.id;
+  std::visit(Overloaded{
+                 [&](const rosbridge::Subscribe& m) { subscribe(id, m); },
+                 [&](const rosbridge::Unsubscribe& m) { unsubscribe(id, m.topic); },
+                 [&](const rosbridge::Advertise& m) { advertise(id, m); },
+                 [&](const rosbridge::Unadvertise& m) {
+                   const auto found = publications_.find(with_slash(m.topic));
+                   if (found == publications_.end())
+                     return refuse("'" + m.topic.substr(0, 100) + "' was not advertised", id);
+                   hub_.unadvertise(client_, found->second);
+                   publications_.erase(found);
+                 },
+                 [&](const rosbridge::Publish& m) { publish(id, m); },
+                 [&](const rosbridge::CallService& m) { call(id, m); },
+                 [&](const rosbridge::SetLevel& m) { level_ = m.level; },
+                 [&](const rosbridge::Fragment& m) { fragment(id, m); },
+                 [&](const rosbridge::Claim& m) { claim(id, m); },
+                 [&](const rosbridge::Done& m) { done(id, m); },
+                 [&](const rosbridge::Release&) { hub_.release(client_); },
+                 [&](const rosbridge::Other& m) {
+                   refuse("the operation '" + m.op.substr(0, 60) + "' is not known here", id);
+                 },
+             },
+             message.operation);
+}
+
+void RosbridgeFace::subscribe(const std::string& id, const rosbridge::Subscribe& request) {
+  const std::string topic = with_slash(request.topic);
+  const ChannelInfo* const info = hub_.find_channel(client_, topic);
+  if (!info) {
+    std::vector<std::string> known;
+    for (const ChannelInfo* const each : hub_.channels(client_)) known.push_back(each->topic);
+    const std::string near = nearest(topic, known);
+    return refuse("there is no topic '" + topic.substr(0, 200) + "'" +
+                      (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                  id);
+  }
+  if (text_only_ && request.compression != Compression::none && request.compression != Compression::png)
+    return refuse("cbor comes by WebSocket alone", id);
+  if (!info->type) return refuse("'" + topic + "' has a form that rosbridge does not know", id);
+  if (!request.type.empty() && long_name(request.type) != info->type->name)
+    return refuse("'" + topic + "' carries " + info->type->name + ", not " + request.type.substr(0, 100), id);
+  const bool known = subscriptions_.count(topic) > 0;
+  Subscription& made = subscriptions_[topic];
+  constexpr std::size_t most_parts = 100;
+  if (made.throttles_s.size() >= most_parts) return refuse("too many subscriptions to '" + topic + "'", id);
+  made.channel = info->id;
+  made.compression = request.compression;
+  made.fragment_size = request.fragment_size;
+  made.throttles_s[id] = request.throttle_s;
+  if (known) return;
+  if (const Status status = hub_.subscribe(client_, info->id, info->id); !status) {
+    subscriptions_.erase(topic);
+    refuse(status.error().text(), id);
+  }
+}
+
+void RosbridgeFace::unsubscribe(const std::string& id, const std::string& name) {
+  const std::string topic = with_slash(name);
+  const auto found = subscriptions_.find(topic);
+  if (found == subscriptions_.end()) return refuse("'" + topic.substr(0, 200) + "' is not subscribed to", id);
+  if (id.empty()) found->second.throttles_s.clear();
+  else found->second.throttles_s.erase(id);
+  if (!found->second.throttles_s.empty()) return;
+  const std::uint32_t channel = found->second.channel;
+  subscriptions_.erase(found);
+  if (const Status status = hub_.unsubscribe(client_, channel); !status) refuse(status.error().text(), id);
+}
+
+void RosbridgeFace::advertise(const std::string& id, const rosbridge::Advertise& request) {
+  const std::string topic = with_slash(request.topic);
+  if (publications_.size() >= most_publications && publications_.count(topic) == 0)
+    return refuse("more than " + std::to_string(most_publications) + " topics are advertised", id);
+  Hub::Publication made{topic, request.type, nullptr, {}};
+  if (const Status allowed = hub_.judge(client_, made); !allowed) return refuse(allowed.error().text(), id);
+  const auto [place, fresh] = publications_.try_emplace(topic, next_publication_);
+  if (fresh) ++next_publication_;
+  hub_.advertise(client_, place->second, std::move(made));
+}
+
+/// A topic need not be advertised: the first message does that.
+void RosbridgeFace::publish(const std::string& id, const rosbridge::Publish& request) {
+  const std::string topic = with_slash(request.topic);
+  auto found = publications_.find(topic);
+  Hub::Publication* publication = found == publications_.end()
+                                      ? nullptr
+                                      : hub_.find_publication(client_, found->second);
+  if (!publication) {  // not advertised, or forgotten by a claim
+    publications_.erase(topic);
+    advertise(id, {topic, ""});
+    found = publications_.find(topic);
+    if (found == publications_.end()) return;
+    publication = hub_.find_publication(client_, found->second);
+  }
+  const std::string json = request.message.text();
+  hub_.publish(client_, *publication, bytes_of(json), Hub::Encoding::json);
+}
+
+void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& request) {
+  const std::string name = with_slash(request.service);
+  const auto respond = [this, service = request.service, id, size = request.fragment_size](
+                           std::string_view values, bool result) {
+    send_text(rosbridge::service_response(service, id, values, result), size, false);
+  };
+  if (const auto answer = answer_of_rosapi(name, request.args)) return respond(*answer, true);
+  const auto fail = [&](const std::string& why) {
+    hub_.count_refused();
+    respond(rosbridge::quoted(why), false);
+  };
+  const ServiceOffer* const offer = hub_.find_service(client_, name);
+  if (!offer) {
+    std::vector<std::string> known;
+    for (const ServiceOffer* const each : hub_.offered_services(client_)) known.push_back(each->name);
+    const std::string near = nearest(name, known);
+    return fail("there is no service '" + name.substr(0, 200) + "'" +
+                (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  const auto cdr = request.args.to_cdr(*offer->type.request);
+  if (!cdr) return fail(name + ": " + cdr.error().text());
+  const auto message = message_from_cdr(*offer->type.request, *cdr);
+  SL_CHECK_MSG(message, "what was written just now can be read");
+  hub_.call(client_, *offer, *message,
+            [service = request.service, id, size = request.fragment_size, type = offer->type.response](
+                Face& face, const ServiceCall::Outcome& outcome) {
+              auto& self = static_cast<RosbridgeFace&>(face);
+              std::string values;
+              if (!outcome) values = rosbridge::quoted(outcome.error().text());
+              else
+                SL_CHECK_MSG(cdr_to_json(*type, *outcome, values), "what was written just now can be read");
+              self.send_text(rosbridge::service_response(service, id, values, static_cast<bool>(outcome)),
+                             size, false);
+            });
+}
+
+void RosbridgeFace::fragment(const std::string& id, const rosbridge::Fragment& request) {
+  const auto now = Clock::now();
+  if (request.total == 0 || request.total > most_fragments || request.number >= request.total)
+    return refuse("a fragment's num and total do not fit", id);
+  if (assembly_ && (assembly_->id != id || now > assembly_->begun + fragment_patience)) {
+    refuse("fragments of '" + assembly_->id.substr(0, 60) + "' are thrown away", assembly_->id);
+    assembly_.reset();
+  }
+  if (!assembly_) {
+    assembly_.emplace();
+    assembly_->id = id;
+    assembly_->parts.resize(request.total);
+    assembly_->missing = request.total;
+    assembly_->begun = now;
+  }
+  if (request.total != assembly_->parts.size() || assembly_->parts[request.number] ||
+      assembly_->bytes + request.data.size() > rosbridge::most_bytes) {
+    assembly_.reset();
+    return refuse("a fragment comes twice, or does not fit the others", id);
+  }
+  assembly_->parts[request.number] = request.data;
+  assembly_->bytes += request.data.size();
+  if (--assembly_->missing > 0) return;
+  std::string whole;
+  for (const auto& each : assembly_->parts) whole += *each;
+  assembly_.reset();
+  const auto read = rosbridge::read_text(whole);
+  if (!read) return refuse(read.error().text(), id);
+  if (std::holds_alternative<rosbridge::Fragment>(read->operation))
+    return refuse("fragments of fragments are not put together", id);
+  handle(*read);
+}
+
+void RosbridgeFace::claim(const std::string& id, const rosbridge::Claim& request) {
+  hub_.claim(client_, {request.robot, request.team, request.token, request.lockstep, request.deadline_s},
+             [id](Face& face, const Result<std::vector<Hub::ClaimedProgram>>& programs) {
+               auto& self = static_cast<RosbridgeFace&>(face);
+               if (!programs) {
+                 self.transport_.send_text(
+                     self.client_, rosbridge::status(rosbridge::Level::error, programs.error().text(), id));
+                 return;
+               }
+               const Access& access = self.hub_.access(self.client_);
+               std::string out;
+               JsonWriter w(out);
+               w.object([&] {
+                 w.key("op").text("sandlot.claimed");
+                 if (!id.empty()) w.key("id").text(id);
+                 w.key(name_of(access.role)).text(access.name);
+                 w.key("robots").list([&] {
+                   for (const std::string& each : access.robots) w.text(each);
+                 });
+                 w.key("programs").list([&] {
+                   for (const Hub::ClaimedProgram& each : *programs)
+                     w.object([&] {
+                       w.key("name").text(each.path);
+                       w.key("control_period_s").real(each.control_period_s);
+                     });
+                 });
+               });
+               self.transport_.send_text(self.client_, std::move(out));
+             });
+}
+
+void RosbridgeFace::done(const std::string& id, const rosbridge::Done& request) {
+  const auto text = [](const rosbridge::Body& body) { return body ? body.text() : std::string(); };
+  if (const Status status = hub_.done(client_, request.step, request.program, text(request.orders),
+                                      text(request.samples));
+      !status)
+    refuse(status.error().text(), id);
+}
+
+// ------------------------------------------------------------------------------------------------------------ rosapi
+
+/// What is there, for clients that look around. Nothing: it is none of these services.
+std::optional<std::string> RosbridgeFace::answer_of_rosapi(const std::string& service,
+                                                           const rosbridge::Body& args) {
+  constexpr std::string_view prefix = "/rosapi/";
+  if (!starts_with(service, prefix)) return std::nullopt;
+  const std::string_view name = std::string_view(service).substr(prefix.size());
+  std::vector<const ChannelInfo*> topics;
+  for (const ChannelInfo* const each : hub_.channels(client_))
+    if (each->type) topics.push_back(each);
+  const std::vector<const ServiceOffer*> offers = hub_.offered_services(client_);
+  std::string out;
+  JsonWriter w(out);
+  const auto texts = [&](const char* key, const auto& all, auto&& text) {
+    w.key(key).list([&] {
+      for (const auto* const each : all) w.text(text(*each));
+    });
+  };
+  const auto argument = [&](const char* key) { return rosbridge::text_of(args, key); };
+  const auto type_of_topic = [](const ChannelInfo& each) { return each.type->name; };
+  const auto name_of_topic = [](const ChannelInfo& each) { return each.topic; };
+  const auto name_of_service = [](const ServiceOffer& each) { return each.name; };
+  if (name == "topics") {
+    w.object([&] {
+      texts("topics", topics, name_of_topic);
+      texts("types", topics, type_of_topic);
+    });
+  } else if (name == "topics_and_raw_types") {
+    w.object([&] {
+      texts("topics", topics, name_of_topic);
+      texts("types", topics, type_of_topic);
+      texts("typedefs_full_text", topics, [](const ChannelInfo& each) { return each.type->schema; });
+    });
+  } else if (name == "services") {
+    w.object([&] { texts("services", offers, name_of_service); });
+  } else if (name == "topic_type" || name == "service_type") {
+    std::string type;
+    const std::string wanted = with_slash(argument(name == "topic_type" ? "topic" : "service"));
+    for (const ChannelInfo* const each : topics)
+      if (name == "topic_type" && each->topic == wanted) type = each->type->name;
+    for (const ServiceOffer* const each : offers)
+      if (name == "service_type" && each->name == wanted) type = each->type.name;
+    w.object([&] { w.key("type").text(type); });
+  } else if (name == "topics_for_type") {
+    const std::string type = long_name(argument("type"));
+    std::erase_if(topics, [&](const ChannelInfo* each) { return each->type->name != type; });
+    w.object([&] { texts("topics", topics, name_of_topic); });
+  } else if (name == "nodes") {
+    w.object([&] { w.key("nodes").list([&] { w.text("/sandlot"); }); });
+  } else if (name == "node_details") {
+    w.object([&] {
+      w.key("subscribing").list([&] {});
+      texts("publishing", topics, name_of_topic);
+      texts("services", offers, name_of_service);
+    });
+  } else if (name == "publishers" || name == "subscribers") {
+    w.object([&] {
+      w.key(name).list([&] {
+        if (name == "publishers") w.text("/sandlot");
+      });
+    });
+  } else if (name == "service_node") {
+    w.object([&] { w.key("node").text("/sandlot"); });
+  } else if (name == "action_servers") {
+    w.object([&] { w.key("action_servers").list([&] {}); });
+  } else if (name == "get_time") {
+    constexpr std::int64_t second_ns = 1'000'000'000;
+    const Time now = hub_.report().now;
+    w.object([&] {
+      w.key("time").object([&] {
+        w.key("sec").integer(now.ns / second_ns);
+        w.key("nanosec").integer(now.ns % second_ns);
+      });
+    });
+  } else if (name == "get_ros_version") {
+    w.object([&] {
+      w.key("version").integer(2);
+      w.key("distro").text("humble");
+    });
+  } else {
+    return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace sandlot::server

@@ -1,0 +1,72 @@
+#pragma once
+/// The rosbridge v2 protocol as a face, with claims and lockstep of our own. docs/clients.md.
+///
+/// Topics    those in CDR; worlds, poses and states of the page have their own forms and are not here.
+/// Queues    `throttle_rate` and `queue_length`: of the messages that come within a pause the latest is sent at its end.
+/// Fragments of a client are put together: at most one message at a time, most_bytes in all, within fragment_patience.
+/// Not here  services and actions of clients, BSON.
+#include <chrono>
+#include <map>
+#include <optional>
+
+#include "server/clients/hub.h"
+#include "wire/rosbridge.h"
+
+namespace sandlot::server {
+
+class RosbridgeFace final : public Face {
+ public:
+  /// @param text_only  it has no binary messages: JSON over TCP
+  RosbridgeFace(Hub& hub, Transport& transport, ClientId client, bool text_only)
+      : hub_(hub), transport_(transport), client_(client), text_only_(text_only) {}
+
+  void message(std::span<const std::byte> bytes, bool text) override;
+  void over_budget(std::span<const std::byte> bytes, bool text) override;
+  void remove_channels(std::span<const std::uint32_t> numbers) override;
+  bool deliver(std::uint32_t subscription, const Outgoing& message, bool droppable) override;
+  void report(foxglove::Level level, std::string_view text, std::string_view about) override;
+  void tell_step(const StepNotice& step) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Subscription {
+    std::uint32_t channel = 0;
+    rosbridge::Compression compression = rosbridge::Compression::none;
+    std::size_t fragment_size = 0;
+    std::map<std::string, double> throttles_s;  ///< by the client's id: several parts of it may listen
+    Clock::time_point next;
+    double throttle_s() const;
+  };
+  struct Assembly {
+    std::string id;
+    std::vector<std::optional<std::string>> parts;
+    std::size_t bytes = 0, missing = 0;
+    Clock::time_point begun;
+  };
+
+  void handle(const rosbridge::ClientMessage& message);
+  void subscribe(const std::string& id, const rosbridge::Subscribe& request);
+  void unsubscribe(const std::string& id, const std::string& topic);
+  void advertise(const std::string& id, const rosbridge::Advertise& request);
+  void publish(const std::string& id, const rosbridge::Publish& request);
+  void call(const std::string& id, const rosbridge::CallService& request);
+  void fragment(const std::string& id, const rosbridge::Fragment& request);
+  void claim(const std::string& id, const rosbridge::Claim& request);
+  void done(const std::string& id, const rosbridge::Done& request);
+  std::optional<std::string> answer_of_rosapi(const std::string& service, const rosbridge::Body& args);
+  void refuse(const std::string& why, const std::string& id) { hub_.refuse(client_, why, id); }
+  bool send_text(std::string text, std::size_t fragment_size, bool droppable);
+
+  Hub& hub_;
+  Transport& transport_;
+  const ClientId client_;
+  const bool text_only_;
+  rosbridge::Level level_ = rosbridge::Level::error;
+  std::map<std::string, Subscription> subscriptions_;  ///< by topic
+  std::map<std::string, std::uint32_t> publications_;  ///< by topic
+  std::uint32_t next_publication_ = 1;
+  std::uint64_t fragments_sent_ = 0;
+  std::optional<Assembly> assembly_;
+};
+
+}  // namespace sandlot::server

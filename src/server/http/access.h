@@ -1,0 +1,50 @@
+#pragma once
+/// Access: what a client may see and do.
+///
+///   admin      everything
+///   spectator  sees everything that viewers see; changes nothing
+///   robot      sees the topics of its robot and those that are shared; commands its robot
+///   team       the same for the robots of its team
+///
+/// What robots and teams do not see: poses, /tf, contacts, the world, values, parameters, commands and topics of others.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/text.h"
+
+namespace sandlot::server {
+
+enum class Role : std::uint8_t { spectator, robot, team, admin };
+inline const char* name_of(Role role) {
+  constexpr const char* names[] = {"spectator", "robot", "team", "admin"};
+  return names[static_cast<std::size_t>(role)];
+}
+
+struct Access {
+  Role role = Role::spectator;
+  std::string name;                      ///< of the robot or the team
+  std::vector<std::string> robots = {};  ///< those it drives
+
+  bool is_admin() const { return role == Role::admin; }
+  /// Whether it is for a part of the world only.
+  bool is_scoped() const { return role == Role::robot || role == Role::team; }
+  bool drives(std::string_view robot) const {
+    for (const std::string& each : robots)
+      if (each == robot) return true;
+    return false;
+  }
+  /// @param address  of a device, a program, or a topic without its first slash: "red1/drive"
+  bool may_command(std::string_view address) const {
+    return is_admin() || (is_scoped() && drives(first_part(address)));
+  }
+};
+
+/// A secret and what it opens.
+struct Token {
+  std::string secret;
+  Access access;
+};
+
+}  // namespace sandlot::server
