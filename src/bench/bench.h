@@ -40,6 +40,7 @@ std::vector<Row> loading();    ///< P8: files to a simulation
 std::vector<Row> recording();  ///< P11: runs and images into a file
 std::vector<Row> viewer();     ///< P9: what looking at a run costs it
 std::vector<Row> radio();      ///< packets among many robots
+std::vector<Row> lockstep();   ///< P7: a step of a client over TCP
 std::vector<Row> rollers();    ///< P4: a robot on wheels with rollers
 
 /// Processor time of the calling thread: other work on the machine does not count.
