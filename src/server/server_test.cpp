@@ -5,6 +5,7 @@
 #include "messages/sensor_msgs.h"
 #include "messages/tf2_msgs.h"
 #include "server/test_viewer.h"
+#include "sim/test_radios.h"
 
 namespace sandlot::server::test {
 namespace {
@@ -29,8 +30,9 @@ TEST(Server, SaysWhoItIsAndWhatThereIs) {
     EXPECT_EQ(laser["schemaName"], "sensor_msgs/msg/LaserScan");
     EXPECT_EQ(laser["schemaEncoding"], "ros2msg");
     EXPECT_EQ(laser["schema"], message_info<msg::LaserScan>().schema);
-    for (const char* topic : {"/tf", "/tf_static", "/clock", "/rosout", "/sandlot/world", "/sandlot/poses",
-                              "/sandlot/status", "/sandlot/commands", "/sandlot/contacts"})
+    for (const char* topic :
+         {"/tf", "/tf_static", "/clock", "/rosout", "/sandlot/world", "/sandlot/poses", "/sandlot/status",
+          "/sandlot/commands", "/sandlot/contacts", "/sandlot/deliveries", "/sandlot/batteries"})
       EXPECT_EQ(viewer.channels.count(topic), 1u) << topic;
     EXPECT_EQ(viewer.services.size(), 12u);
   }
@@ -108,6 +110,72 @@ TEST(Server, AStepIsOneTickAndItsPosesComeAlthoughTheRunStandsStillAgain) {
     }
     EXPECT_EQ(seen, tick);
   }
+}
+
+/// Two radios that float, one of them with a battery that 5 W empty in 2 s.
+model::Setup two_radios() {
+  sandlot::test::Radios world(sandlot::test::keys_of({{"jitter", "0"}}));
+  model::DeviceDecl battery;
+  battery.name = battery.kind = "battery";
+  battery.config = sandlot::test::keys_of({{"capacity", "10 J"}, {"drain", "5 W"}});
+  world.add("ann", {}).devices.push_back(battery);
+  world.add("bob", {10, 0, 0});
+  return world.setup;
+}
+
+void send_a_packet_and_run_3_s(Viewer& viewer) {
+  viewer.send({{"op", "advertise"},
+               {"channels",
+                {{{"id", 1},
+                  {"topic", "/ann/radio/send/command"},
+                  {"encoding", "json"},
+                  {"schemaName", "sandlot_msgs/msg/RadioPacket"}}}}});
+  viewer.publish(1, R"({"to": "", "data": [1, 2, 3]})");
+  viewer.console("list entities");  // by its answer the packet is there
+  EXPECT_EQ(viewer.call("/step_simulation", {{"steps", 300}})["result"]["result"], 1);
+}
+
+TEST(Server, WhoHearsWhomAndChargesOfBatteriesAreSentToThoseWhoWantThem) {
+  Running run(two_radios(), {.paused = true});
+  run.go();
+  Viewer viewer(run.url());
+  const std::uint32_t deliveries = viewer.subscribe("/sandlot/deliveries");
+  const std::uint32_t batteries = viewer.subscribe("/sandlot/batteries");
+  const auto full = viewer.next(batteries);
+  ASSERT_TRUE(full) << "at once";
+  EXPECT_EQ(u32_at(full->bytes, 24), 0x3f800000u) << "1.0 as a float";
+  send_a_packet_and_run_3_s(viewer);
+  std::optional<Viewer::Data> heard, charge;
+  viewer.until([&] {
+    for (; !viewer.data.empty(); viewer.data.pop_front()) {
+      if (viewer.data.front().subscription == deliveries) heard = viewer.data.front();
+      if (viewer.data.front().subscription == batteries) charge = viewer.data.front();
+    }
+    return heard && charge && u32_at(charge->bytes, 24) == 0;
+  });
+  ASSERT_TRUE(heard);
+  ASSERT_EQ(heard->bytes.size(), 20u + 20);
+  EXPECT_EQ(u32_at(heard->bytes, 16), 1u);
+  const Simulation& simulation = run.session.simulation();
+  EXPECT_EQ(u32_at(heard->bytes, 20), simulation.find_entity("ann")->serial);
+  EXPECT_EQ(u32_at(heard->bytes, 24), simulation.find_entity("bob")->serial);
+  ASSERT_TRUE(charge);
+  EXPECT_EQ(u32_at(charge->bytes, 16), 1u);
+  EXPECT_EQ(u32_at(charge->bytes, 20), simulation.find_entity("ann")->serial);
+  EXPECT_EQ(u32_at(charge->bytes, 24), 0u) << "empty";
+}
+
+TEST(Server, WhoLooksAtDeliveriesAndBatteriesChangesNothing) {
+  const auto hash_after = [](bool subscribed) {
+    Running run(two_radios(), {.paused = true});
+    run.go();
+    Viewer viewer(run.url());
+    if (subscribed)
+      for (const char* topic : {"/sandlot/deliveries", "/sandlot/batteries"}) viewer.subscribe(topic);
+    send_a_packet_and_run_3_s(viewer);
+    return viewer.console("hash")["text"].get<std::string>();
+  };
+  EXPECT_EQ(hash_after(true), hash_after(false));
 }
 
 TEST(Server, NumbersAreWatchedAtEveryTickAndAtARate) {

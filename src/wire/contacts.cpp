@@ -1,21 +1,7 @@
-#include <algorithm>
-#include <limits>
-
+#include "wire/append.h"
 #include "wire/scene.h"
 
 namespace sandlot::wire {
-namespace {
-
-void append(std::vector<std::byte>& out, const auto& value) {
-  const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
-  out.insert(out.end(), bytes, bytes + sizeof value);
-}
-void append_float(std::vector<std::byte>& out, double x) {
-  constexpr double most = std::numeric_limits<float>::max();
-  append(out, static_cast<float>(std::clamp(x, -most, most)));
-}
-
-}  // namespace
 
 void write_contacts(const Frame& frame, std::vector<std::byte>& out) {
   out.clear();

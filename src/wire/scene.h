@@ -106,6 +106,15 @@ class PoseWriter {
 /// Replaces `out` by the bytes of /sandlot/contacts.
 void write_contacts(const Frame& frame, std::vector<std::byte>& out);
 
+/// Pairs of instances in one message of /sandlot/deliveries.
+inline constexpr std::uint32_t most_links = 1000;
+/// Replaces `out` by the bytes of /sandlot/deliveries: one record per medium, sender and receiver. Sorts `deliveries`.
+/// @param tick, now  of the latest of them
+void write_deliveries(std::vector<FrameDelivery>& deliveries, std::uint64_t tick, Time now,
+                      std::vector<std::byte>& out);
+/// Replaces `out` by the bytes of /sandlot/batteries. On the simulation's thread, between ticks.
+void write_batteries(const Simulation& simulation, std::vector<std::byte>& out);
+
 /// The JSON of /sandlot/commands; "" when nothing came from outside in this frame.
 std::string commands_json(const Frame& frame);
 /// What a request asks for, in words: "noise/white = 0.02", "pose 1 2 0".

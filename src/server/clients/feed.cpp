@@ -29,10 +29,12 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
   if (!subscribed_->clients) {
     topics_.clear();
     watches_.clear();
-    world_ = transforms_static_ = nullptr;
+    world_ = transforms_static_ = batteries_ = nullptr;
+    deliveries_ = {};
     epoch_ = 0;  // the next client gets everything
     return;
   }
+  if (subscribed_->deliveries == 0) deliveries_ = {};
   if (!subscribed_->world) world_sent_ = false;
   if (!subscribed_->transforms_static) static_sent_ = false;
   find_topics();
@@ -49,6 +51,7 @@ void Feed::follow_session() {
   inventory_sent_ = world_sent_ = static_sent_ = false;
   find_topics();
   if (!other_world) return;
+  deliveries_.clear();
   for (Watch& watch : watches_) {
     watch.begin = simulation.now();
     watch.sample = 0;
@@ -158,6 +161,14 @@ void Feed::send_initial(const InitialSend& initial) {
     if (!wanted && (!stands || watch.sampled_at == batch.now)) continue;
     (wanted ? latest : batch.messages).push_back(sample(watch));
   }
+  add_deliveries(batch, session_.simulation().tick_index());
+  if (subscribed_->batteries != 0) {
+    const bool wanted = std::binary_search(initial.latest.begin(), initial.latest.end(),
+                                           subscribed_->batteries);
+    const Payload changed = changed_batteries();
+    if (changed) batch.messages.push_back({subscribed_->batteries, batch.now, changed});
+    if (wanted) latest.push_back({subscribed_->batteries, batch.now, batteries_});
+  }
   if (subscribed_->frames || subscribed_->contacts) {
     batch.frame = session_.simulation().look(
         {.links = subscribed_->frames, .contacts = subscribed_->contacts});
@@ -175,6 +186,7 @@ Observer::Wants Feed::wants() const {
   return {.input = subscribed_->commands || subscribed_->parameters,
           .links = due_ && subscribed_->frames,
           .contacts = due_ && subscribed_->contacts,
+          .deliveries = subscribed_->deliveries != 0,
           .instances = due_};
 }
 
@@ -197,6 +209,11 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
       if (each.count > 0) batch.messages.push_back(message(each));
     }
     add_samples(batch);
+    note_deliveries(*frame);
+    if (Clock::now() >= next_deliveries_) add_deliveries(batch, frame->tick);
+    if (subscribed_->batteries != 0 && Clock::now() >= next_batteries_)
+      if (const Payload changed = changed_batteries())
+        batch.messages.push_back({subscribed_->batteries, batch.now, changed});
     const bool from_outside = std::any_of(frame->log.begin(), frame->log.end(), [](const LogEntry& entry) {
       return entry.source.kind != Source::Kind::program && entry.kind != LogEntry::step;
     });
@@ -216,6 +233,7 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   }
   for (const Watch& watch : watches_)
     if (watch.sampled_at != batch.now) stale_ = true;
+  if (subscribed_->batteries != 0 || !deliveries_.empty()) stale_ = true;
   if (batch.frame || batch.commands || !batch.messages.empty()) mailbox_->push(std::move(batch));
   for (const auto& link : links_) link->release();
 }
@@ -281,6 +299,36 @@ void Feed::add_samples(Batch& batch) {
     }
     batch.messages.push_back(sample(watch));
   }
+}
+
+void Feed::note_deliveries(const Frame& frame) {
+  if (subscribed_->deliveries == 0) return;
+  // What comes between two messages goes with the second one; of a run at full speed not all of it.
+  constexpr std::size_t most = 8 * wire::most_links;
+  const std::size_t count = std::min(frame.deliveries.size(), most - deliveries_.size());
+  deliveries_.insert(deliveries_.end(), frame.deliveries.begin(),
+                     frame.deliveries.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void Feed::add_deliveries(Batch& batch, std::uint64_t tick) {
+  if (deliveries_.empty()) return;
+  next_deliveries_ = Clock::now() + period_;
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  wire::write_deliveries(deliveries_, tick, batch.now, *bytes);
+  deliveries_.clear();
+  batch.messages.push_back({subscribed_->deliveries, batch.now, std::move(bytes)});
+}
+
+Payload Feed::changed_batteries() {
+  constexpr std::chrono::milliseconds pause{200};
+  next_batteries_ = Clock::now() + pause;
+  wire::write_batteries(session_.simulation(), scratch_);
+  constexpr std::size_t head = 16;  // its tick and time change always
+  if (batteries_ &&
+      std::equal(scratch_.begin() + head, scratch_.end(), batteries_->begin() + head, batteries_->end()))
+    return nullptr;
+  batteries_ = std::make_shared<const std::vector<std::byte>>(scratch_);
+  return batteries_;
 }
 
 void Feed::send_parameters(const Frame& frame) {

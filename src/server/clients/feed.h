@@ -31,13 +31,14 @@ struct SubscriptionSummary {
   bool clients = false;  ///< there are clients
   bool frames = false, contacts = false, commands = false, parameters = false, world = false,
        transforms_static = false;
+  std::uint32_t deliveries = 0, batteries = 0;                ///< their channels; 0: nobody has subscribed
   std::vector<std::pair<std::uint32_t, std::string>> topics;  ///< channels of devices
 };
 
 /// What new subscribers get at once, whether it has changed or not.
 struct InitialSend {
   bool frame = false, world = false, transforms_static = false;
-  std::vector<std::uint32_t> latest;  ///< channels of device topics and watches
+  std::vector<std::uint32_t> latest;  ///< channels of device topics, watches and batteries
 };
 
 /// The world as it is now; parts without a subscriber, or without a change, are null.
@@ -99,6 +100,10 @@ class Feed final : public Observer {
   ChannelMessage message(SubscribedTopic& topic) const;
   ChannelMessage sample(Watch& watch);
   void add_samples(Batch& batch);
+  void note_deliveries(const Frame& frame);
+  void add_deliveries(Batch& batch, std::uint64_t tick);
+  /// Null: they are as they were sent.
+  Payload changed_batteries();
   void send_parameters(const Frame& frame);
 
   Session& session_;
@@ -113,10 +118,12 @@ class Feed final : public Observer {
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<programs::remote::Link>> links_;
   std::vector<std::byte> scratch_;
+  std::vector<FrameDelivery> deliveries_;  ///< that were not sent yet
+  Payload batteries_;                      ///< as last sent
 
   bool inventory_sent_ = false, world_sent_ = false, static_sent_ = false;  ///< in their present form
   Payload world_, transforms_static_;                                       ///< as last sent
-  Clock::time_point next_world_update_, next_frame_;
+  Clock::time_point next_world_update_, next_frame_, next_deliveries_, next_batteries_;
   mutable bool due_ = false;
   std::atomic<bool> stale_ = false;
 };

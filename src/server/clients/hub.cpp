@@ -34,6 +34,8 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::commands, "/sandlot/commands", "json", "sandlot.Commands");
   add_channel(ChannelKind::poses, "/sandlot/poses", "sandlot-poses", "sandlot.Poses");
   add_channel(ChannelKind::contacts, "/sandlot/contacts", "sandlot-contacts", "sandlot.Contacts");
+  add_channel(ChannelKind::deliveries, "/sandlot/deliveries", "sandlot-deliveries", "sandlot.Deliveries");
+  add_channel(ChannelKind::batteries, "/sandlot/batteries", "sandlot-batteries", "sandlot.Batteries");
   add_channel(ChannelKind::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
@@ -185,6 +187,7 @@ Status Hub::subscribe(ClientId id, std::uint32_t subscription, std::uint32_t cha
   Subscriber made{id, subscription, false};
   switch (to.kind) {
     case ChannelKind::device:
+    case ChannelKind::batteries:
     case ChannelKind::watch: initial_.latest.push_back(channel_id); break;
     case ChannelKind::world: initial_.world = true; break;
     case ChannelKind::transforms_static: initial_.transforms_static = true; break;
@@ -294,6 +297,11 @@ void Hub::flush(bool at_once) {
   summary->frames = subscribed(ChannelKind::poses) || subscribed(ChannelKind::transforms) ||
                     subscribed(ChannelKind::clock);
   summary->contacts = subscribed(ChannelKind::contacts);
+  const auto channel_wanted = [&](ChannelKind kind) {
+    return subscribed(kind) ? channel(kind).info.id : 0;
+  };
+  summary->deliveries = channel_wanted(ChannelKind::deliveries);
+  summary->batteries = channel_wanted(ChannelKind::batteries);
   summary->commands = subscribed(ChannelKind::commands);
   summary->world = subscribed(ChannelKind::world);
   counts_.log_read = subscribed(ChannelKind::log);

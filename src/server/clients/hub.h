@@ -152,6 +152,8 @@ class Hub final : private ServiceHost {
     status,
     commands,
     contacts,
+    deliveries,
+    batteries,
     watch,
     count_
   };

@@ -46,6 +46,14 @@ struct LogEntry {
   bool is_input() const { return kind == step || !source.is_inside(); }
 };
 
+/// What a medium brought from one instance to another in a tick: a packet, a word.
+struct FrameDelivery {
+  std::uint32_t medium = 0;                ///< index in the world's list
+  std::uint64_t sender = 0, receiver = 0;  ///< serials of the instances
+  std::int32_t channel = 0;
+  double strength = 0;  ///< as received, in the medium's unit
+};
+
 struct Frame {
   std::uint64_t tick = 0;
   Time now;
@@ -53,11 +61,12 @@ struct Frame {
   Time step;                   ///< length of the tick
   std::vector<FrameInstance> instances;
   std::vector<std::shared_ptr<const TopicBase>>
-      topics;                        ///< those that got a message in this tick, if asked for
-  std::vector<LogEntry> log;         ///< if asked for, or its part that is `input`
-  std::vector<Contact> contacts;     ///< of the last sub-step, if asked for
-  std::uint64_t hash = 0;            ///< of all State, if asked for
-  std::vector<std::uint64_t> parts;  ///< and of each entity
+      topics;                             ///< those that got a message in this tick, if asked for
+  std::vector<LogEntry> log;              ///< if asked for, or its part that is `input`
+  std::vector<Contact> contacts;          ///< of the last sub-step, if asked for
+  std::vector<FrameDelivery> deliveries;  ///< of media in this tick, if asked for
+  std::uint64_t hash = 0;                 ///< of all State, if asked for
+  std::vector<std::uint64_t> parts;       ///< and of each entity
   std::shared_ptr<const std::vector<std::string>>
       part_names;  ///< of `parts`; another object when they change
 };
@@ -75,6 +84,7 @@ class Observer {
     bool hash = false;
     bool links = false;
     bool contacts = false;
+    bool deliveries = false;
     bool instances = true;  ///< false: the frame may come without them
   };
   /// Asked at the beginning of each tick.

@@ -102,6 +102,7 @@ void Publisher::begin_tick() {
     wants_.hash = wants_.hash || wants.hash;
     wants_.links = wants_.links || wants.links;
     wants_.contacts = wants_.contacts || wants.contacts;
+    wants_.deliveries = wants_.deliveries || wants.deliveries;
     wants_.instances = wants_.instances || wants.instances || wants.links;
   }
 }
@@ -118,6 +119,8 @@ void Publisher::publish() {
   fill_hashes(*frame);
   frame->contacts.clear();
   if (wants_.contacts) fill_contacts(*frame);
+  const std::span<const FrameDelivery> deliveries = sim_.elements_.deliveries();
+  frame->deliveries.assign(deliveries.begin(), deliveries.end());
   const std::shared_ptr<const Frame> shown = frame;
   for (Observer* observer : observers_) observer->on_frame(shown);
 }

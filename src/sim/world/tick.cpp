@@ -185,7 +185,7 @@ MediumContext Simulation::medium_context() const {
 
 void Simulation::deliver_media() {
   const PhaseTimer timer(phase_times_, Phase::media);
-  elements_.deliver(medium_context());
+  elements_.deliver(medium_context(), publisher_.wants().deliveries);
   emissions_.clear();
 }
 

@@ -193,6 +193,7 @@ void WorldElements::gather() const {
   if (!changed_) return;
   changed_ = false;
   entities_.clear();
+  trace_.devices_changed();
   for (NamedMedium& each : media_) each.receivers.clear();
   for (const auto& entity : sim_.entities()) {
     entities_.push_back({&entity->instance, entity->id, entity->serial});
@@ -282,7 +283,7 @@ void WorldElements::note_touches(std::uint32_t substep, double h_s) {
         {contact.a, contact.b, contact.point_W, contact.normal_W, h_s * contact.force_W, substep});
 }
 
-void WorldElements::deliver(const MediumContext& context) {
+void WorldElements::deliver(const MediumContext& context, bool traced) {
   if (media_.empty()) return;
   gather();
   for (NamedMedium& each : media_) each.emissions.clear();
@@ -290,6 +291,7 @@ void WorldElements::deliver(const MediumContext& context) {
     media_[emission.medium].emissions.push_back(emission);
   for (NamedMedium& each : media_) {
     if (!each.kind->delivers) continue;
+    if (traced) trace_.begin(each.receivers);
     each.medium->deliver({.now = context.now,
                           .step = context.step,
                           .tick_index = context.tick_index,
@@ -300,6 +302,7 @@ void WorldElements::deliver(const MediumContext& context) {
                           .buffer = context.buffer,
                           .receivers = each.receivers,
                           .receivers_by_key = each.receivers_by_key});
+    if (traced) trace_.end(static_cast<std::uint32_t>(&each - media_.data()), each.receivers, sim_);
   }
 }
 

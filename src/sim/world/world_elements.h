@@ -16,6 +16,7 @@
 #include "markers/marker.h"
 #include "media/medium.h"
 #include "rules/rule.h"
+#include "sim/world/delivery_trace.h"
 #include "sim/world/parts.h"
 
 namespace sandlot {
@@ -44,9 +45,15 @@ class WorldElements final : public WorldView {
   void push(const MediumContext& context, double h_s, std::vector<Wrench>& wrenches);
   /// Takes over the touches of the sub-step that was.
   void note_touches(std::uint32_t substep, double h_s);
-  void begin_tick() { touches_.clear(); }
+  void begin_tick() {
+    touches_.clear();
+    trace_.clear();
+  }
   /// Hands each medium its emissions of the tick.
-  void deliver(const MediumContext& context);
+  /// @param traced  whether deliveries() shall list what arrives
+  void deliver(const MediumContext& context, bool traced = false);
+  /// Of this tick; empty unless it was traced.
+  std::span<const FrameDelivery> deliveries() const { return trace_.deliveries(); }
   void judge(Time now, Time step);
   /// The first reason of a rule to stop, given when it last judged.
   const std::string* stop_reason() const;
@@ -117,6 +124,7 @@ class WorldElements final : public WorldView {
   std::vector<Part> parts_;
   RuleKind::Touches touches_wanted_ = RuleKind::Touches::none;
   std::vector<BodyTouch> touches_;  ///< of this tick
+  mutable DeliveryTrace trace_;
   mutable std::vector<ValueExpression> watched_;
   mutable std::vector<EntityView> entities_;
   mutable bool changed_ = true;  ///< entities_ and the receivers have to be listed again
