@@ -419,3 +419,61 @@ test("what a camera sees is shown in a pane, its view and what it finds in the s
   viewer.close();
   assert.equal(await run.stop(), 0, run.error);
 });
+
+test("who hears whom, how full batteries are and how teams stand is seen in the scene, and can be switched off", { skip }, async () => {
+  const words = Array.from({ length: 200 }, (_, i) => `{at: ${(i + 1) / 10} s, orders: {radio: hello}}`).join(", ");
+  const devices = (capacity) => `devices: {radio: {kind: radio}, battery: {kind: battery, capacity: ${capacity}, drain: 1 W}}`;
+  const yard = readFileSync(makeYard(scratch, { controller: `{kind: sequence, steps: [${words}]}` }), "utf8")
+    .replace("name: rover,", `name: rover, team: red, ${devices("10 kJ")},`).replace("name: idle,", `name: idle, team: blue, ${devices("1 J")},`);
+  const file = scratch.write("team.yaml", `${yard}media:
+  - {kind: radio}
+teams:
+  - {name: red, criterion: "2 + (sim.time > 1.5)"}
+  - {name: blue, criterion: "idle/battery.fraction * 0"}
+criterion: sim.time
+`);
+  const alone = JSON.parse(execFileSync(sandlot, ["run", file, "--duration", "3s", "--json"], { stdio: "pipe" })).state_hash;
+  const recording = scratch.file("team.mcap");
+  const run = await Served.start(["run", file, "--duration", "3s", "--paused", "--record", recording], scratch);
+  const shown = await open(run.url);
+  const drawn = (on) => on.evaluate(() => ({ links: window.sandlot.scene.links.count, batteries: window.sandlot.scene.batteries.count }));
+  await until("both batteries, before the run begins", async () => (await drawn(shown)).batteries === 2);
+  await shown.locator(by("score")).waitFor();
+  assert.equal(await shown.locator(by("score")).innerText().then((text) => text.replace(/\s+/g, " ")), "red 2 : 0 blue");
+  assert.equal((await drawn(shown)).links, 0);
+  await shown.locator(by("play")).click();
+  await until("a link", async () => (await drawn(shown)).links === 1);
+  await picture(shown, "team");
+  // Both are switched off where all overlays are, and then nothing is subscribed to.
+  const subscribed = (topic) => shown.evaluate((name) => window.sandlot.client.subscriptions.has(name), topic);
+  assert.equal(await subscribed("/sandlot/deliveries"), true);
+  await shown.locator(by("overlays")).click();
+  await shown.getByText("Communication links").click();
+  await shown.getByText("Batteries").click();
+  await shown.keyboard.press("Escape");
+  assert.deepEqual([await subscribed("/sandlot/deliveries"), await subscribed("/sandlot/batteries")], [false, false]);
+  assert.equal((await drawn(shown)).links, 0);
+  assert.equal(await run.ended, 0, run.error);
+  assert.equal(run.summary.state_hash, alone, "looking changes nothing");
+  assert.equal((await shown.locator(by("score-red")).innerText()), "3");
+  await shown.context().close();
+  // A recording shows the same.
+  const player = await Served.start(["replay", recording], scratch);
+  const replayed = await open(player.url);
+  await replayed.locator(by("play")).click();
+  await until("a link", async () => (await drawn(replayed)).links === 1);
+  assert.equal((await drawn(replayed)).batteries, 2);
+  await replayed.context().close();
+  assert.equal(await player.stop(), 0, player.error);
+});
+
+test("a world without media, batteries and teams has no score, and nothing more is asked for", { skip }, async () => {
+  const run = await Served.start(["run", makeYard(scratch)], scratch);
+  const shown = await open(run.url);
+  await shown.locator(row("rover")).waitFor();
+  const topics = await shown.evaluate(() => [...window.sandlot.client.subscriptions.keys()]);
+  assert.deepEqual(topics.filter((name) => /deliveries|batteries/.test(name)), []);
+  assert.equal(await shown.locator(by("score")).isVisible(), false);
+  await shown.context().close();
+  assert.equal(await run.stop(), 0, run.error);
+});

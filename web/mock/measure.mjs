@@ -1,6 +1,6 @@
 // What a frame of the 3D view costs, in a headless browser against the mock server:
 //
-//   node mock/measure.mjs [--robots 1000] [--seconds 6] [--browser /usr/bin/chromium] [--picture FILE]
+//   node mock/measure.mjs [--robots 1000] [--seconds 6] [--team no] [--browser /usr/bin/chromium] [--picture FILE]
 //
 // Medians over the seconds of the means per frame. No pixels are made (except for a picture): in a headless browser the
 // processor would make them, and hold up the calls that are measured.
@@ -39,7 +39,7 @@ export async function openView({ robots = 3, port = 8190, width = 1280, height =
       for (const name of ['drawElements', 'drawArrays', 'drawElementsInstanced', 'drawArraysInstanced']) WebGL2RenderingContext.prototype[name] = () => {};
     });
   }
-  await page.goto(`http://127.0.0.1:${port}/?theme=${theme}`);
+  await page.goto(`http://127.0.0.1:${port}/?theme=${theme}&team=${option('team', 'yes')}`);
   const close = async () => {
     await browser.close();
     server.kill();

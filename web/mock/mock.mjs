@@ -48,6 +48,8 @@ const poses_channel = channel('/sandlot/poses', 'sandlot-poses', 'sandlot.Poses'
 const status_channel = json('/sandlot/status', 'sandlot.Status');
 const commands_channel = json('/sandlot/commands', 'sandlot.Commands');
 const contacts_channel = channel('/sandlot/contacts', 'sandlot-contacts', 'sandlot.Contacts');
+const deliveries_channel = channel('/sandlot/deliveries', 'sandlot-deliveries', 'sandlot.Deliveries');
+const batteries_channel = channel('/sandlot/batteries', 'sandlot-batteries', 'sandlot.Batteries');
 const clock_channel = cdr('/clock', 'rosgraph_msgs/msg/Clock');
 const log_channel = cdr('/rosout', 'rcl_interfaces/msg/Log');
 const scan_channels = world.bodies.filter((b) => b.robot).map((body) => ({ body, channel: cdr(`/${body.name}/laser/ranges`, 'sensor_msgs/msg/LaserScan') }));
@@ -117,6 +119,7 @@ function onText(client, message) {
         client.subscriptions.set(id, channelId);
         if (channelId === world_channel.id) sendMessage(client, channelId, JSON.stringify(world.json));
         if (channelId === poses_channel.id) sendMessage(client, channelId, posesMessage(world, run.tick));
+        if (channelId === batteries_channel.id) sendMessage(client, channelId, batteriesMessage());
         if (channelId === status_channel.id) sendMessage(client, channelId, JSON.stringify(status()));
       }
       break;
@@ -311,6 +314,7 @@ function status() {
 
 /** Any number that is watched: made up from its address so that each has a curve of its own. */
 function watched(address) {
+  if (address.endsWith('.criterion')) return Math.floor((run.tick * step_s) / (address.startsWith('red') ? 15 : 25));
   const seed = [...address].reduce((sum, c) => (sum * 31 + c.charCodeAt(0)) % 997, 7);
   return Math.sin(run.tick * step_s * (0.5 + (seed % 10) / 5) + seed);
 }
@@ -336,6 +340,8 @@ setInterval(() => {
   if (!run.playing) return;
   publish(clock_channel.id, () => new CdrWriter().time(time_s).buffer());
   publish(contacts_channel.id, contactsMessage);
+  if (frame % 8 === 0) publish(deliveries_channel.id, deliveriesMessage);
+  if (frame % 6 === 0) publish(batteries_channel.id, batteriesMessage);
   if (frame % 30 === 0) {
     publish(log_channel.id, () => new CdrWriter().time(time_s).u8([20, 30, 40][(frame / 30) % 3]).string('mock').string(`second ${time_s.toFixed(2)} has passed`).string('').string('').u32(0).buffer());
   }
@@ -368,6 +374,24 @@ function contactsMessage() {
       w.f32(at.x - side * Math.sin(at.yaw)).f32(at.y + side * Math.cos(at.yaw)).f32(0).f32(0).f32(0).f32(1).f32(0.0005);
     }
   }
+  return w.arrayBuffer();
+}
+
+const robotBodies = world.bodies.filter((b) => b.robot);
+const counted = (count) => new Writer().u64(BigInt(run.tick)).i64(BigInt(Math.round(run.tick * step_s * 1e9))).u32(count);
+
+/** Each robot is heard by the next two, by way of the medium "air". */
+function deliveriesMessage() {
+  const pairs = robotBodies.flatMap((sender, i) => [1, 2].map((n) => [sender, robotBodies[(i + n) % robotBodies.length]])).filter(([a, b]) => a !== b).slice(0, 1000);
+  const w = counted(pairs.length);
+  for (const [sender, receiver] of pairs) w.u32(sender.id).u32(receiver.id).u16(1).u16(1).i32(0).f32(50);
+  return w.arrayBuffer();
+}
+
+/** Full at the start, empty after a minute and more, and full again. */
+function batteriesMessage() {
+  const w = counted(robotBodies.length);
+  robotBodies.forEach((body, i) => w.u32(body.id).f32(Math.max(0, 1 - ((run.tick * step_s) / 60 + i * 0.23) % 1.2)));
   return w.arrayBuffer();
 }
 

@@ -5,6 +5,7 @@ const query = new URLSearchParams(location.search);
 const host = document.getElementById('scene') as HTMLElement;
 const scene = new SceneView(host, { assetBase: '/assets' });
 scene.setTheme(query.get('theme') === 'dark' ? 'dark' : 'light');
+scene.setOverlays({ links: query.get('team') !== 'no', batteries: query.get('team') !== 'no' });
 const drags: unknown[] = [];
 scene.onSelect = (address) => document.body.setAttribute('data-selected', address ?? '');
 Object.assign(window, { scene, drags });
@@ -40,7 +41,7 @@ socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
     const message = JSON.parse(event.data) as { op: string; channels?: { id: number; topic: string }[]; services?: { id: number; name: string }[] };
     message.services?.forEach((s) => services.set(s.name, s.id));
     if (message.op !== 'advertise') return;
-    const wanted = (message.channels ?? []).filter((c) => ['/sandlot/world', '/sandlot/poses', '/sandlot/contacts'].includes(c.topic) || /^\/rover(_[23])?\/laser\/ranges$/.test(c.topic));
+    const wanted = (message.channels ?? []).filter((c) => ['/sandlot/world', '/sandlot/poses', '/sandlot/contacts', '/sandlot/deliveries', '/sandlot/batteries'].includes(c.topic) || /^\/rover(_[23])?\/laser\/ranges$/.test(c.topic));
     for (const c of wanted) topics.set(c.id, c.topic);
     socket.send(JSON.stringify({ op: 'subscribe', subscriptions: wanted.map((c) => ({ id: c.id, channelId: c.id })) }));
     return;
@@ -52,6 +53,8 @@ socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
   if (topic === '/sandlot/world') scene.setWorld(JSON.parse(new TextDecoder().decode(payload)));
   else if (topic === '/sandlot/poses') scene.applyPoses(payload);
   else if (topic === '/sandlot/contacts') scene.setContacts(payload);
+  else if (topic === '/sandlot/deliveries') scene.setDeliveries(payload);
+  else if (topic === '/sandlot/batteries') scene.setBatteries(payload);
   else if (topic.endsWith('/ranges')) scene.setScan(topic.slice(1, -'/ranges'.length), readScan(payload));
 };
 

@@ -110,6 +110,7 @@ export function makeWorld(robots) {
       { name: 'camera', path: `${name}/camera`, kind: 'camera', link: 0, pose: [0.23, 0, 0.16, 1, 0, 0, 0], active: [], topics: [], commands: [] },
       { name: 'ideal', path: `${name}/drive/ideal`, kind: 'ideal_drive', link: 0, pose: IDENTITY, active: ['ideal'], topics: [],
         commands: [{ name: `/${name}/drive/ideal/command`, type: 'geometry_msgs/msg/Twist', level: 'ideal' }] },
+      { name: 'battery', path: `${name}/battery`, kind: 'battery', link: 0, pose: IDENTITY, active: [], topics: [], commands: [] },
     ];
     body.controllers = [{ name: 'controller', path: `${name}/controller`, kind: 'wander' }];
   }
@@ -120,6 +121,7 @@ export function makeWorld(robots) {
       fields: [field('rate', 'number', 'Hz', 'Scans per second.', 0.001, 1000, '10', { tunable: false }),
         field('noise/white', 'number', 'm', 'Standard deviation of each range.', 0, 1, '0.01')] },
     camera: { help: 'Takes pictures.', levels: [], fields: [] },
+    battery: { help: 'Stores energy.', levels: [], fields: [] },
     ideal_drive: { help: 'Moves the robot as told.', levels: [level('ideal', '', 'geometry_msgs/msg/Twist', 'Speeds.')],
       fields: [field('max_speed', 'number', 'm/s', 'Fastest.', 0, 10, '1')] },
     wander: { help: 'Drives about and avoids walls.', levels: [],
@@ -144,6 +146,7 @@ export function makeWorld(robots) {
         range_m: 0, constant: 1, linear: 0, quadratic: 0, inner_rad: 0, outer_rad: 0 }],
       media: [{ name: 'breeze', path: 'media/breeze', kind: 'wind' }, { name: 'air', path: 'media/air', kind: 'shout' }],
       rules: [{ name: 'goals', path: 'rules/goals', kind: 'goals' }],
+      criteria: TEAMS.filter((team) => team !== '').map((team) => ({ team, address: `${team}.criterion`, value: 'rules/goals.scored' })),
       teams: [{ name: 'red', programs: [{ name: 'coach', path: 'red/coach', kind: 'formation' }] }],
       models,
       instances: bodies.map(({ circle: _, ...rest }) => rest),

@@ -441,6 +441,80 @@ export function decodeContacts(bytes: ArrayBuffer | Uint8Array, contacts: Contac
   return true;
 }
 
+/** What /sandlot/deliveries says: per link 6 numbers (sender, receiver, medium, deliveries, channel, strength). */
+export interface Deliveries {
+  tick: number;
+  time_s: number;
+  count: number;
+  /** Grows as needed and is kept. */
+  values: Float64Array;
+}
+
+export function emptyDeliveries(): Deliveries {
+  return { tick: 0, time_s: 0, count: 0, values: new Float64Array(6 * 64) };
+}
+
+const COUNTED_HEADER_BYTES = 20;
+const DELIVERY_BYTES = 20;
+
+export function decodeDeliveries(bytes: ArrayBuffer | Uint8Array, deliveries: Deliveries): boolean {
+  const view = viewOf(bytes);
+  deliveries.count = 0;
+  if (view.byteLength < COUNTED_HEADER_BYTES) return false;
+  const count = view.getUint32(16, true);
+  if (view.byteLength !== COUNTED_HEADER_BYTES + count * DELIVERY_BYTES) return false;
+  deliveries.tick = readU64(view, 0);
+  deliveries.time_s = readI64(view, 8) * 1e-9;
+  if (deliveries.values.length < count * 6) deliveries.values = new Float64Array(count * 12);
+  const values = deliveries.values;
+  for (let i = 0, at = COUNTED_HEADER_BYTES; i < count * 6; i += 6, at += DELIVERY_BYTES) {
+    values[i] = view.getUint32(at, true);
+    values[i + 1] = view.getUint32(at + 4, true);
+    values[i + 2] = view.getUint16(at + 8, true);
+    values[i + 3] = view.getUint16(at + 10, true);
+    values[i + 4] = view.getInt32(at + 12, true);
+    values[i + 5] = view.getFloat32(at + 16, true);
+  }
+  deliveries.count = count;
+  return true;
+}
+
+/** What /sandlot/batteries says. */
+export interface Batteries {
+  tick: number;
+  time_s: number;
+  count: number;
+  /** Of the instances. These lists grow as needed and are kept. */
+  ids: Uint32Array;
+  /** Shares, 0 to 1; 0: nothing is left. */
+  charges: Float32Array;
+}
+
+export function emptyBatteries(): Batteries {
+  return { tick: 0, time_s: 0, count: 0, ids: new Uint32Array(64), charges: new Float32Array(64) };
+}
+
+export function decodeBatteries(bytes: ArrayBuffer | Uint8Array, batteries: Batteries): boolean {
+  const view = viewOf(bytes);
+  batteries.count = 0;
+  if (view.byteLength < COUNTED_HEADER_BYTES) return false;
+  const count = view.getUint32(16, true);
+  if (view.byteLength !== COUNTED_HEADER_BYTES + count * 8) return false;
+  batteries.tick = readU64(view, 0);
+  batteries.time_s = readI64(view, 8) * 1e-9;
+  if (batteries.ids.length < count) {
+    batteries.ids = new Uint32Array(count * 2);
+    batteries.charges = new Float32Array(count * 2);
+  }
+  for (let i = 0, at = COUNTED_HEADER_BYTES; i < count; ++i, at += 8) {
+    batteries.ids[i] = view.getUint32(at, true);
+    const charge = view.getFloat32(at + 4, true);
+    batteries.charges[i] = Number.isFinite(charge) ? charge : 0;
+  }
+  batteries.count = count;
+  return true;
+}
+
 function viewOf(bytes: ArrayBuffer | Uint8Array): DataView {
   return bytes instanceof ArrayBuffer
     ? new DataView(bytes)

@@ -87,6 +87,31 @@ test('contacts are read, and refused when their count is wrong', () => {
   assert.equal(protocol.decodeContacts(new ArrayBuffer(3), contacts), false);
 });
 
+test('deliveries are read, and refused when their count is wrong', () => {
+  const w = new Writer().u64(5n).i64(50_000_000n).u32(2);
+  w.u32(7).u32(8).u16(1).u16(3).u32(0xffffffff).f32(-50).u32(8).u32(7).u16(0).u16(1).u32(2).f32(20);
+  const whole = new Uint8Array(w.arrayBuffer());
+  const deliveries = protocol.emptyDeliveries();
+  assert.equal(protocol.decodeDeliveries(whole, deliveries), true);
+  assert.equal(deliveries.count, 2);
+  assert.equal(deliveries.time_s, 0.05);
+  assert.deepEqual([...deliveries.values.slice(0, 12)], [7, 8, 1, 3, -1, -50, 8, 7, 0, 1, 2, 20]);
+  for (let length = 0; length < whole.length; ++length) assert.equal(protocol.decodeDeliveries(whole.slice(0, length), deliveries), false, `${length} bytes`);
+  assert.equal(deliveries.count, 0);
+});
+
+test('charges of batteries are read, and refused when their count is wrong', () => {
+  const w = new Writer().u64(5n).i64(50_000_000n).u32(100);
+  for (let i = 0; i < 100; ++i) w.u32(i + 3).f32(i === 1 ? NaN : i / 128);
+  const whole = new Uint8Array(w.arrayBuffer());
+  const batteries = protocol.emptyBatteries();
+  assert.equal(protocol.decodeBatteries(whole, batteries), true);
+  assert.equal(batteries.count, 100);
+  assert.deepEqual([batteries.ids[0], batteries.ids[99], batteries.charges[1], batteries.charges[99]], [3, 102, 0, 99 / 128]);
+  assert.equal(protocol.decodeBatteries(whole.slice(0, -1), batteries), false);
+  assert.equal(batteries.count, 0);
+});
+
 function near(actual, expected) {
   for (let i = 0; i < expected.length; ++i) {
     assert.ok(Math.abs(actual[i] - expected[i]) < 1e-4, `${actual} is not ${expected}`);

@@ -18,6 +18,7 @@ import {LogPanel} from '../ui/log';
 import {Toasts} from '../ui/overlays';
 import {openPalette} from '../ui/palette';
 import {saveBlob} from '../ui/save';
+import {Score} from '../ui/score';
 import {CameraMode, cameras, overlays, SceneTools, Tool} from '../ui/scene_tools';
 import {Teleop} from '../ui/teleop';
 import {TopicsPanel} from '../ui/topics';
@@ -116,12 +117,13 @@ export class App {
     this.frame.onShown();
 
     this.tools = new SceneTools(this.context, this.teleop, this.video, this.frame.sceneHost);
-    this.frame.sceneHost.append(...this.tools.elements);
+    this.frame.sceneHost.append(...this.tools.elements, new Score(this.context).element);
     const sensors = new SensorOverlays(this.client, this.store, this.scene);
     this.tools.onOverlays = () => {
       sensors.show({scans: this.tools.on.scans ?? false, ranges: this.tools.on.ranges ?? false, views: this.tools.on.frusta ?? false, objects: this.tools.on.objects ?? false});
-      this.listenContacts(this.tools.on.contacts ?? false);
+      this.listen();
     };
+    this.store.onWorld.on(() => this.listen());
     this.tools.onOverlays();
 
     this.wire();
@@ -185,12 +187,22 @@ export class App {
     };
   }
 
-  private stopContacts: (() => void) | null = null;
+  private readonly stops = new Map<string, () => void>();
 
-  private listenContacts(on: boolean): void {
-    if (on === (this.stopContacts !== null)) return;
-    this.stopContacts?.();
-    this.stopContacts = on ? this.client.subscribe('/sandlot/contacts', (message) => this.scene.setContacts(message.bytes)) : null;
+  /** Subscribes to what the overlays that are on draw, where the world has such things. */
+  private listen(): void {
+    const {scene, store, tools} = this;
+    const wants = (topic: string, wanted: boolean, take: (bytes: Uint8Array) => void): void => {
+      if (wanted === this.stops.has(topic)) return;
+      this.stops.get(topic)?.();
+      this.stops.delete(topic);
+      if (wanted) this.stops.set(topic, this.client.subscribe(topic, (message) => take(message.bytes)));
+    };
+    const has_media = (store.world?.media ?? []).length > 0;
+    const has_batteries = (store.world?.instances ?? []).some((i) => (i.devices ?? []).some((d) => d.kind === 'battery'));
+    wants('/sandlot/contacts', tools.on.contacts ?? false, (bytes) => scene.setContacts(bytes));
+    wants('/sandlot/deliveries', (tools.on.links ?? false) && has_media, (bytes) => scene.setDeliveries(bytes));
+    wants('/sandlot/batteries', (tools.on.batteries ?? false) && has_batteries, (bytes) => scene.setBatteries(bytes));
   }
 
   // --- the theme

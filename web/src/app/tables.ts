@@ -21,6 +21,8 @@ const table: [string, Action['group'], string, string[], boolean][] = [
   ['overlay.grid', 'View', 'Grid', ['g'], false],
   ['overlay.trails', 'View', 'Trails', ['t'], false],
   ['overlay.names', 'View', 'Names', ['n'], false],
+  ['overlay.links', 'View', 'Communication links', [], false],
+  ['overlay.batteries', 'View', 'Batteries', [], false],
   ['overlay.shadows', 'View', 'Shadows', [], false],
   ['overlay.scans', 'View', 'Laser scans', [], false],
   ['overlay.ranges', 'View', 'Range cones', [], false],

@@ -6,7 +6,9 @@
 // Errors   damaged messages, unknown shapes and missing assets are passed over or drawn as checkered boxes, with one
 //          warning on the console; without WebGL the host shows a sentence instead.
 import * as THREE from 'three';
-import { decodeContacts, decodePoses, emptyContacts, emptyPosesHeader, readPosesHeader, type World } from '../protocol';
+import {
+  decodeBatteries, decodeContacts, decodeDeliveries, decodePoses, emptyBatteries, emptyContacts, emptyDeliveries, emptyPosesHeader, readPosesHeader, type World,
+} from '../protocol';
 import { Assets } from './assets';
 import { Backdrop, type Theme } from './backdrop';
 import { Bodies, type Body } from './bodies';
@@ -16,7 +18,9 @@ import { Hands, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
 import { overviewOf, someLeave } from './overview';
+import { BAR_PX, Batteries } from './overlays/batteries';
 import { Labels } from './overlays/labels';
+import { Links } from './overlays/links';
 import { type CameraView, type Detection, Marks, teamColors, type RangeReading } from './overlays/marks';
 import { PullLine } from './overlays/pull';
 import { Scans, type Scan } from './overlays/scans';
@@ -34,7 +38,7 @@ export interface Picked {
   point: [number, number, number];
 }
 
-export const OVERLAYS = ['trails', 'names', 'frames', 'velocity', 'contacts', 'scans', 'ranges', 'frusta', 'objects', 'grid', 'shadows', 'collisions', 'teams'] as const;
+export const OVERLAYS = ['trails', 'names', 'frames', 'velocity', 'contacts', 'scans', 'ranges', 'frusta', 'objects', 'grid', 'shadows', 'collisions', 'teams', 'links', 'batteries'] as const;
 export type Overlay = (typeof OVERLAYS)[number];
 
 const MOST_PIXELS_PER_CSS_PIXEL = 2;
@@ -57,6 +61,8 @@ export class SceneView {
   private readonly outline = new Outline();
   private readonly labels: Labels;
   private readonly marks: Marks;
+  private readonly links: Links;
+  private readonly batteries: Batteries;
   private readonly scans: Scans;
   private readonly trails: Trails;
   private readonly pull_line: PullLine;
@@ -64,10 +70,12 @@ export class SceneView {
   private readonly foresight: Foresight;
   private readonly meter = new Meter();
   private readonly overlays: Record<Overlay, boolean> = {
-    trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, objects: true, grid: true, shadows: true, collisions: false, teams: true,
+    trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, objects: true, grid: true, shadows: true, collisions: false, teams: true, links: false, batteries: false,
   };
   private readonly header = emptyPosesHeader();
   private readonly contacts = emptyContacts();
+  private readonly deliveries = emptyDeliveries();
+  private readonly charges = emptyBatteries();
   private readonly raycaster = new THREE.Raycaster();
   private readonly pointer = new THREE.Vector2();
   private readonly subject: Subject = {
@@ -116,6 +124,8 @@ export class SceneView {
     this.scene.add(this.root);
     this.labels = new Labels(this.scene);
     this.marks = new Marks(this.scene);
+    this.links = new Links(this.scene);
+    this.batteries = new Batteries(this.scene);
     this.scans = new Scans(this.scene);
     this.trails = new Trails(this.scene);
     this.pull_line = new PullLine(this.scene);
@@ -173,12 +183,15 @@ export class SceneView {
     this.backdrop.setShadows(this.overlays.shadows);
     const teams = teamColors(world.instances.map((i) => i.team));
     this.marks.setTeams(teams);
+    this.links.setMedia(world.media ?? []);
     const robots = this.bodies.list.filter((b) => b.instance.robot);
     this.trails.setBodies(robots, (body, i) => teams.get(body.instance.team) ?? new THREE.Color().setHSL((0.58 + i * 0.381966) % 1, 0.7, 0.5), fresh);
     if (fresh) {
       this.scans.clear();
       this.marks.clear();
     }
+    // Their bodies may be others now.
+    this.links.clear();
     this.scans.keepOnly((path) => this.bodies.devices.has(path));
     // What was selected may be another object now, or gone.
     this.hovered = null;
@@ -200,6 +213,8 @@ export class SceneView {
     this.assets.forget();
     this.scans.clear();
     this.marks.clear();
+    this.links.clear();
+    this.batteries.clear();
     this.trails.setBodies([], () => TRAIL, true);
     this.world = null;
     this.epoch = -1;
@@ -262,6 +277,8 @@ export class SceneView {
       if (name === 'names') this.labels.visible = show;
       if (name === 'trails') this.trails.visible = show;
       if (name === 'scans') this.scans.visible = show;
+      if (name === 'links') this.links.visible = show;
+      if (name === 'batteries') this.batteries.visible = show;
       if (name === 'grid') this.backdrop.setGrid(show);
       if (name === 'shadows') this.backdrop.setShadows(show);
       if (name === 'collisions') this.bodies.setCollisions(show);
@@ -309,7 +326,22 @@ export class SceneView {
     if (this.overlays.contacts) this.invalidate();
   }
 
+  /** Bytes of /sandlot/deliveries. */
+  setDeliveries(bytes: ArrayBuffer | Uint8Array): void {
+    if (!decodeDeliveries(bytes, this.deliveries) || !this.overlays.links) return;
+    this.links.set(this.deliveries, this.bodies.by_id, performance.now());
+    this.invalidate();
+  }
+
+  /** Bytes of /sandlot/batteries. */
+  setBatteries(bytes: ArrayBuffer | Uint8Array): void {
+    if (!decodeBatteries(bytes, this.charges)) return;
+    this.batteries.set(this.charges);
+    if (this.overlays.batteries) this.invalidate();
+  }
+
   setTheme(theme: Theme): void {
+    this.batteries.setTheme(theme);
     this.backdrop.setTheme(theme);
     this.labels.setTheme(theme);
     this.outline.setColors(theme === 'light' ? '#0a6cff' : '#5aa9ff', theme === 'light' ? '#ffffff' : '#dbe6f5');
@@ -379,7 +411,7 @@ export class SceneView {
     this.observer.disconnect();
     this.hands?.dispose();
     this.bodies.clear();
-    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.scans, this.trails, this.pull_line]) part.dispose();
+    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.links, this.batteries, this.scans, this.trails, this.pull_line]) part.dispose();
     this.renderer?.dispose();
     this.renderer?.domElement.remove();
     this.message.remove();
@@ -442,7 +474,9 @@ export class SceneView {
     camera.matrixWorldInverse.copy(camera.matrixWorld).invert();
     if (this.backdrop.follow(camera, this.rig.focus, this.rig.reach_m, this.width_px < 700 ? 1024 : 2048)) renderer.shadowMap.needsUpdate = true;
     this.marks.update(this.bodies, this.selected);
-    this.labels.update(this.labelled(), camera, this.width_px, this.height_px, this.selected);
+    this.labels.update(this.labelled(), camera, this.width_px, this.height_px, this.selected, this.lift_px);
+    this.batteries.update(this.bodies.by_id, this.width_px, this.height_px);
+    const fading = this.links.update(performance.now(), this.width_px, this.height_px);
     this.drawPull();
     const scripted_ms = performance.now();
     renderer.info.reset();
@@ -452,7 +486,7 @@ export class SceneView {
     this.outline.render(renderer, camera, this.selected, this.hands?.isDragging ? null : this.hovered, 1.6 * renderer.getPixelRatio());
     const done_ms = performance.now();
     this.meter.frame(done_ms, scripted_ms - begin_ms, done_ms - scripted_ms);
-    if (changes) this.invalidate();
+    if (changes || fading) this.invalidate();
   }
 
   private readonly labelled_list: Body[] = [];
@@ -463,6 +497,8 @@ export class SceneView {
     for (const body of this.bodies.list) if (body.instance.robot || body === this.selected) list.push(body);
     return list;
   }
+
+  private readonly lift_px = (body: Body): number => (this.batteries.has(body.instance.id) ? BAR_PX : 0);
 
   private drawPull(): void {
     const pull = this.hands?.pull ?? null;

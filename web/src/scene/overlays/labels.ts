@@ -24,7 +24,7 @@ export class Labels {
   private readonly texture: THREE.CanvasTexture;
   private readonly mesh: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>;
   private readonly places = new THREE.InstancedBufferAttribute(new Float32Array(3 * MOST), 3).setUsage(THREE.DynamicDrawUsage);
-  private readonly cells_of = new THREE.InstancedBufferAttribute(new Float32Array(3 * MOST), 3).setUsage(THREE.DynamicDrawUsage);
+  private readonly cells_of = new THREE.InstancedBufferAttribute(new Float32Array(4 * MOST), 4).setUsage(THREE.DynamicDrawUsage);
   private readonly cells = new Map<string, Cell>();
   private readonly free: number[] = Array.from({ length: COLUMNS * ROWS }, (_, i) => i).reverse();
   private tick = 0;
@@ -58,13 +58,13 @@ export class Labels {
         blendSrc: THREE.OneFactor,
         blendDst: THREE.OneMinusSrcAlphaFactor,
         uniforms: { atlas: { value: this.texture }, view_px: { value: new THREE.Vector2(1, 1) } },
-        // The cell's corner, in cells, and the width used of it.
-        vertexShader: `attribute vec3 place; attribute vec3 cell; uniform vec2 view_px; varying vec2 at;
+        // The cell's corner, in cells, the width used of it, and how much higher than usual it hangs.
+        vertexShader: `attribute vec3 place; attribute vec4 cell; uniform vec2 view_px; varying vec2 at;
           void main() {
             vec4 p = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
             vec2 size_px = vec2(${(CELL_W * PX_PER_CELL).toFixed(1)} * cell.z, ${(CELL_H * PX_PER_CELL).toFixed(1)});
             vec2 middle = floor((p.xy / p.w * 0.5 + 0.5) * view_px);
-            p.xy = ((middle + position.xy * size_px + vec2(0.0, 6.0)) / view_px * 2.0 - 1.0) * p.w;
+            p.xy = ((middle + position.xy * size_px + vec2(0.0, 6.0 + cell.w)) / view_px * 2.0 - 1.0) * p.w;
             gl_Position = p;
             vec2 within = vec2((position.x + 0.5) * cell.z, 1.0 - position.y);
             at = (cell.xy + within) / vec2(${COLUMNS.toFixed(1)}, ${ROWS.toFixed(1)});
@@ -98,8 +98,8 @@ export class Labels {
     this.texture.needsUpdate = true;
   }
 
-  /** Chooses and places the names. @param width_px, height_px of the view in CSS pixels */
-  update(bodies: Body[], camera: THREE.Camera, width_px: number, height_px: number, selected: Body | null): void {
+  /** Chooses and places the names. @param width_px, height_px of the view in CSS pixels @param lift_px  of a name over its usual place */
+  update(bodies: Body[], camera: THREE.Camera, width_px: number, height_px: number, selected: Body | null, lift_px: (body: Body) => number): void {
     if (!this.mesh.visible) return;
     ++this.tick;
     this.mesh.material.uniforms.view_px.value.set(width_px, height_px);
@@ -111,7 +111,8 @@ export class Labels {
       if (cell === null) continue;
       const half_w = (CELL_W * PX_PER_CELL * cell.width) / 2;
       const x = (candidate.x * 0.5 + 0.5) * width_px;
-      const y = (candidate.y * 0.5 + 0.5) * height_px;
+      const lift = lift_px(candidate.body);
+      const y = (candidate.y * 0.5 + 0.5) * height_px + lift;
       let covered = false;
       for (let i = 0; i < count && !covered; ++i) {
         covered = Math.abs(boxes[4 * i] - x) < boxes[4 * i + 2] + half_w + 2 && Math.abs(boxes[4 * i + 1] - y) < CELL_H * PX_PER_CELL;
@@ -122,7 +123,7 @@ export class Labels {
       boxes[4 * count + 2] = half_w;
       const world = candidate.body.world;
       this.places.setXYZ(count, world[0], world[1], world[2] + candidate.body.bounds.max.z);
-      this.cells_of.setXYZ(count, cell.index % COLUMNS, Math.floor(cell.index / COLUMNS), cell.width);
+      this.cells_of.setXYZW(count, cell.index % COLUMNS, Math.floor(cell.index / COLUMNS), cell.width, lift);
       ++count;
     }
     this.mesh.geometry.instanceCount = count;
