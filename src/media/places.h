@@ -1,8 +1,9 @@
 #pragma once
-/// Places of the receivers of a medium in a tick, in a grid that finds those near a point, with what decides whether they hear.
+/// Places in a tick, such as those of the receivers of a medium, in a grid that finds those near a point; of receivers, also what
+/// decides whether they hear.
 ///
-/// Cost     update: a pass over the receivers, on all threads, and one over the cells; about four receivers per cell. A query
-///          looks at all receivers of the cells about its circle, and sorts those within it. No heap after warm-up.
+/// Cost     update: a pass over the places, on all threads, and one over the cells; about four of them per cell. A query looks at
+///          all places of the cells about its circle, and sorts those within it. No heap after warm-up.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,13 +18,24 @@ namespace sandlot::media {
 
 class Places {
  public:
+  struct Place {
+    Vec3 p_W;
+    std::uint64_t key = 0;                     ///< of a receiver
+    std::optional<std::int32_t> channel = {};  ///< that a receiver listens to; empty: all
+  };
+  /// Those of the receivers of a medium.
   void update(const MediumContext& context) {
-    all_.resize(context.receivers.size());
+    update(context.receivers.size(), [&](std::size_t i) -> Place {
+      const Receiver& receiver = context.receivers[i];
+      return {context.pose(receiver).p, receiver.key, receiver.inbox->channel()};
+    });
+  }
+  /// @param place_of  place number i; called on several threads
+  template <class PlaceOf>
+  void update(std::size_t count, PlaceOf&& place_of) {
+    all_.resize(count);
     parallel_for(all_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Receiver& receiver = context.receivers[i];
-        all_[i] = {context.pose(receiver).p, receiver.key, receiver.inbox->channel()};
-      }
+      for (std::size_t i = begin; i < end; ++i) all_[i] = place_of(i);
     });
     whole_ = {};
     if (all_.empty()) return;
@@ -72,12 +84,7 @@ class Places {
   }
 
  private:
-  struct Place {
-    Vec3 p_W;
-    std::uint64_t key = 0;
-    std::optional<std::int32_t> channel;  ///< empty: all
-  };
-  std::vector<Place> all_;  ///< per receiver
+  std::vector<Place> all_;
   planar::Area whole_;      ///< about all of them
   planar::HashGrid grid_;
 };

@@ -15,20 +15,32 @@ Result<Charger> Charger::create(const DeviceBuild& build, Spec spec) {
   return charger;
 }
 
-/// Lists the accounts of batteries in reach.
-void Charger::find_near(const Context& context) {
-  near.clear();
+void Charger::Batteries::locate(const Context& context) {
   if (!context.energy) return;
   const auto accounts = context.energy->accounts();
-  bodies.assign(1, body.index);
+  bodies.clear();
   for (const EnergyAccount* account : accounts) bodies.push_back(account->body.index);
   states.resize(bodies.size());
   context.engine.states_of(bodies, states);
-  const Vec3 here = states.front().X_WB * p_LS;
-  for (std::size_t i = 0; i < accounts.size(); ++i) {
+  places.update(accounts.size(), [&](std::size_t i) -> media::Places::Place {
+    return {.p_W = states[i].X_WB * accounts[i]->p_LS};
+  });
+}
+
+/// Lists the accounts of batteries in reach, in the order in which their robots came into the world.
+void Charger::find_near(const Context& context, Batteries& of_all) {
+  near.clear();
+  if (!context.energy) return;
+  const auto accounts = context.energy->accounts();
+  BodyState own;
+  context.engine.states_of({&body.index, 1}, {&own, 1});
+  const Vec3 here = own.X_WB * p_LS;
+  // The grid may round otherwise than the distance that decides: 1 mm is far above what it can lose within 1e9 m.
+  of_all.places.find_within(here, spec.reach_m + 1e-3, of_all.found);
+  for (const std::uint32_t i : of_all.found) {
     EnergyAccount* const account = accounts[i];
     if (energy && account == energy->account()) continue;
-    const Vec3 to = states[i + 1].X_WB * account->p_LS - here;
+    const Vec3 to = of_all.places.point(i) - here;
     if (dot(to, to) <= spec.reach_m * spec.reach_m) near.push_back(account);
   }
 }
@@ -49,7 +61,7 @@ double Charger::give(double available_J, double dt_s) {
   return available_J - left_J;
 }
 
-void Charger::work(const Context& context) {
+void Charger::work(const Context& context, Batteries& of_all) {
   const double dt_s = context.tick.s(), most_J = spec.power_W * dt_s;
   state.power_given_W = 0;
   state.batteries = 0;
@@ -57,7 +69,7 @@ void Charger::work(const Context& context) {
   if (energy) state.held_J += state.asked_J * energy->state.share * spec.transfer_efficiency;
   state.asked_J = 0;
   if (!state.on) return;
-  find_near(context);
+  find_near(context, of_all);
   state.batteries = static_cast<std::uint32_t>(near.size());
   if (near.empty()) return;
   const double given_J = give(energy ? std::min(state.held_J, most_J) : most_J, dt_s);
@@ -72,14 +84,19 @@ void Charger::work(const Context& context) {
 }
 
 void Charger::actuate(PoolView<Charger> pool, const Context& context) {
+  bool any_on = false;
   for (const std::uint32_t index : pool.due) {
     Charger& charger = pool.all[index];
     if (charger.command->count != charger.state.taken) {
       charger.state.taken = charger.command->count;
       charger.state.on = charger.command->message.data;
     }
-    charger.work(context);
+    any_on = any_on || charger.state.on;
   }
+  if (pool.due.empty()) return;
+  Batteries& batteries = pool.all.front().batteries;
+  if (any_on) batteries.locate(context);
+  for (const std::uint32_t index : pool.due) pool.all[index].work(context, batteries);
 }
 
 void Charger::sense(PoolView<Charger> pool, const Context& context) {

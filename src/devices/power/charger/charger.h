@@ -11,11 +11,13 @@
 /// Output   level `power`: std_msgs/Float64, the power that it gives [W].
 /// Time     in every tick, from the places at its beginning.
 /// Limits   no contacts, no alignment: everything within reach is charged alike.
-/// Cost     a distance per charger and battery and tick; no allocation after the first ones.
+/// Cost     in a tick in which a charger is on: a grid of all batteries' places, and a distance per charger and battery near it; no
+///          allocation after the first ones.
 /// Errors   none beyond the ranges of the keys.
 #include <vector>
 
 #include "devices/kind.h"
+#include "media/places.h"
 #include "messages/messages.h"
 
 namespace sandlot::charger {
@@ -65,9 +67,17 @@ struct Charger {
   EnergyMeter* energy = nullptr;
   Topic<msg::Float64>* power = nullptr;
   Topic<msg::Bool>* command = nullptr;
-  std::vector<std::uint32_t> bodies;  ///< scratch
-  std::vector<BodyState> states;
-  std::vector<EnergyAccount*> near;
+  /// Places of all batteries in this tick. Scratch: that of the first charger of the pool serves all.
+  struct Batteries {
+    std::vector<std::uint32_t> bodies;
+    std::vector<BodyState> states;
+    media::Places places;
+    std::vector<std::uint32_t> found;
+
+    void locate(const Context& context);
+  };
+  Batteries batteries;
+  std::vector<EnergyAccount*> near;  ///< scratch
 
   static Result<Charger> create(const DeviceBuild& build, Spec spec);
   static void actuate(PoolView<Charger> pool, const Context& context);
@@ -75,9 +85,9 @@ struct Charger {
   bool fits() const;
 
  private:
-  void find_near(const Context& context);
+  void find_near(const Context& context, Batteries& of_all);
   double give(double available_J, double dt_s);
-  void work(const Context& context);
+  void work(const Context& context, Batteries& of_all);
 };
 
 extern const Kind kind;
