@@ -58,8 +58,8 @@ def main():
     print(f"## Worlds that stand alone: {good} of {len(near)} run\n")
     table(near, "First line skipped, or the error")
     print(f"\n## Worlds that need downloads: {len(far)}\n")
-    print("Nothing is downloaded by itself: fetch what the line names, put it where it says, or leave it out with "
-          "`--skip-missing`.\n")
+    print("Nothing is downloaded by itself: fetch what the line names, put it in the place that the line names, or "
+          "leave it out with `--skip-missing`.\n")
     table(far, "What is missing first")
 
 

@@ -76,6 +76,16 @@ bool is_endpoint(const model::DeviceDecl& device) {
          device.sdf_types.end();
 }
 
+/// Warns of what an endpoint has in addition to its address.
+void warn_of_the_rest(const model::DeviceDecl& endpoint, const Reading& in) {
+  if (!endpoint.config.is_map()) return;
+  for (const Node::Entry& entry : endpoint.config.entries())
+    if (entry.key != "address" && !starts_with(entry.key, "@") && entry.key != "#text")
+      in.notes.warn(
+          Xml{.name = entry.key, .place = entry.key_place},
+          "<" + entry.key.substr(0, 60) + "> of the plugin CommsEndpoint is not supported and has no effect");
+}
+
 }  // namespace
 
 Result<bool> read_comms(const Xml& plugin, const Reading& in, WorldContent& out) {
@@ -84,6 +94,7 @@ Result<bool> read_comms(const Xml& plugin, const Reading& in, WorldContent& out)
   if (name == "rfcomms") {
     SL_TRY(read_rf(plugin, in, out));
   } else {
+    in.notes.unused(plugin, "");
     out.media.push_back(medium("perfect_comms", plugin,
                                {{"range", "1000000"},
                                 {"bandwidth", "1e12"},
@@ -95,7 +106,7 @@ Result<bool> read_comms(const Xml& plugin, const Reading& in, WorldContent& out)
   return true;
 }
 
-void connect_endpoints(WorldContent& content) {
+void connect_endpoints(WorldContent& content, const Reading& in) {
   if (content.media.empty()) return;
   for (model::Instance& instance : content.instances) {
     if (std::none_of(std::as_const(instance.devices).begin(), std::as_const(instance.devices).end(),
@@ -103,6 +114,7 @@ void connect_endpoints(WorldContent& content) {
       continue;
     for (model::DeviceDecl& device : instance.devices.edit()) {
       if (!is_endpoint(device)) continue;
+      warn_of_the_rest(device, in);
       Node config = Node::map(device.place);
       if (const Node* const address = device.config.find("address")) config.set("address", *address);
       config.set("medium", Node::scalar(content.media.front().name, device.place));

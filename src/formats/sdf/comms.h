@@ -8,7 +8,7 @@
 /// Limits   RFComms takes <sigma> for a variance, as Gazebo's code does, and cuts the fading off at three deviations. Its bit
 ///          error rate is that of QPSK by the textbook, where Gazebo's formula has twice the rate of BPSK and counts bytes; its
 ///          limit of bits per second and radio becomes time on the air. In a world without these plugins an endpoint is not
-///          supported.
+///          supported. Topics and brokers have no effect, with a warning for each.
 /// Source   gz-sim, src/systems/rf_comms, src/systems/perfect_comms.
 #include "formats/content.h"
 #include "formats/sdf/reading.h"
@@ -19,6 +19,6 @@ namespace sandlot::formats {
 Result<bool> read_comms(const Xml& plugin, const Reading& in, WorldContent& out);
 
 /// Makes the endpoints of all models devices of the world's medium, if there is one.
-void connect_endpoints(WorldContent& content);
+void connect_endpoints(WorldContent& content, const Reading& in);
 
 }  // namespace sandlot::formats

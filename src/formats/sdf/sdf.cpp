@@ -194,7 +194,7 @@ Status read_world(const Xml& world, const Reading& in, WorldContent& out) {
                          "put it into a <model>");
     }
   }
-  connect_endpoints(out);
+  connect_endpoints(out, in);
   return {};
 }
 

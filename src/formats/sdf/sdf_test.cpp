@@ -352,6 +352,21 @@ TEST(Sdf, GazebosCommunicationIsARadio) {
       "<plugin filename='gz-sim-perfect-comms-system' name='gz::sim::systems::PerfectComms'/>" + endpoint));
   ASSERT_TRUE(perfect.content) << perfect.error;
   EXPECT_EQ(perfect.content->media.at(0).name, "perfect_comms");
+  // What names topics of Gazebo's transport has no effect, and is named where it stands.
+  const Read more = parse(
+      world("<plugin filename='gz-sim-perfect-comms-system' name='gz::sim::systems::PerfectComms'/><model "
+            "name='a'>" +
+            link("l") +
+            "<plugin filename='gz-sim-comms-endpoint-system' name='gz::sim::systems::CommsEndpoint'>\n"
+            "<address>a</address>\n<topic>a/rx</topic>\n"
+            "<broker><bind_service>/bind</bind_service></broker></plugin></model>"));
+  ASSERT_TRUE(more.content) << more.error;
+  ASSERT_EQ(more.warnings.size(), 2u);
+  EXPECT_EQ(more.warnings[0],
+            "w.sdf:3: <topic> of the plugin CommsEndpoint is not supported and has no effect");
+  EXPECT_EQ(more.warnings[1],
+            "w.sdf:4: <broker> of the plugin CommsEndpoint is not supported and has no effect");
+  EXPECT_EQ(more.content->instances.at(0).devices.at(0).config.find("address")->text(), "a");
   // Without a medium an endpoint stays what it was.
   const Read none = parse(world(endpoint));
   ASSERT_TRUE(none.content) << none.error;
