@@ -81,6 +81,22 @@ TEST(Console, WrongValuesAreAnsweredAtOnce) {
   EXPECT_TRUE(has(talk.refused("set rover1 1"), "is not a parameter"));
 }
 
+TEST(Console, SetsPropertiesOfTheUsersOwnWithinTheirRange) {
+  model::Setup setup = test::arena("rigid", 2);
+  for (model::Instance& each : setup.instances)
+    if (each.is_robot) each.properties = {{"fuel", "kg", 5, 0, 10}};
+  Talk talk(setup);
+  EXPECT_EQ(talk.ok("set rover1.fuel 3000 g"), "rover1.fuel = 3000 g with the next tick");
+  talk.step();
+  EXPECT_EQ(talk.ok("show rover1.fuel"), "rover1.fuel = 3 kg");
+  EXPECT_EQ(talk.ok("show rover2.fuel"), "rover2.fuel = 5 kg");
+  EXPECT_EQ(talk.ok("set *.fuel = 1"),
+            "rover1.fuel = 1 with the next tick\nrover2.fuel = 1 with the next tick");
+  EXPECT_TRUE(has(talk.refused("set rover1.fuel 11"), "/rover1.fuel: must be in [0, 10]"));
+  EXPECT_TRUE(has(talk.refused("set rover1.fual 1"), "is not a parameter"));
+  EXPECT_TRUE(has(talk.refused("set pillar1.fuel 1"), "is not a parameter"));
+}
+
 TEST(Console, ControllersHaveParametersToo) {
   Talk talk(test::arena("rigid", 1));
   const std::string list = talk.ok("list parameters");

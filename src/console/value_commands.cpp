@@ -271,6 +271,29 @@ CommandResult set_failure(CommandCall& call, std::string_view thing, const Node&
   return submit(call, std::move(requests));
 }
 
+/// `rover.fuel`, `*.health`: properties of the user's own. Nothing: no robot or object that fits has one of that name.
+std::optional<CommandResult> set_property(CommandCall& call, std::string_view thing, std::string_view name,
+                                          const Node& value, std::string_view written) {
+  std::vector<PendingRequest> requests;
+  for (const auto& entity : call.simulation().entities()) {
+    const std::string& owner = entity->instance.name;
+    if (is_pattern(thing) ? !fits(thing, owner) : thing != owner) continue;
+    const model::PropertyDecl* const property = entity->instance.find_property(name);
+    if (!property) continue;
+    const std::string address = owner + "." + property->name;
+    const Field field{"value", property->unit.c_str(), ""};
+    auto number = read_number(value, field, property->min, property->max, false, "/" + address);
+    if (!number) return std::move(number.error());
+    requests.push_back({ParameterRequest{owner, property->name, value},
+                        address + " = " + std::string(written.substr(0, 100))});
+    if (requests.size() > most_matches)
+      return Error{"'" + std::string(thing) + "' meets more than " + std::to_string(most_matches) + " things",
+                   "narrow it down"};
+  }
+  if (requests.empty()) return std::nullopt;
+  return submit(call, std::move(requests));
+}
+
 }  // namespace
 
 CommandResult cmd_set(CommandCall& call) {
@@ -292,6 +315,9 @@ CommandResult cmd_set(CommandCall& call) {
       address.substr(thing.size() + 1) == failure_field)
     return set_failure(call, thing, value, written);
   if (thing.size() == address.size() || thing.find('/') == std::string_view::npos) {
+    if (thing.size() < address.size())
+      if (auto set = set_property(call, thing, address.substr(thing.size() + 1), value, written))
+        return std::move(*set);
     if (!is_pattern(thing) || thing.size() == address.size())
       return Error{"'" + std::string(address) + "' is not a parameter",
                    "write DEVICE.PARAMETER: rover/laser.noise.white"};
