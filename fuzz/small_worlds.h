@@ -249,6 +249,8 @@ robots:
       foot: {kind: kicker, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 1, opening: 60 deg}
       lamp: {kind: lamp, levels: [brightness, color]}
       eyes: {kind: agent_eyes}
+      health: {kind: property_sensor, property: health}
+    properties: {health: {value: 100, min: 0, max: 100}, age: 3}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {foot: 0.1, go: [0.3, 1]}}, {at: 0.29 s, orders: {foot: 0.05}}]}
 )"},
     {"shapes", "rigid", R"(

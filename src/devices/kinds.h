@@ -40,6 +40,7 @@
   device(omni_drive)            \
   device(overhead_camera)       \
   device(pan_tilt)              \
+  device(property_sensor)       \
   device(proximity)             \
   device(radio)                 \
   device(range_bearing)         \

@@ -41,6 +41,34 @@ struct SpeedHeading {
   }
 };
 
+/// A property that the user gives a robot or object, such as health.
+struct Property {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/Property";
+  std::string name;
+  double value = 0;
+  std::string unit;
+  double min = 0;
+  double max = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name of the property, such as health."}, s.name);
+    visit(Field{"value", "", "Present value, in the property's unit."}, s.value);
+    visit(Field{"unit", "", "Unit of the value and its limits; empty: none was given."}, s.unit);
+    visit(Field{"min", "", "Least value, in the property's unit."}, s.min);
+    visit(Field{"max", "", "Greatest value, in the property's unit."}, s.max);
+  }
+};
+
+/// A property of a robot at a time.
+struct PropertyStamped {
+  static constexpr const char* ros_type = "sandlot_msgs/msg/PropertyStamped";
+  Header header;
+  Property property;
+  static void fields(auto& s, auto&& visit) {
+    visit(header_field, s.header);
+    visit(Field{"property", "", "The property."}, s.property);
+  }
+};
+
 /// A robot or object with all that is known of it.
 struct VisibleObject {
   static constexpr const char* ros_type = "sandlot_msgs/msg/VisibleObject";
