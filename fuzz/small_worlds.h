@@ -240,7 +240,7 @@ markers:
   - {kind: line, name: track, points: [[-1, 0], [1, 0]], width: 0.2, visible: true}
   - {kind: grid, name: tiles, size: [1, 1], spacing: 0.5, width: 0.05}
 rules: [{kind: zone, marker: track, overlaps: true}]
-things: [{name: ball, model: msl_ball, pose: [0.4, 0, 0.11]}]
+things: [{name: ball, model: msl_ball, pose: [0.4, 0, 0.11], properties: {pressure: 0.8}}]
 robots:
   - name: cart
     model: cart

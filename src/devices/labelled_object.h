@@ -5,11 +5,13 @@
 /// Limits   what has no bounds (a ground plane) is not an object. One colour per object: that of its largest
 ///          visual.
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "geometry/bounds.h"
 #include "geometry/color.h"
+#include "model/declarations.h"
 
 namespace sandlot {
 
@@ -21,9 +23,10 @@ struct LabelledObject {
   double mass_kg = 0;  ///< of all links; 0 for what forces do not move
   bool moves = false;  ///< false: it stands as it was placed until the world's next revision
   Color color;
-  std::uint32_t instance = 0;         ///< as images name it; > 0, never given twice in a run
-  std::vector<std::uint32_t> bodies;  ///< one per link; [0] is B
-  Bounds bounds_B;                    ///< of its visuals, or where it has none of its collisions
+  std::uint32_t instance = 0;                       ///< as images name it; > 0, never given twice in a run
+  std::vector<std::uint32_t> bodies;                ///< one per link; [0] is B
+  std::span<const model::PropertyDecl> properties;  ///< of the user's own, as they are now
+  Bounds bounds_B;  ///< of its visuals, or where it has none of its collisions
 };
 
 }  // namespace sandlot

@@ -83,6 +83,7 @@ struct VisibleObject {
   double bearing = 0;
   Vec3 size;
   double mass = 0;
+  std::vector<Property> properties;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the robot or object."}, s.name);
     visit(Field{"label", "", "Label of the object, such as ball."}, s.label);
@@ -97,6 +98,8 @@ struct VisibleObject {
     visit(Field{"bearing", "rad", "Angle to the object's middle: from x to y of the frame."}, s.bearing);
     visit(Field{"size", "m", "Size of the object along the axes of its body."}, s.size);
     visit(Field{"mass", "kg", "Mass of the whole object; 0: it does not move."}, s.mass);
+    visit(Field{"properties", "", "Properties that the user gave it, in the order of the scenario."},
+          s.properties);
   }
 };
 

@@ -61,6 +61,7 @@ std::vector<LabelledObject> labelled_objects_of(std::span<const Owned<Simulation
                                                                 : instance.model->label;
     thing.label = instance.label.empty() ? of_model : instance.label;
     thing.team = instance.team;
+    thing.properties = instance.properties;
     thing.is_robot = instance.is_robot;
     thing.moves = !instance.model->is_static || instance.motion.has_value();
     if (!instance.model->is_static && !instance.motion)

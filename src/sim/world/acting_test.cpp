@@ -339,6 +339,29 @@ TEST(AgentEyes, ReportAllPropertiesOfWhatIsInSight) {
   }
 }
 
+TEST(AgentEyes, ReportTheUsersOwnPropertiesInTheirOrder) {
+  for (const char* const engine : {"rigid", "planar"}) {
+    model::Setup setup = agents(Node::map(), engine);
+    model::Instance& ball = setup.instances[1];
+    ASSERT_EQ(ball.name, "ball1");
+    ball.properties = {{"pressure", "bar", 0.8, 0, 1.2}, {"age", "", 3}};
+    const auto simulation = build(setup);
+    const auto all = [&](std::size_t object) {
+      std::vector<std::tuple<std::string, double, std::string, double, double>> out;
+      for (const msg::Property& each :
+           reading<msg::VisibleObjectArray>(*simulation, "agent/eyes").objects.at(object).properties)
+        out.emplace_back(each.name, each.value, each.unit, each.min, each.max);
+      return out;
+    };
+    using Properties = decltype(all(0));
+    EXPECT_EQ(all(0), (Properties{{"pressure", 0.8, "bar", 0, 1.2}, {"age", 3, "", -1e12, 1e12}})) << engine;
+    EXPECT_EQ(all(1), Properties{}) << engine;
+    simulation->submit(ParameterRequest{"ball1", "pressure", Node::scalar("0.5")});
+    advance(*simulation, 1);
+    EXPECT_EQ(std::get<1>(all(0)[0]), 0.5) << engine;
+  }
+}
+
 TEST(AgentEyes, RangeViewLabelsAndWallsHideThings) {
   for (const char* const engine : {"rigid", "planar"}) {
     const auto names = [&](Node keys, bool wall) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "devices/acting/property_message.h"
 
 namespace sandlot::agent_eyes {
 namespace {
@@ -109,6 +110,9 @@ void AgentEyes::sense(PoolView<AgentEyes> pool, const Context& context) {
       object.bearing = bearing;
       object.size = target.bounds_B.size();
       object.mass = target.mass_kg;
+      object.properties.resize(target.properties.size());
+      for (std::size_t i = 0; i < target.properties.size(); ++i)
+        acting::fill(object.properties[i], target.properties[i]);
     }
     reported.resize(count);
     eyes.objects->publish(context.now);
@@ -124,7 +128,8 @@ constexpr LevelInfo levels[] = {
 
 constinit const Kind kind = make_kind<AgentEyes>({
     .name = "agent_eyes",
-    .help = "Eyes of a high-level agent: all objects in sight with name, pose, velocity, size and mass.",
+    .help = "Eyes of a high-level agent: all objects in sight with pose, velocity, size, mass and the user's "
+            "properties.",
     .levels = levels,
     .needs_render_scene = true,
 });

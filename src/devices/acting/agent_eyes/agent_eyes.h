@@ -3,9 +3,9 @@
 /// instead of sensors.
 ///
 /// Frame    the device's frame S: x forward, y left, z up. Poses and velocities are along its axes.
-/// Output   level `objects`: sandlot_msgs/VisibleObjectArray: name, label, team, colour, pose, velocity, size and mass of each robot
-///          and object, the own robot left out, whose middle is within `range` and `fov`; of those that cannot move only with
-///          `fixed`. In order of creation.
+/// Output   level `objects`: sandlot_msgs/VisibleObjectArray: name, label, team, colour, pose, velocity, size, mass and the user's
+///          own properties of each robot and object, the own robot left out, whose middle is within `range` and `fov`; of
+///          those that cannot move only with `fixed`. Objects are in order of creation, properties in that of the scenario.
 /// Sight    a ray to the middle of its bounds, or to one of four places at 0.8 of its extent to the left, right, top and bottom,
 ///          meets it first; or the middle ray meets nothing, as in a goal. Links of the own robot hide nothing. With
 ///          `through_walls`: whatever stands between.
