@@ -48,7 +48,7 @@ constexpr Golden goldens[] = {
     {"scenarios/predator_prey.yaml", "899b439fe5e946ba"},
     {"scenarios/transport.yaml --duration 20s", "a3134e8ce296b47d"},
     {"scenarios/foraging.yaml --duration 20s", "3375fe3ab4f73060"},
-    {"scenarios/football.yaml --duration 20s", "7dad86600804512b"},
+    {"scenarios/football.yaml --duration 20s", "0d5dc952034b41f5"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
 };
 

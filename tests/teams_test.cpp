@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <regex>
 
 #include "command.h"
@@ -103,10 +104,26 @@ TEST(Teams, ForagersBringSomeItemsHomeAndNoneIsEmpty) {
   EXPECT_EQ(s["success"], true);
 }
 
-TEST(Teams, FootballersScore) {
-  const auto s = summary_of("scenarios/football.yaml --duration 60s");
-  ASSERT_FALSE(s.contains("failed")) << s["failed"];
-  EXPECT_EQ(s["criteria"].size(), 2u);
+TEST(Teams, FootballersScoreOnBothSidesAndMoreWithKicks) {
+  // Goals of red and blue over six seeds, with kicks and with pushing only.
+  const auto goals = [](const std::string& more) {
+    std::array<double, 2> sum{};
+    for (int seed = 1; seed <= 6; ++seed) {
+      const auto s = summary_of("scenarios/football.yaml --seed " + std::to_string(seed) + more);
+      if (s.contains("failed")) {
+        ADD_FAILURE() << s["failed"];
+        continue;
+      }
+      EXPECT_EQ(s["criteria"].size(), 2u);
+      sum[0] += s["criteria"]["red"]["value"].get<double>();
+      sum[1] += s["criteria"]["blue"]["value"].get<double>();
+    }
+    return sum;
+  };
+  const auto kicked = goals(""), pushed = goals(" --set red_impulse=0 --set blue_impulse=0");
+  EXPECT_GE(kicked[0], 6);
+  EXPECT_GE(kicked[1], 6);
+  EXPECT_GT(kicked[0] + kicked[1], 2 * (pushed[0] + pushed[1]));
 }
 
 TEST(Reproduce, NamesWhatItDoesNotKnow) {

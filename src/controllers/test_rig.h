@@ -1,5 +1,6 @@
 #pragma once
-/// Test rig of controllers that see a field from above: a camera, and on demand a radio, a battery and a gripper.
+/// Test rig of controllers that see a field from above: a camera, and on demand a radio, a battery, a gripper,
+/// a kicker and a property.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -19,7 +20,9 @@ struct FieldRig {
   Topic<msg::RadioReceptionArray> radio{"/me/radio/packets"};
   Topic<msg::BatteryState> battery{"/me/battery/state"};
   Topic<msg::GripperState> hand{"/me/hand/hold"};
-  std::vector<std::uint64_t> seen{0, 0, 0, 0};
+  Topic<msg::KickerState> kicker{"/me/kicker/kick"};
+  Topic<msg::PropertyStamped> health{"/me/health/property"};
+  std::vector<std::uint64_t> seen{0, 0, 0, 0, 0, 0};
   Command cmd;
 
   explicit FieldRig(typename C::Spec spec, std::string name = "me") {
@@ -28,7 +31,9 @@ struct FieldRig {
     robot.readings = {{"camera", "world", msg::ObjectPoseArray::ros_type, 0, {}},
                       {"radio", "packets", msg::RadioReceptionArray::ros_type, 1, {}},
                       {"battery", "state", msg::BatteryState::ros_type, 2, {}},
-                      {"hand", "hold", msg::GripperState::ros_type, 3, {}}};
+                      {"hand", "hold", msg::GripperState::ros_type, 3, {}},
+                      {"kicker", "kick", msg::KickerState::ros_type, 4, {}},
+                      {"health", "property", msg::PropertyStamped::ros_type, 5, {}}};
     robot.actuators = {{"drive", "ideal", msg::Twist::ros_type, 0, {}},
                        {"radio", "packets", msg::RadioPacket::ros_type, 1, {}},
                        {"kicker", "kick", msg::Float64::ros_type, 2, {}},
@@ -60,12 +65,14 @@ struct FieldRig {
     radio.publish(now);
     battery.publish(now);
     hand.publish(now);
-    const TopicBase* const topics[] = {&camera, &radio, &battery, &hand};
+    kicker.publish(now);
+    health.publish(now);
+    const TopicBase* const topics[] = {&camera, &radio, &battery, &hand, &kicker, &health};
     cmd.clear();
     controller.step(
         Observation(now, topics, seen, Stream(1, 2, Purpose::controller, static_cast<std::uint64_t>(now.ns))),
         cmd);
-    seen = {camera.count, radio.count, battery.count, hand.count};
+    seen = {camera.count, radio.count, battery.count, hand.count, kicker.count, health.count};
     radio.message.packets.clear();
   }
   /// The order to an actuator in the latest step.
