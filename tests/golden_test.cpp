@@ -46,7 +46,7 @@ constexpr Golden goldens[] = {
     {"scenarios/clearing.yaml --set disturbers=1", "ff300f60f36d0072"},
     {"scenarios/clearing.yaml --set physics=rigid --duration 20s", "3e4ca7f1ce10f70d"},
     {"scenarios/predator_prey.yaml", "899b439fe5e946ba"},
-    {"scenarios/transport.yaml --duration 20s", "a3134e8ce296b47d"},
+    {"scenarios/transport.yaml --duration 20s", "ec208b623a04833c"},
     {"scenarios/foraging.yaml --duration 20s", "3375fe3ab4f73060"},
     {"scenarios/football.yaml --duration 20s", "0d5dc952034b41f5"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <regex>
 
@@ -124,6 +125,21 @@ TEST(Teams, FootballersScoreOnBothSidesAndMoreWithKicks) {
   EXPECT_GE(kicked[0], 6);
   EXPECT_GE(kicked[1], 6);
   EXPECT_GT(kicked[0] + kicked[1], 2 * (pushed[0] + pushed[1]));
+}
+
+TEST(Teams, ADamagedCarrierLeavesItsPlaceToOneThatStandsBy) {
+  // hauler2 and hauler4 push, 2.6 m in all; below 15 % of health a robot takes no role.
+  for (const char* const control : {"bids", "central"}) {
+    const auto s = summary_of(std::string("scenarios/transport.yaml --set control=") + control +
+                              " --command 'at 10s set hauler4.health 14'");
+    ASSERT_FALSE(s.contains("failed")) << s["failed"];
+    EXPECT_EQ(s["success"], true) << control;
+    double way_m = 0;
+    for (const auto& robot : s["robots"])
+      if (robot["name"] == "hauler1" || robot["name"] == "hauler3")
+        way_m = std::max(way_m, robot["distance_m"].get<double>());
+    EXPECT_GT(way_m, 1) << control;
+  }
 }
 
 TEST(Reproduce, NamesWhatItDoesNotKnow) {

@@ -39,13 +39,26 @@ Vec3 place(const Keys& keys, const Load& load, std::size_t post) {
 
 void bid(const Keys& keys, const Load& load, const Pose& X_WB, Member& member) {
   member.bids.assign(keys.posts_m.size(), no_bid);
-  if (member.charge < keys.least_charge) return;
+  if (member.charge < keys.least_charge || member.health < keys.least_health) return;
   const double worth = std::max(member.charge * member.health, least_worth);
   for (std::size_t k = 0; k < keys.posts_m.size(); ++k) {
     const double way = norm(place(keys, load, k) - flat(X_WB.p));
     const double share = member.post == static_cast<std::int32_t>(k) ? kept : 1.0;
     member.bids[k] = std::min(share * way / worth * (1 + member.load), 0.5 * no_bid);
   }
+}
+
+double charge_of(const View<msg::BatteryState>& battery, double before) {
+  const double percentage = battery.message.percentage;
+  return battery.valid && percentage >= 0 ? std::min(percentage, 1.0) : before;
+}
+
+double health_of(const View<msg::PropertyStamped>& health, double before) {
+  const msg::Property& property = health.message.property;
+  const double range = property.max - property.min;
+  if (!health.valid || !(range > 0)) return before;
+  const double share = (property.value - property.min) / range;
+  return share > 0 ? std::min(share, 1.0) : 0;
 }
 
 bool at_post(const Keys& keys, const Load& load, const Pose& X_WB, std::size_t post) {

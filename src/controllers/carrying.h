@@ -5,7 +5,7 @@
 /// Roles    post k is a place behind the load, `posts[k]` to the left of its middle; a robot without a post stands by.
 /// Bids     for a post: the way to it [m] / (charge health) * (1 + load). The smallest bid of all wins its post, then the smallest of
 ///          those that are left. A bid for the post that a robot has counts `kept` of it, so that roles do not flutter. Below
-///          `least_charge` a robot bids for nothing.
+///          `least_charge` or `least_health` a robot bids for nothing.
 /// Pushing  begins when all posts are manned. The robot at post k drives with speed (1 - turn_gain e posts[k] / widest post), where e
 ///          is the angle from the load's axis to the destination: the load turns towards it.
 /// Limits   the load is a straight beam across its way, seen from above; nothing else is in the way.
@@ -22,7 +22,7 @@ namespace sandlot::controllers::carrying {
 inline constexpr std::size_t most_posts = 16, most_robots = 64;
 
 struct Keys {
-  std::string camera, drive, battery;
+  std::string camera, drive, battery, health;
   std::string load = "beam";
   std::array<double, 2> destination_m{};
   double tolerance_m = 0.15;
@@ -32,7 +32,7 @@ struct Keys {
   double push_speed_mps = 0.15;
   double turn_speed_radps = 2;
   double turn_gain = 2;
-  double least_charge = 0.15;
+  double least_charge = 0.15, least_health = 0.15;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
@@ -42,6 +42,10 @@ struct Keys {
     visit(Field{"battery", "", "Battery to use; empty: none, the robot counts as fully charged.", 0, 0,
                 Field::none, 1000},
           s.battery);
+    visit(Field{"health", "",
+                "Property sensor of the robot's health to use; empty: none, the robot counts as sound.", 0, 0,
+                Field::none, 1000},
+          s.health);
     visit(Field{"load", "", "Name of the load.", 0, 0, Field::none, 100}, s.load);
     visit(Field{"destination", "m", "Destination of the load's middle: x y.", -1e6, 1e6, tunable},
           s.destination_m);
@@ -60,6 +64,8 @@ struct Keys {
           s.turn_gain);
     visit(Field{"least_charge", "1", "Charge below which a robot takes no role.", 0, 1, tunable},
           s.least_charge);
+    visit(Field{"least_health", "1", "Health below which a robot takes no role.", 0, 1, tunable},
+          s.least_health);
   }
 };
 
@@ -98,6 +104,10 @@ Load look_at(const Keys& keys, const Pose& X_WL);
 
 /// Place of a post in the world.
 Vec3 place(const Keys& keys, const Load& load, std::size_t post);
+/// Charge from 0 to 1 as a battery reports it; `before` where it has reported none.
+double charge_of(const View<msg::BatteryState>& battery, double before);
+/// Health from 0 to 1: where a property lies between its limits; `before` where none was reported.
+double health_of(const View<msg::PropertyStamped>& health, double before);
 /// Fills in the bids of a robot at this pose, from what is known of it.
 void bid(const Keys& keys, const Load& load, const Pose& X_WB, Member& member);
 /// Whether a robot at this pose stands at the post and looks at the load.

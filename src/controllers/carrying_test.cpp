@@ -40,6 +40,12 @@ TEST(Carrying, ABidIsTheWayOverChargeAndHealth) {
   member.charge = 0.1;  // below least_charge
   bid(k, load, at(-1.25, 0.5), member);
   EXPECT_EQ(member.bids[0], no_bid);
+  member.charge = 1, member.health = 0.14;  // below least_health
+  bid(k, load, at(-1.25, 0.5), member);
+  EXPECT_EQ(member.bids[0], no_bid);
+  member.health = 0.16;
+  bid(k, load, at(-1.25, 0.5), member);
+  EXPECT_NEAR(member.bids[0], 1.0 / 0.16 * 1.25, 1e-12);
 }
 
 TEST(Carrying, TheSmallestBidOfAllWinsThenTheSmallestOfThoseLeft) {
@@ -132,6 +138,44 @@ TEST(Carrier, AnEmptyBatteryHandsTheRoleOver) {
   EXPECT_EQ(rig.sent(), "10 100 0 -1 0 1000000000000 1000000000000");
 }
 
+TEST(Carrier, BidsWithTheHealthOfItsRobot) {
+  carrier::Spec s = spec();
+  s.keys.battery = "battery", s.keys.health = "health";
+  Rig rig(s);
+  rig.put("beam", "beam", 0, 0);
+  rig.put("me", "hauler", -1.25, 0.5, math::pi);  // turns first, so that nothing counts as load
+  rig.battery.message.percentage = 0.8f;
+  rig.health.message.property = {.name = "health", .value = 70, .min = 20, .max = 120};
+  rig.step(0.1);
+  // 50 % of its range: 1 m / (0.8 * 0.5) and sqrt(2) m / (0.8 * 0.5).
+  EXPECT_EQ(rig.sent(), "80 50 0 0 0 2500 3536");
+  rig.health.message.property.value = 120;
+  rig.step(0.5);
+  EXPECT_EQ(rig.sent(), "80 100 0 0 0 625 1768");  // of the post that it has, half
+  rig.health.message.property.value = 0;           // below its range, as only a forged message can say
+  rig.step(0.9);
+  EXPECT_EQ(rig.controller.state.own.health, 0);
+}
+
+TEST(Carrier, ADamagedRobotLeavesItsPostToASoundOne) {
+  carrier::Spec s = spec();
+  s.keys.health = "health";
+  Rig rig(s);
+  rig.put("beam", "beam", 0, 0);
+  rig.put("me", "hauler", -1.25, 0.5, math::pi);  // turns first, so that nothing counts as load
+  rig.health.message.property = {.name = "health", .value = 100, .min = 0, .max = 100};
+  rig.hear("mate", "100 100 0 -1 0 1500 9000");
+  rig.step(0.1);
+  EXPECT_EQ(rig.controller.state.own.post, 0);  // 1 against 1.5
+  rig.health.message.property.value = 40;
+  rig.hear("mate", "100 100 0 1 0 1500 9000");
+  rig.step(0.2);
+  EXPECT_EQ(rig.controller.state.own.post, 0);  // 0.5 * 1 / 0.4 = 1.25 against 1.5
+  rig.health.message.property.value = 25;
+  rig.step(0.3);
+  EXPECT_EQ(rig.controller.state.own.post, 1);  // 0.5 * 1 / 0.25 = 2 against 1.5
+}
+
 TEST(Carrier, IgnoresPacketsThatCannotBeRead) {
   Rig rig(spec());
   rig.put("beam", "beam", 0, 0);
@@ -193,6 +237,44 @@ TEST(Carriers, DriveAllRobotsAndFollowWhoComesAndGoes) {
   EXPECT_EQ(program.state.members[1].robot, "c");
   EXPECT_EQ(program.state.members[1].post, 0);
   EXPECT_FALSE(program.state.pushing);
+}
+
+TEST(Carriers, CountTheHealthOfEach) {
+  carriers::Carriers program;
+  program.spec = keys();
+  program.spec.posts_m = {0};
+  program.spec.health = "health";
+  Description team;
+  team.robot = "haulers";
+  Topic<msg::ObjectPoseArray> camera("/a/camera/world");
+  Topic<msg::PropertyStamped> of_a("/a/health/property"), of_b("/b/health/property");
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    Description& robot = team.members.emplace_back();
+    robot.robot = i == 0 ? "a" : "b";
+    robot.readings = {{"camera", "world", msg::ObjectPoseArray::ros_type, 0, {}},
+                      {"health", "property", msg::PropertyStamped::ros_type, 1 + i, {}}};
+    robot.actuators = {{"drive", "ideal", msg::Twist::ros_type, i, {}}};
+  }
+  Outputs outputs("haulers/coach");
+  ASSERT_TRUE(program.init(team, outputs));
+  for (const auto& [name, x] : {std::pair("beam", 0.0), std::pair("a", -1.25), std::pair("b", -2.25)}) {
+    msg::ObjectPose& object = camera.message.objects.emplace_back();
+    object.name = name, object.pose = at(x, 0);
+  }
+  of_a.message.property = {.name = "health", .value = 40, .min = 0, .max = 100};
+  of_b.message.property = {.name = "health", .value = 100, .min = 0, .max = 100};
+  camera.publish(Time::from_s(1));
+  of_a.publish(Time::from_s(1));
+  of_b.publish(Time::from_s(1));
+  const TopicBase* const topics[] = {&camera, &of_a, &of_b};
+  const std::vector<std::uint64_t> seen{0, 0, 0};
+  Command cmd;
+  cmd.bind(&outputs);
+  program.step(Observation(Time::from_s(1), topics, seen, Stream(1, 2, Purpose::controller, 0)), cmd);
+  // 1 m / 0.4 = 2.5 m against 2 m.
+  EXPECT_NEAR(program.state.members[0].bids[0], 2.5, 1e-12);
+  EXPECT_EQ(program.state.members[0].post, no_post);
+  EXPECT_EQ(program.state.members[1].post, 0);
 }
 
 TEST(Carriers, RefusesASingleRobot) {

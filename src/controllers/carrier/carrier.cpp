@@ -69,6 +69,7 @@ Status Carrier::init(const Description& robot) {
   SL_ASSIGN(receiver, robot.reading<msg::RadioReceptionArray>(spec.radio));
   SL_ASSIGN(sender, robot.actuator<msg::RadioPacket>(spec.radio));
   if (!spec.keys.battery.empty()) { SL_ASSIGN(battery, robot.reading<msg::BatteryState>(spec.keys.battery)); }
+  if (!spec.keys.health.empty()) { SL_ASSIGN(health, robot.reading<msg::PropertyStamped>(spec.keys.health)); }
   return {};
 }
 
@@ -121,11 +122,8 @@ void Carrier::step(const Observation& obs, Command& cmd) {
   if (!self || !beam) return cmd.set(drive, msg::Twist());
   const Load load = look_at(spec.keys, beam->pose);
   Member& own = state.own;
-  if (!spec.keys.battery.empty()) {
-    const auto charge = obs.get(battery);
-    if (charge.valid && charge.message.percentage >= 0)
-      own.charge = std::min<double>(charge.message.percentage, 1);
-  }
+  if (!spec.keys.battery.empty()) own.charge = charge_of(obs.get(battery), own.charge);
+  if (!spec.keys.health.empty()) own.health = health_of(obs.get(health), own.health);
   if (seen.fresh) state.effort.follow(steering::flat(self->pose.p), seen.stamp);
   own.load = state.effort.load;
   bid(spec.keys, load, self->pose, own);

@@ -2,14 +2,15 @@
 /// Carrier: pushes a long load with team-mates; each decides for itself, by what all send each other.
 ///
 /// Reads    an ObjectPoseArray in the frame of the world, in which the robot finds itself and the load by their names
-///          (overhead_camera); a RadioReceptionArray; with `battery`, a BatteryState.
+///          (overhead_camera); a RadioReceptionArray; with `battery`, a BatteryState; with `health`, a PropertyStamped, of which the
+///          place between its limits counts.
 /// Orders   a Twist for a drive that can turn on the spot, and a RadioPacket.
 /// Method   controllers/carrying.h. Each sends charge, health, load, its post, whether it stands there, and a bid for each post:
 ///          "87 100 12 0 1 1250 2480" [%, %, %, post, 0 or 1, mm ...]. Each settles all roles by the same rule from what it has
 ///          received; who has sent nothing for a second takes no part.
-/// Limits   for a moment two may think that they have one post, until their messages have arrived. Health is 100 %.
+/// Limits   for a moment two may think that they have one post, until their messages have arrived.
 /// Cost     robots times posts squared, no allocation once its lists have grown.
-/// Errors   no camera, drive, radio or battery of these names.
+/// Errors   no camera, drive, radio, battery or property sensor of these names.
 /// Source   the negotiation of team-mates about their resources: Simulator for cooperation and competition of mobile robots,
 ///          section 1; the bids are ours.
 #include "controllers/carrying.h"
@@ -54,6 +55,7 @@ struct Carrier {
   Reading<msg::ObjectPoseArray> camera;
   Reading<msg::RadioReceptionArray> receiver;
   Reading<msg::BatteryState> battery;
+  Reading<msg::PropertyStamped> health;
   Actuator<msg::RadioPacket> sender;
   Actuator<msg::Twist> drive;
   std::vector<steering::Disc> discs;             ///< scratch

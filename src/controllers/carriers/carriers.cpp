@@ -17,6 +17,7 @@ Status Carriers::init(const Description& team, Outputs& out) {
     robot.name = member.robot;
     SL_ASSIGN(robot.drive, member.actuator<msg::Twist>(spec.drive));
     if (!spec.battery.empty()) { SL_ASSIGN(robot.battery, member.reading<msg::BatteryState>(spec.battery)); }
+    if (!spec.health.empty()) { SL_ASSIGN(robot.health, member.reading<msg::PropertyStamped>(spec.health)); }
   }
   if (!team.members.empty()) {
     SL_ASSIGN(camera, team.members.front().reading<msg::ObjectPoseArray>(spec.camera));
@@ -68,11 +69,8 @@ void Carriers::step(const Observation& obs, Command& cmd) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     Member& member = state.members[i];
     members.push_back(&member);
-    if (!spec.battery.empty()) {
-      const auto charge = obs.get(robots[i].battery);
-      if (charge.valid && charge.message.percentage >= 0)
-        member.charge = std::min<double>(charge.message.percentage, 1);
-    }
+    if (!spec.battery.empty()) member.charge = charge_of(obs.get(robots[i].battery), member.charge);
+    if (!spec.health.empty()) member.health = health_of(obs.get(robots[i].health), member.health);
     const msg::ObjectPose* const self = steering::find(seen.message, robots[i].name);
     if (!self) {
       member.bids.clear();

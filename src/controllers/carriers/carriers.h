@@ -2,13 +2,14 @@
 /// Carriers: pushes a long load with the robots of a team; one program decides for all.
 ///
 /// Reads      of the first robot an ObjectPoseArray in the frame of the world, in which it finds the robots and the load by their
-///            names (overhead_camera); of each, with `battery`, a BatteryState.
+///            names (overhead_camera); of each, with `battery`, a BatteryState, and with `health`, a PropertyStamped.
 /// Orders     a Twist for a drive that can turn on the spot, each robot of the team.
 /// Publishes  `pushing`, std_msgs/UInt32: how many robots push.
 /// Method     controllers/carrying.h, as carrier, with all that is known at once and without messages.
 /// Limits     those of controllers/carrying.h.
 /// Cost       robots times posts squared, no allocation once its lists have grown.
-/// Errors     not a team's controller; no camera, drive or battery of these names.
+/// Errors     not a team's controller; no camera, drive, battery or property sensor of these
+///            names.
 #include "controllers/carrying.h"
 
 namespace sandlot::controllers::carriers {
@@ -36,6 +37,7 @@ struct Carriers {
   struct Robot {
     std::string name;
     Reading<msg::BatteryState> battery;
+    Reading<msg::PropertyStamped> health;
     Actuator<msg::Twist> drive;
   };
   Reading<msg::ObjectPoseArray> camera;
