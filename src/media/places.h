@@ -85,7 +85,7 @@ class Places {
 
  private:
   std::vector<Place> all_;
-  planar::Area whole_;      ///< about all of them
+  planar::Area whole_;  ///< about all of them
   planar::HashGrid grid_;
 };
 

@@ -2,7 +2,7 @@
 /// Remote: a robot or team whose program is a client of the server: in lockstep, or free-running.
 ///
 ///   controller: remote
-///   controller: {remote: {deadline: 50 ms, on_miss: stop}}
+///   controller: {kind: remote, deadline: 50 ms, on_miss: stop}
 ///
 /// Lockstep     in each control step the client is told of the step, when the messages of the tick are on their way to it, and
 ///              its answer (programs/answer.h) acts at the beginning of the next tick, as the orders of every controller do.

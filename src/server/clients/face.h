@@ -44,7 +44,7 @@ class Outgoing {
   const Payload bytes;
 
   /// Slots for the forms of faces; empty at first.
-  enum class Form : std::uint8_t { json, cbor, cbor_raw, count_ };
+  enum class Form : std::uint8_t { json, png, cbor, cbor_raw, count_ };
   Payload& form(Form which) const { return forms_[static_cast<std::size_t>(which)]; }
 
  private:

@@ -297,9 +297,7 @@ void Hub::flush(bool at_once) {
   summary->frames = subscribed(ChannelKind::poses) || subscribed(ChannelKind::transforms) ||
                     subscribed(ChannelKind::clock);
   summary->contacts = subscribed(ChannelKind::contacts);
-  const auto channel_wanted = [&](ChannelKind kind) {
-    return subscribed(kind) ? channel(kind).info.id : 0;
-  };
+  const auto channel_wanted = [&](ChannelKind kind) { return subscribed(kind) ? channel(kind).info.id : 0; };
   summary->deliveries = channel_wanted(ChannelKind::deliveries);
   summary->batteries = channel_wanted(ChannelKind::batteries);
   summary->commands = subscribed(ChannelKind::commands);

@@ -114,6 +114,8 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
 /// Finds the remote programs of the client's robots, behind what it has subscribed to until now.
 void Hub::attach(ClientId id, const Claimed& claimed) {
   Client& client = clients_.at(id);
+  for (const ProgramLink& each : client.claim->links)
+    post([feed = feed_, link = each.link](Session&) { feed->remove_link(link); });
   client.claim->links.clear();
   flush(true);
   post([mailbox = mailbox_, id, number = client.claim->number, access = client.access,

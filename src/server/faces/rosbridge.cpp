@@ -1,7 +1,10 @@
 #include "server/faces/rosbridge.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "assets/image/write.h"
+#include "base/base64.h"
 #include "base/json_writer.h"
 #include "base/text.h"
 #include "messages/json.h"
@@ -28,6 +31,23 @@ std::string with_slash(std::string_view name) {
 }
 
 std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
+
+/// A text as the pixels of a picture, which compresses it: three bytes each, about as wide as high, filled up with line breaks.
+/// What is long stays a text: compressing it would take the time of all clients.
+std::string png_message(std::string text) {
+  constexpr std::size_t longest = 256 << 10;
+  if (text.size() > longest) return text;
+  const std::size_t pixels = (text.size() + 2) / 3;
+  const auto width = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(pixels))));
+  const std::size_t height = (pixels + width - 1) / width;
+  std::vector<std::uint8_t> bytes(3 * width * height, '\n');
+  std::copy(text.begin(), text.end(), bytes.begin());
+  const std::string png = assets::png_of(
+      assets::Pixels8{static_cast<int>(width), static_cast<int>(height), 3, bytes});
+  std::string out = "{\"op\":\"png\",\"data\":\"";
+  add_base64(bytes_of(png), out);
+  return out + "\"}";
+}
 
 }  // namespace
 
@@ -72,8 +92,10 @@ bool RosbridgeFace::deliver(std::uint32_t, const Outgoing& message, bool droppab
     });
     return transport_.send(client_, {}, made, false, droppable);
   }
-  const Payload& made = in_form(
-      Outgoing::Form::json, [&] { return payload_of(rosbridge::publish_json(topic, type, *message.bytes)); });
+  const auto json = [&] { return rosbridge::publish_json(topic, type, *message.bytes); };
+  const Payload& made = to.compression == Compression::png
+                            ? in_form(Outgoing::Form::png, [&] { return payload_of(png_message(json())); })
+                            : in_form(Outgoing::Form::json, [&] { return payload_of(json()); });
   if (to.fragment_size == 0 || made->size() <= to.fragment_size)
     return transport_.send(client_, {}, made, true, droppable);
   return send_text({reinterpret_cast<const char*>(made->data()), made->size()}, to.fragment_size, droppable);
@@ -215,9 +237,10 @@ void RosbridgeFace::publish(const std::string& id, const rosbridge::Publish& req
 
 void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& request) {
   const std::string name = with_slash(request.service);
-  const auto respond = [this, service = request.service, id, size = request.fragment_size](
-                           std::string_view values, bool result) {
-    send_text(rosbridge::service_response(service, id, values, result), size, false);
+  const auto respond = [this, service = request.service, id, size = request.fragment_size,
+                        png = request.compression == Compression::png](std::string_view values, bool result) {
+    std::string text = rosbridge::service_response(service, id, values, result);
+    send_text(png ? png_message(std::move(text)) : std::move(text), size, false);
   };
   if (const auto answer = answer_of_rosapi(name, request.args)) return respond(*answer, true);
   const auto fail = [&](const std::string& why) {
@@ -237,15 +260,15 @@ void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& re
   const auto message = message_from_cdr(*offer->type.request, *cdr);
   SL_CHECK_MSG(message, "what was written just now can be read");
   hub_.call(client_, *offer, *message,
-            [service = request.service, id, size = request.fragment_size, type = offer->type.response](
-                Face& face, const ServiceCall::Outcome& outcome) {
+            [service = request.service, id, size = request.fragment_size, type = offer->type.response,
+             png = request.compression == Compression::png](Face& face, const ServiceCall::Outcome& outcome) {
               auto& self = static_cast<RosbridgeFace&>(face);
               std::string values;
               if (!outcome) values = rosbridge::quoted(outcome.error().text());
               else
                 SL_CHECK_MSG(cdr_to_json(*type, *outcome, values), "what was written just now can be read");
-              self.send_text(rosbridge::service_response(service, id, values, static_cast<bool>(outcome)),
-                             size, false);
+              std::string text = rosbridge::service_response(service, id, values, static_cast<bool>(outcome));
+              self.send_text(png ? png_message(std::move(text)) : std::move(text), size, false);
             });
 }
 

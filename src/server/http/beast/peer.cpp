@@ -272,7 +272,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void read_raw() {
     take_raw();
     if (stage != Stage::open) return;
-    socket().async_read_some(buffer.prepare(64 << 10), guarded([this](error_code ec, std::size_t n) {
+    socket().async_read_some(buffer.prepare(most_head_bytes), guarded([this](error_code ec, std::size_t n) {
                                if (ec) return end();
                                impl.bytes_in += n;
                                heard = Clock::now();
