@@ -342,6 +342,7 @@ export class SceneView {
 
   setTheme(theme: Theme): void {
     this.batteries.setTheme(theme);
+    this.links.setTheme(theme);
     this.backdrop.setTheme(theme);
     this.labels.setTheme(theme);
     this.outline.setColors(theme === 'light' ? '#0a6cff' : '#5aa9ff', theme === 'light' ? '#ffffff' : '#dbe6f5');

@@ -56,11 +56,11 @@ export class Batteries {
               bool is_frame = min(inset.x, inset.y) < 1.0;
               if (charge <= 0.0) {
                 bool stripe = mod(at_px.x + at_px.y, 6.0) < 2.0;
-                gl_FragColor = vec4(is_frame || stripe ? vec3(0.80, 0.06, 0.06) : hollow, is_frame || stripe ? 1.0 : 0.75);
+                gl_FragColor = vec4(is_frame || stripe ? vec3(0.80, 0.06, 0.06) : hollow, is_frame || stripe ? 1.0 : 0.9);
               } else {
                 // The last bit of charge is still to be seen.
                 bool is_full = at_px.x - 1.0 <= max(charge * (body - 2.0), 1.0);
-                gl_FragColor = is_frame ? vec4(frame, 0.9) : vec4(is_full ? full : hollow, is_full ? 1.0 : 0.75);
+                gl_FragColor = is_frame ? vec4(frame, 0.9) : vec4(is_full ? full : hollow, is_full ? 1.0 : 0.9);
               }
             }
             #include <colorspace_fragment>

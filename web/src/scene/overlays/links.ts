@@ -54,7 +54,8 @@ export class Links {
         depthTest: false,
         depthWrite: false,
         side: THREE.DoubleSide,
-        uniforms: { view_px: { value: new THREE.Vector2(1, 1) } },
+        // On a light floor lines are darker, and a pulse is not white.
+        uniforms: { view_px: { value: new THREE.Vector2(1, 1) }, shade: { value: 1 }, glow: { value: 0.45 } },
         vertexShader: `attribute vec3 from; attribute vec3 to; attribute vec3 tint; attribute vec2 phase; uniform vec2 view_px;
           varying float along; varying float across; varying vec3 color; varying vec2 life;
           vec4 place(float t) {
@@ -78,7 +79,7 @@ export class Links {
             life = phase;
             gl_Position = p;
           }`,
-        fragmentShader: `varying float along; varying float across; varying vec3 color; varying vec2 life;
+        fragmentShader: `varying float along; varying float across; varying vec3 color; varying vec2 life; uniform float shade; uniform float glow;
           void main() {
             float behind = life.y - along;
             float pulse = behind > 0.0 ? exp(-7.0 * behind) : exp(-900.0 * behind * behind);
@@ -87,7 +88,7 @@ export class Links {
             float ends = smoothstep(0.0, 0.06, along) * smoothstep(0.0, 0.06, 1.0 - along);
             float alpha = life.x * edge * mix(0.35, 1.0, ends) * (0.62 + 0.38 * pulse);
             if (alpha < 0.01) discard;
-            gl_FragColor = vec4(mix(color, vec3(1.0), 0.45 * pulse), alpha);
+            gl_FragColor = vec4(mix(shade * color, vec3(1.0), glow * pulse), alpha);
             #include <colorspace_fragment>
           }`,
       }),
@@ -110,6 +111,12 @@ export class Links {
   /** So many are drawn. */
   get count(): number {
     return this.mesh.geometry.instanceCount;
+  }
+
+  setTheme(theme: 'light' | 'dark'): void {
+    const { shade, glow } = this.mesh.material.uniforms;
+    shade.value = theme === 'light' ? 0.55 : 1;
+    glow.value = theme === 'light' ? 0 : 0.45;
   }
 
   setMedia(media: Part[]): void {
