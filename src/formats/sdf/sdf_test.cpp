@@ -363,9 +363,9 @@ TEST(Sdf, GazebosCommunicationIsARadio) {
   ASSERT_TRUE(more.content) << more.error;
   ASSERT_EQ(more.warnings.size(), 2u);
   EXPECT_EQ(more.warnings[0],
-            "w.sdf:3: <topic> of the plugin CommsEndpoint is not supported and has no effect");
+            "f.sdf:4: <topic> of the plugin CommsEndpoint is not supported and has no effect");
   EXPECT_EQ(more.warnings[1],
-            "w.sdf:4: <broker> of the plugin CommsEndpoint is not supported and has no effect");
+            "f.sdf:5: <broker> of the plugin CommsEndpoint is not supported and has no effect");
   EXPECT_EQ(more.content->instances.at(0).devices.at(0).config.find("address")->text(), "a");
   // Without a medium an endpoint stays what it was.
   const Read none = parse(world(endpoint));
