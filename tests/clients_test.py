@@ -34,7 +34,8 @@ class Run:
                 break
         else:
             raise AssertionError("no page: " + "".join(self.said))
-        threading.Thread(target=lambda: self.said.extend(self.process.stderr), daemon=True).start()
+        self.reader = threading.Thread(target=lambda: self.said.extend(self.process.stderr))
+        self.reader.start()
 
     def end(self):
         """Waits for its end and returns the summary."""
@@ -50,6 +51,8 @@ class Run:
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGKILL)
             self.process.wait()
+        self.reader.join()
+        self.process.stderr.close()
         self.folder.cleanup()
 
 
@@ -76,7 +79,8 @@ class Clients(unittest.TestCase):
         self.assertEqual(differing, ["rover/controller"])
 
     def test_the_program_of_the_docs_drives_a_robot(self):
-        text = open(os.path.join(ROOT, "docs/clients.md")).read()
+        with open(os.path.join(ROOT, "docs/clients.md")) as file:
+            text = file.read()
         program = re.search(r"```python\n(.*?)```", text, re.S).group(1)
         command = re.search(r"```sh\nsandlot run (.*?)\n", text).group(1).replace(" --port 8765", "").split()
         with Run(*command, "--duration", "5s") as run, tempfile.TemporaryDirectory() as folder:
@@ -86,8 +90,7 @@ class Clients(unittest.TestCase):
             client = client_program(run, file)
             summary = run.end()
             self.assertEqual(client.wait(timeout=20), 0)
-        self.assertGreater(summary["robots"][0]["driven_m"] if "driven_m" in summary["robots"][0]
-                           else summary["robots"][0]["distance"], 0.5)
+        self.assertGreater(summary["robots"][0]["distance_m"], 0.5)
 
     def test_a_free_client_beside_one_in_lockstep(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -127,7 +130,7 @@ teams:
                 thread.join()
         self.assertEqual([number for number, _, _ in steps], list(range(len(steps))))
         self.assertEqual([time_ns for _, time_ns, _ in steps], [100_000_000 * i for i in range(len(steps))])
-        self.assertEqual(len(steps), 21)
+        self.assertGreaterEqual(len(steps), 20)  # the last one is of the tick with which the run ends
         self.assertTrue(all(fresh for _, _, fresh in steps))
         self.assertEqual(summary["end_time"], 2)
 

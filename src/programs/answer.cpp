@@ -42,6 +42,15 @@ Result<const Named*> find(std::span<const Named> all, const std::string& name, c
                suggestion(name, known)};
 }
 
+/// The name of the actuator of a device that takes a type; the device's own if none does.
+std::string named_by_type(std::span<const Named> actuators, std::string device, const std::string& type) {
+  for (const Named& each : actuators)
+    if (each.type == type &&
+        (each.name == device || each.name == device + "/" + type.substr(type.rfind('/') + 1)))
+      return each.name;
+  return device;
+}
+
 Error wrong(const char* key, const char* what) {
   return {"'" + std::string(key) + "' of the answer is not " + what};
 }
@@ -97,9 +106,12 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
         for (const auto& [name, message] : value.items()) SL_TRY(order(name, message));
       } else {
         for (const Json& each : value) {
-          if (!each.is_array() || each.size() != 2 || !each[0].is_string())
+          const bool typed = each.is_array() && each.size() == 3 && each[2].is_string();
+          if (!each.is_array() || (each.size() != 2 && !typed) || !each[0].is_string())
             return wrong("orders", "a list of pairs of a device's name and a message");
-          SL_TRY(order(each[0].get<std::string>(), each[1]));
+          std::string name = each[0].get<std::string>();
+          if (typed) name = named_by_type(actuators, std::move(name), each[2].get<std::string>());
+          SL_TRY(order(name, each[1]));
         }
       }
     } else if (key == "samples") {

@@ -5,7 +5,8 @@
 ///
 /// orders   messages for devices, by the device's name, `device/level` or, of a device that takes several types,
 ///          `device/Type`. Fields that are left out keep their defaults. Where the order of messages matters, or a device
-///          takes several, as a radio does, a list of pairs: [["radio", {...}], ["radio", {...}]].
+///          takes several, as a radio does, a list of pairs: [["radio", {...}], ["radio", {...}]]; the type may follow as a third,
+///          of a device that takes several.
 /// samples  devices that shall take a sample although none is due.
 /// wait     the next observation: at this time [s], or with the next message of the reading of this name; left out or null:
 ///          at the next control step.

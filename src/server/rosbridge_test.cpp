@@ -137,7 +137,8 @@ TEST(Rosbridge, SurvivesWhatNoClientShouldSend) {
     return bridge.next("status")["msg"].get<std::string>();
   };
   EXPECT_EQ(refused("{\"op\":" + std::string(100'000, '[') + "}\n"), "a message nested more than 32 deep");
-  EXPECT_EQ(refused("{} garbage"), "'op' of the message is missing");
+  EXPECT_EQ(refused("{}\n"), "'op' of the message is missing");
+  EXPECT_EQ(refused("{} garbage"), "expected a JSON object");
   EXPECT_EQ(refused("{\"op\": 7}\n"), "'op' of the message is not a text");
   EXPECT_EQ(refused("{\"op\":\"x\",\"op\":\"y\"}\n"), "a message with the key 'op' twice");
   EXPECT_EQ(refused("{\"op\":\"fragment\",\"id\":\"a\",\"num\":0,\"total\":1000000000,\"data\":\"x\"}\n"),

@@ -23,6 +23,7 @@ import json
 import os
 import selectors
 import socket
+import sys
 import time
 from typing import Any, Callable, Dict, Iterator, List, Optional
 
@@ -104,6 +105,12 @@ class Connection:
             self._selector.close()
             self._socket.close()
 
+    def on_status(self, message: Message) -> None:
+        """Called with each refusal that answers no call; prints it unless it is replaced."""
+        if message.get("level") in ("info", "none"):
+            return
+        print("sandlot: %s: %s" % (message.get("level"), message.get("msg")), file=sys.stderr)
+
     # ------------------------------------------------------------------------------------------------- messages
 
     def send(self, **message: Any) -> None:
@@ -144,6 +151,8 @@ class Connection:
             self.statuses = self.statuses[-99:] + [message]
             if message.get("id"):
                 self._answers[message["id"]] = message
+            else:
+                self.on_status(message)
         elif "id" in message:
             self._answers[message["id"]] = message
 

@@ -17,6 +17,7 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <optional>
 
+#include "base/json_writer.h"
 #include "base/log.h"
 #include "server/http/beast/impl.h"
 #include "server/http/http.h"
@@ -490,8 +491,10 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     if (close_sent) return;
     close_sent = true;
     if (raw) {
-      head = fmt::format("{{\"op\":\"status\",\"level\":\"error\",\"msg\":\"{}\"}}\n",
-                         std::string_view(farewell.reason.data(), farewell.reason.size()));
+      head = fmt::format("{{\"op\":\"status\",\"level\":\"{}\",\"msg\":",
+                         farewell.code == ws::close_code::going_away ? "info" : "error");
+      append_json({farewell.reason.data(), farewell.reason.size()}, head);
+      head += "}\n";
       net::async_write(socket(), net::buffer(head), guarded([this](error_code, std::size_t) { end(); }));
       return;
     }
