@@ -1,6 +1,5 @@
 /// Sessions: clients that drive robots, by token, freely or in lockstep.
-#include <random>
-
+#include "base/random.h"
 #include "server/test_bridge.h"
 #include "sim/watch/values.h"
 
@@ -26,9 +25,10 @@ struct Driver {
   ~Driver() { thread.join(); }
 
   void drive(const std::string& url, const std::string& robot, double longest_wait_s, unsigned seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wait_s(0, longest_wait_s);
-    const auto pause = [&] { std::this_thread::sleep_for(std::chrono::duration<double>(wait_s(random))); };
+    Stream random(seed, entity_key(robot), Purpose::experiment, 0);
+    const auto pause = [&] {
+      std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform(0, longest_wait_s)));
+    };
     pause();
     Bridge bridge(url);
     bridge.send({{"op", "subscribe"}, {"topic", "/" + robot + "/laser/ranges"}});
@@ -181,7 +181,8 @@ TEST(Sessions, ARobotWhoseClientFallsSilentOrGoesIsStopped) {
   const auto speed = [&](const char* robot) {
     const json answer = admin.call("/get_entity_state", {{"entity", robot}});
     const json& v = answer["values"]["state"]["twist"]["linear"];
-    return std::hypot(v["x"].get<double>(), v["y"].get<double>());
+    const auto x = v["x"].get<double>(), y = v["y"].get<double>();
+    return std::sqrt(x * x + y * y);
   };
   const auto stands = [&](const char* robot) {
     for (int i = 0; i < 100; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Hub: what all clients of a server share, whatever they speak: channels, subscriptions, services, parameters, publishing,
 /// rights, sessions of those who drive robots. A protocol is a face (server/clients/face.h).
+/// long file: one class whose functions are in five sources by concept; what clients share is one state.
 ///
 /// Threads   the transport's, for everything. The run is reached through Session's orders, submit() and post(); answers come
 ///           back by the Mailbox.

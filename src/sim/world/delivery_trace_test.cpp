@@ -70,13 +70,13 @@ TEST(DeliveryTrace, AWordAndItsMediumAmongSeveralAreSeen) {
 }
 
 TEST(DeliveryTrace, OfASenderThatIsGoneNothingIsSeen) {
-  model::Setup setup = talkers({100});
+  model::Setup setup = talkers({9});
   const auto simulation = build(std::move(setup));
   Listener listener(*simulation);
   say(*simulation, "hello");
   advance(*simulation, 1);
   simulation->submit(DeleteRequest{"speaker"});
-  advance(*simulation, 40);  // 100 m at 340 m/s are 0.29 s
+  advance(*simulation, 5);  // 9 m at 340 m/s are 0.026 s
   EXPECT_EQ(value(*simulation, "media/air.heard"), 1);
   EXPECT_TRUE(listener.seen.empty());
 }
