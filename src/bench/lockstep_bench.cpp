@@ -9,14 +9,16 @@
 
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "base/check.h"
+#include "base/test_folder.h"
 #include "bench/bench.h"
 #include "console/console.h"
 #include "server/server.h"
+#include "sim/load/load.h"
 #include "sim/session/session.h"
-#include "sim/test_world.h"
 
 namespace sandlot::bench {
 namespace {
@@ -78,12 +80,23 @@ std::string command(std::string_view step) {
          std::string(step) + "}\n";
 }
 
+/// A rover in an empty plane, with a control step in every tick.
+std::unique_ptr<Simulation> make_run(bool lockstep) {
+  const test::TestFolder folder;
+  std::ofstream(folder.file("run.yaml"))
+      << "version: 1\nphysics: planar\ntime: {step: 20 ms, stop: " << steps / 50
+      << " s}\nrobots:\n  - {name: rover1, model: rover" << (lockstep ? ", controller: remote" : "") << "}\n";
+  Diagnostics diagnostics;
+  auto setup = load(folder.file("run.yaml"), {}, diagnostics);
+  SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
+  auto made = Simulation::create(std::move(*setup), {}, diagnostics);
+  SL_CHECK_MSG(made, made ? "" : made.error().text().c_str());
+  return std::move(*made);
+}
+
 /// Seconds per step of a run whose robot a client drives, or nobody.
 double one_run(bool lockstep) {
-  model::Setup setup = test::arena("planar", 1, "");
-  setup.stop = Time::from_ns(setup.step.ns * steps * setup.control_interval);
-  if (lockstep) setup.instances.back().controllers.push_back({"brain", "remote", test::map({}), {}});
-  Session session(test::build(std::move(setup)), {.history_mb = 0});
+  Session session(make_run(lockstep), {.history_mb = 0});
   Console console(session, {});
   auto server = server::Server::start({.transport = {.port = 0}, .name = "lockstep", .version = ""}, session,
                                       console);

@@ -17,6 +17,8 @@ namespace sandlot::server {
 namespace {
 
 constexpr int most_wrong_tokens = 5;
+constexpr double messages_per_step =
+    64;  ///< that a client in lockstep may send for each, however fast the run is
 
 bool overlap(const Access& a, const Access& b) {
   return std::any_of(a.robots.begin(), a.robots.end(),
@@ -171,6 +173,9 @@ void Hub::tell_step(ClientId id, const StepNotice& step) {
   Client* const client = find(id);
   if (!client || !client->claim) return;
   client->claim->orders[step.program].clear();
+  // It was asked: the run, not the clock, bounds how much it says.
+  client->budget = std::min(most_requests_per_s, client->budget + messages_per_step);
+  transport_->grant(id, messages_per_step);
   client->face->tell_step(step);
 }
 

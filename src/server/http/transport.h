@@ -94,6 +94,8 @@ class Transport {
   bool send_text(ClientId client, std::string text);
   /// Bytes that wait for a client: those who can choose send less to the slow.
   std::size_t waiting_bytes(ClientId client) const;
+  /// Allows a client so many messages beyond those per second: it was asked for them. On the transport's thread.
+  void grant(ClientId client, double messages);
   /// What is queued is still sent, then the reason (its first 123 bytes), with code 1008.
   void close_client(ClientId client, std::string_view reason);
   /// Runs f on the transport's thread, soon.

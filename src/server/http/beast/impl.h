@@ -55,6 +55,8 @@ struct Peer {
   virtual void on_beat(Clock::time_point now) = 0;
   /// Sends what has been queued.
   virtual void flush() = 0;
+  /// Allows so many messages beyond those per second.
+  virtual void grant(double messages) = 0;
   /// Sends what is queued, then the reason, then ends.
   virtual void close_for(std::string_view reason) = 0;
   /// The server stops: ends at once, or very soon.

@@ -540,6 +540,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     }
   }
 
+  void grant(double messages) override { bucket = std::min(burst, bucket + messages); }
+
   void close_for(std::string_view reason) override {
     if (stage != Stage::open) return;
     ++impl.refused;

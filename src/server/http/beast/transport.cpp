@@ -267,6 +267,10 @@ std::size_t Transport::waiting_bytes(ClientId client) const {
   return found == impl_->queues.end() ? 0 : found->second->bytes;
 }
 
+void Transport::grant(ClientId client, double messages) {
+  impl_->for_one(client, [messages](Peer& peer) { peer.grant(messages); });
+}
+
 void Transport::close_client(ClientId client, std::string_view reason) {
   net::post(impl_->io, [impl = impl_.get(), client, why = std::string(reason)] {
     impl->for_one(client, [&why](Peer& peer) { peer.close_for(why); });
