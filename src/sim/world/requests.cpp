@@ -170,8 +170,28 @@ Status Simulation::Processor::operator()(const DeleteRequest& request) {
 Status Simulation::Processor::operator()(const PoseRequest& request) {
   SL_ASSIGN(const Entity* const entity, entity_named(request.name));
   if (!is_finite(request.X_WM) || norm(request.X_WM.q) < 1e-6) return Error{"the pose is not finite"};
+  // A person sees what he does; a rule does not.
+  if (source.kind == Source::Kind::rule)
+    if (const std::string in_it = sim.solid_at(*entity, request.X_WM); !in_it.empty())
+      return Error{"'" + request.name + "' cannot be put where '" + in_it + "' stands",
+                   "choose a place that is free"};
   sim.engine_->set_pose(entity->id, {request.X_WM.p, normalised(request.X_WM.q)});
   if (entity->instance.model->is_static) ++sim.revision_;  // viewers and /tf_static get it once per revision
+  return {};
+}
+
+/// The name of something that never moves in which the middle of an entity would lie; "": nothing.
+std::string Simulation::solid_at(const Entity& entity, const Pose& X_WM) const {
+  constexpr double radius_m = 1e-3;
+  const model::Link& link = entity.instance.model->links.front();
+  const OverlapQuery middle{X_WM * (link.X_ML * link.inertial.X_LCo.p), radius_m};
+  std::vector<std::uint32_t> found, ends;
+  engine_->overlaps({&middle, 1}, found, ends);
+  for (const std::uint32_t index : found) {
+    const std::string_view name = engine_->name(engine_->body_at(index)).instance;
+    const Entity* const other = find_entity(name);
+    if (other && other != &entity && other->instance.model->is_static) return std::string(name);
+  }
   return {};
 }
 

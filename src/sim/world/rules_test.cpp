@@ -110,5 +110,31 @@ TEST(Set, ParametersThatAreNotThereAreRefusedWithTheNearest) {
   EXPECT_NE(refusal("speaker/voice.loudness", "expression", "sim.tim").find("sim.time"), std::string::npos);
 }
 
+TEST(Place, IntoAWallEndsTheRunWithTheRulesPlaceAndWhatWasSoFar) {
+  const auto run = [](const char* at) {
+    model::Setup setup = talkers({10});
+    setup.instances.push_back(placed("wall", one_shape("wall", Box{{1, 4, 2}}, 0), {{5, 0, 0}, {}}));
+    Node rule = map({{"object", "speaker"}, {"when", "sim.time >= 0.05"}});
+    Node place = Node::sequence();
+    for (const char* const number : {at, "0", "0"}) place.push(Node::scalar(number));
+    rule.set("place", place);
+    model::ElementDecl decl = element("place", rule);
+    decl.place = {std::make_shared<const std::string>("s.yaml"), 7, 3};
+    setup.rules.push_back(decl);
+    return build(setup);
+  };
+  const auto blocked = run("5.2");
+  advance(*blocked, 5);
+  const Status status = blocked->tick();
+  ASSERT_FALSE(status);
+  EXPECT_EQ(
+      status.error().text(),
+      "s.yaml:7:3: rule 'place': 'speaker' cannot be put where 'wall' stands; choose a place that is free");
+  EXPECT_EQ(value(*blocked, "speaker.pose.x"), 0);
+  const auto beside = run("5.7");
+  advance(*beside, 6);
+  EXPECT_EQ(value(*beside, "speaker.pose.x"), 5.7);
+}
+
 }  // namespace
 }  // namespace sandlot::test

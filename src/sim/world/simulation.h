@@ -232,6 +232,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
 
   // requests.cpp
   struct Processor;
+  std::string solid_at(const Entity& entity, const Pose& X_WM) const;
   Status process(Request& request, const Source& source, std::vector<std::byte>& response);
 
   // state.cpp

@@ -89,6 +89,12 @@ void Simulation::process_commands() {
     Commands::Pending pending{waiting.source, waiting.number, std::move(waiting.request)};
     std::vector<std::byte> response;
     Status status = process(pending.request, pending.source, response);
+    // A rule that puts something where it cannot be is a mistake of the scenario.
+    if (const auto* const put = std::get_if<PoseRequest>(&pending.request);
+        put && !status && find_entity(put->name)) {
+      const model::ElementDecl& rule = setup_.rules[pending.source.id];
+      fail({"rule '" + rule.name + "': " + status.error().what, status.error().fix, rule.place});
+    }
     commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
   }
   // A snapshot may hold orders of programs that do not run: the log that drives the run has them, too.
