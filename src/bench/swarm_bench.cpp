@@ -194,7 +194,7 @@ std::vector<Row> swarm() {
     const Timing t = compare(
         9, [&] { run(*powered); }, [&] { run(*plain); });
     rows.push_back(row("P1 swarm of 1000 with batteries, to that without, per robot and tick", "us",
-                       t.ours_s * 50, t.reference_s * 50, 1.1));
+                       t.ours_s * 50, t.reference_s * 50, 1.1, 4));
   }
   const double begin = thread_seconds();
   const auto sim = ours(100'000);

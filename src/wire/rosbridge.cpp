@@ -93,7 +93,6 @@ Result<Operation> operation(const std::string& op, const Reader& read) {
     SL_ASSIGN(out.type, read.text("type", false));
     SL_ASSIGN(const double throttle_ms, read.number("throttle_rate", 0, 0, 1e9));
     out.throttle_s = throttle_ms / 1000;
-    SL_ASSIGN(out.queue_length, read.count("queue_length", 0));
     SL_ASSIGN(out.fragment_size, fragment_size(read));
     SL_ASSIGN(out.compression, compression(read));
     return Operation(std::move(out));

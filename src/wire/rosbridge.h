@@ -54,7 +54,6 @@ enum class Compression : std::uint8_t { none, png, cbor, cbor_raw };
 struct Subscribe {
   std::string topic, type;
   double throttle_s = 0;
-  std::size_t queue_length = 0;
   std::size_t fragment_size = 0;  ///< 0: whole
   Compression compression = Compression::none;
 };

@@ -1,6 +1,5 @@
 #include "programs/remote/link.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace sandlot::programs::remote {
@@ -10,7 +9,6 @@ void Link::attach(Client client) {
   client_ = std::move(client);
   ++attachments_;
   answer_.reset();
-  figures_.attached = true;
   told_ = false;
   tell();
 }
@@ -19,7 +17,6 @@ void Link::detach(std::string why) {
   const std::lock_guard lock(mutex_);
   if (!client_) return;
   client_.reset();
-  figures_.attached = false;
   if (step_ && !answer_) answer_ = Error{std::move(why)};
 }
 
@@ -32,11 +29,6 @@ Status Link::answer(std::uint64_t step, std::string text) {
     return Error{"step " + std::to_string(step_->number) + " waits for an answer, not " +
                  std::to_string(step)};
   answer_ = std::move(text);
-  const double latency_s = std::chrono::duration<double>(Clock::now() - told_at_).count();
-  ++figures_.answers;
-  figures_.latency_s = latency_s;
-  figures_.mean_latency_s += (latency_s - figures_.mean_latency_s) / static_cast<double>(figures_.answers);
-  figures_.longest_latency_s = std::max(figures_.longest_latency_s, latency_s);
   return {};
 }
 
@@ -48,14 +40,7 @@ void Link::release() {
 /// @pre the mutex is held
 void Link::tell() {
   if (!step_ || !client_ || std::exchange(told_, true)) return;
-  told_at_ = Clock::now();
-  ++figures_.steps;
   client_->step(*step_);
-}
-
-Link::Figures Link::figures() const {
-  const std::lock_guard lock(mutex_);
-  return figures_;
 }
 
 std::optional<double> Link::deadline_s() const {
@@ -73,11 +58,6 @@ void Link::put(const Step& step) {
   step_ = step;
   told_ = false;
   answer_.reset();
-}
-
-void Link::count_miss() {
-  const std::lock_guard lock(mutex_);
-  ++figures_.misses;
 }
 
 void Link::refuse(const std::string& why) {

@@ -8,7 +8,6 @@
 /// Threads   any; clients are told on the thread that calls release() or attach().
 /// Waiting   who answers wakes the session: Session::wake().
 /// Limits    one answer waits at most; an answer has at most most_answer bytes.
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -22,7 +21,6 @@ namespace sandlot::programs::remote {
 
 class Link {
  public:
-  using Clock = std::chrono::steady_clock;
   static constexpr std::size_t most_answer = std::size_t{1} << 20;
 
   struct Step {
@@ -30,13 +28,6 @@ class Link {
     Time now;
     std::uint64_t random = 0;  ///< of the program's own, one per step
   };
-  /// What the page and the summary show of a client.
-  struct Figures {
-    std::uint64_t steps = 0, answers = 0, misses = 0;
-    double latency_s = 0, mean_latency_s = 0, longest_latency_s = 0;  ///< from a step to its answer
-    bool attached = false;
-  };
-
   // --- for the server ---
   /// What a client is told; on the thread of the simulation.
   struct Client {
@@ -51,7 +42,6 @@ class Link {
   Status answer(std::uint64_t step, std::string text);
   /// The messages of the tick are on their way: the client may be told of the step.
   void release();
-  Figures figures() const;
 
   // --- for the program ---
   /// That of the client attached now.
@@ -59,7 +49,6 @@ class Link {
   /// Counts the clients that came.
   std::uint64_t attachments() const;
   void put(const Step& step);
-  void count_miss();
   void refuse(const std::string& why);
   /// The answer that has come. An error: the client has gone without one.
   std::optional<Result<std::string>> take();
@@ -72,9 +61,7 @@ class Link {
   std::uint64_t attachments_ = 0;
   std::optional<Step> step_;  ///< that waits for its answer
   bool told_ = false;
-  Clock::time_point told_at_;
   std::optional<Result<std::string>> answer_;
-  Figures figures_;
 };
 
 }  // namespace sandlot::programs::remote

@@ -23,7 +23,7 @@ Status Remote::init(const Description& robot, const Node& config, Outputs&) {
 Status Remote::set_parameter(std::string_view path, const Node& value) {
   Spec changed = spec_;
   SL_TRY(set_tunable(changed, path, value));
-  spec_ = std::move(changed);
+  spec_ = changed;
   return {};
 }
 
@@ -95,7 +95,6 @@ Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const Top
   const auto miss = [&](const char* why) -> Resumed {
     ++state_.misses;
     gave_up_ = true;
-    link_->count_miss();
     if (spec_.on_miss == OnMiss::end) return {.failure = why};
     if (spec_.on_miss == OnMiss::stop) stop_drives(actuators_, cmd);
     return {};

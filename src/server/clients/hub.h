@@ -258,7 +258,8 @@ class Hub final : private ServiceHost {
   void end_claim(ClientId id, Client& client, const std::string& why);
   void stop_robots(ClientId id, Client& client);
   void watch_claims();
-  bool collect(Client& client, const Publication& publication, std::span<const std::byte> command);
+  bool collect(ClientId id, Client& client, const Publication& publication,
+               std::span<const std::byte> command);
 
   // hub_publish.cpp
   foxglove::Parameter own_parameter(const std::string& name) const;

@@ -190,7 +190,7 @@ void Hub::publish(ClientId id, Publication& publication, std::span<const std::by
   if (client.claim) {
     client.claim->commanded = Clock::now();
     client.claim->moving = true;
-    if (client.claim->request.lockstep && collect(client, publication, *command)) return;
+    if (client.claim->request.lockstep && collect(id, client, publication, *command)) return;
   }
   const auto queued = session_.submit(
       CommandRequest{publication.target.address, slot.info->name, std::move(*command)},

@@ -97,10 +97,11 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
   if (Status free = make_room(id, *access, request.token); !free) return fail(std::move(free.error()));
   // What it may not see any more is taken from it.
   const Access before = std::exchange(client.access, std::move(*access));
-  std::vector<std::uint32_t> lost;
+  std::vector<std::uint32_t> lost, lost_channels;
   for (const auto& [subscription, channel] : client.subscriptions)
-    if (!find_channel(id, channel)) lost.push_back(subscription);
+    if (!find_channel(id, channel)) lost.push_back(subscription), lost_channels.push_back(channel);
   for (const std::uint32_t each : lost) (void)unsubscribe(id, each);
+  if (!lost_channels.empty()) client.face->remove_channels(lost_channels);
   client.parameters.clear();
   client.all_parameters = client.graph = false;
   client.publications.clear();
@@ -180,7 +181,8 @@ void Hub::tell_step(ClientId id, const StepNotice& step) {
 }
 
 /// Keeps a command for the end of the step. @return false: it is not for a program in lockstep
-bool Hub::collect(Client& client, const Publication& publication, std::span<const std::byte> command) {
+bool Hub::collect(ClientId id, Client& client, const Publication& publication,
+                  std::span<const std::byte> command) {
   const std::string_view address = publication.target.address;
   for (const ProgramLink& each : client.claim->links) {
     const bool of_team = first_part(each.program.path) == client.access.name &&
@@ -190,7 +192,10 @@ bool Hub::collect(Client& client, const Publication& publication, std::span<cons
     const std::string_view name = of_team ? address : address.substr(first_part(address).size() + 1);
     constexpr std::size_t most_bytes = std::size_t{1} << 19;
     std::string& orders = client.claim->orders[each.program.path];
-    if (orders.size() > most_bytes) return true;  // the answer would be refused
+    if (orders.size() > most_bytes) {
+      refuse(id, "more than 512 KiB of commands in one step");
+      return true;
+    }
     const auto form = publication.target.slot->blank->clone();
     std::vector<std::byte> cdr;
     std::string json;

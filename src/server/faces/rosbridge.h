@@ -2,7 +2,7 @@
 /// The rosbridge v2 protocol as a face, with claims and lockstep of our own. docs/clients.md.
 ///
 /// Topics    those in CDR; worlds, poses and states of the page have their own forms and are not here.
-/// Queues    `throttle_rate` and `queue_length`: of the messages that come within a pause the latest is sent at its end.
+/// Throttle  of the messages that come within `throttle_rate` of the one sent last none is sent; `queue_length` has no effect.
 /// Fragments of a client are put together: at most one message at a time, most_bytes in all, within fragment_patience.
 /// Not here  services and actions of clients, BSON.
 #include <chrono>
