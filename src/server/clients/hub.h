@@ -16,16 +16,13 @@
 #include <vector>
 
 #include "messages/tf2_msgs.h"
+#include "server/clients/claim.h"
 #include "server/clients/face.h"
 #include "server/clients/feed.h"
 #include "server/server.h"
 #include "server/services/service.h"
 #include "wire/foxglove.h"
 #include "wire/scene.h"
-
-namespace sandlot::programs::remote {
-class Link;
-}
 
 namespace sandlot::server {
 
@@ -96,18 +93,8 @@ class Hub final : private ServiceHost {
   foxglove::Graph graph() const;
 
   // --- sessions of clients that drive robots; hub_sessions.cpp ---
-  struct ClaimRequest {
-    std::string robot, team;  ///< one of them
-    std::string token;
-    bool lockstep = false;
-    double deadline_s = 1;
-  };
   /// Makes the client the one that drives a robot or a team; from now on it sees and does no more than that.
   /// @param claimed  called on the transport's thread, with the remote programs that it answers for in lockstep
-  struct ClaimedProgram {
-    std::string path;
-    double control_period_s = 0;
-  };
   using Claimed = std::function<void(Face&, const Result<std::vector<ClaimedProgram>>&)>;
   void claim(ClientId id, const ClaimRequest& request, Claimed claimed);
   void release(ClientId id);
@@ -116,10 +103,6 @@ class Hub final : private ServiceHost {
               const std::string& samples);
 
   // --- called by tasks in the mailbox ---
-  struct ProgramLink {
-    ClaimedProgram program;
-    std::shared_ptr<programs::remote::Link> link;
-  };
   void hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> links, const Claimed& claimed);
   void tell_step(ClientId id, const StepNotice& step);
   void send_world(const WorldUpdate& update);
@@ -182,17 +165,6 @@ class Hub final : private ServiceHost {
     std::uint32_t advertised_below = 0;  ///< it knows the public ones below this number
     double budget = most_requests_per_s;
     Clock::time_point budgeted;
-    /// Of one that drives robots.
-    struct Claim {
-      std::uint64_t number = 0;  ///< of all claims
-      ClaimRequest request;
-      Access before;  ///< what it may do when the claim ends
-      std::vector<ProgramLink> links;
-      std::map<std::string, std::string>
-          orders;  ///< by program: what was published since its step, as JSON pairs
-      Clock::time_point commanded;
-      bool moving = false;  ///< it has commanded something since it was stopped
-    };
     std::optional<Claim> claim;
     int wrong_tokens = 0;
     std::uint64_t refusals_unsent = 0;  ///< errors of this second that were not sent

@@ -281,11 +281,11 @@ void RosbridgeFace::fragment(const std::string& id, const rosbridge::Fragment& r
     assembly_.reset();
   }
   if (!assembly_) {
-    assembly_.emplace();
-    assembly_->id = id;
-    assembly_->parts.resize(request.total);
-    assembly_->missing = request.total;
-    assembly_->begun = now;
+    assembly_ = Assembly{.id = id,
+                         .parts = std::vector<std::optional<std::string>>(request.total),
+                         .bytes = 0,
+                         .missing = request.total,
+                         .begun = now};
   }
   if (request.total != assembly_->parts.size() || assembly_->parts[request.number] ||
       assembly_->bytes + request.data.size() > rosbridge::most_bytes) {
@@ -307,7 +307,7 @@ void RosbridgeFace::fragment(const std::string& id, const rosbridge::Fragment& r
 
 void RosbridgeFace::claim(const std::string& id, const rosbridge::Claim& request) {
   hub_.claim(client_, {request.robot, request.team, request.token, request.lockstep, request.deadline_s},
-             [id](Face& face, const Result<std::vector<Hub::ClaimedProgram>>& programs) {
+             [id](Face& face, const Result<std::vector<ClaimedProgram>>& programs) {
                auto& self = static_cast<RosbridgeFace&>(face);
                if (!programs) {
                  self.transport_.send_text(
@@ -325,7 +325,7 @@ void RosbridgeFace::claim(const std::string& id, const rosbridge::Claim& request
                    for (const std::string& each : access.robots) w.text(each);
                  });
                  w.key("programs").list([&] {
-                   for (const Hub::ClaimedProgram& each : *programs)
+                   for (const ClaimedProgram& each : *programs)
                      w.object([&] {
                        w.key("name").text(each.path);
                        w.key("control_period_s").real(each.control_period_s);

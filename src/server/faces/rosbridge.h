@@ -40,7 +40,7 @@ class RosbridgeFace final : public Face {
   struct Assembly {
     std::string id;
     std::vector<std::optional<std::string>> parts;
-    std::size_t bytes = 0, missing = 0;
+    std::size_t bytes, missing;
     Clock::time_point begun;
   };
 
