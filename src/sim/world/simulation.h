@@ -205,6 +205,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   Status build(Diagnostics& diagnostics, bool restored);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status check_team(const model::Instance& instance) const;
+  Status check_sharing() const;
   Result<std::shared_ptr<const model::Model>> add_masses(model::Instance& instance);
   void remove_entity(std::size_t index);
   void world_changed();
