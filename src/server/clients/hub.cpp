@@ -41,6 +41,7 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
   add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
+  memory_.world = options_.world;
   for (const Service& row : services()) {
     const std::uint32_t number = next_service_++;
     services_[number] = {{number, row.name, *row.type}, &row, "", nullptr};

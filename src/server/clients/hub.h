@@ -219,6 +219,8 @@ class Hub final : private ServiceHost {
   void wait(std::function<std::optional<Status>(const Session::Report&)> reached,
             std::function<void(const Status&)> done) override;
   void watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) override;
+  Memory& memory() override { return memory_; }
+  std::function<void(std::function<void()>)> way_back() override;
   void open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, const Status& status,
                   const WatchDone& done);
   void end_waiting();
@@ -261,6 +263,7 @@ class Hub final : private ServiceHost {
   std::shared_ptr<const Inventory> inventory_ = std::make_shared<Inventory>();
   std::deque<QueuedItem> items_;
   std::vector<Waiting> waiting_;
+  Memory memory_;
   wire::PoseWriter poses_;
   std::uint64_t poses_epoch_ = 0;
   msg::TFMessage transforms_;

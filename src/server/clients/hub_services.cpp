@@ -146,6 +146,12 @@ void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> reac
   waiting_.push_back({std::move(reached), std::move(done), report_.tick, Clock::now()});
 }
 
+std::function<void(std::function<void()>)> Hub::way_back() {
+  return [mailbox = mailbox_](std::function<void()> task) {
+    mailbox->push([task = std::move(task)](Hub&) { task(); });
+  };
+}
+
 /// Ends the waiting calls whose state the run has reached. A run that stands still will not reach it any more.
 void Hub::end_waiting() {
   constexpr std::chrono::seconds patience{5};

@@ -245,6 +245,12 @@ const Simulation::ProgramEntries* Simulation::programs_of(std::string_view owner
   return nullptr;
 }
 
+bool Simulation::is_taken(std::string_view name) const {
+  if (find_entity(name) || commands_.awaits_spawn(name)) return true;
+  return std::any_of(setup_.teams.begin(), setup_.teams.end(),
+                     [&](const model::TeamDecl& each) { return each.name == name; });
+}
+
 std::optional<InstanceId> Simulation::find_instance(std::string_view name) const {
   const Entity* const entity = find_entity(name);
   return entity ? std::optional(entity->id) : std::nullopt;
