@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math.h"
 #include "base/random.h"
 #include "geometry/bounds.h"
 
@@ -27,11 +28,11 @@ TEST(HullOverlap, MeetsUpToTheSumOfBothExtents) {
     double extent_m;
   } cases[] = {
       {Box{{0.4, 0.4, 0.4}}, {}, 0.2},
-      {Box{{0.4, 0.4, 0.4}}, {{}, quat_from_rpy(0, 0, std::atan(1.0))}, 0.2 * std::sqrt(2.0)},
+      {Box{{0.4, 0.4, 0.4}}, {{}, quat_from_rpy(0, 0, math::pi / 4)}, 0.2 * std::sqrt(2.0)},
       {Sphere{0.3}, {}, 0.3},
       {Cylinder{0.3, 2}, {}, 0.3},
-      {Cylinder{0.3, 2}, {{}, quat_from_rpy(0, 2 * std::atan(1.0), 0)}, 1},
-      {Capsule{0.1, 1}, {{}, quat_from_rpy(0, 2 * std::atan(1.0), 0)}, 0.6},
+      {Cylinder{0.3, 2}, {{}, quat_from_rpy(0, math::pi / 2, 0)}, 1},
+      {Capsule{0.1, 1}, {{}, quat_from_rpy(0, math::pi / 2, 0)}, 0.6},
       {Ellipsoid{{0.7, 0.1, 0.2}}, {}, 0.7},
       {Barrel{0.25, 1, 0.2}, {}, 0.25},
   };

@@ -1,6 +1,7 @@
 #pragma once
 /// The keys of a scenario file, once: the reader and the schema both come from these lists. A key whose value is a field of
 /// model::Setup or model::Instance is read into it at once; the others are taken over in scenario.cpp.
+/// long file: one list of keys, as users see them
 #include <optional>
 #include <string>
 #include <vector>

@@ -186,6 +186,10 @@ class Hub final : private ServiceHost {
   bool within_budget(ClientId id, Client& client);
   const Client* find(ClientId id) const;
   bool may_see(const Client& client, ClientId id, const Channel& channel) const;
+  bool sees_world(const Client& client) const {
+    return server::sees_world(client.access, inventory_->sharing);
+  }
+  void revoke(ClientId id, Client& client);
   void leave_channel(ClientId id, std::uint32_t channel_id, std::uint32_t subscription);
   void remove_channel(std::uint32_t id);
   void advertise_waiting(ClientId id, Client& client);

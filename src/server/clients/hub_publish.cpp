@@ -70,7 +70,7 @@ void Hub::answer_parameters(ClientId id, const std::string& about, std::span<con
 
 void Hub::get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about) {
   Client& client = clients_.at(id);
-  if (client.access.is_scoped()) return refuse(id, "parameters are for administrators and spectators", about);
+  if (!sees_world(client)) return refuse(id, "parameters are for those who see the world", about);
   if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about);
   // Each is looked up on the simulation's thread.
   if (names.size() > most_named_parameters)
