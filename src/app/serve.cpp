@@ -43,6 +43,7 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   transport.port = static_cast<std::uint16_t>(options.port);
   transport.next_free = options.next_free;
   transport.origins = options.origins;
+  transport.udp = options.udp;
   if (!options.tokens_file.empty()) { SL_ASSIGN(transport.tokens, load_tokens(options.tokens_file)); }
   std::string admins = options.token;
   for (const server::Token& each : transport.tokens)

@@ -53,6 +53,10 @@ class Hub final : private ServiceHost {
   const wire::Assets& assets() const { return assets_; }
   const Session::Report& report() const { return report_; }
   const Access& access(ClientId id) const;
+  bool sees_world(ClientId id) const {
+    const Client* const client = find(id);
+    return client && sees_world(*client);
+  }
   /// A refusal: told to the client, unless it has had many in this second, and counted.
   void refuse(ClientId id, const std::string& why, std::string_view about = {});
   /// The public channels that the client may see, in portions as its queue has room; it is told of others as they come.
@@ -84,8 +88,9 @@ class Hub final : private ServiceHost {
   using Answer = std::function<void(Face&, const ServiceCall::Outcome&)>;
   void call(ClientId id, const ServiceOffer& service, const AnyMessage& request, Answer answer);
 
-  void get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about);
-  void set_parameters(ClientId id, const std::vector<foxglove::Parameter>& parameters,
+  /// @return false: refused at once
+  bool get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about);
+  bool set_parameters(ClientId id, const std::vector<foxglove::Parameter>& parameters,
                       const std::string& about);
   /// @param names  empty: all
   Status subscribe_parameters(ClientId id, const std::vector<std::string>& names, bool subscribe);
@@ -118,10 +123,12 @@ class Hub final : private ServiceHost {
 
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
+    std::atomic<std::uint64_t> too_long = 0;  ///< dropped, as they fit no datagram
     std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
   void count_refused() { ++counts_.refused; }
+  void count_dropped() { ++counts_.too_long; }
 
  private:
   using Clock = std::chrono::steady_clock;
