@@ -59,6 +59,7 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
       return Error{"--allow-origin: '" + origin + "' is not an origin", "write https://app.example.org"};
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
+  server_options.world = options.world;
   if (outputs)
     server_options.recording = [outputs]() -> std::optional<server::ServerOptions::Recording> {
       auto progress = outputs->recording();
