@@ -336,7 +336,7 @@ TEST(Requests, ADescriptionIsKeptAndChangesNothing) {
   advance(*other, 5);
   EXPECT_EQ(told->state_hash(), other->state_hash());
   const auto restored = again(*told);
-  const model::EntityInfo& info = restored->find_entity("crate1")->instance.info;
+  const model::EntityInfo& info = std::as_const(*restored).find_entity("crate1")->instance.info;
   EXPECT_EQ(info.category, model::Category::object);
   EXPECT_EQ(info.description, "a crate");
   EXPECT_EQ(info.tags, (std::vector<std::string>{"red", "heavy"}));
@@ -537,7 +537,8 @@ TEST(Requests, TheLogOfARunRepeatsItWithEverythingThatWasAskedOfIt) {
   EXPECT_EQ(asked, 8u);
   EXPECT_EQ(refused, 1u);
   EXPECT_EQ(repeated.hashes, live.hashes);
-  EXPECT_EQ(replay->find_entity("crate1")->instance.info.tags, std::vector<std::string>{"red"});
+  EXPECT_EQ(std::as_const(*replay).find_entity("crate1")->instance.info.tags,
+            std::vector<std::string>{"red"});
 }
 
 TEST(Simulation, TicksLongerThanASamplingIntervalLoseSamplesAndDoNotPileThemUp) {
