@@ -55,7 +55,8 @@ TEST_P(VelocityContract, SetVelocityMovesTheWholeAndLeavesTheJointsAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, VelocityContract,
-                         ::testing::ValuesIn(engine_kinds().begin(), engine_kinds().end()), engine_name);
+                         ::testing::ValuesIn(engine_kinds().begin(), engine_kinds().end()),
+                         [](const auto& info) { return std::string(info.param->name); });
 
 }  // namespace
 }  // namespace sandlot
