@@ -45,7 +45,9 @@ std::vector<RealRequest> real_requests() {
                          LoadDeviceRequest{"robot", {.name = "truth", .kind = "ground_truth"}},
                          UnloadDeviceRequest{"robot/drive"},
                          PullRequest{"ball", "", {}, {0, 0, 1}, Time::from_s(1)},
-                         CallRequest{"robot/odometry", "reset", {}}};
+                         CallRequest{"robot/odometry", "reset", {}},
+                         VelocityRequest{"ball", {{1, 0, 0}, {0, 0, 2}}},
+                         InfoRequest{"ball", {model::Category::object, "a ball", {"red"}}}};
   std::vector<RealRequest> out;
   for (const Request& request : all) {
     RealRequest real{static_cast<std::uint8_t>(request.index()), request_target(request), "", {}};

@@ -30,6 +30,8 @@ struct ServeOptions {
   std::string token;        ///< of administrators; "": made where one is needed
   std::string tokens_file;  ///< app/tokens.h; "": none
   std::vector<std::string> origins;
+  bool udp = false;   ///< whether clients may come by UDP, too
+  std::string world;  ///< file of the run, for programs that ask; "": none
 };
 
 struct RunOptions {

@@ -58,7 +58,7 @@ void add_skip_missing(CLI::App& verb, bool& skip) {
 
 void add_json(CLI::App& verb, bool& json) { verb.add_flag("--json", json, "Print as JSON"); }
 
-/// Options of a server: --port, --address, --token, --allow-origin.
+/// Options of a server: --port, --address, --token, --tokens, --allow-origin, --udp.
 struct ServeFlags {
   std::optional<int> port;
   ServeOptions options;
@@ -76,6 +76,7 @@ struct ServeFlags {
             "--allow-origin", options.origins,
             "Another site whose pages may connect: https://app.example.org; may be given several times")
         ->allow_extra_args(false);
+    verb.add_flag("--udp", options.udp, "Take clients by UDP, too, at the same port; docs/clients.md");
   }
 
   Status finish(std::optional<ServeOptions>& out) {
@@ -84,10 +85,10 @@ struct ServeFlags {
       out = options;
       return {};
     }
-    if (!options.token.empty() || !options.tokens_file.empty() || !options.origins.empty() ||
+    if (!options.token.empty() || !options.tokens_file.empty() || !options.origins.empty() || options.udp ||
         options.address != ServeOptions().address)
       return Error{
-          "--address, --token, --tokens and --allow-origin say who may look at the page, but there is none",
+          "--address, --token, --tokens, --allow-origin and --udp say who may look at the page, but there is none",
           "add --port 8765"};
     return {};
   }

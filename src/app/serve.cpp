@@ -43,6 +43,7 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   transport.port = static_cast<std::uint16_t>(options.port);
   transport.next_free = options.next_free;
   transport.origins = options.origins;
+  transport.udp = options.udp;
   if (!options.tokens_file.empty()) { SL_ASSIGN(transport.tokens, load_tokens(options.tokens_file)); }
   std::string admins = options.token;
   for (const server::Token& each : transport.tokens)
@@ -58,6 +59,7 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
       return Error{"--allow-origin: '" + origin + "' is not an origin", "write https://app.example.org"};
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
+  server_options.world = options.world;
   if (outputs)
     server_options.recording = [outputs]() -> std::optional<server::ServerOptions::Recording> {
       auto progress = outputs->recording();

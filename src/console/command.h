@@ -103,6 +103,12 @@ struct ModelFile {
 };
 /// What `add` can load, by name.
 std::vector<ModelFile> model_files(const Console::Options& options);
+/// Scenarios and worlds: Sandlot's own, and those in the console's folder.
+std::vector<ModelFile> world_files(const Console::Options& options);
+/// The file that a URI names: "rover", "model://rover", "models/rover/model.sdf" of `known`, or a file in the console's folder
+/// or one of those that are searched, as "file:///..." or by its path. "builder:..." stays as it is.
+Result<std::string> resource_file(const Console::Options& options, std::string_view uri,
+                                  std::span<const ModelFile> known);
 
 inline constexpr std::size_t most_letters = 4096, most_pattern = 300, most_matches = 10'000;
 

@@ -43,6 +43,7 @@ class Console {
     std::function<Result<std::string>(const std::string& file)> record;
   };
   Console(Session& session, Options options);
+  const Options& options() const { return options_; }
 
   using Reply = std::function<void(const Answer&)>;
   void execute(std::string_view line, const Caller& caller, const Reply& reply);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "base/text.h"
 #include "console/command.h"
@@ -124,6 +125,74 @@ std::vector<ModelFile> model_files(const Console::Options& options) {
   }
   std::sort(out.begin(), out.end(), [](const ModelFile& a, const ModelFile& b) { return a.name < b.name; });
   return out;
+}
+
+std::vector<ModelFile> world_files(const Console::Options& options) {
+  constexpr std::size_t most = 1000;
+  std::vector<ModelFile> out;
+  const auto add_folder = [&](const std::string& folder, std::initializer_list<std::string_view> extensions) {
+    std::error_code failed;
+    if (folder.empty()) return;
+    fs::directory_iterator entries(folder, failed);
+    if (failed) return;
+    for (const fs::directory_entry& entry : entries) {
+      const std::string extension = entry.path().extension().string();
+      if (out.size() >= most || !entry.is_regular_file(failed) ||
+          std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        continue;
+      const fs::path file = fs::weakly_canonical(entry.path(), failed);
+      if (failed ||
+          std::any_of(out.begin(), out.end(), [&](const ModelFile& m) { return m.file == file.string(); }))
+        continue;
+      out.push_back({file.stem().string(), file.string(), extension == ".yaml" ? "scenario" : "world"});
+    }
+  };
+  add_folder(own_folder("scenarios"), {".yaml"});
+  add_folder(own_folder("worlds"), {".sdf", ".world"});
+  // A console that may go anywhere has no folder of its own to show.
+  if (options.folder != "/") add_folder(options.folder, {".yaml", ".sdf", ".world"});
+  std::sort(out.begin(), out.end(), [](const ModelFile& a, const ModelFile& b) {
+    return std::tie(a.name, a.file) < std::tie(b.name, b.file);
+  });
+  return out;
+}
+
+Result<std::string> resource_file(const Console::Options& options, std::string_view uri,
+                                  std::span<const ModelFile> known) {
+  if (starts_with(uri, "builder:")) return std::string(uri);
+  constexpr std::string_view model_scheme = "model://", file_scheme = "file://";
+  const bool by_model = starts_with(uri, model_scheme);
+  std::string_view name = uri;
+  if (by_model) name.remove_prefix(model_scheme.size());
+  if (starts_with(uri, file_scheme)) name.remove_prefix(file_scheme.size());
+  std::vector<std::string> near;
+  for (const ModelFile& each : known) {
+    // models/rover/model.sdf, rover/model.sdf, rover; of a world its name alone.
+    const std::string bare = each.name.substr(each.name.find('/') + 1);
+    const std::string only = bare.substr(0, bare.find('/'));
+    near.push_back(only);
+    if (name == each.name || name == bare || name == only || name == each.file) return each.file;
+  }
+  const Error missing{"there is no '" + std::string(uri.substr(0, 200)) + "'", suggestion(name, near)};
+  if (by_model || name.empty()) return missing;
+  std::vector<std::string> folders = search_path(options.paths).folders;
+  folders.push_back(options.folder);
+  folders.push_back(own_folder("scenarios"));
+  folders.push_back(own_folder("worlds"));
+  std::error_code failed;
+  const fs::path wanted = fs::path(name).is_absolute() ? fs::path(name) : fs::path(options.folder) / name;
+  const fs::path file = fs::weakly_canonical(wanted, failed);
+  if (failed) return missing;
+  for (const std::string& each : folders) {
+    const fs::path folder = each.empty() ? fs::path() : fs::weakly_canonical(each, failed);
+    if (failed || folder.empty()) continue;
+    const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+    if (end != folder.end() && !end->empty()) continue;
+    if (!fs::is_regular_file(file, failed)) return missing;
+    return file.string();
+  }
+  return Error{"'" + std::string(uri.substr(0, 200)) + "' is not within the folders of this run",
+               "put it there, or name its folder with --path"};
 }
 
 }  // namespace sandlot::console

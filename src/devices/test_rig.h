@@ -57,6 +57,7 @@ class HandEngine final : public Engine {
   std::span<const BodyId> bodies(InstanceId) const override { return body_ids; }
   std::span<const JointId> joints(InstanceId) const override { return joint_ids; }
   void set_pose(InstanceId, const Pose&) override {}
+  void set_velocity(InstanceId, const Velocity&) override {}
   void guide(InstanceId, const Pose&, const Velocity&) override {}
   BodyName name(BodyId id) const override { return id.index < names.size() ? names[id.index] : BodyName{}; }
   Pose pose(InstanceId) const override { return body[0].X_WB; }

@@ -38,6 +38,11 @@ struct Save {
   bool operator()(const CallRequest& x) {
     return write(w, x.device), write(w, x.service), write(w, x.bytes), true;
   }
+  bool operator()(const VelocityRequest& x) { return write(w, x.name), write(w, x.V_WM), true; }
+  bool operator()(const InfoRequest& x) {
+    write(w, x.name), write(w, x.info.category), write(w, x.info.description), write(w, x.info.tags);
+    return true;
+  }
 };
 
 struct Load {
@@ -60,6 +65,11 @@ struct Load {
     return r.ok() && x.answer.kind <= OutsideAnswer::Kind::gone;
   }
   bool operator()(CallRequest& x) { return read(r, x.device), read(r, x.service), read(r, x.bytes), r.ok(); }
+  bool operator()(VelocityRequest& x) { return read(r, x.name), read(r, x.V_WM), r.ok(); }
+  bool operator()(InfoRequest& x) {
+    read(r, x.name), read(r, x.info.category), read(r, x.info.description), read(r, x.info.tags);
+    return r.ok() && x.info.category <= model::Category::static_object;
+  }
 };
 
 struct Target {
@@ -75,6 +85,8 @@ struct Target {
   const std::string& operator()(const PullRequest& x) const { return x.name; }
   const std::string& operator()(const AnswerRequest& x) const { return x.program; }
   const std::string& operator()(const CallRequest& x) const { return x.device; }
+  const std::string& operator()(const VelocityRequest& x) const { return x.name; }
+  const std::string& operator()(const InfoRequest& x) const { return x.name; }
 };
 
 }  // namespace
@@ -83,8 +95,8 @@ static_assert(std::is_same_v<std::variant_alternative_t<0, Request>, CommandRequ
 
 const char* request_kind(std::size_t index) {
   static constexpr std::array<const char*, std::variant_size_v<Request>> names{
-      "command", "parameter",   "level",         "spawn", "delete", "pose",
-      "sample",  "load device", "unload device", "pull",  "answer", "call"};
+      "command",     "parameter",     "level", "spawn",  "delete", "pose",     "sample",
+      "load device", "unload device", "pull",  "answer", "call",   "velocity", "info"};
   return index < names.size() ? names[index] : "unknown";
 }
 

@@ -93,9 +93,20 @@ struct CallRequest {
   std::vector<std::byte> bytes;  ///< the service's request, in CDR
 };
 
+/// Sets the velocity of an instance as a whole (Engine::set_velocity).
+struct VelocityRequest {
+  std::string name;
+  Velocity V_WM;  ///< of the model's origin
+};
+/// Replaces category, description and tags of an entity.
+struct InfoRequest {
+  std::string name;
+  model::EntityInfo info;
+};
+
 using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
                              PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest,
-                             AnswerRequest, CallRequest>;
+                             AnswerRequest, CallRequest, VelocityRequest, InfoRequest>;
 
 /// "command", "parameter", ...: of the alternatives of Request in their order.
 const char* request_kind(std::size_t index);

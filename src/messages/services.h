@@ -9,6 +9,7 @@
 
 #include "messages/device_services.h"
 #include "messages/simulation_interfaces.h"
+#include "messages/simulation_services.h"
 
 namespace sandlot::msg {
 

@@ -39,17 +39,47 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},
       {"simulation_interfaces/srv/DeleteEntity", "string entity\n", "simulation_interfaces/Result result\n"},
+      {"simulation_interfaces/srv/GetAvailableWorlds",
+       "string[] additional_sources\nsimulation_interfaces/TagsFilter filter\nbool offline_only\nbool "
+       "continue_on_error\n",
+       "uint8 DEFAULT_SOURCES_FAILED=101\nsimulation_interfaces/Result "
+       "result\nsimulation_interfaces/WorldResource[] worlds\n"},
+      {"simulation_interfaces/srv/GetCurrentWorld", "",
+       "uint8 NO_WORLD_LOADED=101\nsimulation_interfaces/Result result\nsimulation_interfaces/WorldResource "
+       "world\n"},
       {"simulation_interfaces/srv/GetEntities", "simulation_interfaces/EntityFilters filters\n",
        "simulation_interfaces/Result result\nstring[] entities\n"},
+      {"simulation_interfaces/srv/GetEntitiesStates", "simulation_interfaces/EntityFilters filters\n",
+       "simulation_interfaces/Result result\nstring[] entities\nsimulation_interfaces/EntityState[] "
+       "states\n"},
+      {"simulation_interfaces/srv/GetEntityBounds", "string entity\n",
+       "simulation_interfaces/Result result\nsimulation_interfaces/Bounds bounds\n"},
+      {"simulation_interfaces/srv/GetEntityInfo", "string entity\n",
+       "simulation_interfaces/Result result\nsimulation_interfaces/EntityInfo info\n"},
       {"simulation_interfaces/srv/GetEntityState", "string entity\n",
        "simulation_interfaces/Result result\nsimulation_interfaces/EntityState state\n"},
+      {"simulation_interfaces/srv/GetNamedPoseBounds", "string name\n",
+       "simulation_interfaces/Result result\nsimulation_interfaces/Bounds bounds\n"},
+      {"simulation_interfaces/srv/GetNamedPoses", "simulation_interfaces/TagsFilter tags\n",
+       "simulation_interfaces/Result result\nsimulation_interfaces/NamedPose[] poses\n"},
       {"simulation_interfaces/srv/GetSimulationState", "",
        "simulation_interfaces/SimulationState state\nsimulation_interfaces/Result result\n"},
       {"simulation_interfaces/srv/GetSimulatorFeatures", "",
        "simulation_interfaces/SimulatorFeatures features\n"},
+      {"simulation_interfaces/srv/GetSpawnables", "string[] sources\n",
+       "simulation_interfaces/Result result\nsimulation_interfaces/Spawnable[] spawnables\n"},
+      {"simulation_interfaces/srv/LoadWorld",
+       "simulation_interfaces/Resource world_resource\nbool fail_on_unsupported_element\nbool "
+       "ignore_missing_or_unsupported_assets\n",
+       "uint8 UNSUPPORTED_FORMAT=101\nuint8 NO_RESOURCE=102\nuint8 RESOURCE_PARSE_ERROR=103\nuint8 "
+       "MISSING_ASSETS=104\nuint8 UNSUPPORTED_ASSETS=105\nuint8 "
+       "UNSUPPORTED_ELEMENTS=106\nsimulation_interfaces/Result result\nsimulation_interfaces/WorldResource "
+       "world\n"},
       {"simulation_interfaces/srv/ResetSimulation",
        "uint8 SCOPE_DEFAULT=0\nuint8 SCOPE_TIME=1\nuint8 SCOPE_STATE=2\nuint8 SCOPE_SPAWNED=4\nuint8 "
        "SCOPE_ALL=255\nuint8 scope\n",
+       "simulation_interfaces/Result result\n"},
+      {"simulation_interfaces/srv/SetEntityInfo", "string entity\nsimulation_interfaces/EntityInfo info\n",
        "simulation_interfaces/Result result\n"},
       {"simulation_interfaces/srv/SetEntityState",
        "string entity\nsimulation_interfaces/EntityState state\nbool set_pose\nbool set_twist\nbool "
@@ -58,7 +88,19 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"simulation_interfaces/srv/SetSimulationState", "simulation_interfaces/SimulationState state\n",
        "uint8 ALREADY_IN_TARGET_STATE=101\nuint8 STATE_TRANSITION_ERROR=102\nuint8 "
        "INCORRECT_TRANSITION=103\nsimulation_interfaces/Result result\n"},
+      {"simulation_interfaces/srv/SpawnEntities", "simulation_interfaces/SpawnEntity[] spawn_requests\n",
+       "uint8 ENTITIES_SPAWN_FAILED=150\nsimulation_interfaces/Result "
+       "result\nsimulation_interfaces/SpawnResult[] results\n"},
+      {"simulation_interfaces/srv/SpawnEntity",
+       "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\nstring "
+       "entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n",
+       "uint8 NAME_NOT_UNIQUE=101\nuint8 NAME_INVALID=102\nuint8 UNSUPPORTED_FORMAT=103\nuint8 "
+       "NO_RESOURCE=104\nuint8 NAMESPACE_INVALID=105\nuint8 RESOURCE_PARSE_ERROR=106\nuint8 "
+       "MISSING_ASSETS=107\nuint8 UNSUPPORTED_ASSETS=108\nuint8 "
+       "INVALID_POSE=109\nsimulation_interfaces/Result result\nstring entity_name\n"},
       {"simulation_interfaces/srv/StepSimulation", "uint64 steps\n", "simulation_interfaces/Result result\n"},
+      {"simulation_interfaces/srv/UnloadWorld", "",
+       "uint8 NO_WORLD_LOADED=101\nsimulation_interfaces/Result result\n"},
       {"std_srvs/srv/Trigger", "", "bool success\nstring message\n"},
   };
   ASSERT_EQ(all_services().size(), std::size(expected));

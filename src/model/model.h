@@ -18,6 +18,7 @@
 #include "base/time.h"
 #include "geometry/color.h"
 #include "geometry/pose.h"
+#include "model/annotations.h"
 #include "model/declarations.h"
 #include "model/joint.h"
 #include "model/light.h"
@@ -104,6 +105,7 @@ struct Instance {
   std::optional<Motion> motion;
   double errors = 1;
   std::vector<PropertyDecl> properties;
+  EntityInfo info;
   Place place;
 
   const PropertyDecl* find_property(std::string_view property) const {
@@ -126,6 +128,7 @@ struct Instance {
     visit(Field{"controllers", "", "Control programs."}, s.controllers);
     visit(Field{"motion", "", "Path that it follows whatever happens to it."}, s.motion);
     visit(Field{"properties", "", "Properties of the user's own."}, s.properties);
+    visit(Field{"info", "", "Category, description and tags."}, s.info);
   }
 };
 
@@ -197,6 +200,8 @@ struct Setup : Environment {
   std::optional<LogDecl> log;
   std::vector<SurfaceZone> zones;
   std::vector<ElementDecl> media, rules, markers;
+  std::vector<NamedPose> poses;
+  Sharing sharing;
 
   /// All but the instances, whose models are written apart, and `record` and `log`: outputs are not part of the run.
   static void fields(auto& s, auto&& visit) {
@@ -228,6 +233,8 @@ struct Setup : Environment {
     visit(Field{"media", "", "Media between robots."}, s.media);
     visit(Field{"rules", "", "Rules of the world."}, s.rules);
     visit(Field{"markers", "", "Areas on the ground."}, s.markers);
+    visit(Field{"poses", "", "Poses that have names."}, s.poses);
+    visit(Field{"sharing", "", "What clients see that are no administrators."}, s.sharing);
   }
 };
 

@@ -202,6 +202,9 @@ class Engine {
   virtual std::span<const JointId> joints(InstanceId id) const = 0;
   /// Moves a whole instance to a pose, at rest, its joints as they are; wakes it and what rested on it.
   virtual void set_pose(InstanceId id, const Pose& X_WM) = 0;
+  /// Gives the canonical link, at its origin, a velocity in W. The instance gets it as a whole: the velocities of its joints
+  /// stay. What stands still, or follows a motion, keeps its own; a drive goes on from there, as its limits allow.
+  virtual void set_velocity(InstanceId id, const Velocity& V_WB) = 0;
   /// Pose of an instance with a motion: it stands at X_WM after the next step and moves with V_WM (of the
   /// model frame's origin) during it, whatever is in its way; contacts feel that velocity. Without a call it
   /// stands still.

@@ -72,6 +72,63 @@ TEST(Rosbridge, AnswersRosapiAndRefusesWithTheNearestName) {
   EXPECT_EQ(bridge.take()["op"], "service_response");
 }
 
+TEST(Rosbridge, RosapiKnowsTypesNodesAndParameters) {
+  Running run(arena("planar", 1, "wander"), {.pace = {1.0}});
+  run.go();
+  Bridge bridge(run.url());
+  const auto ask = [&](const std::string& service, const json& args) {
+    return bridge.call("/rosapi/" + service, args)["values"];
+  };
+  const json twist = ask("message_details", {{"type", "geometry_msgs/Twist"}})["typedefs"];
+  ASSERT_EQ(twist.size(), 2u) << "a Twist is made of Vector3";
+  EXPECT_EQ(twist[0]["type"], "geometry_msgs/Twist");
+  EXPECT_EQ(twist[0]["fieldnames"], json({"linear", "angular"}));
+  EXPECT_EQ(twist[0]["fieldtypes"], json({"geometry_msgs/Vector3", "geometry_msgs/Vector3"}));
+  EXPECT_EQ(twist[0]["fieldarraylen"], json({-1, -1}));
+  EXPECT_EQ(twist[1]["fieldtypes"], json({"float64", "float64", "float64"}));
+  const json scan = ask("message_details", {{"type", "sensor_msgs/msg/LaserScan"}})["typedefs"][0];
+  EXPECT_EQ(scan["fieldarraylen"].back(), 0) << "intensities are a list";
+  EXPECT_TRUE(ask("message_details", {{"type", "no/Such"}})["typedefs"].empty());
+  const json request = ask("service_request_details",
+                           {{"type", "simulation_interfaces/srv/ResetSimulation"}});
+  EXPECT_EQ(request["typedefs"][0]["fieldnames"], json({"scope"}));
+  EXPECT_EQ(request["typedefs"][0]["constnames"][4], "SCOPE_ALL");
+  EXPECT_EQ(request["typedefs"][0]["constvalues"][4], "255");
+  const json response = ask("service_response_details", {{"type", "sandlot_msgs/Console"}});
+  EXPECT_EQ(response["typedefs"][0]["fieldnames"], json({"ok", "text"}));
+  EXPECT_EQ(ask("services_for_type", {{"type", "sandlot_msgs/Console"}})["services"],
+            json({"/sandlot/console"}));
+
+  const json nodes = ask("nodes", json::object())["nodes"];
+  for (const char* node : {"/sandlot", "/rover1/laser", "/rover1/controller"})
+    EXPECT_EQ(std::count(nodes.begin(), nodes.end(), node), 1) << node;
+  const json laser = ask("node_details", {{"node", "/rover1/laser"}});
+  EXPECT_EQ(laser["publishing"], json({"/rover1/laser/ranges"}));
+  EXPECT_TRUE(laser["subscribing"].empty());
+  EXPECT_EQ(ask("publishers", {{"topic", "/rover1/laser/ranges"}})["publishers"], json({"/rover1/laser"}));
+  EXPECT_EQ(ask("subscribers", {{"topic", "/rover1/laser/ranges"}})["subscribers"],
+            json({"/rover1/controller"}));
+  EXPECT_EQ(ask("service_node", {{"service", "/get_entities"}})["node"], "/sandlot");
+
+  const json names = ask("get_param_names", json::object())["names"];
+  EXPECT_EQ(std::count(names.begin(), names.end(), "rover1/laser.noise.white"), 1);
+  EXPECT_EQ(ask("get_param", {{"name", "rover1/laser.noise.white"}})["value"], "0.01") << "JSON in a text";
+  EXPECT_EQ(ask("set_param", {{"name", "/rover1/laser.noise.white"}, {"value", "0.5"}})["successful"], true);
+  EXPECT_EQ(ask("get_param", {{"name", "rover1/laser.noise.white"}})["value"], "0.5");
+  EXPECT_EQ(ask("has_param", {{"name", "rover1/laser.noise.white"}})["exists"], true);
+  EXPECT_EQ(ask("has_param", {{"name", "rover1/laser.noise.black"}})["exists"], false);
+  EXPECT_EQ(ask("get_param", {{"name", "none"}, {"default", "7"}})["value"], "7");
+  EXPECT_EQ(bridge.call("/rosapi/get_param", {{"name", "none"}})["result"], false);
+  const json wrong = bridge.call("/rosapi/set_param",
+                                 {{"name", "rover1/laser.noise.white"}, {"value", "-1"}});
+  EXPECT_EQ(wrong["result"], false);
+  EXPECT_NE(wrong["values"].get<std::string>().find("must be in"), std::string::npos) << wrong;
+  EXPECT_EQ(bridge.call("/rosapi/delete_param", {{"name", "none"}})["result"], false);
+  EXPECT_EQ(bridge.call("/rosapi/set_param", {{"name", "x"}, {"value", std::string(2000, '[')}})["result"],
+            false);
+  EXPECT_EQ(bridge.call("/rosapi/dance", json::object())["result"], false);
+}
+
 TEST(Rosbridge, SendsCborFragmentsAndThrottlesOverWebSocket) {
   Running run(arena("planar", 1, ""), {.paused = true});
   for (int i = 0; i < 30; ++i) ASSERT_TRUE(run.session.simulation().tick());

@@ -83,9 +83,12 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   handler.get = [self](std::string_view target) { return self->get(target); };
   handler.connected = [self, is_ready](ClientId id, const Access& access, std::string_view subprotocol) {
     is_ready.wait();
-    const bool tcp = subprotocol == "tcp", rosbridge = tcp || subprotocol.empty();
+    using Carrier = RosbridgeFace::Carrier;
+    const bool tcp = subprotocol == "tcp", udp = subprotocol == "udp",
+               rosbridge = tcp || udp || subprotocol.empty();
+    const Carrier carrier = tcp ? Carrier::tcp : udp ? Carrier::udp : Carrier::websocket;
     self->hub.connected(id, access, [=](Hub& hub, Transport& to, ClientId client) -> std::unique_ptr<Face> {
-      if (rosbridge) return std::make_unique<RosbridgeFace>(hub, to, client, tcp);
+      if (rosbridge) return std::make_unique<RosbridgeFace>(hub, to, client, carrier);
       return std::make_unique<FoxgloveFace>(hub, to, client);
     });
   };
@@ -130,7 +133,7 @@ std::string Server::url() const { return impl_->owned->url(); }
 Counters Server::counters() const {
   Counters out = impl_->owned->counters();
   out.refused += impl_->hub.counts().refused;
-  out.dropped += impl_->hub.counts().dropped;
+  out.dropped += impl_->hub.counts().dropped + impl_->hub.counts().too_long;
   return out;
 }
 

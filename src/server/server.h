@@ -30,6 +30,7 @@ struct ServerOptions {
   TransportOptions transport;
   std::string name;     ///< of the run, shown by viewers
   std::string version;  ///< of Sandlot
+  std::string world;    ///< file that the run was loaded from; "": none
   double poses_hz = 30;
   double watchdog_s =
       1;  ///< a robot whose client commands nothing for so long, by the wall clock, is stopped

@@ -34,7 +34,7 @@ TEST(Server, SaysWhoItIsAndWhatThereIs) {
          {"/tf", "/tf_static", "/clock", "/rosout", "/sandlot/world", "/sandlot/poses", "/sandlot/status",
           "/sandlot/commands", "/sandlot/contacts", "/sandlot/deliveries", "/sandlot/batteries"})
       EXPECT_EQ(viewer.channels.count(topic), 1u) << topic;
-    EXPECT_EQ(viewer.services.size(), 12u);
+    EXPECT_EQ(viewer.services.size(), 25u);
   }
 }
 
@@ -399,7 +399,7 @@ TEST(Server, SimulationInterfacesAreAnsweredWithTheirCodes) {
   EXPECT_EQ(all["entities"], json({"crate1", "crate2"}));
   const json robots = viewer.call("/get_entities", {{"filters", {{"categories", {{{"category", 1}}}}}}});
   EXPECT_EQ(robots["entities"], json({"rover1"}));
-  EXPECT_EQ(viewer.call("/get_entities", {{"filters", {{"filter", "(a|b)"}}}})["result"]["result"], 4);
+  EXPECT_EQ(viewer.call("/get_entities", {{"filters", {{"filter", "(a|b"}}}})["result"]["result"], 4);
   EXPECT_EQ(viewer.call("/get_entity_state", {{"entity", "nobody"}})["result"]["result"], 2);
   const json crate = viewer.call("/get_entity_state", {{"entity", "crate1"}});
   EXPECT_EQ(crate["state"]["pose"]["position"]["y"], -2.1);
@@ -540,7 +540,7 @@ TEST(Server, DevicesOfferServicesThatComeAndGoWithThem) {
   EXPECT_NE(said["text"].get<std::string>().find("the odometry is at zero"), std::string::npos) << said;
   EXPECT_TRUE(viewer.call("/delete_entity", {{"entity", "rover1"}})["result"]["result"] == 1);
   EXPECT_TRUE(viewer.until([&] { return !offered(); }));
-  EXPECT_EQ(viewer.services.size(), 12u);
+  EXPECT_EQ(viewer.services.size(), 25u);
 }
 
 TEST(Server, WarningsOfTheProgramAreLogLines) {

@@ -64,6 +64,10 @@ struct RequestText {
   }
   std::string operator()(const DeleteRequest&) const { return "remove"; }
   std::string operator()(const PoseRequest& x) const { return "pose " + text_of(x.X_WM); }
+  std::string operator()(const VelocityRequest& x) const {
+    return "velocity " + text_of(x.V_WM.linear) + " angular " + text_of(x.V_WM.angular);
+  }
+  std::string operator()(const InfoRequest&) const { return "info"; }
   std::string operator()(const SampleRequest&) const { return "sample"; }
   std::string operator()(const LoadDeviceRequest& x) const {
     return "load device " + x.device.name + " (" + x.device.kind + ")";

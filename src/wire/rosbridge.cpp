@@ -152,6 +152,7 @@ Result<Operation> operation(const std::string& op, const Reader& read) {
     return Operation(std::move(out));
   }
   if (op == "sandlot.release") return Operation(Release{});
+  if (op == "sandlot.hello") return Operation(Hello{});
   return Operation(Other{op});
 }
 
@@ -302,6 +303,21 @@ std::string service_response(std::string_view service, std::string_view id, std:
     w.key("result").flag(result);
   });
   return out;
+}
+
+std::string value_of(const Body& args, const char* key) {
+  constexpr std::size_t longest = 1000;
+  if (!args || !args.document()->is_object()) return "";
+  const auto found = args.document()->find(key);
+  if (found == args.document()->end() || found->is_null()) return "";
+  const auto dumped = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  if (!found->is_string()) return dumped(*found);
+  const std::string& text = found->get_ref<const std::string&>();
+  if (text.empty() || text.size() > longest) return "";
+  const Json inner = Json::parse(text, nullptr, false);
+  return dumped(inner.is_discarded() ? *found : inner);
 }
 
 std::string text_of(const Body& args, const char* key) {

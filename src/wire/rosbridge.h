@@ -3,7 +3,7 @@
 ///
 /// Messages  an object with the key `op`, as JSON, or as CBOR in a binary message. Keys that are not known are passed over, as
 ///           other servers do; a key twice is an error.
-/// Ours      operations of Sandlot: sandlot.claim, sandlot.done, sandlot.release; the server says sandlot.tick. docs/clients.md.
+/// Ours      operations of Sandlot: sandlot.hello, sandlot.claim, sandlot.done, sandlot.release; the server says sandlot.tick. docs/clients.md.
 /// Errors    a sentence that can go back to the client as a status. Bounded by the limits below, whatever the bytes.
 /// Source    RobotWebTools/rosbridge_suite, ROSBRIDGE_PROTOCOL.md; facts proven with roslib.
 #include <cstdint>
@@ -90,8 +90,10 @@ struct Done {
   Body orders, samples;
 };
 struct Release {};
+/// Asks a server for a sign of life; by UDP also for the nonce of the client's address.
+struct Hello {};
 using Operation = std::variant<Advertise, Unadvertise, Publish, Subscribe, Unsubscribe, CallService, SetLevel,
-                               Fragment, Other, Claim, Done, Release>;
+                               Fragment, Other, Claim, Done, Release, Hello>;
 
 struct ClientMessage {
   std::string id;
@@ -116,6 +118,8 @@ std::string tick(std::string_view program, std::uint64_t step, Time now, std::ui
 std::string quoted(std::string_view text);
 /// A text among the arguments of a call; "": there is none.
 std::string text_of(const Body& args, const char* key);
+/// A value among them that may be JSON itself or JSON in a text, as JSON: what rosapi calls the value of a parameter. "": none.
+std::string value_of(const Body& args, const char* key);
 
 /// A JSON text in pieces of at most `size` bytes, each a message of its own.
 std::vector<std::string> fragments(std::string_view text, std::size_t size, std::string_view id);

@@ -57,7 +57,9 @@ int run(const RunOptions& options) {
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
         if (options.serve) {
-          SL_ASSIGN(served, Served::start(*options.serve, parts.session, parts.console, &parts.outputs));
+          ServeOptions serve = *options.serve;
+          serve.world = options.spec.file;
+          SL_ASSIGN(served, Served::start(serve, parts.session, parts.console, &parts.outputs));
         }
         catch_interrupts();
         return {};

@@ -414,6 +414,39 @@ Status read_watch(const Node& node, const spec::Root& root, model::Setup& out) {
   return {};
 }
 
+/// `poses` and `share`. Whether there are such topics is seen when the world is there.
+Status read_annotations(const Node& node, const spec::Root& root, model::Setup& out) {
+  std::map<std::string, Place> names;
+  for (std::size_t i = 0; i < root.poses.size(); ++i) {
+    const spec::NamedPose& keys = root.poses[i];
+    const Node& each = node.find("poses")->items()[i];
+    const std::string path = "/poses/" + std::to_string(i);
+    if (keys.name.empty()) return each.error("the name of the pose is empty", "", path + "/name");
+    if (const auto [known, fresh] = names.emplace(keys.name, each.place()); !fresh)
+      return each.find("name")->error("two poses are called '" + keys.name + "'",
+                                      "the other one is at " + to_string(known->second), path + "/name");
+    SL_ASSIGN(const Pose X_WP, read_pose(keys.pose, path + "/pose"));
+    out.poses.push_back({keys.name, X_WP, keys.description, keys.tags, keys.size_m});
+  }
+  if (!root.share) return {};
+  out.sharing = root.share->sharing;
+  const Node* const topics = node.find("share")->find("topics");
+  for (std::size_t i = 0; i < root.share->topics.size(); ++i) {
+    const std::string& name = root.share->topics[i];
+    const Node& each = topics->is_sequence() ? topics->items()[i] : *topics;
+    const std::string path = "/share/topics/" + std::to_string(i);
+    if (name.empty() || name.front() != '/')
+      return each.error("'" + name.substr(0, 100) + "' is not the name of a topic", "it begins with /", path);
+    if (name.find('*') < name.size() - 1)
+      return each.error("'" + name.substr(0, 100) + "' has a * that is not at its end",
+                        "name the topics, or write their beginning and a *", path);
+    if (name == model::commands_topic)
+      return each.error("'" + name + "' is never shared", "what others command is theirs", path);
+    out.sharing.topics.push_back({name, each.place()});
+  }
+  return {};
+}
+
 Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostics& diagnostics) {
   // A file of a later version may differ in every key: its version is the only error.
   if (const Node* version = node.find("version")) {
@@ -478,6 +511,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   SL_TRY(read_elements(root.media, "media", setup.media));
   SL_TRY(read_elements(root.rules, "rules", setup.rules));
   SL_TRY(read_elements(root.markers, "markers", setup.markers));
+  SL_TRY(read_annotations(node, root, setup));
   return out;
 }
 

@@ -346,6 +346,34 @@ TEST(Scenario, ElementsOfTheWorldHaveAKindAndANameOfTheirOwn) {
   EXPECT_EQ(setup.markers.at(0).name, "spot");
 }
 
+TEST(Scenario, SaysToOtherProgramsWhatThereIs) {
+  const auto s = parse(
+      "version: 1\nrobots: [{name: r, model: m, category: human, description: walks, tags: [tall, slow]}]\n"
+      "things: [{name: t, model: m, tags: red}]\n"
+      "poses:\n"
+      "  - {name: dock, pose: [1, 2, 90 deg], tags: [parking], size: [1, 2, 0.5]}\n"
+      "  - {name: goal, pose: {x: 3}, description: there}\n"
+      "share: {topics: [/r/laser/ranges, '/t/*'], spectators: topics}\n");
+  ASSERT_TRUE(s) << s.error().text();
+  EXPECT_EQ(s->robots[0].instance.info.category, model::Category::human);
+  EXPECT_EQ(s->robots[0].instance.info.description, "walks");
+  EXPECT_EQ(s->robots[0].instance.info.tags, (std::vector<std::string>{"tall", "slow"}));
+  EXPECT_EQ(s->things[0].instance.info.tags, std::vector<std::string>{"red"});
+  EXPECT_EQ(s->things[0].instance.info.category, model::Category::automatic);
+  ASSERT_EQ(s->setup.poses.size(), 2u);
+  EXPECT_EQ(s->setup.poses[0].X_WP.p, (Vec3{1, 2, 0}));
+  EXPECT_NEAR(s->setup.poses[0].X_WP.q.z, std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(s->setup.poses[0].size_m, (Vec3{1, 2, 0.5}));
+  EXPECT_EQ(s->setup.poses[1].description, "there");
+  EXPECT_FALSE(s->setup.poses[1].size_m);
+  const model::Sharing& sharing = s->setup.sharing;
+  EXPECT_EQ(sharing.spectators, model::Sharing::Spectators::topics);
+  ASSERT_EQ(sharing.topics.size(), 2u);
+  EXPECT_EQ(sharing.topics[1].place.line, 7);
+  EXPECT_TRUE(sharing.has("/r/laser/ranges") && sharing.has("/t/x/y") && !sharing.has("/r/laser/range"));
+  EXPECT_EQ(parse("version: 1\n")->setup.sharing.spectators, model::Sharing::Spectators::world);
+}
+
 TEST(Scenario, SchemaFollowsFromTheFieldLists) {
   using Json = nlohmann::json;
   const std::vector<KindFields> devices = {

@@ -1,12 +1,14 @@
 #pragma once
 /// The keys of a scenario file, once: the reader and the schema both come from these lists. A key whose value is a field of
 /// model::Setup or model::Instance is read into it at once; the others are taken over in scenario.cpp.
+/// long file: one list of keys, as users see them
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/fields.h"
 #include "base/node.h"
+#include "formats/scenario/annotation_spec.h"
 #include "formats/scenario/team_spec.h"
 #include "formats/scenario/watch_spec.h"
 #include "formats/scenario/zone_spec.h"
@@ -162,6 +164,7 @@ struct LabelledObject {
     visit(Field{"distribution", "", "Places of several things."}, s.distribution);
     visit(label_field, s.instance.label);
     visit(properties_field, s.properties);
+    model::EntityInfo::fields(s.instance.info, visit);
   }
 };
 
@@ -220,6 +223,7 @@ struct Robot {
                 1e-3, 1e5},
           s.rate_hz);
     visit(properties_field, s.properties);
+    model::EntityInfo::fields(s.instance.info, visit);
   }
 };
 
@@ -239,6 +243,8 @@ struct Root {
   std::optional<Log> log;
   std::vector<Zone> zones;
   Node media, rules, markers;
+  std::vector<NamedPose> poses;
+  std::optional<Share> share;
   Node include;
 
   static void fields(auto& s, auto&& visit) {
@@ -290,6 +296,11 @@ struct Root {
           s.rules);
     visit(Field{"markers", "", "Areas on the ground: a list of maps with kind, name and the kind's keys."},
           s.markers);
+    visit(Field{"poses", "", "Poses that have names: places to spawn at, to park, goals.", 0, 0, Field::none,
+                10'000},
+          s.poses);
+    visit(Field{"share", "", "What remote programs see that are no administrators, besides what is theirs."},
+          s.share);
     visit(Field{"include", "", "Files merged below this one."}, s.include);
   }
 };

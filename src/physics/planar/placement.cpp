@@ -261,6 +261,28 @@ void PlanarEngine::set_pose(InstanceId id, const Pose& X_WM) {
   settle(id.index, X_WM);
 }
 
+void PlanarEngine::set_velocity(InstanceId id, const Velocity& V_WB) {
+  get(id);
+  Instance& instance = instances_[id.index];
+  if (!instance.moves || instance.guided) return;
+  const BodyState now = canonical_state(id.index);
+  const Vec3 dv = V_WB.linear - now.V_WB.linear;
+  const double dw = V_WB.angular.z - now.V_WB.angular.z;
+  for (const std::uint32_t k : instance.groups) {
+    RigidGroup& group = groups_[k];
+    const Vec2 arm = group.p - Vec2{now.X_WB.p.x, now.X_WB.p.y};
+    group.v = group.v + Vec2{dv.x, dv.y} + dw * left_of(arm);
+    group.w_radps += dw;
+  }
+  if (Drive& drive = drives_[id.index]; drive.active) {
+    const RigidGroup& group = groups_[instance.groups[0]];
+    drive.now = {
+        rotate_back(group.heading * drive.frame, group.velocity_at(rotate(group.heading, drive.arm))),
+        group.w_radps};
+  }
+  stale();
+}
+
 void PlanarEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   SL_CHECK_MSG(get(id).guided, "guide() needs an instance with a motion");
   instances_[id.index].destination = std::make_unique<std::pair<Pose, Velocity>>(X_WM, V_WM);

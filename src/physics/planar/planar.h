@@ -84,6 +84,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   std::span<const BodyId> bodies(InstanceId id) const override { return get(id).bodies; }
   std::span<const JointId> joints(InstanceId id) const override { return get(id).joints; }
   void set_pose(InstanceId id, const Pose& X_WM) override;
+  void set_velocity(InstanceId id, const Velocity& V_WB) override;
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   BodyName name(BodyId id) const override;
   BodyId body_at(std::uint32_t index) const override;

@@ -115,6 +115,26 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
   wake_neighbours(instance);
 }
 
+void RigidEngine::set_velocity(InstanceId id, const Velocity& V_WB) {
+  library::prepare_thread();
+  Instance& instance = alive(id);
+  if (!is_finite(V_WB.linear) || !is_finite(V_WB.angular))
+    return fail({"the new velocity of '" + instance.name + "' is not finite", remedy});
+  if (!instance.links[0].body) return;
+  // A rigid motion on top of the present one: whatever joins the bodies does not feel it.
+  const BodyState now = states_[instance.link_ids[0].index];
+  const Vec3 dv = V_WB.linear - now.V_WB.linear, dw = V_WB.angular - now.V_WB.angular;
+  for (Body& body : instance.bodies) {
+    body.v = body.v + dv + cross(dw, body.p - now.X_WB.p);
+    body.w = body.w + dw;
+    put(body);
+  }
+  for (const Wheel& wheel : instance.wheels) follow(wheel);
+  for (Joint& joint : instance.joints) measure_velocity(joint, instance.X_WM);
+  show(instance);
+  wake_instance(instance);
+}
+
 void RigidEngine::guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) {
   Instance& instance = alive(id);
   SL_CHECK_MSG(instance.guided, "guide() needs an instance with a motion");

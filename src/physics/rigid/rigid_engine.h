@@ -45,6 +45,7 @@ class RigidEngine final : public Engine {
   std::span<const BodyId> bodies(InstanceId id) const override { return alive(id).link_ids; }
   std::span<const JointId> joints(InstanceId id) const override { return alive(id).joint_ids; }
   void set_pose(InstanceId id, const Pose& X_WM) override;
+  void set_velocity(InstanceId id, const Velocity& V_WB) override;
   void guide(InstanceId id, const Pose& X_WM, const Velocity& V_WM) override;
   void become_robot(InstanceId id) override;
   BodyName name(BodyId id) const override;

@@ -41,6 +41,7 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
   add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
+  memory_.world = options_.world;
   for (const Service& row : services()) {
     const std::uint32_t number = next_service_++;
     services_[number] = {{number, row.name, *row.type}, &row, "", nullptr};
@@ -74,13 +75,21 @@ const Access& Hub::access(ClientId id) const {
   return client ? client->access : nobody;
 }
 
-/// Who drives robots sees their topics and the time.
 bool Hub::may_see(const Client& client, ClientId id, const Channel& channel) const {
-  if (channel.owner != 0) return channel.owner == id;
-  if (!client.access.is_scoped()) return true;
-  if (channel.kind == ChannelKind::clock || channel.kind == ChannelKind::status) return true;
-  if (channel.kind != ChannelKind::device) return false;
-  return client.access.drives(first_part(std::string_view(channel.info.topic).substr(1)));
+  if (channel.owner != 0) return channel.owner == id && sees_world(client);
+  return sees_topic(client.access, inventory_->sharing, channel.info.topic);
+}
+
+/// Takes from a client what it may not see any more.
+void Hub::revoke(ClientId id, Client& client) {
+  std::vector<std::uint32_t> lost, channels;
+  for (const auto& [subscription, channel] : client.subscriptions)
+    if (!find_channel(id, channel)) lost.push_back(subscription), channels.push_back(channel);
+  for (const std::uint32_t each : lost) (void)unsubscribe(id, each);
+  if (!channels.empty()) client.face->remove_channels(channels);
+  if (sees_world(client)) return;
+  client.parameters.clear();
+  client.all_parameters = client.graph = false;
 }
 
 void Hub::connected(ClientId id, Access access, const MakeFace& make_face) {
@@ -229,7 +238,7 @@ Status Hub::unsubscribe(ClientId id, std::uint32_t subscription) {
 
 Status Hub::subscribe_parameters(ClientId id, const std::vector<std::string>& names, bool subscribe) {
   Client& client = clients_.at(id);
-  if (client.access.is_scoped()) return Error{"parameters are for administrators and spectators"};
+  if (!sees_world(client)) return Error{"parameters are for those who see the world"};
   if (names.empty()) {
     client.all_parameters = subscribe;
     if (!subscribe) client.parameters.clear();
@@ -245,7 +254,7 @@ Status Hub::subscribe_parameters(ClientId id, const std::vector<std::string>& na
 
 void Hub::subscribe_graph(ClientId id, bool subscribe) {
   Client& client = clients_.at(id);
-  if (client.access.is_scoped()) return refuse(id, "the graph is for administrators and spectators");
+  if (!sees_world(client)) return refuse(id, "the graph is for those who see the world");
   client.graph = subscribe;
   if (subscribe) send_graph(true);
 }

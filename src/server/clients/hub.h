@@ -53,6 +53,10 @@ class Hub final : private ServiceHost {
   const wire::Assets& assets() const { return assets_; }
   const Session::Report& report() const { return report_; }
   const Access& access(ClientId id) const;
+  bool sees_world(ClientId id) const {
+    const Client* const client = find(id);
+    return client && sees_world(*client);
+  }
   /// A refusal: told to the client, unless it has had many in this second, and counted.
   void refuse(ClientId id, const std::string& why, std::string_view about = {});
   /// The public channels that the client may see, in portions as its queue has room; it is told of others as they come.
@@ -84,8 +88,9 @@ class Hub final : private ServiceHost {
   using Answer = std::function<void(Face&, const ServiceCall::Outcome&)>;
   void call(ClientId id, const ServiceOffer& service, const AnyMessage& request, Answer answer);
 
-  void get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about);
-  void set_parameters(ClientId id, const std::vector<foxglove::Parameter>& parameters,
+  /// @return false: refused at once
+  bool get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about);
+  bool set_parameters(ClientId id, const std::vector<foxglove::Parameter>& parameters,
                       const std::string& about);
   /// @param names  empty: all
   Status subscribe_parameters(ClientId id, const std::vector<std::string>& names, bool subscribe);
@@ -118,10 +123,12 @@ class Hub final : private ServiceHost {
 
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
+    std::atomic<std::uint64_t> too_long = 0;  ///< dropped, as they fit no datagram
     std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
   void count_refused() { ++counts_.refused; }
+  void count_dropped() { ++counts_.too_long; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -186,6 +193,10 @@ class Hub final : private ServiceHost {
   bool within_budget(ClientId id, Client& client);
   const Client* find(ClientId id) const;
   bool may_see(const Client& client, ClientId id, const Channel& channel) const;
+  bool sees_world(const Client& client) const {
+    return server::sees_world(client.access, inventory_->sharing);
+  }
+  void revoke(ClientId id, Client& client);
   void leave_channel(ClientId id, std::uint32_t channel_id, std::uint32_t subscription);
   void remove_channel(std::uint32_t id);
   void advertise_waiting(ClientId id, Client& client);
@@ -219,6 +230,8 @@ class Hub final : private ServiceHost {
   void wait(std::function<std::optional<Status>(const Session::Report&)> reached,
             std::function<void(const Status&)> done) override;
   void watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) override;
+  Memory& memory() override { return memory_; }
+  std::function<void(std::function<void()>)> way_back() override;
   void open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, const Status& status,
                   const WatchDone& done);
   void end_waiting();
@@ -261,6 +274,7 @@ class Hub final : private ServiceHost {
   std::shared_ptr<const Inventory> inventory_ = std::make_shared<Inventory>();
   std::deque<QueuedItem> items_;
   std::vector<Waiting> waiting_;
+  Memory memory_;
   wire::PoseWriter poses_;
   std::uint64_t poses_epoch_ = 0;
   msg::TFMessage transforms_;

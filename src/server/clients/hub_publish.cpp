@@ -68,15 +68,16 @@ void Hub::answer_parameters(ClientId id, const std::string& about, std::span<con
   client->face->tell_parameters(values, about);
 }
 
-void Hub::get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about) {
+bool Hub::get_parameters(ClientId id, const std::vector<std::string>& names, const std::string& about) {
   Client& client = clients_.at(id);
-  if (client.access.is_scoped()) return refuse(id, "parameters are for administrators and spectators", about);
-  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about);
+  if (!sees_world(client)) return refuse(id, "parameters are for those who see the world", about), false;
+  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about), false;
   // Each is looked up on the simulation's thread.
   if (names.size() > most_named_parameters)
     return refuse(id,
                   "more than " + std::to_string(most_named_parameters) + " parameters are requested by name",
-                  about);
+                  about),
+           false;
   ++client.calls;
   const auto answer = std::make_shared<ParameterAnswer>();
   answer->mailbox = mailbox_;
@@ -94,13 +95,15 @@ void Hub::get_parameters(ClientId id, const std::vector<std::string>& names, con
     for (Parameter& found : read_parameters(simulation, names))
       if (found.value.index() != 0 && !is_own(found.name)) answer->values.push_back(std::move(found));
   });
+  return true;
 }
 
-void Hub::set_parameters(ClientId id, const std::vector<Parameter>& parameters, const std::string& about) {
+bool Hub::set_parameters(ClientId id, const std::vector<Parameter>& parameters, const std::string& about) {
   Client& client = clients_.at(id);
   if (!client.access.is_admin())
-    return refuse(id, std::string("a ") + name_of(client.access.role) + " may not set parameters", about);
-  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about);
+    return refuse(id, std::string("a ") + name_of(client.access.role) + " may not set parameters", about),
+           false;
+  if (client.calls >= most_calls) return refuse(id, "too many requests wait for their answers", about), false;
   ++client.calls;
   const auto answer = std::make_shared<ParameterAnswer>();
   answer->mailbox = mailbox_;
@@ -142,6 +145,7 @@ void Hub::set_parameters(ClientId id, const std::vector<Parameter>& parameters, 
         });
     if (!queued) error = queued.error().text();
   }
+  return true;
 }
 
 Status Hub::judge(ClientId id, const Publication& publication) const {

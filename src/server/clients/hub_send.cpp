@@ -40,8 +40,11 @@ void Hub::send_time(Time now) {
 void Hub::send_world(const WorldUpdate& update) {
   if (update.inventory) {
     const bool other_world = inventory_->epoch != update.inventory->epoch;
-    adopt(*update.inventory);
+    // Names of the new channels are judged by the new world.
     inventory_ = update.inventory;
+    adopt(*inventory_);
+    if (other_world)
+      for (auto& [id, client] : clients_) revoke(id, client);
     // Its programs are others: they are answered for by the same clients.
     if (other_world)
       for (const auto& [id, client] : clients_)

@@ -7,7 +7,7 @@ namespace sandlot::server {
 /// Those of devices are for who drives the robot; administrators' are not for others.
 bool Hub::may_call(const Client& client, const OfferedService& service) const {
   if (!service.row) return client.access.may_command(service.device);
-  return client.access.is_admin() || (service.row->right == Right::watch && !client.access.is_scoped());
+  return client.access.is_admin() || (service.row->right == Right::watch && sees_world(client));
 }
 
 std::vector<const ServiceOffer*> Hub::offered_services(ClientId id) const {
@@ -15,7 +15,7 @@ std::vector<const ServiceOffer*> Hub::offered_services(ClientId id) const {
   const Client* const client = find(id);
   // Spectators are told of what they may not call, too: their viewers show it.
   for (const auto& [number, each] : services_)
-    if (client && (!client->access.is_scoped() || may_call(*client, each))) out.push_back(&each.offer);
+    if (client && (sees_world(*client) || may_call(*client, each))) out.push_back(&each.offer);
   return out;
 }
 
@@ -23,7 +23,7 @@ const ServiceOffer* Hub::find_service(ClientId id, std::uint32_t number) const {
   const Client* const client = find(id);
   const auto found = services_.find(number);
   if (!client || found == services_.end()) return nullptr;
-  return !client->access.is_scoped() || may_call(*client, found->second) ? &found->second.offer : nullptr;
+  return sees_world(*client) || may_call(*client, found->second) ? &found->second.offer : nullptr;
 }
 
 const ServiceOffer* Hub::find_service(ClientId id, std::string_view name) const {
@@ -144,6 +144,12 @@ void Hub::open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, 
 void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> reached,
                std::function<void(const Status&)> done) {
   waiting_.push_back({std::move(reached), std::move(done), report_.tick, Clock::now()});
+}
+
+std::function<void(std::function<void()>)> Hub::way_back() {
+  return [mailbox = mailbox_](std::function<void()> task) {
+    mailbox->push([task = std::move(task)](Hub&) { task(); });
+  };
 }
 
 /// Ends the waiting calls whose state the run has reached. A run that stands still will not reach it any more.

@@ -97,13 +97,7 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
   if (Status free = make_room(id, *access, request.token); !free) return fail(std::move(free.error()));
   // What it may not see any more is taken from it.
   const Access before = std::exchange(client.access, std::move(*access));
-  std::vector<std::uint32_t> lost, lost_channels;
-  for (const auto& [subscription, channel] : client.subscriptions)
-    if (!find_channel(id, channel)) lost.push_back(subscription), lost_channels.push_back(channel);
-  for (const std::uint32_t each : lost) (void)unsubscribe(id, each);
-  if (!lost_channels.empty()) client.face->remove_channels(lost_channels);
-  client.parameters.clear();
-  client.all_parameters = client.graph = false;
+  revoke(id, client);
   client.publications.clear();
   client.claim.emplace();
   client.claim->number = ++claims_;

@@ -40,6 +40,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
   auto out = std::make_shared<Inventory>();
   out->epoch = epoch;
   out->revision = simulation.revision();
+  out->sharing = simulation.setup().sharing;
   std::map<std::string_view, std::shared_ptr<const TopicBase>> blanks;
   const auto add_published = [&](const Simulation::ProgramEntries& programs) {
     for (const auto& program : programs)

@@ -45,6 +45,7 @@ struct Inventory {
     std::string name, team;
   };
   std::vector<Robot> robots;
+  model::Sharing sharing;
 
   /// Where a message that a client calls so goes: "/rover/drive/ideal/command", "/rover/drive" (its active level),
   /// "/rover/cmd_vel" (the active drive that takes a Twist or TwistStamped). Errors name the nearest.

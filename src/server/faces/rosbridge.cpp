@@ -25,11 +25,6 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// "/chatter" of "chatter": clients leave the slash out.
-std::string with_slash(std::string_view name) {
-  return starts_with(name, "/") ? std::string(name) : "/" + std::string(name);
-}
-
 std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
 
 /// A text as the pixels of a picture, which compresses it: three bytes each, about as wide as high, filled up with line breaks.
@@ -51,13 +46,38 @@ std::string png_message(std::string text) {
 
 }  // namespace
 
+std::string with_slash(std::string_view name) {
+  return starts_with(name, "/") ? std::string(name) : "/" + std::string(name);
+}
+
 double RosbridgeFace::Subscription::throttle_s() const {
   double least = 1e9;
   for (const auto& [id, each] : throttles_s) least = std::min(least, each);
   return least;
 }
 
+/// Whether a message can be sent: a datagram has an end.
+bool RosbridgeFace::fits(std::size_t bytes, std::size_t fragment_size) const {
+  return carrier_ != Carrier::udp || bytes <= most_datagram_bytes || fragment_size > 0;
+}
+
+/// A response that fits no datagram is a failure, so that nobody waits for it.
+void RosbridgeFace::send_response(const std::string& service, const std::string& id, std::string_view values,
+                                  bool result, std::size_t fragment_size, bool png) {
+  std::string text = rosbridge::service_response(service, id, values, result);
+  if (png) text = png_message(std::move(text));
+  if (!fits(text.size(), fragment_size))
+    text = rosbridge::service_response(service, id,
+                                       rosbridge::quoted("the response has " + std::to_string(text.size()) +
+                                                         " bytes and fits no datagram; give a fragment_size"),
+                                       false);
+  send_text(std::move(text), fragment_size, false);
+}
+
 bool RosbridgeFace::send_text(std::string text, std::size_t fragment_size, bool droppable) {
+  // A piece becomes longer when it is quoted.
+  constexpr std::size_t most_piece = 16'000;
+  if (carrier_ == Carrier::udp && fragment_size > 0) fragment_size = std::min(fragment_size, most_piece);
   if (fragment_size == 0 || text.size() <= fragment_size)
     return transport_.send(client_, {}, payload_of(text), true, droppable);
   for (std::string& each : rosbridge::fragments(text, fragment_size, std::to_string(++fragments_sent_)))
@@ -96,8 +116,14 @@ bool RosbridgeFace::deliver(std::uint32_t, const Outgoing& message, bool droppab
   const Payload& made = to.compression == Compression::png
                             ? in_form(Outgoing::Form::png, [&] { return payload_of(png_message(json())); })
                             : in_form(Outgoing::Form::json, [&] { return payload_of(json()); });
-  if (to.fragment_size == 0 || made->size() <= to.fragment_size)
-    return transport_.send(client_, {}, made, true, droppable);
+  if (!fits(made->size(), to.fragment_size)) {
+    hub_.count_dropped();
+    if (!std::exchange(to.too_long, true))
+      report(foxglove::Level::error,
+             "messages of '" + topic + "' fit no datagram; give a fragment_size or a compression", {});
+    return true;
+  }
+  if (to.fragment_size == 0) return transport_.send(client_, {}, made, true, droppable);
   return send_text({reinterpret_cast<const char*>(made->data()), made->size()}, to.fragment_size, droppable);
 }
 
@@ -107,6 +133,10 @@ void RosbridgeFace::remove_channels(std::span<const std::uint32_t> numbers) {
 }
 
 void RosbridgeFace::report(foxglove::Level level, std::string_view text, std::string_view about) {
+  if (const auto call = parameter_calls_.find(std::string(about)); call != parameter_calls_.end()) {
+    call->second.error = text;  // told with the answer
+    return;
+  }
   const auto ours = level == foxglove::Level::info      ? rosbridge::Level::info
                     : level == foxglove::Level::warning ? rosbridge::Level::warning
                                                         : rosbridge::Level::error;
@@ -156,6 +186,16 @@ void RosbridgeFace::handle(const rosbridge::ClientMessage& message) {
                  [&](const rosbridge::Claim& m) { claim(id, m); },
                  [&](const rosbridge::Done& m) { done(id, m); },
                  [&](const rosbridge::Release&) { hub_.release(client_); },
+                 [&](const rosbridge::Hello&) {
+                   std::string out;
+                   JsonWriter w(out);
+                   w.object([&] {
+                     w.key("op").text("sandlot.welcome");
+                     if (!id.empty()) w.key("id").text(id);
+                     w.key("role").text(name_of(hub_.access(client_).role));
+                   });
+                   transport_.send_text(client_, std::move(out));
+                 },
                  [&](const rosbridge::Other& m) {
                    refuse("the operation '" + m.op.substr(0, 60) + "' is not known here", id);
                  },
@@ -174,7 +214,8 @@ void RosbridgeFace::subscribe(const std::string& id, const rosbridge::Subscribe&
                       (near.empty() ? "" : "; did you mean '" + near + "'?"),
                   id);
   }
-  if (text_only_ && request.compression != Compression::none && request.compression != Compression::png)
+  if (carrier_ != Carrier::websocket && request.compression != Compression::none &&
+      request.compression != Compression::png)
     return refuse("cbor comes by WebSocket alone", id);
   if (!info->type) return refuse("'" + topic + "' has a form that rosbridge does not know", id);
   if (!request.type.empty() && long_name(request.type) != info->type->name)
@@ -239,10 +280,10 @@ void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& re
   const std::string name = with_slash(request.service);
   const auto respond = [this, service = request.service, id, size = request.fragment_size,
                         png = request.compression == Compression::png](std::string_view values, bool result) {
-    std::string text = rosbridge::service_response(service, id, values, result);
-    send_text(png ? png_message(std::move(text)) : std::move(text), size, false);
+    send_response(service, id, values, result, size, png);
   };
   if (const auto answer = answer_of_rosapi(name, request.args)) return respond(*answer, true);
+  if (call_parameters(name, request, respond)) return;
   const auto fail = [&](const std::string& why) {
     hub_.count_refused();
     respond(rosbridge::quoted(why), false);
@@ -267,13 +308,13 @@ void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& re
               if (!outcome) values = rosbridge::quoted(outcome.error().text());
               else
                 SL_CHECK_MSG(cdr_to_json(*type, *outcome, values), "what was written just now can be read");
-              std::string text = rosbridge::service_response(service, id, values, static_cast<bool>(outcome));
-              self.send_text(png ? png_message(std::move(text)) : std::move(text), size, false);
+              self.send_response(service, id, values, static_cast<bool>(outcome), size, png);
             });
 }
 
 void RosbridgeFace::fragment(const std::string& id, const rosbridge::Fragment& request) {
   const auto now = Clock::now();
+  if (carrier_ == Carrier::udp) return refuse("fragments do not come by datagrams, which have no order", id);
   if (request.total == 0 || request.total > most_fragments || request.number >= request.total)
     return refuse("a fragment's num and total do not fit", id);
   if (assembly_ && (assembly_->id != id || now > assembly_->begun + fragment_patience)) {
@@ -342,92 +383,6 @@ void RosbridgeFace::done(const std::string& id, const rosbridge::Done& request) 
                                       text(request.samples));
       !status)
     refuse(status.error().text(), id);
-}
-
-// ------------------------------------------------------------------------------------------------------------ rosapi
-
-/// What is there, for clients that look around. Nothing: it is none of these services.
-std::optional<std::string> RosbridgeFace::answer_of_rosapi(const std::string& service,
-                                                           const rosbridge::Body& args) {
-  constexpr std::string_view prefix = "/rosapi/";
-  if (!starts_with(service, prefix)) return std::nullopt;
-  const std::string_view name = std::string_view(service).substr(prefix.size());
-  std::vector<const ChannelInfo*> topics;
-  for (const ChannelInfo* const each : hub_.channels(client_))
-    if (each->type) topics.push_back(each);
-  const std::vector<const ServiceOffer*> offers = hub_.offered_services(client_);
-  std::string out;
-  JsonWriter w(out);
-  const auto texts = [&](const char* key, const auto& all, auto&& text) {
-    w.key(key).list([&] {
-      for (const auto* const each : all) w.text(text(*each));
-    });
-  };
-  const auto argument = [&](const char* key) { return rosbridge::text_of(args, key); };
-  const auto type_of_topic = [](const ChannelInfo& each) { return each.type->name; };
-  const auto name_of_topic = [](const ChannelInfo& each) { return each.topic; };
-  const auto name_of_service = [](const ServiceOffer& each) { return each.name; };
-  if (name == "topics") {
-    w.object([&] {
-      texts("topics", topics, name_of_topic);
-      texts("types", topics, type_of_topic);
-    });
-  } else if (name == "topics_and_raw_types") {
-    w.object([&] {
-      texts("topics", topics, name_of_topic);
-      texts("types", topics, type_of_topic);
-      texts("typedefs_full_text", topics, [](const ChannelInfo& each) { return each.type->schema; });
-    });
-  } else if (name == "services") {
-    w.object([&] { texts("services", offers, name_of_service); });
-  } else if (name == "topic_type" || name == "service_type") {
-    std::string type;
-    const std::string wanted = with_slash(argument(name == "topic_type" ? "topic" : "service"));
-    for (const ChannelInfo* const each : topics)
-      if (name == "topic_type" && each->topic == wanted) type = each->type->name;
-    for (const ServiceOffer* const each : offers)
-      if (name == "service_type" && each->name == wanted) type = each->type.name;
-    w.object([&] { w.key("type").text(type); });
-  } else if (name == "topics_for_type") {
-    const std::string type = long_name(argument("type"));
-    std::erase_if(topics, [&](const ChannelInfo* each) { return each->type->name != type; });
-    w.object([&] { texts("topics", topics, name_of_topic); });
-  } else if (name == "nodes") {
-    w.object([&] { w.key("nodes").list([&] { w.text("/sandlot"); }); });
-  } else if (name == "node_details") {
-    w.object([&] {
-      w.key("subscribing").list([&] {});
-      texts("publishing", topics, name_of_topic);
-      texts("services", offers, name_of_service);
-    });
-  } else if (name == "publishers" || name == "subscribers") {
-    w.object([&] {
-      w.key(name).list([&] {
-        if (name == "publishers") w.text("/sandlot");
-      });
-    });
-  } else if (name == "service_node") {
-    w.object([&] { w.key("node").text("/sandlot"); });
-  } else if (name == "action_servers") {
-    w.object([&] { w.key("action_servers").list([&] {}); });
-  } else if (name == "get_time") {
-    constexpr std::int64_t second_ns = 1'000'000'000;
-    const Time now = hub_.report().now;
-    w.object([&] {
-      w.key("time").object([&] {
-        w.key("sec").integer(now.ns / second_ns);
-        w.key("nanosec").integer(now.ns % second_ns);
-      });
-    });
-  } else if (name == "get_ros_version") {
-    w.object([&] {
-      w.key("version").integer(2);
-      w.key("distro").text("humble");
-    });
-  } else {
-    return std::nullopt;
-  }
-  return out;
 }
 
 }  // namespace sandlot::server

@@ -6,6 +6,7 @@
 /// Fragments of a client are put together: at most one message at a time, most_bytes in all, within fragment_patience.
 /// Not here  services and actions of clients, BSON.
 #include <chrono>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -16,15 +17,17 @@ namespace sandlot::server {
 
 class RosbridgeFace final : public Face {
  public:
-  /// @param text_only  it has no binary messages: JSON over TCP
-  RosbridgeFace(Hub& hub, Transport& transport, ClientId client, bool text_only)
-      : hub_(hub), transport_(transport), client_(client), text_only_(text_only) {}
+  /// What carries the messages. tcp, udp: JSON alone, no binary messages; udp: of a limited size.
+  enum class Carrier : std::uint8_t { websocket, tcp, udp };
+  RosbridgeFace(Hub& hub, Transport& transport, ClientId client, Carrier carrier)
+      : hub_(hub), transport_(transport), client_(client), carrier_(carrier) {}
 
   void message(std::span<const std::byte> bytes, bool text) override;
   void over_budget(std::span<const std::byte> bytes, bool text) override;
   void remove_channels(std::span<const std::uint32_t> numbers) override;
   bool deliver(std::uint32_t subscription, const Outgoing& message, bool droppable) override;
   void report(foxglove::Level level, std::string_view text, std::string_view about) override;
+  void tell_parameters(std::span<const foxglove::Parameter> values, std::string_view about) override;
   void tell_step(const StepNotice& step) override;
 
  private:
@@ -35,6 +38,7 @@ class RosbridgeFace final : public Face {
     std::size_t fragment_size = 0;
     std::map<std::string, double> throttles_s;  ///< by the client's id: several parts of it may listen
     Clock::time_point next;
+    bool too_long = false;  ///< it was told that messages do not fit
     double throttle_s() const;
   };
   struct Assembly {
@@ -53,20 +57,41 @@ class RosbridgeFace final : public Face {
   void fragment(const std::string& id, const rosbridge::Fragment& request);
   void claim(const std::string& id, const rosbridge::Claim& request);
   void done(const std::string& id, const rosbridge::Done& request);
+  // rosapi.cpp
   std::optional<std::string> answer_of_rosapi(const std::string& service, const rosbridge::Body& args);
+  /// @param values  JSON of the response, or of the reason
+  using Respond = std::function<void(std::string_view values, bool result)>;
+  /// A service of rosapi that asks for parameters, which come later. @return false: it is none of them
+  bool call_parameters(const std::string& service, const rosbridge::CallService& request,
+                       const Respond& respond);
   void refuse(const std::string& why, const std::string& id) { hub_.refuse(client_, why, id); }
   bool send_text(std::string text, std::size_t fragment_size, bool droppable);
+  void send_response(const std::string& service, const std::string& id, std::string_view values, bool result,
+                     std::size_t fragment_size, bool png);
+  bool fits(std::size_t bytes, std::size_t fragment_size) const;
 
   Hub& hub_;
   Transport& transport_;
   const ClientId client_;
-  const bool text_only_;
+  const Carrier carrier_;
   rosbridge::Level level_ = rosbridge::Level::error;
   std::map<std::string, Subscription> subscriptions_;  ///< by topic
   std::map<std::string, std::uint32_t> publications_;  ///< by topic
   std::uint32_t next_publication_ = 1;
   std::uint64_t fragments_sent_ = 0;
   std::optional<Assembly> assembly_;
+  /// A call that waits for parameters.
+  struct ParameterCall {
+    std::string what;  ///< "get_param"
+    Respond respond;
+    std::string otherwise;  ///< JSON of the value where there is none; "": that is a failure
+    std::string error;
+  };
+  std::map<std::string, ParameterCall> parameter_calls_;  ///< by what the hub calls them
+  std::uint64_t parameter_calls_made_ = 0;
 };
+
+/// "/chatter" of "chatter": clients leave the slash out.
+std::string with_slash(std::string_view name);
 
 }  // namespace sandlot::server

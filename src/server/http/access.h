@@ -2,17 +2,20 @@
 /// Access: what a client may see and do.
 ///
 ///   admin      everything
-///   spectator  sees everything that viewers see; changes nothing
+///   spectator  sees everything that viewers see, or the shared topics alone, as the scenario has it; changes nothing
 ///   robot      sees the topics of its robot and those that are shared; commands its robot
 ///   team       the same for the robots of its team
 ///
-/// What robots and teams do not see: poses, /tf, contacts, the world, values, parameters, commands and topics of others.
+/// What robots and teams do not see: poses, /tf, contacts, the world, values, parameters, commands and topics of others; but
+/// for topics that the scenario shares by name (model/annotations.h). Commands are never shared.
+/// All decisions about sight and command are the functions here, asked by the hub.
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/text.h"
+#include "model/annotations.h"
 
 namespace sandlot::server {
 
@@ -40,6 +43,22 @@ struct Access {
     return is_admin() || (is_scoped() && drives(first_part(address)));
   }
 };
+
+/// Whether it sees the world as a whole: poses, parameters, the graph, services that only look.
+inline bool sees_world(const Access& access, const model::Sharing& sharing) {
+  if (access.is_admin()) return true;
+  return access.role == Role::spectator && sharing.spectators == model::Sharing::Spectators::world;
+}
+/// Time and state of the run are everybody's.
+inline bool sees_topic(const Access& access, const model::Sharing& sharing, std::string_view topic) {
+  if (sees_world(access, sharing) || topic == "/clock" || topic == "/sandlot/status") return true;
+  if (sharing.has(topic)) return true;
+  // What devices and programs publish begins with the robot's name; a robot may be called tf.
+  for (const std::string_view each : model::world_topics)
+    if (topic == each) return false;
+  return topic != model::commands_topic && access.is_scoped() &&
+         access.drives(first_part(topic.substr(topic.empty() ? 0 : 1)));
+}
 
 /// A secret and what it opens.
 struct Token {

@@ -11,6 +11,8 @@
 ///           sub-protocol, a wrong token, beyond `most_clients`; requests that take longer than `handshake_s`.
 /// TCP       a connection whose first byte is `{` carries JSON objects both ways, with a line break behind each of ours. It gets text
 ///           messages alone; its good-bye is a last object.
+/// UDP       with the option, at the same number: a JSON object per datagram, both ways, from clients that have shown that they
+///           receive (server/http/udp_gate.h). It gets text messages of at most most_datagram_bytes; longer ones are dropped.
 /// Closed    (counted as refused, with a code and a reason) clients whose messages are over the limits of wire/foxglove.h (spectators: 1 MiB,
 ///           whatever the kind) or more than 2000 a second for long, or that are no WebSocket frames.
 /// Gone      a client that is silent for `silence_s` although it was sent pings; an HTTP connection that asks nothing for `idle_s`.
@@ -36,6 +38,9 @@ inline Payload payload_of(std::string_view text) {
   return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
 }
 
+/// A datagram's payload that every system takes, of messages to clients.
+inline constexpr std::size_t most_datagram_bytes = 65'000;
+
 struct TransportOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;         ///< 0: any that is free
@@ -46,10 +51,12 @@ struct TransportOptions {
   bool none_offered = false;  ///< whether a WebSocket may come without a sub-protocol
   bool raw_json =
       false;  ///< whether a connection may begin with `{`: JSON objects over TCP, one behind the other
+  bool udp = false;
   std::size_t most_clients = 64;
   std::size_t queue_bytes = 32u << 20;
   std::size_t most_sockets = 256;  ///< with those that speak HTTP
   double handshake_s = 10, stall_s = 30, silence_s = 30, idle_s = 60;
+  double udp_silence_s = 10;
 };
 
 struct Counters {
@@ -68,7 +75,7 @@ struct HttpAnswer {
 struct Handler {
   /// `target` is decoded, begins with "/" and has neither query nor "..".
   std::function<HttpAnswer(std::string_view target)> get;
-  /// @param subprotocol  "": the client offered none; "tcp": it sends JSON objects without a WebSocket
+  /// @param subprotocol  "": the client offered none; "tcp", "udp": it sends JSON objects without a WebSocket
   std::function<void(ClientId, const Access&, std::string_view subprotocol)> connected;
   std::function<void(ClientId, std::span<const std::byte> bytes, bool text)> message;
   std::function<void(ClientId)> disconnected;

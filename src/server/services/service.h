@@ -43,6 +43,15 @@ class ServiceHost {
   /// Opens a topic of sandlot_msgs/msg/Samples for this client. @param done  gets the topic's name
   virtual void watch(ClientId client, const std::vector<std::string>& values, double rate_hz,
                      std::function<void(const Result<std::string>& topic)> done) = 0;
+  /// What services know of the run from calls before; on the transport's thread.
+  struct Memory {
+    std::string world;  ///< file of the world; "": it has none
+    std::uint64_t stopped_at =
+        0;  ///< epoch in which the run was stopped, and has not been paused or played since; 0: none
+  };
+  virtual Memory& memory() = 0;
+  /// Brings tasks to the transport's thread, from any thread and whatever has become of the host.
+  virtual std::function<void(std::function<void()>)> way_back() = 0;
 
  protected:
   ~ServiceHost() = default;

@@ -33,9 +33,11 @@ Result<model::Setup> load_built(const Node& map) {
   return setup;
 }
 
-Result<model::Setup> load_bare_world(const std::string& path, const formats::ReadOptions& options,
-                                     Diagnostics& diagnostics) {
-  SL_ASSIGN(formats::WorldContent content, formats::read_world(path, options, diagnostics));
+Result<model::Setup> load_bare_world(const std::string& path, std::optional<std::string_view> text,
+                                     const formats::ReadOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(formats::WorldContent content,
+            text ? formats::find_format(path)->world(*text, path, options, diagnostics)
+                 : formats::read_world(path, options, diagnostics));
   model::Setup setup;
   setup.name = content.is_world() ? content.world_name : fs::path(path).stem().string();
   // Gazebo's default; a scenario has its own.
@@ -90,7 +92,8 @@ Result<model::Setup> load_file(const std::string& path, const LoadOptions& optio
     if (!options.overrides.empty())
       return Error{"--set changes scenarios, and '" + path + "' is a world",
                    "write a scenario that names this world"};
-    return load_bare_world(path, {search_path(options.paths), options.skip_missing}, diagnostics);
+    return load_bare_world(path, options.text, {search_path(options.paths), options.skip_missing},
+                           diagnostics);
   }
   if (fs::is_directory(path, ignored)) return Error{"is a folder", "name a file in it", place_in(path)};
   return Error{"'" + path + "' is neither a scenario nor a world or robot",

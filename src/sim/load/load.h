@@ -17,7 +17,7 @@ struct LoadOptions {
   std::span<const std::string> paths = {};  ///< folders to search first (`--path`)
   bool skip_missing = false;                ///< missing includes and meshes are left out with a warning
   double errors = 1;  ///< factor on the errors of all devices, in addition to the scenario's and the robots'
-  /// The text of a scenario, which is not read from its path then.
+  /// The text of the file, which is not read from its path then.
   std::optional<std::string_view> text = {};
 };
 
@@ -31,5 +31,16 @@ Result<model::Setup> load(const std::string& path, const LoadOptions& options, D
 Result<model::Instance> load_instance(const std::string& model_file, const std::string& name,
                                       const Pose& X_WM, Diagnostics& diagnostics,
                                       std::span<const std::string> paths = {}, bool skip_missing = false);
+
+/// "sdf" or "urdf", by the root element of a text; "": it is neither.
+std::string format_of_text(std::string_view text);
+/// Loads a model from a text of such a format, as above. @param folder  that relative names of files begin at
+Result<model::Instance> load_instance_text(std::string_view text, const std::string& folder,
+                                           const std::string& name, Diagnostics& diagnostics,
+                                           std::span<const std::string> paths = {},
+                                           bool skip_missing = false);
+
+/// Models with parameters by their addresses, "builder:snake", with a line about each.
+std::vector<std::pair<std::string, std::string>> built_models();
 
 }  // namespace sandlot

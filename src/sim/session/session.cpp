@@ -28,7 +28,14 @@ Session::Session(std::unique_ptr<Simulation> simulation, Options options)
   report_.replay = options_.input_log.has_value();
   report_.may_not_rewind = options_.may_not_rewind;
   report_.state = mode_ == Mode::playing ? State::playing : State::paused;
+  note_first_entities();
   refresh_report();
+}
+
+void Session::note_first_entities() {
+  first_serials_ = 0;
+  for (const auto& each : std::as_const(*simulation_).entities())
+    first_serials_ = std::max(first_serials_, each->serial + 1);
 }
 
 Session::~Session() {

@@ -147,6 +147,10 @@ class Session {
   Simulation& simulation() { return *simulation_; }
   const Simulation& simulation() const { return *simulation_; }
   std::uint64_t epoch() const { return epoch_; }
+  /// Whether it came while the run went on.
+  bool is_spawned(const Simulation::Entity& entity) const { return entity.serial >= first_serials_; }
+  /// For the worlds that follow the first.
+  const SimulationOptions& simulation_options() const { return options_.simulation; }
   /// The run repeats ticks from before a jump back: its input comes from the log, and no other should be added.
   bool rerunning() const { return simulation_->tick_index() < rerun_until_; }
   /// For this and all following worlds.
@@ -209,6 +213,7 @@ class Session {
   bool wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time>& measured);
   void run_tick(Pacer& pacer, RunReport& report, std::optional<Time> measured);
   Status advance(std::optional<Time> measured, RunReport& report);
+  void note_first_entities();
   void run_tasks(std::chrono::milliseconds patience);
   void answer_outcomes();
   void answer_the_rest();
@@ -225,6 +230,7 @@ class Session {
   std::vector<Observer*> observers_;
   std::unique_ptr<InputRecorder> input_recorder_;  ///< null for a run with an input log
   std::uint64_t epoch_ = 1;
+  std::uint64_t first_serials_ = 0;  ///< entities of the beginning have serials below it
   InputLog past_;             ///< input since the first snapshot kept; or the recording's
   std::deque<Kept> history_;  ///< ascending; the first is the beginning of the run
   std::size_t history_bytes_ = 0;

@@ -163,6 +163,7 @@ Status Session::load_last(std::vector<Load> loads) {
     history_bytes_ = 0;
     history_gap_s_ = options_.history_every_s;
     rerun_until_ = 0;
+    note_first_entities();
     keep_snapshot();
     clear_end();
     drop_target();

@@ -80,6 +80,27 @@ Status Simulation::build(Diagnostics& diagnostics, bool restored) {
   scenes_.paint(ground_paint_of(elements_.markers()));
   scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(monitor_->add(setup_, setup_.addresses));
+  return restored ? Status() : check_sharing();
+}
+
+/// That the topics are there which the scenario shares.
+Status Simulation::check_sharing() const {
+  std::vector<std::string> known;
+  for (const model::SharedTopic& shared : setup_.sharing.topics) {
+    if (known.empty()) {
+      known.assign(std::begin(model::world_topics), std::end(model::world_topics));
+      for_each_topic([&](const TopicBase& topic, const std::string&) { known.push_back(topic.name()); });
+    }
+    // Viewers get a small picture of each image, by a name that nobody publishes.
+    constexpr std::string_view preview = "/compressed";
+    std::string_view name = shared.pattern;
+    if (name.ends_with(preview) && std::find(known.begin(), known.end(), name) == known.end())
+      name.remove_suffix(preview.size());
+    const model::SharedTopic wanted{std::string(name), {}};
+    if (std::none_of(known.begin(), known.end(), [&](const std::string& each) { return wanted.fits(each); }))
+      return Error{"there is no topic '" + shared.pattern.substr(0, 200) + "' to share",
+                   suggestion(shared.pattern, known), shared.place, "/share/topics"};
+  }
   return {};
 }
 
@@ -222,6 +243,12 @@ const Simulation::ProgramEntries* Simulation::programs_of(std::string_view owner
   for (const Team& team : teams())
     if (team.decl.name == owner) return &team.programs;
   return nullptr;
+}
+
+bool Simulation::is_taken(std::string_view name) const {
+  if (find_entity(name) || commands_.awaits_spawn(name)) return true;
+  return std::any_of(setup_.teams.begin(), setup_.teams.end(),
+                     [&](const model::TeamDecl& each) { return each.name == name; });
 }
 
 std::optional<InstanceId> Simulation::find_instance(std::string_view name) const {

@@ -6,6 +6,14 @@
 
 namespace sandlot {
 
+bool Commands::awaits_spawn(std::string_view name) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(inbox_.begin(), inbox_.end(), [&](const Pending& each) {
+    const auto* const spawn = std::get_if<SpawnRequest>(&each.request);
+    return spawn && spawn->instance.name == name;
+  });
+}
+
 std::uint64_t Commands::queue(Request request, Source source, bool logged) {
   const std::lock_guard lock(mutex_);
   inbox_.push_back({source, next_sequence_, std::move(request), logged});

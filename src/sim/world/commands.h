@@ -43,6 +43,8 @@ class Commands {
   std::uint64_t submit(Request request, Source source) { return queue(std::move(request), source, false); }
   /// Queues a request of a log: those are carried out before all others, in the order in which they are queued.
   std::uint64_t repeat(Request request, Source source) { return queue(std::move(request), source, true); }
+  /// Whether a new instance of this name waits for the next tick.
+  bool awaits_spawn(std::string_view name) const;
   /// Creation order of the entity that a target belongs to; nothing when there is none.
   using SerialOf = std::function<std::optional<std::uint64_t>(std::string_view target)>;
   /// The requests queued until now, in the order of their execution, which does not depend on who connected or sent first:
@@ -80,7 +82,7 @@ class Commands {
   void order_clients(std::size_t begin, const SerialOf& serial_of);
   void log_request(const Request& request, const Outcome& outcome);
 
-  std::mutex mutex_;  ///< of the next two
+  mutable std::mutex mutex_;  ///< of the next two
   std::vector<Pending> inbox_;
   std::uint64_t next_sequence_ = 0;
 

@@ -12,6 +12,9 @@
 
 namespace sandlot {
 
+/// Of velocities that are set, [m/s] and [rad/s].
+constexpr double most_speed = 1e4;
+
 /// Carries out requests: one operator per alternative of Request. A new request is a struct in request.h and an operator here.
 struct Simulation::Processor {
   Simulation& sim;
@@ -30,6 +33,8 @@ struct Simulation::Processor {
   Status operator()(const PullRequest& request);
   Status operator()(const AnswerRequest& request);
   Status operator()(const CallRequest& request);
+  Status operator()(const VelocityRequest& request);
+  Status operator()(const InfoRequest& request);
 
  private:
   Result<Entity*> entity_named(const std::string& name);
@@ -177,6 +182,32 @@ Status Simulation::Processor::operator()(const PoseRequest& request) {
                    "choose a place that is free"};
   sim.engine_->set_pose(entity->id, {request.X_WM.p, normalised(request.X_WM.q)});
   if (entity->instance.model->is_static) ++sim.revision_;  // viewers and /tf_static get it once per revision
+  return {};
+}
+
+Status Simulation::Processor::operator()(const VelocityRequest& request) {
+  SL_ASSIGN(const Entity* const entity, entity_named(request.name));
+  const auto fits = [](Vec3 v) { return is_finite(v) && norm(v) <= most_speed; };
+  if (!fits(request.V_WM.linear) || !fits(request.V_WM.angular)) return Error{"the velocity is out of range"};
+  if (entity->instance.model->is_static) return Error{"'" + request.name + "' never moves"};
+  if (entity->instance.motion) return Error{"'" + request.name + "' moves along a path of its own"};
+  // The canonical link's origin need not be the model's.
+  const Vec3 origin = sim.engine_->pose(entity->id).p;
+  const BodyState& base = sim.engine_->states()[sim.engine_->bodies(entity->id).front().index];
+  sim.engine_->set_velocity(
+      entity->id,
+      {request.V_WM.linear + cross(request.V_WM.angular, base.X_WB.p - origin), request.V_WM.angular});
+  return {};
+}
+
+/// No part of the State: nothing in the run reads it.
+Status Simulation::Processor::operator()(const InfoRequest& request) {
+  SL_ASSIGN(Entity* const entity, entity_named(request.name));
+  constexpr std::size_t most_tags = 100, most_letters = 1000;
+  bool fits = request.info.tags.size() <= most_tags && request.info.description.size() <= most_letters;
+  for (const std::string& tag : request.info.tags) fits = fits && tag.size() <= most_letters;
+  if (!fits) return Error{"the description is too long", "1000 letters, and 100 tags of that length"};
+  entity->instance.info = request.info;
   return {};
 }
 

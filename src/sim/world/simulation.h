@@ -176,6 +176,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
   /// The entities of the world, in creation order. Valid until the next tick.
   std::span<const Owned<Entity>> entities() const { return entities_; }
   const Entity* find_entity(std::string_view name) const;
+  /// Whether a new entity of this name would be refused: there is one, one waits for the next tick, or a team has it.
+  bool is_taken(std::string_view name) const;
   /// In the order of the scenario.
   const std::vector<Team>& teams() const { return programs_.teams(); }
   /// Programs of an instance or a team; null: there is no such thing.
@@ -205,6 +207,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   Status build(Diagnostics& diagnostics, bool restored);
   Status add_entity(model::Instance instance, Diagnostics& diagnostics);
   Status check_team(const model::Instance& instance) const;
+  Status check_sharing() const;
   Result<std::shared_ptr<const model::Model>> add_masses(model::Instance& instance);
   void remove_entity(std::size_t index);
   void world_changed();

@@ -305,6 +305,49 @@ TEST(Requests, APoseRequestMovesAnInstance) {
   EXPECT_NEAR(pose.p.z, 50, 0.01);  // fell for one tick
 }
 
+TEST(Requests, AVelocityRequestMovesWhatMoves) {
+  const auto simulation = build(arena("rigid", 1, ""));
+  const auto refused = [&](Request request) {
+    simulation->submit(std::move(request));
+    advance(*simulation, 1);
+    const Status& status = simulation->outcomes().front().status;
+    return status ? std::string() : status.error().what;
+  };
+  EXPECT_EQ(refused(VelocityRequest{"crate1", {{0, 0, 3}, {}}}), "");
+  // Thrown up at 3 m/s, and fallen for one tick of 10 ms; its middle is its model's origin.
+  const auto body = simulation->engine().bodies(*simulation->find_instance("crate1")).front();
+  EXPECT_NEAR(simulation->engine().states()[body.index].V_WB.linear.z, 3 - 9.81 * 0.01, 1e-3);
+  EXPECT_EQ(refused(VelocityRequest{"pillar1", {{1, 0, 0}, {}}}), "'pillar1' never moves");
+  EXPECT_EQ(refused(VelocityRequest{"crate1", {{1e5, 0, 0}, {}}}), "the velocity is out of range");
+  EXPECT_EQ(refused(VelocityRequest{"crate1", {{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}}}),
+            "the velocity is out of range");
+  EXPECT_NE(refused(VelocityRequest{"nobody", {}}), "");
+}
+
+/// Descriptions are in snapshots, with the poses and the topics that the scenario names, and change no hash.
+TEST(Requests, ADescriptionIsKeptAndChangesNothing) {
+  model::Setup setup = arena("planar", 1, "");
+  setup.poses.push_back({"dock", {{1, 2, 0}, {}}, "by the door", {"parking"}, Vec3{1, 2, 3}});
+  setup.sharing.topics.push_back({"/rover1/*", {}});
+  setup.sharing.spectators = model::Sharing::Spectators::topics;
+  const auto told = build(setup), other = build(setup);
+  told->submit(InfoRequest{"crate1", {model::Category::object, "a crate", {"red", "heavy"}}});
+  advance(*told, 5);
+  advance(*other, 5);
+  EXPECT_EQ(told->state_hash(), other->state_hash());
+  const auto restored = again(*told);
+  const model::EntityInfo& info = std::as_const(*restored).find_entity("crate1")->instance.info;
+  EXPECT_EQ(info.category, model::Category::object);
+  EXPECT_EQ(info.description, "a crate");
+  EXPECT_EQ(info.tags, (std::vector<std::string>{"red", "heavy"}));
+  ASSERT_EQ(restored->setup().poses.size(), 1u);
+  EXPECT_EQ(restored->setup().poses[0].X_WP.p.y, 2);
+  EXPECT_EQ(restored->setup().poses[0].size_m->z, 3);
+  EXPECT_TRUE(restored->setup().sharing.has("/rover1/laser/ranges"));
+  EXPECT_FALSE(restored->setup().sharing.has("/rover2/laser/ranges"));
+  EXPECT_EQ(restored->setup().sharing.spectators, model::Sharing::Spectators::topics);
+}
+
 TEST(Failure, AStateThatIsNotFiniteEndsTheRunAndNamesTheBody) {
   const auto simulation = build(one_probe(Node::map()), with_probe);
   advance(*simulation, 3);
@@ -424,7 +467,9 @@ std::vector<Request> all_requests() {
           UnloadDeviceRequest{"rover1/laser"},
           PullRequest{"rover1", "base_link", {0.1, 0.2, 0.3}, {4, 5, 6}, Time::from_s(0.5)},
           AnswerRequest{"rover1/brain", {OutsideAnswer::Kind::gone, bytes_of(2)}},
-          CallRequest{"rover1/odometry", "reset", bytes_of(1)}};
+          CallRequest{"rover1/odometry", "reset", bytes_of(1)},
+          VelocityRequest{"rover1", {{1, 2, 3}, {4, 5, 6}}},
+          InfoRequest{"rover1", {model::Category::human, "a walker", {"tall", "slow"}}}};
 }
 
 TEST(Requests, EachKindSurvivesBeingBytes) {
@@ -470,6 +515,8 @@ TEST(Requests, TheLogOfARunRepeatsItWithEverythingThatWasAskedOfIt) {
     if (tick == 60) original->submit(DeleteRequest{"rover2"});
     if (tick == 61) original->submit(DeleteRequest{"rover2"});  // refused: it is gone
     if (tick == 70) original->submit(SampleRequest{"guest/laser"});
+    if (tick == 80) original->submit(VelocityRequest{"crate1", {{1, 0.5, 0}, {0, 0, 2}}});
+    if (tick == 90) original->submit(InfoRequest{"crate1", {model::Category::human, "", {"red"}}});
     advance(*original, 1);
   }
   const auto replay = build(arena("planar", 2));
@@ -487,9 +534,11 @@ TEST(Requests, TheLogOfARunRepeatsItWithEverythingThatWasAskedOfIt) {
     }
     advance(*replay, 1);
   }
-  EXPECT_EQ(asked, 6u);
+  EXPECT_EQ(asked, 8u);
   EXPECT_EQ(refused, 1u);
   EXPECT_EQ(repeated.hashes, live.hashes);
+  EXPECT_EQ(std::as_const(*replay).find_entity("crate1")->instance.info.tags,
+            std::vector<std::string>{"red"});
 }
 
 TEST(Simulation, TicksLongerThanASamplingIntervalLoseSamplesAndDoNotPileThemUp) {

@@ -17,7 +17,7 @@
 namespace sandlot {
 
 inline constexpr std::array<char, 8> snapshot_magic{'S', 'A', 'N', 'D', 'L', 'O', 'T', 'S'};
-inline constexpr std::uint32_t snapshot_version = 9;
+inline constexpr std::uint32_t snapshot_version = 10;
 
 /// Whether the bytes begin as a snapshot does; the rest may still be damaged.
 bool is_snapshot(std::span<const std::byte> bytes);

@@ -67,6 +67,8 @@ struct Peer {
 };
 using PeerPtr = std::shared_ptr<Peer>;
 
+struct UdpDoor;  // udp.cpp
+
 struct Transport::Impl {
   TransportOptions options;
   Handler handler;
@@ -76,6 +78,7 @@ struct Transport::Impl {
   tcp::endpoint bound;
   net::steady_timer timer{io};
   std::map<std::uint64_t, PeerPtr> peers;
+  std::shared_ptr<UdpDoor> udp;  ///< null: not listened to
   std::uint64_t next_id = 1;
   std::size_t clients = 0;  // peers that have been let in, or are about to
   bool accept_again = false, stopping = false;
@@ -102,5 +105,9 @@ struct Transport::Impl {
 
 /// Defined in peer.cpp.
 PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket);
+
+/// Listens to datagrams at the port that is bound. Defined in udp.cpp, as the next.
+Status open_udp(Transport::Impl& impl);
+void close_udp(Transport::Impl& impl);
 
 }  // namespace sandlot::server

@@ -180,6 +180,7 @@ void Transport::Impl::begin_stop() {
   error_code ignored;
   acceptor.close(ignored);
   for_all([](Peer& peer) { peer.stop(); });
+  close_udp(*this);
   if (peers.empty()) io.stop();
 }
 
@@ -197,6 +198,7 @@ Result<std::unique_ptr<Transport>> Transport::start(const TransportOptions& opti
   impl->options = options;
   impl->handler = std::move(handler);
   SL_TRY(impl->listen());
+  if (options.udp) SL_TRY(open_udp(*impl));
   auto* const running = impl.get();
   impl->thread = std::thread([running] { running->run(); });
   return std::unique_ptr<Transport>(new Transport(std::move(impl)));

@@ -1,0 +1,320 @@
+/// JSON objects by UDP, one per datagram: a client is an address and a port that has shown that it receives
+/// (server/http/udp_gate.h), until it is silent for `udp_silence_s`.
+///
+/// To others nothing is sent but a challenge, never longer than what asked for it; a datagram without the session's key
+/// is as one from nobody.
+#include <sys/random.h>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
+#include <boost/asio/post.hpp>
+#include <vector>
+
+#include "base/json_writer.h"
+#include "base/log.h"
+#include "server/http/beast/impl.h"
+#include "server/http/http.h"
+#include "server/http/udp_gate.h"
+#include "wire/rosbridge.h"
+
+namespace sandlot::server {
+
+using udp = net::ip::udp;
+
+namespace {
+
+constexpr double messages_per_s = 2000, burst = 4000;
+constexpr std::size_t most_first_bytes = 4096;  ///< of a datagram without a key
+constexpr std::size_t most_per_address = 16;    ///< clients
+constexpr std::size_t most_read_bytes = 1 << 16;
+
+std::vector<std::byte> bytes_of(const net::ip::address& address) {
+  std::vector<std::byte> out;
+  const auto add = [&](const auto& bytes) {
+    for (const unsigned char each : bytes) out.push_back(static_cast<std::byte>(each));
+  };
+  if (address.is_v4()) add(address.to_v4().to_bytes());
+  else add(address.to_v6().to_bytes());
+  return out;
+}
+
+std::vector<std::byte> bytes_of(const udp::endpoint& from) {
+  std::vector<std::byte> out = bytes_of(from.address());
+  out.push_back(static_cast<std::byte>(from.port() >> 8));
+  out.push_back(static_cast<std::byte>(from.port() & 0xff));
+  return out;
+}
+
+struct UdpPeer;
+
+}  // namespace
+
+struct UdpDoor : std::enable_shared_from_this<UdpDoor> {
+  Transport::Impl& impl;
+  udp::socket socket;
+  UdpGate gate;
+  std::array<char, most_read_bytes> buffer{};
+  udp::endpoint from;
+  std::map<udp::endpoint, std::shared_ptr<UdpPeer>> clients;
+
+  UdpDoor(Transport::Impl& owner, std::array<std::uint64_t, 4> keys)
+      : impl(owner), socket(owner.io), gate(keys) {}
+  Status open();
+  void receive();
+  void take(std::string_view text);
+  void take_unknown(std::string_view text);
+  void begin(std::string nonce, std::string_view text);
+  static double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+};
+
+namespace {
+
+struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
+  enum class Stage { open, closing, gone };
+  UdpDoor& door;
+  Transport::Impl& impl;
+  const std::uint64_t id;
+  const udp::endpoint to;
+  const std::string nonce;
+  Stage stage = Stage::open;
+  std::shared_ptr<Queue> queue = std::make_shared<Queue>();
+  Message current;
+  bool writing = false;
+  std::string farewell;
+  Clock::time_point heard = Clock::now(), bucket_time = heard, closing_since;
+  double bucket = burst;
+
+  UdpPeer(UdpDoor& owner, std::uint64_t number, udp::endpoint address, std::string key)
+      : door(owner), impl(owner.impl), id(number), to(std::move(address)), nonce(std::move(key)) {}
+
+  void begin() override {
+    ++impl.clients;
+    ++impl.accepted;
+    ++impl.open_clients;
+    {
+      const std::lock_guard lock(impl.mutex);
+      impl.queues.emplace(id, queue);
+    }
+    const Access access = admit("", "", impl.options.tokens, impl.on_loopback()).access;
+    if (impl.handler.connected) impl.handler.connected(id, access, "udp");
+  }
+
+  void take(std::string_view text) {
+    heard = Clock::now();
+    if (stage != Stage::open) return;
+    bucket = std::min(burst,
+                      bucket + messages_per_s * std::chrono::duration<double>(heard - bucket_time).count());
+    bucket_time = heard;
+    if ((bucket -= 1) < 0) return close_for("more than 2000 messages a second");
+    if (impl.handler.message) impl.handler.message(id, std::as_bytes(std::span(text)), true);
+  }
+
+  void flush() override {
+    if (writing || stage == Stage::gone) return;
+    bool full = false;
+    while (!writing && !full) {
+      {
+        const std::lock_guard lock(impl.mutex);
+        queue->scheduled = false;
+        full = queue->full;
+        if (full || queue->messages.empty()) break;
+        current = std::move(queue->messages.front());
+        queue->messages.pop_front();
+        if (current.text && current.size() <= most_datagram_bytes) {
+          writing = true;
+        } else {  // it fits no datagram
+          queue->bytes -= std::min(queue->bytes, current.weight());
+          ++impl.dropped;
+        }
+      }
+    }
+    if (full && stage == Stage::open) return close_for("you are too slow: the queue is full");
+    if (writing) return write();
+    if (stage == Stage::closing) say_good_bye();
+  }
+
+  void write() {
+    const std::array<net::const_buffer, 2> parts{
+        net::buffer(current.head),
+        net::const_buffer(current.payload ? current.payload->data() : nullptr, current.body())};
+    door.socket.async_send_to(parts, to, [self = shared_from_this()](error_code, std::size_t n) {
+      if (self->stage == Stage::gone) return;
+      self->impl.bytes_out += n;
+      self->writing = false;
+      {
+        const std::lock_guard lock(self->impl.mutex);
+        self->queue->bytes -= std::min(self->queue->bytes, self->current.weight());
+      }
+      self->current = {};
+      self->impl.call([&] { self->flush(); });
+    });
+  }
+
+  void say_good_bye() {
+    error_code ignored;
+    impl.bytes_out += door.socket.send_to(net::buffer(farewell), to, 0, ignored);
+    end();
+  }
+
+  void close(std::string_view level, std::string_view reason) {
+    if (stage != Stage::open) return;
+    stage = Stage::closing;
+    closing_since = Clock::now();
+    farewell = fmt::format("{{\"op\":\"status\",\"level\":\"{}\",\"msg\":", level);
+    append_json(reason, farewell);
+    farewell += "}";
+    {
+      const std::lock_guard lock(impl.mutex);
+      impl.queues.erase(id);
+      queue->full = false;
+    }
+    flush();
+  }
+
+  void close_for(std::string_view reason) override {
+    if (stage != Stage::open) return;
+    ++impl.refused;
+    close("error", reason);
+  }
+
+  void on_beat(Clock::time_point now) override {
+    const auto over = [&](Clock::time_point since, double s) {
+      return std::chrono::duration<double>(now - since).count() > s;
+    };
+    if (stage == Stage::open && over(heard, impl.options.udp_silence_s)) close("info", "silent for too long");
+    else if (stage == Stage::closing && over(closing_since, 1)) end();
+  }
+
+  void grant(double messages) override { bucket = std::min(burst, bucket + messages); }
+  void stop() override {
+    {
+      const std::lock_guard lock(impl.mutex);
+      impl.dropped += queue->messages.size();
+      queue->messages.clear();
+    }
+    close("info", "the server ends");
+    end();
+  }
+  bool idle() const override { return false; }
+
+  void end() override {
+    if (stage == Stage::gone) return;
+    stage = Stage::gone;
+    const auto self = shared_from_this();
+    impl.peers.erase(id);
+    door.clients.erase(to);
+    {
+      const std::lock_guard lock(impl.mutex);
+      impl.queues.erase(id);
+      impl.dropped += queue->messages.size();
+      queue->messages.clear();
+    }
+    --impl.clients;
+    --impl.open_clients;
+    impl.call([this] {
+      if (impl.handler.disconnected) impl.handler.disconnected(id);
+    });
+  }
+};
+
+}  // namespace
+
+Status UdpDoor::open() {
+  error_code ec;
+  const udp::endpoint at(impl.bound.address(), impl.bound.port());
+  socket.open(at.protocol(), ec);
+  if (!ec && at.address().is_v6() && at.address().is_unspecified())
+    socket.set_option(net::ip::v6_only(false), ec);
+  if (!ec) socket.bind(at, ec);
+  if (!ec) socket.non_blocking(true, ec);
+  if (ec)
+    return Error{
+        fmt::format("UDP port {} of {} cannot be used: {}", at.port(), impl.options.address, ec.message()),
+        "choose another with --port, or leave --udp out"};
+  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+  return {};
+}
+
+void UdpDoor::receive() {
+  socket.async_receive_from(net::buffer(buffer), from,
+                            [self = shared_from_this()](error_code ec, std::size_t n) {
+                              if (ec == net::error::operation_aborted || !self->socket.is_open()) return;
+                              if (!ec) {
+                                self->impl.bytes_in += n;
+                                self->impl.call([&] { self->take({self->buffer.data(), n}); });
+                              }
+                              self->receive();
+                            });
+}
+
+void UdpDoor::take(std::string_view text) {
+  const auto known = clients.find(from);
+  if (known == clients.end() || !same_secret(nonce_in(text), known->second->nonce)) return take_unknown(text);
+  const std::shared_ptr<UdpPeer> peer = known->second;
+  peer->take(text);
+}
+
+void UdpDoor::take_unknown(std::string_view text) {
+  const auto refuse = [&] { ++impl.refused; };
+  const double now = now_s();
+  if (impl.stopping || text.size() > most_first_bytes || !gate.allow(bytes_of(from.address()), now))
+    return refuse();
+  const std::vector<std::byte> peer = bytes_of(from);
+  const std::string_view given = nonce_in(text);
+  if (!given.empty()) {
+    if (!gate.is_nonce(given, peer, now)) return refuse();
+    return begin(std::string(given), text);
+  }
+  const auto read = rosbridge::read_text(text);
+  if (!read || !std::holds_alternative<rosbridge::Hello>(read->operation)) return refuse();
+  const std::string challenge = fmt::format("{{\"op\":\"sandlot.challenge\",\"nonce\":\"{}\"}}",
+                                            gate.nonce(peer, now));
+  // Whoever's address this is gets no more than was sent in its name.
+  if (challenge.size() > text.size()) return refuse();
+  error_code ignored;
+  impl.bytes_out += socket.send_to(net::buffer(challenge), from, 0, ignored);
+}
+
+/// A client that has come back with its nonce.
+void UdpDoor::begin(std::string nonce, std::string_view text) {
+  if (const auto before = clients.find(from); before != clients.end()) {  // the same port, begun again
+    const std::shared_ptr<UdpPeer> peer = before->second;
+    peer->end();
+  }
+  const auto here = static_cast<std::size_t>(
+      std::count_if(clients.begin(), clients.end(),
+                    [&](const auto& each) { return each.first.address() == from.address(); }));
+  if (impl.clients >= impl.options.most_clients || here >= most_per_address) {
+    ++impl.refused;
+    return;
+  }
+  const auto id = impl.next_id++;
+  const auto peer = std::make_shared<UdpPeer>(*this, id, from, std::move(nonce));
+  impl.peers.emplace(id, peer);
+  clients.emplace(from, peer);
+  const std::string first(text);
+  impl.for_one(id, [](Peer& each) { each.begin(); });
+  if (peer->stage == UdpPeer::Stage::open) peer->take(first);
+}
+
+Status open_udp(Transport::Impl& impl) {
+  std::array<std::uint64_t, 4> keys{};
+  if (getrandom(keys.data(), sizeof keys, 0) != static_cast<ssize_t>(sizeof keys))
+    return Error{"the system has no random numbers for keys", "leave --udp out"};
+  impl.udp = std::make_shared<UdpDoor>(impl, keys);
+  SL_TRY(impl.udp->open());
+  impl.udp->receive();
+  return {};
+}
+
+void close_udp(Transport::Impl& impl) {
+  error_code ignored;
+  if (impl.udp) impl.udp->socket.close(ignored);
+}
+
+}  // namespace sandlot::server
