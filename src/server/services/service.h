@@ -44,6 +44,9 @@ class ServiceHost {
   virtual void watch(ClientId client, const std::vector<std::string>& values, double rate_hz,
                      std::function<void(const Result<std::string>& topic)> done) = 0;
 
+  /// Ends a client's connection. Errors: it is not there.
+  virtual Status disconnect(ClientId client) = 0;
+
  protected:
   ~ServiceHost() = default;
 };
