@@ -45,7 +45,7 @@ inline const char* name_of(Mode mode) {
 
 enum class Protocol : std::uint8_t { page, foxglove, rosbridge, rosbridge_tcp };
 inline const char* name_of(Protocol protocol) {
-  constexpr const char* names[] = {"page", "foxglove", "rosbridge", "rosbridge over TCP"};
+  constexpr const char* names[] = {"page", "foxglove", "rosbridge", "rosbridge, TCP"};
   return names[static_cast<std::size_t>(protocol)];
 }
 
@@ -145,6 +145,7 @@ struct OutsideProgram {
   std::string path, kind;
   bool is_client = false;  ///< a client of the server answers for it
   bool connected = false;  ///< to its process, or allowed to wait for a client
+  bool started = false;    ///< a process that the run has started, as the client
   std::uint64_t answers = 0, misses = 0;
 };
 

@@ -192,9 +192,9 @@ TEST(Roster, ATableForPeople) {
   counts->steps = 4;
   counts->misses = 3;
   EXPECT_EQ(clients_text(roster.rows(begin + 1s)),
-            "id  name       protocol            address         role        mode      msg/s  latency ms      "
+            "id  name       protocol        address         role        mode      msg/s  latency ms      "
             " missed\n"
-            "3   wander.py  rosbridge over TCP  127.0.0.1:5000  robot red1  lockstep  0.0    2.5 (99 %: 2.5) "
+            "3   wander.py  rosbridge, TCP  127.0.0.1:5000  robot red1  lockstep  0.0    2.5 (99 %: 2.5) "
             " 3 of 4");
 }
 

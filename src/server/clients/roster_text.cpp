@@ -105,6 +105,7 @@ std::string clients_json(const std::vector<Roster::Row>& rows, const std::vector
           w.key("kind").text(each.kind);
           w.key("is_client").flag(each.is_client);
           w.key("connected").flag(each.connected);
+          w.key("started").flag(each.started);
           w.key("answers").integer(each.answers);
           w.key("misses").integer(each.misses);
         });
