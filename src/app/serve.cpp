@@ -81,4 +81,27 @@ ServerSummary Served::stop() {
   return {.viewers_most = most_, .refused = counters.refused, .dropped = counters.dropped};
 }
 
+std::vector<ClientSummary> Served::clients() const {
+  const auto durations = [](const server::DurationMeter& meter) -> std::optional<DurationSummary> {
+    const auto figures = meter.all();
+    if (figures.count == 0) return std::nullopt;
+    return DurationSummary{figures.mean_s, figures.p99_s, figures.max_s};
+  };
+  std::vector<ClientSummary> out;
+  for (const server::Roster::Total& each : server_->clients())
+    out.push_back({.name = each.name,
+                   .role = server::name_of(each.role),
+                   .drives = each.drives,
+                   .mode = server::name_of(each.mode),
+                   .connections = each.connections,
+                   .steps = each.steps,
+                   .misses = each.misses,
+                   .commands = each.commands,
+                   .refused = each.refused,
+                   .stops = each.stops,
+                   .latency = durations(each.latency),
+                   .step = durations(each.step)});
+  return out;
+}
+
 }  // namespace sandlot::app

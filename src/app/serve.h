@@ -32,6 +32,8 @@ class Served {
   void count_viewers();
   /// Closes all connections.
   ServerSummary stop();
+  /// Clients that have driven something.
+  std::vector<ClientSummary> clients() const;
 
  private:
   explicit Served(std::unique_ptr<server::Server> server);

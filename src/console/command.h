@@ -138,6 +138,7 @@ CommandResult cmd_store(CommandCall& call);
 CommandResult cmd_load(CommandCall& call);
 CommandResult cmd_record(CommandCall& call);
 CommandResult cmd_time(CommandCall& call);
+CommandResult cmd_clients(CommandCall& call);
 CommandResult cmd_hash(CommandCall& call);
 CommandResult cmd_echo(CommandCall& call);
 CommandResult cmd_at(CommandCall& call);

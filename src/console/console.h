@@ -41,9 +41,14 @@ class Console {
     RunHooks* experiment = nullptr;  ///< whose commands are known too
     /// Starts a recording to a file, or ends it (""). Unset: there is none.
     std::function<Result<std::string>(const std::string& file)> record;
+    /// Clients of the run's server, as a table or as JSON; called on the simulation's thread. Unset: it has none.
+    std::function<std::string(bool json)> clients = {};
   };
   Console(Session& session, Options options);
   const Options& options() const { return options_; }
+
+  /// Sets or clears Options::clients: a server comes later than its console. @pre no line is being executed
+  void set_clients(std::function<std::string(bool json)> clients) { options_.clients = std::move(clients); }
 
   using Reply = std::function<void(const Answer&)>;
   void execute(std::string_view line, const Caller& caller, const Reply& reply);

@@ -165,6 +165,12 @@ CommandResult cmd_time(CommandCall& call) {
   return std::optional(std::move(text));
 }
 
+CommandResult cmd_clients(CommandCall& call) {
+  if (!call.options.clients) return Error{"this run has no server", "clients come to `run --port N`"};
+  if (!call.caller.may_steer) return Error{"only an administrator sees who is connected"};
+  return std::optional(call.options.clients(call.json));
+}
+
 CommandResult cmd_hash(CommandCall& call) {
   return std::optional(
       fmt::format("{:016x} after tick {}", call.simulation().state_hash(), call.simulation().tick_index()));

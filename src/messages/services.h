@@ -53,6 +53,27 @@ struct Complete {
   };
 };
 
+/// Ends the connection of a client.
+struct DisconnectClient {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/DisconnectClient";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/DisconnectClient_Request";
+    std::uint64_t client = 0;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"client", "1", "Number of the client."}, s.client);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/DisconnectClient_Response";
+    bool ok = true;
+    std::string text;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"ok", "", "Whether the connection ends."}, s.ok);
+      visit(Field{"text", "", "Reason why it does not."}, s.text);
+    }
+  };
+};
+
 /// Asks for numbers on a channel of their own.
 struct WatchValues {
   static constexpr const char* ros_type = "sandlot_msgs/srv/Watch";

@@ -138,6 +138,20 @@ std::string as_text(const Summary& s) {
   if (s.recording)
     out += fmt::format("recording  {}: {} messages, {:.2f} MB\n", s.recording->file, s.recording->messages,
                        1e-6 * static_cast<double>(s.recording->bytes));
+  constexpr std::size_t most_clients = 12;
+  for (std::size_t i = 0; i < std::min(most_clients, s.clients.size()); ++i) {
+    const ClientSummary& client = s.clients[i];
+    out += fmt::format("client     {} in {} {}", client.name.empty() ? "(no name)" : client.name, client.role,
+                       client.drives.empty() ? client.mode : client.drives + ", " + client.mode);
+    if (client.mode == "lockstep") out += fmt::format(": missed {} of {} steps", client.misses, client.steps);
+    else out += fmt::format(": {} commands, stopped {} times", client.commands, client.stops);
+    if (client.latency)
+      out += fmt::format("; answers took {:.3g} ms, 99 % at most {:.3g} ms", 1e3 * client.latency->mean_s,
+                         1e3 * client.latency->p99_s);
+    out += "\n";
+  }
+  if (s.clients.size() > most_clients)
+    out += fmt::format("           ... {} clients in all\n", s.clients.size());
   const char* const from_outside = s.errors.empty() ? "by request" : "by an error";
   out += fmt::format("stopped    {}\n", s.stopped.empty() ? from_outside : s.stopped);
   out += fmt::format("state      {} ({})\n", hash_text(s.state_hash.value), s.profile);

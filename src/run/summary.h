@@ -134,6 +134,38 @@ struct ServerSummary {
   }
 };
 
+struct DurationSummary {
+  double mean_s = 0, p99_s = 0, max_s = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"mean", "s", "Mean."}, s.mean_s);
+    visit(Field{"p99", "s", "99th percentile, at most 12.2 % too long."}, s.p99_s);
+    visit(Field{"max", "s", "Longest."}, s.max_s);
+  }
+};
+
+struct ClientSummary {
+  std::string name, role, drives, mode;
+  std::uint64_t connections = 0, steps = 0, misses = 0, commands = 0, refused = 0, stops = 0;
+  std::optional<DurationSummary> latency, step;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"name", "", "Name that the client gives itself; empty for none."}, s.name);
+    visit(Field{"role", "", "Role in which it drove: robot, team or admin."}, s.role);
+    visit(Field{"drives", "", "Robot or team that it claimed; empty for an admin."}, s.drives);
+    visit(Field{"mode", "", "free or lockstep."}, s.mode);
+    visit(Field{"connections", "1", "Number of claims, or connections, that these figures are of."},
+          s.connections);
+    visit(Field{"steps", "1", "Control steps that it was to answer in lockstep."}, s.steps);
+    visit(Field{"misses", "1", "Steps without an answer in time."}, s.misses);
+    visit(Field{"commands", "1", "Commands to devices."}, s.commands);
+    visit(Field{"refused", "1", "Requests refused."}, s.refused);
+    visit(Field{"stops", "1", "Times that its robots were stopped because it was silent."}, s.stops);
+    visit(Field{"latency_s", "s", "Wall time from a step sent to its answer received."}, s.latency);
+    visit(Field{"step_s", "s", "Wall time between two steps sent."}, s.step);
+  }
+};
+
 struct Summary {
   std::string name, physics;
   std::uint64_t seed = 0;
@@ -161,6 +193,7 @@ struct Summary {
   std::optional<VideoSummary> video;
   std::optional<RecordingSummary> recording;
   std::optional<ServerSummary> server;
+  std::vector<ClientSummary> clients;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the scenario."}, s.name);
@@ -199,6 +232,8 @@ struct Summary {
     visit(Field{"video", "", "Film of the run."}, s.video);
     visit(Field{"recording", "", "Recording of the run."}, s.recording);
     visit(Field{"server", "", "Viewers of the run."}, s.server);
+    visit(Field{"clients", "", "Clients of the server that drove something, present at the end or gone."},
+          s.clients);
   }
 };
 

@@ -3,6 +3,7 @@
 #include <future>
 
 #include "base/log.h"
+#include "console/console.h"
 #include "server/clients/hub.h"
 #include "server/faces/foxglove.h"
 #include "server/faces/rosbridge.h"
@@ -21,10 +22,11 @@ HttpAnswer text_answer(int status, std::string_view text) {
 }  // namespace
 
 struct Server::Impl {
-  Impl(const ServerOptions& options, Session& the_session, Console& console)
+  Impl(const ServerOptions& options, Session& the_session, Console& the_console)
       : session(the_session),
+        console(the_console),
         feed(std::make_shared<Feed>(the_session, mailbox, assets, options.poses_hz)),
-        hub(the_session, console, options, mailbox, feed, assets) {}
+        hub(the_session, the_console, options, mailbox, feed, assets) {}
 
   HttpAnswer get(std::string_view target) const;
   /// Brings `f` to the hub's thread; nothing after close().
@@ -34,6 +36,7 @@ struct Server::Impl {
   }
 
   Session& session;
+  Console& console;
   wire::Assets assets;
   std::shared_ptr<Mailbox> mailbox = std::make_shared<Mailbox>();
   std::shared_ptr<Feed> feed;
@@ -87,10 +90,15 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
     const bool tcp = subprotocol == "tcp", udp = subprotocol == "udp",
                rosbridge = tcp || udp || subprotocol.empty();
     const Carrier carrier = tcp ? Carrier::tcp : udp ? Carrier::udp : Carrier::websocket;
-    self->hub.connected(id, access, [=](Hub& hub, Transport& to, ClientId client) -> std::unique_ptr<Face> {
-      if (rosbridge) return std::make_unique<RosbridgeFace>(hub, to, client, carrier);
-      return std::make_unique<FoxgloveFace>(hub, to, client);
-    });
+    const Protocol protocol = tcp         ? Protocol::rosbridge_tcp
+                              : udp       ? Protocol::rosbridge_udp
+                              : rosbridge ? Protocol::rosbridge
+                                          : Protocol::foxglove;
+    self->hub.connected(id, access, protocol,
+                        [=](Hub& hub, Transport& to, ClientId client) -> std::unique_ptr<Face> {
+                          if (rosbridge) return std::make_unique<RosbridgeFace>(hub, to, client, carrier);
+                          return std::make_unique<FoxgloveFace>(hub, to, client);
+                        });
   };
   handler.message = [self, is_ready](ClientId id, std::span<const std::byte> bytes, bool text) {
     is_ready.wait();
@@ -120,6 +128,10 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
     const std::uint8_t ros_level = level == log::Level::warning ? 30 : level == log::Level::info ? 20 : 10;
     self->mailbox->push([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
   });
+  console.set_clients([self](bool json) {
+    const auto rows = self->hub.roster().rows(std::chrono::steady_clock::now());
+    return json ? clients_json(rows, {}) : clients_text(rows);
+  });
   // Last: from here on viewers may give orders, which call on_change.
   ready->set_value();
   return std::unique_ptr<Server>(new Server(std::move(impl)));
@@ -137,8 +149,11 @@ Counters Server::counters() const {
   return out;
 }
 
+std::vector<Roster::Total> Server::clients() const { return impl_->hub.roster().totals(); }
+
 void Server::stop() {
   if (std::exchange(impl_->stopped, true)) return;
+  impl_->console.set_clients(nullptr);
   log::set_listener({});
   {
     const std::lock_guard lock(impl_->mutex);

@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/clients/roster.h"
 #include "server/http/transport.h"
 
 namespace sandlot {
@@ -51,6 +52,8 @@ class Server {
   ~Server();
   std::string url() const;
   Counters counters() const;
+  /// Figures of all clients that have driven something, present or gone. On any thread.
+  std::vector<Roster::Total> clients() const;
   /// Closes all connections. @pre session.run() has returned, or this is its thread
   void stop();
 

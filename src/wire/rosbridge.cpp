@@ -139,6 +139,7 @@ Result<Operation> operation(const std::string& op, const Reader& read) {
     out.lockstep = mode == "lockstep";
     SL_ASSIGN(const double deadline_ms, read.number("deadline_ms", 1000, 1, 60'000));
     out.deadline_s = deadline_ms / 1000;
+    SL_ASSIGN(out.name, read.text("name", false));
     return Operation(std::move(out));
   }
   if (op == "sandlot.done") {

@@ -83,6 +83,7 @@ struct Claim {
   std::string token;
   bool lockstep = false;
   double deadline_s = 1;
+  std::string name;  ///< that the client gives itself; "": none
 };
 struct Done {
   std::uint64_t step = 0;

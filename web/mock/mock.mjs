@@ -7,6 +7,7 @@ import { extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { WebSocketServer } from 'ws';
 import { CdrReader, CdrWriter, Writer } from './bytes.mjs';
+import { clientsMessage } from './clients.mjs';
 import { SCHEMAS, SERVICES } from './schemas.mjs';
 import { cratePng } from './texture.mjs';
 import { driven, hillGrid, makeWorld, posesMessage, rockMesh, scan } from './world.mjs';
@@ -50,6 +51,7 @@ const commands_channel = json('/sandlot/commands', 'sandlot.Commands');
 const contacts_channel = channel('/sandlot/contacts', 'sandlot-contacts', 'sandlot.Contacts');
 const deliveries_channel = channel('/sandlot/deliveries', 'sandlot-deliveries', 'sandlot.Deliveries');
 const batteries_channel = channel('/sandlot/batteries', 'sandlot-batteries', 'sandlot.Batteries');
+const clients_channel = json('/sandlot/clients', 'sandlot.Clients');
 const clock_channel = cdr('/clock', 'rosgraph_msgs/msg/Clock');
 const log_channel = cdr('/rosout', 'rcl_interfaces/msg/Log');
 const scan_channels = world.bodies.filter((b) => b.robot).map((body) => ({ body, channel: cdr(`/${body.name}/laser/ranges`, 'sensor_msgs/msg/LaserScan') }));
@@ -58,6 +60,7 @@ let next_watch = 1;
 // Clients -------------------------------------------------------------------------------------------------------------
 
 const clients = new Set();
+let next_client = 1;
 const http = createServer(serve);
 const sockets = new WebSocketServer({
   server: http,
@@ -83,11 +86,11 @@ const sendJson = (client, value) => client.socket.send(JSON.stringify(value));
 
 sockets.on('connection', (socket, request) => {
   const role = new URL(request.url, 'http://x').searchParams.get('role') === 'spectator' ? 'spectator' : 'admin';
-  const client = { socket, role, subscriptions: new Map(), published: new Map(), watches: [] };
+  const client = { id: next_client++, socket, role, subscriptions: new Map(), published: new Map(), watches: [] };
   clients.add(client);
   sendJson(client, {
     op: 'serverInfo', name: 'sandlot mock', capabilities: ['clientPublish', 'time', 'parameters', 'parametersSubscribe', 'services', 'connectionGraph', 'assets'],
-    supportedEncodings: ['cdr', 'json'], metadata: { ROS_DISTRO: 'humble', sandlot_version: 'mock', sandlot_role: role }, sessionId: `mock ${process.pid}`,
+    supportedEncodings: ['cdr', 'json'], metadata: { ROS_DISTRO: 'humble', sandlot_version: 'mock', sandlot_role: role, sandlot_client: String(client.id) }, sessionId: `mock ${process.pid}`,
   });
   sendJson(client, { op: 'advertise', channels });
   sendJson(client, {
@@ -209,6 +212,12 @@ function onBinary(client, data) {
       client.watches.push({ id: made.id, values, period_s: rate_hz > 0 ? 1 / rate_hz : step_s, due_s: 0 });
       sendJson(client, { op: 'advertise', channels: [made] });
       respond({ ok: true, text: '', topic: made.topic }, (w) => w.bool(true).string('').string(made.topic));
+      break;
+    }
+    case '/sandlot/disconnect_client':
+    case '/sandlot/restart_program': {
+      const answer = { ok: false, text: 'a made-up client does nothing' };
+      respond(answer, (w) => w.bool(answer.ok).string(answer.text));
       break;
     }
     default:
@@ -333,6 +342,7 @@ setInterval(() => {
   if (run.playing) publish(poses_channel.id, () => posesMessage(world, run.tick, frame % 60 === 0 ? undefined : new Set(world.bodies.filter((b) => b.circle || touched.has(b.id)).map((b) => b.id))));
   touched.clear();
   if (frame % 6 === 0) publish(status_channel.id, () => JSON.stringify(status()));
+  if (frame % 15 === 0) publish(clients_channel.id, () => JSON.stringify(clientsMessage([...clients].map((c) => c.id), world.bodies.filter((b) => b.robot).map((b) => b.name), time_s)));
   if (frame % 6 === 0 || run.playing) {
     const time = new Writer().u8(2).u64(BigInt(Math.round(time_s * 1e9))).buffer();
     for (const client of clients) client.socket.send(time);

@@ -14,4 +14,6 @@ export const SERVICES = [
   { name: '/sandlot/console', type: 'sandlot_msgs/srv/Console', request: 'string line\n', response: 'bool ok\nstring text\n' },
   { name: '/sandlot/complete', type: 'sandlot_msgs/srv/Complete', request: 'string line\n', response: 'string[] candidates\n' },
   { name: '/sandlot/watch', type: 'sandlot_msgs/srv/Watch', request: 'string[] values\nfloat64 rate_hz\n', response: 'bool ok\nstring text\nstring topic\n' },
+  { name: '/sandlot/disconnect_client', type: 'sandlot_msgs/srv/DisconnectClient', request: 'uint64 client\n', response: 'bool ok\nstring text\n' },
+  { name: '/sandlot/restart_program', type: 'sandlot_msgs/srv/RestartProgram', request: 'string program\n', response: 'bool ok\nstring text\n' },
 ];

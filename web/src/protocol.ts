@@ -529,3 +529,67 @@ function readU64(view: DataView, at: number): number {
 function readI64(view: DataView, at: number): number {
   return view.getUint32(at, true) + view.getInt32(at + 4, true) * 4294967296;
 }
+
+/** Seconds; of the latest thousand. */
+export interface Durations {
+  last: number;
+  mean: number;
+  p99: number;
+  max: number;
+}
+
+/** A program that a client in lockstep answers for. */
+export interface AnsweredProgram {
+  path: string;
+  control_period_s: number;
+  deadline_s: number;
+  steps: number;
+  misses: number;
+  /** Since the step that it has not answered was sent; null: it has answered all. */
+  waiting_s: number | null;
+  /** From a step sent to its answer. */
+  latency_s: Durations | null;
+  /** From a step sent to the next. */
+  step_s: Durations | null;
+  /** All latencies: counts per bin from `first_s` on, `per_decade` bins to a factor of ten. */
+  latencies: { first_s: number; per_decade: number; counts: number[] };
+}
+
+export interface ClientRow {
+  id: number;
+  protocol: string;
+  address: string;
+  name: string;
+  role: string;
+  drives: string;
+  robots: string[];
+  mode: 'watching' | 'free' | 'lockstep';
+  connected_s: number;
+  bytes_in: number;
+  bytes_out: number;
+  messages: number;
+  messages_per_s: number;
+  commands: number;
+  commands_per_s: number;
+  dropped: number;
+  refused: number;
+  stops: number;
+  programs: AnsweredProgram[];
+}
+
+/** A program outside the simulation's process: a client answers for it, or a process that the run has started. */
+export interface OutsideProgram {
+  path: string;
+  kind: string;
+  is_client: boolean;
+  connected: boolean;
+  started: boolean;
+  answers: number;
+  misses: number;
+}
+
+/** What /sandlot/clients says: to administrators all, to others themselves. */
+export interface Clients {
+  clients: ClientRow[];
+  programs: OutsideProgram[];
+}

@@ -177,7 +177,7 @@ test('a token leaves the address bar, is kept for this host, and never goes to a
   const store = { getItem: (k) => kept.get(k) ?? null, setItem: (k, v) => kept.set(k, v) };
   const first = targetOf({ href: 'http://box:8080/?token=s3cret&role=spectator' }, store);
   assert.equal(first.cleanHref, 'http://box:8080/?role=spectator');
-  assert.equal(socketAddress(first.target), 'ws://box:8080/?token=s3cret&role=spectator');
+  assert.equal(socketAddress(first.target), 'ws://box:8080/?token=s3cret&role=spectator&name=page');
   assert.equal(targetOf({ href: 'http://box:8080/' }, store).target.token, 's3cret');
   assert.equal(targetOf({ href: 'http://box:8080/?ws=ws://evil:1/' }, store).target.token, '');
   assert.equal(targetOf({ href: 'https://box/' }, store).target.url, 'wss://box/');

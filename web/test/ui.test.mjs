@@ -239,3 +239,61 @@ test('the unit of an address that was shown', () => {
   assert.equal(format.unitOf('rover.count = 3', 'rover.count'), '');
   assert.equal(format.unitOf("there is no 'x m'", 'x'), '');
 });
+
+const figures = await load('ui/client_figures.ts');
+const { filterLog, withSource } = await load('ui/log.ts');
+const answered = (more) => ({ path: 'red1/brain', control_period_s: 0.05, deadline_s: 0.1, steps: 200, misses: 0, waiting_s: null, latency_s: { last: 0.01, mean: 0.01, p99: 0.02, max: 0.03 }, step_s: null, latencies: { first_s: 1e-3, per_decade: 20, counts: [] }, ...more });
+const client = (more) => ({ id: 1, drives: 'red1', robots: ['red1'], mode: 'lockstep', programs: [answered()], ...more });
+const outside = (more) => ({ path: 'red1/brain', kind: 'remote', is_client: true, connected: true, started: false, answers: 0, misses: 0, ...more });
+
+test('times of clients are read at a glance', () => {
+  assert.deepEqual([2.5e-5, 9.994e-4, 0.0123, 0.5, 1.5, 61, 600].map(figures.formatDuration), ['25 µs', '999 µs', '12.3 ms', '500 ms', '1.50 s', '1 min', '10 min']);
+  assert.deepEqual([3, 240, 7200].map(figures.formatAge), ['3 s', '4 min', '2 h']);
+  assert.equal(figures.missedShare(answered()), '0');
+  assert.equal(figures.missedShare(answered({ misses: 3 })), '3 (1.5 %)');
+  assert.equal(figures.missedShare(answered({ misses: 100 })), '100 (50 %)');
+});
+
+test('a client that is silent is bad, one that comes close to its deadline a warning', () => {
+  assert.equal(figures.judge(answered()), 'good');
+  assert.equal(figures.judge(answered({ waiting_s: 0.05 })), 'good');
+  assert.equal(figures.judge(answered({ waiting_s: 0.2 })), 'bad');
+  assert.equal(figures.judge(answered({ latency_s: { last: 0, mean: 0, p99: 0.081, max: 0.09 } })), 'warn');
+  assert.equal(figures.judge(answered({ latency_s: null })), 'good');
+});
+
+test('latencies lie on a logarithmic axis up to the deadline, late ones in its last column', () => {
+  // 0.1 ms to 100 ms are three decades: 1 ms is a third of the way.
+  assert.ok(Math.abs(figures.place(1e-3, 0.1) - 1 / 3) < 1e-12);
+  assert.equal(figures.place(1e-6, 0.1), 0);
+  assert.ok(figures.place(0.2, 0.1) > 1);
+  // 100 answers from 1 ms on, and one of 400 ms: 2.6 decades above it, 52 bins.
+  const counts = [100, ...new Array(51).fill(0), 1];
+  const columns = figures.columnsOf(answered({ latencies: { first_s: 1e-3, per_decade: 20, counts } }), 31);
+  assert.equal(columns[10], 1);
+  assert.equal(columns[30], 0.16, 'one of a hundred is seen');
+  assert.equal(columns.filter((share) => share > 0).length, 2);
+});
+
+test('a robot that nobody drives has a row, and so has a process', () => {
+  const rows = (programs, clients) => figures.rowsOfPrograms(programs, clients).map((p) => p.path);
+  assert.deepEqual(rows([outside(), outside({ path: 'red2/brain' })], [client()]), ['red2/brain']);
+  assert.deepEqual(rows([outside({ started: true })], [client()]), ['red1/brain'], 'it can be restarted');
+  assert.deepEqual(rows([outside({ is_client: false, kind: 'pipe' })], []), ['red1/brain']);
+  assert.deepEqual(figures.stateOf(outside(), []), ['Waits for a client', 'warn']);
+  assert.deepEqual(figures.stateOf(outside({ started: true }), []), ['Its process has not connected', 'warn']);
+  assert.deepEqual(figures.stateOf(outside({ started: true }), [client()]), ['Runs as client 1', 'good']);
+  assert.deepEqual(figures.stateOf(outside(), [client({ mode: 'free', programs: [] })]), ['Driven freely by client 1', 'good']);
+  assert.deepEqual(figures.stateOf(outside({ is_client: false, connected: false }), []), ['Has ended', 'bad']);
+});
+
+test('what a program writes is in the log under its path', () => {
+  const entry = (text, name = 'sandlot') => ({ time_s: 0, level: 30, name, text });
+  const known = (path) => path === 'ann/brain';
+  assert.deepEqual(withSource(entry('ann/brain: hello: world'), known), entry('hello: world', 'ann/brain'));
+  assert.deepEqual(withSource(entry('bob/brain: hello'), known), entry('bob/brain: hello'));
+  assert.deepEqual(withSource(entry('no such thing'), known), entry('no such thing'));
+  const all = [entry('a', 'ann/brain'), entry('b')];
+  assert.deepEqual(filterLog(all, 10, '', 'ann/brain').map((e) => e.text), ['a']);
+  assert.equal(filterLog(all, 10, '').length, 2);
+});

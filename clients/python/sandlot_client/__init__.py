@@ -209,14 +209,14 @@ class _Driver(Connection):
         try:
             identity = self.next_id()
             self.send(op="sandlot.claim", id=identity, token=token or os.environ.get("SANDLOT_TOKEN", ""),
-                      mode="free", **{kind: name})
+                      mode="free", name=os.path.basename(sys.argv[0]), **{kind: name})
             self.wait(identity, timeout_s)
             self._topics = self.topics()
         except BaseException:
             self.close()
             raise
         self._claim = dict(token=token or os.environ.get("SANDLOT_TOKEN", ""), mode="lockstep",
-                           deadline_ms=1000 * deadline_s, **{kind: name})
+                           deadline_ms=1000 * deadline_s, name=os.path.basename(sys.argv[0]), **{kind: name})
         self._timeout_s = timeout_s
         self._begun = False
         self.period_s: Optional[float] = None

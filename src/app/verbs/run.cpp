@@ -72,7 +72,9 @@ int run(const RunOptions& options) {
           },
       .on_end =
           [&](Summary& summary) {
-            if (served) summary.server = served->stop();
+            if (!served) return;
+            summary.server = served->stop();
+            summary.clients = served->clients();
           }};
   const auto summary = sandlot::run(spec, callbacks);
   if (!summary) return complain(summary.error());

@@ -8,6 +8,7 @@ void Link::attach(Client client) {
   const std::lock_guard lock(mutex_);
   client_ = std::move(client);
   ++attachments_;
+  if (step_ && client_->counts) ++client_->counts->steps;
   answer_.reset();
   told_ = false;
   tell();
@@ -58,6 +59,16 @@ void Link::put(const Step& step) {
   step_ = step;
   told_ = false;
   answer_.reset();
+}
+
+void Link::count_step() {
+  const std::lock_guard lock(mutex_);
+  if (client_ && client_->counts) ++client_->counts->steps;
+}
+
+void Link::count_miss() {
+  const std::lock_guard lock(mutex_);
+  if (client_ && client_->counts) ++client_->counts->misses;
 }
 
 void Link::refuse(const std::string& why) {

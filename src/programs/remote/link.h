@@ -8,8 +8,10 @@
 /// Threads   any; clients are told on the thread that calls release() or attach().
 /// Waiting   who answers wakes the session: Session::wake().
 /// Limits    one answer waits at most; an answer has at most most_answer bytes.
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,12 +30,18 @@ class Link {
     Time now;
     std::uint64_t random = 0;  ///< of the program's own, one per step
   };
+  /// Steps that a client was to answer, and those of them without an answer in time. Read on any thread.
+  struct Counts {
+    std::atomic<std::uint64_t> steps = 0, misses = 0;
+  };
+
   // --- for the server ---
   /// What a client is told; on the thread of the simulation.
   struct Client {
     double deadline_s = 0;
     std::function<void(const Step&)> step;
     std::function<void(const std::string& why)> refused;  ///< its answer could not be carried out
+    std::shared_ptr<Counts> counts = {};                  ///< of this client; null: nobody wants them
   };
   /// A client takes the program over. It is told at once of a step that waits.
   void attach(Client client);
@@ -49,6 +57,9 @@ class Link {
   /// Counts the clients that came.
   std::uint64_t attachments() const;
   void put(const Step& step);
+  /// A control step of the client attached now begins; its answer did not come in time.
+  void count_step();
+  void count_miss();
   void refuse(const std::string& why);
   /// The answer that has come. An error: the client has gone without one.
   std::optional<Result<std::string>> take();

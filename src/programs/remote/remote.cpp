@@ -73,6 +73,7 @@ void Remote::set_deadline() {
 Program::Resumed Remote::resume(const Observation& obs, Command&) {
   if (connected_) {
     begun_ = Clock::now();
+    link_->count_step();
     Stream random = obs.random();
     if (!std::exchange(waiting_, true)) link_->put({step_++, obs.now(), random.bits64()});
     set_deadline();
@@ -94,6 +95,7 @@ Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const Top
                                 Command& cmd) {
   const auto miss = [&](const char* why) -> Resumed {
     ++state_.misses;
+    if (connected_) link_->count_miss();
     gave_up_ = true;
     if (spec_.on_miss == OnMiss::end) return {.failure = why};
     if (spec_.on_miss == OnMiss::stop) stop_drives(actuators_, cmd);

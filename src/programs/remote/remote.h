@@ -80,6 +80,8 @@ class Remote final : public Program, public Outside {
 
   /// For the server. It lives as long as somebody holds it.
   const std::shared_ptr<Link>& link() const { return link_; }
+  /// Of its steps, whatever the client asks for.
+  double longest_deadline_s() const { return spec_.deadline_s; }
 
  private:
   void set_deadline();

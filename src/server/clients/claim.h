@@ -20,6 +20,7 @@ struct ClaimRequest {
   std::string token;
   bool lockstep = false;
   double deadline_s = 1;
+  std::string name;  ///< that the client gives itself
 };
 /// A remote program that a client in lockstep answers for.
 struct ClaimedProgram {
@@ -29,6 +30,7 @@ struct ClaimedProgram {
 struct ProgramLink {
   ClaimedProgram program;
   std::shared_ptr<programs::remote::Link> link;
+  double longest_deadline_s = 0;
 };
 /// Of a client that drives robots.
 struct Claim {

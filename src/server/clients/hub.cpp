@@ -36,6 +36,7 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::contacts, "/sandlot/contacts", "sandlot-contacts", "sandlot.Contacts");
   add_channel(ChannelKind::deliveries, "/sandlot/deliveries", "sandlot-deliveries", "sandlot.Deliveries");
   add_channel(ChannelKind::batteries, "/sandlot/batteries", "sandlot-batteries", "sandlot.Batteries");
+  add_channel(ChannelKind::clients, "/sandlot/clients", "json", "sandlot.Clients");
   add_channel(ChannelKind::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
@@ -92,7 +93,10 @@ void Hub::revoke(ClientId id, Client& client) {
   client.all_parameters = client.graph = false;
 }
 
-void Hub::connected(ClientId id, Access access, const MakeFace& make_face) {
+void Hub::connected(ClientId id, Access access, Protocol protocol, const MakeFace& make_face) {
+  const ConnectionFacts facts = transport_->facts(id);
+  if (protocol == Protocol::foxglove && facts.name == "page") protocol = Protocol::page;
+  roster_.connected(id, protocol, facts, access, Clock::now());
   Client& client = clients_[id];
   client.access = std::move(access);
   client.budgeted = client.refusals_since = Clock::now();
@@ -109,6 +113,7 @@ void Hub::disconnected(ClientId id) {
   Client* const client = find(id);
   if (!client) return;
   end_claim(id, *client, "the client has gone");
+  roster_.disconnected(id);
   const auto subscriptions = std::move(client->subscriptions);
   for (const auto& [subscription, channel] : subscriptions) leave_channel(id, channel, subscription);
   std::vector<std::uint32_t> watches;
@@ -123,6 +128,7 @@ void Hub::disconnected(ClientId id) {
 
 void Hub::refuse(ClientId id, const std::string& why, std::string_view about) {
   ++counts_.refused;
+  roster_.refused(id);
   Client* const client = find(id);
   if (!client) return;
   const auto now = Clock::now();
@@ -154,6 +160,7 @@ bool Hub::within_budget(ClientId id, Client& client) {
 void Hub::message(ClientId id, std::span<const std::byte> bytes, bool text) {
   Client* const client = find(id);
   if (!client) return;
+  roster_.message(id, Clock::now());
   if (within_budget(id, *client)) client->face->message(bytes, text);
   else client->face->over_budget(bytes, text);
   flush();
@@ -202,6 +209,10 @@ Status Hub::subscribe(ClientId id, std::uint32_t subscription, std::uint32_t cha
     case ChannelKind::transforms_static: initial_.transforms_static = true; break;
     case ChannelKind::poses: initial_.frame = true; break;
     case ChannelKind::status: break;
+    case ChannelKind::clients:
+      made.initial_state_sent = true;
+      clients_asked_ = {};  // it is told with the next beat of the timer
+      break;
     case ChannelKind::transforms:
     case ChannelKind::clock:
     case ChannelKind::contacts:
@@ -347,6 +358,7 @@ void Hub::timer() {
   }
   for (auto& [id, client] : clients_) advertise_waiting(id, client);
   watch_claims();
+  watch_clients();
   // Watches whose subscriber has not come.
   std::vector<std::uint32_t> unused;
   for (auto& [id, each] : channels_) {

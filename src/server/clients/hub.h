@@ -19,6 +19,7 @@
 #include "server/clients/claim.h"
 #include "server/clients/face.h"
 #include "server/clients/feed.h"
+#include "server/clients/roster.h"
 #include "server/server.h"
 #include "server/services/service.h"
 #include "wire/foxglove.h"
@@ -39,7 +40,7 @@ class Hub final : private ServiceHost {
 
   // --- called by the transport ---
   using MakeFace = std::function<std::unique_ptr<Face>(Hub&, Transport&, ClientId)>;
-  void connected(ClientId id, Access access, const MakeFace& make_face);
+  void connected(ClientId id, Access access, Protocol protocol, const MakeFace& make_face);
   void message(ClientId id, std::span<const std::byte> bytes, bool text);
   void disconnected(ClientId id);
   void timer();
@@ -52,6 +53,8 @@ class Hub final : private ServiceHost {
   const std::string& session_id() const { return session_id_; }
   const wire::Assets& assets() const { return assets_; }
   const Session::Report& report() const { return report_; }
+  /// Figures of the clients; on any thread.
+  const Roster& roster() const { return roster_; }
   const Access& access(ClientId id) const;
   bool sees_world(ClientId id) const {
     const Client* const client = find(id);
@@ -120,6 +123,8 @@ class Hub final : private ServiceHost {
   void report_refusal(ClientId client, const std::string& why);
   /// A line for /rosout; levels of rcl_interfaces/msg/Log.
   void send_log(std::uint8_t level, const std::string& text);
+  /// Who is connected, to those who may see it.
+  void send_clients(std::vector<OutsideProgram> programs);
 
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
@@ -145,6 +150,7 @@ class Hub final : private ServiceHost {
     contacts,
     deliveries,
     batteries,
+    clients,
     watch,
     count_
   };
@@ -246,6 +252,10 @@ class Hub final : private ServiceHost {
   bool collect(ClientId id, Client& client, const Publication& publication,
                std::span<const std::byte> command);
 
+  // hub_clients.cpp
+  void watch_clients();
+  Status disconnect(ClientId client) override;
+
   // hub_publish.cpp
   foxglove::Parameter own_parameter(const std::string& name) const;
   void send_own_parameters();
@@ -287,6 +297,8 @@ class Hub final : private ServiceHost {
   bool graph_changed_ = false;
   Clock::time_point flushed_, status_sent_, time_sent_, framed_, looked_, graph_sent_;
   Counts counts_;
+  Roster roster_;
+  Clock::time_point clients_measured_, clients_asked_;
 };
 
 }  // namespace sandlot::server

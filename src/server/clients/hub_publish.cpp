@@ -190,6 +190,7 @@ void Hub::publish(ClientId id, Publication& publication, std::span<const std::by
                                          {reinterpret_cast<const char*>(bytes.data()), bytes.size()})
                      : command_from_cdr(*slot.blank, bytes);
   if (!command) return refuse(id, publication.topic + ": " + command.error().text());
+  roster_.commanded(id, Clock::now());
   Client& client = clients_.at(id);
   if (client.claim) {
     client.claim->commanded = Clock::now();

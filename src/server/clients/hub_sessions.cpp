@@ -80,6 +80,7 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
   Client& client = clients_.at(id);
   const auto fail = [&](Error error) {
     ++counts_.refused;
+    roster_.refused(id);
     claimed(*client.face, std::move(error));
   };
   if (client.claim) {  // the same in another way
@@ -104,6 +105,8 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
   client.claim->request = request;
   client.claim->before = before;
   client.claim->commanded = Clock::now();
+  roster_.claimed(id, client.access, request.lockstep ? Mode::lockstep : Mode::free, request.deadline_s,
+                  request.name);
   if (!request.lockstep) return claimed(*client.face, std::vector<ClaimedProgram>());
   attach(id, claimed);
 }
@@ -122,7 +125,8 @@ void Hub::attach(ClientId id, const Claimed& claimed) {
       auto* const remote = dynamic_cast<programs::remote::Remote*>(&outside);
       const std::string_view whose = first_part(entry.path);
       if (!remote || !(access.drives(whose) || (access.role == Role::team && whose == access.name))) return;
-      links.push_back({{entry.path, entry.description->control_period_s}, remote->link()});
+      links.push_back(
+          {{entry.path, entry.description->control_period_s}, remote->link(), remote->longest_deadline_s()});
     });
     mailbox->push([id, number, links = std::move(links), claimed](Hub& hub) {
       hub.hold_links(id, number, links, claimed);
@@ -149,7 +153,9 @@ void Hub::hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> 
   if (claimed) claimed(*client->face, std::move(told));
   for (const ProgramLink& each : client->claim->links) {
     post([feed = feed_, mailbox = mailbox_, id, path = each.program.path, link = each.link,
-          deadline_s = client->claim->request.deadline_s](Session&) {
+          deadline_s = client->claim->request.deadline_s,
+          counts = roster_.answers_for(id, each.program.path, each.program.control_period_s,
+                                       each.longest_deadline_s)](Session&) {
       feed->add_link(link);
       link->attach({deadline_s,
                     [mailbox, id, path](const programs::remote::Link::Step& step) {
@@ -158,7 +164,8 @@ void Hub::hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> 
                     },
                     [mailbox, id](const std::string& why) {
                       mailbox->push([id, why](Hub& hub) { hub.report_refusal(id, why); });
-                    }});
+                    },
+                    counts});
     });
   }
   session_.wake();
@@ -172,6 +179,7 @@ void Hub::tell_step(ClientId id, const StepNotice& step) {
   client->budget = std::min(most_requests_per_s, client->budget + messages_per_step);
   transport_->grant(id, messages_per_step);
   client->face->tell_step(step);
+  roster_.told(id, step.program, Clock::now());
 }
 
 /// Keeps a command for the end of the step. @return false: it is not for a program in lockstep
@@ -230,6 +238,7 @@ Status Hub::done(ClientId id, std::uint64_t step, const std::string& program, co
   if (!samples.empty()) answer += std::string(answer.size() > 1 ? "," : "") + "\"samples\":" + samples;
   answer += "}";
   SL_TRY(link->link->answer(step, std::move(answer)));
+  roster_.answered(id, link->program.path, Clock::now());
   session_.wake();
   return {};
 }
@@ -246,6 +255,7 @@ void Hub::end_claim(ClientId id, Client& client, const std::string& why) {
   if (!client.claim->request.lockstep) stop_robots(id, client);
   client.access = std::move(client.claim->before);
   client.claim.reset();
+  roster_.released(id, client.access);
   session_.wake();
 }
 
@@ -271,6 +281,7 @@ void Hub::watch_claims() {
     if (client.claim && !client.claim->request.lockstep && client.claim->moving &&
         now > client.claim->commanded + limit && report_.state == Session::State::playing) {
       stop_robots(id, client);
+      roster_.stopped(id);
       client.face->report(foxglove::Level::warning,
                           "no command for long: '" + client.access.name + "' was stopped", {});
     }

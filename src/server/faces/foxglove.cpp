@@ -42,7 +42,8 @@ void FoxgloveFace::welcome(const Access& access) {
   info.encodings = {"cdr", "json"};
   info.metadata = {{"ROS_DISTRO", "humble"},
                    {"sandlot_version", hub_.options().version},
-                   {"sandlot_role", name_of(access.role)}};
+                   {"sandlot_role", name_of(access.role)},
+                   {"sandlot_client", std::to_string(client_)}};
   info.session_id = hub_.session_id();
   transport_.send_text(client_, foxglove::server_info(info));
 }

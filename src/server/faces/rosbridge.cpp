@@ -347,7 +347,8 @@ void RosbridgeFace::fragment(const std::string& id, const rosbridge::Fragment& r
 }
 
 void RosbridgeFace::claim(const std::string& id, const rosbridge::Claim& request) {
-  hub_.claim(client_, {request.robot, request.team, request.token, request.lockstep, request.deadline_s},
+  hub_.claim(client_,
+             {request.robot, request.team, request.token, request.lockstep, request.deadline_s, request.name},
              [id](Face& face, const Result<std::vector<ClaimedProgram>>& programs) {
                auto& self = static_cast<RosbridgeFace&>(face);
                if (!programs) {

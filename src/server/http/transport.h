@@ -63,6 +63,13 @@ struct Counters {
   std::uint64_t clients = 0, accepted = 0, refused = 0, dropped = 0, bytes_out = 0, bytes_in = 0;
 };
 
+/// Figures of one client's connection.
+struct ConnectionFacts {
+  std::string address;  ///< of the other side, "127.0.0.1:50312"
+  std::string name;     ///< that the client gives itself: `name` in the query of its URL
+  std::uint64_t bytes_in = 0, bytes_out = 0, dropped = 0;
+};
+
 /// What an HTTP GET is answered with.
 struct HttpAnswer {
   int status = 200;
@@ -101,6 +108,8 @@ class Transport {
   bool send_text(ClientId client, std::string text);
   /// Bytes that wait for a client: those who can choose send less to the slow.
   std::size_t waiting_bytes(ClientId client) const;
+  /// Empty when the client is gone. On the transport's thread.
+  ConnectionFacts facts(ClientId client) const;
   /// Allows a client so many messages beyond those per second: it was asked for them. On the transport's thread.
   void grant(ClientId client, double messages);
   /// What is queued is still sent, then the reason (its first 123 bytes), with code 1008.

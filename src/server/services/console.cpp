@@ -1,4 +1,4 @@
-/// Sandlot's own services: the console, its completion, watched values.
+/// Sandlot's own services: the console, its completion, watched values, clients.
 #include "console/console.h"
 
 #include "server/services/service.h"
@@ -30,6 +30,12 @@ void watch_values(const ServiceContext& context, const msg::WatchValues::Request
                        if (topic) reply({.ok = true, .topic = *topic});
                        else reply({.text = topic.error().text()});
                      });
+}
+
+void disconnect_client(const ServiceContext& context, const msg::DisconnectClient::Request& request,
+                       const Reply<msg::DisconnectClient>& reply) {
+  const Status status = context.host.disconnect(request.client);
+  reply({static_cast<bool>(status), status ? "" : status.error().text()});
 }
 
 }  // namespace sandlot::server::service

@@ -53,6 +53,9 @@ class ServiceHost {
   /// Brings tasks to the transport's thread, from any thread and whatever has become of the host.
   virtual std::function<void(std::function<void()>)> way_back() = 0;
 
+  /// Ends a client's connection. Errors: it is not there.
+  virtual Status disconnect(ClientId client) = 0;
+
  protected:
   ~ServiceHost() = default;
 };

@@ -7,6 +7,7 @@ import type {Status, World} from '../protocol';
 import {SceneView} from '../scene/scene';
 import {freeName, openAdd} from '../ui/add_dialog';
 import {Bar, speeds} from '../ui/bar';
+import {ClientsPanel} from '../ui/clients';
 import {CommandsPanel} from '../ui/commands';
 import {ConsolePanel} from '../ui/console';
 import {h} from '../ui/dom';
@@ -78,6 +79,10 @@ export class App {
         this.frame.open('matrix');
         matrix.choose(topic);
       },
+      showLog: (program) => {
+        this.frame.open('log');
+        log.showOnly(program);
+      },
     };
     this.bar = new Bar(this.context);
     this.frame = new Frame(this.bar.element);
@@ -101,7 +106,7 @@ export class App {
     this.console = new ConsolePanel(this.context);
     const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
     const matrix = new MatrixPanel(this.context);
-    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['topics', 'Topics', new TopicsPanel(this.context)],
+    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
       ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
       this.frame.addPane({id, title, panel});
     }
@@ -275,7 +280,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'pictures', 'log', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),

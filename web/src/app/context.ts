@@ -20,6 +20,8 @@ export interface Context {
   /** Adds a value to a plot and shows it. */
   plot: (address: string, unit: string) => void;
   showMatrix: (topic: string) => void;
+  /** Opens the log with the lines of a program alone. */
+  showLog: (program: string) => void;
 }
 
 /** A part of the page. It draws only while it is seen. */

@@ -51,6 +51,7 @@ const table: [string, Action['group'], string, string[], boolean][] = [
   ['panels.dock', 'Panels', 'Panels below', ['ctrl+j'], false],
   ['pane.plots', 'Panels', 'Plots', [], false],
   ['pane.log', 'Panels', 'Log', [], false],
+  ['pane.clients', 'Panels', 'Clients', [], false],
   ['pane.topics', 'Panels', 'Topics', [], false],
   ['pane.graph', 'Panels', 'Graph', [], false],
   ['pane.matrix', 'Panels', 'Matrix', [], false],

@@ -39,5 +39,6 @@ export function socketAddress(target: Target): string {
   const url = new URL(target.url);
   if (target.token !== '') url.searchParams.set('token', target.token);
   if (target.role !== '') url.searchParams.set('role', target.role);
+  url.searchParams.set('name', 'page');
   return url.href;
 }

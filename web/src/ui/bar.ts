@@ -18,7 +18,7 @@ export class Bar {
   private readonly rtf = h('span', {class: 'rtf number', testid: 'rtf', title: 'Real-time factor: simulated seconds per second'});
   private readonly state = h('span', {class: 'chip', testid: 'state'}, h('i', {class: 'dot'}), h('span'));
   private readonly recording = h('span', {class: 'chip recording hidden'}, h('i', {class: 'dot'}), h('span'));
-  private readonly viewers = h('span', {class: 'chip viewers-chip'}, icon('eye', 13), h('span', {}, '1'));
+  private readonly viewers = h('button', {class: 'chip viewers-chip', testid: 'viewers', on: {click: () => this.context.openPane('clients')}}, icon('eye', 13), h('span', {}, '1'));
   private readonly role = h('span', {class: 'chip watching hidden', testid: 'role'});
   private readonly themeButton = h('button', {class: 'plain icon-only', testid: 'theme', 'aria-label': 'Dark or light'});
   readonly element: HTMLElement;
@@ -113,7 +113,7 @@ export class Bar {
       setTitle(this.recording, `Recording to ${status.recording.file}: ${status.recording.messages} messages, ${formatBytes(status.recording.bytes)}`);
     }
     setText(this.viewers.lastElementChild as Element, String(status.viewers));
-    setTitle(this.viewers, status.viewers === 1 ? 'Only you are looking' : `${status.viewers} are looking`);
+    setTitle(this.viewers, `${status.viewers === 1 ? 'Only you are' : `${status.viewers} are`} connected`);
   };
 
   private showState(connection: string, state: string, reason: string): void {

@@ -45,6 +45,7 @@ struct Queue {
   std::size_t bytes = 0;   // with that being written
   bool scheduled = false;  // flush() is on its way
   bool full = false;       // something that must arrive did not fit
+  std::uint64_t dropped = 0;
 };
 
 /// A connection, from accept to end. Every function may end it; whoever calls holds a PeerPtr meanwhile.
@@ -64,6 +65,8 @@ struct Peer {
   virtual void end() = 0;
   /// Whether there was no request since the last answer.
   virtual bool idle() const = 0;
+
+  ConnectionFacts facts;  ///< but for what was dropped
 };
 using PeerPtr = std::shared_ptr<Peer>;
 
@@ -103,6 +106,8 @@ struct Transport::Impl {
   void schedule(ClientId client, Queue& queue);
 };
 
+/// "127.0.0.1:50312"; "": the connection is gone.
+std::string remote_address(const tcp::socket& socket);
 /// Defined in peer.cpp.
 PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket);
 

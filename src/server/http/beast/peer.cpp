@@ -111,7 +111,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     socket().async_read_some(buffer.prepare(2048), guarded([this](error_code ec, std::size_t n) {
                                if (ec) return end();
                                buffer.commit(n);
-                               impl.bytes_in += n;
+                               impl.bytes_in += n, facts.bytes_in += n;
                                const auto* const byte = static_cast<const char*>(buffer.cdata().data());
                                if (first && impl.options.raw_json && *byte == '{') return begin_raw();
                                read_request();
@@ -122,7 +122,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     enter(Stage::head, impl.options.handshake_s);
     first = false;
     http::async_read_header(socket(), buffer, *parser, guarded([this](error_code ec, std::size_t n) {
-                              impl.bytes_in += n;
+                              impl.bytes_in += n, facts.bytes_in += n;
                               if (late) return refuse(408, "the request took too long to arrive");
                               if (ec == http::error::header_limit || ec == http::error::buffer_overflow)
                                 return refuse(431, "the head of the request is longer than 16 KiB");
@@ -219,7 +219,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     socket().async_write_some(rest, guarded([this](error_code ec, std::size_t n) {
                                 if (ec) return end();
                                 written += n;
-                                impl.bytes_out += n;
+                                impl.bytes_out += n, facts.bytes_out += n;
                                 if (written < head.size() + answer.body.size()) return write_answer();
                                 answer = {};
                                 if (keep_alive) return await_request();
@@ -275,7 +275,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     if (stage != Stage::open) return;
     socket().async_read_some(buffer.prepare(most_head_bytes), guarded([this](error_code ec, std::size_t n) {
                                if (ec) return end();
-                               impl.bytes_in += n;
+                               impl.bytes_in += n, facts.bytes_in += n;
                                heard = Clock::now();
                                buffer.commit(n);
                                if (n < 256 && !allowed())
@@ -296,7 +296,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     socket().async_write_some(rest, guarded([this](error_code ec, std::size_t n) {
                                 if (ec) return end();
                                 written += n;
-                                impl.bytes_out += n;
+                                impl.bytes_out += n, facts.bytes_out += n;
                                 progress = Clock::now();
                                 if (written < current.size() + 1) return write_raw();
                                 end_message();
@@ -330,6 +330,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                     fmt::format("there are {} viewers already, which is the limit", options.most_clients));
     if (impl.stopping) return refuse(503, "the server is going away");
     access = admission.access;
+    if (const auto name = query_value(target.query, "name"); name && *name) facts.name = **name;
     ++impl.clients;
     queue = std::make_shared<Queue>();
     enter(Stage::upgrade, options.handshake_s);
@@ -357,6 +358,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     stage = Stage::open;
     heard = progress = bucket_time = Clock::now();
     if (!raw) buffer = beast::flat_buffer(foxglove::most_binary_bytes + (64 << 10));
+    facts.address = remote_address(socket());
     ++impl.accepted;
     ++impl.open_clients;
     {
@@ -371,7 +373,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void read() {
     stream.async_read_some(
         buffer, 64 << 10, guarded([this](error_code ec, std::size_t n) {
-          impl.bytes_in += n;
+          impl.bytes_in += n, facts.bytes_in += n;
           if (ec) {
             // Beast has answered what breaks the protocol with the right code.
             if (ec != ws::error::closed && ec.category() == ws_errors) ++impl.refused;
@@ -444,7 +446,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
             end_of_slice > current.head.size() ? end_of_slice - current.head.size() - body : 0)};
     stream.async_write_some(last, slice, guarded([this, end_of_slice, last](error_code ec, std::size_t) {
                               if (ec) return end();
-                              impl.bytes_out += end_of_slice - written;
+                              impl.bytes_out += end_of_slice - written,
+                                  facts.bytes_out += end_of_slice - written;
                               written = end_of_slice;
                               // A write that had to wait shows that the peer takes what is sent; his pong may be stuck behind it.
                               if (Clock::now() - progress > std::chrono::milliseconds(100))

@@ -190,6 +190,15 @@ void Transport::Impl::schedule(ClientId client, Queue& queue) {
   net::post(io, [this, client] { for_one(client, [](Peer& peer) { peer.flush(); }); });
 }
 
+std::string remote_address(const tcp::socket& socket) {
+  error_code ec;
+  const tcp::endpoint at = socket.remote_endpoint(ec);
+  if (ec) return "";
+  const std::string host = at.address().to_string();
+  return at.address().is_v6() ? fmt::format("[{}]:{}", host, at.port())
+                              : fmt::format("{}:{}", host, at.port());
+}
+
 // --- the interface ---
 Transport::Transport(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
@@ -251,7 +260,7 @@ bool Transport::send(ClientId client, std::span<const std::byte> head, Payload p
       queue.bytes += weight;
     }
   } catch (const std::bad_alloc&) { sent = false; }
-  if (!sent) ++impl_->dropped;
+  if (!sent) ++impl_->dropped, ++queue.dropped;
   if (!sent && !droppable) queue.full = true;
   if (sent || queue.full) impl_->schedule(client, queue);
   return sent;
@@ -267,6 +276,16 @@ std::size_t Transport::waiting_bytes(ClientId client) const {
   const std::lock_guard lock(impl_->mutex);
   const auto found = impl_->queues.find(client);
   return found == impl_->queues.end() ? 0 : found->second->bytes;
+}
+
+ConnectionFacts Transport::facts(ClientId client) const {
+  const auto found = impl_->peers.find(client);
+  if (found == impl_->peers.end()) return {};
+  ConnectionFacts out = found->second->facts;
+  const std::lock_guard lock(impl_->mutex);
+  if (const auto queue = impl_->queues.find(client); queue != impl_->queues.end())
+    out.dropped = queue->second->dropped;
+  return out;
 }
 
 void Transport::grant(ClientId client, double messages) {
