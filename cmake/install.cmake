@@ -11,6 +11,7 @@ install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOUR
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
 install(DIRECTORY models worlds scenarios DESTINATION share/sandlot)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY clients/javascript/ DESTINATION share/sandlot/javascript)
 install(FILES LICENSE DESTINATION share/sandlot)
 install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)
 
