@@ -2,7 +2,7 @@
 // The examples in examples/clients end where they are meant to, and give the run of their twins in Python to the last bit.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { chmodSync, cpSync, mkdirSync, readFileSync, symlinkSync } from "node:fs";
+import { chmodSync, cpSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import ws from "ws";
@@ -67,6 +67,18 @@ for (const [name, { roles, more, holds }] of Object.entries(outcomes))
 
 // Without the administrator's token, which is part of the address that a run with tokens prints.
 const plain = (url) => url.replace(/\?.*/, "");
+test("the program of the docs drives a robot", async () => {
+  const page = readFileSync("docs/clients.md", "utf8");
+  const file = join(examples, "docs.mjs");
+  writeFileSync(file, /```js\n(.*?)```/s.exec(page)[1]);
+  const [run, ...args] = /```sh\nsandlot (run .*?)\n/.exec(page)[1].replace(" --port 8765", "").split(" ");
+  const served = await Served.start([run, ...args, "--duration", "5s", "--rate", "max"], scratch);
+  const done = program(served, process.execPath, file);
+  assert.equal(await served.ended, 0, served.error);
+  assert.deepEqual(await done, { code: 0, out: "" });
+  assert.ok(served.summary.robots[0].distance_m > 0.5);
+});
+
 const ways = { "lines over TCP": (served) => ({ url: plain(tcp(served)) }), "WebSocket": (served) => ({ url: plain(served.ws), WebSocket: ws }) };
 for (const [way, options] of Object.entries(ways)) {
   test(`a robot in lockstep by ${way}: every step in order, fresh readings, and a clean end`, async () => {

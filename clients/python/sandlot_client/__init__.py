@@ -75,6 +75,13 @@ def numbers(values: Sequence[Optional[float]], missing: float = math.nan) -> Any
     return numpy.asarray(whole, dtype=float) if numpy else array.array("d", whole)
 
 
+def _plain(value: Any) -> Any:
+    """Arrays and numbers of numpy as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError("%r cannot be sent: a message holds dicts, lists, numbers, texts" % (value,))
+
+
 class Reading:
     """The latest message of a topic."""
 
@@ -202,7 +209,7 @@ class Connection:
     def send(self, **message: Any) -> None:
         """Sends an operation of docs/clients.md."""
         self._check_open()
-        line = json.dumps(message, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+        line = json.dumps(message, separators=(",", ":"), allow_nan=False, default=_plain).encode() + b"\n"
         try:
             self._socket.sendall(line)
         except OSError:
