@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -91,6 +92,23 @@ class Clients(unittest.TestCase):
             summary = run.end()
             self.assertEqual(client.wait(timeout=20), 0)
         self.assertGreater(summary["robots"][0]["distance_m"], 0.5)
+
+    def test_the_shell_of_the_docs_drives_a_robot(self):
+        with open(os.path.join(ROOT, "docs/clients.md")) as file:
+            text = file.read()
+        command = re.search(r"```sh\nsandlot run (.*?) --port 8765", text).group(1).split()
+        script = re.search(r"```sh\n(\(echo .*?)```", text, re.S).group(1)
+        if not shutil.which("nc"):  # bash can do what it does
+            script = "nc() { exec 3<>/dev/tcp/$1/$2; cat <&3 & cat >&3; }\n" + script
+        with Run(*command, "--set", "robots.rover.controller=null", "--duration", "2s", "--rate", "1") as run:
+            shell = subprocess.Popen(["bash", "-c", script.replace("8765", run.url.rpartition(":")[2])], stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.DEVNULL, start_new_session=True)
+            try:
+                summary = run.end()
+            finally:
+                os.killpg(shell.pid, signal.SIGKILL)
+                shell.wait()
+        self.assertGreater(summary["robots"][0]["distance_m"], 0.1)
 
     def test_a_free_client_beside_one_in_lockstep(self):
         with tempfile.TemporaryDirectory() as folder:

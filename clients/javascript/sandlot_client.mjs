@@ -134,7 +134,8 @@ export class Connection {
     for (;;) {
       const later = await new Promise((done, failed) => this.#connect(done, failed).catch(failed));
       if (!later) return;
-      if (Date.now() > end) throw new Disconnected(`no run answers at ${this.url}: start one with --port`);
+      const page = globalThis.location?.origin;  // of a page in a browser
+      if (Date.now() > end) throw new Disconnected(`no run answers at ${this.url}: start one with --port${page ? ` and --allow-origin ${page}` : ""}`);
       await after(0.05);
     }
   }

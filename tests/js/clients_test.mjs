@@ -2,8 +2,9 @@
 // The examples in examples/clients end where they are meant to, and give the run of their twins in Python to the last bit.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { chmodSync, cpSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { chmodSync, cpSync, existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
 import ws from "ws";
 import { IntervalTimer } from "../../clients/javascript/clock.mjs";
@@ -77,6 +78,45 @@ test("the program of the docs drives a robot", async () => {
   assert.equal(await served.ended, 0, served.error);
   assert.deepEqual(await done, { code: 0, out: "" });
   assert.ok(served.summary.robots[0].distance_m > 0.5);
+});
+
+const chromium = process.env.SANDLOT_CHROMIUM ?? "/usr/bin/chromium";
+test("in a browser the library drives a robot, to the same run as in node", { skip: existsSync(chromium) ? false : "there is no chromium" }, async () => {
+  const law = `async (Robot, options) => {
+    const rover = await Robot.connect("rover", { ...options, lockstep: true, deadline_s: 5 });
+    const laser = rover.subscribe("laser");
+    for await (const step of rover.steps())
+      rover.command("drive", { linear: { x: 0.3 + 0.1 * step.uniform() }, angular: { z: laser.message.ranges[0] ?? 0 } });
+    return rover.lost.name;
+  }`;
+  const pages = createServer((request, response) => {
+    const file = request.url.slice(1);
+    response.setHeader("Content-Type", file.endsWith(".mjs") ? "text/javascript" : "text/html");
+    response.end(file.endsWith(".mjs") ? readFileSync(join("clients/javascript", basename(file))) : "<!doctype html><title>a page</title>");
+  });
+  await new Promise((done) => pages.listen(0, "127.0.0.1", done));
+  const origin = `http://127.0.0.1:${pages.address().port}`;
+  const browser = await (await import("playwright-core")).chromium.launch({ executablePath: chromium, args: ["--no-sandbox", "--disable-gpu"] });
+  try {
+    const page = await browser.newPage();
+    await page.goto(origin);
+    const served = await start(wander, "--duration", "2s", "--allow-origin", origin);
+    const ended = page.evaluate(`import("/sandlot_client.mjs").then(({ Robot }) => (${law})(Robot, { url: "${served.ws}" }))`);
+    assert.equal(await served.ended, 0, served.error);
+    assert.equal(await ended, "RunEnded");
+    const inBrowser = served.summary.state_hash;
+    const again = await start(wander, "--duration", "2s");
+    await eval(law)(Robot, { url: tcp(again) });
+    await again.ended;
+    assert.equal(again.summary.state_hash, inBrowser);
+    const closed = await start(wander, "--duration", "2s");
+    await assert.rejects(page.evaluate(`import("/sandlot_client.mjs").then(({ Robot }) => Robot.connect("rover", { url: "${closed.ws}", timeout_s: 0.2 }))`),
+      new RegExp(`no run answers at ws:.*: start one with --port and --allow-origin ${origin}`));
+    closed.process.kill("SIGKILL");
+  } finally {
+    await browser.close();
+    pages.close();
+  }
 });
 
 const ways = { "lines over TCP": (served) => ({ url: plain(tcp(served)) }), "WebSocket": (served) => ({ url: plain(served.ws), WebSocket: ws }) };
