@@ -269,6 +269,19 @@ robots:
                 self.assertNotIsInstance(caught.exception, RunEnded)
             first.close()
 
+    def test_a_free_client_has_a_clock_of_simulated_time(self):
+        with Run("examples/clients/wander.yaml", "--set", "robots.rover.controller=null", "--duration", "3s", "--rate", "2") as run:
+            with Robot("rover", url=run.url) as rover:
+                if "/sandlot/step_times" not in rover.topics():
+                    self.skipTest("this server sends no step times")
+                begun = time.monotonic()
+                self.assertTrue(rover.clock.sleep_until(2.5, timeout_s=20))
+                took = time.monotonic() - begun
+                self.assertGreater(rover.clock.messages, 10)
+                self.assertAlmostEqual(rover.clock.now_s(), 2.5, delta=0.2)
+                self.assertLess(took, 2.5)  # at twice real time
+            run.end()
+
     def test_addresses(self):
         for url in ("127.0.0.1:8765", "tcp://127.0.0.1", "tcp://127.0.0.1:port", "https://127.0.0.1:8765"):
             with self.assertRaisesRegex(ValueError, "is not an address: tcp://HOST:PORT"):

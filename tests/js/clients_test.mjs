@@ -210,6 +210,18 @@ test("a loop that is left ends its step", async () => {
   assert.equal(await served.ended, 0);
 });
 
+test("a free client has a clock of simulated time", async (t) => {
+  const served = await Served.start(["run", wander, "--set", "robots.rover.controller=null", "--duration", "3s", "--rate", "2"], scratch);
+  const rover = await Robot.connect("rover", { url: tcp(served) });
+  if (!("/sandlot/step_times" in await rover.topics())) return t.skip("this server sends no step times");
+  const begun = performance.now();
+  assert.equal(await rover.clock.sleepUntil(2.5, 20), true);
+  assert.ok(performance.now() - begun < 2500, "at twice real time");
+  assert.ok(rover.clock.messages > 10);
+  assert.ok(Math.abs(rover.clock.nowS() - 2.5) < 0.2, `${rover.clock.nowS()}`);
+  await served.ended;
+});
+
 test("addresses: what is wrong with one, and a run that does not answer", async () => {
   await assert.rejects(Connection.connect({ url: "127.0.0.1:8765" }), /is not an address/);
   await assert.rejects(Connection.connect({ url: "wss://127.0.0.1:1", WebSocket: undefined }), globalThis.WebSocket ? /no run answers/ : /needs the option WebSocket/);
