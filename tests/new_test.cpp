@@ -86,7 +86,7 @@ TEST(SlowNew, ACppProjectBuildsAndPassesItsTest) {
 
 TEST(New, NamesAreCheckedAndLanguagesSuggested) {
   const TestFolder scratch;
-  for (const char* name : {"''", "2nd", "a-b", "../a", "a/b", "_a", "a.b", "a b", "é"}) {
+  for (const char* name : {"''", "2nd", "a-b", "../a", "a/b", "_a", "a.b", "\"a b\"", "é"}) {
     const Printed refused = in_folder(scratch.path,
                                       "$SANDLOT new controller --lang python " + std::string(name));
     EXPECT_EQ(refused.exit_code, 2) << name;

@@ -15,8 +15,23 @@ export function openLines(where, on) {
     rest = [lines.pop()];
     for (const line of lines) if (line.trim()) on.message(line);
   });
+  // Written once a turn, after what has come is read: a write after the server's farewell would end the socket before that is.
+  let waiting = [], ended = false;
+  const flush = () => {
+    const text = waiting.join("");
+    waiting = [];
+    if (text && !ended && !socket.destroyed) socket.write(text);
+  };
   socket.on("error", (e) => { error = e; });
-  socket.on("end", () => socket.end());
+  socket.on("end", () => { ended = true; });
   socket.on("close", () => on.close(error));
-  return { send: (text) => socket.write(text + "\n"), close: () => socket.destroy() };
+  return {
+    send(text) {
+      if (waiting.push(text + "\n") === 1) setImmediate(flush);
+    },
+    close() {
+      flush();
+      socket.destroySoon();
+    },
+  };
 }

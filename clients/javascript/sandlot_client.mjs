@@ -100,6 +100,7 @@ export class Step {
 /** A connection to a run: topics, services, statuses. */
 export class Connection {
   statuses = [];
+  _inStep = false;
   #link = null;
   #lost = null;
   #ids = 0;
@@ -271,7 +272,10 @@ export class Connection {
     return this.#readings.get(topic);
   }
 
-  publish(topic, message) { this.send({ op: "publish", topic, msg: message }); }
+  publish(topic, message) {
+    if (this._inStep && this.#lost instanceof RunEnded) return;  // the loop over the steps ends
+    this.send({ op: "publish", topic, msg: message });
+  }
 
   /** Calls a service. Rejects with Refused for the server's reason. */
   async callService(service, args = {}, timeout_s = this.timeout_s) {
@@ -339,9 +343,11 @@ class Driver extends Connection {
       this.period_s = answer.programs[0].control_period_s;
     }
     for (let step; (step = await this._nextStep());) {
+      this._inStep = true;
       try {
         yield step;
       } finally {  // also of a loop that is left
+        this._inStep = false;
         const samples = this._samples.length > 0 ? { samples: this._samples.splice(0) } : {};
         if (!this.lost) this.send({ op: "sandlot.done", step: step.number, program: step.program, ...samples });
       }

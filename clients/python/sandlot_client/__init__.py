@@ -183,6 +183,7 @@ class Connection:
         self._answers: Dict[str, Message] = {}
         self._steps: List[Step] = []
         self._closed = False
+        self._in_step = False
         self._lost: Optional[ConnectionError] = None
         self.statuses: List[Message] = []
 
@@ -307,7 +308,11 @@ class Connection:
         return reading
 
     def publish(self, topic: str, message: Message) -> None:
-        self.send(op="publish", topic=topic, msg=message)
+        try:
+            self.send(op="publish", topic=topic, msg=message)
+        except RunEnded:
+            if not self._in_step:  # else the loop over the steps ends
+                raise
 
     def request(self, service: str, args: Optional[Message] = None) -> Call:
         """Calls a service without waiting for its answer."""
@@ -383,9 +388,11 @@ class _Driver(Connection):
                 while not self._steps:
                     self.poll(None)
                 step = self._steps.pop(0)
+                self._in_step = True
                 try:
                     yield step
                 finally:  # also of a loop that is left
+                    self._in_step = False
                     if not self._closed:
                         samples, self._samples = self._samples, []
                         more = {"samples": samples} if samples else {}
