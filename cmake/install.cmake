@@ -9,8 +9,9 @@ set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
   -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
-install(DIRECTORY models worlds scenarios DESTINATION share/sandlot)
+install(DIRECTORY models worlds scenarios templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY clients/javascript/ DESTINATION share/sandlot/javascript)
 install(FILES LICENSE DESTINATION share/sandlot)
 install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)
 

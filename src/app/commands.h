@@ -109,6 +109,13 @@ struct ConvertOptions {
 };
 int convert(const ConvertOptions& options);
 
+struct NewOptions {
+  std::string name, language;
+  std::string out;  ///< folder; "": the name
+};
+/// Writes a project with a program that drives a robot.
+int new_controller(const NewOptions& options);
+
 struct ListOptions {
   std::string what;                ///< "" for everything
   std::vector<std::string> names;  ///< of what is listed: only these, with all there is to say of them

@@ -15,12 +15,10 @@ namespace {
 std::vector<std::filesystem::path> scenario_folders() {
   namespace fs = std::filesystem;
   std::vector<fs::path> folders;
-  for (const std::string& program : program_files())
-    for (fs::path folder = fs::path(program).parent_path(); !folder.empty(); folder = folder.parent_path()) {
-      folders.push_back(folder / "scenarios");
-      folders.push_back(folder / "share" / "sandlot" / "scenarios");
-      if (folder == folder.root_path()) break;
-    }
+  for (const fs::path folder : folders_above_program()) {
+    folders.push_back(folder / "scenarios");
+    folders.push_back(folder / "share" / "sandlot" / "scenarios");
+  }
   folders.emplace_back("scenarios");
   return folders;
 }

@@ -561,6 +561,22 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   convert_verb->footer("Example: sandlot convert robot.urdf robot.sdf");
   convert_verb->callback([&] { result = convert(convert_options); });
 
+  NewOptions new_options;
+  CLI::App* const new_verb = app.add_subcommand("new",
+                                                "Begin a project of your own, with a test: controller");
+  new_verb->require_subcommand(1);
+  new_verb->footer("Example: sandlot new controller wall --lang python");
+  CLI::App* const new_controller_verb = new_verb->add_subcommand(
+      "controller", "Write a program that drives a robot, a scenario for it, a test and a README");
+  new_controller_verb->add_option("name", new_options.name, "Name: a letter, then letters, digits and _")
+      ->required();
+  new_controller_verb->add_option("--lang", new_options.language, "Language: python, js or cpp")->required();
+  new_controller_verb->add_option("--out", new_options.out,
+                                  "Folder to write into; one with the name if left out. Files that exist are "
+                                  "never replaced");
+  new_controller_verb->footer("Example: sandlot new controller wall --lang python");
+  new_controller_verb->callback([&] { result = new_controller(new_options); });
+
   CalibrateOptions calibrate_options;
   std::vector<std::string> calibrate_sets;
   CLI::App* const calibrate_verb = app.add_subcommand(
@@ -737,8 +753,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   });
 
   for (CLI::App* const verb : app.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
-  for (CLI::App* const verb : topic_verb->get_subcommands([](CLI::App*) { return true; }))
-    verb->group("Verbs");
+  for (CLI::App* const group : {topic_verb, new_verb})
+    for (CLI::App* const verb : group->get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
   app.failure_message([](const CLI::App* program, const CLI::Error& error) {
     return fmt::format("error: {}\n", usage_error(program, error));
   });

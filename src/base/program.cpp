@@ -21,4 +21,15 @@ std::vector<std::string> program_files() {
   return out;
 }
 
+std::vector<std::string> folders_above_program() {
+  namespace fs = std::filesystem;
+  std::vector<std::string> out;
+  for (const std::string& program : program_files())
+    for (fs::path folder = fs::path(program).parent_path();; folder = folder.parent_path()) {
+      out.push_back(folder.string());
+      if (folder == folder.root_path()) break;
+    }
+  return out;
+}
+
 }  // namespace sandlot

@@ -9,4 +9,7 @@ namespace sandlot {
 /// into; links resolved. A program of a user's own finds Sandlot's data by the second.
 std::vector<std::string> program_files();
 
+/// Folders above program_files(), the nearest first: data lies in one of them, or below its share/sandlot.
+std::vector<std::string> folders_above_program();
+
 }  // namespace sandlot
