@@ -39,6 +39,7 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
+  add_channel(ChannelKind::step_times, "/sandlot/step_times", "cdr", "sandlot_msgs/msg/StepTimes");
   add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
   for (const Service& row : services()) {
@@ -78,8 +79,13 @@ const Access& Hub::access(ClientId id) const {
 bool Hub::may_see(const Client& client, ClientId id, const Channel& channel) const {
   if (channel.owner != 0) return channel.owner == id;
   if (!client.access.is_scoped()) return true;
-  if (channel.kind == ChannelKind::clock || channel.kind == ChannelKind::status) return true;
-  if (channel.kind != ChannelKind::device) return false;
+  switch (channel.kind) {
+    case ChannelKind::clock:
+    case ChannelKind::step_times:
+    case ChannelKind::status: return true;
+    case ChannelKind::device: break;
+    default: return false;
+  }
   return client.access.drives(first_part(std::string_view(channel.info.topic).substr(1)));
 }
 
@@ -300,6 +306,7 @@ void Hub::flush(bool at_once) {
   const auto channel_wanted = [&](ChannelKind kind) { return subscribed(kind) ? channel(kind).info.id : 0; };
   summary->deliveries = channel_wanted(ChannelKind::deliveries);
   summary->batteries = channel_wanted(ChannelKind::batteries);
+  summary->step_times = channel_wanted(ChannelKind::step_times);
   summary->commands = subscribed(ChannelKind::commands);
   summary->world = subscribed(ChannelKind::world);
   counts_.log_read = subscribed(ChannelKind::log);
