@@ -656,7 +656,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   ReproduceOptions reproduce_options;
   CLI::App* const reproduce_verb = app.add_subcommand(
       "reproduce", "Make the experiment of a paper, its figures and tables beside the paper's statements");
-  reproduce_verb->add_option("paper", reproduce_options.paper, "Name of the paper: cooperation")->required();
+  reproduce_verb->add_option("paper", reproduce_options.paper, "Name of the paper: cooperation, msl")
+      ->required();
   reproduce_verb
       ->add_option("--out", reproduce_options.out, "Folder to write index.html and the tables (CSV) into")
       ->required();
@@ -666,7 +667,11 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       ->add_option("--at-a-time", reproduce_options.at_a_time,
                    "Runs at the same time; as many as the machine has processors if left out")
       ->check(CLI::NonNegativeNumber);
-  reproduce_verb->footer("Example: sandlot reproduce cooperation --out report");
+  reproduce_verb->add_option(
+      "--traces", reproduce_options.traces,
+      "msl: files of `run --step-times` to use instead of runs; may be given several times");
+  reproduce_verb->footer(
+      "Example: sandlot reproduce cooperation --out report\n         sandlot reproduce msl --out report");
   reproduce_verb->callback([&] { result = reproduce(reproduce_options); });
 
   RecordingOptions recording_options;

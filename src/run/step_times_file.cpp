@@ -74,8 +74,7 @@ Result<std::vector<StepTime>> read_step_times(std::string_view text, const std::
       const std::string_view field = line.substr(0, comma);
       line.remove_prefix(i == 3 ? line.size() : comma + 1);
       empty[i] = field.empty();
-      if (empty[i] ? i != 2 : !parse_number(field, numbers[i]))
-        return wrong("this is not a number");
+      if (empty[i] ? i != 2 : !parse_number(field, numbers[i])) return wrong("this is not a number");
       if (!(numbers[i] >= 0 && numbers[i] <= 1e9)) return wrong("times are from 0 to 1e9 s");
     }
     if (!(numbers[1] > 0)) return wrong("a tick has a length above 0");
