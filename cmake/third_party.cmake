@@ -26,6 +26,9 @@ find_package(TBB REQUIRED)
 # Asio and Beast, of which only headers are needed.
 find_package(Boost 1.74 REQUIRED)
 find_package(CLI11 2 REQUIRED)
+# Headers for clients, which stand alone: clients/cpp.
+add_library(sandlot_client_headers INTERFACE)
+target_include_directories(sandlot_client_headers INTERFACE clients/cpp)
 # Results of repeated runs.
 pkg_check_modules(SQLITE REQUIRED IMPORTED_TARGET sqlite3>=3.34)
 # Line editing of `sandlot console`.
@@ -56,6 +59,7 @@ set(sandlot_third_party_jpeg JPEG::JPEG)
 set(sandlot_third_party_tbb TBB::tbb)
 set(sandlot_third_party_boost Boost::headers)
 set(sandlot_third_party_cli11 CLI11::CLI11)
+set(sandlot_third_party_clients sandlot_client_headers)
 set(sandlot_third_party_sqlite PkgConfig::SQLITE)
 set(sandlot_third_party_edit PkgConfig::EDIT)
 set(sandlot_third_party_av PkgConfig::AV)

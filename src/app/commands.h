@@ -149,9 +149,10 @@ struct ValidateOptions {
 int validate(const ValidateOptions& options);
 
 struct ReproduceOptions {
-  std::string paper, out;     ///< name of the paper; folder for page and tables
-  std::optional<int> repeat;  ///< runs per condition; unset: as many as the paper's line says
-  int at_a_time = 0;          ///< of those; 0: as many as the machine has processors
+  std::string paper, out;           ///< name of the paper; folder for page and tables
+  std::optional<int> repeat;        ///< runs per condition; unset: as many as the paper's line says
+  std::vector<std::string> traces;  ///< files of step times, in place of runs
+  int at_a_time = 0;                ///< of those; 0: as many as the machine has processors
 };
 int reproduce(const ReproduceOptions& options);
 

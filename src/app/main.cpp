@@ -153,6 +153,8 @@ struct RunFlags {
                     "Values to log: addresses and expressions with commas between them (docs/values.md)");
     verb.add_option("--log-rate", log_rate,
                     "Lines per simulated second, such as '10 Hz'; one per tick if left out");
+    verb.add_option("--step-times", options.spec.step_times_file,
+                    "Write the wall time of each tick to this CSV file");
     verb.add_option("--svg", options.spec.drawing_file,
                     "Draw the world from above with paths and last scans");
     verb.add_option("--snapshot", options.spec.snapshots.file,
@@ -671,7 +673,8 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   ReproduceOptions reproduce_options;
   CLI::App* const reproduce_verb = app.add_subcommand(
       "reproduce", "Make the experiment of a paper, its figures and tables beside the paper's statements");
-  reproduce_verb->add_option("paper", reproduce_options.paper, "Name of the paper: cooperation")->required();
+  reproduce_verb->add_option("paper", reproduce_options.paper, "Name of the paper: cooperation, msl")
+      ->required();
   reproduce_verb
       ->add_option("--out", reproduce_options.out, "Folder to write index.html and the tables (CSV) into")
       ->required();
@@ -681,7 +684,11 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
       ->add_option("--at-a-time", reproduce_options.at_a_time,
                    "Runs at the same time; as many as the machine has processors if left out")
       ->check(CLI::NonNegativeNumber);
-  reproduce_verb->footer("Example: sandlot reproduce cooperation --out report");
+  reproduce_verb->add_option(
+      "--traces", reproduce_options.traces,
+      "msl: files of `run --step-times` to use instead of runs; may be given several times");
+  reproduce_verb->footer(
+      "Example: sandlot reproduce cooperation --out report\n         sandlot reproduce msl --out report");
   reproduce_verb->callback([&] { result = reproduce(reproduce_options); });
 
   RecordingOptions recording_options;

@@ -13,6 +13,7 @@
 #include "messages/sandlot_msgs.h"
 #include "messages/sandlot_radio.h"
 #include "messages/sandlot_speech.h"
+#include "messages/sandlot_time.h"
 #include "messages/sensor_msgs.h"
 #include "messages/sensor_ranges.h"
 #include "messages/std_msgs.h"

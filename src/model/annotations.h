@@ -63,13 +63,15 @@ struct NamedPose {
 inline constexpr std::string_view world_topics[] = {"/tf",
                                                     "/tf_static",
                                                     "/clock",
+                                                    "/sandlot/step_times",
                                                     "/rosout",
                                                     "/sandlot/world",
                                                     "/sandlot/poses",
                                                     "/sandlot/status",
                                                     "/sandlot/contacts",
                                                     "/sandlot/deliveries",
-                                                    "/sandlot/batteries"};
+                                                    "/sandlot/batteries",
+                                                    "/sandlot/clients"};
 /// Of the server, and never shared: what others command is theirs.
 inline constexpr std::string_view commands_topic = "/sandlot/commands";
 

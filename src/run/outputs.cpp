@@ -33,6 +33,7 @@ void RunOutputs::record_error(Status status) {
 }
 
 Status RunOutputs::open_log(const PreparedRun& prepared) {
+  if (!spec_.step_times_file.empty()) SL_TRY(step_times_.emplace(spec_.step_times_file).status());
   if (!prepared.log) return {};
   SL_ASSIGN(log_, CsvLog::open(session_.simulation(), *prepared.log));
   log_file_ = prepared.log->file;
@@ -63,6 +64,7 @@ Status RunOutputs::start(const PreparedRun& prepared) {
     SL_TRY(log_->begin());
     session_.add_observer(log_.get());
   }
+  if (step_times_) session_.add_step_observer(&*step_times_);
   snapshots_.emplace(spec_.snapshots, simulation);
   return {};
 }
@@ -182,6 +184,10 @@ void RunOutputs::rescue(Error& error) {
 
 void RunOutputs::finish() {
   end_log();
+  if (step_times_) {
+    session_.remove_step_observer(&*step_times_);
+    record_error(step_times_->finish());
+  }
   Diagnostics diagnostics;
   record_error(snapshots_->finish(session_.simulation(), diagnostics));
   for (Error& warning : diagnostics.warnings) warn_(std::move(warning));

@@ -1,5 +1,5 @@
 #pragma once
-/// RunOutputs: everything that is written about a run while it runs: CSV log, recording, film, drawing,
+/// RunOutputs: everything that is written about a run while it runs: CSV log, step times, recording, film, drawing,
 /// snapshot files, and the distances for its summary.
 ///
 ///   RunOutputs outputs(spec, session, warn);
@@ -20,6 +20,7 @@
 #include "run/film.h"
 #include "run/prepare.h"
 #include "run/snapshot_files.h"
+#include "run/step_times_file.h"
 #include "run/summary.h"
 #include "run/travel.h"
 #include "sim/session/session.h"
@@ -77,6 +78,7 @@ class RunOutputs {
   TravelMeter travel_;
   std::optional<draw::RunDrawing> drawing_;
   std::unique_ptr<CsvLog> log_;
+  std::optional<StepTimesFile> step_times_;
   std::mutex recorder_mutex_;  ///< recording() comes from other threads
   std::unique_ptr<Recorder> recorder_;
   std::optional<Recorder::Report> recorded_;  ///< once it has ended

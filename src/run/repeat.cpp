@@ -36,6 +36,7 @@ Status check(const RepeatSpec& spec) {
   if (!run.summary_file.empty()) return refuse("--summary");
   if (!run.drawing_file.empty()) return refuse("--svg");
   if (!run.log_file.empty()) return refuse("--log");
+  if (!run.step_times_file.empty()) return refuse("--step-times");
   if (!run.record_file.empty()) return refuse("--record");
   if (!run.snapshots.file.empty()) return refuse("--snapshot");
   if (!run.film.file.empty()) return refuse("--video");

@@ -11,6 +11,7 @@ namespace {
 
 constexpr Paper all[] = {
     {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 19, make_cooperation},
+    {"msl", "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction", 0, 0, make_msl},
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "app/papers/page.h"
 #include "base/result.h"
 #include "run/repeat.h"
+#include "run/step_times_file.h"
 
 namespace sandlot::app {
 
@@ -26,6 +27,11 @@ struct ReproduceContext {
   std::function<Result<RepeatSummary>(const Condition&)> runs;
   /// The drawing of one run of a condition, from above, after it has ended or after `until_s`.
   std::function<Result<std::string>(const Condition&, double until_s)> drawing;
+  /// Step times of one run of a condition; the file of them is left in the folder. `rate`: as RunSpec has it.
+  std::function<Result<std::vector<StepTime>>(const Condition&, double duration_s,
+                                              std::optional<double> rate)>
+      step_times;
+  std::vector<std::string> traces;  ///< files of step times to use instead of runs
   /// Writes a text file into the folder.
   std::function<Status(const std::string& name, std::string_view text)> write;
 };
@@ -33,7 +39,8 @@ struct ReproduceContext {
 struct Paper {
   const char* name;
   const char* title;
-  int repeat;      ///< runs per condition, unless the command says another number
+  /// Runs per condition, unless the command says another number; 0: it takes step times instead, of runs or of files.
+  int repeat;
   int conditions;  ///< how many there are, for the progress
   Status (*make)(const ReproduceContext& context, ReportPage& page);
 };
@@ -41,6 +48,7 @@ struct Paper {
 std::span<const Paper> papers();
 
 Status make_cooperation(const ReproduceContext& context, ReportPage& page);
+Status make_msl(const ReproduceContext& context, ReportPage& page);
 
 /// --- what reports share ---
 

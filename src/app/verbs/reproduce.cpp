@@ -73,6 +73,26 @@ class Runner {
     return text;
   }
 
+  Result<std::vector<StepTime>> step_times(const Condition& condition, double duration_s,
+                                           std::optional<double> rate) const {
+    SL_ASSIGN(RunSpec spec, spec_of(condition));
+    spec.duration_s = duration_s;
+    spec.rate = rate;
+    spec.step_times_file = (std::filesystem::path(options_.out) / (condition.name + ".csv")).string();
+    const bool shows = isatty(STDERR_FILENO);
+    if (shows) std::fprintf(stderr, "\r\033[Krunning %s", condition.name.c_str());
+    const auto summary = sandlot::run(spec, {.keep_going = [](const Simulation&) { return !interrupted(); }});
+    if (shows) std::fputs("\r\033[K", stderr);
+    if (!summary) return summary.error();
+    if (interrupted()) return Error{"interrupted"};
+    if (!summary->errors.empty()) return Error{condition.name + ": " + summary->errors.front()};
+    SL_ASSIGN(const std::string text, read_text_file(spec.step_times_file, std::uint64_t{1} << 28));
+    SL_ASSIGN(std::vector<StepTime> steps, read_step_times(text, spec.step_times_file));
+    fmt::print("{:<40} {} steps\n", condition.scenario + ": " + condition.name, steps.size());
+    std::fflush(stdout);
+    return steps;
+  }
+
   std::uint64_t failed() const { return failed_; }
 
  private:
@@ -95,7 +115,13 @@ int reproduce(const ReproduceOptions& options) {
     return complain(
         {"reproduce: there is no paper '" + options.paper + "'", suggestion(options.paper, known)});
   const int repeat = options.repeat.value_or(paper->repeat);
-  if (repeat < 1 || repeat > 1'000'000)
+  const bool repeats = paper->repeat > 0;
+  if (!repeats && options.repeat)
+    return complain(
+        {fmt::format("--repeat: {} takes step times, not repeated runs", paper->name), "leave it out"});
+  if (repeats && !options.traces.empty())
+    return complain({fmt::format("--traces: {} takes no step times", paper->name), "leave it out"});
+  if (repeats && (repeat < 1 || repeat > 1'000'000))
     return complain({"--repeat: must be in [1, 1000000], is " + std::to_string(repeat)});
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
@@ -111,14 +137,20 @@ int reproduce(const ReproduceOptions& options) {
   context.drawing = [&](const Condition& condition, double until_s) {
     return runner.drawing(condition, until_s);
   };
+  context.step_times = [&](const Condition& condition, double duration_s, std::optional<double> rate) {
+    return runner.step_times(condition, duration_s, rate);
+  };
+  context.traces = options.traces;
   context.write = [&](const std::string& name, std::string_view text) {
     return write_file((std::filesystem::path(options.out) / name).string(), text);
   };
   ReportPage page(
       paper->title,
-      fmt::format("Made by `sandlot reproduce {} --repeat {}`: {} runs with seeds that follow each other "
-                  "in each condition. Intervals are for 95 %.",
-                  paper->name, repeat, repeat));
+      repeats ? fmt::format(
+                    "Made by `sandlot reproduce {} --repeat {}`: {} runs with seeds that follow each other "
+                    "in each condition. Intervals are for 95 %.",
+                    paper->name, repeat, repeat)
+              : fmt::format("Made by `sandlot reproduce {}`.", paper->name));
   if (Status made = paper->make(context, page); !made) {
     complain(made.error());
     return interrupted() ? exit_failed : exit_bad_input;

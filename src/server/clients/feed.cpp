@@ -17,7 +17,8 @@ Feed::Feed(Session& session, std::shared_ptr<Mailbox> mailbox, wire::Assets asse
     : session_(session),
       mailbox_(std::move(mailbox)),
       world_writer_(std::move(assets)),
-      period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / poses_hz))) {}
+      period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / poses_hz))),
+      step_feed_(session, mailbox_) {}
 
 void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary) {
   subscribed_ = std::move(summary);
@@ -26,6 +27,7 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
     if (watching_) session_.add_observer(this);
     else session_.remove_observer(this);
   }
+  step_feed_.send_to(subscribed_->step_times);
   if (!subscribed_->clients) {
     topics_.clear();
     watches_.clear();

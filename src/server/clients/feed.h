@@ -12,6 +12,7 @@
 
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
+#include "server/clients/step_feed.h"
 #include "server/http/transport.h"
 #include "sim/session/session.h"
 #include "sim/watch/values.h"
@@ -31,8 +32,8 @@ struct SubscriptionSummary {
   bool clients = false;  ///< there are clients
   bool frames = false, contacts = false, commands = false, parameters = false, world = false,
        transforms_static = false;
-  std::uint32_t deliveries = 0, batteries = 0;                ///< their channels; 0: nobody has subscribed
-  std::vector<std::pair<std::uint32_t, std::string>> topics;  ///< channels of devices
+  std::uint32_t deliveries = 0, batteries = 0, step_times = 0;  ///< their channels; 0: nobody has subscribed
+  std::vector<std::pair<std::uint32_t, std::string>> topics;    ///< channels of devices
 };
 
 /// What new subscribers get at once, whether it has changed or not.
@@ -117,6 +118,7 @@ class Feed final : public Observer {
   std::size_t previews_ = 0;  ///< of them
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<programs::remote::Link>> links_;
+  StepFeed step_feed_;
   std::vector<std::byte> scratch_;
   std::vector<FrameDelivery> deliveries_;  ///< that were not sent yet
   Payload batteries_;                      ///< as last sent

@@ -40,6 +40,7 @@ Hub::Hub(Session& session, Console& console, const ServerOptions& options, std::
   add_channel(ChannelKind::transforms, "/tf", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::transforms_static, "/tf_static", "cdr", "tf2_msgs/msg/TFMessage");
   add_channel(ChannelKind::clock, "/clock", "cdr", "rosgraph_msgs/msg/Clock");
+  add_channel(ChannelKind::step_times, "/sandlot/step_times", "cdr", "sandlot_msgs/msg/StepTimes");
   add_channel(ChannelKind::log, "/rosout", "cdr", "rcl_interfaces/msg/Log");
   report_ = session_.report();
   memory_.world = options_.world;
@@ -320,6 +321,7 @@ void Hub::flush(bool at_once) {
   const auto channel_wanted = [&](ChannelKind kind) { return subscribed(kind) ? channel(kind).info.id : 0; };
   summary->deliveries = channel_wanted(ChannelKind::deliveries);
   summary->batteries = channel_wanted(ChannelKind::batteries);
+  summary->step_times = channel_wanted(ChannelKind::step_times);
   summary->commands = subscribed(ChannelKind::commands);
   summary->world = subscribed(ChannelKind::world);
   counts_.log_read = subscribed(ChannelKind::log);

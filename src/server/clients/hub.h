@@ -142,6 +142,7 @@ class Hub final : private ServiceHost {
     transforms,
     transforms_static,
     clock,
+    step_times,
     log,
     world,
     poses,

@@ -24,7 +24,7 @@ void Mailbox::close() {
   thrown.swap(items_);
 }
 
-void Mailbox::push(Batch batch) {
+void Mailbox::push(Batch batch, bool at_once) {
   const std::size_t size = batch.bytes();
   {
     const std::lock_guard lock(mutex_);
@@ -42,7 +42,7 @@ void Mailbox::push(Batch batch) {
       bytes_ += oldest.batch.bytes();
     }
   }
-  wake(false);
+  wake(at_once);
 }
 
 void Mailbox::push(Task task) {

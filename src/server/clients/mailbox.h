@@ -54,7 +54,8 @@ class Mailbox {
   void close();
 
   /// Simulation's thread.
-  void push(Batch batch);
+  /// @param at_once  the transport's thread looks now, however recently it has
+  void push(Batch batch, bool at_once = false);
   /// Any thread.
   void push(Task task);
   /// Simulation's thread: lets go of the frames that were given back.

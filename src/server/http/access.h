@@ -51,7 +51,8 @@ inline bool sees_world(const Access& access, const model::Sharing& sharing) {
 }
 /// Time and state of the run are everybody's.
 inline bool sees_topic(const Access& access, const model::Sharing& sharing, std::string_view topic) {
-  if (sees_world(access, sharing) || topic == "/clock" || topic == "/sandlot/status") return true;
+  if (sees_world(access, sharing)) return true;
+  if (topic == "/clock" || topic == "/sandlot/step_times" || topic == "/sandlot/status") return true;
   if (sharing.has(topic)) return true;
   // What devices and programs publish begins with the robot's name; a robot may be called tf.
   for (const std::string_view each : model::world_topics)

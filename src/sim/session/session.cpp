@@ -209,6 +209,11 @@ void Session::remove_observer(Observer* observer) {
   simulation_->remove_observer(observer);
 }
 
+void Session::remove_step_observer(StepObserver* observer) {
+  std::erase(step_observers_, observer);
+  if (step_observers_.empty()) step_end_.reset();
+}
+
 void Session::set_state(State state) {
   {
     const std::lock_guard lock(mutex_);

@@ -33,6 +33,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/session/step_times.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -156,6 +157,8 @@ class Session {
   /// For this and all following worlds.
   void add_observer(Observer* observer);
   void remove_observer(Observer* observer);
+  void add_step_observer(StepObserver* observer) { step_observers_.push_back(observer); }
+  void remove_step_observer(StepObserver* observer);
   /// Runs until the end, quit(), or `keep_going` (called after each tick and at least 10 times a second) returns false.
   Status run(RunReport& report, const std::function<bool(const Simulation&)>& keep_going = {});
 
@@ -212,6 +215,8 @@ class Session {
   void wait_for_order();
   bool wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time>& measured);
   void run_tick(Pacer& pacer, RunReport& report, std::optional<Time> measured);
+  void report_step(Time before, std::chrono::steady_clock::time_point begin);
+  void end_stretch();
   Status advance(std::optional<Time> measured, RunReport& report);
   void note_first_entities();
   void run_tasks(std::chrono::milliseconds patience);
@@ -228,6 +233,9 @@ class Session {
   Options options_;
   std::unique_ptr<Simulation> simulation_;  ///< replaced under the mutex
   std::vector<Observer*> observers_;
+  std::vector<StepObserver*> step_observers_;
+  std::optional<std::chrono::steady_clock::time_point>
+      step_end_;                                   ///< of the tick before; unset: a stretch begins
   std::unique_ptr<InputRecorder> input_recorder_;  ///< null for a run with an input log
   std::uint64_t epoch_ = 1;
   std::uint64_t first_serials_ = 0;  ///< entities of the beginning have serials below it

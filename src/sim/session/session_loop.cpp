@@ -60,28 +60,32 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
   const auto wall_begin = Clock::now();
   const auto go_on = [&] { return !keep_going || keep_going(*simulation_); };
   Pacer pacer;
+  const auto stand_still = [&] {
+    pacer.forget();
+    end_stretch();
+  };
   if (history_.empty()) keep_snapshot();
   for (bool running = true; running;) {
     run_tasks(tasks_pause);
     switch (next_step()) {
       case Step::leave: running = false; break;
       case Step::process_order:
+        stand_still();
         process_order();
-        pacer.forget();
         break;
       case Step::end_seek:
+        stand_still();
         end_seek();
-        pacer.forget();
         break;
       case Step::end:
+        stand_still();
         end_run();
-        pacer.forget();
         running = options_.stay && go_on();
         if (running) wait_for_order();
         break;
       case Step::pause:
         set_state(State::paused);
-        pacer.forget();
+        stand_still();
         refresh_report();
         running = go_on();
         if (running) wait_for_order();
@@ -95,6 +99,7 @@ Status Session::run(RunReport& report, const std::function<bool(const Simulation
       }
     }
   }
+  end_stretch();
   report.wall_s += Seconds(Clock::now() - wall_begin).count();
   answer_the_rest();
   return std::move(status_);
@@ -285,7 +290,11 @@ void Session::run_tick(Pacer& pacer, RunReport& report, std::optional<Time> meas
     const std::lock_guard lock(mutex_);
     if (seek_ != Seek::active && mode_ == Mode::stepping && --steps_left_ == 0) mode_ = Mode::paused;
   }
+  const bool measures = !step_observers_.empty() && !rerunning();
+  const Clock::time_point begin = measures ? Clock::now() : Clock::time_point();
+  const Time before = simulation_->now();
   status_ = advance(measured, report);
+  if (measures && status_) report_step(before, begin);
   const double factor = pacer.real_time_factor(simulation_->now());
   {
     const std::lock_guard lock(mutex_);
@@ -295,6 +304,21 @@ void Session::run_tick(Pacer& pacer, RunReport& report, std::optional<Time> meas
     report_.reason = status_ ? "" : status_.error().text();
   }
   if (status_) keep_snapshot();
+}
+
+void Session::report_step(Time before, Clock::time_point begin) {
+  const Clock::time_point end = Clock::now();
+  StepTime step{.now = simulation_->now(), .compute_s = Seconds(end - begin).count()};
+  step.step = step.now - before;
+  if (step_end_) step.wall_s = Seconds(end - *step_end_).count();
+  step_end_ = end;
+  for (StepObserver* const each : step_observers_) each->on_step(step);
+}
+
+void Session::end_stretch() {
+  if (!step_end_) return;
+  step_end_.reset();
+  for (StepObserver* const each : step_observers_) each->on_stretch_end();
 }
 
 Status Session::advance(std::optional<Time> measured, RunReport& report) {

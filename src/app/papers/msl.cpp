@@ -1,0 +1,255 @@
+/// msl: "A simulation environment for middle-size robots with multi-level abstraction". Its section 5.1: how erratic the speed of a
+/// simulation is (Fig. 4), and how far interval timers miss that are set by an estimate of the speed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iterator>
+
+#include "app/papers/papers.h"
+#include "app/papers/step_timers.h"
+#include "draw/plot.h"
+#include "files/text.h"
+
+namespace sandlot::app {
+namespace {
+
+constexpr std::array<double, 8> intervals_s{0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5};
+constexpr std::array<std::size_t, 4> windows{5, 10, 20, 50};
+constexpr std::size_t shown_steps = 500, least_steps = 200;
+constexpr double message_s = 0.02;
+
+struct Trace {
+  std::string name;
+  Stretch stretch;
+};
+
+/// A run whose step times are recorded.
+struct Recorded {
+  Condition condition;
+  double duration_s;
+  std::optional<double> rate;
+};
+
+std::vector<Recorded> recorded_runs() {
+  const auto run = [](const char* name, const char* scenario, const char* step, double duration_s,
+                      std::optional<double> rate) {
+    return Recorded{{name, scenario, {{"time.step", step}}}, duration_s, rate};
+  };
+  return {run("pile", "pile", "2 ms", 6, std::nullopt)};
+}
+
+Result<std::vector<Trace>> take_traces(const ReproduceContext& context) {
+  std::vector<Trace> out;
+  const auto add = [&](const std::string& name, const std::vector<StepTime>& steps) -> Status {
+    Stretch stretch = longest_stretch(steps);
+    double sim_s = 0;
+    for (const double step_s : stretch.step_s) sim_s += step_s;
+    if (stretch.size() < least_steps || sim_s < 4 * intervals_s.back())
+      return Error{fmt::format("'{}' has no {} steps and {} s without a pause", name, least_steps,
+                               4 * intervals_s.back()),
+                   "record a longer run"};
+    out.push_back({name, std::move(stretch)});
+    return {};
+  };
+  for (const std::string& file : context.traces) {
+    SL_ASSIGN(const std::string text, read_text_file(file, std::uint64_t{1} << 28));
+    SL_ASSIGN(const std::vector<StepTime> steps, read_step_times(text, file));
+    SL_TRY(add(std::filesystem::path(file).stem().string(), steps));
+  }
+  if (!context.traces.empty()) return out;
+  for (const Recorded& each : recorded_runs()) {
+    SL_ASSIGN(const std::vector<StepTime> steps,
+              context.step_times(each.condition, each.duration_s, each.rate));
+    SL_TRY(add(each.condition.name, steps));
+  }
+  return out;
+}
+
+/// Fig. 4: the raw speed and its smoothings over the first steps.
+Result<std::string> figure_4(const Trace& trace) {
+  draw::Table table;
+  draw::PlotOptions options{.x = "step",
+                            .title = trace.name + ": speed of the simulation",
+                            .x_label = "step",
+                            .y_label = "simulated time / wall time",
+                            .labels = {"instantaneous"},
+                            .colours = {"red"}};
+  const std::size_t count = std::min(shown_steps, trace.stretch.size());
+  table.names = {"step", "instantaneous"};
+  table.units = {"", ""};
+  table.columns.resize(2);
+  for (std::size_t i = 0; i < count; ++i) {
+    table.columns[0].push_back(static_cast<double>(i + 1));
+    table.columns[1].push_back(trace.stretch.step_s[i] / trace.stretch.wall_s[i]);
+  }
+  constexpr std::array<const char*, windows.size()> colours{"sky", "orange", "green", "black"};
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    std::vector<double> smooth = smoothed_speeds(trace.stretch, windows[w]);
+    smooth.resize(count);
+    table.names.push_back(fmt::format("mean of {}", windows[w]));
+    table.units.emplace_back();
+    table.columns.push_back(std::move(smooth));
+    options.labels.push_back(table.names.back());
+    options.colours.emplace_back(colours[w]);
+  }
+  return draw::draw_plot({table}, options);
+}
+
+/// A row of the table of errors: how timers are set, and their mean errors by interval.
+struct Row {
+  const char* timers;  ///< "planned once", "adapting"
+  std::string estimate;
+  std::vector<double> errors;
+};
+
+std::vector<Row> errors_of(const Stretch& stretch) {
+  std::vector<Row> rows;
+  for (const std::size_t window : windows)
+    rows.push_back({"planned once", fmt::format("mean of {} speeds, as in the paper", window),
+                    errors_by_mean_speed(stretch, window, intervals_s)});
+  std::vector<Row> adapting;
+  const auto add = [&](const std::string& name, const std::vector<std::size_t>& of) {
+    Row planned{"planned once", name, {}}, adapts{"adapting", name, {}};
+    for (const TimerErrors& each : timer_errors(stretch, of, intervals_s)) {
+      planned.errors.push_back(each.planned);
+      adapts.errors.push_back(each.adapting);
+    }
+    rows.push_back(std::move(planned));
+    adapting.push_back(std::move(adapts));
+  };
+  for (const std::size_t window : windows) add(fmt::format("{} steps", window), {window});
+  const std::vector<std::size_t> all(windows.begin(), windows.end());
+  add("our clock", all);
+  std::move(adapting.begin(), adapting.end(), std::back_inserter(rows));
+  Row batched{"adapting", "our clock, a message every 20 ms", {}};
+  for (const TimerErrors& each : timer_errors(stretch, all, intervals_s, message_s))
+    batched.errors.push_back(each.adapting);
+  rows.push_back(std::move(batched));
+  return rows;
+}
+
+std::vector<std::string> head() {
+  std::vector<std::string> names{"timers", "estimate"};
+  for (const double interval : intervals_s) names.push_back(fmt::format("{:g} ms", 1000 * interval));
+  return names;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::vector<Row>& rows) {
+  std::vector<std::vector<std::string>> out;
+  for (const Row& row : rows) {
+    std::vector<std::string>& cells = out.emplace_back();
+    cells = {row.timers, row.estimate};
+    for (const double error : row.errors) cells.push_back(fmt::format("{:.2f} %", 100 * error));
+  }
+  return out;
+}
+
+std::vector<std::string> character(const Trace& trace) {
+  const Stretch& s = trace.stretch;
+  double sim_s = 0, wall_s = 0, off_s = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    sim_s += s.step_s[i];
+    wall_s += s.wall_s[i];
+  }
+  const auto count = static_cast<double>(s.size());
+  const double mean_s = wall_s / count;
+  for (const double each : s.wall_s) off_s += std::abs(each - mean_s);
+  std::vector<double> sorted = s.wall_s;
+  std::sort(sorted.begin(), sorted.end());
+  return {trace.name,
+          fmt::format("{}", s.size()),
+          fmt::format("{:.3g} ms", 1000 * sim_s / count),
+          fmt::format("{:.3g} ms", 1000 * mean_s),
+          fmt::format("{:.3g} ms", 1000 * sorted.back()),
+          fmt::format("{:.0f} %", 100 * off_s / wall_s),
+          fmt::format("{:.2f}", sim_s / wall_s)};
+}
+
+}  // namespace
+
+Status make_msl(const ReproduceContext& context, ReportPage& page) {
+  SL_ASSIGN(const std::vector<Trace> traces, take_traces(context));
+  page.paragraph(context.traces.empty() ? "Step times of real runs of scenarios that come with Sandlot, made "
+                                          "for this page. They are wall times: they differ from "
+                                          "machine to machine and from run to run, and so does every number "
+                                          "below. The files beside this page hold "
+                                          "them; --traces makes the same page again."
+                                        : "Step times of runs, from files of `sandlot run --step-times`.");
+  std::vector<std::vector<std::string>> rows;
+  for (const Trace& trace : traces) rows.push_back(character(trace));
+  page.table({"trace", "steps", "step", "wall time of a step", "the longest",
+              "mean deviation of the wall time", "speed"},
+             rows);
+
+  page.heading("Figure 4: the speed of the simulation and its smoothings");
+  for (const Trace& trace : traces) {
+    SL_ASSIGN(const std::string figure, figure_4(trace));
+    SL_TRY(context.write("speed_" + trace.name + ".svg", figure));
+    page.figure(
+        figure,
+        fmt::format(
+            "{}: step over wall time of each step (red), and its means over the last 5, 10, 20 and 50 steps; "
+            "the first {} steps.",
+            trace.name, std::min(shown_steps, trace.stretch.size())));
+  }
+
+  page.heading("Section 5.1: interval timers");
+  page.paragraph(
+      "A timer is set for an interval of simulated time by an estimate of the speed. Error: how far the "
+      "simulated time that has passed "
+      "when it fires misses the interval, as a share of the interval; means over timers set at moments "
+      "spread over all steps. "
+      "Planned once: it fires when the first estimate says. Adapting: it plans again at each step. Our clock "
+      "picks its "
+      "window by the errors of recent predictions.");
+  std::string csv = "trace,timers,estimate";
+  for (const double interval : intervals_s) csv += fmt::format(",{:g} ms", 1000 * interval);
+  csv += "\n";
+  std::vector<Row> mean;
+  for (const Trace& trace : traces) {
+    const std::vector<Row> errors = errors_of(trace.stretch);
+    if (mean.empty()) mean = errors;
+    else
+      for (std::size_t r = 0; r < errors.size(); ++r)
+        for (std::size_t i = 0; i < intervals_s.size(); ++i) mean[r].errors[i] += errors[r].errors[i];
+    for (const Row& row : errors) {
+      csv += fmt::format("\"{}\",{},\"{}\"", trace.name, row.timers, row.estimate);
+      for (const double error : row.errors) csv += fmt::format(",{:.5f}", error);
+      csv += "\n";
+    }
+  }
+  for (Row& row : mean)
+    for (double& error : row.errors) error /= static_cast<double>(traces.size());
+  SL_TRY(context.write("timers.csv", csv));
+  auto all = cells_of(mean);
+  std::vector<std::string>& paper = all.emplace_back();
+  paper = {"the paper", "mean of speeds, window not given"};
+  for (const double interval : intervals_s) paper.emplace_back(interval < 0.12 ? "< 2 %" : "< 4 %");
+  page.paragraph("Means over all traces:");
+  page.table(head(), all);
+  for (const Trace& trace : traces) {
+    page.paragraph(trace.name + ":");
+    page.table(head(), cells_of(errors_of(trace.stretch)));
+  }
+  const Row& ours = mean[mean.size() - 2];
+  const auto most = [&](std::size_t first, std::size_t last) {
+    return 100 * *std::max_element(ours.errors.begin() + static_cast<std::ptrdiff_t>(first),
+                                   ours.errors.begin() + static_cast<std::ptrdiff_t>(last));
+  };
+  page.table({"the paper", "here"},
+             {{"Intervals of 10 ms to 100 ms: the average prediction error is less than two percent.",
+               fmt::format("Our clock, adapting: at most {:.2f} %.", most(0, 4))},
+              {"Intervals of 150 ms to 500 ms: less than four percent.",
+               fmt::format("Our clock, adapting: at most {:.2f} %.", most(4, 8))},
+              {"The accuracy of the prediction decreases with the length of the interval.",
+               fmt::format("Planned once by our clock: {:.1f} % at 10 ms, {:.1f} % at 500 ms. A timer that "
+                           "plans again at each step "
+                           "misses by less than a step, whatever its length.",
+                           100 * mean[2 * windows.size()].errors.front(),
+                           100 * mean[2 * windows.size()].errors.back())}});
+  return {};
+}
+
+}  // namespace sandlot::app
