@@ -36,6 +36,7 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
+      {"sandlot_msgs/srv/RestartProgram", "string program\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},
       {"simulation_interfaces/srv/DeleteEntity", "string entity\n", "simulation_interfaces/Result result\n"},

@@ -12,6 +12,7 @@ Protocol   rosbridge v2 as JSON over TCP, with claims and lockstep of Sandlot's 
 Messages   dicts with the field names of ROS 2; lists of numbers are lists; lists of bytes are base64 text, see data_of().
 Address    SANDLOT_URL or tcp://127.0.0.1:8765; unix:PATH reaches a run from inside a sandbox.
 Token      SANDLOT_TOKEN.
+Started    by Sandlot, a program has all of these in its environment, and who it is, too: Robot(), Team() without a name.
 Errors     Refused: the server's own words. ConnectionError: it is gone.
 Threads    none: messages are taken while steps(), spin() or call() wait.
 """
@@ -201,8 +202,16 @@ class Connection:
 class _Driver(Connection):
     """What robots and teams have in common."""
 
-    def __init__(self, kind: str, name: str, *, url: Optional[str] = None, token: Optional[str] = None,
-                 lockstep: bool = False, deadline_s: float = 1, timeout_s: float = 10) -> None:
+    def __init__(self, kind: str, name: Optional[str], *, url: Optional[str] = None, token: Optional[str] = None,
+                 lockstep: Optional[bool] = None, deadline_s: Optional[float] = None, timeout_s: float = 10) -> None:
+        # What is not given, a program that Sandlot has started has in its environment.
+        name = name or os.environ.get("SANDLOT_" + kind.upper())
+        if not name:
+            raise ValueError("name the %s, or set SANDLOT_%s" % (kind, kind.upper()))
+        if lockstep is None:
+            lockstep = os.environ.get("SANDLOT_LOCKSTEP") == "1"
+        if deadline_s is None:
+            deadline_s = float(os.environ.get("SANDLOT_DEADLINE_S", "1"))
         super().__init__(url, timeout_s)
         self.name = name
         self.lockstep = lockstep
@@ -266,7 +275,7 @@ class _Driver(Connection):
 class Robot(_Driver):
     """The client that drives a robot."""
 
-    def __init__(self, name: str, **options: Any) -> None:
+    def __init__(self, name: Optional[str] = None, **options: Any) -> None:
         super().__init__("robot", name, **options)
 
     def subscribe(self, device: str, handler: Optional[Callable[[Message], None]] = None) -> Reading:
@@ -281,7 +290,7 @@ class Robot(_Driver):
 class Team(_Driver):
     """The client that drives all robots of a team."""
 
-    def __init__(self, name: str, **options: Any) -> None:
+    def __init__(self, name: Optional[str] = None, **options: Any) -> None:
         super().__init__("team", name, **options)
 
     def subscribe(self, robot: str, device: str,
