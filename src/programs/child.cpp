@@ -144,7 +144,8 @@ Result<Child> Child::start(const Launch& launch) {
     return Error{"cannot start '" + command.front() + "': there is no folder '" + folder + "' to work in",
                  "folder: is relative to the scenario's file; by default it is that file's own"};
   const std::vector<char*> arguments = pointers_to(command);
-  const std::vector<char*> environment = pointers_to(launch.environment.value_or(std::vector<std::string>()));
+  const std::vector<std::string> none;
+  const std::vector<char*> environment = pointers_to(launch.environment ? *launch.environment : none);
 
   Pair in, out, error, report;
   if (!open_pair(in, true) || !open_pair(out, false) || !open_pair(error, false) || !open_pair(report, false))

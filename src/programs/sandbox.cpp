@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/text.h"
 #include "programs/process_tree.h"
 
 namespace sandlot::programs {
@@ -115,6 +116,15 @@ std::string plain(const std::string& folder) {
   return out;
 }
 
+/// The file that a command of `user` runs: root finds some that others cannot reach.
+std::string program_of(const User& user, const std::string& name, const std::string& folder) {
+  if (name.find('/') != std::string::npos) return find_program(name, folder, "");
+  const char* const path = std::getenv("PATH");
+  for (const std::string_view each : split(path ? path : sandbox_path, ':'))
+    if (std::string file = find_program(name, "", each); !file.empty() && can_read(user, file)) return file;
+  return "";
+}
+
 std::string variable(const char* name, const std::string& value) { return name + ("=" + value); }
 
 Error unreadable(const std::string& path) {
@@ -200,6 +210,13 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
   if (!program.budget.sandbox) {
     out.command = program.command;
     out.folder = folder;
+    if (out.user) {
+      const std::string file = program_of(*out.user, program.command.front(), folder);
+      if (file.empty())
+        return Error{"cannot start '" + program.command.front() + "': there is no such program for 'nobody'",
+                     "whom programs run as when Sandlot runs as root: install it for all users"};
+      out.command.front() = file;
+    }
     out.may_gain_rights = false;
     // The kernel counts what the user runs already.
     out.limits->processes = threads_of_user(out.user ? out.user->user : getuid()) + count;
