@@ -83,10 +83,10 @@ std::string complaint_of(std::vector<std::string> command, std::string& output) 
 Result<Bubblewrap> find_bubblewrap() {
   const char* const path = std::getenv("PATH");
   Bubblewrap out{find_program("bwrap", "", path ? path : sandbox_path), true};
-  const char* const remedy = "or give `sandbox: off` to run the program with your rights";
   if (out.file.empty())
-    return Error{"there is no bubblewrap (bwrap), which makes the sandbox of a program",
-                 std::string("install it: apt install bubblewrap; ") + remedy};
+    return Error{
+        "there is no bubblewrap (bwrap), which makes the sandbox of a program",
+        "install it (apt install bubblewrap), or give `sandbox: off` to run the program with your rights"};
   std::string complaint, ignored;
   for (const bool forbids : {true, false}) {
     out.forbids_namespaces = forbids;
@@ -96,7 +96,7 @@ Result<Bubblewrap> find_bubblewrap() {
     if (complaint.empty()) return out;
   }
   return Error{"this system does not let bubblewrap make a sandbox (" + complaint + ")",
-               std::string("allow user namespaces; ") + remedy};
+               "allow user namespaces, or give `sandbox: off` to run the program with your rights"};
 }
 
 /// Where the sandbox shows a file of the machine; "": nowhere.
