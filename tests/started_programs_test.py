@@ -154,7 +154,7 @@ robots:
             with open(log) as file:
                 return [float(each) for each in file.read().split()[-1].split(",")][-3:]
 
-        _, text = self.run_scenario(self.scenario(python, "restart: never"), "--headless", *values)
+        _, text = self.run_scenario(self.scenario(python, "restart: never"), "--headless", "--rate", "1", *values)
         self.assertIn("program 'rover/controller' was ended by signal 9 (Killed)", text)
         answers, misses, speed = last()
         self.assertLessEqual(answers, 5)
@@ -320,7 +320,7 @@ for second in range(1, 3):
         return run
 
     def test_watch_starts_it_again_when_a_file_of_it_changes(self):
-        program = "print('version %d', flush=True)\n" + DRIVE
+        program = "print('version', %d, flush=True)\n" + DRIVE.replace("%", "%%")
         run = self.watched_run(self.scenario(program % 1), "--headless", "--rate", "0.05", "--watch")
         self.until(lambda: "version 1" in "".join(run.said))
         self.write("program.py", program % 2)
