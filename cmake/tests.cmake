@@ -104,6 +104,11 @@ add_test(NAME clients COMMAND Python3::Interpreter tests/clients_test.py WORKING
 set_tests_properties(clients PROPERTIES LABELS unit TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+# Programs that a run starts itself.
+add_test(NAME started_programs COMMAND Python3::Interpreter tests/started_programs_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(started_programs PROPERTIES LABELS unit TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # The page's own tests, and the check of its types, for which nothing has to run.
 if(SANDLOT_PAGE)
   add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit

@@ -207,7 +207,7 @@ def make_deb(build, out, version, epoch, scratch):
     control.mkdir()
     (control / "control").write_text(
         f"Package: sandlot\nVersion: {version}\nArchitecture: {architecture}\nMaintainer: {MAINTAINER}\nInstalled-Size: {size}\n"
-        f"Depends: {dependencies(stage, library)}\nSuggests: g++, cmake, pkgconf\nSection: science\nPriority: optional\n"
+        f"Depends: {dependencies(stage, library)}\nRecommends: bubblewrap\nSuggests: g++, cmake, pkgconf\nSection: science\nPriority: optional\n"
         f"Description: {SUMMARY}\n{DESCRIPTION}\n")
     (control / "triggers").write_text("activate-noawait ldconfig\n")
     sums = [f"{hashlib.md5(each.read_bytes()).hexdigest()}  {each.relative_to(stage)}\n"

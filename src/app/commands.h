@@ -37,6 +37,8 @@ struct ServeOptions {
 struct RunOptions {
   RunSpec spec;
   std::optional<ServeOptions> serve;
+  bool watch = false;            ///< restart programs whose files have changed
+  std::string program_logs;      ///< folder for what programs print; "": none
   bool json = false;             ///< print the summary as JSON instead of text
   const Hooks* hooks = nullptr;  ///< C++ functions of an embedding program
   std::optional<int> repeat;     ///< so many runs, with seeds that follow each other

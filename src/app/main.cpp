@@ -183,6 +183,10 @@ struct RunFlags {
                     "Pictures per simulated second, and per second of the film")
         ->check(CLI::Range(1, 240))
         ->capture_default_str();
+    verb.add_flag("--watch", options.watch,
+                  "Restart programs that the run has started when a file of theirs changes");
+    verb.add_option("--program-logs", options.program_logs,
+                    "Folder for what programs that the run has started print: a file for each");
     verb.add_flag("--json", options.json, "Print the summary as JSON");
   }
 

@@ -1,15 +1,14 @@
 #include "app/serve.h"
 
 #include <fmt/format.h>
-#include <sys/random.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <span>
 
 #include "app/remote_console.h"
 #include "app/tokens.h"
+#include "programs/sandbox.h"
 #include "run/outputs.h"
 #include "server/http/http.h"
 #include "server/server.h"
@@ -18,27 +17,8 @@
 namespace sandlot::app {
 namespace {
 
-/// Token of 32 random hexadecimal digits. Not for the run, whose random numbers come from streams.
-Result<std::string> make_token() {
-  std::array<unsigned char, 16> bytes;
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    return Error{"the system has no random numbers for a token", "give one: --token WORD"};
-  std::string out;
-  for (const unsigned char byte : bytes) out += fmt::format("{:02x}", byte);
-  return out;
-}
-
-}  // namespace
-
-Served::Served(std::unique_ptr<server::Server> server) : server_(std::move(server)) {}
-Served::Served(Served&&) noexcept = default;
-Served& Served::operator=(Served&&) noexcept = default;
-Served::~Served() = default;
-
-Result<Served> Served::start(const ServeOptions& options, Session& session, Console& console,
-                             RunOutputs* outputs) {
-  server::ServerOptions server_options;
-  server::TransportOptions& transport = server_options.transport;
+/// Address and tokens. @return the token of an administrator; "": none is needed
+Result<std::string> set_address(const ServeOptions& options, server::TransportOptions& transport) {
   transport.address = options.address;
   transport.port = static_cast<std::uint16_t>(options.port);
   transport.next_free = options.next_free;
@@ -50,13 +30,30 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
     if (each.access.is_admin() && admins.empty()) admins = each.secret;
   // Somebody has to be able to steer.
   if (admins.empty() && (!transport.tokens.empty() || !server::is_loopback_name(options.address))) {
-    SL_ASSIGN(admins, make_token());
+    SL_ASSIGN(admins, programs::make_secret());
   }
   if (!admins.empty() && !server::find_token(admins, transport.tokens))
     transport.tokens.push_back({admins, {.role = server::Role::admin}});
   for (const std::string& origin : options.origins)
     if (server::judge_origin(origin, "", std::span(&origin, 1)) == server::Origin::foreign)
       return Error{"--allow-origin: '" + origin + "' is not an origin", "write https://app.example.org"};
+  return admins;
+}
+
+}  // namespace
+
+Served::Served(std::unique_ptr<server::Server> server) : server_(std::move(server)) {}
+Served::Served(Served&&) noexcept = default;
+Served& Served::operator=(Served&&) noexcept = default;
+Served::~Served() = default;
+
+Result<Served> Served::start(const std::optional<ServeOptions>& options, Session& session, Console& console,
+                             RunOutputs* outputs, const server::ProgramOptions& programs) {
+  server::ServerOptions server_options;
+  std::string admins;
+  server_options.transport.listens = options.has_value();
+  if (options) { SL_ASSIGN(admins, set_address(*options, server_options.transport)); }
+  server_options.programs = programs;
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
   server_options.world = options.world;
@@ -67,8 +64,9 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
       return server::ServerOptions::Recording{std::move(progress->file), progress->messages, progress->bytes};
     };
   SL_ASSIGN(auto server, server::Server::start(server_options, session, console));
-  std::fprintf(stderr, "page: %s%s\n", server->url().c_str(),
-               admins.empty() ? "" : ("?token=" + url_encoded(admins)).c_str());
+  if (options)
+    std::fprintf(stderr, "page: %s%s\n", server->url().c_str(),
+                 admins.empty() ? "" : ("?token=" + url_encoded(admins)).c_str());
   return Served(std::move(server));
 }
 

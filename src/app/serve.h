@@ -2,9 +2,11 @@
 /// Page of a run for the command line: prints its address and counts viewers.
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "run/summary.h"
+#include "server/processes.h"
 
 namespace sandlot {
 class Console;
@@ -20,10 +22,11 @@ namespace sandlot::app {
 class Served {
  public:
   /// Starts the server and prints the address of the page, one line on standard error.
+  /// @param options  unset: there is no page, only the ports of the programs that are started
   /// @param outputs  of the run, for what the page shows about its recording; null: nothing is recorded
   /// Errors   the address cannot be bound; an origin that is not one.
-  static Result<Served> start(const ServeOptions& options, Session& session, Console& console,
-                              RunOutputs* outputs = nullptr);
+  static Result<Served> start(const std::optional<ServeOptions>& options, Session& session, Console& console,
+                              RunOutputs* outputs = nullptr, const server::ProgramOptions& programs = {});
   Served(Served&&) noexcept;
   Served& operator=(Served&&) noexcept;
   ~Served();

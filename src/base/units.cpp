@@ -31,6 +31,8 @@ constexpr Unit units[] = {
     {"ohm", "ohm", 1},      {"mohm", "ohm", 1e-3},    {"%", "1", 1e-2},        {"1", "1", 1},
     {"C", "C", 1},          {"Ah", "C", 3600},        {"mAh", "C", 3.6},       {"mW", "W", 1e-3},
     {"kW", "W", 1e3},       {"mJ", "J", 1e-3},        {"Ns", "Ns", 1},
+    {"B", "B", 1},          {"kB", "B", 1e3},         {"MB", "B", 1e6},        {"GB", "B", 1e9},
+    {"KiB", "B", 1024},     {"MiB", "B", 1048576},    {"GiB", "B", 1073741824},
     {"bit/s", "bit/s", 1},  {"kbit/s", "bit/s", 1e3}, {"Mbit/s", "bit/s", 1e6},
 };
 // clang-format on

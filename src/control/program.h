@@ -48,6 +48,8 @@ class Outside {
   /// A client of a server answers, not a process that the run starts: what it needs to answer comes to it between two ticks,
   /// so that it is waited for before the next tick begins.
   virtual bool is_client() const { return false; }
+  /// A client that who serves the run can start.
+  virtual bool has_command() const { return false; }
   /// An observation was sent that is not answered yet.
   virtual bool expects_answer() const = 0;
   virtual Clock::time_point deadline() const = 0;

@@ -74,6 +74,27 @@ struct DisconnectClient {
   };
 };
 
+/// Ends a program that the run has started, and starts it again.
+struct RestartProgram {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/RestartProgram";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/RestartProgram_Request";
+    std::string program;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"program", "", "Path of the program: red1/controller."}, s.program);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/RestartProgram_Response";
+    bool ok = true;
+    std::string text;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"ok", "", "Whether it is started again."}, s.ok);
+      visit(Field{"text", "", "Reason why it is not."}, s.text);
+    }
+  };
+};
+
 /// Asks for numbers on a channel of their own.
 struct WatchValues {
   static constexpr const char* ros_type = "sandlot_msgs/srv/Watch";

@@ -37,6 +37,7 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/DisconnectClient", "uint64 client\n", "bool ok\nstring text\n"},
+      {"sandlot_msgs/srv/RestartProgram", "string program\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},
       {"simulation_interfaces/srv/DeleteEntity", "string entity\n", "simulation_interfaces/Result result\n"},

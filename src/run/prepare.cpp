@@ -141,11 +141,15 @@ Result<std::optional<RecordOptions>> record_options(const RunSpec& spec, const S
   return std::optional(std::move(out));
 }
 
+/// A scenario that somebody runs may start its programs. A snapshot carries command lines, too, but is often another's.
+bool starts_programs(const RunSpec& spec) { return spec.from_file.empty() || spec.allow_programs; }
+
 /// Programs that wait for a client need a server to which one can come.
 Status check_clients(Simulation& simulation, const RunSpec& spec) {
   Status status;
   if (spec.steered) return status;
   simulation.for_each_outside([&](const SimulationParts::ProgramEntry& entry, const Outside& outside) {
+    if (spec.starts_clients && starts_programs(spec) && outside.has_command()) return;
     if (outside.is_client() && status)
       status = Error{"'" + entry.path + "' waits for a client, and nobody can connect to this run",
                      "add --port 8765, or give it another controller: --set robots.NAME.controller=wander",
@@ -162,8 +166,7 @@ Result<PreparedRun> prepare(const RunSpec& spec, std::span<const ControllerKind*
   PreparedRun out;
   out.options = {.threads = spec.threads, .paths = spec.paths};
   out.options.extra_controllers = controllers;
-  // A scenario that somebody runs may start its programs. A snapshot carries command lines, too, but is often another's.
-  out.options.start_programs = spec.from_file.empty() || spec.allow_programs;
+  out.options.start_programs = starts_programs(spec);
   SL_ASSIGN(out.simulation, make_world(spec, out.options, diagnostics));
   SL_TRY(check_clients(*out.simulation, spec));
   SL_TRY(configure(*out.simulation, spec));

@@ -49,6 +49,7 @@ struct RunSpec {
   std::optional<double> rate;        ///< real time x factor; unset: as fast as possible
   bool paused = false;               ///< begins paused
   bool steered = false;  ///< the caller lets people pause, resume and rewind: snapshots are kept for that
+  bool starts_clients = false;  ///< the caller starts the programs of clients that have a command
   bool may_be_endless = false;  ///< the caller can end the run: no warning when the scenario does not
 
   // --- results; "": none, or as the scenario says ---

@@ -43,7 +43,8 @@ struct Server::Impl {
   Hub hub;
   std::function<void()> others_on_change;
 
-  std::mutex mutex;  ///< of `transport`, as long as others use it
+  std::unique_ptr<Processes> processes;  ///< null: no program is started
+  std::mutex mutex;                      ///< of `transport`, as long as others use it
   Transport* transport = nullptr;
   std::unique_ptr<Transport> owned;
   bool stopped = false;
@@ -79,6 +80,10 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   TransportOptions transport = options.transport;
   for (const std::string_view name : foxglove::subprotocols) transport.subprotocols.emplace_back(name);
   transport.none_offered = transport.raw_json = true;  // clients of rosbridge come so
+  if (options.programs.start) {
+    SL_ASSIGN(impl->processes, Processes::create(session.simulation(), options.programs));
+    if (impl->processes) transport.local_ports = impl->processes->ports();
+  }
   // The transport's thread runs before start() has returned; it waits until the hub knows the transport.
   const auto ready = std::make_shared<std::promise<void>>();
   const std::shared_future<void> is_ready = ready->get_future().share();
@@ -114,6 +119,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   };
   SL_ASSIGN(impl->owned, Transport::start(transport, std::move(handler)));
   impl->hub.use(*impl->owned);
+  impl->hub.use(impl->processes.get());
   // Clients find the world's topics from their first word on.
   impl->hub.send_world({.inventory = take_inventory(session.simulation(), session.epoch())});
   impl->transport = impl->owned.get();
@@ -134,7 +140,9 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
   });
   // Last: from here on viewers may give orders, which call on_change.
   ready->set_value();
-  return std::unique_ptr<Server>(new Server(std::move(impl)));
+  std::unique_ptr<Server> server(new Server(std::move(impl)));
+  if (self->processes) SL_TRY(self->processes->start());
+  return server;
 }
 
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -154,6 +162,7 @@ std::vector<Roster::Total> Server::clients() const { return impl_->hub.roster().
 void Server::stop() {
   if (std::exchange(impl_->stopped, true)) return;
   impl_->console.set_clients(nullptr);
+  if (impl_->processes) impl_->processes->expect_end();
   log::set_listener({});
   {
     const std::lock_guard lock(impl_->mutex);
@@ -161,6 +170,7 @@ void Server::stop() {
   }
   impl_->mailbox->open(nullptr);
   impl_->owned->stop();
+  if (impl_->processes) impl_->processes->stop();
   // Not before: as long as the transport's thread lives, an order of a viewer may be calling it.
   impl_->session.on_change = impl_->others_on_change;
   impl_->mailbox->close();

@@ -19,6 +19,7 @@
 
 #include "server/clients/roster.h"
 #include "server/http/transport.h"
+#include "server/processes.h"
 
 namespace sandlot {
 class Console;
@@ -41,10 +42,12 @@ struct ServerOptions {
   };
   /// The recording in progress; called on the server's thread. Unset: none.
   std::function<std::optional<Recording>()> recording = {};
+  ProgramOptions programs = {};  ///< whether and how the server starts the programs of robots and teams
 };
 
 class Server {
  public:
+  /// Also starts the programs that the options ask for, each with a port of its own; without another port nobody else can come.
   /// @pre session and console outlive the server; called before session.run(). Session::on_change is taken, what was there
   /// is called as before.
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Session& session,

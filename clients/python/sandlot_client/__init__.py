@@ -14,6 +14,7 @@ Messages   dicts with the field names of ROS 2; lists of numbers are lists, see 
 Address    SANDLOT_URL or tcp://127.0.0.1:8765; the address that a run prints (http://...) is one, too. unix:PATH reaches a run
            from inside a sandbox.
 Token      SANDLOT_TOKEN, or ?token=... of the address.
+Started    by the run itself, a program has all of these in its environment, and who it is, too: Robot(), Team() without a name.
 Errors     Refused: the server's own words. RunEnded: the run is over. ConnectionError: the connection broke, or was closed
            for the reason it names. TimeoutError: no answer. Nothing reconnects by itself: a robot is claimed again by a new Robot.
 Threads    none: messages are taken while steps(), spin() or call() wait.
@@ -336,8 +337,16 @@ class Connection:
 class _Driver(Connection):
     """What robots and teams have in common."""
 
-    def __init__(self, kind: str, name: str, *, url: Optional[str] = None, token: Optional[str] = None,
-                 lockstep: bool = False, deadline_s: float = 1, timeout_s: float = 10) -> None:
+    def __init__(self, kind: str, name: Optional[str], *, url: Optional[str] = None, token: Optional[str] = None,
+                 lockstep: Optional[bool] = None, deadline_s: Optional[float] = None, timeout_s: float = 10) -> None:
+        # What is not given, a program that Sandlot has started has in its environment.
+        name = name or os.environ.get("SANDLOT_" + kind.upper())
+        if not name:
+            raise ValueError("name the %s, or set SANDLOT_%s" % (kind, kind.upper()))
+        if lockstep is None:
+            lockstep = os.environ.get("SANDLOT_LOCKSTEP") == "1"
+        if deadline_s is None:
+            deadline_s = float(os.environ.get("SANDLOT_DEADLINE_S", "1"))
         super().__init__(url, timeout_s)
         self.name = name
         self.lockstep = lockstep
@@ -475,7 +484,7 @@ class _Devices:
 class Robot(_Devices, _Driver):
     """The client that drives a robot."""
 
-    def __init__(self, name: str, **options: Any) -> None:
+    def __init__(self, name: Optional[str] = None, **options: Any) -> None:
         self._driver = self
         self._readings_by_name = {}
         super().__init__("robot", name, **options)
@@ -493,7 +502,7 @@ class Member(_Devices):
 class Team(_Driver):
     """The client that drives all robots of a team: team.robots["red1"] has the methods of a Robot."""
 
-    def __init__(self, name: str, **options: Any) -> None:
+    def __init__(self, name: Optional[str] = None, **options: Any) -> None:
         super().__init__("team", name, **options)
         self.robots: Dict[str, Member] = {each: Member(self, each) for each in self._robots}
 

@@ -9,6 +9,7 @@
 #include "base/json_text.h"
 #include "base/math.h"
 #include "base/random.h"
+#include "programs/sandbox.h"
 #include "run/summary.h"
 #include "server/server.h"
 #include "sim/load/load.h"
@@ -100,6 +101,10 @@ int doctor(bool json) {
   findings.push_back(
       {"page", true,
        server::has_page() ? "built in" : "not built in: `./dev build` installs node and what else it needs"});
+  const auto sandbox = programs::sandbox_version();
+  findings.push_back({"sandbox", true,
+                      sandbox ? "programs of scenarios run in sandboxes of " + *sandbox
+                              : "none for programs of scenarios: " + sandbox.error().text()});
   bool all_ok = true;
   auto list = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -11,7 +12,9 @@
 #include "app/serve.h"
 #include "base/json_text.h"
 #include "base/log.h"
+#include "files/resources.h"
 #include "run/repeat.h"
+#include "sim/session/session.h"
 
 namespace sandlot::app {
 
@@ -40,6 +43,40 @@ int run_again(const RunOptions& options) {
              : exit_failed;
 }
 
+/// Folders of client libraries, installed and in the source tree.
+std::vector<std::string> client_folders() {
+  std::vector<std::string> out;
+  if (const std::string installed = own_folder("python/sandlot_client"); !installed.empty())
+    out.push_back(std::filesystem::path(installed).parent_path().string());
+  else if (std::string source = own_folder("clients/python"); !source.empty())
+    out.push_back(std::move(source));
+  return out;
+}
+
+/// Starts the server, if there is a page or a program that it starts.
+Status serve(const RunOptions& options, const RunParts& parts, std::optional<Served>& served) {
+  std::string program;
+  parts.session.simulation().for_each_outside(
+      [&](const SimulationParts::ProgramEntry& entry, const Outside& outside) {
+        if (outside.has_command()) program = entry.path;
+      });
+  const bool allowed = options.spec.from_file.empty() || options.spec.allow_programs;
+  if (!allowed && !program.empty())
+    log::warning("program '" + program + "' is not started: add --allow-programs if you trust the snapshot");
+  const server::ProgramOptions programs{.start = allowed && !program.empty(),
+                                        .watch_files = options.watch,
+                                        .log_folder = options.program_logs,
+                                        .python_folders = client_folders()};
+  if ((options.watch || !options.program_logs.empty()) && !programs.start)
+    return Error{"--watch and --program-logs are for programs that the run starts, and it starts none",
+                 "name one in the scenario: controller: {kind: remote, command: [python3, team.py]}"};
+  if (!options.serve && !programs.start) return {};
+  std::optional<ServeOptions> how = options.serve;
+  if (how) how->world = options.spec.file;
+  SL_ASSIGN(served, Served::start(how, parts.session, parts.console, &parts.outputs, programs));
+  return {};
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -48,6 +85,7 @@ int run(const RunOptions& options) {
     return complain({"--store: it keeps the results of repeated runs", "add --repeat 50"});
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
+  spec.starts_clients = true;
   spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);
   Progress progress;
   std::optional<Served> served;
@@ -56,11 +94,7 @@ int run(const RunOptions& options) {
       .on_warning = [](const Error& warning) { log::warning(warning.text()); },
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
-        if (options.serve) {
-          ServeOptions serve = *options.serve;
-          serve.world = options.spec.file;
-          SL_ASSIGN(served, Served::start(serve, parts.session, parts.console, &parts.outputs));
-        }
+        SL_TRY(serve(options, parts, served));
         catch_interrupts();
         return {};
       },
@@ -73,7 +107,8 @@ int run(const RunOptions& options) {
       .on_end =
           [&](Summary& summary) {
             if (!served) return;
-            summary.server = served->stop();
+            const ServerSummary ended = served->stop();
+            if (options.serve) summary.server = ended;
             summary.clients = served->clients();
           }};
   const auto summary = sandlot::run(spec, callbacks);

@@ -18,7 +18,7 @@
 /// Cost         the messages as JSON, and the wait for the answer.
 #include "control/program.h"
 #include "programs/answer.h"
-#include "programs/pipe/child.h"
+#include "programs/child.h"
 
 namespace sandlot::programs::pipe {
 

@@ -9,6 +9,7 @@ void Link::attach(Client client) {
   client_ = std::move(client);
   ++attachments_;
   if (step_ && client_->counts) ++client_->counts->steps;
+  given_up_ = false;
   answer_.reset();
   told_ = false;
   tell();
@@ -19,6 +20,16 @@ void Link::detach(std::string why) {
   if (!client_) return;
   client_.reset();
   if (step_ && !answer_) answer_ = Error{std::move(why)};
+}
+
+void Link::give_up() {
+  const std::lock_guard lock(mutex_);
+  given_up_ = true;
+}
+
+bool Link::given_up() const {
+  const std::lock_guard lock(mutex_);
+  return given_up_;
 }
 
 Status Link::answer(std::uint64_t step, std::string text) {

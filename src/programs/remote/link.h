@@ -46,6 +46,8 @@ class Link {
   /// A client takes the program over. It is told at once of a step that waits.
   void attach(Client client);
   void detach(std::string why);
+  /// Nobody comes any more, such as a process that has ended for good: nobody is waited for. An attachment takes it back.
+  void give_up();
   /// Errors: no step waits for an answer, another one does, it is too long.
   Status answer(std::uint64_t step, std::string text);
   /// The messages of the tick are on their way: the client may be told of the step.
@@ -54,6 +56,8 @@ class Link {
   // --- for the program ---
   /// That of the client attached now.
   std::optional<double> deadline_s() const;
+  /// Nobody is attached, and nobody will be.
+  bool given_up() const;
   /// Counts the clients that came.
   std::uint64_t attachments() const;
   void put(const Step& step);
@@ -71,7 +75,7 @@ class Link {
   std::optional<Client> client_;
   std::uint64_t attachments_ = 0;
   std::optional<Step> step_;  ///< that waits for its answer
-  bool told_ = false;
+  bool told_ = false, given_up_ = false;
   std::optional<Result<std::string>> answer_;
 };
 

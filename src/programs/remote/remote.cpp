@@ -17,6 +17,11 @@ Status Remote::init(const Description& robot, const Node& config, Outputs&) {
   SL_ASSIGN(spec_, read_spec<Spec>(config));
   readings_ = names_of(robot.readings);
   actuators_ = names_of(robot.actuators);
+  if (!spec_.command.empty() && spec_.command.front().empty())
+    return Error{"the command is empty",
+                 "name a program and its arguments: command: [python3, team.py]",
+                 {},
+                 "/command"};
   return {};
 }
 
@@ -67,10 +72,12 @@ void Remote::set_deadline() {
     if (client_s) begun_ = Clock::now();  // its time begins when it has come
   }
   if (client_s) deadline_ = begun_ + wall(std::min(*client_s, spec_.deadline_s));
-  else deadline_ = gave_up_ || known_attachments_ > 0 ? begun_ : begun_ + wall(spec_.patience_s);
+  else if (gave_up_ || known_attachments_ > 0 || link_->given_up()) deadline_ = begun_;
+  else deadline_ = begun_ + wall(spec_.patience_s);
 }
 
 Program::Resumed Remote::resume(const Observation& obs, Command&) {
+  if (!spec_.lockstep) return {.waiting_for = Waiting::nothing};
   if (connected_) {
     begun_ = Clock::now();
     link_->count_step();

@@ -3,6 +3,7 @@
 ///
 ///   controller: remote
 ///   controller: {kind: remote, deadline: 50 ms, on_miss: stop}
+///   controller: {kind: remote, command: [python3, team.py], cpu: 50 %, memory: 512 MB, restart: on_failure}
 ///
 /// Lockstep     in each control step the client is told of the step, when the messages of the tick are on their way to it, and
 ///              its answer (programs/answer.h) acts at the beginning of the next tick, as the orders of every controller do.
@@ -10,8 +11,9 @@
 ///              the next step. Until it has come the client is told of no other step; `on_miss` is what the robot does meanwhile.
 /// No client    the first step waits up to `patience` for one to come; after that none waits until one has. Steps without a
 ///              client count as missed.
-/// Free running clients that give no word of lockstep send commands, which act in the tick after they came; the
-///              program then waits for nothing.
+/// Free running clients that give no word of lockstep send commands, which act in the tick after they came. With
+///              `lockstep: false` the program waits for nothing.
+/// Command      of a process that a server starts and that is the client (server/processes.h); no part of what this class does.
 /// Refused      answers that cannot be carried out order nothing and are counted; the run goes on.
 /// Determinism  answers are input from outside and logged, also that none came in time: replays and rewound runs get them
 ///              from there, without a client.
@@ -19,13 +21,26 @@
 /// Cost         the wait for the answer.
 #include "control/program.h"
 #include "programs/answer.h"
+#include "programs/budget.h"
 #include "programs/remote/link.h"
 
 namespace sandlot::programs::remote {
 
+enum class Restart : std::uint8_t { never, on_failure, on_exit };
+inline std::span<const EnumName<Restart>> enum_names(Restart) {
+  static constexpr EnumName<Restart> names[] = {
+      {"never", Restart::never}, {"on_failure", Restart::on_failure}, {"on_exit", Restart::on_exit}};
+  return names;
+}
+
 struct Spec {
   double deadline_s = 1, patience_s = 60;
   OnMiss on_miss = OnMiss::stop;
+  bool lockstep = true;
+  std::vector<std::string> command;
+  std::string folder;
+  Budget budget;
+  Restart restart = Restart::on_failure;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"deadline", "s", "Longest wall time within which an answer is expected.", 1e-3, 60,
@@ -39,6 +54,27 @@ struct Spec {
                 "are ordered to stand still; end: the run ends.",
                 0, 0, Field::tunable},
           s.on_miss);
+    visit(Field{"lockstep", "",
+                "Whether the run waits for the client at each control step; else its commands act when they "
+                "come."},
+          s.lockstep);
+    visit(
+        Field{
+            "command", "",
+            "Program that the run starts as the client, and its arguments; empty: a client comes by itself.",
+            0, 0, Field::none, 1000},
+        s.command);
+    visit(
+        Field{"folder", "",
+              "Folder of the program, all it sees of the machine's files; by default that of the scenario's "
+              "file.",
+              0, 0, Field::none, 4096},
+        s.folder);
+    Budget::fields(s.budget, visit);
+    visit(Field{"restart", "",
+                "Reaction to the end of the program. never: none; on_failure: it is started again unless it "
+                "ended with code 0; on_exit: it is started again."},
+          s.restart);
   }
 };
 
@@ -72,6 +108,7 @@ class Remote final : public Program, public Outside {
   bool connected() const override { return connected_; }
   bool connects_again() const override { return true; }
   bool is_client() const override { return true; }
+  bool has_command() const override { return !spec_.command.empty(); }
   bool expects_answer() const override { return connected_ && waiting_; }
   Clock::time_point deadline() const override { return deadline_; }
   void watched(std::vector<Watched>&) const override {}
@@ -80,8 +117,7 @@ class Remote final : public Program, public Outside {
 
   /// For the server. It lives as long as somebody holds it.
   const std::shared_ptr<Link>& link() const { return link_; }
-  /// Of its steps, whatever the client asks for.
-  double longest_deadline_s() const { return spec_.deadline_s; }
+  const Spec& spec() const { return spec_; }
 
  private:
   void set_deadline();

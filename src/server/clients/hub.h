@@ -37,6 +37,8 @@ class Hub final : private ServiceHost {
       std::shared_ptr<Feed> feed, wire::Assets assets);
   /// Before anything else is called.
   void use(Transport& transport) { transport_ = &transport; }
+  /// @param processes  of programs that the server has started; null: none
+  void use(Processes* processes) { processes_ = processes; }
 
   // --- called by the transport ---
   using MakeFace = std::function<std::unique_ptr<Face>(Hub&, Transport&, ClientId)>;
@@ -234,6 +236,7 @@ class Hub final : private ServiceHost {
   using WatchDone = std::function<void(const Result<std::string>&)>;
   Session& session() override { return session_; }
   Console& console() override { return console_; }
+  Status restart_program(const std::string& program) override;
   void wait(std::function<std::optional<Status>(const Session::Report&)> reached,
             std::function<void(const Status&)> done) override;
   void watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) override;
@@ -269,6 +272,7 @@ class Hub final : private ServiceHost {
   const std::shared_ptr<Feed> feed_;
   const wire::Assets assets_;
   Transport* transport_ = nullptr;
+  Processes* processes_ = nullptr;
   std::string session_id_;
 
   std::map<std::uint32_t, Channel> channels_;

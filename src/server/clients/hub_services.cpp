@@ -57,6 +57,11 @@ void Hub::call(ClientId id, const ServiceOffer& service, const AnyMessage& reque
   else call_device(id, offered, request, waiting);
 }
 
+Status Hub::restart_program(const std::string& program) {
+  if (!processes_) return Error{"this run has started no program"};
+  return processes_->restart(program);
+}
+
 /// A call of a device's service is a request to the run, which answers when a tick has carried it out.
 void Hub::call_device(ClientId id, const OfferedService& offered, const AnyMessage& request,
                       const std::shared_ptr<ServiceCall>& call) {

@@ -124,9 +124,11 @@ void Hub::attach(ClientId id, const Claimed& claimed) {
     session.simulation().for_each_outside([&](const SimulationParts::ProgramEntry& entry, Outside& outside) {
       auto* const remote = dynamic_cast<programs::remote::Remote*>(&outside);
       const std::string_view whose = first_part(entry.path);
-      if (!remote || !(access.drives(whose) || (access.role == Role::team && whose == access.name))) return;
+      if (!remote || !remote->spec().lockstep ||
+          !(access.drives(whose) || (access.role == Role::team && whose == access.name)))
+        return;
       links.push_back(
-          {{entry.path, entry.description->control_period_s}, remote->link(), remote->longest_deadline_s()});
+          {{entry.path, entry.description->control_period_s}, remote->link(), remote->spec().deadline_s});
     });
     mailbox->push([id, number, links = std::move(links), claimed](Hub& hub) {
       hub.hold_links(id, number, links, claimed);
@@ -142,9 +144,10 @@ void Hub::hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> 
     const std::string name = client->access.name;
     end_claim(id, *client, "it has no remote program");
     if (claimed)
-      claimed(*client->face,
-              Error{"'" + name + "' has no program of kind remote that could wait for a client",
-                    "give it controller: remote in the scenario, or drive it freely"});
+      claimed(
+          *client->face,
+          Error{"'" + name + "' has no program of kind remote that could wait for a client",
+                "give it controller: remote in the scenario, without lockstep: false, or drive it freely"});
     return;
   }
   client->claim->links = std::move(links);

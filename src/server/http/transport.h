@@ -13,6 +13,7 @@
 ///           messages alone; its good-bye is a last object.
 /// UDP       with the option, at the same number: a JSON object per datagram, both ways, from clients that have shown that they
 ///           receive (server/http/udp_gate.h). It gets text messages of at most most_datagram_bytes; longer ones are dropped.
+/// Local     ports in the file system take the same; their connections have the port's access, and are not among `most_clients`.
 /// Closed    (counted as refused, with a code and a reason) clients whose messages are over the limits of wire/foxglove.h (spectators: 1 MiB,
 ///           whatever the kind) or more than 2000 a second for long, or that are no WebSocket frames.
 /// Gone      a client that is silent for `silence_s` although it was sent pings; an HTTP connection that asks nothing for `idle_s`.
@@ -40,8 +41,15 @@ inline Payload payload_of(std::string_view text) {
 
 /// A datagram's payload that every system takes, of messages to clients.
 inline constexpr std::size_t most_datagram_bytes = 65'000;
+/// A socket of the file system, whose connections have an access of their own: who can open it is let in.
+struct LocalPort {
+  std::string path;
+  Access access;
+};
 
 struct TransportOptions {
+  bool listens = true;  ///< at address and port; else only local ports are there
+  std::vector<LocalPort> local_ports;
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;         ///< 0: any that is free
   bool next_free = false;            ///< when it is taken, try the 20 after it

@@ -40,6 +40,8 @@ class ServiceHost {
   /// makes no progress for a few seconds, `done` gets an error.
   virtual void wait(std::function<std::optional<Status>(const Session::Report&)> reached,
                     std::function<void(const Status&)> done) = 0;
+  /// Starts a program again that the server has started. Errors: it has started none of that name.
+  virtual Status restart_program(const std::string& program) = 0;
   /// Opens a topic of sandlot_msgs/msg/Samples for this client. @param done  gets the topic's name
   virtual void watch(ClientId client, const std::vector<std::string>& values, double rate_hz,
                      std::function<void(const Result<std::string>& topic)> done) = 0;

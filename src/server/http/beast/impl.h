@@ -10,11 +10,13 @@
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "server/http/transport.h"
@@ -23,6 +25,7 @@ namespace sandlot::server {
 
 namespace net = boost::asio;
 using tcp = net::ip::tcp;
+using local = net::local::stream_protocol;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
@@ -79,6 +82,9 @@ struct Transport::Impl {
   net::io_context io{1};
   tcp::acceptor acceptor{io};
   tcp::endpoint bound;
+  std::deque<local::acceptor> local_acceptors;         // as options.local_ports
+  std::map<std::uint64_t, std::size_t> local_port_of;  // peers that came there
+  std::vector<std::size_t> paused_ports;               // that accept again at the next beat
   net::steady_timer timer{io};
   std::map<std::uint64_t, PeerPtr> peers;
   std::shared_ptr<UdpDoor> udp;  ///< null: not listened to
@@ -94,10 +100,14 @@ struct Transport::Impl {
   std::thread thread;
 
   Status listen();
+  Status listen_locally();
   bool on_loopback() const;
   void run();
   void accept();
-  void admit_socket(tcp::socket socket);
+  void accept_locally(std::size_t port);
+  void admit_socket(tcp::socket socket, std::optional<std::size_t> local_port = std::nullopt);
+  /// Of a peer that came to a local port; null: it did not.
+  const Access* local_access(std::uint64_t id) const;
   void on_beat();
   void begin_stop();
   void call(const std::function<void()>& f) noexcept;

@@ -243,11 +243,12 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   // --- JSON over TCP ---
   void begin_raw() {
     first = false;
-    if (impl.clients >= impl.options.most_clients || impl.stopping) {
+    const Access* const given = impl.local_access(id);
+    if ((!given && impl.clients >= impl.options.most_clients) || impl.stopping) {
       ++impl.refused;
       return end();
     }
-    access = admit("", "", impl.options.tokens, impl.on_loopback()).access;
+    access = given ? *given : admit("", "", impl.options.tokens, impl.on_loopback()).access;
     ++impl.clients;
     queue = std::make_shared<Queue>();
     error_code ignored;
@@ -321,8 +322,10 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     if (subprotocol.empty() && !options.subprotocols.empty() && !(offered.empty() && options.none_offered))
       return refuse(400, fmt::format("no known sub-protocol was offered; known are: {}",
                                      fmt::join(options.subprotocols, ", ")));
-    const auto admission = admit(target.query, header(http::field::authorization), options.tokens,
-                                 impl.on_loopback());
+    const Access* const given = impl.local_access(id);
+    const auto admission = given ? Admission{*given}
+                                 : admit(target.query, header(http::field::authorization), options.tokens,
+                                         impl.on_loopback());
     if (admission.status != 0) return refuse(admission.status, admission.why);
     if (buffer.size() > 0) return refuse(400, "a WebSocket begins after the answer to its handshake");
     if (impl.clients >= options.most_clients)
@@ -570,6 +573,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     stage = Stage::gone;
     const auto self = shared_from_this();
     impl.peers.erase(id);
+    impl.local_port_of.erase(id);
     error_code ignored;
     socket().close(ignored);
     if (!is_client()) return;

@@ -4,6 +4,8 @@
 /// deadlines of all peers.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 
 #include <algorithm>
 #include <boost/asio/ip/v6_only.hpp>
@@ -19,6 +21,7 @@ namespace sandlot::server {
 namespace {
 
 constexpr auto beat = std::chrono::milliseconds(33);
+constexpr int most_local_clients = 8;  // of one local port
 
 }  // namespace
 
@@ -70,6 +73,23 @@ Status Transport::Impl::listen() {
       fmt::format("cannot listen at port {} of {}: {}", options.port, options.address, ec.message())};
 }
 
+Status Transport::Impl::listen_locally() {
+  for (const LocalPort& port : options.local_ports) {
+    error_code ec;
+    local::acceptor& made = local_acceptors.emplace_back(io);
+    if (port.path.size() >= sizeof(sockaddr_un::sun_path)) ec = net::error::name_too_long;
+    if (!ec) made.open(local(), ec);
+    if (!ec) made.bind(local::endpoint(port.path), ec);
+    // The folder says who may come.
+    if (!ec && ::chmod(port.path.c_str(), 0666) != 0) ec.assign(errno, boost::system::system_category());
+    if (!ec) made.listen(net::socket_base::max_listen_connections, ec);
+    if (!ec) made.non_blocking(true, ec);
+    if (ec) return Error{fmt::format("cannot listen at {}: {}", port.path, ec.message())};
+    ::fcntl(made.native_handle(), F_SETFD, FD_CLOEXEC);
+  }
+  return {};
+}
+
 bool Transport::Impl::on_loopback() const {
   const auto address = bound.address();
   if (address.is_v6() && address.to_v6().is_v4_mapped())
@@ -108,7 +128,8 @@ void Transport::Impl::for_all(const std::function<void(Peer&)>& f) {
 }
 
 void Transport::Impl::run() {
-  accept();
+  if (options.listens) accept();
+  for (std::size_t port = 0; port < local_acceptors.size(); ++port) accept_locally(port);
   next_beat = Clock::now();
   on_beat();
   // What is thrown outside a peer's own completions is out of Beast or Asio, mostly for want of memory: its peer is left
@@ -129,11 +150,37 @@ void Transport::Impl::accept() {
   });
 }
 
-void Transport::Impl::admit_socket(tcp::socket socket) {
+/// Reading, writing and closing are the same for sockets of all families: Asio's socket of TCP takes these too.
+void Transport::Impl::accept_locally(std::size_t port) {
+  local_acceptors[port].async_accept([this, port](error_code ec, local::socket socket) {
+    if (stopping || ec == net::error::operation_aborted) return;
+    if (ec && ec != net::error::connection_aborted) {
+      paused_ports.push_back(port);
+      return;
+    }
+    const auto there = std::count_if(local_port_of.begin(), local_port_of.end(),
+                                     [port](const auto& peer) { return peer.second == port; });
+    if (!ec && there >= most_local_clients) ++refused;
+    else if (!ec)
+      call([&] {
+        tcp::socket as_tcp(io);
+        as_tcp.assign(tcp::v4(), socket.release());
+        admit_socket(std::move(as_tcp), port);
+      });
+    accept_locally(port);
+  });
+}
+
+const Access* Transport::Impl::local_access(std::uint64_t id) const {
+  const auto found = local_port_of.find(id);
+  return found == local_port_of.end() ? nullptr : &options.local_ports[found->second].access;
+}
+
+void Transport::Impl::admit_socket(tcp::socket socket, std::optional<std::size_t> local_port) {
   ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
-  if (peers.size() >= options.most_sockets) {
+  if (!local_port && peers.size() >= options.most_sockets) {
     // Someone who asks nothing makes room.
     const auto idle = std::find_if(peers.begin(), peers.end(),
                                    [](const auto& p) { return p.second->idle(); });
@@ -153,6 +200,7 @@ void Transport::Impl::admit_socket(tcp::socket socket) {
     idle->second->end();
   }
   const auto id = next_id++;
+  if (local_port) local_port_of.emplace(id, *local_port);
   peers.emplace(id, make_peer(*this, id, std::move(socket)));
   for_one(id, [](Peer& peer) { peer.begin(); });
 }
@@ -170,6 +218,7 @@ void Transport::Impl::on_beat() {
     return;
   }
   if (accept_again) accept();
+  for (const std::size_t port : std::exchange(paused_ports, {})) accept_locally(port);
   if (handler.timer) call(handler.timer);
 }
 
@@ -179,6 +228,7 @@ void Transport::Impl::begin_stop() {
   last_moment = Clock::now() + goodbye + 3 * beat;
   error_code ignored;
   acceptor.close(ignored);
+  for (local::acceptor& each : local_acceptors) each.close(ignored);
   for_all([](Peer& peer) { peer.stop(); });
   close_udp(*this);
   if (peers.empty()) io.stop();
@@ -206,8 +256,9 @@ Result<std::unique_ptr<Transport>> Transport::start(const TransportOptions& opti
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->handler = std::move(handler);
-  SL_TRY(impl->listen());
-  if (options.udp) SL_TRY(open_udp(*impl));
+  if (options.listens) SL_TRY(impl->listen());
+  if (options.listens && options.udp) SL_TRY(open_udp(*impl));
+  SL_TRY(impl->listen_locally());
   auto* const running = impl.get();
   impl->thread = std::thread([running] { running->run(); });
   return std::unique_ptr<Transport>(new Transport(std::move(impl)));
@@ -226,6 +277,7 @@ void Transport::stop() {
 std::uint16_t Transport::port() const { return impl_->bound.port(); }
 
 std::string Transport::url() const {
+  if (!impl_->options.listens) return "";
   auto address = impl_->bound.address();
   // "Everywhere" is not an address to go to; this machine's own is one of those that are meant.
   if (address.is_unspecified()) {

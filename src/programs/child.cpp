@@ -1,10 +1,12 @@
-#include "programs/pipe/child.h"
+#include "programs/child.h"
 
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,8 +17,9 @@
 #include <utility>
 
 #include "base/text.h"
+#include "programs/process_tree.h"
 
-namespace sandlot::programs::pipe {
+namespace sandlot::programs {
 namespace {
 
 void close_one(int& descriptor) {
@@ -40,69 +43,133 @@ bool open_pair(Pair& pair, bool to_child) {
   return fcntl(pair.ours, F_SETFL, fcntl(pair.ours, F_GETFL) | O_NONBLOCK) == 0;
 }
 
-/// The file that a command runs; "": there is none.
-std::string find_program(const std::string& name, const std::string& folder) {
+/// What the child needs between fork and exec, made before: it may not allocate.
+struct Plan {
+  const char* file = nullptr;
+  char* const* arguments = nullptr;
+  char* const* environment = nullptr;
+  const char* folder = "";
+  const User* user = nullptr;
+  const Limits* limits = nullptr;
+  bool may_gain_rights = true;
+  pid_t parent = 0;
+  int in = -1, out = -1, error = -1, report = -1;
+};
+
+/// By bare system calls: the wrappers of the library would have all threads of the process follow.
+bool become_user(const User& user) {
+  return syscall(SYS_setgroups, 0, nullptr) == 0 &&
+         syscall(SYS_setresgid, user.group, user.group, user.group) == 0 &&
+         syscall(SYS_setresuid, user.user, user.user, user.user) == 0;
+}
+
+bool apply(const Limits& limits) {
+  const auto at_most = [](auto what, rlim_t most) {
+    rlimit now{};
+    if (getrlimit(what, &now) != 0) return false;
+    const rlimit lower{std::min(most, now.rlim_max), std::min(most, now.rlim_max)};
+    return setrlimit(what, &lower) == 0;
+  };
+  [[maybe_unused]] const int niceness = nice(limits.niceness);
+  return at_most(RLIMIT_CORE, 0) && at_most(RLIMIT_FSIZE, limits.file_bytes) &&
+         at_most(RLIMIT_NOFILE, limits.open_files) && at_most(RLIMIT_DATA, limits.memory_bytes) &&
+         at_most(RLIMIT_AS, limits.memory_bytes + limits.address_bytes) &&
+         (limits.processes == 0 || at_most(RLIMIT_NPROC, limits.processes));
+}
+
+/// What the child does between fork and exec: system calls alone, since other threads may hold any lock.
+[[noreturn]] void become(const Plan& plan) {
+  setpgid(0, 0);
+  // A change of the user makes the kernel forget the death signal: first the one, then the other.
+  if ((!plan.user || become_user(*plan.user)) && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 &&
+      getppid() == plan.parent && dup2(plan.in, 0) >= 0 && dup2(plan.out, 1) >= 0 &&
+      dup2(plan.error, 2) >= 0 && (!*plan.folder || chdir(plan.folder) == 0) &&
+      (!plan.limits || apply(*plan.limits)) &&
+      (plan.may_gain_rights || prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0)) {
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    signal(SIGPIPE, SIG_DFL);
+    execve(plan.file, plan.arguments, plan.environment);
+  }
+  const int why = errno;
+  [[maybe_unused]] const ssize_t sent = ::write(plan.report, &why, sizeof why);
+  _exit(127);
+}
+
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+  std::vector<char*> out;
+  for (const std::string& each : texts) out.push_back(const_cast<char*>(each.c_str()));
+  out.push_back(nullptr);
+  return out;
+}
+
+}  // namespace
+
+std::string find_program(const std::string& name, const std::string& folder, std::string_view path) {
   if (name.find('/') != std::string::npos) {
     std::string file = name.front() == '/' || folder.empty() ? name : folder + "/" + name;
     return access(file.c_str(), X_OK) == 0 ? file : "";
   }
-  const char* const path = std::getenv("PATH");
-  for (const std::string_view each : split(path ? path : "/usr/local/bin:/usr/bin:/bin", ':')) {
+  for (const std::string_view each : split(path, ':')) {
     std::string file = std::string(each.empty() ? "." : each) + "/" + name;
     if (access(file.c_str(), X_OK) == 0) return file;
   }
   return "";
 }
 
-/// What the child does between fork and exec: system calls alone, since other threads may hold any lock.
-[[noreturn]] void become(const char* file, char* const* arguments, const char* folder, pid_t parent, int in,
-                         int out, int error, int report) {
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() == parent && dup2(in, 0) >= 0 && dup2(out, 1) >= 0 && dup2(error, 2) >= 0 &&
-      (!*folder || chdir(folder) == 0)) {
-    sigset_t none;
-    sigemptyset(&none);
-    sigprocmask(SIG_SETMASK, &none, nullptr);
-    signal(SIGPIPE, SIG_DFL);
-    execv(file, arguments);
-  }
-  const int why = errno;
-  [[maybe_unused]] const ssize_t sent = ::write(report, &why, sizeof why);
-  _exit(127);
+std::string text_of_exit(int status) {
+  const auto by_signal = [](int number) {
+    return "was ended by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
+  };
+  if (WIFSIGNALED(status)) return by_signal(WTERMSIG(status));
+  const int code = WEXITSTATUS(status);
+  // As shells and bubblewrap pass it on.
+  return code > 128 && code < 128 + NSIG ? by_signal(code - 128) : "ended with code " + std::to_string(code);
 }
 
-}  // namespace
-
-Result<Child> Child::start(const std::vector<std::string>& command, const std::string& folder) {
-  const auto failed = [&](const std::string& why) {
-    return Error{"cannot start '" + (command.empty() ? std::string() : command.front()) + "': " + why,
-                 "name a program and its arguments: command: [python3, brain.py]"};
+Result<Child> Child::start(const Launch& launch) {
+  const auto& [command, folder] = std::tie(launch.command, launch.folder);
+  const auto failed = [&launch](const std::string& why) {
+    return Error{
+        "cannot start '" + (launch.command.empty() ? std::string() : launch.command.front()) + "': " + why,
+        "name a program and its arguments: command: [python3, brain.py]"};
   };
   if (command.empty() || command.front().empty()) return failed("the command is empty");
-  const std::string file = find_program(command.front(), folder);
+  const char* const path = std::getenv("PATH");
+  const std::string file = find_program(command.front(), folder,
+                                        path ? path : "/usr/local/bin:/usr/bin:/bin");
   if (file.empty()) return failed("there is no such program");
   if (struct stat there; !folder.empty() && (::stat(folder.c_str(), &there) != 0 || !S_ISDIR(there.st_mode)))
     return Error{"cannot start '" + command.front() + "': there is no folder '" + folder + "' to work in",
                  "folder: is relative to the scenario's file; by default it is that file's own"};
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = pointers_to(command);
+  const std::vector<std::string> none;
+  const std::vector<char*> environment = pointers_to(launch.environment ? *launch.environment : none);
 
   Pair in, out, error, report;
   if (!open_pair(in, true) || !open_pair(out, false) || !open_pair(error, false) || !open_pair(report, false))
     return failed(std::strerror(errno));
-  const pid_t parent = getpid();
+  Plan plan;
+  plan.file = file.c_str();
+  plan.arguments = arguments.data();
+  plan.environment = launch.environment ? environment.data() : environ;
+  plan.folder = folder.c_str();
+  plan.user = launch.user ? &*launch.user : nullptr;
+  plan.limits = launch.limits ? &*launch.limits : nullptr;
+  plan.may_gain_rights = launch.may_gain_rights;
+  plan.parent = getpid();
+  plan.in = in.theirs, plan.out = out.theirs, plan.error = error.theirs, plan.report = report.theirs;
   const pid_t process = fork();
   if (process < 0) return failed(std::strerror(errno));
-  if (process == 0)
-    become(file.c_str(), arguments.data(), folder.c_str(), parent, in.theirs, out.theirs, error.theirs,
-           report.theirs);
+  if (process == 0) become(plan);
   setpgid(process, process);  // here too: whoever comes first
   Child child;
   child.process_ = process;
+  child.answers_ = launch.answers;
+  child.ends_with_child_ = launch.ends_with_child;
   for (Pair* const pair : {&in, &out, &error, &report}) close_one(pair->theirs);
-  child.input_ = std::exchange(in.ours, -1);
+  if (launch.answers) child.input_ = std::exchange(in.ours, -1);
   child.output_ = std::exchange(out.ours, -1);
   child.error_ = std::exchange(error.ours, -1);
   // The report closes when the command runs; this is the only wait, and it is one for the kernel.
@@ -119,6 +186,9 @@ Child& Child::operator=(Child&& other) noexcept {
   if (this == &other) return *this;
   end();
   process_ = std::exchange(other.process_, -1);
+  exit_status_ = std::exchange(other.exit_status_, std::nullopt);
+  answers_ = other.answers_;
+  ends_with_child_ = other.ends_with_child_;
   input_ = std::exchange(other.input_, -1);
   output_ = std::exchange(other.output_, -1);
   error_ = std::exchange(other.error_, -1);
@@ -136,10 +206,26 @@ void Child::end() {
   close_one(output_);
   close_one(error_);
   if (process_ < 0) return;
+  for (const int each : processes_below(process_)) kill(each, SIGKILL);
+  if (ends_with_child_) {
+    kill(process_, SIGCONT);
+    for (int i = 0; i < 200 && !exit_status(); ++i) usleep(1000);
+    if (process_ < 0) return;
+  }
   kill(-process_, SIGKILL);
   kill(process_, SIGKILL);
   while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {}
   process_ = -1;
+}
+
+std::optional<int> Child::exit_status() {
+  int status = 0;
+  if (process_ >= 0 && waitpid(process_, &status, WNOHANG) == process_) {
+    kill(-process_, SIGKILL);  // the rest of its group
+    process_ = -1;
+    exit_status_ = status;
+  }
+  return exit_status_;
 }
 
 void Child::write_line(std::string_view line) {
@@ -169,7 +255,7 @@ void Child::move() {
   constexpr std::size_t most_lines = 64, most_notes = 64;
   read_some(error_, error_rest_, notes_, most_notes, true);
   if (output_ < 0) return;
-  read_some(output_, rest_, lines_, most_lines, false);
+  read_some(output_, rest_, lines_, most_lines, !answers_);
   if (output_ < 0 && gone_.empty()) gone_ = "it has ended";
 }
 
@@ -214,4 +300,4 @@ std::optional<std::string> Child::take_note() {
   return note;
 }
 
-}  // namespace sandlot::programs::pipe
+}  // namespace sandlot::programs
