@@ -30,6 +30,7 @@ struct ServeOptions {
   std::string token;        ///< of administrators; "": made where one is needed
   std::string tokens_file;  ///< app/tokens.h; "": none
   std::vector<std::string> origins;
+  int most_clients = 64, most_per_address = 32;
 };
 
 struct RunOptions {

@@ -43,6 +43,10 @@ Result<Served> Served::start(const ServeOptions& options, Session& session, Cons
   transport.port = static_cast<std::uint16_t>(options.port);
   transport.next_free = options.next_free;
   transport.origins = options.origins;
+  transport.most_clients = static_cast<std::size_t>(options.most_clients);
+  transport.most_per_address = static_cast<std::size_t>(options.most_per_address);
+  transport.most_sockets = std::max(transport.most_sockets, 2 * transport.most_clients);
+  transport.most_from_loopback = transport.most_sockets;
   if (!options.tokens_file.empty()) { SL_ASSIGN(transport.tokens, load_tokens(options.tokens_file)); }
   std::string admins = options.token;
   for (const server::Token& each : transport.tokens)

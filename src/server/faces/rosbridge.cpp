@@ -58,6 +58,9 @@ double RosbridgeFace::Subscription::throttle_s() const {
 }
 
 bool RosbridgeFace::send_text(std::string text, std::size_t fragment_size, bool droppable) {
+  // Of an image in pieces of 100 bytes everybody would feel the work.
+  constexpr std::size_t most_pieces = 1000;
+  if (fragment_size > 0) fragment_size = std::max(fragment_size, text.size() / most_pieces + 1);
   if (fragment_size == 0 || text.size() <= fragment_size)
     return transport_.send(client_, {}, payload_of(text), true, droppable);
   for (std::string& each : rosbridge::fragments(text, fragment_size, std::to_string(++fragments_sent_)))
