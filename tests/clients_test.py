@@ -161,9 +161,9 @@ teams:
             with Run("examples/clients/wander.yaml", "--duration", "1s", "--rate", "1", "--tokens", tokens) as run:
                 with self.assertRaisesRegex(Refused, "this is not the token of 'rover'"):
                     Robot("rover", url=run.url)
-                with Connection(run.url) as spectator:
-                    with self.assertRaisesRegex(Refused, "a spectator may not call"):
-                        spectator.call("/delete_entity", {"entity": "rover"})
+                with Connection(run.url) as guest:
+                    with self.assertRaisesRegex(Refused, "there is no service"):
+                        guest.call("/delete_entity", {"entity": "rover"})
                 with Robot("rover", url=run.url, token="sesame-one", lockstep=True) as rover:
                     for _ in rover.steps():
                         pass

@@ -32,6 +32,7 @@ struct ServeOptions {
   std::vector<std::string> origins;
   bool udp = false;   ///< whether clients may come by UDP, too
   std::string world;  ///< file of the run, for programs that ask; "": none
+  int most_clients = 64, most_per_address = 32;
 };
 
 struct RunOptions {

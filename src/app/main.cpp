@@ -72,6 +72,14 @@ struct ServeFlags {
     verb.add_option("--token", options.token, "Token that allows to steer; one is made where none is given");
     verb.add_option("--tokens", options.tokens_file,
                     "File with tokens of administrators, spectators, robots and teams; docs/clients.md");
+    verb.add_option("--most-clients", options.most_clients,
+                    "Clients and viewers that may be connected at once")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+    verb.add_option("--most-per-address", options.most_per_address,
+                    "Connections that another machine may have at once")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
     verb.add_option(
             "--allow-origin", options.origins,
             "Another site whose pages may connect: https://app.example.org; may be given several times")
@@ -88,7 +96,8 @@ struct ServeFlags {
     if (!options.token.empty() || !options.tokens_file.empty() || !options.origins.empty() || options.udp ||
         options.address != ServeOptions().address)
       return Error{
-          "--address, --token, --tokens, --allow-origin and --udp say who may look at the page, but there is none",
+          "--address, --token, --tokens, --allow-origin and --udp say who may look at the page, but there is "
+          "none",
           "add --port 8765"};
     return {};
   }

@@ -24,6 +24,10 @@ Result<std::string> set_address(const ServeOptions& options, server::TransportOp
   transport.next_free = options.next_free;
   transport.origins = options.origins;
   transport.udp = options.udp;
+  transport.most_clients = static_cast<std::size_t>(options.most_clients);
+  transport.most_per_address = static_cast<std::size_t>(options.most_per_address);
+  transport.most_sockets = std::max(transport.most_sockets, 2 * transport.most_clients);
+  transport.most_from_loopback = transport.most_sockets;
   if (!options.tokens_file.empty()) { SL_ASSIGN(transport.tokens, load_tokens(options.tokens_file)); }
   std::string admins = options.token;
   for (const server::Token& each : transport.tokens)

@@ -25,7 +25,9 @@ struct Entry {
   std::optional<Level> role;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"token", "", "Secret word.", 0, 0, Field::required, 1000}, s.token);
+    visit(Field{"token", "", "Secret word; left out for spectators: everybody may look on.", 0, 0,
+                Field::none, 1000},
+          s.token);
     visit(Field{"role", "", "What it opens, where that is no robot and no team."}, s.role);
     visit(Field{"robot", "", "Robot that its bearer drives.", 0, 0, Field::none, 1000}, s.robot);
     visit(Field{"team", "", "Team whose robots its bearer drives.", 0, 0, Field::none, 1000}, s.team);
@@ -45,7 +47,8 @@ Result<std::vector<server::Token>> read_tokens(const std::string& text, const st
     if (opened != 1)
       return node.error(opened == 0 ? "the token opens nothing" : "the token opens several things",
                         "give one of role, robot, team");
-    if (entry.token.size() < least_token)
+    const bool everybody = entry.token.empty() && entry.role == Level::spectator;
+    if (entry.token.size() < least_token && !everybody)
       return node.error("the token is shorter than " + std::to_string(least_token) + " characters",
                         "openssl rand -hex 16 makes a good one");
     if (std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.secret == entry.token; }))

@@ -6,8 +6,9 @@
 ///   - {token: 91ab..., robot: red1}
 ///   - {token: 02d4..., team: blue}
 ///   - {token: 5f3c..., role: spectator}
+///   - {role: spectator}                  everybody may look on; else nobody may where robots or teams have tokens
 ///
-/// Errors   with file:line: no list, an entry without a token or with two things it opens, a token shorter than least_token
+/// Errors   with file:line: no list, an entry without a token (but for spectators) or with two things it opens, a token shorter than least_token
 ///          or given twice.
 #include <string>
 #include <vector>

@@ -132,15 +132,15 @@ TEST(Sessions, ATokenOpensItsRobotAlone) {
   for (const char* topic : {"/rover2/laser/ranges", "/tf", "/tf_static", "/rosout"})
     EXPECT_EQ(refused(one, subscribe(topic)).substr(0, 17), "there is no topic") << topic;
   EXPECT_EQ(refused(one, {{"op", "publish"}, {"topic", "/rover2/drive"}, {"msg", json::object()}}),
-            "a robot may not command 'rover2/drive'");
+            "nothing takes messages on '/rover2/drive'; did you mean '/rover1/drive'?");
   for (const char* service : {"/set_simulation_state", "/sandlot/console", "/sandlot/watch",
                               "/get_entity_state", "/delete_entity", "/step_simulation"})
     EXPECT_EQ(one.call(service, json::object())["result"], false) << service;
   const json services = one.call("/rosapi/services", json::object())["values"]["services"];
   for (const json& each : services) EXPECT_EQ(each.get<std::string>().rfind("/rover1/", 0), 0u) << each;
-  // A spectator by default: it looks, and changes nothing.
+  // A guest by default: it changes nothing.
   EXPECT_EQ(refused(thief, {{"op", "publish"}, {"topic", "/rover1/drive"}, {"msg", json::object()}}),
-            "a spectator may not publish");
+            "nothing takes messages on '/rover1/drive'; a client commands what it has claimed");
 
   // The same token takes over; the one before is told, and gone.
   Bridge again(run.url());

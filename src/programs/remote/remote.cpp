@@ -55,6 +55,7 @@ void Remote::adopt(Outside& before) {
   waiting_ = old.waiting_;
   gave_up_ = old.gave_up_;
   known_attachments_ = old.known_attachments_;
+  extended_ = old.extended_;
   step_ = old.step_;
   begun_ = old.begun_;
   deadline_ = old.deadline_;
@@ -69,7 +70,8 @@ void Remote::set_deadline() {
   if (const std::uint64_t came = link_->attachments(); came != known_attachments_) {
     known_attachments_ = came;
     gave_up_ = false;
-    if (client_s) begun_ = Clock::now();  // its time begins when it has come
+    // Its time begins when it has come; once, or who claims again and again would hold up the run.
+    if (client_s && !std::exchange(extended_, true)) begun_ = Clock::now();
   }
   if (client_s) deadline_ = begun_ + wall(std::min(*client_s, spec_.deadline_s));
   else if (gave_up_ || known_attachments_ > 0 || link_->given_up()) deadline_ = begun_;
@@ -81,6 +83,7 @@ Program::Resumed Remote::resume(const Observation& obs, Command&) {
   if (connected_) {
     begun_ = Clock::now();
     link_->count_step();
+    extended_ = false;
     Stream random = obs.random();
     if (!std::exchange(waiting_, true)) link_->put({step_++, obs.now(), random.bits64()});
     set_deadline();

@@ -129,6 +129,7 @@ class Remote final : public Program, public Outside {
   // The connection; none of it is State.
   std::shared_ptr<Link> link_ = std::make_shared<Link>();
   bool connected_ = false, waiting_ = false, gave_up_ = false;
+  bool extended_ = false;  ///< the step's time has begun once more, with its client
   std::uint64_t known_attachments_ = 0;
   std::uint64_t step_ = 0;
   Clock::time_point begun_, deadline_;

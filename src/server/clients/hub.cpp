@@ -16,6 +16,8 @@ constexpr auto watch_patience = 10s;             ///< a watch without its subscr
 constexpr std::size_t portion = 256;             ///< channels in one message
 constexpr std::size_t patient_bytes = 4u << 20;  ///< so much may wait when more channels are advertised
 constexpr int most_refusals_per_s = 20;
+/// Requests that work on the simulation's thread counts as: who spends all on it has 5 % of the run's time.
+constexpr double requests_per_work_s = 10'000, free_work_s = 100e-6;
 
 }  // namespace
 
@@ -223,7 +225,7 @@ Status Hub::subscribe(ClientId id, std::uint32_t subscription, std::uint32_t cha
     default: made.initial_state_sent = true;
   }
   to.subscribers.push_back(made);
-  if (to.kind == ChannelKind::status) send_status();
+  if (to.kind == ChannelKind::status) send_status(true);
   subscriptions_changed_ = true;
   graph_changed_ = true;
   return {};
@@ -268,7 +270,7 @@ void Hub::subscribe_graph(ClientId id, bool subscribe) {
   Client& client = clients_.at(id);
   if (!sees_world(client)) return refuse(id, "the graph is for those who see the world");
   client.graph = subscribe;
-  if (subscribe) send_graph(true);
+  if (subscribe) send_graph(id);
 }
 
 void Hub::leave_channel(ClientId id, std::uint32_t channel_id, std::uint32_t subscription) {
@@ -304,7 +306,21 @@ void Hub::advertise_waiting(ClientId id, Client& client) {
   }
 }
 
-bool Hub::post(std::function<void(Session&)> task) { return session_.post(std::move(task)); }
+/// What a request of a client takes of the run's time counts against its requests.
+bool Hub::post(std::function<void(Session&)> task) {
+  if (calling_ == 0) return session_.post(std::move(task));
+  return session_.post([mailbox = mailbox_, id = calling_, task = std::move(task)](Session& session) {
+    const auto begin = Clock::now();
+    task(session);
+    const double used_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (used_s > free_work_s) mailbox->push([id, used_s](Hub& hub) { hub.charge(id, used_s); });
+  });
+}
+
+void Hub::charge(ClientId id, double seconds) {
+  if (Client* const client = find(id))
+    client->budget = std::max(-most_requests_per_s, client->budget - seconds * requests_per_work_s);
+}
 
 /// Brings changed subscriptions to the simulation's thread.
 void Hub::flush(bool at_once) {
@@ -373,7 +389,7 @@ void Hub::timer() {
     if (const Client* const owner = find(channels_.at(id).owner)) owner->face->remove_channels(gone);
     remove_channel(id);
   }
-  if (graph_changed_ && now >= graph_sent_ + 1s) send_graph(false);
+  if (graph_changed_ && now >= graph_sent_ + 1s) send_graph();
   flush();
 }
 

@@ -81,6 +81,7 @@ class Hub final : private ServiceHost {
   enum class Encoding : std::uint8_t { cdr, json };
   /// Whether the client may publish there; a world that is not known yet is judged with the first message.
   Status judge(ClientId id, const Publication& publication) const;
+  Result<Inventory::Target> find_target(ClientId id, const Publication& publication) const;
   void advertise(ClientId id, std::uint32_t number, Publication publication);
   bool unadvertise(ClientId id, std::uint32_t number);
   Publication* find_publication(ClientId id, std::uint32_t number);
@@ -211,12 +212,23 @@ class Hub final : private ServiceHost {
   void advertise_waiting(ClientId id, Client& client);
   void flush(bool now = false);
   bool post(std::function<void(Session&)> task) override;
+  void charge(ClientId id, double seconds);
+  /// What is posted during its life is a client's work; 0: nobody's.
+  class Charged {
+   public:
+    Charged(Hub& hub, ClientId id) : hub_(hub) { hub.calling_ = id; }
+    ~Charged() { hub_.calling_ = 0; }
+    Charged(const Charged&) = delete;
+
+   private:
+    Hub& hub_;
+  };
 
   // hub_send.cpp
   bool send(const Subscriber& to, const Outgoing& message, bool droppable);
   void send_to_all(Channel& channel, Time stamp, const Payload& bytes, bool droppable = true);
   void send_time(Time now);
-  void send_status();
+  void send_status(bool to_new_ones_only = false);
   void send_batch(Batch& batch);
   void send_poses(const Batch& batch);
   void adopt(const Inventory& inventory);
@@ -247,9 +259,11 @@ class Hub final : private ServiceHost {
   void end_waiting();
 
   // hub_sessions.cpp
+  void change_access(ClientId id, Client& client, Access access);
   Result<Access> access_of_claim(ClientId id, const ClaimRequest& request);
   Status make_room(ClientId id, const Access& access, const std::string& token);
   void attach(ClientId id, const Claimed& claimed);
+  void let_go(ClientId id, Client& client, const std::string& why);
   void end_claim(ClientId id, Client& client, const std::string& why);
   void stop_robots(ClientId id, Client& client);
   void watch_claims();
@@ -263,7 +277,7 @@ class Hub final : private ServiceHost {
   // hub_publish.cpp
   foxglove::Parameter own_parameter(const std::string& name) const;
   void send_own_parameters();
-  void send_graph(bool to_everybody);
+  void send_graph(ClientId new_looker = 0);
 
   Session& session_;
   Console& console_;
@@ -284,6 +298,7 @@ class Hub final : private ServiceHost {
   std::map<ClientId, Client> clients_;
   std::uint64_t claims_ = 0;
   std::size_t watched_ = 0;
+  ClientId calling_ = 0;  ///< whose request makes work for the simulation's thread just now
 
   Session::Report report_;
   std::shared_ptr<const Inventory> inventory_ = std::make_shared<Inventory>();

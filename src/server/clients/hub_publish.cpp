@@ -86,6 +86,7 @@ bool Hub::get_parameters(ClientId id, const std::vector<std::string>& names, con
   if (names.empty()) answer->values = {own_parameter(speed_name), own_parameter(paused_name)};
   for (const std::string& name : names)
     if (is_own(name)) answer->values.push_back(own_parameter(name));
+  const Charged charged(*this, client.access.is_admin() ? 0 : id);
   post([answer, names](Session& session) {
     const Simulation& simulation = session.simulation();
     if (names.empty() && !list_parameters(simulation, answer->values))
@@ -152,11 +153,16 @@ Status Hub::judge(ClientId id, const Publication& publication) const {
   const Access& who = access(id);
   if (who.role == Role::spectator) return Error{"a spectator may not publish"};
   if (inventory_->topics.empty() && !who.is_scoped()) return {};
-  const auto target = inventory_->target(publication.topic, publication.type);
-  if (!target) return target.error();
-  if (!who.may_command(target->address))
-    return Error{std::string("a ") + name_of(who.role) + " may not command '" + target->address + "'"};
-  return {};
+  const auto target = find_target(id, publication);
+  return target ? Status() : Status(target.error());
+}
+
+/// Who drives robots is told of no others, neither by refusals nor by the nearest name.
+Result<Inventory::Target> Hub::find_target(ClientId id, const Publication& publication) const {
+  const Access& who = access(id);
+  if (!who.is_scoped()) return inventory_->target(publication.topic, publication.type);
+  return inventory_->target(publication.topic, publication.type,
+                            [&](const Inventory::Slot& slot) { return who.may_command(slot.device); });
 }
 
 void Hub::advertise(ClientId id, std::uint32_t number, Publication publication) {
@@ -179,7 +185,7 @@ void Hub::publish(ClientId id, Publication& publication, std::span<const std::by
                   Encoding encoding) {
   if (publication.world != inventory_) {  // levels may have changed, and with them who takes it
     if (Status allowed = judge(id, publication); !allowed) return refuse(id, allowed.error().text());
-    const auto target = inventory_->target(publication.topic, publication.type);
+    const auto target = find_target(id, publication);
     if (!target) return refuse(id, target.error().text());
     publication.world = inventory_;
     publication.target = *target;
@@ -235,8 +241,9 @@ foxglove::Graph Hub::graph() const {
   return out;
 }
 
-/// Nothing is written as long as nobody looks.
-void Hub::send_graph(bool to_everybody) {
+/// Nothing is written as long as nobody looks. @param new_looker  gets it alone, and whole
+void Hub::send_graph(ClientId new_looker) {
+  if (new_looker != 0) return clients_.at(new_looker).face->tell_graph(graph(), {});
   graph_changed_ = false;
   graph_sent_ = Clock::now();
   std::vector<ClientId> lookers;
@@ -260,7 +267,7 @@ void Hub::send_graph(bool to_everybody) {
   const bool changed = !same(graph_.published, now.published) || !same(graph_.subscribed, now.subscribed) ||
                        !same(graph_.services, now.services);
   graph_ = std::move(now);
-  if (!changed && !to_everybody) return;
+  if (!changed) return;
   for (const ClientId id : lookers) clients_.at(id).face->tell_graph(graph_, removed);
 }
 

@@ -181,13 +181,13 @@ void Hub::state_changed() {
   flush();
 }
 
-void Hub::send_status() {
-  status_sent_ = Clock::now();
+void Hub::send_status(bool to_new_ones_only) {
+  if (!to_new_ones_only) status_sent_ = Clock::now();
   std::vector<Subscriber>& subscribers = channel(ChannelKind::status).subscribers;
   if (subscribers.empty()) return;
   std::optional<ServerOptions::Recording> recording;
   if (options_.recording) recording = options_.recording();
-  const auto write = [&](bool admin) {
+  const auto write = [&](bool admin, bool scoped) {
     const std::string& why_not = !report_.takes_no_input.empty() ? report_.takes_no_input
                                                                  : report_.may_not_rewind;
     std::string out;
@@ -214,9 +214,9 @@ void Hub::send_status() {
       seconds("target_s", report_.target);
       w.key("may_steer").flag(admin && report_.takes_no_input.empty());
       w.key("may_rewind").flag(admin && report_.may_not_rewind.empty());
-      w.key("why_not").text(admin ? why_not : "you are a spectator");
+      w.key("why_not").text(admin ? why_not : scoped ? "you drive a robot" : "you are a spectator");
       w.key("replay").flag(report_.replay);
-      if (recording)
+      if (recording && !scoped)
         w.key("recording").object([&] {
           w.key("file").text(recording->file);
           w.key("messages").integer(recording->messages);
@@ -230,10 +230,17 @@ void Hub::send_status() {
     return payload_of(out);
   };
   const ChannelInfo& info = channel(ChannelKind::status).info;
-  const Outgoing admins(info, report_.now, write(true)), others(info, report_.now, write(false));
+  const Outgoing admins(info, report_.now, write(true, false)),
+      spectators(info, report_.now, write(false, false)), drivers(info, report_.now, write(false, true));
   for (Subscriber& each : subscribers) {
     const Client* const client = find(each.client);
-    const bool sent = send(each, client && client->access.is_admin() ? admins : others, true);
+    if (!client || (to_new_ones_only && each.initial_state_sent)) continue;
+    const Access& access = client->access;
+    const bool sent = send(each,
+                           access.is_admin()    ? admins
+                           : access.is_scoped() ? drivers
+                                                : spectators,
+                           true);
     each.initial_state_sent = each.initial_state_sent || sent;
   }
 }

@@ -53,6 +53,7 @@ void Hub::call(ClientId id, const ServiceOffer& service, const AnyMessage& reque
           hub.answer(id, [&](Face& face) { answer(face, outcome); });
         });
       });
+  const Charged charged(*this, client.access.is_admin() ? 0 : id);
   if (offered.row) offered.row->call({*this, id, client.access.is_admin()}, request, waiting);
   else call_device(id, offered, request, waiting);
 }
@@ -67,7 +68,8 @@ void Hub::call_device(ClientId id, const OfferedService& offered, const AnyMessa
                       const std::shared_ptr<ServiceCall>& call) {
   CallRequest made{offered.device, offered.service->name, {}};
   request.to_cdr(made.bytes);
-  const auto queued = session_.call(std::move(made), {Source::Kind::admin, id}, [call](const auto& response) {
+  const auto kind = access(id).is_scoped() ? Source::Kind::robot : Source::Kind::admin;
+  const auto queued = session_.call(std::move(made), {kind, id}, [call](const auto& response) {
     if (response) call->answer(*response);
     else call->fail(response.error().text());
   });

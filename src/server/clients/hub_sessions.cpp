@@ -17,6 +17,8 @@ namespace sandlot::server {
 namespace {
 
 constexpr int most_wrong_tokens = 5;
+/// A claim makes work for the simulation's thread: it counts as so many requests.
+constexpr double requests_per_claim = 25;
 constexpr double messages_per_step =
     64;  ///< that a client in lockstep may send for each, however fast the run is
 
@@ -39,11 +41,18 @@ Result<Access> Hub::access_of_claim(ClientId id, const ClaimRequest& request) {
   const auto& tokens = options_.transport.tokens;
   const Access& has = client.access;
   bool allowed = has.is_admin() || (has.role == out.role && has.name == out.name);
+  bool knows_names = has.is_admin();
   if (!allowed && !request.token.empty()) {
+    // Messages that came with the one too many are on their way still.
+    if (client.wrong_tokens >= most_wrong_tokens) return Error{"too many wrong tokens"};
+    if (!transport_->may_try_token(id))
+      return Error{"too many wrong tokens came from your address", "wait some seconds"};
     const Token* const token = find_token(request.token, tokens);
     allowed = token && (token->access.is_admin() ||
                         (token->access.role == out.role && token->access.name == out.name));
+    knows_names = knows_names || (token && token->access.is_admin());
     // Who guesses is sent away.
+    if (!allowed) transport_->count_wrong_token(id);
     if (!allowed && ++client.wrong_tokens >= most_wrong_tokens)
       transport_->close_client(id, "too many wrong tokens");
   }
@@ -53,7 +62,7 @@ Result<Access> Hub::access_of_claim(ClientId id, const ClaimRequest& request) {
     for (const Inventory::Robot& each : inventory_->robots)
       known.push_back(out.role == Role::robot ? each.name : each.team);
     return Error{std::string("there is no ") + name_of(out.role) + " '" + out.name.substr(0, 100) + "'",
-                 suggestion(out.name, known)};
+                 knows_names ? suggestion(out.name, known) : ""};
   }
   return out;
 }
@@ -83,6 +92,8 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
     roster_.refused(id);
     claimed(*client.face, std::move(error));
   };
+  if (client.budget < requests_per_claim - 1) return fail({"too many claims in a second"});
+  client.budget -= requests_per_claim - 1;
   if (client.claim) {  // the same in another way
     const std::string& name = request.robot.empty() ? request.team : request.robot;
     const Role role = request.robot.empty() ? Role::team : Role::robot;
@@ -91,15 +102,16 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
     const std::string token = client.claim->request.token;
     if (!token.empty() && !same_secret(request.token, token))
       return fail({"this is not the token of '" + name + "'"});
-    end_claim(id, client, "the client claims it in another way");
   }
   auto access = access_of_claim(id, request);
   if (!access) return fail(std::move(access.error()));
   if (Status free = make_room(id, *access, request.token); !free) return fail(std::move(free.error()));
-  // What it may not see any more is taken from it.
-  const Access before = std::exchange(client.access, std::move(*access));
-  revoke(id, client);
-  client.publications.clear();
+  Access before = client.access;
+  if (client.claim) {  // its subscriptions stay
+    before = client.claim->before;
+    let_go(id, client, "the client claims it in another way");
+  }
+  change_access(id, client, std::move(*access));
   client.claim.emplace();
   client.claim->number = ++claims_;
   client.claim->request = request;
@@ -109,6 +121,14 @@ void Hub::claim(ClientId id, const ClaimRequest& request, Claimed claimed) {
                   request.name);
   if (!request.lockstep) return claimed(*client.face, std::vector<ClaimedProgram>());
   attach(id, claimed);
+}
+
+/// What the client may not see or do any more is taken from it.
+void Hub::change_access(ClientId id, Client& client, Access access) {
+  client.access = std::move(access);
+  transport_->change_access(id, client.access);
+  revoke(id, client);
+  client.publications.clear();
 }
 
 /// Finds the remote programs of the client's robots, behind what it has subscribed to until now.
@@ -251,14 +271,19 @@ void Hub::release(ClientId id) { end_claim(id, clients_.at(id), "the client let 
 /// What it drove stands still, and is free for others.
 void Hub::end_claim(ClientId id, Client& client, const std::string& why) {
   if (!client.claim) return;
+  Access before = client.claim->before;
+  let_go(id, client, why);
+  change_access(id, client, std::move(before));
+  roster_.released(id, client.access);
+}
+
+void Hub::let_go(ClientId id, Client& client, const std::string& why) {
   for (const ProgramLink& each : client.claim->links) {
     each.link->detach(why);
     post([feed = feed_, link = each.link](Session&) { feed->remove_link(link); });
   }
   if (!client.claim->request.lockstep) stop_robots(id, client);
-  client.access = std::move(client.claim->before);
   client.claim.reset();
-  roster_.released(id, client.access);
   session_.wake();
 }
 

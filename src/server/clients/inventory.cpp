@@ -107,11 +107,13 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
   return out;
 }
 
-Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_view type) const {
+Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_view type,
+                                            const std::function<bool(const Slot&)>& visible) const {
   const std::string wanted = type.empty() ? "" : long_name(type);
   if (topic.substr(0, 1) == "/") topic.remove_prefix(1);
   const Slot* of_other_type = nullptr;
   const auto fits = [&](const Slot& slot) {
+    if (visible && !visible(slot)) return false;
     if (wanted.empty() || wanted == slot.info->name) return true;
     of_other_type = &slot;
     return false;
@@ -133,6 +135,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
   std::vector<std::string> known;
   bool drives = false;
   for (const Slot& slot : slots) {
+    if (visible && !visible(slot)) continue;
     known.push_back(slot.name.substr(1));
     if (known.empty() || known.back() != slot.device) known.push_back(slot.device);
     if (slot.active && is_twist(*slot.info)) {
@@ -144,6 +147,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
   return Error{"nothing takes messages on '/" + std::string(topic.substr(0, 200)) + "'",
                !near.empty() ? "did you mean '/" + near + "'?"
                : drives      ? "robots take them as /ROBOT/cmd_vel and /ROBOT/DEVICE"
+               : visible     ? "a client commands what it has claimed"
                              : "nothing in this world takes commands"};
 }
 

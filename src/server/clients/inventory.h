@@ -1,6 +1,7 @@
 #pragma once
 /// Inventory of a world's topics and parameters, copied once per revision so that the transport's thread can
 /// look them up by itself.
+#include <functional>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -49,12 +50,14 @@ struct Inventory {
 
   /// Where a message that a client calls so goes: "/rover/drive/ideal/command", "/rover/drive" (its active level),
   /// "/rover/cmd_vel" (the active drive that takes a Twist or TwistStamped). Errors name the nearest.
-  /// @param type  of the messages as the client calls it; "": whatever is expected there
+  /// @param type     of the messages as the client calls it; "": whatever is expected there
+  /// @param visible  whether the client may know of a slot; unset: of all
   struct Target {
     std::string address;  ///< as CommandRequest has it
     const Slot* slot = nullptr;
   };
-  Result<Target> target(std::string_view topic, std::string_view type) const;
+  Result<Target> target(std::string_view topic, std::string_view type,
+                        const std::function<bool(const Slot&)>& visible = {}) const;
 };
 
 /// @pre on the simulation's thread

@@ -221,7 +221,9 @@ void FoxgloveFace::call(const foxglove::CallService& request) {
 void FoxgloveFace::fetch(const foxglove::FetchAsset& request) {
   constexpr std::string_view scheme = "sandlot://";
   std::vector<std::byte> out;
-  if (starts_with(request.uri, scheme)) {
+  if (hub_.access(client_).is_scoped()) {
+    out = foxglove::asset_error(request.request, "assets are for administrators and spectators");
+  } else if (starts_with(request.uri, scheme)) {
     const auto body = hub_.assets().get(std::string_view(request.uri).substr(scheme.size()));
     out = body ? foxglove::asset(request.request, *body->bytes)
                : foxglove::asset_error(request.request, body.error().text());

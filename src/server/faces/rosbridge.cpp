@@ -75,6 +75,9 @@ void RosbridgeFace::send_response(const std::string& service, const std::string&
 }
 
 bool RosbridgeFace::send_text(std::string text, std::size_t fragment_size, bool droppable) {
+  // Of an image in pieces of 100 bytes everybody would feel the work.
+  constexpr std::size_t most_pieces = 1000;
+  if (fragment_size > 0) fragment_size = std::max(fragment_size, text.size() / most_pieces + 1);
   // A piece becomes longer when it is quoted.
   constexpr std::size_t most_piece = 16'000;
   if (carrier_ == Carrier::udp && fragment_size > 0) fragment_size = std::min(fragment_size, most_piece);

@@ -5,6 +5,7 @@
 ///   spectator  sees everything that viewers see, or the shared topics alone, as the scenario has it; changes nothing
 ///   robot      sees the topics of its robot and those that are shared; commands its robot
 ///   team       the same for the robots of its team
+///   guest      sees the time; may claim a robot or a team with its token
 ///
 /// What robots and teams do not see: poses, /tf, contacts, the world, values, parameters, commands and topics of others; but
 /// for topics that the scenario shares by name (model/annotations.h). Commands are never shared.
@@ -19,9 +20,9 @@
 
 namespace sandlot::server {
 
-enum class Role : std::uint8_t { spectator, robot, team, admin };
+enum class Role : std::uint8_t { spectator, robot, team, admin, guest };
 inline const char* name_of(Role role) {
-  constexpr const char* names[] = {"spectator", "robot", "team", "admin"};
+  constexpr const char* names[] = {"spectator", "robot", "team", "admin", "guest"};
   return names[static_cast<std::size_t>(role)];
 }
 
@@ -32,7 +33,7 @@ struct Access {
 
   bool is_admin() const { return role == Role::admin; }
   /// Whether it is for a part of the world only.
-  bool is_scoped() const { return role == Role::robot || role == Role::team; }
+  bool is_scoped() const { return role == Role::robot || role == Role::team || role == Role::guest; }
   bool drives(std::string_view robot) const {
     for (const std::string& each : robots)
       if (each == robot) return true;
@@ -61,7 +62,7 @@ inline bool sees_topic(const Access& access, const model::Sharing& sharing, std:
          access.drives(first_part(topic.substr(topic.empty() ? 0 : 1)));
 }
 
-/// A secret and what it opens.
+/// A secret and what it opens. A spectator's may be empty: everybody may look on.
 struct Token {
   std::string secret;
   Access access;

@@ -102,6 +102,7 @@ const char* reason(int status) {
     case 405: return "Method Not Allowed";
     case 408: return "Request Timeout";
     case 413: return "Content Too Large";
+    case 429: return "Too Many Requests";
     case 431: return "Request Header Fields Too Large";
     case 500: return "Internal Server Error";
     case 503: return "Service Unavailable";
@@ -249,6 +250,20 @@ const Token* find_token(std::string_view secret, std::span<const Token> tokens) 
   return found;
 }
 
+namespace {
+
+/// What somebody without a token may do.
+Role role_without(std::span<const Token> tokens) {
+  bool drives = false, everybody = false;
+  for (const Token& each : tokens) {
+    drives = drives || each.access.is_scoped();
+    everybody = everybody || (each.secret.empty() && each.access.role == Role::spectator);
+  }
+  return drives && !everybody ? Role::guest : Role::spectator;
+}
+
+}  // namespace
+
 Admission admit(std::string_view query, std::string_view authorization, std::span<const Token> tokens,
                 bool on_loopback) {
   const auto role = query_value(query, "role");
@@ -266,9 +281,14 @@ Admission admit(std::string_view query, std::string_view authorization, std::spa
     return {.access = {.role = on_loopback && role_wanted == "admin" ? Role::admin : Role::spectator}};
   const Token* const token = secret.empty() ? nullptr : find_token(secret, tokens);
   if (!secret.empty() && !token)
-    return {.status = 401, .why = "this is not the token; without one you may look, but not steer"};
+    return {.status = 401,
+            .why = role_without(tokens) == Role::guest
+                       ? "this is not the token"
+                       : "this is not the token; without one you may look, but not steer"};
   Admission out;
+  out.access.role = role_without(tokens);
   if (token && role_wanted == "admin") out.access = token->access;
+  else if (token && !token->access.is_scoped()) out.access.role = Role::spectator;
   return out;
 }
 

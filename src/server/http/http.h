@@ -64,7 +64,9 @@ struct Admission {
   std::string why;  ///< and with this sentence
 };
 /// @param authorization  the header's value, or empty
-/// @param tokens         who brings one has its access. None: on loopback everybody is an administrator, elsewhere nobody
+/// @param tokens         who brings one has its access. None: on loopback everybody is an administrator, elsewhere nobody.
+///                       Who brings none looks on; where tokens open robots or teams only if a spectator's token is empty,
+///                       since a team's program could look on as well
 Admission admit(std::string_view query, std::string_view authorization, std::span<const Token> tokens,
                 bool on_loopback);
 /// Null: it is none of them. Takes as long whichever it is.

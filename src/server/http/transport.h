@@ -3,12 +3,15 @@
 ///
 /// Threads   one thread of its own runs all connections and calls the Handler; send(), close_client(), post() and counters() may be called from
 ///           any thread, stop() from any but the Handler's.
-/// Queues    each client has one, of `queue_bytes`. A droppable message that finds it more than half full is dropped and counted; one that must
+/// Queues    each client has one, of `queue_bytes`; all together have four times that, beyond which the fullest count as full. A droppable message that finds it more than half full is dropped and counted; one that must
 ///           arrive and finds it full closes the client, with a reason. An empty queue takes a message of any size. A client that takes nothing
 ///           for `stall_s` is closed. A message of more than 1 MiB goes out in fragments of that size.
 /// Refused   (counted, answered with a reason and an HTTP status) what is no HTTP, heads over 16 KiB, bodies, methods but GET and HEAD,
 ///           requests with another site's Origin or, on loopback, a Host that is not loopback's (DNS rebinding); WebSockets with no known
-///           sub-protocol, a wrong token, beyond `most_clients`; requests that take longer than `handshake_s`.
+///           sub-protocol, a wrong token, beyond `most_clients`; requests that take longer than `handshake_s`; sockets beyond
+///           `most_per_address`. Where there is no room, who has asked nothing for a second, or is a guest for two, makes room.
+/// Shares    a client whose messages have taken more than `work_share` of the thread's time is read later: nothing is lost, and TCP slows
+///           the sender.
 /// TCP       a connection whose first byte is `{` carries JSON objects both ways, with a line break behind each of ours. It gets text
 ///           messages alone; its good-bye is a last object.
 /// UDP       with the option, at the same number: a JSON object per datagram, both ways, from clients that have shown that they
@@ -63,6 +66,10 @@ struct TransportOptions {
   std::size_t most_clients = 64;
   std::size_t queue_bytes = 32u << 20;
   std::size_t most_sockets = 256;  ///< with those that speak HTTP
+  /// Sockets of one address; of loopback, which all programs of a machine share.
+  std::size_t most_per_address = 32, most_from_loopback = 256;
+  double wrong_tokens_at_once = 20, wrong_token_pause_s = 1;  ///< per address; server/http/guesses.h
+  double work_share = 0.25;  ///< of the thread's time that the messages of one client may take
   double handshake_s = 10, stall_s = 30, silence_s = 30, idle_s = 60;
   double udp_silence_s = 10;
 };
@@ -120,6 +127,11 @@ class Transport {
   ConnectionFacts facts(ClientId client) const;
   /// Allows a client so many messages beyond those per second: it was asked for them. On the transport's thread.
   void grant(ClientId client, double messages);
+  /// What a client may do has changed. On the transport's thread.
+  void change_access(ClientId client, const Access& access);
+  /// Whether tokens of the client's address may be looked at. On the transport's thread, as the next.
+  bool may_try_token(ClientId client) const;
+  void count_wrong_token(ClientId client);
   /// What is queued is still sent, then the reason (its first 123 bytes), with code 1008.
   void close_client(ClientId client, std::string_view reason);
   /// Runs f on the transport's thread, soon.

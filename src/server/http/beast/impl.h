@@ -19,6 +19,7 @@
 #include <optional>
 #include <thread>
 
+#include "server/http/guesses.h"
 #include "server/http/transport.h"
 
 namespace sandlot::server {
@@ -40,12 +41,14 @@ struct Message {
   std::size_t size() const { return head.size() + body(); }
   /// What it counts in a queue: a million empty ones take memory too.
   std::size_t weight() const { return size() + 128; }
+  std::size_t own = 0;  // of its weight, what no other queue shares
 };
 
 /// What waits for one client. Guarded by Impl::mutex.
 struct Queue {
   std::deque<Message> messages;
   std::size_t bytes = 0;   // with that being written
+  std::size_t own = 0;     // of these, what no other queue shares
   bool scheduled = false;  // flush() is on its way
   bool full = false;       // something that must arrive did not fit
   std::uint64_t dropped = 0;
@@ -68,6 +71,13 @@ struct Peer {
   virtual void end() = 0;
   /// Whether there was no request since the last answer.
   virtual bool idle() const = 0;
+  /// Whether it has been connected for some time, and has not made a request.
+  virtual bool dawdles(Clock::time_point now) const = 0;
+  /// Whether it has been a guest for some time.
+  virtual bool is_old_guest(Clock::time_point now) const = 0;
+  virtual void change_access(const Access& access) = 0;
+  /// Its address, as Impl counts them.
+  virtual const std::string& address() const = 0;
 
   ConnectionFacts facts;  ///< but for what was dropped
 };
@@ -76,7 +86,9 @@ using PeerPtr = std::shared_ptr<Peer>;
 struct UdpDoor;  // udp.cpp
 
 struct Transport::Impl {
-  TransportOptions options;
+  explicit Impl(const TransportOptions& the_options) : options(the_options) {}
+
+  const TransportOptions options;
   Handler handler;
   // Destroyed last: what is under way in it holds the peers.
   net::io_context io{1};
@@ -89,12 +101,15 @@ struct Transport::Impl {
   std::map<std::uint64_t, PeerPtr> peers;
   std::shared_ptr<UdpDoor> udp;  ///< null: not listened to
   std::uint64_t next_id = 1;
-  std::size_t clients = 0;  // peers that have been let in, or are about to
+  std::size_t clients = 0;                        // peers that have been let in, or are about to
+  std::map<std::string, std::size_t> sockets_of;  // number by address
+  Guesses guesses{options.wrong_tokens_at_once, options.wrong_token_pause_s};
   bool accept_again = false, stopping = false;
   Clock::time_point next_beat, last_moment;
 
   mutable std::mutex mutex;
   std::map<ClientId, std::shared_ptr<Queue>> queues;
+  std::size_t own_bytes = 0;  // of all queues
   std::mutex stop_mutex;
   std::atomic<std::uint64_t> open_clients{0}, accepted{0}, refused{0}, dropped{0}, bytes_out{0}, bytes_in{0};
   std::thread thread;
@@ -108,6 +123,8 @@ struct Transport::Impl {
   void admit_socket(tcp::socket socket, std::optional<std::size_t> local_port = std::nullopt);
   /// Of a peer that came to a local port; null: it did not.
   const Access* local_access(std::uint64_t id) const;
+  bool has_room(const std::string& address);
+  bool has_room_for_client();
   void on_beat();
   void begin_stop();
   void call(const std::function<void()>& f) noexcept;
@@ -119,7 +136,7 @@ struct Transport::Impl {
 /// "127.0.0.1:50312"; "": the connection is gone.
 std::string remote_address(const tcp::socket& socket);
 /// Defined in peer.cpp.
-PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket);
+PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket, std::string address);
 
 /// Listens to datagrams at the port that is bound. Defined in udp.cpp, as the next.
 Status open_udp(Transport::Impl& impl);

@@ -1,10 +1,12 @@
 /// A connection: HTTP on the socket below its WebSocket stream until it asks for an upgrade, then WebSocket. The one file that compiles Beast's
 /// server side.
+/// long file: one class whose stages share a socket, a buffer and deadlines.
 ///
 /// Beast's own timeouts stay off. Its idle timeout takes a slow link for a dead one, since a pong waits behind the data, and in 1.74 a timeout
 /// that finds a read suspended behind a close breaks an assertion of Beast's. on_beat() looks after all deadlines instead.
 #define BOOST_BEAST_USE_STD_STRING_VIEW
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -35,6 +37,15 @@ constexpr std::size_t most_head_bytes = 16 << 10;
 constexpr std::size_t slice_bytes = 1 << 20;  // of a long message, so that a slow reader's progress is seen
 constexpr std::size_t most_linger_bytes = 1 << 20;  // read and thrown away after a refusal
 constexpr double messages_per_s = 2000, burst = 4000;
+constexpr double work_at_once_s = 0.1, work_per_granted_s = 100e-6;
+constexpr auto patience_with_new = std::chrono::seconds(1), patience_with_guests = std::chrono::seconds(2);
+
+/// Time that this thread has used: unlike that of the wall, it is the same on a busy machine.
+double thread_seconds() {
+  timespec t{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
@@ -51,6 +62,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
   Transport::Impl& impl;
   const std::uint64_t id;
+  const std::string from;  // address
+  const Clock::time_point came = Clock::now();
   ws::stream<tcp::socket> stream;
   Stage stage = Stage::idle;
   Clock::time_point deadline;  // of all stages but open
@@ -75,9 +88,17 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   ws::close_reason farewell;
   Clock::time_point heard, progress, next_ping, bucket_time;
   double bucket = burst;
+  // Time that its messages may take still; below 0 it is not read.
+  double work_s = work_at_once_s;
+  Clock::time_point worked;
+  bool resting = false;
 
-  Connection(Transport::Impl& owner, std::uint64_t number, tcp::socket socket)
-      : impl(owner), id(number), stream(std::move(socket)), buffer(most_head_bytes * 2) {}
+  Connection(Transport::Impl& owner, std::uint64_t number, tcp::socket socket, std::string address)
+      : impl(owner),
+        id(number),
+        from(std::move(address)),
+        stream(std::move(socket)),
+        buffer(most_head_bytes * 2) {}
 
   tcp::socket& socket() { return stream.next_layer(); }
   bool is_client() const { return queue != nullptr; }
@@ -244,7 +265,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void begin_raw() {
     first = false;
     const Access* const given = impl.local_access(id);
-    if ((!given && impl.clients >= impl.options.most_clients) || impl.stopping) {
+    if (impl.stopping || (!given && !impl.has_room_for_client())) {
       ++impl.refused;
       return end();
     }
@@ -253,6 +274,11 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     queue = std::make_shared<Queue>();
     error_code ignored;
     socket().set_option(net::socket_base::keep_alive(true), ignored);
+    // The system finds out about a peer that has vanished as soon as we would by pings.
+    const int silence_s = std::max(1, static_cast<int>(impl.options.silence_s) / 3), tries = 2;
+    ::setsockopt(socket().native_handle(), IPPROTO_TCP, TCP_KEEPIDLE, &silence_s, sizeof silence_s);
+    ::setsockopt(socket().native_handle(), IPPROTO_TCP, TCP_KEEPINTVL, &silence_s, sizeof silence_s);
+    ::setsockopt(socket().native_handle(), IPPROTO_TCP, TCP_KEEPCNT, &tries, sizeof tries);
     socket().set_option(tcp::no_delay(true), ignored);
     raw.emplace(foxglove::most_text_bytes);
     subprotocol = "tcp";
@@ -262,18 +288,36 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   void take_raw() {
     raw->append({static_cast<const char*>(buffer.cdata().data()), buffer.size()});
     buffer.clear();
-    while (stage == Stage::open) {
+    while (stage == Stage::open && !rests()) {
       const auto next = raw->next();
       if (!next) return refuse_client(ws::close_code::bad_payload, next.error().what);
       if (!*next) return;
       if (!allowed()) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
-      if (impl.handler.message) impl.handler.message(id, std::as_bytes(std::span(**next)), true);
+      hand_over(std::as_bytes(std::span(**next)), true);
     }
+  }
+
+  /// Gives a message to the handler, and charges the client with the time that took.
+  void hand_over(std::span<const std::byte> bytes, bool text) {
+    if (!impl.handler.message) return;
+    const double begin_s = thread_seconds();
+    impl.handler.message(id, bytes, text);
+    work_s -= thread_seconds() - begin_s;
+  }
+
+  /// Whether it has to wait until others have had their time; on_beat() goes on.
+  bool rests() {
+    if (work_s >= 0) return false;
+    const auto now = Clock::now();
+    const double passed_s = std::chrono::duration<double>(now - worked).count();
+    worked = now;
+    work_s = std::min(work_at_once_s, work_s + passed_s * impl.options.work_share);
+    return resting = work_s < 0;
   }
 
   void read_raw() {
     take_raw();
-    if (stage != Stage::open) return;
+    if (stage != Stage::open || resting) return;
     socket().async_read_some(buffer.prepare(most_head_bytes), guarded([this](error_code ec, std::size_t n) {
                                if (ec) return end();
                                impl.bytes_in += n, facts.bytes_in += n;
@@ -309,6 +353,9 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     {
       const std::lock_guard lock(impl.mutex);
       queue->bytes -= std::min(queue->bytes, current.weight());
+      const std::size_t own = std::min(queue->own, current.own);
+      queue->own -= own;
+      impl.own_bytes -= own;
     }
     current = {};
     flush();
@@ -323,12 +370,20 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       return refuse(400, fmt::format("no known sub-protocol was offered; known are: {}",
                                      fmt::join(options.subprotocols, ", ")));
     const Access* const given = impl.local_access(id);
+    const auto authorization = header(http::field::authorization);
+    const auto query_token = query_value(target.query, "token");
+    const bool tries = !given && !options.tokens.empty() &&
+                       (!authorization.empty() || (query_token && *query_token));
+    if (tries && !impl.guesses.allowed(from, Clock::now()))
+      return refuse(429, "too many wrong tokens came from your address; wait some seconds");
     const auto admission = given ? Admission{*given}
-                                 : admit(target.query, header(http::field::authorization), options.tokens,
-                                         impl.on_loopback());
+                                 : admit(target.query, authorization, options.tokens, impl.on_loopback());
+    if (admission.status == 401) impl.guesses.count_wrong(from, Clock::now());
     if (admission.status != 0) return refuse(admission.status, admission.why);
+    if (admission.access.role == Role::guest && !subprotocol.empty())
+      return refuse(401, "looking on needs a token here: ?token=TOKEN");
     if (buffer.size() > 0) return refuse(400, "a WebSocket begins after the answer to its handshake");
-    if (impl.clients >= options.most_clients)
+    if (!impl.has_room_for_client())
       return refuse(503,
                     fmt::format("there are {} viewers already, which is the limit", options.most_clients));
     if (impl.stopping) return refuse(503, "the server is going away");
@@ -359,7 +414,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
   void opened() {
     stage = Stage::open;
-    heard = progress = bucket_time = Clock::now();
+    heard = progress = bucket_time = worked = Clock::now();
     if (!raw) buffer = beast::flat_buffer(foxglove::most_binary_bytes + (64 << 10));
     facts.address = remote_address(socket());
     ++impl.accepted;
@@ -391,13 +446,11 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
             return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
           if (stream.is_message_done()) {
             const auto data = buffer.cdata();
-            if (impl.handler.message)
-              impl.handler.message(id, {static_cast<const std::byte*>(data.data()), data.size()},
-                                   stream.got_text());
+            hand_over({static_cast<const std::byte*>(data.data()), data.size()}, stream.got_text());
             buffer.clear();
             if (buffer.capacity() > slice_bytes) buffer.shrink_to_fit();
           }
-          if (stage == Stage::open) read();
+          if (stage == Stage::open && !rests()) read();
         }));
   }
 
@@ -473,6 +526,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     const std::lock_guard lock(impl.mutex);
     impl.queues.erase(id);
     queue->messages.swap(unsent);
+    impl.own_bytes -= queue->own;
+    queue->own = 0;
     impl.dropped += unsent.size();
   }
 
@@ -525,6 +580,12 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       deadline = now + goodbye;
       return drop_queue();
     }
+    if (resting && !rests()) {
+      heard = now;
+      if (raw) read_raw();
+      else read();
+      if (stage != Stage::open) return;
+    }
     if (flood) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
     const double silent_s = std::chrono::duration<double>(now - heard).count();
     if (writing) {
@@ -546,7 +607,12 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     }
   }
 
-  void grant(double messages) override { bucket = std::min(burst, bucket + messages); }
+  void grant(double messages) override {
+    bucket = std::min(burst, bucket + messages);
+    work_s = std::min(work_at_once_s, work_s + messages * work_per_granted_s);
+  }
+
+  void change_access(const Access& to) override { access = to; }
 
   void close_for(std::string_view reason) override {
     if (stage != Stage::open) return;
@@ -565,6 +631,16 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
   bool idle() const override { return stage == Stage::idle && !first; }
 
+  bool dawdles(Clock::time_point now) const override {
+    return ((stage == Stage::idle && first) || stage == Stage::head) && now > came + patience_with_new;
+  }
+
+  bool is_old_guest(Clock::time_point now) const override {
+    return stage == Stage::open && access.role == Role::guest && now > came + patience_with_guests;
+  }
+
+  const std::string& address() const override { return from; }
+
   void begin() override { await_request(); }
 
   void end() override {
@@ -574,6 +650,9 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     const auto self = shared_from_this();
     impl.peers.erase(id);
     impl.local_port_of.erase(id);
+    if (const auto of_address = impl.sockets_of.find(from);
+        of_address != impl.sockets_of.end() && --of_address->second == 0)
+      impl.sockets_of.erase(of_address);
     error_code ignored;
     socket().close(ignored);
     if (!is_client()) return;
@@ -589,8 +668,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
 }  // namespace
 
-PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket) {
-  return std::make_shared<Connection>(impl, id, std::move(socket));
+PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket, std::string address) {
+  return std::make_shared<Connection>(impl, id, std::move(socket), std::move(address));
 }
 
 }  // namespace sandlot::server

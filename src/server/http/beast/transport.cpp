@@ -22,6 +22,21 @@ namespace {
 
 constexpr auto beat = std::chrono::milliseconds(33);
 constexpr int most_local_clients = 8;  // of one local port
+constexpr const char* loopback = "loopback";
+
+/// What is counted as one address: one of IPv4, a network of 64 bits of IPv6, all of loopback.
+std::string counted_address(const tcp::socket& socket) {
+  error_code ec;
+  net::ip::address address = socket.remote_endpoint(ec).address();
+  if (ec) return "";
+  if (address.is_v6() && address.to_v6().is_v4_mapped())
+    address = net::ip::make_address_v4(net::ip::v4_mapped, address.to_v6());
+  if (address.is_loopback()) return loopback;
+  if (address.is_v4()) return address.to_string();
+  auto bytes = address.to_v6().to_bytes();
+  std::fill(bytes.begin() + 8, bytes.end(), std::uint8_t{0});
+  return net::ip::address_v6(bytes).to_string();
+}
 
 }  // namespace
 
@@ -180,29 +195,56 @@ void Transport::Impl::admit_socket(tcp::socket socket, std::optional<std::size_t
   ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
-  if (!local_port && peers.size() >= options.most_sockets) {
-    // Someone who asks nothing makes room.
-    const auto idle = std::find_if(peers.begin(), peers.end(),
-                                   [](const auto& p) { return p.second->idle(); });
-    if (idle == peers.end()) {
-      ++refused;
-      socket.non_blocking(true, ignored);
-      const std::string text = "there are too many connections\n";
-      const auto head = write_head({.status = 503,
-                                    .type = "text/plain",
-                                    .length = text.size(),
-                                    .keep_alive = false}) +
-                        text;
-      socket.write_some(net::buffer(head), ignored);
-      socket.shutdown(tcp::socket::shutdown_send, ignored);
-      return;
-    }
-    idle->second->end();
+  const std::string address = counted_address(socket);
+  if (!local_port && !has_room(address)) {
+    ++refused;
+    socket.non_blocking(true, ignored);
+    const std::string text = "there are too many connections\n";
+    const auto head = write_head(
+                          {.status = 503, .type = "text/plain", .length = text.size(), .keep_alive = false}) +
+                      text;
+    socket.write_some(net::buffer(head), ignored);
+    socket.shutdown(tcp::socket::shutdown_send, ignored);
+    return;
   }
   const auto id = next_id++;
   if (local_port) local_port_of.emplace(id, *local_port);
-  peers.emplace(id, make_peer(*this, id, std::move(socket)));
+  peers.emplace(id, make_peer(*this, id, std::move(socket), address));
+  ++sockets_of[address];
   for_one(id, [](Peer& peer) { peer.begin(); });
+}
+
+/// Whether another socket of an address may come. Who asks nothing makes room.
+bool Transport::Impl::has_room(const std::string& address) {
+  const auto now = Clock::now();
+  const auto make_room = [&](bool same_address) {
+    for (const bool also_new : {false, true})
+      for (const auto& [id, peer] : peers) {  // the oldest first
+        if (same_address && peer->address() != address) continue;
+        if (!peer->idle() && !(also_new && peer->dawdles(now))) continue;
+        const PeerPtr held = peer;
+        held->end();
+        return true;
+      }
+    return false;
+  };
+  const auto of_address = sockets_of.find(address);
+  const std::size_t most = address == loopback ? options.most_from_loopback : options.most_per_address;
+  if (of_address != sockets_of.end() && of_address->second >= most && !make_room(true)) return false;
+  return peers.size() < options.most_sockets || make_room(false);
+}
+
+/// Whether another client may come. Who has been a guest for long makes room: it has claimed nothing.
+bool Transport::Impl::has_room_for_client() {
+  if (clients < options.most_clients) return true;
+  const auto now = Clock::now();
+  const auto guest = std::find_if(peers.begin(), peers.end(),
+                                  [now](const auto& p) { return p.second->is_old_guest(now); });
+  if (guest == peers.end()) return false;
+  const PeerPtr held = guest->second;
+  ++refused;
+  held->end();
+  return true;
 }
 
 void Transport::Impl::on_beat() {
@@ -253,8 +295,7 @@ std::string remote_address(const tcp::socket& socket) {
 Transport::Transport(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Result<std::unique_ptr<Transport>> Transport::start(const TransportOptions& options, Handler handler) {
-  auto impl = std::make_unique<Impl>();
-  impl->options = options;
+  auto impl = std::make_unique<Impl>(options);
   impl->handler = std::move(handler);
   if (options.listens) SL_TRY(impl->listen());
   if (options.listens && options.udp) SL_TRY(open_udp(*impl));
@@ -305,11 +346,16 @@ bool Transport::send(ClientId client, std::span<const std::byte> head, Payload p
                     .payload = std::move(payload),
                     .text = text};
     const std::size_t weight = message.weight();
-    sent = !queue.full &&
-           (queue.bytes == 0 || (queue.bytes + weight <= most && (!droppable || queue.bytes <= most / 2)));
+    message.own = weight - (message.payload && message.payload.use_count() > 1 ? message.body() : 0);
+    // Where all of them together hold too much, those that hold more than their part are the full ones.
+    const bool crowded = impl_->own_bytes > 4 * most && queue.own > most / 8;
+    sent = !queue.full && (queue.bytes == 0 || (queue.bytes + weight <= most && !crowded &&
+                                                (!droppable || queue.bytes <= most / 2)));
     if (sent) {
-      queue.messages.push_back(std::move(message));
       queue.bytes += weight;
+      queue.own += message.own;
+      impl_->own_bytes += message.own;
+      queue.messages.push_back(std::move(message));
     }
   } catch (const std::bad_alloc&) { sent = false; }
   if (!sent) ++impl_->dropped, ++queue.dropped;
@@ -342,6 +388,20 @@ ConnectionFacts Transport::facts(ClientId client) const {
 
 void Transport::grant(ClientId client, double messages) {
   impl_->for_one(client, [messages](Peer& peer) { peer.grant(messages); });
+}
+
+void Transport::change_access(ClientId client, const Access& access) {
+  impl_->for_one(client, [&access](Peer& peer) { peer.change_access(access); });
+}
+
+bool Transport::may_try_token(ClientId client) const {
+  const auto found = impl_->peers.find(client);
+  return found != impl_->peers.end() && impl_->guesses.allowed(found->second->address(), Clock::now());
+}
+
+void Transport::count_wrong_token(ClientId client) {
+  const auto found = impl_->peers.find(client);
+  if (found != impl_->peers.end()) impl_->guesses.count_wrong(found->second->address(), Clock::now());
 }
 
 void Transport::close_client(ClientId client, std::string_view reason) {
