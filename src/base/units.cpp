@@ -30,7 +30,7 @@ constexpr Unit units[] = {
     {"V", "V", 1},          {"mV", "V", 1e-3},        {"A", "A", 1},           {"mA", "A", 1e-3},
     {"ohm", "ohm", 1},      {"mohm", "ohm", 1e-3},    {"%", "1", 1e-2},        {"1", "1", 1},
     {"C", "C", 1},          {"Ah", "C", 3600},        {"mAh", "C", 3.6},       {"mW", "W", 1e-3},
-    {"kW", "W", 1e3},       {"mJ", "J", 1e-3},        {"Ns", "Ns", 1},
+    {"kW", "W", 1e3},       {"mJ", "J", 1e-3},        {"uJ", "J", 1e-6},       {"nJ", "J", 1e-9},        {"Ns", "Ns", 1},
     {"bit/s", "bit/s", 1},  {"kbit/s", "bit/s", 1e3}, {"Mbit/s", "bit/s", 1e6},
 };
 // clang-format on
