@@ -148,8 +148,10 @@ TEST(Monitor, ValuesUseThoseBeforeThem) {
   ASSERT_FALSE(later);
   EXPECT_NE(later.error().text().find("the value 'b' is declared later, or uses itself"), std::string::npos)
       << later.error().text();
-  EXPECT_EQ(Simulation::create(watched({{"a", "a + 1", {}}}, {}), {}, diagnostics).error().text(),
-            "the value 'a' is declared later, or uses itself; a value may use those above it");
+  EXPECT_EQ(
+      Simulation::create(watched({{"a", "a + 1", {}}}, {}), {}, diagnostics).error().text(),
+      "expression 'a + 1', column 1: the value 'a' is declared later, or uses itself; a value may use those "
+      "above it");
   model::Setup circle = watched({}, {});
   for (const auto& [team, other] : {std::pair("red", "blue"), {"blue", "red"}}) {
     model::TeamDecl& decl = circle.teams.emplace_back();
