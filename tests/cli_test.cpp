@@ -59,6 +59,8 @@ TEST(Cli, AMisspeltVerbOrOptionIsAnsweredWithTheNearest) {
   refused("", "a verb is needed; sandlot --help lists the verbs");
   refused("chek scenarios/indoor.yaml", "there is no verb 'chek'; did you mean 'check'?");
   refused("topic lst run.mcap", "there is no verb 'lst'; did you mean 'list'?");
+  EXPECT_EQ(sandlot("help run").out, sandlot("run --help").out);
+  EXPECT_EQ(sandlot("help").out, sandlot("--help").out);
   refused("fly", "there is no verb 'fly'; sandlot --help lists the verbs");
   refused("run scenarios/indoor.yaml --duraton 3s",
           "there is no option '--duraton'; did you mean '--duration'?");

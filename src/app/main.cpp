@@ -779,7 +779,14 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
     return fmt::format("error: {}\n", usage_error(program, error));
   });
   try {
-    app.parse(argc, argv);
+    // `sandlot help run` is `sandlot run --help`.
+    std::vector<char*> words(argv, argv + argc);
+    std::string help = "--help";
+    if (argc > 1 && std::string_view(argv[1]) == "help") {
+      words.erase(words.begin() + 1);
+      words.push_back(help.data());
+    }
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   } catch (const std::system_error& error) {

@@ -7,6 +7,16 @@
 namespace sandlot::controllers::sequence {
 namespace {
 
+/// A packet as it is written in a file.
+struct Letter {
+  std::string to, data;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"to", "", "Robot or team that it is for; empty: all."}, s.to);
+    visit(Field{"data", "", "Content, as a text."}, s.data);
+  }
+};
+
 Result<double> number_of(const Node& node, const std::string& device) {
   double value = 0;
   if (!node.is_scalar() || !parse_number(node.text(), value) || !std::isfinite(value))
@@ -23,9 +33,15 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
   };
   if (const auto to = robot.actuator<msg::String>(entry.key); to && entry.value.is_scalar())
     return Sequence::Order{at_s, Sequence::Words{*to, {entry.value.text()}}};
-  if (const auto to = robot.actuator<msg::RadioPacket>(entry.key); to && entry.value.is_scalar()) {
-    const std::string& text = entry.value.text();
-    return Sequence::Order{at_s, Sequence::Packet{*to, {"", {text.begin(), text.end()}}}};
+  if (const auto to = robot.actuator<msg::RadioPacket>(entry.key)) {
+    Letter letter;
+    if (entry.value.is_scalar()) letter.data = entry.value.text();
+    else if (entry.value.is_map()) SL_TRY(read_fields(entry.value, letter, "/steps"));
+    else
+      return entry.value.error("the order for '" + entry.key + "' is not a packet",
+                               "write a text, or {to: robot or team, data: text}", "/steps");
+    return Sequence::Order{at_s,
+                           Sequence::Packet{*to, {letter.to, {letter.data.begin(), letter.data.end()}}}};
   }
   if (entry.value.is_scalar() && (entry.value.text() == "true" || entry.value.text() == "false")) {
     Sequence::Switch order{.value = {entry.value.text() == "true"}};

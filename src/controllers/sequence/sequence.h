@@ -5,7 +5,8 @@
 /// Orders   to the devices it names: a number is a Float64 (joint motors: angle, speed or effort by their level), a list
 ///          [forward, left, turn] a Twist in m/s and rad/s for a drive. Lists may be shorter; the rest is 0. The words true
 ///          and false are a Bool (grippers); for a device that takes a String, any text is one (voice); for one
-///          that takes a RadioPacket, a text is a packet for all. For a heading drive a list is [speed, heading].
+///          that takes a RadioPacket, a text is a packet for all and {to: name, data: text} one for a robot or a team. For a
+///          heading drive a list is [speed, heading].
 /// Time     an order is given in the first control step not before its time. With `repeat` the list begins again every
 ///          so many seconds, counted from the start; orders at or after the end of a round are never given.
 /// Limits   open loop: it does not look whether anything came of it.

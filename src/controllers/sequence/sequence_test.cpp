@@ -126,6 +126,37 @@ TEST(Sequence, ATextForARadioIsAPacketForAll) {
   EXPECT_EQ(std::string(packet.data.begin(), packet.data.end()), "hello");
 }
 
+TEST(Sequence, AMapForARadioSaysWhoItIsFor) {
+  const auto sequence = [](const Node& order, Command& cmd) {
+    Node orders = Node::map(), step = Node::map();
+    orders.set("radio", order);
+    step.set("at", Node::scalar("0"));
+    step.set("orders", orders);
+    Sequence controller;
+    controller.spec.steps = list_of({step});
+    Description robot = description();
+    robot.actuators.push_back({"radio", "send", msg::RadioPacket::ros_type, 3, {}});
+    const Status ready = controller.init(robot);
+    if (!ready) return ready.error().text();
+    controller.step(Observation(Time{}, {}, {}, Stream(1, 2, Purpose::controller, 3)), cmd);
+    return std::string();
+  };
+  Node order = Node::map();
+  order.set("to", Node::scalar("red"));
+  order.set("data", Node::scalar("hello"));
+  Command cmd;
+  EXPECT_EQ(sequence(order, cmd), "");
+  ASSERT_EQ(cmd.orders().size(), 1u);
+  ByteReader r(cmd.bytes(cmd.orders()[0]));
+  msg::RadioPacket packet;
+  read(r, packet);
+  EXPECT_EQ(packet.to, "red");
+  EXPECT_EQ(std::string(packet.data.begin(), packet.data.end()), "hello");
+  order.set("date", Node::scalar("hello"));
+  EXPECT_NE(sequence(order, cmd).find("did you mean 'data'?"), std::string::npos) << sequence(order, cmd);
+  EXPECT_NE(sequence(Node::sequence(), cmd).find("{to: robot or team, data: text}"), std::string::npos);
+}
+
 TEST(Sequence, RefusesWhatItCannotOrder) {
   const auto complaint = [](std::vector<Node> steps) {
     Sequence controller;

@@ -569,7 +569,7 @@ Expression::Evaluated Expression::evaluate(std::span<const double> inputs, std::
   if (std::isfinite(value)) return {value, true};
   if (is_absent(value)) return {value, true, true};
   // Again without the marks, so that a log shows the infinity.
-  return {run(inputs, tables, false), false};
+  return {run(inputs, tables, false), false, false, is_broken(value)};
 }
 
 std::span<const Expression::Function> Expression::functions() { return function_list; }

@@ -66,11 +66,13 @@ class Expression {
     double value;
     bool finite;          ///< false also when a step made an infinity or NaN of finite numbers: 1 / 0 > 3
     bool absent = false;  ///< no value, as of the mean of nothing
+    bool broken = false;  ///< not finite because a step made it so, not because an input was
   };
   /// @pre one number per input, one table per pattern
   Evaluated evaluate(std::span<const double> inputs, std::span<const Table> tables = {});
-  /// A NaN of its own kind.
+  /// NaNs of their own kinds. A broken input makes what depends on it broken.
   static double no_value();
+  static double broken_value();
 
   /// A function as help shows it: "hypot(x, y, ...)" and its result.
   struct Function {

@@ -230,6 +230,7 @@ const Rule* find(std::span<const Rule> rules, std::string_view Rule::*name, std:
 bool is_broken(double x) { return has_bits(x, broken_bits); }
 bool is_absent(double x) { return has_bits(x, absent_bits); }
 double Expression::no_value() { return absent; }
+double Expression::broken_value() { return broken; }
 
 const FunctionRule* find_function(std::string_view name) {
   return find<FunctionRule>(functions, &FunctionRule::name, name);

@@ -114,14 +114,15 @@ std::optional<std::uint32_t> Monitor::find_value(std::string_view name) const {
 
 std::optional<double> Monitor::value(std::uint32_t index) const {
   // An expression that is being computed asks for those before it: they are ready.
-  if (index < computing_) return computed_[index];
+  if (index < computing_) return computed_[index].value;
   SL_CHECK(computing_ == 0);
   for (; computing_ <= index; ++computing_) {
     const auto result = values_[computing_].evaluate();
-    computed_[computing_] = result ? std::optional(result->value) : std::nullopt;
+    computed_[computing_].value = result ? std::optional(result->value) : std::nullopt;
+    computed_[computing_].broken = result && result->broken;
   }
   computing_ = 0;
-  return computed_[index];
+  return computed_[index].value;
 }
 
 void Monitor::save(ByteWriter& w) const {

@@ -59,6 +59,8 @@ class Monitor {
   const std::vector<std::string>& value_names() const { return names_; }
   /// The present value of a named value.
   std::optional<double> value(std::uint32_t index) const;
+  /// Whether the latest value() of it was an infinity or NaN that came of finite numbers, such as 1 / 0.
+  bool is_broken(std::uint32_t index) const { return computed_[index].broken; }
 
   /// The run's own, if it has one, and then those of the teams.
   const std::vector<Criterion>& criteria() const { return criteria_; }
@@ -83,7 +85,11 @@ class Monitor {
   const Simulation& simulation_;
   std::vector<std::string> names_;
   mutable std::vector<ValueExpression> values_;
-  mutable std::vector<std::optional<double>> computed_;
+  struct Computed {
+    std::optional<double> value;
+    bool broken = false;
+  };
+  mutable std::vector<Computed> computed_;
   mutable std::uint32_t computing_ = 0;  ///< values below this index are those of now
   std::vector<Event> events_;
   std::vector<Criterion> criteria_;

@@ -100,6 +100,10 @@ ValueExpression::ValueExpression(const Simulation& simulation, Expression expres
     inputs_.push_back(NamedValue::find_or_wait(simulation, address));
 }
 
+void ValueExpression::look_up() {
+  for (NamedValue& input : inputs_) input = NamedValue::find_or_wait(*simulation_, input.address());
+}
+
 std::vector<std::string> ValueExpression::addresses() const {
   std::vector<std::string> all(expression_.inputs().begin(), expression_.inputs().end());
   for (const Expression::Pattern& pattern : expression_.patterns())
@@ -137,17 +141,27 @@ void ValueExpression::look(const Expression::Pattern& pattern, Population& popul
 }
 
 std::optional<Expression::Evaluated> ValueExpression::evaluate() {
+  bool broken = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const auto value = inputs_[i].read();
     if (!value) return std::nullopt;
     numbers_[i] = *value;
+    broken = broken || inputs_[i].is_broken();
   }
   for (std::size_t i = 0; i < populations_.size(); ++i) {
     look(expression_.patterns()[i], populations_[i]);
     tables_[i] = {populations_[i].things, populations_[i].numbers};
   }
-  const Expression::Evaluated result = expression_.evaluate(numbers_, tables_);
-  return result.absent ? std::nullopt : std::optional(result);
+  Expression::Evaluated result = expression_.evaluate(numbers_, tables_);
+  if (result.absent) return std::nullopt;
+  if (!broken) return result;
+  // What is named behaves as if it were written out: 1 / 0 > 3 is not a yes, wherever the 1 / 0 stands.
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    if (inputs_[i].is_broken()) numbers_[i] = Expression::broken_value();
+  const Expression::Evaluated marked = expression_.evaluate(numbers_, tables_);
+  result.finite = result.finite && marked.finite;
+  result.broken = marked.broken;
+  return result;
 }
 
 }  // namespace sandlot

@@ -257,6 +257,10 @@ ValueFound NamedValue::look() const {
   return {Is::absent};
 }
 
+bool NamedValue::is_broken() const {
+  return what_ == What::named && simulation_->monitor().is_broken(index_);
+}
+
 std::optional<double> NamedValue::read() {
   if (revision_ != simulation_->revision()) {
     std::string unit = std::move(unit_);  // it stays known when the thing goes
@@ -412,6 +416,30 @@ std::optional<Error> no_such_marker(const Simulation& simulation, std::string_vi
                names.empty() ? "declare it: markers: [{kind: disc, name: ...}]" : suggestion(name, names)};
 }
 
+namespace {
+
+/// The error for a value or criterion of the scenario that is not there yet where it is used.
+std::optional<Error> not_yet(const Simulation& simulation, std::string_view thing, std::string_view rest) {
+  const model::Setup& setup = simulation.setup();
+  const std::string_view name = thing == "values" ? rest : thing;
+  if (simulation.monitor().find_value(name)) return std::nullopt;
+  for (const model::ValueDecl& value : setup.values)
+    if (value.name == name)
+      return Error{"the value '" + value.name + "' is declared later, or uses itself",
+                   "a value may use those above it"};
+  const bool of_run = thing == "criterion" && rest.empty() && setup.criterion;
+  const bool of_team = rest == "criterion" &&
+                       std::any_of(setup.teams.begin(), setup.teams.end(), [&](const model::TeamDecl& team) {
+                         return team.name == thing && team.criterion;
+                       });
+  if (of_run || of_team)
+    return Error{"values and criteria cannot use a criterion",
+                 "name what is needed twice under 'values', and use that"};
+  return std::nullopt;
+}
+
+}  // namespace
+
 Error no_such_value(const Simulation& simulation, std::string_view address) {
   const std::string shown(address.substr(0, 100));
   const auto [thing, rest] = cut(address);
@@ -443,6 +471,7 @@ Error no_such_value(const Simulation& simulation, std::string_view address) {
     }
     for (const std::string& each : things) known = known || each == thing;
   }
+  if (auto error = not_yet(simulation, thing, rest)) return std::move(*error);
   if (!known) return {"there is no '" + std::string(thing.substr(0, 100)) + "'", suggestion(thing, things)};
   if (entity && entity->instance.name == thing)
     if (auto error = no_such_marker(simulation, rest)) return std::move(*error);

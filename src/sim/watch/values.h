@@ -48,6 +48,8 @@ class NamedValue {
   const std::string& unit() const { return unit_; }
   /// The value now, or nothing.
   std::optional<double> read();
+  /// Whether the number of the latest read() is an infinity or NaN that the scenario's own expression made, as 1 / 0 does.
+  bool is_broken() const;
 
  private:
   friend class SimulationNames;
@@ -142,6 +144,8 @@ class ValueExpression {
   std::string unit() const;
   /// Nothing when one of the addresses has no value now.
   std::optional<Expression::Evaluated> evaluate();
+  /// Finds its addresses again, where some were known before what they name was there.
+  void look_up();
 
  private:
   /// Values of the things of a pattern, found anew when the Model has changed.

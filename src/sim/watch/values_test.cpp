@@ -146,7 +146,20 @@ TEST(Monitor, ValuesUseThoseBeforeThem) {
   Diagnostics diagnostics;
   const auto later = Simulation::create(watched({{"a", "b", {}}, {"b", "1", {}}}, {}), {}, diagnostics);
   ASSERT_FALSE(later);
-  EXPECT_NE(later.error().text().find("there is no 'b'"), std::string::npos) << later.error().text();
+  EXPECT_NE(later.error().text().find("the value 'b' is declared later, or uses itself"), std::string::npos)
+      << later.error().text();
+  EXPECT_EQ(
+      Simulation::create(watched({{"a", "a + 1", {}}}, {}), {}, diagnostics).error().text(),
+      "expression 'a + 1', column 1: the value 'a' is declared later, or uses itself; a value may use those "
+      "above it");
+  model::Setup circle = watched({}, {});
+  for (const auto& [team, other] : {std::pair("red", "blue"), {"blue", "red"}}) {
+    model::TeamDecl& decl = circle.teams.emplace_back();
+    decl.name = team;
+    decl.criterion.emplace().value = std::string(other) + ".criterion";
+  }
+  EXPECT_NE(Simulation::create(circle, {}, diagnostics).error().text().find("cannot use a criterion"),
+            std::string::npos);
 }
 
 TEST(Monitor, EventsCountStretchesAndHold) {
@@ -208,6 +221,28 @@ TEST(Monitor, WhatIsNotFiniteEndsTheRun) {
   EXPECT_NE(status.error().what.find("event 'bad': a part of '1 / (sim.tick - 5) > 0'"), std::string::npos);
   EXPECT_NE(status.error().what.find("at 0.05 s"), std::string::npos) << status.error().what;
   EXPECT_TRUE(simulation->stop_reason());
+}
+
+TEST(Monitor, ADivisionByZeroEndsTheRunAlsoWhereAValueNamesIt) {
+  // At tick 5: inf > 0 would be a yes, and so would be what is computed from it.
+  for (const char* const when : {"slope > 0", "twice > 0", "values.twice < 1 or twice >= 1"}) {
+    const auto simulation = build(
+        watched({{"slope", "1 / (sim.tick - 5)", {}}, {"twice", "2 * slope", {}}},
+                {{"bad", when, {}, false, false, {}},
+                 {"guarded", "if(sim.tick == 5, 1, twice) > 0", {}, false, false, {}}}));
+    advance(*simulation, 4);
+    const Status status = simulation->tick();
+    ASSERT_FALSE(status) << when;
+    EXPECT_NE(status.error().what.find("event 'bad'"), std::string::npos) << status.error().what;
+  }
+  const auto guarded = build(watched({{"slope", "1 / (sim.tick - 5)", {}}},
+                                     {{"good", "if(sim.tick == 5, 1, slope) > 0", {}, false, false, {}}}));
+  advance(*guarded, 7);
+  EXPECT_EQ(event(*guarded, "good").first, Time::from_s(0.05));
+  // A measured infinity may be named.
+  const auto measured = build(
+      watched({{"far", "rover1/laser.ranges[0]", {}}}, {{"seen", "far > 0", {}, false, false, {}}}));
+  advance(*measured, 20);
 }
 
 TEST(Monitor, WhatIsNotFiniteAtTheBeginningIsToldByTheFirstTick) {

@@ -131,6 +131,8 @@ TEST(Kicker, ReachOpeningAndWhatStandsBetweenDecideWhatIsMet) {
     EXPECT_EQ(hits({{"ball", {0.4, 0.15, 0.15}}}, "0"), "") << engine << ": beside the ray";
     // At 37 degrees: a fan of 60 degrees to both sides reaches it.
     EXPECT_EQ(hits({{"ball", {0.4, 0.15, 0.15}}}, "120 deg"), "ball") << engine;
+    // It is seen between 25 and 48 degrees: not by a fan of 20 degrees to both sides.
+    EXPECT_EQ(hits({{"ball", {0.4, 0.15, 0.15}}}, "40 deg"), "") << engine << ": beside the fan";
     EXPECT_EQ(hits({{"far", {0.45, 0, 0.15}}, {"near", {0.3, 0, 0.15}}}, "0"), "near") << engine;
   }
 }
@@ -429,6 +431,10 @@ TEST(HeadingDrive, TurnsTheShorterWayAtItsRateAndGoesMeanwhile) {
     const double way = norm(
         Vec3{value(*simulation, "robot1.pose.x"), value(*simulation, "robot1.pose.y"), 0});
     EXPECT_NEAR(way, 1, 1e-6) << engine;
+    command(*simulation, "robot1/go", msg::SpeedHeading{-7, 2 - math::pi});  // and back
+    advance(*simulation, 100);
+    EXPECT_NEAR(value(*simulation, "robot1.pose.x"), 0, 1e-6) << engine;
+    EXPECT_NEAR(value(*simulation, "robot1.pose.y"), 0, 1e-6) << engine;
   }
 }
 
@@ -470,7 +476,10 @@ model::Setup team(const char* engine) {
     each.devices.push_back(device("foot", "kicker",
                                   map({{"reach", "0.5"}, {"opening", "120 deg"}, {"max_impulse", "0.4"}}),
                                   {{0.17, 0, 0}, {}}));
-    each.devices.push_back(device("lamp", "lamp", map({{"rate", "25"}}), {{0, 0, 0.3}, {}}));
+    Node lamp = map({{"rate", "25"}}), levels = Node::sequence();
+    for (const char* const level : {"brightness", "color"}) levels.push(Node::scalar(level));
+    lamp.set("levels", levels);
+    each.devices.push_back(device("lamp", "lamp", lamp, {{0, 0, 0.3}, {}}));
     each.devices.push_back(device("eyes", "agent_eyes", map({{"rate", "20"}})));
     each.devices.push_back(device("cell", "light_sensor", map({{"rate", "20"}}), {{0.1, 0, 0.3}, {}}));
   }
@@ -490,6 +499,7 @@ void play(Simulation& simulation, std::uint64_t until) {
     if (tick % 20 == 5) command(simulation, "rover1/foot", msg::Float64{0.3});
     if (tick % 10 == 3)
       command(simulation, "rover1/lamp", msg::Float64{0.05 * static_cast<double>(tick % 20)});
+    if (tick == 12) command(simulation, "rover1/lamp", msg::ColorRGBA{0.2f, 0.9f, 0.4f, 1});
     if (tick % 30 == 1)
       command(simulation, "agent/go", msg::SpeedHeading{0.5, 0.1 * static_cast<double>(tick)});
     advance(simulation, 1);

@@ -80,6 +80,7 @@ Status Simulation::build(Diagnostics& diagnostics, bool restored) {
   scenes_.paint(ground_paint_of(elements_.markers()));
   scenes_.rebuild(entities_, revision_, devices_.need_render_scene(), diagnostics);
   SL_TRY(monitor_->add(setup_, setup_.addresses));
+  elements_.look_up();
   return restored ? Status() : check_sharing();
 }
 

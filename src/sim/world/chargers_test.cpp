@@ -61,5 +61,63 @@ TEST(Charger, ReachesTheBatteriesWithinItsDistanceAmongMany) {
   }
 }
 
+TEST(Charger, GivesWhatOneBatteryCannotTakeToTheNext) {
+  // 4 W for two, of whom the first takes 1 W at most: 3 W are left for the second.
+  model::Setup setup = movers({}, 2);
+  for (int i = 0; i < 2; ++i) {
+    model::Instance& robot = setup.instances[1 + static_cast<std::size_t>(i)];
+    robot.X_WM.p = {0, 1.0 * i, 0.2};
+    Node keys = map({{"capacity", "10 J"}, {"initial_charge", "0.5"}});
+    if (i == 0) keys.set("max_charge_power", Node::scalar("1 W"));
+    robot.devices.push_back(device("battery", "battery", keys));
+  }
+  model::Instance station = placed("station", one_shape("post", Cylinder{0.1, 0.4}, 0),
+                                   {{0.5, 0.5, 0.2}, {}});
+  station.is_robot = true;
+  station.devices.push_back(device("charger", "charger", map({{"power", "4 W"}, {"reach", "1 m"}})));
+  setup.instances.push_back(std::move(station));
+  const auto simulation = build(std::move(setup));
+  advance(*simulation, 100);
+  EXPECT_NEAR(value(*simulation, "robot1/battery.energy"), 5 + 1, 1e-11);
+  EXPECT_NEAR(value(*simulation, "robot2/battery.energy"), 5 + 3, 1e-11);
+  EXPECT_EQ(value(*simulation, "robot1/battery.rejected"), 0);
+}
+
+TEST(Charger, OfARobotDrawsNothingForBatteriesThatAreFull) {
+  model::Setup setup = movers({}, 2);
+  for (int i = 0; i < 2; ++i) {
+    model::Instance& robot = setup.instances[1 + static_cast<std::size_t>(i)];
+    robot.X_WM.p = {0, 0.6 * i, 0.2};
+    robot.devices.push_back(device("battery", "battery", map({{"capacity", "10 J"}})));
+  }
+  setup.instances[1].devices.push_back(
+      device("charger", "charger", map({{"power", "1 W"}, {"reach", "1 m"}})));
+  const auto simulation = build(std::move(setup));
+  advance(*simulation, 50);
+  EXPECT_EQ(value(*simulation, "robot1/charger.batteries"), 1);
+  EXPECT_EQ(value(*simulation, "robot1/charger.drawn"), 0);
+  EXPECT_EQ(value(*simulation, "robot1/battery.energy"), 10);
+}
+
+TEST(EnergyRule, IsForTheRobotsThatItNames) {
+  model::Setup setup = movers({}, 2);
+  for (std::size_t i = 1; i <= 2; ++i)
+    setup.instances[i].devices.push_back(
+        device("battery", "battery", map({{"capacity", "1 J"}, {"drain", "2 W"}})));
+  model::ElementDecl rule;
+  rule.name = rule.kind = "energy";
+  rule.config.set("robots", Node::sequence()).push(Node::scalar("robot2"));
+  setup.rules.push_back(rule);
+  const auto simulation = build(std::move(setup));
+  advance(*simulation, 60);  // both are empty after 0.5 s
+  EXPECT_EQ(value(*simulation, "robot1/battery.empty"), 1);
+  EXPECT_EQ(value(*simulation, "rules/energy.count"), 1);
+  drive(*simulation, 1, 0, "robot1");
+  drive(*simulation, 1, 0, "robot2");
+  advance(*simulation, 1);
+  EXPECT_TRUE(simulation->outcomes()[0].status);
+  EXPECT_FALSE(simulation->outcomes()[1].status);
+}
+
 }  // namespace
 }  // namespace sandlot::test

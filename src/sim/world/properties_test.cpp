@@ -44,6 +44,7 @@ TEST(PropertySensor, PublishesWhatRulesAndPeopleMakeOfAProperty) {
   EXPECT_EQ(value(*simulation, "rules/impact.robots[0].blows"), 1);
   const double damage_Ns = value(*simulation, "rules/impact.robots[0].sum");
   EXPECT_GT(damage_Ns, 1.9);
+  EXPECT_NEAR(damage_Ns, value(*simulation, "rules/impact.robots[0].hardest") - 2, 1e-12);
   EXPECT_NEAR(seen.value, 100 - 10 * damage_Ns, 1e-9);
   EXPECT_EQ(seen.value, value(*simulation, "robot1.health"));
   simulation->submit(ParameterRequest{"robot1", "health", Node::scalar("90")});

@@ -477,6 +477,7 @@ Radios chatter(const char* access) {
 void talk(Radios& world, std::uint64_t until) {
   while (world.simulation->tick_index() < until) {
     const auto tick = world.simulation->tick_index();
+    if (tick == 11) world.send("buoy", text("mind the rock"));
     for (std::uint64_t i = 0; i < 8; ++i)
       if (tick % (5 + i) == i) world.send("r" + std::to_string(i), text("at " + std::to_string(tick)));
     world.tick();

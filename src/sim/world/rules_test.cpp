@@ -69,6 +69,58 @@ TEST(Statistics, WhatCannotBeCountedIsRefused) {
             std::string::npos);
 }
 
+TEST(Statistics, SamplesKeepTheirIntervalWhereItIsNoMultipleOfTheTick) {
+  // Due at 0, 25, 50, ... 1000 ms, taken in the first tick of 10 ms not before: 0, 30, 50, 80, 100, ...: 41 of them.
+  model::Setup setup = weightless();
+  setup.rules.push_back(element("statistics", map({{"value", "sim.time"}, {"interval", "25 ms"}}), "clock"));
+  const auto simulation = build(setup);
+  advance(*simulation, 100);
+  EXPECT_EQ(value(*simulation, "rules/clock.count"), 41);
+  EXPECT_NEAR(value(*simulation, "rules/clock.mean"), (20 * 0.005 + 41 * 0.5) / 41, 1e-14);
+}
+
+TEST(Rules, UseTheValuesAndCriteriaOfTheScenarioWhichReadRules) {
+  // The value counts ticks from the second on by way of a rule; the rule `set` begins with it at 0.05 s, also when restored.
+  model::Setup setup = talkers({10});
+  setup.values.push_back({"ticks", "rules/clock.count - 1", {}});
+  setup.criterion = model::CriterionDecl{"2 * ticks", "", {}, {}};
+  setup.rules.push_back(element("statistics", map({{"value", "ticks - ticks + sim.tick"}}), "clock"));
+  setup.rules.push_back(element(
+      "set", with(map({{"when", "values.ticks >= 5 and criterion >= 10"}}), "set",
+                  list({map({{"parameter", "media/air.threshold"}, {"expression", "50 + ticks"}})}))));
+  const auto simulation = build(setup);
+  advance(*simulation, 3);
+  const auto restored = again(*simulation);
+  for (Simulation* each : {simulation.get(), restored.get()}) {
+    advance(*each, 2);
+    EXPECT_EQ(value(*each, "rules/clock.count"), 6);
+    EXPECT_EQ(value(*each, "rules/set.count"), 1);
+    advance(*each, 1);
+    EXPECT_EQ(value(*each, "media/air.threshold"), 55);
+  }
+  EXPECT_EQ(restored->state_hash(), simulation->state_hash());
+  setup.rules.back().config.set("when", Node::scalar("tick > 5"));
+  EXPECT_NE(refused(setup).find("there is no 'tick'"), std::string::npos) << refused(setup);
+}
+
+TEST(Goals, OfATeamCountTogether) {
+  model::Setup setup = weightless();
+  setup.instances.push_back(placed("ball", one_shape("ball", Sphere{0.1}, 1), {}));
+  for (const auto& [name, x] : {std::pair("left", -2.0), {"right", 2.0}})
+    setup.markers.push_back(element("disc", with(map({{"radius", "0.3"}}), "centre", numbers({x, 0})), name));
+  Node goals = map({{"object", "ball"}, {"stop_at", "2"}});
+  goals.set("goals",
+            list({map({{"marker", "left"}, {"team", "red"}}), map({{"marker", "right"}, {"team", "red"}})}));
+  setup.rules.push_back(element("goals", goals));
+  const auto simulation = build(setup);
+  for (const double x_m : {-2.0, 2.0}) {
+    EXPECT_FALSE(simulation->stop_reason());
+    simulation->submit(PoseRequest{"ball", {{x_m, 0, 0}, {}}});
+    advance(*simulation, 2);
+  }
+  EXPECT_EQ(simulation->stop_reason(), "red has scored 2");
+}
+
 TEST(Set, ChangesParametersInTheTickAfterItsConditionBegan) {
   model::Setup setup = talkers({10});
   Node rule = map({{"when", "sim.time >= 0.05 and sim.time < 0.08 or sim.time >= 0.1"}});

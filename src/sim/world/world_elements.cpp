@@ -145,7 +145,15 @@ WorldElements::~WorldElements() = default;
 Status WorldElements::build(const SimulationOptions& options, bool restored,
                             std::vector<std::string>& addresses) {
   const model::Setup& setup = sim_.setup();
-  const std::vector<std::string> before = addresses;
+  std::vector<std::string> before = addresses;
+  // Values and criteria come later, as they may read rules; rules may name them all the same.
+  for (const model::ValueDecl& value : setup.values) {
+    before.push_back(value.name);
+    before.push_back("values." + value.name);
+  }
+  if (setup.criterion) before.emplace_back("criterion");
+  for (const model::TeamDecl& team : setup.teams)
+    if (team.criterion) before.push_back(team.name + ".criterion");
   SL_TRY(check_names(setup.markers, "markers"));
   SL_TRY(check_names(setup.media, "media"));
   SL_TRY(check_names(setup.rules, "rules"));
@@ -182,6 +190,10 @@ Status WorldElements::build(const SimulationOptions& options, bool restored,
     touches_wanted_ = std::max(touches_wanted_, kind->touches);
   }
   return {};
+}
+
+void WorldElements::look_up() {
+  for (ValueExpression& each : watched_) each.look_up();
 }
 
 // -------------------------------------------------------------------------------------------------------- the view

@@ -35,6 +35,8 @@ class WorldElements final : public WorldView {
   /// @param restored  names may be gone
   /// @param addresses  of expressions: those that may be written although they name nothing now; new ones are appended
   Status build(const SimulationOptions& options, bool restored, std::vector<std::string>& addresses);
+  /// Finds what expressions of rules name, once the scenario's values and criteria are there.
+  void look_up();
   /// To be called when entities or devices came or went.
   void entities_changed() { changed_ = true; }
 

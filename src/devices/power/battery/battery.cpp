@@ -34,7 +34,7 @@ constexpr double most_energy_J = 1e18;
 Result<Battery> Battery::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
   if (!build.account) return Error{"a battery needs a robot", "declare it with the robot", build.decl.place};
   if (spec->capacity_J.has_value() == spec->charge_capacity_C.has_value())
-    return build.error(spec->capacity_J ? "charge_capacity" : "capacity",
+    return build.error("capacity",  // a preset gives the charge
                        spec->capacity_J ? "the capacity is given twice" : "the battery has no capacity",
                        "give either 'capacity', as in 50 Wh, or 'charge_capacity', as in 5 Ah");
   SL_ASSIGN(const std::vector<Point> points, points_of(build, *spec));

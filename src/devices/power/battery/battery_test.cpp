@@ -29,14 +29,16 @@ TEST(OpenCircuit, InvertsItsOwnEnergy) {
 struct Bench : Rig {
   EnergyAccount own;
   EnergyMeter meter;
-  explicit Bench(const char* initial = "0.5") : Rig(kind, test::two_wheels(), 0.1) {
+  explicit Bench(const char* initial = "0.5", const char* most_W = "1e9")
+      : Rig(kind, test::two_wheels(), 0.1) {
     account = &own;
     own.meters.push_back(&meter);
     const Status added = add("b", config({{"capacity", "100"},
                                           {"voltage", "10"},
                                           {"resistance", "1"},
                                           {"initial_charge", initial},
-                                          {"recuperation", "0.5"}}));
+                                          {"recuperation", "0.5"},
+                                          {"max_charge_power", most_W}}));
     EXPECT_TRUE(added) << (added ? "" : added.error().text());
   }
   void settle() {
@@ -65,6 +67,22 @@ TEST(Battery, TakesWhatIsGivenBackAndWhatChargersOffer) {
   EXPECT_NEAR(bench.meter.state.drawn_J, -0.8, 1e-15);
   EXPECT_NEAR(bench.state("drained"), -0.8 + 0.1, 1e-15);
   EXPECT_EQ(bench.own.offered_J, 0);
+}
+
+TEST(Battery, TakesNoMoreThanItsGreatestPowerAndChargersFirst) {
+  // Of 0.8 J and 0.3 J in 0.1 s, as above, 5 W are taken: the charger's 0.3 J and 0.2 J of the motors'. 5 W into 10 V behind
+  // 1 ohm make J = 10 / (10 + sqrt(100 + 20)).
+  Bench bench("0.5", "5");
+  bench.meter.draw(-1.6);
+  bench.own.offered_J = 0.3;
+  bench.settle();
+  const double current_A = 10 / (10 + std::sqrt(120.0)), lost_J = 0.1 * current_A * current_A;
+  EXPECT_NEAR(bench.state("load_current"), -current_A, 1e-14);
+  EXPECT_NEAR(bench.state("energy"), 50 + 0.5 - lost_J, 1e-13);
+  EXPECT_NEAR(bench.state("charged"), 0.3, 1e-15);
+  EXPECT_NEAR(bench.meter.state.drawn_J, -0.2, 1e-15);
+  EXPECT_NEAR(bench.state("rejected"), 0.8 + 0.6, 1e-15);
+  EXPECT_NEAR(bench.state("drained"), -0.2 + lost_J, 1e-15);
 }
 
 TEST(Battery, AFullOneTakesNothingBack) {
