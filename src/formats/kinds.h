@@ -4,5 +4,9 @@
 #define SANDLOT_FORMATS(format) \
   format(scenario)              \
   format(sdf)                   \
-  format(urdf)
+  format(urdf)                  \
+  format(eyesim_world)          \
+  format(eyesim_maze)           \
+  format(eyesim_robot)          \
+  format(eyesim_object)
 // clang-format on

@@ -1,0 +1,84 @@
+/// EyeSim's files of worlds, mazes, robot types and objects.
+#include <filesystem>
+
+#include "formats/eyesim/lines.h"
+#include "formats/eyesim/plan.h"
+#include "formats/eyesim/robi.h"
+#include "formats/kind.h"
+
+namespace sandlot::formats {
+namespace {
+
+std::string stem_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+Result<WorldContent> read_wld_content(std::string_view text, const std::string& file,
+                                      const ReadOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(const eyesim::Plan plan, eyesim::read_wld(text, file, diagnostics));
+  return eyesim::world_of(plan, stem_of(file), file, options, diagnostics);
+}
+
+Result<WorldContent> read_maze_content(std::string_view text, const std::string& file,
+                                       const ReadOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(const eyesim::Plan plan, eyesim::read_maze(text, file, diagnostics));
+  return eyesim::world_of(plan, stem_of(file), file, options, diagnostics);
+}
+
+Result<WorldContent> read_robi_content(std::string_view text, const std::string& file,
+                                       const ReadOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(eyesim::Robi robot, eyesim::read_robi(text, file, options, diagnostics));
+  WorldContent out;
+  out.instances.push_back(std::move(robot.instance));
+  return out;
+}
+
+Result<WorldContent> read_object_content(std::string_view text, const std::string& file,
+                                         const ReadOptions& options, Diagnostics& diagnostics) {
+  SL_ASSIGN(model::Instance object, eyesim::read_object(text, file, options, diagnostics));
+  WorldContent out;
+  out.instances.push_back(std::move(object));
+  return out;
+}
+
+constexpr std::string_view wld_extensions[] = {".wld"};
+constexpr std::string_view maze_extensions[] = {".maz", ".maze"};
+constexpr std::string_view robi_extensions[] = {".robi"};
+constexpr std::string_view object_extensions[] = {".esObj", ".esobj"};
+
+}  // namespace
+
+extern const FormatKind eyesim_world_format, eyesim_maze_format, eyesim_robot_format, eyesim_object_format;
+
+constinit const FormatKind eyesim_world_format{
+    .name = "wld",
+    .help = "Worlds of EyeSim and Saphira: walls by their ends.",
+    .contents = "worlds",
+    .extensions = wld_extensions,
+    .max_bytes = eyesim::most_bytes,
+    .world = read_wld_content,
+};
+constinit const FormatKind eyesim_maze_format{
+    .name = "maze",
+    .help = "Mazes of EyeSim, drawn with characters.",
+    .contents = "worlds",
+    .extensions = maze_extensions,
+    .max_bytes = eyesim::most_bytes,
+    .world = read_maze_content,
+};
+constinit const FormatKind eyesim_robot_format{
+    .name = "robi",
+    .help = "Robot types of EyeSim: drive, wheels, psd, camera, lidar.",
+    .contents = "robots",
+    .extensions = robi_extensions,
+    .max_bytes = eyesim::most_bytes,
+    .world = read_robi_content,
+};
+constinit const FormatKind eyesim_object_format{
+    .name = "esobj",
+    .help = "Objects of EyeSim: a mesh with its mass and colliders.",
+    .contents = "objects",
+    .extensions = object_extensions,
+    .max_bytes = eyesim::most_bytes,
+    .world = read_object_content,
+};
+
+}  // namespace sandlot::formats

@@ -1,0 +1,44 @@
+#pragma once
+/// Plan of a room as EyeSim's worlds and mazes give it, and the world made of it.
+///
+/// Frame    W: origin at the lower left corner of the plan, x right, y up in it. [m], [rad]
+/// Walls    upright boxes about their line, from the ground up.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/content.h"
+#include "geometry/color.h"
+
+namespace sandlot::formats::eyesim {
+
+struct Wall {
+  double x1_m = 0, y1_m = 0, x2_m = 0, y2_m = 0;
+  double thickness_m = 0.01, height_m = 0.2;
+  Color color{0.85f, 0.85f, 0.82f, 1};
+  Place place;
+};
+
+struct Spot {
+  double x_m = 0, y_m = 0, yaw_rad = 0;
+  Place place;
+};
+
+struct Plan {
+  std::vector<Wall> walls;
+  double width_m = 0, height_m = 0;  ///< of the floor; 0: none
+  std::string texture;               ///< file as written; "": none
+  Place texture_place;
+  std::vector<Spot> starts;        ///< of robots, in the order of the file
+  std::vector<Spot> balls, boxes;  ///< where a maze has letters for them
+};
+
+Result<Plan> read_wld(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+/// Walls of neighbouring cells that lie in one line are one.
+Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+
+/// @param name  of the world
+Result<WorldContent> world_of(const Plan& plan, const std::string& name, const std::string& file,
+                              const ReadOptions& options, Diagnostics& diagnostics);
+
+}  // namespace sandlot::formats::eyesim
