@@ -11,6 +11,8 @@ install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOUR
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
 install(DIRECTORY models worlds scenarios templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY clients/cpp/sandlot_client DESTINATION include)
+install(FILES cmake/sandlot_clientConfig.cmake DESTINATION lib/cmake/sandlot_client)
 install(DIRECTORY clients/javascript/ DESTINATION share/sandlot/javascript)
 install(FILES LICENSE DESTINATION share/sandlot)
 install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)

@@ -75,6 +75,7 @@ list(REMOVE_ITEM libraries bench)  # a program of its own
 list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
+target_include_directories(scenario_tests PRIVATE clients/cpp)
 add_dependencies(scenario_tests sandlot ${plugins})
 # tests/vision: what software written for real cameras makes of our pictures.
 if(TARGET sandlot_opencv)

@@ -3,6 +3,7 @@
 ///
 /// A service type has a name and two messages, Request and Response, named as ROS 2 names them: `pkg/srv/Name_Request` and
 /// `pkg/srv/Name_Response`. messages/services.def lists them; messages/registry.h finds them by name.
+/// long file: one list of messages
 #include <cstdint>
 #include <string>
 #include <vector>

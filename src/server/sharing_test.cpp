@@ -45,7 +45,9 @@ TEST(Sharing, ARobotsTokenSeesWhatIsSharedByNameAndNothingElse) {
   one.send(subscribe(shared));
   EXPECT_EQ(one.next("publish")["topic"], shared);
   one.send(subscribe("/tf_static"));
-  EXPECT_EQ(one.next("publish")["topic"], "/tf_static");
+  json next = one.next("publish");
+  while (!next.is_null() && next["topic"] == shared) next = one.next("publish");
+  EXPECT_EQ(next["topic"], "/tf_static");
   for (const char* topic :
        {"/tf", "/rosout", "/rover2/laser/ranges", "/sandlot/world", "/sandlot/poses", "/sandlot/commands",
         "/sandlot/contacts", "/sandlot/batteries", "/rover2/drive/ideal/command", "/rover2/tru"})

@@ -53,7 +53,8 @@ TEST(SimulationServices, FeaturesSayWhatThereIs) {
   EXPECT_EQ(features["spawn_formats"], json({"sdf", "urdf"}));
   const auto all = features["features"].get<std::vector<int>>();
   for (const int missing : {33, 42, 43}) EXPECT_EQ(std::count(all.begin(), all.end(), missing), 0) << missing;
-  EXPECT_EQ(all.size(), 31u);
+  // 10 of 0 to 9, 5 of 10 to 14, 7 of 20 to 26, 31, 32, 40, 41, 44, 45, 50.
+  EXPECT_EQ(all.size(), 29u);
   EXPECT_EQ(code(bridge.call("/unload_world", json::object())), 0);
 }
 
@@ -338,8 +339,8 @@ TEST(SimulationServices, NamedPosesComeFromTheScenario) {
   Bridge bridge(run.url());
   const auto names = [&](const json& tags) {
     std::vector<std::string> out;
-    for (const json& each : bridge.call("/get_named_poses", {{"tags", tags}})["values"]["poses"])
-      out.push_back(each["name"]);
+    const json answer = bridge.call("/get_named_poses", {{"tags", tags}});
+    for (const json& each : answer["values"]["poses"]) out.push_back(each["name"]);
     return out;
   };
   EXPECT_EQ(names(json::object()), (std::vector<std::string>{"dock", "goal"}));
@@ -388,7 +389,7 @@ TEST(SimulationServices, WorldsAreLoadedByAddressAndAsText) {
   EXPECT_EQ(code(load({{"resource_string", "version: 1\nrobots: [{name: r, model: no/such/model.sdf}]\n"}})),
             103);
   EXPECT_EQ(code(load({{"resource_string", "version: 1\nplugins: [x.so]\n"}})), 103) << "it is not there";
-  EXPECT_EQ(code(load({{"uri", "file:///etc/passwd"}})), 4);
+  EXPECT_EQ(code(load({{"uri", "file:///etc/passwd"}})), 2);
   EXPECT_EQ(code(load({{"uri", "no_such_world"}})), 2);
   EXPECT_EQ(bridge.call("/get_simulation_state", json::object())["values"]["state"]["state"], 1)
       << "a world that cannot be loaded leaves the run as it is";

@@ -190,6 +190,11 @@ TEST(Udp, TokensOpenWhatTheyDoByOtherWays) {
   for (int i = 0; i < 10; ++i)
     guesser.send({{"op", "sandlot.claim"}, {"robot", "rover2"}, {"token", "guess"}});
   EXPECT_TRUE(soon([&] { return run.server->counters().clients == 1; }));
+  // Its nonce is spent, and so is its address for a while.
+  guesser.send({{"op", "sandlot.hello"}});
+  guesser.send_text(Datagrams::hello(100));
+  EXPECT_TRUE(guesser.next("sandlot.challenge", 0.2).is_null());
+  EXPECT_EQ(run.server->counters().clients, 1u);
 }
 
 TEST(Udp, AFloodFromStrangersLeavesTheClientsAlone) {
@@ -220,7 +225,7 @@ TEST(Udp, AFloodFromStrangersLeavesTheClientsAlone) {
 }
 
 TEST(Udp, WhatFitsNoDatagramComesInFragmentsOrNotAtAll) {
-  Running run(arena("planar", 1, ""), {.paused = true}, by_udp());
+  Running run(arena("planar", 20, ""), {.paused = true}, by_udp());
   run.go();
   Datagrams client(run.url());
   client.come();

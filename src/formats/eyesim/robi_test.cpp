@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/math.h"
 #include "formats/eyesim/shapes.h"
 
 namespace sandlot::formats::eyesim {
@@ -72,7 +73,7 @@ TEST(EyesimRobot, StandsOnItsWheelsWithItsDevices) {
   EXPECT_NEAR(rotate(left->X_LS.q, {1, 0, 0}).y, 1, 1e-12);
   EXPECT_EQ(robot.psds, (std::map<int, std::string>{{1, "PSD_FRONT"}, {2, "PSD_LEFT"}}));
   const auto* const camera = device(scout_robot, "camera");
-  EXPECT_NEAR(rotate(camera->X_LS.q, {1, 0, 0}).z, std::sin(10 * M_PI / 180), 1e-12);  // it looks up
+  EXPECT_NEAR(rotate(camera->X_LS.q, {1, 0, 0}).z, math::sin(10 * M_PI / 180), 1e-12);  // it looks up
   EXPECT_EQ(key(camera, "width"), 320);
   EXPECT_EQ(key(camera, "height"), 240);  // tan(30) / tan(23.415) is 4 / 3
   EXPECT_EQ(key(device(scout_robot, "lidar"), "beams"), 180);

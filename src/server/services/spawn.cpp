@@ -89,16 +89,16 @@ Prepared prepare(const Session& session, const Console::Options& options, const 
   const Prepared placed = place(simulation, wanted.initial_pose);
   if (placed.result.result.result != SimResult::ok) return placed;
   const std::string& name = wanted.name;
-  if (!wanted.allow_renaming && (sanitised(name) != name || name.size() > longest_name))
+  if (!wanted.allow_renaming && !name.empty() && (sanitised(name) != name || name.size() > longest_name))
     return refused(Code::name_invalid, "names have letters, digits, _ and -, and at most 100 of them");
   Prepared out = load_model(options, wanted.entity_resource);
   if (out.result.result.result != SimResult::ok) return out;
   const auto taken = [&](const std::string& each) {
     return simulation.is_taken(each) || std::find(names.begin(), names.end(), each) != names.end();
   };
-  std::string chosen = sanitised((name.empty() ? out.instance.model->name : name).substr(0, longest_name));
-  if (chosen.empty() && !wanted.allow_renaming) return refused(Code::name_invalid, "the entity has no name");
-  if (chosen.empty()) chosen = "entity";
+  const std::string given = (name.empty() ? out.instance.model->name : name).substr(0, longest_name);
+  if (given.empty() && !wanted.allow_renaming) return refused(Code::name_invalid, "the entity has no name");
+  std::string chosen = given.empty() ? "entity" : sanitised(given);
   if (taken(chosen)) {
     if (!wanted.allow_renaming) return refused(Code::name_not_unique, "there is a '" + chosen + "' already");
     for (int i = 2;; ++i)

@@ -6,7 +6,7 @@
 /// that finds a read suspended behind a close breaks an assertion of Beast's. on_beat() looks after all deadlines instead.
 #define BOOST_BEAST_USE_STD_STRING_VIEW
 #include <fmt/format.h>
-#include <time.h>
+#include <ctime>
 
 #include <algorithm>
 #include <array>

@@ -61,12 +61,16 @@ struct UdpDoor : std::enable_shared_from_this<UdpDoor> {
   std::array<char, most_read_bytes> buffer{};
   udp::endpoint from;
   std::map<udp::endpoint, std::shared_ptr<UdpPeer>> clients;
+  /// Addresses that were sent away, and when: until the nonces they had are no good any more nobody listens to them.
+  std::map<udp::endpoint, double> sent_away_s;
 
   UdpDoor(Transport::Impl& owner, std::array<std::uint64_t, 4> keys)
       : impl(owner), socket(owner.io), gate(keys) {}
   Status open();
   void receive();
   void take(std::string_view text);
+  void send_away(const udp::endpoint& client);
+  bool is_away(double now_s);
   void take_unknown(std::string_view text);
   void begin(std::string nonce, std::string_view text);
   static double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
@@ -179,6 +183,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
   void close_for(std::string_view reason) override {
     if (stage != Stage::open) return;
     ++impl.refused;
+    door.send_away(to);
     close("error", reason);
   }
 
@@ -259,9 +264,23 @@ void UdpDoor::take(std::string_view text) {
   peer->take(text);
 }
 
+/// Only clients come here, which have shown that the address is theirs.
+void UdpDoor::send_away(const udp::endpoint& client) {
+  constexpr std::size_t most = 1000;
+  const double now = now_s();
+  std::erase_if(sent_away_s, [&](const auto& each) { return now > each.second + 2 * UdpGate::valid_s; });
+  if (sent_away_s.size() < most) sent_away_s[client] = now;
+}
+
+bool UdpDoor::is_away(double now_s) {
+  const auto found = sent_away_s.find(from);
+  return found != sent_away_s.end() && now_s <= found->second + 2 * UdpGate::valid_s;
+}
+
 void UdpDoor::take_unknown(std::string_view text) {
   const auto refuse = [&] { ++impl.refused; };
   const double now = now_s();
+  if (is_away(now)) return refuse();
   if (impl.stopping || text.size() > most_first_bytes || !gate.allow(bytes_of(from.address()), now))
     return refuse();
   const std::vector<std::byte> peer = bytes_of(from);
