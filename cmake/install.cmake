@@ -1,5 +1,5 @@
 # What `cmake --install` leaves: bin/sandlot, lib/libsandlot.so, the headers for users' own controllers and programs, the CMake
-# package and pkg-config file, the models, worlds and scenarios, documentation and examples. Everything finds everything relative to itself.
+# packages and the pkg-config file, clients for other programs, the models, worlds and scenarios, documentation and examples. Everything finds everything relative to itself.
 include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
@@ -11,6 +11,8 @@ install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOUR
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
 install(DIRECTORY models worlds scenarios DESTINATION share/sandlot)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY clients/cpp/sandlot_client DESTINATION include)
+install(FILES cmake/sandlot_clientConfig.cmake DESTINATION lib/cmake/sandlot_client)
 install(FILES LICENSE DESTINATION share/sandlot)
 install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)
 
