@@ -1,6 +1,6 @@
 // The clearing law of src/controllers/clearing as a client in lockstep: one process drives one pusher, on whatever machine.
 //
-//   sandlot run clearing --set robots.pusher.controller=remote --port 8765 &
+//   sandlot run scenarios/clearing.yaml --set robots.pusher.controller=remote --port 8765 --rate max &
 //   clearing pusher1 & clearing pusher2
 //
 // The run ends in the state of the built-in law, but for what the programs themselves keep: exact.h is the same file, and numbers are

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The clearing law of src/controllers/clearing as a client in lockstep: one process drives one pusher, on whatever machine.
 
-    sandlot run clearing --set robots.pusher.controller=remote --port 8765 &
+    sandlot run scenarios/clearing.yaml --set robots.pusher.controller=remote --port 8765 --rate max &
     PYTHONPATH=/usr/share/sandlot/python python3 clearing.py pusher1 &
     PYTHONPATH=/usr/share/sandlot/python python3 clearing.py pusher2
 
