@@ -1,5 +1,5 @@
 # What `cmake --install` leaves: bin/sandlot, lib/libsandlot.so, the headers for users' own controllers and programs, the CMake
-# package and pkg-config file, the models, worlds and scenarios, documentation and examples. Everything finds everything relative to itself.
+# packages and the pkg-config file, clients for other programs, the models, worlds and scenarios, documentation and examples. Everything finds everything relative to itself.
 include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)

@@ -68,6 +68,11 @@ target_compile_definitions(plugin_clearing PRIVATE SANDLOT_CONTROL_FLAGS)
 set_target_properties(plugin_clearing PROPERTIES PREFIX "" OUTPUT_NAME clearing_plugin CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test_plugins)
 list(APPEND plugins plugin_clearing)
+# And the client in C++ that has it.
+add_executable(client_clearing examples/clients/clearing.cpp)
+target_include_directories(client_clearing PRIVATE clients/cpp)
+target_link_libraries(client_clearing PRIVATE nlohmann_json::nlohmann_json)
+set_target_properties(client_clearing PROPERTIES CXX_STANDARD 17)
 target_compile_options(plugin_other_build PRIVATE -ffast-math)
 file(GLOB sources CONFIGURE_DEPENDS tests/*_test.cpp)
 set(libraries ${sandlot_layers})
@@ -76,7 +81,7 @@ list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
 target_include_directories(scenario_tests PRIVATE clients/cpp)
-add_dependencies(scenario_tests sandlot ${plugins})
+add_dependencies(scenario_tests sandlot client_clearing ${plugins})
 # tests/vision: what software written for real cameras makes of our pictures.
 if(TARGET sandlot_opencv)
   file(GLOB sources CONFIGURE_DEPENDS tests/vision/*_test.cpp)
@@ -108,6 +113,11 @@ set_tests_properties(clients PROPERTIES LABELS unit TIMEOUT 300
 # Programs that a run starts itself.
 add_test(NAME started_programs COMMAND Python3::Interpreter tests/started_programs_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(started_programs PROPERTIES LABELS unit TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
+# The same law in four places.
+add_test(NAME clearing COMMAND Python3::Interpreter tests/clearing_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(clearing PROPERTIES LABELS slow TIMEOUT 600
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
 # The page's own tests, and the check of its types, for which nothing has to run.

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string build_folder() { return fs::absolute(SANDLOT_BIN).parent_path().string(); }
 
@@ -141,6 +142,17 @@ TEST(SlowInstall, AnExperimentIsTheRunCommandWithHooks) {
   EXPECT_EQ(shell(run + " --command 'at 1s mov ball1 0 0'").exit_code, 2) << "no such command";
   EXPECT_EQ(shell(run + " --command 'at 1s move ball9 0 0'").exit_code, 1)
       << "no such ball when its time comes";
+}
+
+TEST(SlowInstall, AClientInCppNeedsNothingOfTheSimulator) {
+  const Package package;
+  package.build("clients");
+  const std::string client = package.built("clients") + "/clearing";
+  EXPECT_THAT(shell("ldd " + client).out, Not(HasSubstr("sandlot")));
+  EXPECT_EQ(shell(client).exit_code, 2);
+  const Printed nowhere = shell("SANDLOT_URL=http://here " + client + " pusher1");
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_THAT(nowhere.out, HasSubstr("'http://here' is no address"));
 }
 
 /// Paths of the installed headers, from its include folder.

@@ -44,8 +44,8 @@ TEST(Teams, TheClearingLawIsTheSameAsAPlugin) {
   // Its text: all lines but those that name the place it is in.
   const auto same = [](const std::string& file) {
     std::string ours = read_file("src/controllers/clearing/" + file);
-    ours = std::regex_replace(ours, std::regex("#include \"controllers/clearing/clearing.h\""),
-                              "#include \"clearing.h\"");
+    ours = std::regex_replace(ours, std::regex("#include \"controllers/clearing/(\\w+).h\""),
+                              "#include \"$1.h\"");
     ours = std::regex_replace(ours, std::regex("#include \"control/controller.h\""),
                               "#include <sandlot/control.h>");
     ours = std::regex_replace(ours, std::regex("\n#include \"(control/steering|base/math).h\""), "");
@@ -59,6 +59,12 @@ TEST(Teams, TheClearingLawIsTheSameAsAPlugin) {
   };
   same("clearing.h");
   same("clearing.cpp");
+  // Its arithmetic: for the client in C++, too, which has nothing of the simulator.
+  for (const auto& [place, file] : {std::pair("my_clearing::exact", "examples/clearing_plugin/exact.h"),
+                                    std::pair("exact", "examples/clients/exact.h")})
+    EXPECT_EQ(std::regex_replace(read_file("src/controllers/clearing/exact.h"),
+                                 std::regex("sandlot::controllers::clearing::exact"), place),
+              read_file(file));
 
   const std::string plugins = (fs::absolute(SANDLOT_BIN).parent_path() / "test_plugins").string();
   const std::string text = read_file("examples/clearing_plugin/clearing.yaml");

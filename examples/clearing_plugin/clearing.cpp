@@ -9,8 +9,6 @@ namespace my_clearing {
 using namespace sandlot;
 namespace {
 
-using steering::flat, steering::heading_of;
-
 constexpr double back_off_s = 0.9, back_off_mps = 0.25;
 constexpr double progress_m = 0.05;
 constexpr double behind_m = 0.05;     // off the line through object and destination, when pushing begins
@@ -25,6 +23,12 @@ constexpr double moved_m = 0.06, moved_rad = 0.35;
 constexpr Time forget = Time::from_s(2), jam = Time::from_s(3);
 constexpr double soonest_s = 0.2,
                  latest_s = 0.6;  // from one message to the next: at random, lest two robots keep colliding
+
+exact::Vec at(const msg::ObjectPose& object) { return {object.pose.p.x, object.pose.p.y}; }
+
+msg::Twist twist_of(const exact::Motion& motion) {
+  return {.linear = {motion.forward_mps, 0, 0}, .angular = {0, 0, motion.turn_radps}};
+}
 
 /// "box3 1250"; false for anything else, such as what bit errors have made of it.
 bool parse(const std::vector<std::uint8_t>& data, std::string_view& object, std::uint32_t& bid_mm) {
@@ -84,18 +88,18 @@ void Clearing::send(const View& view, Command& cmd) {
   packet.data.insert(packet.data.end(), digits.data(), end);
   cmd.set(sender, packet);
   state.sent_object = state.object;
-  Stream random = view.random.fork(to_send);
-  state.resend = view.now + Time::from_s(random.uniform(soonest_s, latest_s));
+  state.resend = view.now +
+                 Time::from_s(soonest_s + (latest_s - soonest_s) * exact::draw(view.random, to_send));
 }
 
 /// Distance of an object from where it counts as inside; negative within.
 double Clearing::outside_m(const msg::ObjectPose& object) const {
-  return norm(flat(object.pose.p) - destination()) - std::max(0.0, spec.radius_m - spec.margin_m);
+  return exact::norm(at(object) - destination()) - std::max(0.0, spec.radius_m - spec.margin_m);
 }
 
 std::uint32_t Clearing::bid_mm(const msg::ObjectPose& object, const View& view) const {
   if (state.phase == Phase::push) return 0;
-  const double distance = std::min(norm(flat(object.pose.p - view.X_WB.p)), 1e6);
+  const double distance = std::min(exact::norm(at(object) - view.here.at), 1e6);
   return 1 + static_cast<std::uint32_t>(1000 * distance);
 }
 
@@ -109,10 +113,10 @@ bool Clearing::taken(const std::string& object, std::uint32_t bid_mm, Time now) 
 
 /// Whether the object can be steered from here: ahead, near, and the destination beyond it.
 bool Clearing::in_zone(const msg::ObjectPose& object, const View& view) const {
-  const Vec3 at = rotate_inverse(view.X_WB.q, flat(object.pose.p - view.X_WB.p));
-  const double goal = heading_of(destination() - flat(object.pose.p));
-  return at.x > 0 && at.x < spec.reach_m && std::abs(at.y) < spec.zone_m &&
-         std::abs(math::wrap_angle(goal - yaw_of(view.X_WB.q))) < spec.zone_angle_rad;
+  const exact::Vec seen = exact::seen_from(view.here, at(object));
+  const double turn = exact::turn_between(view.here.heading, destination() - at(object));
+  return seen.x > 0 && seen.x < spec.reach_m && std::abs(seen.y) < spec.zone_m &&
+         std::abs(turn) < spec.zone_angle_rad;
 }
 
 /// Step 1.
@@ -130,8 +134,7 @@ const msg::ObjectPose* Clearing::choose(const View& view) {
   state.object = best->name;
   state.nearest_m = outside_m(*best);
   state.progress = view.now;
-  Stream random = view.random.fork(to_wait);
-  state.patience_s = spec.patience_s * random.uniform(0.75, 1.25);
+  state.patience_s = spec.patience_s * (0.75 + 0.5 * exact::draw(view.random, to_wait));
   state.phase = Phase::approach;
   return best;
 }
@@ -143,9 +146,10 @@ void Clearing::back_off(Time now) {
 
 /// Whether it has hardly moved for a while, though it is on its way: something is in between.
 bool Clearing::jammed(const View& view) {
-  const Vec3 now{view.X_WB.p.x, view.X_WB.p.y, yaw_of(view.X_WB.q)};
-  const bool moved = norm(flat(now - state.stood)) > moved_m ||
-                     std::abs(math::wrap_angle(now.z - state.stood.z)) > moved_rad;
+  const auto& [here, heading] = view.here;
+  const Vec3 now{here.x, here.y, exact::angle_of(heading)};
+  const bool moved = exact::norm(here - exact::Vec{state.stood.x, state.stood.y}) > moved_m ||
+                     std::abs(exact::angle_between(state.stood.z, now.z)) > moved_rad;
   if (moved || state.phase == Phase::choose || state.phase == Phase::back_off) {
     state.stood = now;
     state.stood_since = view.now;
@@ -153,54 +157,51 @@ bool Clearing::jammed(const View& view) {
   return view.now - state.stood_since > jam;
 }
 
-Vec3 Clearing::way(const View& view, Vec3 to) {
+exact::Vec Clearing::way(const View& view, exact::Vec to) {
   discs.clear();
   for (const msg::ObjectPose& other : view.world.objects)
     if (other.name != name)
       discs.push_back(
-          {other.pose.p, other.label == spec.objects ? spec.object_clearance_m : spec.robot_clearance_m});
-  return steering::way_around(view.X_WB.p, to, discs);
+          {at(other), other.label == spec.objects ? spec.object_clearance_m : spec.robot_clearance_m});
+  return exact::way_around(view.here.at, to, discs);
 }
 
 /// Step 2; goes on to 3 when the robot stands behind the object and looks at it.
 msg::Twist Clearing::approach(const msg::ObjectPose& object, const View& view) {
-  const steering::Limits limits{spec.speed_mps, spec.turn_speed_radps};
-  const Vec3 at = flat(object.pose.p), here = flat(view.X_WB.p);
-  const Vec3 along = normalised(destination() - at);
-  const Vec3 off = at - here;
-  const double ahead = dot(off, along), beside = std::abs(cross(along, off).z);
+  const exact::Limits limits{spec.speed_mps, spec.turn_speed_radps};
+  const exact::Vec along = exact::unit(destination() - at(object));
+  const exact::Vec off = at(object) - view.here.at;
+  const double ahead = exact::dot(off, along), beside = std::abs(exact::cross(along, off));
   if (ahead > 0 && beside < behind_m && ahead < spec.standoff_m + 2 * behind_m) {
-    const double wanted = heading_of(along);
-    if (std::abs(math::wrap_angle(wanted - yaw_of(view.X_WB.q))) > aligned_rad)
-      return steering::turn_to(view.X_WB, wanted, limits);
+    if (std::abs(exact::turn_between(view.here.heading, along)) > aligned_rad)
+      return twist_of(exact::turn_to(view.here, along, limits));
     state.phase = Phase::push;
     return push(object, view);
   }
-  return steering::drive_to(view.X_WB, way(view, at - spec.standoff_m * along), limits);
+  return twist_of(exact::drive_to(view.here, way(view, at(object) - spec.standoff_m * along), limits));
 }
 
 /// Step 3.
 msg::Twist Clearing::push(const msg::ObjectPose& object, const View& view) const {
-  const Vec3 at = rotate_inverse(view.X_WB.q, flat(object.pose.p - view.X_WB.p));
-  const double goal = math::wrap_angle(heading_of(destination() - flat(view.X_WB.p)) - yaw_of(view.X_WB.q));
+  const double goal = exact::turn_between(view.here.heading, destination() - view.here.at);
+  const double side = exact::angle_of(exact::seen_from(view.here, at(object)));
   const double widest = spec.push_speed_mps / least_turn_m;
-  msg::Twist twist;
-  twist.linear.x = spec.push_speed_mps;
-  twist.angular.z = std::clamp(heading_gain * goal + offset_gain * math::atan2(at.y, at.x), -widest, widest);
-  return twist;
+  const double turn = heading_gain * goal + offset_gain * side;
+  return twist_of({spec.push_speed_mps, std::clamp(turn, -widest, widest)});
 }
 
 /// Nothing to do: away from whoever is near.
 msg::Twist Clearing::wait(const View& view) const {
-  const Vec3 here = flat(view.X_WB.p);
   const msg::ObjectPose* nearest = nullptr;
-  for (const msg::ObjectPose& other : view.world.objects)
-    if (other.name != name && other.label != spec.objects &&
-        (!nearest || norm(flat(other.pose.p) - here) < norm(flat(nearest->pose.p) - here)))
-      nearest = &other;
-  if (!nearest || norm(flat(nearest->pose.p) - here) > private_m) return {};
-  return steering::drive_along(view.X_WB, heading_of(here - flat(nearest->pose.p)),
-                               {0.5 * spec.speed_mps, spec.turn_speed_radps});
+  double nearest_m = private_m;
+  for (const msg::ObjectPose& other : view.world.objects) {
+    const double apart = exact::norm(at(other) - view.here.at);
+    if (other.name == name || other.label == spec.objects || apart >= nearest_m) continue;
+    nearest = &other, nearest_m = apart;
+  }
+  if (!nearest) return {};
+  return twist_of(exact::drive_along(view.here, exact::unit(view.here.at - at(*nearest)),
+                                     {0.5 * spec.speed_mps, spec.turn_speed_radps}));
 }
 
 msg::Twist Clearing::decide(const View& view) {
@@ -260,7 +261,10 @@ void Clearing::step(const Observation& obs, Command& cmd) {
   const auto seen = obs.get(camera);
   const msg::ObjectPose* const self = seen.valid ? steering::find(seen.message, name) : nullptr;
   if (!self) return cmd.set(drive, msg::Twist());
-  const View view{obs.now(), seen.message, self->pose, obs.random()};
+  const Pose& pose = self->pose;
+  Stream random = obs.random();
+  const View view{obs.now(), seen.message,
+                  exact::place(pose.p.x, pose.p.y, pose.q.x, pose.q.y, pose.q.z, pose.q.w), random.bits64()};
   if (!spec.radio.empty()) receive(obs, seen.message);
   cmd.set(drive, decide(view));
   if (!spec.radio.empty()) send(view, cmd);

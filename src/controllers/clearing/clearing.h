@@ -16,6 +16,7 @@
 /// Team     each robot sends the object that it has chosen with a bid, its distance (0 once it pushes): "box3 1250" [mm]. Of two
 ///          bids for one object the smaller wins, of equal ones the robot whose name precedes; the other chooses again. A claim
 ///          that has not been repeated for two seconds is forgotten. Without radio each chooses alone.
+/// Numbers  by exact.h alone, so that a client in another language repeats them.
 /// Limits   no walls: a place behind an object that lies at one is never reached. Objects no wider than the blade.
 /// Cost     the number of objects squared at most, no allocation once its lists have grown.
 /// Errors   no camera, drive or radio of these names.
@@ -26,6 +27,7 @@
 
 #include "control/controller.h"
 #include "control/steering.h"
+#include "controllers/clearing/exact.h"
 
 namespace sandlot::controllers::clearing {
 
@@ -161,7 +163,7 @@ struct Clearing {
   Reading<msg::RadioReceptionArray> receiver;
   Actuator<msg::RadioPacket> sender;
   Actuator<msg::Twist> drive;
-  std::vector<steering::Disc> discs;  ///< scratch
+  std::vector<exact::Disc> discs;  ///< scratch
 
   Status init(const Description& robot);
   void step(const Observation& obs, Command& cmd);
@@ -171,12 +173,12 @@ struct Clearing {
   struct View {
     Time now;
     const msg::ObjectPoseArray& world;
-    const Pose& X_WB;
-    Stream random;
+    exact::Place here;
+    std::uint64_t random;  ///< of this step
   };
   void receive(const Observation& obs, const msg::ObjectPoseArray& world);
   void send(const View& view, Command& cmd);
-  Vec3 destination() const { return {spec.destination_m[0], spec.destination_m[1], 0}; }
+  exact::Vec destination() const { return {spec.destination_m[0], spec.destination_m[1]}; }
   double outside_m(const msg::ObjectPose& object) const;
   std::uint32_t bid_mm(const msg::ObjectPose& object, const View& view) const;
   bool taken(const std::string& object, std::uint32_t bid_mm, Time now) const;
@@ -184,7 +186,7 @@ struct Clearing {
   const msg::ObjectPose* choose(const View& view);
   void back_off(Time now);
   bool jammed(const View& view);
-  Vec3 way(const View& view, Vec3 to);
+  exact::Vec way(const View& view, exact::Vec to);
   msg::Twist approach(const msg::ObjectPose& object, const View& view);
   msg::Twist push(const msg::ObjectPose& object, const View& view) const;
   msg::Twist wait(const View& view) const;
