@@ -111,6 +111,28 @@ TEST(Replay, BothWaysGiveEveryHashAgainOnBothEnginesAndFromTheMiddleOfAControlIn
       }
 }
 
+TEST(Replay, LoggedOrdersComeAfterTheRequestsOfRules) {
+  // The drive of rover1 fails in a tick for which its program has an order: that one is refused.
+  Node setting = Node::map(), config = Node::map(), settings = Node::sequence();
+  setting.set("parameter", Node::scalar("rover1/drive.failure"));
+  setting.set("value", Node::scalar("dead"));
+  settings.push(setting);
+  config.set("when", Node::scalar("sim.tick >= 40"));
+  config.set("set", settings);
+  model::Setup setup = test::arena("planar", 2);
+  setup.rules.push_back({"fail", "set", config, {}});
+  const Recorded recorded = record(setup, 0, 60, {});
+  const auto refused = [&](std::uint64_t tick, const char* kind) {
+    for (const LogEntry& entry : recorded.ticks[tick - 1].log)
+      if (entry.target.starts_with("rover1/drive") && request_kind(entry.kind) == std::string(kind))
+        return entry.refused ? "refused" : "taken";
+    return "none";
+  };
+  EXPECT_STREQ(refused(41, "command"), "refused");
+  for (const Programs programs : {Programs::recompute, Programs::logged})
+    EXPECT_EQ(verdict(recorded, {programs, 1}), "");
+}
+
 TEST(Replay, LengthsThatAClockMeasuredAreTakenFromTheLog) {
   model::Setup setup = test::arena("planar", 2);
   setup.clock = {model::Clock::Mode::continuous, Time::from_s(2e-3), Time::from_s(0.02)};

@@ -192,7 +192,7 @@ void Publisher::fill_topics(Frame& frame) {
   });
 }
 
-/// A device that only senses changes when it takes a sample, a program when it runs and when its orders are carried
+/// A device that only senses, without a meter and common keys, changes when it takes a sample, a program when it runs and when its orders are carried
 /// out; both also by requests. Between those their hashes stay.
 void Publisher::fill_hashes(Frame& frame) {
   frame.hash = 0;
@@ -226,7 +226,9 @@ void Publisher::fill_hashes(Frame& frame) {
   for (const auto& entity : sim_.entities_) {
     add(entity->key, always, [&](ByteWriter& w) { sim_.engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
-      const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense;
+      // Meters and messages on their way change between samples, too.
+      const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense && !device->energy &&
+                               !device->keys;
       // Samples, commands and deliveries only become more, and so does their sum.
       std::uint64_t version = sim_.timing(*device).sample;
       if (device->inbox()) version += device->inbox()->arrived();

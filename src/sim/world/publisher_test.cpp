@@ -88,5 +88,29 @@ TEST(Publish, FramesAndKeptHashesTellTheStateWhateverIsAsked) {
   }
 }
 
+TEST(Publish, KeptHashesFollowDrainsAndMessagesOnTheirWay) {
+  // Nothing but a drain, and nothing but a message that is 35 ms late, changes the two sensors between their samples.
+  for (const auto& [key, text] : {std::pair("drain", "1 W"), {"delay", "35 ms"}}) {
+    model::Setup setup = arena("planar", 1);
+    model::DeviceDecl battery, late;
+    battery.name = battery.kind = "battery";
+    battery.config = map({{"capacity", "10 J"}});
+    late.name = "late";
+    late.kind = "ground_truth";
+    late.config = map({{"rate", "10"}, {key, text}});
+    for (model::Instance& each : setup.instances)
+      if (each.is_robot) {
+        if (key == std::string("drain")) each.devices.push_back(battery);
+        each.devices.push_back(late);
+      }
+    const auto simulation = build(std::move(setup));
+    Comparer comparer(*simulation, 0);
+    simulation->add_observer(&comparer);
+    advance(*simulation, 30);
+    EXPECT_GT(comparer.messages, 0);
+    simulation->remove_observer(&comparer);
+  }
+}
+
 }  // namespace
 }  // namespace sandlot::test

@@ -80,11 +80,18 @@ void Simulation::process_commands() {
     const Entity* const entity = find_entity(first_part(target));
     return entity ? std::optional(entity->serial) : std::nullopt;
   };
-  for (Commands::Pending& pending : commands_.take(serial_of)) {
+  // Logged orders of programs come where the programs' own would: after the requests of rules.
+  const auto is_order = [&](const Commands::Pending& pending) {
+    return !options_.run_programs && pending.logged && pending.source.kind == Source::Kind::program;
+  };
+  const auto carry_out = [&](Commands::Pending& pending) {
     std::vector<std::byte> response;
     Status status = process(pending.request, pending.source, response);
     commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
-  }
+  };
+  const std::span<Commands::Pending> requests = commands_.take(serial_of);
+  for (Commands::Pending& pending : requests)
+    if (!is_order(pending)) carry_out(pending);
   for (WorldElements::Waiting& waiting : elements_.take_requests()) {
     Commands::Pending pending{waiting.source, waiting.number, std::move(waiting.request)};
     std::vector<std::byte> response;
@@ -97,6 +104,8 @@ void Simulation::process_commands() {
     }
     commands_.conclude(pending, std::move(status), publisher_.wants().input, std::move(response));
   }
+  for (Commands::Pending& pending : requests)
+    if (is_order(pending)) carry_out(pending);
   // A snapshot may hold orders of programs that do not run: the log that drives the run has them, too.
   if (options_.run_programs)
     programs_.deliver_orders(entities_, now_, now_ + step_, publisher_.wants().log,
