@@ -322,6 +322,19 @@ Status read_teams(const Node& node, const spec::Root& root, model::Setup& out) {
   return {};
 }
 
+/// A program or a criterion without robots would do nothing, without a word.
+Status check_teams_have_robots(const spec::Root& root, const model::Setup& setup) {
+  for (std::size_t i = 0; i < setup.teams.size(); ++i) {
+    const model::TeamDecl& team = setup.teams[i];
+    if (team.controllers.get().empty() && !team.criterion) continue;
+    if (std::none_of(root.robots.begin(), root.robots.end(),
+                     [&](const auto& robot) { return robot.instance.team == team.name; }))
+      return Error{"no robot is in team '" + team.name + "'", "name it: team: " + team.name, team.place,
+                   "/teams/" + std::to_string(i)};
+  }
+  return {};
+}
+
 /// Two groups that would make robots of one address. A group of n stands for stem1 ... stemn.
 Status check_names(const std::vector<RobotGroup>& robots) {
   std::map<std::string, const RobotGroup*> single, stems;
@@ -512,6 +525,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
   SL_TRY(read_elements(root.rules, "rules", setup.rules));
   SL_TRY(read_elements(root.markers, "markers", setup.markers));
   SL_TRY(read_annotations(node, root, setup));
+  SL_TRY(check_teams_have_robots(root, setup));
   return out;
 }
 

@@ -30,6 +30,9 @@ using local = net::local::stream_protocol;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
+/// With somebody who has neither a token nor a claim, when others want in.
+inline constexpr auto patience_with_guests = std::chrono::seconds(2);
+
 /// How long clients have for good-byes.
 constexpr auto goodbye = std::chrono::milliseconds(1500);
 

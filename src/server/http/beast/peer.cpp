@@ -38,7 +38,7 @@ constexpr std::size_t slice_bytes = 1 << 20;  // of a long message, so that a sl
 constexpr std::size_t most_linger_bytes = 1 << 20;  // read and thrown away after a refusal
 constexpr double messages_per_s = 2000, burst = 4000;
 constexpr double work_at_once_s = 0.1, work_per_granted_s = 100e-6;
-constexpr auto patience_with_new = std::chrono::seconds(1), patience_with_guests = std::chrono::seconds(2);
+constexpr auto patience_with_new = std::chrono::seconds(1);
 
 /// Time that this thread has used: unlike that of the wall, it is the same on a busy machine.
 double thread_seconds() {
@@ -62,7 +62,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
   Transport::Impl& impl;
   const std::uint64_t id;
-  const std::string from;  // address
+  const std::string sender;  // address
   const Clock::time_point came = Clock::now();
   ws::stream<tcp::socket> stream;
   Stage stage = Stage::idle;
@@ -96,7 +96,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   Connection(Transport::Impl& owner, std::uint64_t number, tcp::socket socket, std::string address)
       : impl(owner),
         id(number),
-        from(std::move(address)),
+        sender(std::move(address)),
         stream(std::move(socket)),
         buffer(most_head_bytes * 2) {}
 
@@ -374,11 +374,11 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     const auto query_token = query_value(target.query, "token");
     const bool tries = !given && !options.tokens.empty() &&
                        (!authorization.empty() || (query_token && *query_token));
-    if (tries && !impl.guesses.allowed(from, Clock::now()))
+    if (tries && !impl.guesses.allowed(sender, Clock::now()))
       return refuse(429, "too many wrong tokens came from your address; wait some seconds");
     const auto admission = given ? Admission{*given}
                                  : admit(target.query, authorization, options.tokens, impl.on_loopback());
-    if (admission.status == 401) impl.guesses.count_wrong(from, Clock::now());
+    if (admission.status == 401) impl.guesses.count_wrong(sender, Clock::now());
     if (admission.status != 0) return refuse(admission.status, admission.why);
     if (admission.access.role == Role::guest && !subprotocol.empty())
       return refuse(401, "looking on needs a token here: ?token=TOKEN");
@@ -639,7 +639,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     return stage == Stage::open && access.role == Role::guest && now > came + patience_with_guests;
   }
 
-  const std::string& address() const override { return from; }
+  const std::string& address() const override { return sender; }
 
   void begin() override { await_request(); }
 
@@ -650,7 +650,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     const auto self = shared_from_this();
     impl.peers.erase(id);
     impl.local_port_of.erase(id);
-    if (const auto of_address = impl.sockets_of.find(from);
+    if (const auto of_address = impl.sockets_of.find(sender);
         of_address != impl.sockets_of.end() && --of_address->second == 0)
       impl.sockets_of.erase(of_address);
     error_code ignored;

@@ -84,17 +84,25 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
   Transport::Impl& impl;
   const std::uint64_t id;
   const udp::endpoint to;
+  const std::string sender;  ///< its address
   const std::string nonce;
+  Access access = admit("", "", impl.options.tokens, impl.on_loopback()).access;
   Stage stage = Stage::open;
   std::shared_ptr<Queue> queue = std::make_shared<Queue>();
   Message current;
   bool writing = false;
   std::string farewell;
-  Clock::time_point heard = Clock::now(), bucket_time = heard, closing_since;
+  const Clock::time_point came = Clock::now();
+  Clock::time_point heard = came, bucket_time = came, closing_since;
   double bucket = burst;
 
-  UdpPeer(UdpDoor& owner, std::uint64_t number, udp::endpoint address, std::string key)
-      : door(owner), impl(owner.impl), id(number), to(std::move(address)), nonce(std::move(key)) {}
+  UdpPeer(UdpDoor& owner, std::uint64_t number, const udp::endpoint& address, std::string key)
+      : door(owner),
+        impl(owner.impl),
+        id(number),
+        to(address),
+        sender(address.address().to_string()),
+        nonce(std::move(key)) {}
 
   void begin() override {
     ++impl.clients;
@@ -104,7 +112,6 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
       const std::lock_guard lock(impl.mutex);
       impl.queues.emplace(id, queue);
     }
-    const Access access = admit("", "", impl.options.tokens, impl.on_loopback()).access;
     if (impl.handler.connected) impl.handler.connected(id, access, "udp");
   }
 
@@ -132,7 +139,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
         if (current.text && current.size() <= most_datagram_bytes) {
           writing = true;
         } else {  // it fits no datagram
-          queue->bytes -= std::min(queue->bytes, current.weight());
+          forget_current();
           ++impl.dropped;
         }
       }
@@ -140,6 +147,14 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
     if (full && stage == Stage::open) return close_for("you are too slow: the queue is full");
     if (writing) return write();
     if (stage == Stage::closing) say_good_bye();
+  }
+
+  /// @pre impl.mutex is held
+  void forget_current() {
+    queue->bytes -= std::min(queue->bytes, current.weight());
+    const std::size_t own = std::min(queue->own, current.own);
+    queue->own -= own;
+    impl.own_bytes -= own;
   }
 
   void write() {
@@ -152,7 +167,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
       self->writing = false;
       {
         const std::lock_guard lock(self->impl.mutex);
-        self->queue->bytes -= std::min(self->queue->bytes, self->current.weight());
+        self->forget_current();
       }
       self->current = {};
       self->impl.call([&] { self->flush(); });
@@ -206,6 +221,12 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
     end();
   }
   bool idle() const override { return false; }
+  bool dawdles(Clock::time_point) const override { return false; }  // the nonce was its request
+  bool is_old_guest(Clock::time_point now) const override {
+    return stage == Stage::open && access.role == Role::guest && now > came + patience_with_guests;
+  }
+  void change_access(const Access& now) override { access = now; }
+  const std::string& address() const override { return sender; }
 
   void end() override {
     if (stage == Stage::gone) return;
@@ -218,6 +239,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
       impl.queues.erase(id);
       impl.dropped += queue->messages.size();
       queue->messages.clear();
+      impl.own_bytes -= std::exchange(queue->own, 0);
     }
     --impl.clients;
     --impl.open_clients;
