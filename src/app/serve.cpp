@@ -60,7 +60,7 @@ Result<Served> Served::start(const std::optional<ServeOptions>& options, Session
   server_options.programs = programs;
   server_options.name = session.simulation().setup().name;
   server_options.version = SANDLOT_VERSION;
-  server_options.world = options.world;
+  if (options) server_options.world = options->world;
   if (outputs)
     server_options.recording = [outputs]() -> std::optional<server::ServerOptions::Recording> {
       auto progress = outputs->recording();
