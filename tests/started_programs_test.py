@@ -328,7 +328,7 @@ for second in range(1, 3):
         self.assertIn("a file of it has changed", "".join(run.said))
 
     def test_an_administrator_starts_it_again(self):
-        run = self.watched_run(self.scenario("print('begun', flush=True)\n" + DRIVE), "--port", "0", "--rate", "0.05")
+        run = self.watched_run(self.scenario(DRIVE.replace("    for step", "    print('begun', flush=True)\n    for step")), "--port", "0", "--rate", "0.05")
         self.until(lambda: "rover/controller: begun" in "".join(run.said))
         url = "tcp://" + re.search(r"page: http://([^/]+)/", "".join(run.said)).group(1)
         with Connection(url) as admin:
