@@ -87,26 +87,26 @@ int run(const RunOptions& options) {
   spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);
   Progress progress;
   std::optional<Served> served;
-  const RunCallbacks callbacks{.hooks = options.hooks,
-                               .on_warning = [](const Error& warning) { log::warning(warning.text()); },
-                               .on_answer = [](const std::string& answer) { log::info(answer); },
-                               .on_ready = [&](const RunParts& parts) -> Status {
-                                 SL_TRY(serve(options, parts, served));
-                                 catch_interrupts();
-                                 return {};
-                               },
-                               .keep_going =
-                                   [&](const Simulation& simulation) {
-                                     if (served) served->count_viewers();
-                                     progress.update(simulation);
-                                     return !interrupted();
-                                   },
-                               .on_end =
-                                   [&](Summary& summary) {
-                                     if (!served) return;
-                                     const ServerSummary ended = served->stop();
-                                     if (options.serve) summary.server = ended;
-                                   }};
+  const RunCallbacks callbacks{
+      .hooks = options.hooks,
+      .on_warning = [](const Error& warning) { log::warning(warning.text()); },
+      .on_answer = [](const std::string& answer) { log::info(answer); },
+      .on_ready = [&](const RunParts& parts) -> Status {
+        catch_interrupts();  // before there are processes and folders of theirs to be left
+        return serve(options, parts, served);
+      },
+      .keep_going =
+          [&](const Simulation& simulation) {
+            if (served) served->count_viewers();
+            progress.update(simulation);
+            return !interrupted();
+          },
+      .on_end =
+          [&](Summary& summary) {
+            if (!served) return;
+            const ServerSummary ended = served->stop();
+            if (options.serve) summary.server = ended;
+          }};
   const auto summary = sandlot::run(spec, callbacks);
   if (!summary) return complain(summary.error());
   progress.clear();
