@@ -129,7 +129,7 @@ robots:
     def test_a_snapshot_starts_nothing_unless_it_is_allowed(self):
         half = os.path.join(self.scratch.name, "half.snapshot")
         python = "print('it has begun')\n" + DRIVE
-        self.run_scenario(self.scenario(python), "--headless", "--snapshot", half, "--snapshot-at", "1s")
+        self.run_scenario(self.scenario(python, "patience: 2 s"), "--headless", "--snapshot", half, "--snapshot-at", "1s")
         _, text = self.run_scenario("--from", half, "--duration", "1s", "--headless", code=2)
         self.assertIn("nobody can connect", text)
         _, text = self.run_scenario("--from", half, "--duration", "0.2s", "--port", "0")
@@ -279,7 +279,8 @@ for second in range(1, 3):
                 listening |= {line.split()[9] for line in file.read().splitlines()[1:]}
         self.assertEqual(mine & listening, set())
         run.send_signal(signal.SIGINT)
-        run.communicate(timeout=20)
+        _, text = run.communicate(timeout=20)
+        self.assertEqual(run.returncode, 0, text)
 
     # ----------------------------------------------------------------------------------------------- no sandbox
 
@@ -328,7 +329,7 @@ for second in range(1, 3):
         self.assertIn("a file of it has changed", "".join(run.said))
 
     def test_an_administrator_starts_it_again(self):
-        run = self.watched_run(self.scenario("print('begun', flush=True)\n" + DRIVE), "--port", "0", "--rate", "0.05")
+        run = self.watched_run(self.scenario(DRIVE.replace("    for step", "    print('begun', flush=True)\n    for step")), "--port", "0", "--rate", "0.05")
         self.until(lambda: "rover/controller: begun" in "".join(run.said))
         url = "tcp://" + re.search(r"page: http://([^/]+)/", "".join(run.said)).group(1)
         with Connection(url) as admin:

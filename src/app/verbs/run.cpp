@@ -94,9 +94,8 @@ int run(const RunOptions& options) {
       .on_warning = [](const Error& warning) { log::warning(warning.text()); },
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
-        SL_TRY(serve(options, parts, served));
-        catch_interrupts();
-        return {};
+        catch_interrupts();  // before there are processes and folders of theirs to be left
+        return serve(options, parts, served);
       },
       .keep_going =
           [&](const Simulation& simulation) {
