@@ -35,6 +35,8 @@ struct FormatKind {
   // Writers; null for what the format cannot declare. File names are written as the model has them.
   Result<Xml> (*write_world)(const model::Setup& setup, Diagnostics& diagnostics) = nullptr;
   Result<Xml> (*write_model)(const model::Instance& instance, Diagnostics& diagnostics) = nullptr;
+  /// For formats that are no XML and name no files.
+  Result<std::string> (*write_plain_world)(const model::Setup& setup, Diagnostics& diagnostics) = nullptr;
 };
 
 std::span<const FormatKind* const> format_kinds();

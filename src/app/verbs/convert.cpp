@@ -1,4 +1,4 @@
-/// `sandlot convert IN OUT`: URDF, SDF and scenarios into each other.
+/// `sandlot convert IN OUT`: files of robots, worlds and scenarios into each other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -140,6 +140,12 @@ struct Job {
     return moved_text(root);
   }
 
+  Result<std::string> setup_to_plain_file() const {
+    SL_ASSIGN(const model::Setup setup, load(options.in, {.paths = options.paths}, diagnostics));
+    SL_ASSIGN(const std::string text, to.write_plain_world(setup, diagnostics));
+    return "# " + comment() + "\n" + text;
+  }
+
   /// A model with parameters as the one model of a file.
   Result<std::string> built_to_file() const {
     SL_ASSIGN(const model::Instance instance,
@@ -233,6 +239,10 @@ Result<std::string> converted(const Job& job) {
   }
   if (job.to.sdf_tree && job.from->sdf_tree && job.to.write_world) return job.tree_to_sdf();
   if (job.to.write_world) return job.setup_to_file();
+  if (job.to.write_plain_world) return job.setup_to_plain_file();
+  if (!job.to.write_model)
+    return Error{"convert writes no " + job.format_name() + " files",
+                 "it writes .sdf, .urdf, .yaml and .wld"};
   if (job.from->scenario)
     return Error{
         "'" + job.options.in + "' is a scenario, and a " + job.format_name() + " file holds one robot",

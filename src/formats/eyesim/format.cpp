@@ -55,6 +55,7 @@ constinit const FormatKind eyesim_world_format{
     .extensions = wld_extensions,
     .max_bytes = eyesim::most_bytes,
     .world = read_wld_content,
+    .write_plain_world = eyesim::wld_of,
 };
 constinit const FormatKind eyesim_maze_format{
     .name = "maze",

@@ -75,7 +75,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
 
   Plan plan;
   std::size_t columns = 0;
-  for (const Row& row : rows) columns = std::max(columns, (row.text.size() + 1) / 2);
+  for (const Row& row : rows) columns = std::max(columns, row.text.size() / 2);
   const auto at = [&](std::size_t row, std::size_t i) {
     return row < rows.size() && i < rows[row].text.size() ? rows[row].text[i] : ' ';
   };
@@ -113,9 +113,9 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
       const char c = at(row, i);
       const Place place = place_in(name, rows[row].line, static_cast<int>(i) + 1);
       if (c == ' ' || c == '_' || c == '|') {
-        if ((c == '_') != (i % 2 == 1) && c != ' ')
-          diagnostics.warn({std::string("'") + c + "' stands where the maze has no such wall",
-                            "_ belongs into even columns, | into odd ones, counted from 1", place});
+        if (c == '|' && i % 2 == 1)
+          diagnostics.warn(
+              {"'|' stands where no cell ends", "it belongs into odd columns, counted from 1", place});
         continue;
       }
       Spot spot{x_m(i) - cell_m / 2, base_m(row) + cell_m / 2, 0, place};

@@ -41,4 +41,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
 Result<WorldContent> world_of(const Plan& plan, const std::string& name, const std::string& file,
                               const ReadOptions& options, Diagnostics& diagnostics);
 
+/// Upright boxes that stand still, and the floor, as a .wld file; of everything else one warning says that it is left out.
+Result<std::string> wld_of(const model::Setup& setup, Diagnostics& diagnostics);
+
 }  // namespace sandlot::formats::eyesim

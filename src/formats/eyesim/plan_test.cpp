@@ -142,5 +142,32 @@ TEST(EyesimPlan, BecomesAWorldWithAFloorWallsAndThings) {
   EXPECT_NEAR(ball.inertial.moments.x, 0.4 * 0.0459 * 0.02135 * 0.02135, 1e-12);
 }
 
+TEST(EyesimPlan, IsWrittenAsItWasRead) {
+  Diagnostics d;
+  const std::string text =
+      "floor 3000 2000\n0 0 3000 0 10 200 217 217 209\n100 200 100 1500 25 400 255 0 51\n";
+  const auto world = world_of(wld(text, d), "room", "room.wld", {}, d);
+  ASSERT_TRUE(world);
+  model::Setup setup;
+  setup.instances = world->instances;
+  const auto written = wld_of(setup, d);
+  ASSERT_TRUE(written) << written.error().text();
+  EXPECT_EQ(*written, text);
+  EXPECT_TRUE(d.warnings.empty()) << d.warnings.front().text();
+}
+
+TEST(EyesimPlan, LeavesOutWhatAWorldFileCannotSay) {
+  Diagnostics d;
+  const auto world = world_of(maze(" _ _\n|o x|\n|_ _|\n", d), "small", "small.maz", {}, d);
+  ASSERT_TRUE(world);
+  model::Setup setup;
+  setup.instances = world->instances;
+  ASSERT_TRUE(wld_of(setup, d));
+  ASSERT_EQ(d.warnings.size(), 2u);
+  EXPECT_EQ(d.warnings[0].what, "'ball' is left out: a .wld file has no things that move");
+  setup.instances.clear();
+  EXPECT_FALSE(wld_of(setup, d));
+}
+
 }  // namespace
 }  // namespace sandlot::formats::eyesim

@@ -257,6 +257,7 @@ class Reader {
       case Drive::ackermann: add_car(base); break;
       case Drive::omni: add_omni(base); break;
     }
+    if (centre_) model_.links[base].inertial.X_LCo.p = X_BR * *centre_;
     Robi out;
     for (const Psd& psd : psds_) {
       builders::add_device(model_, psd.name, "range_finder",
@@ -277,7 +278,8 @@ class Reader {
                            {{"lens", fisheye_rad_ ? "equidistant" : "pinhole"},
                             {"width", std::to_string(width)},
                             {"height", std::to_string(height)},
-                            {"horizontal_fov", number_text(fov)}},
+                            {"horizontal_fov", number_text(fov)},
+                            {"rate", "20"}},
                            base, X_BR * camera_->X_RS);
       model_.devices.back().place = camera_->place;
     }
@@ -329,7 +331,6 @@ class Reader {
         top_m_ = std::max(top_m_, X_BC.p.z + half_height(solid.shape));
       }
     }
-    if (centre_) model_.links[base].inertial.X_LCo.p = X_BR * *centre_;
     if (!mesh_) return;
     model::Visual visual{"model", X_BR * X_RMesh_, Mesh{mesh_}, {}, true, {}};
     // Without colliders the body was made up, to touch with: the mesh is what is seen.
