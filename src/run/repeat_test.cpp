@@ -21,7 +21,7 @@ std::string scattered(const TestFolder& folder, const std::string& more) {
   EXPECT_TRUE(
       write_file(file,
                  "version: 1\nname: scattered\nphysics: planar\ntime: {step: 10 ms, stop: 0.05}\nrobots:\n"
-                 "  - name: rover\n    model: rover\n    count: 2\n"
+                 "  - name: rover\n    model: rover\n    team: red\n    count: 2\n"
                  "    distribution: {uniform: {width: 4, height: 4}}\n" +
                      more));
   return file;

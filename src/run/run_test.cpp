@@ -241,7 +241,7 @@ TEST_F(RunTest, CriteriaThatCannotBeReadAreRefusedWithTheirPlace) {
   const std::pair<const char*, const char*> expected[] = {
       {"criterion: mean(rad*.pose.x)",
        "bad.yaml:5:12: expression 'mean(rad*.pose.x)', column 6: nothing is called 'rad*'"},
-      {"criterion: criterion + 1", "there is no 'criterion'"},
+      {"criterion: criterion + 1", "values and criteria cannot use a criterion"},
       {"criterion: 1 / 0", "is it a division by 0?"},
       {"criterion: {success: 1}", "'value' is missing"},
       {"criterion: {value: 1, succes: 1}", "did you mean 'success'?"},
@@ -249,12 +249,14 @@ TEST_F(RunTest, CriteriaThatCannotBeReadAreRefusedWithTheirPlace) {
       {"criterion: {value: 1, success: rover.x}", "bad.yaml:5:32: expression 'rover.x'"},
       {"criterion: 1\nvalues: {criterion: 2}", "'criterion' cannot be the name of a value"},
       {"teams: [{name: red, criterion: blue.criterion}]", "bad.yaml:5:32: expression 'blue.criterion'"},
+      {"teams: [{name: red}, {name: blue, criterion: 1}]",
+       "/teams/1: no robot is in team 'blue'; name it: team: blue"},
   };
   for (const auto& [lines, words] : expected) {
-    ASSERT_TRUE(
-        write_file(folder + "bad.yaml",
-                   std::string("version: 1\nphysics: planar\nrobots:\n  - {name: rover, model: rover}\n") +
-                       lines + "\n"));
+    ASSERT_TRUE(write_file(
+        folder + "bad.yaml",
+        std::string("version: 1\nphysics: planar\nrobots:\n  - {name: rover, model: rover, team: red}\n") +
+            lines + "\n"));
     EXPECT_THAT(refusal({.file = folder + "bad.yaml", .duration_s = 0.01}), HasSubstr(words)) << lines;
   }
 }

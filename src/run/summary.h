@@ -138,9 +138,9 @@ struct DurationSummary {
   double mean_s = 0, p99_s = 0, max_s = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"mean", "s", "Mean."}, s.mean_s);
+    visit(Field{"mean", "s", "Mean of the durations."}, s.mean_s);
     visit(Field{"p99", "s", "99th percentile, at most 12.2 % too long."}, s.p99_s);
-    visit(Field{"max", "s", "Longest."}, s.max_s);
+    visit(Field{"max", "s", "Longest of the durations."}, s.max_s);
   }
 };
 

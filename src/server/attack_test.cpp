@@ -195,7 +195,8 @@ TEST(Attacks, WhoHasNoTokenOfATeamsRunSeesTheTimeAlone) {
   Bridge guest(run.url());
   for (const char* topic : {"/tf", "/tf_static", "/rosout", "/rover1/laser/ranges"})
     EXPECT_EQ(refusal(guest, subscribe(topic)).rfind("there is no topic", 0), 0u) << topic;
-  EXPECT_EQ(guest.call("/rosapi/topics", json::object())["values"]["topics"], json::array({"/clock"}));
+  EXPECT_EQ(guest.call("/rosapi/topics", json::object())["values"]["topics"],
+            json::array({"/clock", "/sandlot/step_times"}));
   EXPECT_EQ(guest.call("/get_entity_state", {{"entity", "rover2"}})["result"], false);
   EXPECT_NE(refusal(guest, {{"op", "publish"}, {"topic", "/rover1/drive"}, {"msg", json::object()}})
                 .find("what it has claimed"),
@@ -240,7 +241,8 @@ TEST(Attacks, WhatWasAllowedByAClaimEndsWithIt) {
   ASSERT_EQ(red.next("publish")["topic"], "/rover1/laser/ranges");
   red.send({{"op", "sandlot.release"}});
   EXPECT_NE(refusal(red, command).find("nothing takes messages"), std::string::npos);
-  EXPECT_EQ(red.call("/rosapi/topics", json::object())["values"]["topics"], json::array({"/clock"}));
+  EXPECT_EQ(red.call("/rosapi/topics", json::object())["values"]["topics"],
+            json::array({"/clock", "/sandlot/step_times"}));
   EXPECT_EQ(red.next("publish", 0.3), json()) << "its subscriptions have ended, too";
   // Claimed again in another way, a client keeps what it has subscribed to.
   EXPECT_EQ(red.claim({{"team", "red"}, {"token", "secret of red"}})["op"], "sandlot.claimed");

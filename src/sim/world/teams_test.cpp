@@ -195,7 +195,7 @@ TEST(Teams, ErrorsNameLineAndWhatWouldBeRight) {
       error_of(begin + "teams:\n- name: a\n" + "robots:\n- {name: a, model: ../models/scout/model.sdf}\n"),
       HasSubstr("'a' is the name of a team"));
   EXPECT_THAT(error_of(begin + "teams:\n- name: red\n- name: blue\n  criterion: 1\n" + robot),
-              HasSubstr("s.yaml:6:3: /teams/1: no robot is in team 'blue'; name it: team: blue"));
+              HasSubstr("s.yaml:6:9: /teams/1: no robot is in team 'blue'; name it: team: blue"));
   EXPECT_THAT(error_of(begin + "teams:\n- name: a/b\n" + robot), HasSubstr("cannot be the name of a team"));
   EXPECT_THAT(error_of(begin + "teams: [{name: red, controller: wandr}]\n" + robot),
               HasSubstr("no controller 'wandr'; did you mean 'wander'?"));
