@@ -53,7 +53,7 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   EXPECT_EQ(waits["is_client"], true);
   Bridge bridge(run.url());
   const json claimed = bridge.claim(
-      {{"robot", "rover1"}, {"mode", "lockstep"}, {"deadline_ms", 30}, {"name", "slow.py"}});
+      {{"robot", "rover1"}, {"mode", "lockstep"}, {"deadline_ms", 300}, {"name", "slow.py"}});
   ASSERT_EQ(claimed["op"], "sandlot.claimed") << claimed.dump();
   const json first = bridge.next("sandlot.tick");
   std::this_thread::sleep_for(2ms);
@@ -80,10 +80,10 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   EXPECT_GT(seen["bytes_out"], 50);
   const json& program = seen["programs"][0];
   EXPECT_EQ(program["steps"], 5);
-  EXPECT_EQ(program["deadline_s"], 0.03);
+  EXPECT_EQ(program["deadline_s"], 0.3);
   // It waited 2 ms, and came before the deadline.
   EXPECT_GE(program["latency_s"]["last"], 0.002);
-  EXPECT_LE(program["latency_s"]["last"], 0.03);
+  EXPECT_LE(program["latency_s"]["last"], 0.3);
   EXPECT_GT(program["waiting_s"], 0) << "it was told of the second step, and has not answered";
   EXPECT_EQ(program["latencies"]["counts"], json::array({1}));
   // The viewer finds itself by its number.
@@ -104,36 +104,11 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   EXPECT_EQ(totals[0].latency.all().count, 1u);
 }
 
-TEST(Clients, FiguresGoOnInAWorldThatWasReset) {
-  Running run(remote(1), {.paused = true, .stay = true});
-  run.go();
-  Viewer viewer(run.url());
-  Bridge bridge(run.url());
-  ASSERT_EQ(bridge.claim({{"robot", "rover1"}, {"mode", "lockstep"}})["op"], "sandlot.claimed");
-  // An answer behind a tick that was reset away is refused, and its step comes again.
-  const auto answer = [&] {
-    const json tick = bridge.next("sandlot.tick");
-    bridge.send({{"op", "sandlot.done"}, {"step", tick["step"]}});
-  };
-  answer();
-  EXPECT_EQ(viewer.console("step 5")["ok"], true);
-  answer();
-  EXPECT_EQ(viewer.console("reset")["ok"], true);
-  answer();
-  const std::uint32_t subscription = viewer.subscribe("/sandlot/clients");
-  const json program = clients_with(viewer, subscription, [](const json& all) {
-    const json client = client_with(all, "drives", "rover1");
-    const bool three = !client.is_null() && !client["programs"].empty() &&
-                       client["programs"][0]["steps"] == 3 && client["programs"][0]["waiting_s"].is_null();
-    return three ? client["programs"][0] : json();
-  });
-  EXPECT_EQ(program["misses"], 0);
-}
-
 TEST(Clients, OthersSeeThemselvesAloneAndDrivingClientsNobody) {
   ServerOptions options;
   options.transport.tokens = {{"secret of admin", {.role = Role::admin}},
-                              {"secret of one", {.role = Role::robot, .name = "rover1"}}};
+                              {"secret of one", {.role = Role::robot, .name = "rover1"}},
+                              {"secret of all", {.role = Role::spectator}}};
   Running run(arena("planar", 2, ""), {.pace = {1.0}}, options);
   run.go();
   Viewer admin(run.url(), "?token=secret%20of%20admin");
@@ -144,7 +119,7 @@ TEST(Clients, OthersSeeThemselvesAloneAndDrivingClientsNobody) {
   });
   EXPECT_FALSE(client_with(all, "drives", "rover1").is_null());
 
-  Viewer spectator(run.url());
+  Viewer spectator(run.url(), "?token=secret%20of%20all");
   const std::uint32_t subscription = spectator.subscribe("/sandlot/clients");
   for (int i = 0; i < 2; ++i) {
     const auto message = spectator.next(subscription);
@@ -163,7 +138,7 @@ TEST(Clients, OthersSeeThemselvesAloneAndDrivingClientsNobody) {
   EXPECT_EQ(one.next("status")["msg"].get<std::string>().substr(0, 17), "there is no topic");
   EXPECT_EQ(one.call("/sandlot/disconnect_client", {{"client", 1}})["result"], false);
   Viewer scoped(run.url(), "?token=secret%20of%20one");
-  ASSERT_TRUE(scoped.until([&] { return scoped.channels.count("/rover1/laser/ranges") > 0; }));
+  ASSERT_TRUE(scoped.until([&] { return scoped.channels.count("/clock") > 0; }));
   scoped.listen(0.2);
   EXPECT_EQ(scoped.channels.count("/sandlot/clients"), 0u);
   EXPECT_EQ(scoped.services.count("/sandlot/disconnect_client"), 0u);
