@@ -29,7 +29,8 @@ TEST(FormatKinds, AFileOfNoFormatHasNoKind) {
   EXPECT_EQ(find_format("notes.md"), nullptr);
   EXPECT_EQ(find_format("yaml"), nullptr);
   EXPECT_EQ(find_format(""), nullptr);
-  EXPECT_EQ(known_extensions(), ".yaml, .yml, .sdf, .world, .urdf, .xacro, .wld, .maz, .maze, .robi, .esObj or .esobj");
+  EXPECT_EQ(known_extensions(),
+            ".yaml, .yml, .sdf, .world, .urdf, .xacro, .wld, .maz, .maze, .robi, .esObj or .esobj");
 }
 
 TEST(FormatKinds, AModelMayHaveAnyExtensionButThatOfAScenario) {

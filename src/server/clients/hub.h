@@ -132,7 +132,7 @@ class Hub final : private ServiceHost {
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
     std::atomic<std::uint64_t> too_long = 0;  ///< dropped, as they fit no datagram
-    std::atomic<bool> log_read = false;  ///< somebody has subscribed to /rosout
+    std::atomic<bool> log_read = false;       ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
   void count_refused() { ++counts_.refused; }

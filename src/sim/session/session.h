@@ -239,8 +239,8 @@ class Session {
   std::unique_ptr<InputRecorder> input_recorder_;  ///< null for a run with an input log
   std::uint64_t epoch_ = 1;
   std::uint64_t first_serials_ = 0;  ///< entities of the beginning have serials below it
-  InputLog past_;             ///< input since the first snapshot kept; or the recording's
-  std::deque<Kept> history_;  ///< ascending; the first is the beginning of the run
+  InputLog past_;                    ///< input since the first snapshot kept; or the recording's
+  std::deque<Kept> history_;         ///< ascending; the first is the beginning of the run
   std::size_t history_bytes_ = 0;
   double history_gap_s_ = 1, snapshot_cost_s_ = 0, snapshot_at_s_ = -1e9;  ///< wall clock
   std::uint64_t rerun_until_ = 0;                                          ///< tick

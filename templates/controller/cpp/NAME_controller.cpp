@@ -12,7 +12,9 @@ nlohmann::json decide(const nlohmann::json& scan) {
   std::vector<double> ranges;
   for (const auto& range : scan["ranges"])
     ranges.push_back(range.is_null() ? scan["range_max"].get<double>() : range.get<double>());
-  const auto least = [&](int from, int to) { return *std::min_element(ranges.begin() + from, ranges.begin() + to); };
+  const auto least = [&](int from, int to) {
+    return *std::min_element(ranges.begin() + from, ranges.begin() + to);
+  };
   const double right = least(45, 115), ahead = least(115, 156), left = least(156, 226);
   if (ahead > 0.6) return {{"linear", {{"x", 0.4}}}};
   return {{"angular", {{"z", left > right ? 1.0 : -1.0}}}};
