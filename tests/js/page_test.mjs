@@ -551,6 +551,7 @@ with Robot() as rover:
   const client = async () => Number(/Runs as client (\d+)/.exec(await program.innerText())?.[1] ?? 0);
   const first = await until("its client", client);
   assert.equal(await shown.locator(`${by("clients")} [data-client="${first}"] .who b`).innerText(), "brain.py");
+  assert.match(await shown.locator(`${by("clients")} [data-client="${first}"]`).innerText(), /unix socket/);
   const restart = program.locator(by("restart-program"));
   await restart.click();
   assert.equal(await restart.innerText(), "Sure?");

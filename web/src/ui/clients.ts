@@ -124,7 +124,7 @@ export class ClientsPanel implements Panel {
   private fillClient({element, cells}: Row, client: ClientRow, admin: boolean): void {
     const [who, drives, latency, missed, traffic, tools] = cells;
     const you = String(client.id) === this.context.client.info?.metadata?.sandlot_client;
-    const name = client.name || (client.protocol === 'page' ? 'Page' : `Client ${client.id}`);
+    const name = client.protocol === 'page' ? 'Page' : client.name || `Client ${client.id}`;
     element.dataset.client = String(client.id);
     element.dataset.mode = client.mode;
     element.classList.toggle('you', you);
