@@ -57,8 +57,9 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   ASSERT_EQ(claimed["op"], "sandlot.claimed") << claimed.dump();
   const json first = bridge.next("sandlot.tick");
   std::this_thread::sleep_for(2ms);
-  bridge.send({{"op", "publish"}, {"topic", "/rover1/drive"}, {"msg", json::object()}});
-  bridge.send({{"op", "sandlot.done"}, {"step", first["step"]}});
+  ASSERT_FALSE(first.is_null());
+  bridge.send_text(json{{"op", "publish"}, {"topic", "/rover1/drive"}, {"msg", json::object()}}.dump() +
+                   json{{"op", "sandlot.done"}, {"step", first["step"]}}.dump());
   run.thread.join();
   EXPECT_TRUE(run.status) << run.status.error().text();
   auto state = NamedValue::find(run.session.simulation(), "rover1/brain.misses");
@@ -102,6 +103,41 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   EXPECT_EQ(totals[0].steps, 5u);
   EXPECT_EQ(totals[0].misses, 3u);
   EXPECT_EQ(totals[0].latency.all().count, 1u);
+}
+
+TEST(Clients, FiguresGoOnInAWorldThatWasReset) {
+  Running run(remote(1));
+  run.go();
+  Viewer viewer(run.url());
+  Bridge bridge(run.url());
+  ASSERT_EQ(bridge.claim({{"robot", "rover1"}, {"mode", "lockstep"}, {"deadline_ms", 20'000}})["op"],
+            "sandlot.claimed");
+  const auto expect_step = [&](int step) {
+    const json tick = bridge.next("sandlot.tick");
+    ASSERT_FALSE(tick.is_null());
+    EXPECT_EQ(tick["step"], step);
+  };
+  const auto answer = [&](int step) { bridge.send({{"op", "sandlot.done"}, {"step", step}}); };
+  for (const int step : {0, 1}) {
+    expect_step(step);
+    answer(step);
+  }
+  expect_step(2);
+  EXPECT_EQ(viewer.console("reset")["ok"], true);
+  expect_step(0);
+  answer(0);
+  expect_step(1);
+  // Three steps of the first world, one of them without an answer, and two of the second.
+  const json program = clients_with(viewer, viewer.subscribe("/sandlot/clients"), [](const json& all) {
+    const json client = client_with(all, "drives", "rover1");
+    return !client.is_null() && !client["programs"].empty() ? client["programs"][0] : json();
+  });
+  EXPECT_EQ(program["steps"], 5);
+  EXPECT_EQ(program["misses"], 0);
+  EXPECT_FALSE(program["waiting_s"].is_null());
+  int answers = 0;
+  for (const json& each : program["latencies"]["counts"]) answers += each.get<int>();
+  EXPECT_EQ(answers, 3);
 }
 
 TEST(Clients, OthersSeeThemselvesAloneAndDrivingClientsNobody) {

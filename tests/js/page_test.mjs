@@ -2,10 +2,11 @@
 // connection of its own or in the files that it writes. Pictures stay in BUILD/page_tests.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { chmodSync, existsSync, mkdirSync, readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { chromium } from "playwright-core";
 import { Scratch, Served, makeYard, readCsv, sandlot, until } from "./served.mjs";
+import { TcpClient } from "./tcp_client.mjs";
 import { Viewer } from "./viewer.mjs";
 
 const pictures = `${process.env.SANDLOT_BUILD ?? "build/release"}/page_tests`;
@@ -476,4 +477,98 @@ test("a world without media, batteries and teams has no score, and nothing more 
   assert.equal(await shown.locator(by("score")).isVisible(), false);
   await shown.context().close();
   assert.equal(await run.stop(), 0, run.error);
+});
+
+test("who is connected, as what and how late is seen, and a client can be disconnected", { skip }, async () => {
+  const yard = readFileSync(makeYard(scratch, { controller: "{kind: remote, deadline: 20 s}" }), "utf8")
+    .replace("name: idle,", "name: idle, controller: {kind: remote, patience: 0 s},");
+  const run = await Served.start(["run", scratch.write("remote.yaml", yard)], scratch);
+  const viewer = await watch(run.ws);
+  const shown = await open(run.url);
+  await shown.locator(by("tab-clients")).click();
+  const pane = shown.locator(by("clients"));
+  const waiting = (robot) => pane.locator(`[data-program="${robot}/controller"]`);
+  assert.match(await waiting("rover").innerText(), /Waits for a client/);
+  // Each tenth answer is later than the deadline; the step after that comes in time.
+  const client = new TcpClient(run.ws, (step) => (step % 10 === 0 ? 150 : 0));
+  client.claim("rover", { mode: "lockstep", deadline_ms: 100, name: "brain.mjs" });
+  await until("the claim", () => client.claimed);
+  const row = pane.locator('[data-mode="lockstep"]');
+  await row.waitFor();
+  assert.match(await row.innerText(), /brain\.mjs[^]*rosbridge, TCP · 127\.0\.0\.1:\d+[^]*rover[^]*robot · lockstep/);
+  assert.equal(await waiting("rover").count(), 0);
+  assert.match(await waiting("idle").innerText(), /Waits for a client/);
+  const misses = async () => Number(await row.locator(by("misses")).getAttribute("data-misses"));
+  await until("a miss", async () => (await misses()) >= 2);
+  assert.match(await row.locator(by("misses")).getAttribute("class"), /warn/);
+  await until("the longest answer", async () => /s · 99 % in 1[5-9]\d ms/.test(await row.locator(by("latency")).innerText()));
+  await viewer.say("pause");
+  await state(viewer, "paused");
+  const counted = await viewer.number("rover/controller.misses");
+  await until("as many misses as the program counts", async () => (await misses()) === counted);
+  assert.equal(await pane.locator(".you").filter({ hasText: "you" }).count() > 0, true);
+  assert.equal(await pane.locator(".client-row.you").getByRole("button").count(), 0, "nobody sends himself away");
+  await picture(shown, "clients");
+  // A spectator sees itself.
+  const url = new URL(run.url);
+  url.searchParams.set("role", "spectator");
+  const other = await open(url.href);
+  await other.locator(by("tab-clients")).click();
+  await other.locator(".client-row.you").waitFor();
+  assert.equal(await other.locator(by("clients-count")).innerText(), "1 connected");
+  assert.equal(await other.locator(by("clients")).locator("[data-mode=lockstep], [data-program]").count(), 0);
+  await other.context().close();
+  // Two clicks, and it is gone; its robot waits for another.
+  const button = row.locator(by("disconnect"));
+  await button.click();
+  assert.equal(await button.innerText(), "Sure?");
+  await button.click();
+  await until("the end of the connection", () => client.ended);
+  await row.waitFor({ state: "detached" });
+  await waiting("rover").waitFor();
+  await shown.context().close();
+  viewer.close();
+  assert.equal(await run.stop(), 0, run.error);
+  const [summary] = run.summary.clients;
+  assert.deepEqual([summary.name, summary.role, summary.drives, summary.mode, summary.misses], ["brain.mjs", "robot", "rover", "lockstep", counted]);
+  assert.ok(summary.steps >= 10 && summary.latency_s.max >= 0.15 && summary.latency_s.mean < 0.1, JSON.stringify(summary));
+});
+
+test("a program that the run has started is restarted from the page, and what it writes is in the log", { skip }, async () => {
+  chmodSync(scratch.folder, 0o755);  // also for `nobody`, when the tests run as root
+  scratch.write("brain.py", `import os
+print("begins as", os.getpid(), flush=True)
+from sandlot_client import Robot
+with Robot() as rover:
+    for step in rover.steps():
+        rover.command("drive", {"linear": {"x": 0.1}})
+`);
+  const yard = readFileSync(makeYard(scratch, { controller: "{kind: remote, command: [python3, brain.py], sandbox: off}" }), "utf8");
+  const run = await Served.start(["run", scratch.write("started.yaml", yard)], scratch);
+  const shown = await open(run.url);
+  await shown.locator(by("tab-clients")).click();
+  const program = shown.locator(`${by("clients")} [data-program="rover/controller"]`);
+  const client = async () => Number(/Runs as client (\d+)/.exec(await program.innerText())?.[1] ?? 0);
+  const first = await until("its client", client);
+  assert.equal(await shown.locator(`${by("clients")} [data-client="${first}"] .who b`).innerText(), "brain.py");
+  assert.match(await shown.locator(`${by("clients")} [data-client="${first}"]`).innerText(), /unix socket/);
+  const restart = program.locator(by("restart-program"));
+  await restart.click();
+  assert.equal(await restart.innerText(), "Sure?");
+  await restart.click();
+  const second = await until("another client", async () => {
+    const now = await client();
+    return now > first && now;
+  });
+  await shown.locator(`${by("clients")} [data-client="${second}"] .who b`).waitFor();
+  await picture(shown, "restarted");
+  await program.locator(by("program-output")).click();
+  const lines = shown.locator(".pane.log:visible .log-row");
+  await until("its line", async () => (await lines.allInnerTexts()).some((text) => /rover\/controller\s+begins as \d+/.test(text)));
+  assert.equal(await shown.locator(by("log-source")).inputValue(), "rover/controller");
+  assert.equal((await lines.allInnerTexts()).every((text) => text.includes("rover/controller")), true, "no other source");
+  await shown.context().close();
+  assert.equal(await run.stop(), 0, run.error);
+  const [summary] = run.summary.clients;
+  assert.deepEqual([summary.name, summary.drives, summary.mode, summary.connections], ["brain.py", "rover", "lockstep", 2]);
 });

@@ -257,7 +257,8 @@ test('times of clients are read at a glance', () => {
 test('a client that is silent is bad, one that comes close to its deadline a warning', () => {
   assert.equal(figures.judge(answered()), 'good');
   assert.equal(figures.judge(answered({ waiting_s: 0.05 })), 'good');
-  assert.equal(figures.judge(answered({ waiting_s: 0.2 })), 'bad');
+  assert.equal(figures.judge(answered({ waiting_s: 0.2 })), 'good', 'late is not silent');
+  assert.equal(figures.judge(answered({ waiting_s: 1.2 })), 'bad');
   assert.equal(figures.judge(answered({ latency_s: { last: 0, mean: 0, p99: 0.081, max: 0.09 } })), 'warn');
   assert.equal(figures.judge(answered({ latency_s: null })), 'good');
 });

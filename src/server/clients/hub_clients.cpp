@@ -7,15 +7,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto measuring_pause = 200ms;
-constexpr auto clients_pause = 500ms;
-
-/// Whether the run starts the client of this program. Where programs know of no command, it does not.
-template <class O>
-bool is_started(const O& outside) {
-  if constexpr (requires { outside.has_command(); }) return outside.has_command();
-  else return false;
-}
+constexpr auto measuring_pause = 230ms;
+constexpr auto clients_pause = 450ms;
 
 /// A number of a program's State; 0 when it has none of that name.
 std::uint64_t count_of(const Program& program, const char* name) {
@@ -38,7 +31,7 @@ void Hub::watch_clients() {
     std::vector<OutsideProgram> programs;
     session.simulation().for_each_outside([&](const SimulationParts::ProgramEntry& entry, Outside& outside) {
       programs.push_back({entry.path, entry.decl.kind, outside.is_client(), outside.connected(),
-                          is_started(outside), count_of(*entry.program, "answers"),
+                          outside.has_command(), count_of(*entry.program, "answers"),
                           count_of(*entry.program, "misses")});
     });
     mailbox->push([programs = std::move(programs)](Hub& hub) { hub.send_clients(programs); });

@@ -80,7 +80,7 @@ struct Counters {
 
 /// Figures of one client's connection.
 struct ConnectionFacts {
-  std::string address;  ///< of the other side, "127.0.0.1:50312"
+  std::string address;  ///< of the other side, "127.0.0.1:50312", "unix socket"
   std::string name;     ///< that the client gives itself: `name` in the query of its URL
   std::uint64_t bytes_in = 0, bytes_out = 0, dropped = 0;
 };

@@ -18,9 +18,14 @@ export function formatAge(age_s: number): string {
 
 export type Judgement = 'good' | 'warn' | 'bad';
 
-/** How a program keeps its deadline: bad when it is silent beyond it now, warn when it comes close to it. */
+/** Whether an answer is out for longer than one that is merely late. */
+export function isSilent(program: AnsweredProgram): boolean {
+  return program.waiting_s !== null && program.waiting_s > program.deadline_s + 1;
+}
+
+/** How a program keeps its deadline: bad when it is silent, warn when it comes close to it. */
 export function judge(program: AnsweredProgram): Judgement {
-  if (program.waiting_s !== null && program.waiting_s > program.deadline_s) return 'bad';
+  if (isSilent(program)) return 'bad';
   return program.latency_s !== null && program.latency_s.p99 > 0.8 * program.deadline_s ? 'warn' : 'good';
 }
 

@@ -3,7 +3,7 @@ import type {Context, Panel} from '../app/context';
 import {formatBytes, formatNumber} from '../app/format';
 import {ticker} from '../app/ticker';
 import type {AnsweredProgram, ClientRow, Clients, OutsideProgram} from '../protocol';
-import {columnsOf, formatAge, formatDuration, judge, missedShare, place, rowsOfPrograms, stateOf} from './client_figures';
+import {columnsOf, formatAge, formatDuration, isSilent, judge, missedShare, place, rowsOfPrograms, stateOf} from './client_figures';
 import {h, setText, setTitle, svg} from './dom';
 import {icon} from './icons';
 import {teamColor} from './teams';
@@ -124,7 +124,7 @@ export class ClientsPanel implements Panel {
   private fillClient({element, cells}: Row, client: ClientRow, admin: boolean): void {
     const [who, drives, latency, missed, traffic, tools] = cells;
     const you = String(client.id) === this.context.client.info?.metadata?.sandlot_client;
-    const name = client.name || (client.protocol === 'page' ? 'Page' : `Client ${client.id}`);
+    const name = client.protocol === 'page' ? 'Page' : client.name || `Client ${client.id}`;
     element.dataset.client = String(client.id);
     element.dataset.mode = client.mode;
     element.classList.toggle('you', you);
@@ -157,9 +157,9 @@ export class ClientsPanel implements Panel {
     const {latency_s: latency, step_s: step} = program;
     const verdict = judge(program);
     cell.dataset.judgement = verdict;
-    const silent = program.waiting_s !== null && program.waiting_s > program.deadline_s;
+    const silent = isSilent(program);
     const text = latency ? `${formatDuration(latency.mean)} · 99 % in ${formatDuration(latency.p99)}` : 'no answer yet';
-    const key = `${verdict} ${text} ${silent} ${program.deadline_s} ${program.latencies.counts.join()}`;
+    const key = `${verdict} ${text} ${silent ? formatAge(program.waiting_s ?? 0) : ''} ${program.deadline_s} ${program.latencies.counts.join()}`;
     const title = [`${program.path}: from a step sent to its answer`, ...(latency ? [`last ${formatDuration(latency.last)}, mean ${formatDuration(latency.mean)}, 99 % within ${formatDuration(latency.p99)}, longest ${formatDuration(latency.max)} (of the latest 1000)`] : []),
       `picture: all answers, from 0.1 ms to the deadline of ${formatDuration(program.deadline_s)} at the right, logarithmic; the line is the 99th percentile`,
       ...(step ? [`a step every ${formatDuration(step.mean)} of wall time, ${formatDuration(program.control_period_s)} of simulated time`] : [])].join('\n');
@@ -194,7 +194,7 @@ export class ClientsPanel implements Panel {
     this.lines(latency, [h('span', {class: 'faint'}, '–')], program.answers > 0 ? `${program.answers} answers until now` : '');
     latency?.classList.add('plain');
     const steps = program.answers + program.misses;
-    this.lines(missed, [h('span', {class: `number${program.misses > 0 ? ' warn' : ' faint'}`}, steps === 0 ? '–' : String(program.misses))], steps === 0 ? '' : `of ${steps} steps`);
+    this.lines(missed, [h('span', {class: `number${program.misses > 0 && verdict === 'good' && !program.is_client ? ' warn' : ' faint'}`}, steps === 0 ? '–' : String(program.misses))], steps === 0 ? '' : `of ${steps} steps`);
     this.lines(traffic, [], '');
     const may = admin && program.started && this.context.client.services.has(restart);
     const wanted = [...(may ? ['restart'] : []), ...(program.is_client && !program.started ? [] : ['output'])].join();

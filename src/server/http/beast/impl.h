@@ -136,7 +136,7 @@ struct Transport::Impl {
   void schedule(ClientId client, Queue& queue);
 };
 
-/// "127.0.0.1:50312"; "": the connection is gone.
+/// "127.0.0.1:50312", "unix socket"; "": the connection is gone.
 std::string remote_address(const tcp::socket& socket);
 /// Defined in peer.cpp.
 PeerPtr make_peer(Transport::Impl& impl, std::uint64_t id, tcp::socket socket, std::string address);

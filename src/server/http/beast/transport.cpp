@@ -286,6 +286,7 @@ std::string remote_address(const tcp::socket& socket) {
   error_code ec;
   const tcp::endpoint at = socket.remote_endpoint(ec);
   if (ec) return "";
+  if (at.port() == 0) return "unix socket";  // of a program that the run has started
   const std::string host = at.address().to_string();
   return at.address().is_v6() ? fmt::format("[{}]:{}", host, at.port())
                               : fmt::format("{}:{}", host, at.port());
