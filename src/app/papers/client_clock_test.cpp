@@ -104,12 +104,14 @@ TEST(ClientClock, BeginsAgainAfterAPauseAndAfterARewind) {
   Fed run;
   run.steps(100, 0.005);
   run.wall_s += 60;  // paused
-  run.clock.take(run.stamp_s += 0.01, 0.01, {}, run.wall_s, true);
+  run.stamp_s += 0.01;
+  run.clock.take(run.stamp_s, 0.01, {}, run.wall_s, true);
   EXPECT_NEAR(run.clock.now_s(), 6.01, 1e-9);
   EXPECT_NEAR(run.clock.speed(), 2, 1e-9) << "the pause is no step";
   EXPECT_EQ(run.clock.rewinds(), 0u);
   IntervalTimer timer = run.clock.timer(0.1);
-  run.clock.take(run.stamp_s = 1, 0.01, {}, run.wall_s, true);
+  run.stamp_s = 1;
+  run.clock.take(run.stamp_s, 0.01, {}, run.wall_s, true);
   EXPECT_NEAR(run.clock.now_s(), 1, 1e-9);
   EXPECT_EQ(run.clock.rewinds(), 1u);
   EXPECT_EQ(timer.poll(), 0u);
@@ -145,8 +147,10 @@ TEST(ClientClock, SleepsInSimulatedTime) {
   Clock clock([&] { return wall_s; },
               [&](double s) {
                 ASSERT_LE(s, 0.02);
-                for (wall_s += s; wall_s < 0.4 && stamp_s + 0.01 <= 2 * wall_s;)
-                  fed->take(stamp_s += 0.01, 0.01, {0.005}, stamp_s / 2);
+                for (wall_s += s; wall_s < 0.4 && stamp_s + 0.01 <= 2 * wall_s;) {
+                  stamp_s += 0.01;
+                  fed->take(stamp_s, 0.01, {0.005}, stamp_s / 2);
+                }
               });
   fed = &clock;
   EXPECT_TRUE(clock.sleep_until(0.5)) << "the first messages come while it waits";

@@ -49,9 +49,9 @@ Result<std::vector<Trace>> take_traces(const ReproduceContext& context) {
     Stretch stretch = longest_stretch(steps);
     double sim_s = 0;
     for (const double step_s : stretch.step_s) sim_s += step_s;
-    if (stretch.size() < least_steps || sim_s < 4 * intervals_s.back())
+    if (stretch.size() < least_steps || sim_s < 3 * intervals_s.back())
       return Error{fmt::format("'{}' has no {} steps and {} s without a pause", name, least_steps,
-                               4 * intervals_s.back()),
+                               3 * intervals_s.back()),
                    "record a longer run"};
     out.push_back({name, std::move(stretch)});
     return {};

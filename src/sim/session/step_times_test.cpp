@@ -1,7 +1,9 @@
 /// Step times of a session.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <thread>
+#include <utility>
 
 #include "sim/session/session.h"
 #include "sim/test_world.h"
@@ -56,13 +58,14 @@ TEST(StepTimes, BeginAgainAfterAPauseAndAJump) {
   RunReport report;
   bool back = false;
   ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
-    if (simulation.tick_index() == 5 && seen.steps.size() == 5) session.pause();
     if (session.report().state == Session::State::paused) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       session.play();
-    }
-    if (simulation.tick_index() == 10 && !std::exchange(back, true))
+    } else if (simulation.tick_index() == 5 && seen.steps.size() == 5) {
+      session.pause();
+    } else if (simulation.tick_index() == 10 && !std::exchange(back, true)) {
       EXPECT_TRUE(session.jump(Time::from_s(0.03)));
+    }
     return true;
   }));
   // Ticks 1 to 5, 6 to 10, and from 0.03 s on again; those that run again on the way there do not count.
@@ -70,8 +73,9 @@ TEST(StepTimes, BeginAgainAfterAPauseAndAJump) {
   for (std::size_t i = 0; i < seen.steps.size(); ++i)
     EXPECT_EQ(seen.steps[i].wall_s.has_value(), i != 0 && i != 5 && i != 10) << i;
   EXPECT_EQ(seen.steps[10].now, Time::from_s(0.04));
-  for (const StepTime& each : seen.steps)
-    if (each.wall_s) EXPECT_LT(*each.wall_s, 0.045) << "the pause is in no interval";
+  for (const StepTime& each : seen.steps) {
+    EXPECT_LT(each.wall_s.value_or(0), 0.045) << "the pause is in no interval";
+  }
 }
 
 TEST(StepTimes, ChangeNothingOfTheRun) {
