@@ -156,6 +156,43 @@ TEST(Reproduce, NamesWhatItDoesNotKnow) {
   EXPECT_EQ(sandlot("reproduce cooperation --repeat 0 --out " + scratch.file("out")).exit_code, 2);
   EXPECT_EQ(sandlot("reproduce cooperation --out /dev/null/out").exit_code, 2);
   EXPECT_EQ(sandlot("reproduce cooperation").exit_code, 2);
+  EXPECT_EQ(sandlot("reproduce msl --repeat 2 --out " + scratch.file("out")).exit_code, 2);
+  EXPECT_EQ(
+      sandlot("reproduce cooperation --traces tests/clock/pile.csv --out " + scratch.file("out")).exit_code,
+      2);
+  const Printed trace = sandlot("reproduce msl --traces scenarios/pile.yaml --out " + scratch.file("out"));
+  EXPECT_EQ(trace.exit_code, 2);
+  EXPECT_THAT(trace.out, HasSubstr("scenarios/pile.yaml:2: these are no step times"));
+}
+
+TEST(Reproduce, MslIsOnePageOfRecordedStepTimes) {
+  const TestFolder scratch;
+  const Printed made = sandlot(
+      "reproduce msl --traces tests/clock/pile.csv tests/clock/field_images.csv --out " +
+      scratch.file("out"));
+  ASSERT_EQ(made.exit_code, 0) << made.out;
+  const std::string html = read_file(scratch.file("out/index.html"));
+  for (const char* const text : {"Figure 4", "field_images", "our clock", "the paper", "&lt; 2 %", "<svg"})
+    EXPECT_THAT(html, HasSubstr(text));
+  for (const char* const text : {"src=\"http", "href=\"http", "<script", "<link"})
+    EXPECT_THAT(html, Not(HasSubstr(text)));
+  EXPECT_THAT(read_file(scratch.file("out/timers.csv")), HasSubstr("trace,timers,estimate,10 ms"));
+  EXPECT_THAT(read_file(scratch.file("out/speed_pile.svg")), HasSubstr("<svg"));
+}
+
+TEST(Output, StepTimesAreWrittenAndChangeNothing) {
+  const TestFolder scratch;
+  const std::string run = "run scenarios/indoor.yaml --set physics=planar --duration 0.2s --json";
+  const Printed with = sandlot(run + " --step-times " + scratch.file("t.csv"));
+  ASSERT_EQ(with.exit_code, 0) << with.out;
+  EXPECT_EQ(nlohmann::json::parse(with.out)["state_hash"],
+            nlohmann::json::parse(sandlot(run).out)["state_hash"]);
+  const std::string text = read_file(scratch.file("t.csv"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3 + 20);
+  const Printed missing = sandlot(run + " --step-times " + scratch.file("missing/t.csv"));
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.out, HasSubstr("missing/t.csv"));
+  EXPECT_EQ(sandlot(run + " --repeat 2 --step-times " + scratch.file("t.csv")).exit_code, 2);
 }
 
 TEST(LongReproduce, CooperationIsOnePageWithoutANetwork) {

@@ -14,9 +14,18 @@ const horizons = [1, 2, 4, 8, 16, 32, 64];
 const keep = 1 / 256;  // weight of the latest error of a prediction, so that the last 256 or so count
 const spansKept = 8;
 const delaysKept = 32;
+const judgedPerMessage = 8;
+const leastPeriod_s = 1e-6;
 const leastWall_s = 1e-9;
 const shortestNap_s = 0.0005;
 const longestNap_s = 0.02;
+
+/** Number of the longest horizon that is not above so many steps. */
+function classOf(steps) {
+  let h = 0;
+  while (h + 1 < horizons.length && horizons[h + 1] <= steps) ++h;
+  return h;
+}
 
 /** Clock of simulated time, fed with step times. */
 export class Clock {
@@ -28,9 +37,10 @@ export class Clock {
   #delays = [];
   #anchor_s = 0;
   #shown_s = -Infinity;
-  // Sums of simulated and of wall time over the intervals known, oldest first.
+  // Sums of simulated time, wall time and speed over the intervals known, oldest first.
   #simSums = [0];
   #wallSums = [0];
+  #speedSums = [0];
   messages = 0;
   rewinds = 0;
 
@@ -41,8 +51,8 @@ export class Clock {
     this.wait = wait;
     this.windows = [...windows];
     this.history = Math.max(...this.windows) + horizons.at(-1) + 1;
-    this.errors = horizons.map(() => this.windows.map(() => 0));
-    this.best = horizons.map(() => this.windows.length - 1);
+    this.errors = horizons.map(() => Array(2 * this.windows.length).fill(0));
+    this.best = horizons.map(() => 0);
   }
 
   /** Takes a message of step times. @param arrival_s  when it came, by the wall clock; left out: now */
@@ -58,10 +68,12 @@ export class Clock {
     } else if (Math.abs(stamp_s - this.#stamp_s - span_s) > 0.5 * step_s) {
       follows = false;  // messages were lost
     }
-    for (const wall_s of wall_s_list) {
-      this.#add(step_s, Math.max(wall_s, leastWall_s));
-      this.#server_s += wall_s;
+    const count = wall_s_list.length, stride = Math.floor(count / judgedPerMessage) + 1;
+    for (let i = Math.max(0, count - this.history); i < count; ++i) {
+      this.#add(step_s, Math.max(wall_s_list[i], leastWall_s));
+      if ((count - 1 - i) % stride === 0) this.#judge(classOf(steps));
     }
+    for (const wall_s of wall_s_list) this.#server_s += wall_s;
     if (!follows) {
       this.#server_s = 0;
       this.#delays = [];
@@ -76,31 +88,38 @@ export class Clock {
   }
 
   #add(step_s, wall_s) {
-    const sim = this.#simSums, wall = this.#wallSums;
-    sim.push(sim.at(-1) + step_s);
-    wall.push(wall.at(-1) + wall_s);
-    if (sim.length > 4 * this.history) {
-      sim.splice(0, sim.length - this.history);
-      wall.splice(0, wall.length - this.history);
-    }
-    const last = sim.length - 1;
+    this.#simSums.push(this.#simSums.at(-1) + step_s);
+    this.#wallSums.push(this.#wallSums.at(-1) + wall_s);
+    this.#speedSums.push(this.#speedSums.at(-1) + step_s / wall_s);
+    if (this.#simSums.length <= 4 * this.history) return;
+    for (const sums of [this.#simSums, this.#wallSums, this.#speedSums]) sums.splice(0, sums.length - this.history);
+  }
+
+  /** Compares what each estimate predicted for the latest steps with what they took. @param ofMessage  horizon of the steps between two
+   *  messages: what lasts no longer is planned no more, and a clock that is ahead waits there as long as one that is behind lags */
+  #judge(ofMessage) {
+    const last = this.#simSums.length - 1;
     for (let h = 0; h < horizons.length; ++h) {
       const then = last - horizons[h];
       if (then < 1) break;
-      const sim_s = sim[last] - sim[then], took_s = wall[last] - wall[then];
+      const sim_s = this.#simSums[last] - this.#simSums[then], took_s = this.#wallSums[last] - this.#wallSums[then];
       let best = 0;
       const errors = this.errors[h];
       for (let i = 0; i < errors.length; ++i) {
-        const predicted_s = sim_s / this.#mean(this.windows[i], then);
-        errors[i] += keep * (Math.abs(predicted_s / took_s - 1) - errors[i]);
+        const ratio = sim_s / this.#estimate(i, then) / took_s;
+        const error = h > ofMessage || ratio < 1 ? Math.abs(ratio - 1) : 1 - 1 / ratio;
+        errors[i] += keep * (error - errors[i]);
         if (errors[i] < errors[best]) best = i;
       }
       this.best[h] = best;
     }
   }
 
-  #mean(window, last) {
-    const first = Math.max(0, last - window);
+  /** Speed by the intervals up to `last`, as many as the window holds or as there are. Even numbers: simulated time over wall time; odd
+   *  ones: mean of the speeds of the steps. */
+  #estimate(number, last) {
+    const first = Math.max(0, last - this.windows[Math.floor(number / 2)]);
+    if (number % 2 === 1) return (this.#speedSums[last] - this.#speedSums[first]) / (last - first);
     return (this.#simSums[last] - this.#simSums[first]) / (this.#wallSums[last] - this.#wallSums[first]);
   }
 
@@ -109,9 +128,7 @@ export class Clock {
     const last = this.#simSums.length - 1;
     if (last === 0) return 1;
     const steps = Math.max(this.#steps, this.#step_s > 0 ? interval_s / this.#step_s : 0);
-    let h = 0;
-    while (h + 1 < horizons.length && horizons[h + 1] <= steps) ++h;
-    return this.#mean(this.windows[this.best[h]], last);
+    return this.#estimate(this.best[classOf(steps)], last);
   }
 
   /** Simulated time now; 0 before the first message. */
@@ -158,7 +175,7 @@ export class IntervalTimer {
   #count;
 
   constructor(clock, period_s) {
-    if (!(period_s > 0 && period_s < Infinity)) throw new RangeError(`a period is a positive number of seconds, not ${period_s}`);
+    if (!(period_s >= leastPeriod_s && period_s < Infinity)) throw new RangeError(`a period is a number of seconds, at least a millionth, not ${period_s}`);
     this.#clock = clock;
     this.period_s = period_s;
     this.#restart();

@@ -9,8 +9,9 @@
 /// The server sends how long its latest steps took. From them follows the speed, simulated seconds per second of the wall clock, and
 /// from the speed the time between two messages and how long a simulated interval will take.
 ///
-/// Speed      simulated time over wall time of the last 5, 10, 20 or 50 steps. For each length of interval (1, 2, 4 ... 64 steps) the
-///            window whose predictions had the least mean relative error recently is used. Before the first interval: 1.
+/// Speed      over the last 5, 10, 20 or 50 steps: simulated time over wall time, or the mean of the speeds of the steps. For each length
+///            of interval (1, 2, 4 ... 64 steps) the one of these eight is used whose predictions had the least mean relative
+///            error recently. Before the first interval: 1.
 /// Time       now_s() goes on from the latest message at that speed. It never exceeds the stamp by more than the longest of the last 8
 ///            messages covered: a run that stalls or is paused holds it there. It never goes back, unless the run is rewound.
 /// Arrival    of a message that comes late among the last 32 the delay beyond the smallest one is removed.
@@ -56,8 +57,8 @@ class Clock {
     if (windows_.empty()) throw std::invalid_argument("a clock needs a window");
     history_ = *std::max_element(windows_.begin(), windows_.end()) + horizons[horizon_count - 1] + 1;
     for (std::size_t h = 0; h < horizon_count; ++h) {
-      errors_.emplace_back(windows_.size(), 0.0);
-      best_.push_back(windows_.size() - 1);
+      errors_.emplace_back(2 * windows_.size(), 0.0);
+      best_.push_back(0);
     }
   }
 
@@ -77,10 +78,13 @@ class Clock {
     } else if (std::abs(stamp_s - stamp_s_ - span_s) > 0.5 * step_s) {
       follows = false;  // messages were lost
     }
-    for (const double each : wall_s) {
-      add(step_s, std::max(each, least_wall_s));
-      server_s_ += each;
+    const std::size_t first = wall_s.size() > history_ ? wall_s.size() - history_ : 0;
+    const std::size_t stride = wall_s.size() / judged_per_message + 1;
+    for (std::size_t i = first; i < wall_s.size(); ++i) {
+      add(step_s, std::max(wall_s[i], least_wall_s));
+      if ((wall_s.size() - 1 - i) % stride == 0) judge(class_of(static_cast<double>(steps)));
     }
+    for (const double each : wall_s) server_s_ += each;
     if (!follows) {
       server_s_ = 0;
       delays_.clear();
@@ -101,9 +105,7 @@ class Clock {
     const std::size_t last = sim_sums_.size() - 1;
     if (last == 0) return 1;
     const double steps = std::max(static_cast<double>(steps_), step_s_ > 0 ? interval_s / step_s_ : 0.0);
-    std::size_t h = 0;
-    while (h + 1 < horizon_count && static_cast<double>(horizons[h + 1]) <= steps) ++h;
-    return mean(windows_[best_[h]], last);
+    return estimate(best_[class_of(steps)], last);
   }
 
   /// Simulated time now; 0 before the first message.
@@ -153,7 +155,8 @@ class Clock {
   static constexpr std::size_t horizons[horizon_count] = {1, 2, 4, 8, 16, 32, 64};
   static constexpr double keep =
       1.0 / 256;  ///< weight of the latest error of a prediction: the last 256 or so count
-  static constexpr std::size_t span_count = 8, delay_count = 32;
+  static constexpr std::size_t span_count = 8, delay_count = 32, judged_per_message = 8;
+  static constexpr double least_period_s = 1e-6;
   static constexpr double least_wall_s = 1e-9, shortest_nap_s = 0.0005, longest_nap_s = 0.02, slack_s = 1e-9;
 
   static double steady_s() {
@@ -161,14 +164,27 @@ class Clock {
   }
   static void sleep(double s) { std::this_thread::sleep_for(std::chrono::duration<double>(s)); }
 
+  /// Number of the longest horizon that is not above so many steps.
+  static std::size_t class_of(double steps) {
+    std::size_t h = 0;
+    while (h + 1 < horizon_count && static_cast<double>(horizons[h + 1]) <= steps) ++h;
+    return h;
+  }
+
   void add(double step_s, double wall_s) {
     sim_sums_.push_back(sim_sums_.back() + step_s);
     wall_sums_.push_back(wall_sums_.back() + wall_s);
-    if (sim_sums_.size() > 4 * history_) {
-      const auto old = static_cast<std::ptrdiff_t>(sim_sums_.size() - history_);
-      sim_sums_.erase(sim_sums_.begin(), sim_sums_.begin() + old);
-      wall_sums_.erase(wall_sums_.begin(), wall_sums_.begin() + old);
-    }
+    speed_sums_.push_back(speed_sums_.back() + step_s / wall_s);
+    if (sim_sums_.size() <= 4 * history_) return;
+    const auto old = static_cast<std::ptrdiff_t>(sim_sums_.size() - history_);
+    for (std::vector<double>* const sums : {&sim_sums_, &wall_sums_, &speed_sums_})
+      sums->erase(sums->begin(), sums->begin() + old);
+  }
+
+  /// Compares what each estimate predicted for the latest steps with what they took.
+  /// @param of_message  horizon of the steps between two messages: what lasts no longer is planned no more, and a clock that is ahead
+  ///                    waits there as long as one that is behind lags
+  void judge(std::size_t of_message) {
     const std::size_t last = sim_sums_.size() - 1;
     for (std::size_t h = 0; h < horizon_count && last > horizons[h]; ++h) {
       const std::size_t then = last - horizons[h];
@@ -176,17 +192,21 @@ class Clock {
       std::vector<double>& errors = errors_[h];
       std::size_t best = 0;
       for (std::size_t i = 0; i < errors.size(); ++i) {
-        const double predicted_s = sim_s / mean(windows_[i], then);
-        errors[i] += keep * (std::abs(predicted_s / took_s - 1) - errors[i]);
+        const double ratio = sim_s / estimate(i, then) / took_s;
+        const double error = h > of_message || ratio < 1 ? std::abs(ratio - 1) : 1 - 1 / ratio;
+        errors[i] += keep * (error - errors[i]);
         if (errors[i] < errors[best]) best = i;
       }
       best_[h] = best;
     }
   }
 
-  /// Speed over the `window` intervals up to `last`, or as many as there are.
-  double mean(std::size_t window, std::size_t last) const {
+  /// Speed by the intervals up to `last`, as many as the window holds or as there are. Even numbers: simulated time over wall time;
+  /// odd ones: mean of the speeds of the steps.
+  double estimate(std::size_t number, std::size_t last) const {
+    const std::size_t window = windows_[number / 2];
     const std::size_t first = last > window ? last - window : 0;
+    if (number % 2 == 1) return (speed_sums_[last] - speed_sums_[first]) / static_cast<double>(last - first);
     return (sim_sums_[last] - sim_sums_[first]) / (wall_sums_[last] - wall_sums_[first]);
   }
 
@@ -194,10 +214,10 @@ class Clock {
   Wait wait_;
   std::vector<std::size_t> windows_;
   std::size_t history_ = 0;  ///< intervals that are needed
-  /// Sums of simulated and of wall time over the intervals known, oldest first.
-  std::vector<double> sim_sums_{0.0}, wall_sums_{0.0};
-  std::vector<std::vector<double>> errors_;  ///< by horizon and window
-  std::vector<std::size_t> best_;            ///< window by horizon
+  /// Sums of simulated time, wall time and speed over the intervals known, oldest first.
+  std::vector<double> sim_sums_{0.0}, wall_sums_{0.0}, speed_sums_{0.0};
+  std::vector<std::vector<double>> errors_;  ///< by horizon and estimate
+  std::vector<std::size_t> best_;            ///< estimate by horizon
   double stamp_s_ = 0, step_s_ = 0;
   std::size_t steps_ = 1;      ///< of the latest message
   std::deque<double> spans_;   ///< simulated time of the latest messages
@@ -212,8 +232,8 @@ class Clock {
 class IntervalTimer {
  public:
   IntervalTimer(Clock& clock, double period_s) : clock_(&clock), period_s_(period_s) {
-    if (!(period_s > 0) || !std::isfinite(period_s))
-      throw std::invalid_argument("a period is a positive number of seconds");
+    if (!(period_s >= Clock::least_period_s) || !std::isfinite(period_s))
+      throw std::invalid_argument("a period is a number of seconds, at least a millionth");
     restart();
   }
   double period_s() const { return period_s_; }

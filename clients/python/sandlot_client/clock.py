@@ -9,8 +9,9 @@
 The server sends how long its latest steps took. From them follows the speed, simulated seconds per second of the wall clock,
 and from the speed the time between two messages and how long a simulated interval will take.
 
-Speed      simulated time over wall time of the last 5, 10, 20 or 50 steps. For each length of interval (1, 2, 4 ... 64 steps) the window
-           whose predictions had the least mean relative error recently is used. Before the first interval: 1.
+Speed      over the last 5, 10, 20 or 50 steps: simulated time over wall time, or the mean of the speeds of the steps. For each length of
+           interval (1, 2, 4 ... 64 steps) the one of these eight is used whose predictions had the least mean relative error recently.
+           Before the first interval: 1.
 Time       now_s() goes on from the latest message at that speed. It never exceeds the stamp by more than the longest of the last 8
            messages covered: a run that stalls or is paused holds it there. It never goes back, unless the run is rewound.
 Arrival    of a message that comes late among the last 32 the delay beyond the smallest one is removed.
@@ -35,9 +36,19 @@ HORIZONS = (1, 2, 4, 8, 16, 32, 64)
 _KEEP = 1 / 256  # weight of the latest error of a prediction, so that the last 256 or so count
 _SPANS = 8
 _DELAYS = 32
+_JUDGED_PER_MESSAGE = 8
+_LEAST_PERIOD_S = 1e-6
 _LEAST_WALL_S = 1e-9
 _SHORTEST_NAP_S = 0.0005
 _LONGEST_NAP_S = 0.02
+
+
+def _class_of(steps: float) -> int:
+    """Number of the longest horizon that is not above so many steps."""
+    h = 0
+    while h + 1 < len(HORIZONS) and HORIZONS[h + 1] <= steps:
+        h += 1
+    return h
 
 
 class Clock:
@@ -58,11 +69,12 @@ class Clock:
         self._wait = wait
         self._windows = tuple(windows)
         self._history = max(self._windows) + HORIZONS[-1] + 1
-        # Sums of simulated and of wall time over the intervals known, oldest first.
+        # Sums of simulated time, wall time and speed over the intervals known, oldest first.
         self._sim_sums: List[float] = [0.0]
         self._wall_sums: List[float] = [0.0]
-        self._errors = [[0.0] * len(self._windows) for _ in HORIZONS]
-        self._best = [len(self._windows) - 1] * len(HORIZONS)
+        self._speed_sums: List[float] = [0.0]
+        self._errors = [[0.0] * (2 * len(self._windows)) for _ in HORIZONS]
+        self._best = [0] * len(HORIZONS)
         self._stamp_s = 0.0
         self._step_s = 0.0
         self._steps = 1  # of the latest message
@@ -95,8 +107,13 @@ class Clock:
             follows = False
         elif abs(stamp_s - self._stamp_s - span_s) > 0.5 * step_s:
             follows = False  # messages were lost
+        count = len(wall_s_list)
+        stride = count // _JUDGED_PER_MESSAGE + 1
+        for i in range(max(0, count - self._history), count):
+            self._add(step_s, max(wall_s_list[i], _LEAST_WALL_S))
+            if (count - 1 - i) % stride == 0:
+                self._judge(_class_of(steps))
         for wall_s in wall_s_list:
-            self._add(step_s, max(wall_s, _LEAST_WALL_S))
             self._server_s += wall_s
         if not follows:
             self._server_s = 0.0
@@ -108,29 +125,44 @@ class Clock:
         self.messages += 1
 
     def _add(self, step_s: float, wall_s: float) -> None:
-        sim, wall = self._sim_sums, self._wall_sums
-        sim.append(sim[-1] + step_s)
-        wall.append(wall[-1] + wall_s)
-        if len(sim) > 4 * self._history:
-            del sim[: -self._history]
-            del wall[: -self._history]
-        last = len(sim) - 1
+        self._sim_sums.append(self._sim_sums[-1] + step_s)
+        self._wall_sums.append(self._wall_sums[-1] + wall_s)
+        self._speed_sums.append(self._speed_sums[-1] + step_s / wall_s)
+        if len(self._sim_sums) > 4 * self._history:
+            for sums in (self._sim_sums, self._wall_sums, self._speed_sums):
+                del sums[: -self._history]
+
+    def _judge(self, of_message: int) -> None:
+        """Compares what each estimate predicted for the latest steps with what they took.
+
+        of_message: horizon of the steps between two messages. What lasts no longer is planned no more, and a clock that is ahead waits there
+        as long as one that is behind lags.
+        """
+        last = len(self._sim_sums) - 1
         for h, steps in enumerate(HORIZONS):
             then = last - steps
             if then < 1:
                 break
-            sim_s, took_s = sim[last] - sim[then], wall[last] - wall[then]
+            sim_s = self._sim_sums[last] - self._sim_sums[then]
+            took_s = self._wall_sums[last] - self._wall_sums[then]
             best = 0
             errors = self._errors[h]
             for i in range(len(errors)):
-                predicted_s = sim_s / self._mean(self._windows[i], then)
-                errors[i] += _KEEP * (abs(predicted_s / took_s - 1) - errors[i])
+                ratio = sim_s / self._estimate(i, then) / took_s
+                error = abs(ratio - 1) if h > of_message or ratio < 1 else 1 - 1 / ratio
+                errors[i] += _KEEP * (error - errors[i])
                 if errors[i] < errors[best]:
                     best = i
             self._best[h] = best
 
-    def _mean(self, window: int, last: int) -> float:
-        first = max(0, last - window)
+    def _estimate(self, number: int, last: int) -> float:
+        """Speed by the intervals up to `last`, as many as the window holds or as there are.
+
+        Even numbers: simulated time over wall time; odd ones: mean of the speeds of the steps.
+        """
+        first = max(0, last - self._windows[number // 2])
+        if number % 2 == 1:
+            return (self._speed_sums[last] - self._speed_sums[first]) / (last - first)
         return (self._sim_sums[last] - self._sim_sums[first]) / (self._wall_sums[last] - self._wall_sums[first])
 
     # ------------------------------------------------------------------------------------------------------- time
@@ -141,10 +173,7 @@ class Clock:
         if last == 0:
             return 1.0
         steps = max(float(self._steps), interval_s / self._step_s if self._step_s > 0 else 0.0)
-        h = 0
-        while h + 1 < len(HORIZONS) and HORIZONS[h + 1] <= steps:
-            h += 1
-        return self._mean(self._windows[self._best[h]], last)
+        return self._estimate(self._best[_class_of(steps)], last)
 
     def now_s(self) -> float:
         """Simulated time now; 0 before the first message."""
@@ -185,8 +214,8 @@ class IntervalTimer:
     """Timer of simulated time, at begin + k * period. After a rewind it begins again there."""
 
     def __init__(self, clock: Clock, period_s: float) -> None:
-        if not (0 < period_s < math.inf):
-            raise ValueError("a period is a positive number of seconds, not %r" % period_s)
+        if not (_LEAST_PERIOD_S <= period_s < math.inf):
+            raise ValueError("a period is a number of seconds, at least a millionth, not %r" % period_s)
         self._clock = clock
         self.period_s = period_s
         self._restart()

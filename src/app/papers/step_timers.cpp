@@ -37,7 +37,7 @@ struct Course {
   }
 };
 
-struct Mean {
+struct Average {
   double sum = 0;
   std::size_t count = 0;
   void add(double x) {
@@ -48,9 +48,17 @@ struct Mean {
 };
 
 struct Pending {
-  double target_s = 0, set_at_s = 0;  ///< by the clock; true simulated time
+  double target_s = 0;
   std::size_t interval = 0;
 };
+
+std::vector<TimerErrors> errors_of(const std::vector<Average>& planned,
+                                   const std::vector<Average>& adapting) {
+  std::vector<TimerErrors> out;
+  for (std::size_t i = 0; i < planned.size(); ++i)
+    out.push_back({planned[i].value(), adapting[i].value(), adapting[i].count});
+  return out;
+}
 
 /// The last tick of each message.
 std::vector<std::size_t> messages_of(const Stretch& stretch, double message_s) {
@@ -94,18 +102,17 @@ std::vector<double> smoothed_speeds(const Stretch& stretch, std::size_t window) 
   return out;
 }
 
-std::vector<TimerErrors> timer_errors(const Stretch& stretch, const std::vector<std::size_t>& windows,
-                                      std::span<const double> intervals_s, double message_s) {
+std::vector<TimerErrors> timer_errors(const Stretch& stretch, std::span<const double> intervals_s,
+                                      double message_s) {
   const Course course(stretch);
   double wall_s = 0;
-  sandlot_client::Clock clock([&] { return wall_s; }, {}, windows);
-  std::vector<Mean> planned(intervals_s.size()), adapting(intervals_s.size());
+  sandlot_client::Clock clock([&] { return wall_s; });
+  std::vector<Average> planned(intervals_s.size()), adapting(intervals_s.size());
   std::vector<Pending> pending;
-  const auto error = [&](std::size_t interval, double set_at_s,
-                         double fired_wall_s) -> std::optional<double> {
+  const auto missed = [&](const Pending& timer, double fired_wall_s) -> std::optional<double> {
     const auto fired_at_s = course.sim_at(fired_wall_s);
     if (!fired_at_s) return std::nullopt;
-    return std::abs(*fired_at_s - set_at_s - intervals_s[interval]) / intervals_s[interval];
+    return std::abs(*fired_at_s - timer.target_s) / intervals_s[timer.interval];
   };
   /// Fires what is due within [from, to) of the wall clock.
   const auto fire = [&](double from, double to) {
@@ -117,8 +124,7 @@ std::vector<TimerErrors> timer_errors(const Stretch& stretch, const std::vector<
       if (at_s >= to) break;
       wall_s = at_s;
       if (clock.now_s() < timer.target_s - tolerance_s) break;
-      if (const auto missed = error(timer.interval, timer.set_at_s, at_s))
-        adapting[timer.interval].add(*missed);
+      if (const auto error = missed(timer, at_s)) adapting[timer.interval].add(*error);
       from = at_s;
     }
     pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(fired));
@@ -131,55 +137,64 @@ std::vector<TimerErrors> timer_errors(const Stretch& stretch, const std::vector<
     const std::vector<double> walls(stretch.wall_s.begin() + static_cast<std::ptrdiff_t>(first),
                                     stretch.wall_s.begin() + static_cast<std::ptrdiff_t>(last));
     const double step_s = (course.sim_s[last] - course.sim_s[first]) / static_cast<double>(last - first);
-    first = last;
     const double begin = course.wall_s[last], end = course.wall_s[messages[m + 1] + 1];
     wall_s = begin;
     clock.take(course.sim_s[last], step_s, walls, begin);
-    if (last < warm_up) continue;
-    const double set_wall_s = begin + phase(++timers) * (end - begin);
-    fire(begin, set_wall_s);
-    wall_s = set_wall_s;
-    const double set_at_s = *course.sim_at(set_wall_s), shown_s = clock.now_s();
     // Room for a timer that is late by half its time, so that late ones are not left out more than early ones.
-    if (set_at_s + 1.5 * longest_s < course.sim_s.back())
+    if (last >= warm_up && course.sim_s[last] + 1.5 * longest_s < course.sim_s.back()) {
+      const double begin_s = course.sim_s[last] -
+                             phase(++timers) * (course.sim_s[last] - course.sim_s[first]);
       for (std::size_t i = 0; i < intervals_s.size(); ++i) {
-        const double target_s = shown_s + intervals_s[i];
-        const double plan_s = set_wall_s + clock.wall_s_until(target_s);
-        if (const auto missed = error(i, set_at_s, plan_s)) planned[i].add(*missed);
-        pending.push_back({target_s, set_at_s, i});
+        const Pending timer{begin_s + intervals_s[i], i};
+        if (const auto error = missed(timer, begin + clock.wall_s_until(timer.target_s)))
+          planned[i].add(*error);
+        pending.push_back(timer);
       }
-    std::stable_sort(pending.begin(), pending.end(),
-                     [](const Pending& a, const Pending& b) { return a.target_s < b.target_s; });
-    fire(set_wall_s, end);
+      std::stable_sort(pending.begin(), pending.end(),
+                       [](const Pending& a, const Pending& b) { return a.target_s < b.target_s; });
+    }
+    first = last;
+    fire(begin, end);
   }
-  std::vector<TimerErrors> out;
-  for (std::size_t i = 0; i < intervals_s.size(); ++i)
-    out.push_back({planned[i].value(), adapting[i].value(), adapting[i].count});
-  return out;
+  return errors_of(planned, adapting);
 }
 
-std::vector<double> errors_by_mean_speed(const Stretch& stretch, std::size_t window,
-                                         std::span<const double> intervals_s) {
+std::vector<TimerErrors> fixed_window_errors(const Stretch& stretch, std::size_t window, Mean mean,
+                                             std::span<const double> intervals_s) {
   const Course course(stretch);
-  const std::vector<double> speeds = smoothed_speeds(stretch, window);
-  std::vector<Mean> means(intervals_s.size());
+  const std::size_t count = stretch.size();
+  std::vector<double> speeds = smoothed_speeds(stretch, window);
+  if (mean == Mean::times)
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t first = i + 1 > window ? i + 1 - window : 0;
+      speeds[i] = (course.sim_s[i + 1] - course.sim_s[first]) / (course.wall_s[i + 1] - course.wall_s[first]);
+    }
+  /// When a clock with the estimate of tick i expects a time.
+  const auto expected = [&](std::size_t i, double time_s) {
+    return course.wall_s[i + 1] + std::max(0.0, time_s - course.sim_s[i + 1]) / speeds[i];
+  };
+  std::vector<Average> planned(intervals_s.size()), adapting(intervals_s.size());
   const double longest_s = *std::max_element(intervals_s.begin(), intervals_s.end());
   std::size_t timers = 0;
-  for (std::size_t i = warm_up - 1; i + 1 < stretch.size(); ++i) {
-    const double begin = course.wall_s[i + 1], gap = stretch.wall_s[i + 1];
-    const double passed_s = phase(++timers) * gap;
-    const double set_at_s = *course.sim_at(begin + passed_s);
-    if (set_at_s + 1.5 * longest_s >= course.sim_s.back()) break;
-    const double shown_s = course.sim_s[i + 1] + std::min(passed_s * speeds[i], stretch.step_s[i]);
+  for (std::size_t i = warm_up - 1; i + 1 < count; ++i) {
+    if (course.sim_s[i + 1] + 1.5 * longest_s >= course.sim_s.back()) break;
+    const double begin_s = course.sim_s[i + 1] - phase(++timers) * stretch.step_s[i];
     for (std::size_t k = 0; k < intervals_s.size(); ++k) {
-      const double plan_s = begin + (shown_s + intervals_s[k] - course.sim_s[i + 1]) / speeds[i];
-      const auto fired_at_s = course.sim_at(plan_s);
-      if (fired_at_s) means[k].add(std::abs(*fired_at_s - set_at_s - intervals_s[k]) / intervals_s[k]);
+      const double target_s = begin_s + intervals_s[k];
+      const auto miss = [&](double wall_s) -> std::optional<double> {
+        const auto at_s = course.sim_at(wall_s);
+        if (!at_s) return std::nullopt;
+        return std::abs(*at_s - target_s) / intervals_s[k];
+      };
+      if (const auto error = miss(expected(i, target_s))) planned[k].add(*error);
+      // The last message before it comes; the next one is there at the latest when it has come.
+      std::size_t before = i;
+      while (before + 2 < count && course.sim_s[before + 2] < target_s) ++before;
+      const double end = course.wall_s[before + 2];
+      if (const auto error = miss(std::min(expected(before, target_s), end))) adapting[k].add(*error);
     }
   }
-  std::vector<double> out;
-  for (const Mean& each : means) out.push_back(each.value());
-  return out;
+  return errors_of(planned, adapting);
 }
 
 }  // namespace sandlot::app

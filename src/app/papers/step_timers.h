@@ -2,12 +2,13 @@
 /// Interval timers on recorded step times: how far they miss, for clocks that average over various numbers of steps.
 ///
 /// Truth     simulated time grows evenly between the ends of two ticks.
-/// Timers    set at moments spread over all ticks, to what the clock shows then plus the interval. `planned`: fires when the estimate of
-///           that moment says; `adapting`: plans again at each message, as IntervalTimer does.
-/// Error     |simulated time that passed - interval| / interval, mean over the timers.
+/// Timers    one per message and interval, set when the message comes; what they count from is spread evenly over its ticks.
+///           `planned`: fires when the estimate of that moment says; `adapting`: plans again at each message, as IntervalTimer does.
+/// Error     |simulated time when it fires - time it was set for| / interval, mean over the timers.
 /// Limits    messages arrive without delay. Timers at the end of a stretch that would fire after it are left out, and so are the first
 ///           64 steps.
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,13 +34,19 @@ struct TimerErrors {
   std::size_t count = 0;
 };
 
-/// @param windows    that the clock chooses from
+/// Timers by the clock of clients/cpp.
 /// @param message_s  wall time between messages; 0: each step has its own
 /// @return one per interval
-std::vector<TimerErrors> timer_errors(const Stretch& stretch, const std::vector<std::size_t>& windows,
-                                      std::span<const double> intervals_s, double message_s = 0);
-/// Errors of planned timers by the paper's estimate: the mean of the latest `window` speeds.
-std::vector<double> errors_by_mean_speed(const Stretch& stretch, std::size_t window,
-                                         std::span<const double> intervals_s);
+std::vector<TimerErrors> timer_errors(const Stretch& stretch, std::span<const double> intervals_s,
+                                      double message_s = 0);
+
+/// Estimate of the speed from a window of steps.
+enum class Mean : std::uint8_t {
+  speeds,  ///< mean of the speeds of the steps, as in the paper
+  times,   ///< simulated time over wall time
+};
+/// Timers by one estimate throughout, a message per step; without the code of the clock.
+std::vector<TimerErrors> fixed_window_errors(const Stretch& stretch, std::size_t window, Mean mean,
+                                             std::span<const double> intervals_s);
 
 }  // namespace sandlot::app
