@@ -23,7 +23,6 @@
 ///             other input.
 /// Threads     run() belongs to one thread, the simulation's. Orders may come from any thread.
 /// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and `history_mb` of memory.
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -214,7 +213,6 @@ class Session {
   void end_seek();
   void end_run();
   void wait_for_order();
-  void await_client(std::chrono::steady_clock::time_point deadline);
   bool wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time>& measured);
   void run_tick(Pacer& pacer, RunReport& report, std::optional<Time> measured);
   void report_step(Time before, std::chrono::steady_clock::time_point begin);
@@ -257,8 +255,7 @@ class Session {
   std::uint64_t steps_left_ = 0;  ///< > 0 while mode_ is stepping
   Pending pending_;
   bool quit_ = false, running_ = true;
-  /// Something came that the loop must look at before it sleeps. Atomic for await_client() alone.
-  std::atomic<bool> woken_ = false;
+  bool woken_ = false;  ///< something came that the loop must look at before it sleeps
   Pace pace_;
   using Waiting = std::function<void(const Outcome&)>;
   Result<std::uint64_t> submit_waiting(Request request, Source source, Waiting waiting);

@@ -4,7 +4,6 @@
 /// only change the guarded state; everything that touches the world happens here, on the simulation's thread.
 #include <algorithm>
 #include <chrono>
-#include <thread>
 
 #include "sim/session/session.h"
 
@@ -223,18 +222,7 @@ void Session::end_run() {
 /// Sleeps until something comes, or it is time to call keep_going again.
 void Session::wait_for_order() {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, nap, [&] { return woken_.load(); });
-}
-
-/// Sleeps until an answer may have come. To fall asleep and to be woken takes longer than most clients need: at first it looks
-/// again and again.
-void Session::await_client(Clock::time_point deadline) {
-  static const bool others_have_a_processor = std::thread::hardware_concurrency() > 1;
-  constexpr std::chrono::microseconds awake{50};
-  for (const auto until = Clock::now() + awake; others_have_a_processor && Clock::now() < until;)
-    if (woken_) return;
-  std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, std::min(deadline, Clock::now() + nap), [&] { return woken_.load(); });
+  changed_.wait_for(lock, nap, [&] { return woken_; });
 }
 
 // --------------------------------------------------------------------------------------------------------- ticks
@@ -248,7 +236,8 @@ bool Session::wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time
     simulation_->connect_programs();
     if (const auto deadline = simulation_->await_clients()) {
       set_state(State::playing);
-      await_client(*deadline);
+      std::unique_lock lock(mutex_);
+      changed_.wait_until(lock, std::min(*deadline, Clock::now() + nap), [&] { return woken_; });
       return false;
     }
   }
@@ -277,7 +266,7 @@ bool Session::wait_until_due(Pacer& pacer, RunReport& report, std::optional<Time
   const auto present = Clock::now();
   if (due > present) {
     lock.lock();
-    changed_.wait_until(lock, std::min(due, present + nap), [&] { return woken_.load(); });
+    changed_.wait_until(lock, std::min(due, present + nap), [&] { return woken_; });
     if (woken_ || Clock::now() < due) return false;
   } else if (!continuous) {
     // A run that falls far behind does not race to catch up: its clock begins again.
@@ -382,7 +371,7 @@ void Session::run_tasks(std::chrono::milliseconds patience) {
     task = nullptr;  // its captures may answer when they are destroyed: not under the lock
     lock.lock();
   }
-  if (!tasks_.empty()) woken_ = true;
+  woken_ = woken_ || !tasks_.empty();
 }
 
 /// After the last round: runs all tasks, and refuses requests and loads that were not carried out.
