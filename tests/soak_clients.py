@@ -301,7 +301,7 @@ HOSTILE = [vanish, flood, flood_with_long_ones, stall, stall, garbage, garbage_b
            endless_fragments, greedy_spectator, greedy_spectator, foxglove_spectator, insider]
 
 
-def hostile(port, seed, counts):
+def hostile(port, seed, counts, number_of_them):
     """One process of hostile threads, so that they do not take the time of the honest."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -317,10 +317,11 @@ def hostile(port, seed, counts):
                 counts[kind] += 1
             time.sleep(rng.uniform(0, 0.1))
 
-    threads = [threading.Thread(target=behave, args=(i,), daemon=True) for i in range(14)]
+    threads = [threading.Thread(target=behave, args=(i,), daemon=True) for i in range(number_of_them)]
     for each in threads:
         each.start()
-    threads[0].join()
+    for each in threads:
+        each.join()
 
 
 # ------------------------------------------------------------------------------------------------ the watch
@@ -337,6 +338,7 @@ def main():
     parser.add_argument("seconds", nargs="?", type=float, default=60)
     parser.add_argument("--rate", default="1", help="of the run: 1 is real time, or max")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--hostile", type=int, default=14, help="hostile clients at a time; 0: what does the run take by itself?")
     parser.add_argument("--every", type=float, default=60, help="seconds between two lines of figures")
     options = parser.parse_args()
 
@@ -359,7 +361,7 @@ def main():
         for each in honest:
             each.start()
         counts = multiprocessing.Array("q", len(HOSTILE))
-        attackers = multiprocessing.Process(target=hostile, args=(port, options.seed, counts), daemon=True)
+        attackers = multiprocessing.Process(target=hostile, args=(port, options.seed, counts, options.hostile), daemon=True)
         attackers.start()
         begin = next_line = time.monotonic()
         progress = {each: (0, begin) for each in honest}

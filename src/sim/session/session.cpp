@@ -43,9 +43,11 @@ Session::~Session() {
 }
 
 void Session::wake() {
-  const std::lock_guard lock(mutex_);
-  woken_ = true;
-  changed_.notify_all();
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  changed_.notify_all();  // not under the lock, which who is woken needs
 }
 
 /// Applies an order under the lock and wakes the loop.
