@@ -81,7 +81,8 @@ TEST(EyesimRobot, StandsOnItsWheelsWithItsDevices) {
 
 TEST(EyesimRobot, HasItsMassAndColliderInModelSpace) {
   Diagnostics d;
-  const model::Model& model = *robi(scout, d).instance.model;
+  const Robi robot = robi(scout, d);
+  const model::Model& model = *robot.instance.model;
   double mass = 0;
   for (const model::Link& link : model.links) mass += link.inertial.mass_kg;
   // The body has nine tenths and two balls with a fiftieth each, the wheels a fortieth each.
