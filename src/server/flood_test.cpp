@@ -27,6 +27,7 @@ class Victim {
         const json& stamp = message["msg"]["header"]["stamp"];
         stamps_ns.push_back(stamp["sec"].get<std::int64_t>() * 1'000'000'000 +
                             stamp["nanosec"].get<std::int64_t>());
+        got_ = stamps_ns.size();
         bridge_.send({{"op", "publish"}, {"topic", "/rover2/drive"}, {"msg", {{"angular", {{"z", 0.1}}}}}});
       }
     });
@@ -36,10 +37,10 @@ class Victim {
     end_ = true;
     if (thread_.joinable()) thread_.join();
   }
-  /// Its messages are all there.
+  /// Its messages are all there, and go on coming: a slow machine takes its time for that.
   void expect_whole(std::size_t at_least) {
+    EXPECT_TRUE(soon([&] { return got_ >= at_least; }, patience_s)) << got_;
     finish();
-    EXPECT_GE(stamps_ns.size(), at_least);
     for (std::size_t i = 2; i < stamps_ns.size(); ++i)
       ASSERT_EQ(stamps_ns[i] - stamps_ns[i - 1], stamps_ns[1] - stamps_ns[0]) << i;
     EXPECT_EQ(refusals, 0u);
@@ -50,6 +51,7 @@ class Victim {
  private:
   Bridge bridge_;
   std::atomic<bool> end_ = false;
+  std::atomic<std::size_t> got_ = 0;
   std::thread thread_;
 };
 
@@ -118,7 +120,6 @@ TEST(Floods, ASlowReaderIsClosedAndTheOthersGetTheirMessages) {
   ASSERT_TRUE(soon([&] { return run.server->counters().accepted == 2; }));
   EXPECT_TRUE(soon([&] { return run.server->counters().clients == 1; }, 10)) << "it was not closed";
   EXPECT_GT(run.server->counters().dropped, 0u);
-  EXPECT_TRUE(soon([&] { return run.session.report().now > Time::from_s(1.5); }));
   victim.expect_whole(10);
 }
 
@@ -145,7 +146,6 @@ TEST(Floods, ManySlowReadersTogetherHoldABoundedNumberOfBytes) {
       each.send(R"({"op":"call_service","service":"/rosapi/topics_and_raw_types","id":"call"})");
   EXPECT_TRUE(soon([&] { return run.server->counters().clients < 25; }, 15))
       << run.server->counters().clients;
-  EXPECT_TRUE(soon([&] { return run.session.report().now > Time::from_s(1.5); }));
   victim.expect_whole(10);
 }
 
@@ -231,7 +231,6 @@ TEST(Floods, FragmentsThatNeverEndHoldOneMessageAtMost) {
   for (const auto& each : all)
     EXPECT_EQ(each->next("status")["msg"], "a fragment comes twice, or does not fit the others");
   EXPECT_GE(run.server->counters().refused, 10u);
-  EXPECT_TRUE(soon([&] { return run.session.report().now > Time::from_s(1.2); }));
   victim.expect_whole(8);
 }
 
@@ -256,10 +255,9 @@ TEST(Floods, HugeMessagesOfManyClientsDoNotKeepTheVictimWaiting) {
         }
       }
     });
-  EXPECT_TRUE(soon([&] { return run.session.report().now > Time::from_s(1.5); }));
+  victim.expect_whole(10);  // while the flood goes on
   end = true;
   for (std::thread& each : flooding) each.join();
-  victim.expect_whole(10);
 }
 
 TEST(Floods, WhoTakesMuchTimeIsReadLaterAndLosesNothing) {

@@ -218,6 +218,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
       queue->messages.clear();
     }
     close("info", "the server ends");
+    if (stage == Stage::closing) say_good_bye();  // a datagram is still being sent
     end();
   }
   bool idle() const override { return false; }
