@@ -24,16 +24,19 @@ std::atomic<std::uint64_t> ours{0}, of_libraries{0};
 /// Whether the call of operator new came out of a shared library: code of the standard library, which is
 /// instantiated wherever it is used, is passed over; the first frame that is not decides.
 bool asked_by_a_library() {
-  void* frames[12];
-  const int count = backtrace(frames, 12);
+  void* frames[24];
+  const int count = backtrace(frames, 24);
   Dl_info here{};
   dladdr(reinterpret_cast<void*>(&asked_by_a_library), &here);
   for (int i = 2; i < count; ++i) {  // 0 is this function, 1 the counter
     Dl_info frame{};
     if (!dladdr(frames[i], &frame)) continue;
     if (frame.dli_sname && std::strncmp(frame.dli_sname, "_Zn", 3) == 0) continue;  // operator new itself
+    const auto is_named = [&](const char* begin) {
+      return std::strncmp(frame.dli_sname, begin, std::strlen(begin)) == 0;
+    };
     if (frame.dli_fbase == here.dli_fbase && frame.dli_sname &&
-        std::strncmp(frame.dli_sname, "_ZNSt", 5) == 0)
+        (is_named("_ZNSt") || is_named("_ZSt") || is_named("_ZNSa") || is_named("_ZN9__gnu_cxx")))
       continue;
     if (frame.dli_fname && std::strstr(frame.dli_fname, "libstdc++")) continue;
     return frame.dli_fbase != here.dli_fbase;
