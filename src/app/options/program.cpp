@@ -28,10 +28,11 @@ void add_list(CommandLine& line) {
   CLI::App* const verb = line.app.add_subcommand("list",
                                                  "List the kinds of devices, controllers, engines, noise and "
                                                  "file formats, message types, and Gazebo plugins");
-  verb->add_option("what", options.what,
-                   "devices, controllers, programs, media, rules, markers, engines, noise, image_noise, "
-                   "depth_noise, faults, "
-                   "builders, formats (all of these if left out), levels, messages or plugins");
+  verb->add_option(
+      "what", options.what,
+      "devices, controllers, programs, media, rules, markers, engines, noise, image_noise, "
+      "depth_noise, faults, "
+      "distributions, builders, formats (all of these if left out), levels, messages or plugins");
   verb->add_option("names", options.names,
                    "Only the kinds of these names, or message types: as with --verbose");
   verb->add_flag("--verbose", options.verbose, "Print every field with unit, range, default and meaning");

@@ -27,7 +27,8 @@ bool is_identifier(std::string_view name) {
 Result<Placement> read_distribution(const Node& node, const spec::Distribution& read, int count,
                                     const std::string& path) {
   if (read.grid.has_value() == read.uniform.has_value())
-    return node.error("expected one of 'grid' and 'uniform'", "", path);
+    return node.error("expected one of 'grid' and 'uniform'", "`sandlot list distributions` shows their keys",
+                      path);
   Placement placement;
   placement.place = node.place();
   if (read.grid) {

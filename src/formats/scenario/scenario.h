@@ -101,6 +101,13 @@ using KindFields = std::pair<std::string, std::vector<FieldInfo>>;
 using StageFields = std::pair<std::string, std::vector<KindFields>>;
 using ElementFields = std::pair<std::string, std::vector<KindFields>>;
 
+/// What `distribution` of robots and things may be.
+struct DistributionKind {
+  std::string name, help;
+  std::vector<FieldInfo> fields;
+};
+std::vector<DistributionKind> distribution_kinds();
+
 /// JSON schema (draft 2020-12) of an object with these fields, as JSON text.
 std::string schema_of(const std::vector<FieldInfo>& fields);
 /// JSON schema (draft 2020-12) of scenario files, from the same field lists that read them, as JSON text.

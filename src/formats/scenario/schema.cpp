@@ -131,6 +131,15 @@ Json pose_schema(const char* description) {
 
 }  // namespace
 
+std::vector<DistributionKind> distribution_kinds() {
+  std::vector<DistributionKind> out;
+  const spec::Distribution kinds;
+  spec::Distribution::fields(kinds, [&]<class Kind>(const Field& field, const std::optional<Kind>&) {
+    out.push_back({field.key, field.help, describe_fields<Kind>()});
+  });
+  return out;
+}
+
 std::string schema_of(const std::vector<FieldInfo>& fields) {
   Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}};
   out.update(object_of(fields));
