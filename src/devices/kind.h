@@ -6,6 +6,7 @@
 ///     using Spec = ...;                   // named fields with a field list; constant but for tunable fields
 ///     using State = ...;                  // plain data with a field list: all that changes
 ///     Spec spec; State state;
+///     std::optional<Late> late;  // only where some devices come to have more State: no bytes while it is empty
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
 ///     static void sense(PoolView<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level
@@ -55,6 +56,10 @@ struct PoolView {
   std::span<const std::uint32_t> levels;  ///< per device in `all`: active levels as bits
   std::span<const Time> since;            ///< per device in `all`: time since its previous sample
 };
+
+/// Level of the topics and command slots that a device has at every level and that are State only once they have held a
+/// message.
+inline constexpr std::uint32_t late_level = ~0u;
 
 /// Type-erased pool; `make_kind` writes it.
 class PoolBase {
@@ -211,18 +216,31 @@ class DevicePool final : public PoolBase {
     return {};
   }
   ValueFound value(std::uint32_t index, ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, spec_of(devices_[index]), devices_[index].state, path);
+    const Device& d = devices_[index];
+    const ValueFound found = value_at(part, spec_of(d), d.state, path);
+    if constexpr (requires { d.late; })
+      if (found.is == ValueFound::Is::unknown && part == ValuePart::state && d.late)
+        return value_at(*d.late, path);
+    return found;
   }
   void list_values(std::uint32_t index, ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, spec_of(devices_[index]), devices_[index].state, visit);
+    const Device& d = devices_[index];
+    sandlot::list_values(part, spec_of(d), d.state, visit);
+    if constexpr (requires { d.late; })
+      if (part == ValuePart::state && d.late) sandlot::list_values(*d.late, "", "", "", visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
-    const Spec& spec = spec_of(devices_[index]);
+    const Device& d = devices_[index];
+    const Spec& spec = spec_of(d);
     write_tunables(w, spec);
-    write(w, devices_[index].state);
-    // Last and only where it is not 1: the bytes of a device without it are those of before it was.
+    write(w, d.state);
+    bool late = false;
+    if constexpr (requires { d.late; }) late = d.late.has_value();
+    // Last and only where it is not 1: the bytes of a device without it are those of before it was. Likewise what is late.
     if constexpr (requires { spec.errors; })
-      if (spec.errors != 1) write(w, spec.errors);
+      if (late || spec.errors != 1) write(w, spec.errors);
+    if constexpr (requires { d.late; })
+      if (late) write(w, *d.late);
   }
   void load(std::uint32_t index, ByteReader& r) override {  // r ends where the device's bytes end
     Device& d = devices_[index];
@@ -233,6 +251,8 @@ class DevicePool final : public PoolBase {
       if (spec.errors = 1; r.remaining() > 0) read(r, spec.errors);
       if (!(spec.errors >= 0 && spec.errors <= 1e6)) r.fail();
     }
+    if constexpr (requires { d.late; })
+      if (d.late.reset(); r.remaining() > 0) read(r, d.late.emplace());
     set_spec(d, std::move(spec));
     if (!fits(index)) return r.fail();
     if constexpr (requires { d.restored(); }) d.restored();

@@ -154,6 +154,28 @@ void take_wheel_command(Drive drive, const msg::JointState& message, Joints join
   }
 }
 
+/// Reaction time of the PI loops on v and w.
+constexpr double loop_response_s = 0.1;
+
+maneuver::Limits maneuver_limits(const Drive& drive, Level level) {
+  const Common& spec = drive.spec;
+  const Base& base = drive.base;
+  maneuver::Limits limits{.speed_mps = spec.max_linear_speed_mps,
+                          .turning_rate_radps = spec.max_angular_speed_radps,
+                          .acceleration_mps2 = spec.max_linear_acceleration_mps2,
+                          .angular_acceleration_radps2 = spec.max_angular_acceleration_radps2,
+                          .response_s = level != ideal && spec.control ? loop_response_s : 0};
+  if (base.car) limits.max_curvature_pm = base.car->max_curvature();
+  if (spec.encoder_ticks > 0)
+    for (const kinematics::Wheel& wheel : base.geometry) {
+      const double edge_rad = math::tau / spec.encoder_ticks;
+      const double lever = std::abs(kinematics::wheel_turn(wheel, {0, 0, 1}));
+      limits.edge_m = std::max(limits.edge_m, edge_rad * wheel.radius_m);
+      if (lever > 0) limits.edge_rad = std::max(limits.edge_rad, edge_rad / lever);
+    }
+  return limits;
+}
+
 void take_commands(Drive drive, Level level, Joints joints) {
   State& state = drive.state;
   const Topic<msg::Twist>& velocity = *drive.base.command[level];
@@ -161,6 +183,7 @@ void take_commands(Drive drive, Level level, Joints joints) {
     state.taken[level] = velocity.count;
     state.command_time = velocity.stamp;
     state.by_wheels = 0;
+    maneuver::end(drive.late);
     // A message may hold anything; what is not a number has no effect.
     const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
     state.command = {sane(velocity.message.linear.x), sane(velocity.message.linear.y),
@@ -170,7 +193,14 @@ void take_commands(Drive drive, Level level, Joints joints) {
   if (wheels.count != state.taken_wheels[level]) {
     state.taken_wheels[level] = wheels.count;
     state.command_time = wheels.stamp;
+    maneuver::end(drive.late);
     take_wheel_command(drive, wheels.message, joints);
+  }
+  if (const maneuver::Slot& slot = *drive.base.maneuver.command; maneuver::is_new(drive.late, slot)) {
+    state.by_wheels = 0;
+    state.command = {};
+    maneuver::begin(drive.late, slot, maneuver_limits(drive, level), state.X_OD,
+                    measured(drive, level, joints), drive.base.wheels.size());
   }
 }
 
@@ -201,8 +231,9 @@ double overload(const Base& base, const PlanarMotion& motion) {
 PlanarMotion goal(Drive drive, const Context& context) {
   const Common& spec = drive.spec;
   Base& base = drive.base;
-  if (timed_out(drive, context)) return {};
-  PlanarMotion m = drive.state.command;
+  const bool on_maneuver = maneuver::in_force(drive.late);
+  if (!on_maneuver && timed_out(drive, context)) return {};
+  PlanarMotion m = on_maneuver ? drive.late->maneuver.setpoint : drive.state.command;
   if (drive.state.by_wheels) {
     point_wheels(base, [&](std::size_t p) { return drive.state.pivots[p].target_rad; });
     for (std::size_t i = 0; i < base.wheels.size(); ++i)
@@ -373,6 +404,27 @@ void ramp(Drive drive, const PlanarMotion& wanted, double h_s) {
   if (part == 1) set.x = wanted.x, set.y = wanted.y;
 }
 
+/// Moves a maneuver on, and looks for motors that do not turn.
+void take_odometry(Drive drive, Level level, const Context& context, Joints joints) {
+  if (!drive.late) return;
+  maneuver::State& maneuver = drive.late->maneuver;
+  const double tick_s = context.tick.s();
+  // Against what was requested in the tick that has passed.
+  const PlanarMotion wanted = level == ideal ? goal(drive, context) : drive.state.setpoint;
+  point_wheels_as_they_stand(drive, level, joints);
+  for (std::size_t i = 0; i < drive.base.wheels.size(); ++i) {
+    const kinematics::Wheel& wheel = drive.base.geometry[i];
+    const WheelState& own = drive.state.wheels[i];
+    double radps = kinematics::wheel_turn(wheel, wanted);
+    if (drive.state.by_wheels && own.by_effort) radps = own.command != 0 && level != ideal ? 1e9 : 0;
+    else if (drive.state.by_wheels) radps = own.command;
+    if (!drive.base.wheels[i].driven) radps = 0;
+    maneuver::watch_motor(maneuver, i, radps * wheel.radius_m, speed_of(drive, i, joints) * wheel.radius_m,
+                          tick_s);
+  }
+  if (maneuver.in_force) maneuver::step(maneuver, maneuver_limits(drive, level), drive.state.X_OD, tick_s);
+}
+
 /// Moves the setpoint and sets the steering's targets.
 void follow(Drive drive, const PlanarMotion& wanted, double h_s, Joints joints) {
   State& state = drive.state;
@@ -442,6 +494,7 @@ void actuate(Drive drive, std::uint32_t levels, const Context& context) {
   const Level level = active(levels);
   count_wheels(drive, level, joints);
   take_commands(drive, level, joints);
+  take_odometry(drive, level, context, joints);
   if (drive.state.handover & hand_wheels)
     for (const Wheel& wheel : base.wheels)
       if (wheel.has_rollers) context.actuation.wheels.push_back({wheel.joint, level == rollers});
@@ -565,6 +618,7 @@ void sense(Drive drive, std::uint32_t levels, const Context& context) {
   }
   base.wheel_message[level]->publish(context.now);
   if (base.ticks[level]) base.ticks[level]->publish(context.now);
+  if (drive.late) maneuver::publish(*base.maneuver.progress, drive.late->maneuver, context.now);
 }
 
 void release(Drive drive, const Context& context) {

@@ -19,6 +19,7 @@
 ///          wheels, then of the steering, in the spec's order. Wheels that a message leaves out keep their
 ///          last command. Whatever kind of command came last counts; of two in one tick the wheels'. On level
 ///          `ideal` an effort has no effect.
+///          <device>/maneuver/command: a piece of way, of which devices/drives/maneuver.h speaks.
 /// Output   <device>/<level>: nav_msgs/Odometry of B from the joints alone, as diff_drive's.
 ///          <device>/<level>/wheels: sensor_msgs/JointState of wheels and steering, angles as the encoders
 ///          show them. With `encoder_ticks` <device>/<level>/ticks: std_msgs/Int64MultiArray. State:
@@ -44,6 +45,7 @@
 #include <array>
 #include <optional>
 
+#include "devices/drives/maneuver.h"
 #include "devices/kind.h"
 #include "devices/motor.h"
 #include "devices/pid.h"
@@ -231,6 +233,7 @@ struct Base {
   std::optional<kinematics::Ackermann> car;  ///< limits of a car
   std::array<Topic<msg::Twist>*, most_levels> command{};
   std::array<Topic<msg::JointState>*, most_levels> wheel_command{}, wheel_message{};
+  maneuver::Topics maneuver;
   std::array<Topic<msg::Odometry>*, most_levels> odometry{};
   std::array<Topic<msg::Int64MultiArray>*, most_levels> ticks{};
   struct Running {
@@ -272,6 +275,7 @@ bool fits(const Base& base, const State& state);
 struct Drive {
   const Common& spec;
   State& state;
+  std::optional<maneuver::Late>& late;
   Base& base;
 };
 void actuate(Drive drive, std::uint32_t levels, const Context& context);

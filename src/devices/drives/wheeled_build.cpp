@@ -246,6 +246,8 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
   joints.position.resize(joints.name.size());
   joints.velocity.resize(joints.name.size());
   joints.effort.resize(joints.name.size());
+  base.maneuver = maneuver::make_topics(build,
+                                        base.car ? std::optional(base.car->max_curvature()) : std::nullopt);
   const char* const names[] = {"ideal", "contact", "rollers"};
   for (std::uint32_t level = 0; level < (has_rollers ? 3u : 2u); ++level) {
     const std::string name = names[level];

@@ -12,6 +12,7 @@ struct Device {
   using State = wheeled::State;
   Spec spec;
   State state;
+  std::optional<maneuver::Late> late;
   Base base;
 
   static Result<Device> create(const DeviceBuild& build, Spec spec) {
@@ -20,8 +21,8 @@ struct Device {
     SL_TRY(finish(device.base, device.state, build, device.spec, K::has_rollers));
     return device;
   }
-  bool fits() const { return wheeled::fits(base, state); }
-  wheeled::Drive parts() { return {spec, state, base}; }
+  bool fits() const { return wheeled::fits(base, state) && maneuver::fits(late, base.wheels.size()); }
+  wheeled::Drive parts() { return {spec, state, late, base}; }
 
   static void actuate(PoolView<Device> pool, const Context& context) {
     for (const std::uint32_t i : pool.due) wheeled::actuate(pool.all[i].parts(), pool.levels[i], context);

@@ -247,6 +247,8 @@ Status DeviceKeys::apply(Device& device, std::size_t slot, std::span<const std::
   to.stamp = now;
   ++to.count;
   if (raw) latest_ = static_cast<std::uint32_t>(slot) + 1;
+  else if (topic_cast<msg::DriveManeuver>(&to))
+    latest_ = 0;  // it ends the command whose errors were computed
   return {};
 }
 

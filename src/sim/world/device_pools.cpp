@@ -530,15 +530,32 @@ std::span<const std::uint32_t> DevicePools::acting(Pool& pool, const Context& co
 
 // ---------------------------------------------------------------------------------------------------------- State
 
+namespace {
+
+constexpr std::uint8_t is_requested = 1, has_late = 2;
+
+bool is_late(const SimulationParts::Slot& slot) { return slot.level == late_level; }
+
+/// Whether a topic or command that is State from its first message on has had one.
+bool has_late_messages(const SimulationParts::Device& device) {
+  const auto had = [](const SimulationParts::Slot& slot) { return is_late(slot) && slot.topic->count > 0; };
+  return std::any_of(device.topics.begin(), device.topics.end(), had) ||
+         std::any_of(device.commands.begin(), device.commands.end(), had);
+}
+
+}  // namespace
+
 void DevicePools::save(const Device& device, ByteWriter& w) const {
   const Timing& when = timing(device);
   write(w, device.levels);
   write(w, when.start);
   write(w, when.sample);
   write(w, when.last);
-  write(w, when.requested);
-  for (const Slot& slot : device.topics) slot.topic->save(w);
-  for (const Slot& slot : device.commands) slot.topic->save(w);
+  const bool late = has_late_messages(device);
+  write(w, static_cast<std::uint8_t>((when.requested ? is_requested : 0) | (late ? has_late : 0)));
+  for (const auto* const slots : {&device.topics, &device.commands})
+    for (const Slot& slot : *slots)
+      if (late || !is_late(slot)) slot.topic->save(w);
   if (device.inbox()) device.inbox()->save(w);
   if (device.energy) write(w, device.energy->state);
   if (device.light()) device.light()->save(w);
@@ -563,15 +580,20 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
   read(r, when.start);
   read(r, when.sample);
   read(r, when.last);
-  read(r, when.requested);
+  std::uint8_t flags = 0;
+  read(r, flags);
+  if (flags > (is_requested | has_late)) return r.fail();
+  when.requested = flags & is_requested;
+  const bool late = flags & has_late;
   // Due times are computed from these: what cannot be would overflow.
   constexpr std::uint64_t most_samples = std::uint64_t{1} << 53;
   if (when.start < Time{} || when.start > now || when.last < Time{} || when.last > now ||
       when.sample > most_samples)
     return r.fail();
-  for (Slot& slot : device.topics) slot.topic->load(r);
+  for (Slot& slot : device.topics)
+    if (late || !is_late(slot)) slot.topic->load(r);
   for (Slot& slot : device.commands) {
-    slot.topic->load(r);
+    if (late || !is_late(slot)) slot.topic->load(r);
     // What assign() refuses does not come in by another door.
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }

@@ -253,10 +253,23 @@ void Programs::deliver_sample(ProgramEntry& program, const Command::Order& order
 
 // --------------------------------------------------------------------------------------------------------- State
 
+namespace {
+
+/// Readings of late topics are the last of a description: those that have never had a message add no bytes.
+std::size_t saved_readings(const SimulationParts::ProgramEntry& program) {
+  std::size_t n = program.seen.size();
+  while (n > 0 && program.seen[n - 1] == 0 && is_late(program.description->readings[n - 1])) --n;
+  return n;
+}
+
+}  // namespace
+
 void Programs::save(const ProgramEntry& program, ByteWriter& w) {
   write(w, program.steps);
   write(w, program.ended);
-  write(w, program.seen);
+  write(w, std::vector<std::uint64_t>(
+               program.seen.begin(),
+               program.seen.begin() + static_cast<std::ptrdiff_t>(saved_readings(program))));
   write(w, static_cast<std::uint32_t>(program.command.orders().size()));
   for (const Command::Order& order : program.command.orders()) {
     const auto bytes = program.command.bytes(order);
@@ -283,6 +296,9 @@ bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
   read(r, program.steps);
   read(r, program.ended);
   read(r, program.seen);
+  const std::size_t saved = program.seen.size();
+  program.seen.resize(readings, 0);
+  if (saved > readings || saved != saved_readings(program)) return false;
   std::uint32_t orders = 0;
   read(r, orders);
   program.command.clear();
@@ -323,7 +339,7 @@ bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
       if (output.topic->stamp < Time{} || output.topic->stamp > now) return false;
     }
   program.program->load(r);
-  return r.ok() && program.seen.size() == readings;
+  return r.ok();
 }
 
 }  // namespace sandlot

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "messages/sandlot_drive.h"
 #include "sim/world/commands.h"
 #include "sim/world/device_pools.h"
 #include "sim/world/parts.h"
@@ -21,6 +22,12 @@
 namespace sandlot {
 
 struct SimulationOptions;
+
+/// Topics and commands of maneuvers, which are State only once one was commanded (devices/kind.h, late_level); they are the last
+/// entries of a description.
+inline bool is_late(const Description::Entry& entry) {
+  return entry.type == msg::DriveManeuver::ros_type || entry.type == msg::DriveProgress::ros_type;
+}
 
 class Programs {
  public:

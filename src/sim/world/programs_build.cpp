@@ -279,6 +279,22 @@ void Programs::describe_robot(const Entity& entity, const ProgramEntries& progra
   }
 }
 
+namespace {
+
+/// Puts the entries of late topics behind the others, whose numbers, which are State, then do not depend on them.
+void put_late_last(Description& description) {
+  for (auto list : {&Description::readings, &Description::actuators}) {
+    std::vector<Entry>& entries = description.*list;
+    std::stable_partition(entries.begin(), entries.end(), [](const Entry& each) { return !is_late(each); });
+    std::vector<std::uint32_t> place(entries.size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) place[std::exchange(entries[i].index, i)] = i;
+    for (Description& member : description.members)
+      for (Entry& entry : member.*list) entry.index = place[entry.index];
+  }
+}
+
+}  // namespace
+
 /// Description of what a program drives: the same object as for the robot before it, if they have the same devices.
 /// @param before  the programs that precede it
 std::shared_ptr<const Description> Programs::describe(const Driven& driven, const ProgramEntries& before,
@@ -289,6 +305,7 @@ std::shared_ptr<const Description> Programs::describe(const Driven& driven, cons
   set_kinds_with(kinds_with);
   if (!driven.team) {
     describe_robot(*driven.robots.front(), before, "", description);
+    put_late_last(description);
     if (!described_ || described_->control_period_s != period_s ||
         !all_same(described_->readings, description.readings) ||
         !all_same(described_->actuators, description.actuators))
@@ -318,6 +335,7 @@ std::shared_ptr<const Description> Programs::describe(const Driven& driven, cons
                                         static_cast<std::uint32_t>(description.readings.size()),
                                         {},
                                         true});
+  put_late_last(description);
   return std::make_shared<const Description>(std::move(description));
 }
 

@@ -7,6 +7,8 @@
 namespace sandlot::body_velocity {
 namespace {
 
+constexpr double no_limit = 1e9;
+
 /// "1 0 0" as a list of three.
 void copy_vector(const Node& element, const char* name, Node& config, const char* key) {
   const Node* const node = sdf_element::find(element, name);
@@ -41,6 +43,7 @@ Result<Mover> Mover::create(const DeviceBuild& build, Spec spec) {
   mover.state.vy_mps = spec.initial_linear_mps.y;
   mover.state.wz_radps = spec.initial_angular_radps.z;
   mover.command = build.accept<msg::Twist>(0, "ideal");
+  mover.maneuver = maneuver::make_topics(build);
   return mover;
 }
 
@@ -51,6 +54,7 @@ void Mover::actuate(PoolView<Mover> pool, const Context& context) {
     if (mover.command->count != state.taken) {
       state.taken = mover.command->count;
       state.command_time = mover.command->stamp;
+      maneuver::end(mover.late);
       // A message may hold anything; what is not a number has no effect.
       const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
       state.vx_mps = sane(mover.command->message.linear.x);
@@ -59,11 +63,20 @@ void Mover::actuate(PoolView<Mover> pool, const Context& context) {
     }
     const double timeout_s = mover.spec.command_timeout_s;
     const bool late = timeout_s > 0 && (context.now - context.tick - state.command_time).s() > timeout_s;
+    maneuver::PlanarMotion moving{state.vx_mps, state.vy_mps, state.wz_radps};
+    if (late) moving = {};
+    if (maneuver::ride(mover.late, mover.maneuver,
+                       {.speed_mps = no_limit,
+                        .turning_rate_radps = no_limit,
+                        .acceleration_mps2 = mover.spec.max_acceleration_mps2,
+                        .angular_acceleration_radps2 = mover.spec.max_angular_acceleration_radps2},
+                       context.engine.states()[mover.base.index], context))
+      moving = mover.late->maneuver.setpoint;
     context.actuation.drives.push_back(
         {.base = mover.base,
-         .vx_mps = late ? 0 : state.vx_mps,
-         .vy_mps = late ? 0 : state.vy_mps,
-         .wz_radps = late ? 0 : state.wz_radps,
+         .vx_mps = moving.x,
+         .vy_mps = moving.y,
+         .wz_radps = moving.turn,
          .max_accel_mps2 = mover.spec.max_acceleration_mps2,
          .max_angular_accel_radps2 = mover.spec.max_angular_acceleration_radps2});
     if (mover.energy) mover.energy->ride(context.actuation.drives.back());

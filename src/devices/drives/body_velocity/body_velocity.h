@@ -4,6 +4,8 @@
 /// Output   none; see ground_truth.
 /// Command  level `ideal`: geometry_msgs/Twist in the frame of the model's first link; linear x and y and
 ///          angular z count, the robot stays on the plane it stands on.
+///          Also a piece of way (devices/drives/maneuver.h): without wheels it counts its true motion, in every tick, and has
+///          no motors that could stall.
 /// Time     a command acts from the tick it arrives in, until the next one or for `command_timeout`.
 /// Energy   draws its mechanical work on rails (devices/energy.h).
 /// Limits   in the plane only: z, roll and pitch are physics' own. Obstacles stop it with a force of mass
@@ -11,6 +13,7 @@
 /// Noise    none.
 /// Cost     one target per tick, no allocation.
 /// Errors   an engine without ideal drives.
+#include "devices/drives/maneuver.h"
 #include "devices/kind.h"
 #include "messages/messages.h"
 
@@ -59,14 +62,17 @@ struct Mover {
   using State = body_velocity::State;
   Spec spec;
   State state;
+  std::optional<maneuver::Late> late;
 
   BodyId base;
   EnergyMeter* energy = nullptr;
   Topic<msg::Twist>* command = nullptr;
+  maneuver::Topics maneuver;
 
   static Result<Mover> create(const DeviceBuild& build, Spec spec);
   static void actuate(PoolView<Mover> pool, const Context& context);
   void release(const Context& context);
+  bool fits() const { return maneuver::fits(late, 0); }
 };
 
 extern const Kind kind;

@@ -41,27 +41,70 @@ DriveVelocity velocity_of_axle(const Drive& drive, const Context& context) {
   return {v_B.x - omega * drive.dy_m, omega};
 }
 
-void take_command(Drive& drive, Level level) {
+maneuver::Limits maneuver_limits(const Spec& spec) {
+  return {.speed_mps = spec.max_linear_speed_mps,
+          .turning_rate_radps = spec.max_angular_speed_radps,
+          .acceleration_mps2 = spec.max_linear_acceleration_mps2,
+          .angular_acceleration_radps2 = spec.max_angular_acceleration_radps2};
+}
+
+/// Velocity that the wheels' speeds amount to.
+DriveVelocity measured(const Drive& drive, std::span<const JointState> joints) {
+  return drive.geometry.forward(
+      {mean(drive.left, joints, &JointState::velocity), mean(drive.right, joints, &JointState::velocity)});
+}
+
+void take_command(Drive& drive, Level level, const Context& context) {
   const Topic<msg::Twist>& slot = *drive.command[level];
   State& state = drive.state;
-  if (slot.count == state.taken[level]) return;
-  state.taken[level] = slot.count;
-  state.command_time = slot.stamp;
-  // A message may hold anything; what is not a number has no effect.
-  const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
-  state.command_mps = sane(slot.message.linear.x);
-  state.command_radps = sane(slot.message.angular.z);
+  if (slot.count != state.taken[level]) {
+    state.taken[level] = slot.count;
+    state.command_time = slot.stamp;
+    maneuver::end(drive.late);
+    // A message may hold anything; what is not a number has no effect.
+    const auto sane = [](double x) { return std::isfinite(x) ? x : 0.0; };
+    state.command_mps = sane(slot.message.linear.x);
+    state.command_radps = sane(slot.message.angular.z);
+  }
+  if (!maneuver::is_new(drive.late, *drive.maneuver.command)) return;
+  const auto joints = context.engine.joint_states();
+  count_wheels(drive, joints);
+  const DriveVelocity moving = measured(drive, joints);
+  maneuver::begin(drive.late, *drive.maneuver.command, maneuver_limits(*drive.spec), state.X_OD,
+                  {moving.v_mps, 0, moving.omega_radps}, drive.left.size() + drive.right.size());
 }
 
 /// Setpoint of the drive in this tick: the command within all limits.
 DriveVelocity goal(const Drive& drive, const Context& context) {
   const Spec& spec = *drive.spec;
   const Time age = context.now - context.tick - drive.state.command_time;
-  if (spec.command_timeout_s > 0 && age.s() > spec.command_timeout_s) return {};
+  DriveVelocity command{drive.state.command_mps, drive.state.command_radps};
+  if (maneuver::in_force(drive.late))
+    command = {drive.late->maneuver.setpoint.x, drive.late->maneuver.setpoint.turn};
+  else if (spec.command_timeout_s > 0 && age.s() > spec.command_timeout_s) return {};
   const DriveVelocity wanted{
-      std::clamp(drive.state.command_mps, -spec.max_linear_speed_mps, spec.max_linear_speed_mps),
-      std::clamp(drive.state.command_radps, -spec.max_angular_speed_radps, spec.max_angular_speed_radps)};
+      std::clamp(command.v_mps, -spec.max_linear_speed_mps, spec.max_linear_speed_mps),
+      std::clamp(command.omega_radps, -spec.max_angular_speed_radps, spec.max_angular_speed_radps)};
   return drive.geometry.forward(limited(drive.geometry.inverse(wanted), drive.max_wheel_speed_radps));
+}
+
+/// Moves a maneuver on, and looks for motors that do not turn.
+void take_odometry(Drive& drive, Level level, const Context& context) {
+  maneuver::State& maneuver = drive.late->maneuver;
+  const auto joints = context.engine.joint_states();
+  const double tick_s = context.tick.s(), radius_m = drive.geometry.wheel_radius_m;
+  // Against what was requested in the tick that has passed.
+  const DriveVelocity wanted = level == ideal
+                                   ? goal(drive, context)
+                                   : DriveVelocity{drive.state.setpoint_mps, drive.state.setpoint_radps};
+  const WheelSpeeds speeds = drive.geometry.inverse(wanted);
+  std::size_t motor = 0;
+  for (const auto* wheels : {&drive.left, &drive.right})
+    for (const Wheel& wheel : *wheels)
+      maneuver::watch_motor(maneuver, motor++,
+                            (wheels == &drive.left ? speeds.left_radps : speeds.right_radps) * radius_m,
+                            joints[wheel.joint.index].velocity * radius_m, tick_s);
+  if (maneuver.in_force) maneuver::step(maneuver, maneuver_limits(*drive.spec), drive.state.X_OD, tick_s);
 }
 
 double towards(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
@@ -114,8 +157,10 @@ Status check_levels(std::uint32_t levels, const Capabilities& engine) {
 void Drive::actuate(PoolView<Drive> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
-    if (drive.spec->odometry) count_wheels(drive, context.engine.joint_states());
-    take_command(drive, is_ideal(pool.levels[index]) ? ideal : contact);
+    const Level level = is_ideal(pool.levels[index]) ? ideal : contact;
+    if (drive.spec->odometry || drive.late) count_wheels(drive, context.engine.joint_states());
+    take_command(drive, level, context);
+    if (drive.late) take_odometry(drive, level, context);
     const DriveVelocity wanted = goal(drive, context);
     if (is_ideal(pool.levels[index])) {
       // v_B = v_D + omega x r_DB with r_DB = -(dx, dy), so that D itself moves along x.
@@ -163,14 +208,14 @@ void Drive::pre_substep(PoolView<Drive> pool, const Context& context, double h_s
 void Drive::sense(PoolView<Drive> pool, const Context& context) {
   for (const std::uint32_t index : pool.due) {
     Drive& drive = pool.all[index];
+    if (drive.late) maneuver::publish(*drive.maneuver.progress, drive.late->maneuver, context.now);
     if (!drive.spec->odometry) continue;
     const auto joints = context.engine.joint_states();  // not before: engines make them on demand
     count_wheels(drive, joints);
     Topic<msg::Odometry>& topic = *drive.odometry[is_ideal(pool.levels[index]) ? ideal : contact];
     const Pose X_BD{{drive.dx_m, drive.dy_m, 0}, {}};
     topic.message.pose.pose = X_BD * to_pose(drive.state.X_OD) * inverse(X_BD);
-    const DriveVelocity moving = drive.geometry.forward(
-        {mean(drive.left, joints, &JointState::velocity), mean(drive.right, joints, &JointState::velocity)});
+    const DriveVelocity moving = measured(drive, joints);
     topic.message.twist.twist.linear = {moving.v_mps + moving.omega_radps * drive.dy_m,
                                         -moving.omega_radps * drive.dx_m, 0};
     topic.message.twist.twist.angular = {0, 0, moving.omega_radps};
@@ -187,7 +232,7 @@ void Drive::release(const Context& context) {
 Status Drive::switch_level(std::uint32_t before, std::uint32_t after, const Context& context) {
   SL_TRY(check_levels(after, engine));
   if (before == after) return {};
-  take_command(*this, is_ideal(before) ? ideal : contact);
+  take_command(*this, is_ideal(before) ? ideal : contact, context);
   if (is_ideal(after)) {
     state.release = 0;
   } else {
@@ -298,6 +343,7 @@ Result<Drive> Drive::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
     for (const Wheel& wheel : *wheels)
       drive.max_wheel_speed_radps = std::min(drive.max_wheel_speed_radps, wheel.max_speed);
 
+  drive.maneuver = maneuver::make_topics(build);
   const std::string& robot = build.instance.name;
   for (const Level level : {ideal, contact}) {
     const char* const name = level == ideal ? "ideal" : "contact";

@@ -7,6 +7,8 @@
 ///          acceleration, on every engine; the wheels turn as if they rolled. `contact`: the wheels are
 ///          driven with at most max_wheel_effort each, and friction decides the motion; needs an engine with
 ///          contact_drives. Exactly one level is active. A switch keeps odometry, command and velocity.
+/// Command  geometry_msgs/Twist, or a piece of way (devices/drives/maneuver.h), which needs no `odometry: true`: from the first
+///          one on the odometry is counted.
 /// Output   nav_msgs/Odometry of B on both levels, from the angles of the wheel joints alone: frame
 ///          "<robot>/odom", child "<robot>/<canonical link>". Pose: from where B stood when the drive was
 ///          built. Twist: velocity of B in B. Slip on level `contact` makes it wrong, as on a real robot.
@@ -22,6 +24,7 @@
 #include <array>
 #include <optional>
 
+#include "devices/drives/maneuver.h"
 #include "devices/kind.h"
 #include "kinematics/differential.h"
 #include "messages/messages.h"
@@ -113,6 +116,7 @@ struct Drive {
   using State = diff_drive::State;
   SharedSpec<Spec> spec;
   State state;
+  std::optional<maneuver::Late> late;
 
   BodyId base;
   EnergyMeter* energy = nullptr;
@@ -123,7 +127,9 @@ struct Drive {
   std::vector<Wheel> left, right;
   std::array<Topic<msg::Twist>*, 2> command{};
   std::array<Topic<msg::Odometry>*, 2> odometry{};
+  maneuver::Topics maneuver;
 
+  bool fits() const { return maneuver::fits(late, left.size() + right.size()); }
   static Result<Drive> create(const DeviceBuild& build, SharedSpec<Spec> spec);
   static void actuate(PoolView<Drive> pool, const Context& context);
   static void pre_substep(PoolView<Drive> pool, const Context& context, double h_s);

@@ -3,6 +3,8 @@
 /// Command  level `ideal`: sandlot_msgs/SpeedHeading: speed forward and heading in the world. The robot turns the shorter way to
 ///          the heading, at most as fast as `max_turn_rate`, slowing down so that it stops there, and goes forward meanwhile: it runs
 ///          on an arc, or turns on the spot while the speed is 0.
+///          Also a piece of way (devices/drives/maneuver.h): it counts its true motion, in every tick, and has no motors that
+///          could stall.
 /// Time     a command acts from the tick it arrives in, until the next one or for `command_timeout`; before the first one the
 ///          robot stands.
 /// Limits   in the plane only. Obstacles stop it with a force of mass times max_acceleration. It knows the true heading: see
@@ -14,6 +16,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "devices/drives/maneuver.h"
 #include "devices/kind.h"
 #include "messages/messages.h"
 
@@ -60,8 +63,10 @@ struct HeadingDrive {
   using State = heading_drive::State;
   Spec spec;
   State state;
+  std::optional<maneuver::Late> late;
   BodyId base;
   Topic<msg::SpeedHeading>* command = nullptr;
+  maneuver::Topics maneuver;
 
   static Result<HeadingDrive> create(const DeviceBuild& build, Spec spec) {
     if (!build.engine.ideal_drives)
@@ -69,6 +74,7 @@ struct HeadingDrive {
     HeadingDrive drive{spec};
     drive.base = build.bodies.front();
     drive.command = build.accept<msg::SpeedHeading>(0, "ideal");
+    drive.maneuver = maneuver::make_topics(build);
     return drive;
   }
 
@@ -89,6 +95,7 @@ struct HeadingDrive {
       if (drive.command->count != state.taken) {
         state.taken = drive.command->count;
         state.command_time = drive.command->stamp;
+        maneuver::end(drive.late);
         state.speed_mps = drive.command->message.speed;
         state.heading_rad = drive.command->message.heading;
       }
@@ -97,16 +104,28 @@ struct HeadingDrive {
       const bool stands = state.taken == 0 || late;
       const double yaw_rad = yaw_of(context.engine.states()[drive.base.index].X_WB.q);
       const double to_go_rad = math::wrap_angle(state.heading_rad - yaw_rad);
-      context.actuation.drives.push_back(
-          {.base = drive.base,
-           .vx_mps = stands ? 0 : std::clamp(state.speed_mps, -spec.max_speed_mps, spec.max_speed_mps),
-           .vy_mps = 0,
-           .wz_radps = stands ? 0 : drive.rate_radps(to_go_rad, context.tick.s()),
-           .max_accel_mps2 = spec.max_acceleration_mps2,
-           .max_angular_accel_radps2 = spec.max_angular_acceleration_radps2});
+      maneuver::PlanarMotion moving;
+      if (maneuver::ride(drive.late, drive.maneuver,
+                         {.speed_mps = spec.max_speed_mps,
+                          .turning_rate_radps = spec.max_turn_rate_radps,
+                          .acceleration_mps2 = spec.max_acceleration_mps2,
+                          .angular_acceleration_radps2 = spec.max_angular_acceleration_radps2},
+                         context.engine.states()[drive.base.index], context))
+        moving = drive.late->maneuver.setpoint;
+      else if (!stands)
+        moving = {std::clamp(state.speed_mps, -spec.max_speed_mps, spec.max_speed_mps), 0,
+                  drive.rate_radps(to_go_rad, context.tick.s())};
+      context.actuation.drives.push_back({.base = drive.base,
+                                          .vx_mps = moving.x,
+                                          .vy_mps = moving.y,
+                                          .wz_radps = moving.turn,
+                                          .max_accel_mps2 = spec.max_acceleration_mps2,
+                                          .max_angular_accel_radps2 = spec.max_angular_acceleration_radps2});
     }
   }
-  bool fits() const { return std::isfinite(state.speed_mps) && std::isfinite(state.heading_rad); }
+  bool fits() const {
+    return std::isfinite(state.speed_mps) && std::isfinite(state.heading_rad) && maneuver::fits(late, 0);
+  }
   void release(const Context& context) const {
     context.actuation.drives.push_back({.base = base, .active = false});
   }
