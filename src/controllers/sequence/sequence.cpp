@@ -17,6 +17,33 @@ struct Letter {
   }
 };
 
+/// A maneuver as it is written in a file.
+enum class Maneuver : std::uint8_t { straight, turn, curve, to_point, stop };
+inline constexpr EnumName<Maneuver> maneuver_names[] = {{"straight", Maneuver::straight},
+                                                        {"turn", Maneuver::turn},
+                                                        {"curve", Maneuver::curve},
+                                                        {"to_point", Maneuver::to_point},
+                                                        {"stop", Maneuver::stop}};
+constexpr std::span<const EnumName<Maneuver>> enum_names(Maneuver) { return maneuver_names; }
+static_assert(static_cast<std::uint8_t>(Maneuver::stop) == msg::DriveManeuver::stop);
+
+struct Piece {
+  Maneuver maneuver = Maneuver::straight;
+  msg::DriveManeuver message;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"maneuver", "", "Kind of the piece of way.", 0, 0, Field::required}, s.maneuver);
+    visit(Field{"distance", "m", "Length of a straight or a curve; negative: backward.", -1e6, 1e6},
+          s.message.distance);
+    visit(Field{"angle", "rad", "Change of heading of a turn or a curve.", -1e6, 1e6}, s.message.angle);
+    visit(Field{"x", "m", "Point ahead.", -1e6, 1e6}, s.message.x);
+    visit(Field{"y", "m", "Point to the left.", -1e6, 1e6}, s.message.y);
+    visit(Field{"speed", "m/s", "Speed along the way; 0: the drive's largest.", 0, 1e4}, s.message.speed);
+    visit(Field{"turning_rate", "rad/s", "Turning rate of a turn; 0: the drive's largest.", 0, 1e4},
+          s.message.turning_rate);
+  }
+};
+
 Result<double> number_of(const Node& node, const std::string& device) {
   double value = 0;
   if (!node.is_scalar() || !parse_number(node.text(), value) || !std::isfinite(value))
@@ -42,6 +69,17 @@ Result<Sequence::Order> order_of(const Description& robot, double at_s, const No
                                "write a text, or {to: robot or team, data: text}", "/steps");
     return Sequence::Order{at_s,
                            Sequence::Packet{*to, {letter.to, {letter.data.begin(), letter.data.end()}}}};
+  }
+  if (entry.value.is_map()) {
+    Sequence::Way way;
+    auto to = robot.actuator<msg::DriveManeuver>(entry.key);
+    if (!to) return at_key(std::move(to.error()));
+    Piece piece;
+    SL_TRY(read_fields(entry.value, piece, "/steps"));
+    way.to = *to;
+    way.value = piece.message;
+    way.value.kind = static_cast<std::uint8_t>(piece.maneuver);
+    return Sequence::Order{at_s, way};
   }
   if (entry.value.is_scalar() && (entry.value.text() == "true" || entry.value.text() == "false")) {
     Sequence::Switch order{.value = {entry.value.text() == "true"}};

@@ -6,7 +6,8 @@
 ///          [forward, left, turn] a Twist in m/s and rad/s for a drive. Lists may be shorter; the rest is 0. The words true
 ///          and false are a Bool (grippers); for a device that takes a String, any text is one (voice); for one
 ///          that takes a RadioPacket, a text is a packet for all and {to: name, data: text} one for a robot or a team. For a
-///          heading drive a list is [speed, heading].
+///          heading drive a list is [speed, heading]. A map is a piece of way for a drive (sandlot_msgs/DriveManeuver):
+///          {maneuver: curve, distance: 1 m, angle: 90 deg, speed: 0.2}.
 /// Time     an order is given in the first control step not before its time. With `repeat` the list begins again every
 ///          so many seconds, counted from the start; orders at or after the end of a round are never given.
 /// Limits   open loop: it does not look whether anything came of it.
@@ -26,10 +27,11 @@ struct Step {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"at", "s", "Time of the commands, from the start of a round.", 0, 1e9, Field::required},
           s.at_s);
-    visit(
-        Field{"orders", "", "Map of commands: device -> number, true, false, text, or [forward, left, turn].",
-              0, 0, Field::required},
-        s.orders);
+    visit(Field{"orders", "",
+                "Map of commands: device -> number, true, false, text, [forward, left, turn] or {maneuver: "
+                "turn, ...}.",
+                0, 0, Field::required},
+          s.orders);
   }
 };
 
@@ -84,9 +86,13 @@ struct Sequence {
     Actuator<msg::SpeedHeading> to;
     msg::SpeedHeading value;
   };
+  struct Way {
+    Actuator<msg::DriveManeuver> to;
+    msg::DriveManeuver value;
+  };
   struct Order {
     double at_s;
-    std::variant<Number, Switch, Words, Packet, Motion, Course> what;
+    std::variant<Number, Switch, Words, Packet, Motion, Course, Way> what;
   };
   std::vector<Order> orders;
 
