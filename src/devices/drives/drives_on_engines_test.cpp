@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "devices/drives/wheeled_base.h"
 #include "devices/kind.h"
+#include "messages/command.h"
 #include "model/rollers.h"
 
 namespace sandlot::wheeled {
@@ -172,6 +173,18 @@ struct World : TopicMaker {
     slot.stamp = now;
     ++slot.count;
   }
+  /// Ticks until the maneuver is done.
+  int maneuver(const msg::DriveManeuver& command) {
+    auto& slot = *topics.at("/robot1/drive/maneuver/command");
+    EXPECT_TRUE(slot.assign(command_bytes(command)));
+    slot.stamp = now;
+    ++slot.count;
+    const auto& progress = *topic_cast<msg::DriveProgress>(topics.at("/robot1/drive/maneuver").get());
+    int n = 0;
+    do run(1);
+    while (++n < 2000 && !progress.message.done);
+    return n;
+  }
   void run(int ticks, int substeps = 4) {
     for (int i = 0; i < ticks; ++i, ++index, now = now + tick) {
       actuation.clear();
@@ -331,6 +344,71 @@ TEST(DrivesOnRigid, ASwitchInMidRunKeepsPoseVelocityAndOdometry) {
       EXPECT_NEAR((world.base().X_WB.p.x - from) / 0.4, 0.5, 0.005);
     }
   }
+}
+
+/// Way from one pose of B to another, of D.
+Pose way_of(const Case& c, const Pose& from, const Pose& to) {
+  const Pose X_BD{{c.dx, 0, 0}, {}};
+  return inverse(from * X_BD) * (to * X_BD);
+}
+
+/// Each maneuver ends within 1 mm and 1 mrad of its goal by the drive's own odometry; a tick of it passes until that is seen,
+/// and wheels that slow down roll on for another.
+void expect_maneuvers(const char* engine, const Case& c, std::uint32_t level, const Node& config,
+                      double near_m, double near_rad, double late_s) {
+  SCOPED_TRACE(std::string(engine) + " " + c.kind + " level " + std::to_string(level));
+  World world(engine, c.kind, c.model(), config, level);
+  world.run(20);
+  using msg::DriveManeuver;
+  const auto ends_at = [&](const DriveManeuver& command, double x, double y, double turn, double seconds) {
+    SCOPED_TRACE("kind " + std::to_string(command.kind));
+    const Pose from = world.odometry();
+    EXPECT_NEAR(world.maneuver(command) * 0.01, seconds, late_s);
+    world.run(20);
+    const Pose way = way_of(c, from, world.odometry());
+    EXPECT_NEAR(way.p.x, x, near_m);
+    EXPECT_NEAR(way.p.y, y, near_m);
+    EXPECT_NEAR(yaw_of(way.q), turn, &c == &car ? 0.02 : near_rad);
+  };
+  // Trapezoids at 0.4 m/s and 2 m/s^2, on the arc of 0.6 m as well; the turn at 1 rad/s and 10 rad/s^2.
+  ends_at({.kind = DriveManeuver::straight, .distance = 0.6, .speed = 0.4}, 0.6, 0, 0, 0.6 / 0.4 + 0.2);
+  const double radius_m = 0.6 / 0.5;
+  ends_at({.kind = DriveManeuver::curve, .distance = 0.6, .angle = 0.5, .speed = 0.4},
+          radius_m * std::sin(0.5), radius_m * (1 - std::cos(0.5)), 0.5, 0.6 / 0.4 + 0.2);
+  const double half = std::atan2(0.2, 0.8), arc_m = math::hypot(0.8, 0.2) * half / std::sin(half);
+  ends_at({.kind = DriveManeuver::to_point, .x = 0.8, .y = 0.2, .speed = 0.4}, 0.8, 0.2, 2 * half,
+          arc_m / 0.4 + 0.2);
+  if (&c == &car) return;
+  ends_at({.kind = DriveManeuver::turn, .angle = -1.5, .turning_rate = 1}, 0, 0, -1.5, 1.5 + 0.1);
+}
+
+TEST(DrivesOnEngines, EveryDriveCoversItsManeuvers) {
+  for (const char* engine : {"rigid", "planar"})
+    for (const Case* c : {&swerve, &car, &skid, &mecanum, &omni})
+      for (const std::uint32_t level : {ideal, contact, rollers}) {
+        const bool has_rollers = c == &mecanum || c == &omni;
+        if (level == rollers && (!has_rollers || std::string_view(engine) == "planar")) continue;
+        // The steering takes its time while it turns from one way to the next.
+        const bool steers = c == &swerve || c == &car;
+        expect_maneuvers(engine, *c, level, map(c->keys), steers ? 5e-3 : 2e-3, steers ? 5e-3 : 2e-3,
+                         steers ? 0.5 : 0.1);
+      }
+}
+
+TEST(DrivesOnEngines, ManeuversWithLoopsMotorsAndCoarseEncoders) {
+  Node loops = map(skid.keys);
+  loops.set("control", Node::map());
+  expect_maneuvers("rigid", skid, contact, loops, 3e-3, 3e-3, 1.0);
+  Node motors = map(skid.keys);
+  motors.set("motor", map({{"supply_voltage", "24"},
+                           {"resistance", "0.6"},
+                           {"torque_constant", "0.026"},
+                           {"gear_ratio", "14"}}));
+  expect_maneuvers("rigid", skid, contact, motors, 2e-3, 2e-3, 0.2);
+  // 500 edges per turn of a wheel of 0.1 m: 1.26 mm each; of the chassis, at the skid's effective track, 3 mrad.
+  Node coarse = map(skid.keys);
+  coarse.set("encoder_ticks", Node::scalar("500"));
+  expect_maneuvers("rigid", skid, contact, coarse, 5e-3, 8e-3, 0.3);
 }
 
 TEST(DrivesOnRigid, SlipShowsInTheResidualAndPowerInTheEnergy) {

@@ -215,9 +215,7 @@ TEST(DiffDriveManeuver, CoversItsWayAtBothLevels) {
       const double left = rig.engine->joint[0].position * 0.1, right = rig.engine->joint[1].position * 0.1;
       EXPECT_NEAR(0.5 * (left + right), 1, 2 * near_m);
       EXPECT_NEAR((right - left) / 0.5, 0.5 * math::pi, 2 * near_rad);
-      if (level == ideal_bit) {
-        EXPECT_NEAR(rig.engine->body[0].X_WB.p.x, 1, 2 * near_m);
-      }
+      if (level == ideal_bit) { EXPECT_NEAR(rig.engine->body[0].X_WB.p.x, 1, 2 * near_m); }
       EXPECT_EQ(progress(rig).maneuvers, 2u);
       EXPECT_EQ(progress(rig).remaining_angle, 0);
     }
@@ -289,7 +287,7 @@ TEST(DiffDriveManeuver, GoesOnAfterASwitchOfLevelAndFromItsSavedState) {
   EXPECT_EQ(a.saved(), b.saved());
   EXPECT_FALSE(progress(a).done);
   const std::vector<std::byte> bytes = a.saved();
-  ByteReader cut(std::span(bytes).first(bytes.size() - 1));
+  ByteReader cut(std::span<const std::byte>(bytes).first(bytes.size() - 1));
   b.pool->load(0, cut);
   EXPECT_FALSE(cut.ok());
   ASSERT_TRUE(a.switch_level(ideal_bit));

@@ -1,7 +1,6 @@
 #include "devices/drives/wheeled_base.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/math.h"
@@ -26,8 +25,6 @@ constexpr double ideal_steering_radps2 = 200, ideal_steering_gain = 20;
 constexpr double standing_mps = 1e-3;
 /// Gain of the steering's position loop [1/s].
 constexpr double steering_gain = 50;
-
-Level active(std::uint32_t levels) { return static_cast<Level>(std::countr_zero(levels)); }
 
 double angle_of(const Drive& drive, std::size_t i, Joints joints) {
   const Wheel& wheel = drive.base.wheels[i];
@@ -415,10 +412,8 @@ void take_odometry(Drive drive, Level level, const Context& context, Joints join
   for (std::size_t i = 0; i < drive.base.wheels.size(); ++i) {
     const kinematics::Wheel& wheel = drive.base.geometry[i];
     const WheelState& own = drive.state.wheels[i];
-    double radps = kinematics::wheel_turn(wheel, wanted);
-    if (drive.state.by_wheels && own.by_effort) radps = own.command != 0 && level != ideal ? 1e9 : 0;
-    else if (drive.state.by_wheels) radps = own.command;
-    if (!drive.base.wheels[i].driven) radps = 0;
+    double radps = drive.state.by_wheels ? own.command : kinematics::wheel_turn(wheel, wanted);
+    if (!drive.base.wheels[i].driven || (drive.state.by_wheels && own.by_effort && level == ideal)) radps = 0;
     maneuver::watch_motor(maneuver, i, radps * wheel.radius_m, speed_of(drive, i, joints) * wheel.radius_m,
                           tick_s);
   }
@@ -548,41 +543,6 @@ void pre_substep(Drive drive, std::uint32_t levels, const Context& context, doub
   turn_pivots(drive, false, h_s, joints, targets);
 }
 
-void post_substep(Drive drive, std::uint32_t levels, const Context& context, double h_s) {
-  State& state = drive.state;
-  state.power_W = 0;
-  if (active(levels) == ideal) return;
-  const Joints joints = context.engine.joint_states();
-  for (std::size_t i = 0; i < drive.base.wheels.size(); ++i) {
-    if (!drive.base.wheels[i].driven) continue;
-    const JointState& joint = joints[drive.base.wheels[i].joint.index];
-    const auto& motor = drive.spec.motor;
-    if (!motor) {
-      state.power_W += joint.effort * joint.velocity;
-      continue;
-    }
-    double& current = state.wheels[i].current_A;
-    if (drive.base.running[i].on_voltage) {
-      const Flow flow = flow_after(*motor, drive.base.running[i].winding, current, joint.velocity);
-      current = flow.current_A;
-      state.power_W += flow.mean_A * flow.terminal_V;
-    } else {
-      const double per_ampere = motor->gear_ratio * motor->torque_constant *
-                                (joint.effort * joint.velocity < 0 ? 1 / motor->gear_efficiency
-                                                                   : motor->gear_efficiency);
-      current = joint.effort / per_ampere;
-      const double back_emf = motor->torque_constant * motor->gear_ratio * joint.velocity;
-      state.power_W += current * (back_emf + motor->resistance_Ohm * current);
-    }
-  }
-  for (const Pivot& pivot : drive.base.pivots) {
-    const JointState& joint = joints[pivot.joint.index];
-    state.power_W += joint.effort * joint.velocity;
-  }
-  state.energy_J += state.power_W * h_s;
-  if (drive.base.energy && drive.spec.motor) drive.base.energy->draw(state.power_W * h_s);
-}
-
 void sense(Drive drive, std::uint32_t levels, const Context& context) {
   Base& base = drive.base;
   const Joints joints = context.engine.joint_states();
@@ -619,15 +579,6 @@ void sense(Drive drive, std::uint32_t levels, const Context& context) {
   base.wheel_message[level]->publish(context.now);
   if (base.ticks[level]) base.ticks[level]->publish(context.now);
   if (drive.late) maneuver::publish(*base.maneuver.progress, drive.late->maneuver, context.now);
-}
-
-void release(Drive drive, const Context& context) {
-  context.actuation.drives.push_back({.base = drive.base.body, .active = false});
-  for (const Wheel& wheel : drive.base.wheels) {
-    if (wheel.has_joint) context.actuation.joints.push_back({.joint = wheel.joint});
-    if (wheel.has_rollers) context.actuation.wheels.push_back({.wheel = wheel.joint, .rollers = false});
-  }
-  for (const Pivot& pivot : drive.base.pivots) context.actuation.joints.push_back({.joint = pivot.joint});
 }
 
 Status switch_level(Drive drive, std::uint32_t before, std::uint32_t after, const Context& context) {

@@ -43,6 +43,7 @@
 /// Errors   joints that are not there, do not turn or lie wrongly; wheels without size or at one place, that
 ///          cannot drive; a level that engine or drive lack.
 #include <array>
+#include <bit>
 #include <optional>
 
 #include "devices/drives/maneuver.h"
@@ -270,7 +271,10 @@ Result<Base> skid_base(const char* noun, const DeviceBuild& build, const Common&
 Status finish(Base& base, State& state, const DeviceBuild& build, const Common& spec, bool has_rollers);
 bool fits(const Base& base, const State& state);
 
-// --- running (wheeled_base.cpp) ---
+// --- running (wheeled_base.cpp, wheeled_power.cpp) ---
+
+/// The only one of the active levels.
+inline Level active(std::uint32_t levels) { return static_cast<Level>(std::countr_zero(levels)); }
 
 struct Drive {
   const Common& spec;

@@ -266,6 +266,15 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
   return {};
 }
 
+void release(Drive drive, const Context& context) {
+  context.actuation.drives.push_back({.base = drive.base.body, .active = false});
+  for (const Wheel& wheel : drive.base.wheels) {
+    if (wheel.has_joint) context.actuation.joints.push_back({.joint = wheel.joint});
+    if (wheel.has_rollers) context.actuation.wheels.push_back({.wheel = wheel.joint, .rollers = false});
+  }
+  for (const Pivot& pivot : drive.base.pivots) context.actuation.joints.push_back({.joint = pivot.joint});
+}
+
 bool fits(const Base& base, const State& state) {
   return state.wheels.size() == base.wheels.size() && state.pivots.size() == base.pivots.size();
 }
