@@ -87,6 +87,10 @@ class DeviceOrder {
   ByteWriter bytes_;
 };
 
+/// Level of the topics and command slots that a device has at every level and that are State only once they have held a
+/// message.
+inline constexpr std::uint32_t late_level = ~0u;
+
 /// Creates topics and command slots while a device is built; they live as long as the device.
 class TopicMaker {
  public:

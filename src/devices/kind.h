@@ -37,6 +37,7 @@
 #include "devices/context.h"
 #include "devices/device_build.h"
 #include "devices/device_service.h"
+#include "devices/device_state.h"
 #include "devices/scaled_errors.h"
 #include "devices/shared_spec.h"
 #include "physics/engine.h"
@@ -56,10 +57,6 @@ struct PoolView {
   std::span<const std::uint32_t> levels;  ///< per device in `all`: active levels as bits
   std::span<const Time> since;            ///< per device in `all`: time since its previous sample
 };
-
-/// Level of the topics and command slots that a device has at every level and that are State only once they have held a
-/// message.
-inline constexpr std::uint32_t late_level = ~0u;
 
 /// Type-erased pool; `make_kind` writes it.
 class PoolBase {
@@ -230,29 +227,12 @@ class DevicePool final : public PoolBase {
       if (part == ValuePart::state && d.late) sandlot::list_values(*d.late, "", "", "", visit);
   }
   void save(std::uint32_t index, ByteWriter& w) const override {
-    const Device& d = devices_[index];
-    const Spec& spec = spec_of(d);
-    write_tunables(w, spec);
-    write(w, d.state);
-    bool late = false;
-    if constexpr (requires { d.late; }) late = d.late.has_value();
-    // Last and only where it is not 1: the bytes of a device without it are those of before it was. Likewise what is late.
-    if constexpr (requires { spec.errors; })
-      if (late || spec.errors != 1) write(w, spec.errors);
-    if constexpr (requires { d.late; })
-      if (late) write(w, *d.late);
+    save_device(w, spec_of(devices_[index]), devices_[index]);
   }
-  void load(std::uint32_t index, ByteReader& r) override {  // r ends where the device's bytes end
+  void load(std::uint32_t index, ByteReader& r) override {
     Device& d = devices_[index];
     Spec spec = spec_of(d);
-    read_tunables(r, spec);
-    read(r, d.state);
-    if constexpr (requires { spec.errors; }) {
-      if (spec.errors = 1; r.remaining() > 0) read(r, spec.errors);
-      if (!(spec.errors >= 0 && spec.errors <= 1e6)) r.fail();
-    }
-    if constexpr (requires { d.late; })
-      if (d.late.reset(); r.remaining() > 0) read(r, d.late.emplace());
+    load_device(r, spec, d);
     set_spec(d, std::move(spec));
     if (!fits(index)) return r.fail();
     if constexpr (requires { d.restored(); }) d.restored();

@@ -374,8 +374,8 @@ void expect_maneuvers(const char* engine, const Case& c, std::uint32_t level, co
   ends_at({.kind = DriveManeuver::straight, .distance = 0.6, .speed = 0.4}, 0.6, 0, 0, 0.6 / 0.4 + 0.2);
   const double radius_m = 0.6 / 0.5;
   ends_at({.kind = DriveManeuver::curve, .distance = 0.6, .angle = 0.5, .speed = 0.4},
-          radius_m * std::sin(0.5), radius_m * (1 - std::cos(0.5)), 0.5, 0.6 / 0.4 + 0.2);
-  const double half = std::atan2(0.2, 0.8), arc_m = math::hypot(0.8, 0.2) * half / std::sin(half);
+          radius_m * math::sin(0.5), radius_m * (1 - math::cos(0.5)), 0.5, 0.6 / 0.4 + 0.2);
+  const double half = math::atan2(0.2, 0.8), arc_m = math::hypot(0.8, 0.2) * half / math::sin(half);
   ends_at({.kind = DriveManeuver::to_point, .x = 0.8, .y = 0.2, .speed = 0.4}, 0.8, 0.2, 2 * half,
           arc_m / 0.4 + 0.2);
   if (&c == &car) return;

@@ -97,7 +97,7 @@ TEST(Maneuver, APointAheadIsReachedOnAnArcAnotherAfterATurn) {
   arc.drive({.kind = DriveManeuver::to_point, .x = 2, .y = 1});
   EXPECT_NEAR(arc.at.x_m, 2, 2 * near_m);
   EXPECT_NEAR(arc.at.y_m, 1, 2 * near_m);
-  EXPECT_NEAR(arc.at.theta_rad, 2 * std::atan2(1, 2), near_rad);
+  EXPECT_NEAR(arc.at.theta_rad, 2 * math::atan2(1, 2), near_rad);
   Plant behind;
   behind.drive({.kind = DriveManeuver::to_point, .x = -1, .y = 1});
   EXPECT_NEAR(behind.at.x_m, -1, 2 * near_m);
@@ -156,7 +156,7 @@ TEST(Maneuver, ACarGoesBackToAPointBehind) {
   plant.drive({.kind = DriveManeuver::to_point, .x = -2, .y = 1});
   EXPECT_NEAR(plant.at.x_m, -2, 2 * near_m);
   EXPECT_NEAR(plant.at.y_m, 1, 2 * near_m);
-  EXPECT_NEAR(plant.at.theta_rad, -2 * std::atan2(1, 2), 0.01);
+  EXPECT_NEAR(plant.at.theta_rad, -2 * math::atan2(1, 2), 0.01);
 }
 
 TEST(Maneuver, AMotorThatIsDrivenAndStandsIsNamed) {
@@ -309,8 +309,8 @@ TEST(BodyVelocityManeuver, DrivesWithoutWheels) {
     while (!rig.topic<msg::DriveProgress>("drive/maneuver").message.done && ++n < 1000);
     EXPECT_NEAR(n * tick_s, 1 / 0.5 + 0.5, end_s) << name;
     for (int i = 0; i < 10; ++i) rig.act();
-    EXPECT_NEAR(rig.engine->body[0].X_WB.p.x, std::sin(1), 2 * near_m) << name;
-    EXPECT_NEAR(rig.engine->body[0].X_WB.p.y, 1 - std::cos(1), 2 * near_m) << name;
+    EXPECT_NEAR(rig.engine->body[0].X_WB.p.x, math::sin(1), 2 * near_m) << name;
+    EXPECT_NEAR(rig.engine->body[0].X_WB.p.y, 1 - math::cos(1), 2 * near_m) << name;
     EXPECT_TRUE(rig.topic<msg::DriveProgress>("drive/maneuver").message.stalled.empty());
   }
 }
