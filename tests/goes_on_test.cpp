@@ -154,6 +154,27 @@ events:
 )",
      .add = "copy of rover1 as late 3 3",
      .more = "set media/radio.drop 0.5"},
+    // At 1 s the rover is on its way, as is the other, at the other level.
+    {.name = "Maneuvers",
+     .text = R"(physics: rigid
+time: {step: 10 ms, substeps: 2, control_interval: 4, stop: 2 s}
+robots:
+  - &one
+    name: rover
+    model: @rover
+    devices: {drive: {level: contact}}
+    controller:
+      kind: sequence
+      steps:
+        - {at: 0.1 s, orders: {drive: {maneuver: straight, distance: 0.1}}}
+        - {at: 0.8 s, orders: {drive: {maneuver: to_point, x: -0.3, y: 0.2}}}
+  - {<<: *one, name: other, pose: [0, 2, 0], devices: {drive: {level: ideal}}}
+events:
+  - {name: second, when: rover/drive/maneuver.maneuvers > 1}
+  - {name: turned, when: other.pose.yaw > 1}
+)",
+     .add = "copy of rover as late 3 3",
+     .more = R"(command rover/drive DriveManeuver {"kind": 2, "distance": 1, "angle": 0.5})"},
 };
 
 class GoesOn : public testing::TestWithParam<Scenario> {
