@@ -24,7 +24,9 @@ constexpr double standing_mps = 1e-3, standing_radps = 1e-3;
 constexpr double driven_mps = 1e-3, stalled_mps = 1e-2, stalled_share = 0.1, stalled_s = 0.25;
 
 double towards(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
-double sane(double x) { return std::isfinite(x) ? x : 0; }
+/// Longest way and largest angle of a command. What a snapshot holds may be anything.
+constexpr double most = 1e6;
+double sane(double x) { return std::isfinite(x) ? std::clamp(x, -most, most) : 0; }
 double acceleration(double limit, double usual) { return std::max(limit > no_limit ? usual : limit, 1e-6); }
 
 /// Largest rate with which a drive that reacts after t still stops where nothing is left.
@@ -63,6 +65,8 @@ Status check(const DriveManeuver& command, std::optional<double> max_curvature_p
   if (command.kind > DriveManeuver::stop)
     return Error{"there is no maneuver of kind " + std::to_string(command.kind),
                  "0 STRAIGHT, 1 TURN, 2 CURVE, 3 TO_POINT, 4 STOP"};
+  for (const double x : {command.distance, command.angle, command.x, command.y})
+    if (std::abs(x) > most) return Error{"the maneuver is too long", "at most 1e6 m or rad"};
   if (!max_curvature_pm) return {};
   const double tightest_m = 1 / std::max(*max_curvature_pm, 1e-9);
   Arc arc;
@@ -298,7 +302,15 @@ void publish(Topic<msg::DriveProgress>& topic, const State& state, Time now) {
 }
 
 bool fits(const std::optional<Late>& late, std::size_t motors) {
-  return !late || late->maneuver.standing_s.size() == motors;
+  if (!late) return true;
+  const State& s = late->maneuver;
+  bool sound = s.kind <= DriveManeuver::stop && s.standing_s.size() == motors;
+  for (const double x : {s.distance_m, s.angle_rad, s.x_m, s.y_m, s.speed_mps, s.turning_rate_radps,
+                         s.heading_rad, s.way_m, s.pose.x_m, s.pose.y_m, s.pose.theta_rad, s.setpoint.x,
+                         s.setpoint.y, s.setpoint.turn, s.remaining_m, s.remaining_rad})
+    sound = sound && std::abs(x) <= 1e10;
+  for (const double x : s.standing_s) sound = sound && x >= 0 && x <= 1;
+  return sound;
 }
 
 }  // namespace sandlot::maneuver

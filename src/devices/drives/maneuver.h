@@ -21,7 +21,7 @@
 ///          within one edge of the encoders where that is more. What is across the way is not corrected.
 /// Stall    a motor whose wheel is driven at 1 mm/s or more and turns at less than a tenth of that and less than 10 mm/s, for
 ///          0.25 s.
-/// Errors   of a command: an unknown kind; of a car, what needs a tighter turn than its tightest, such as a TURN. They are
+/// Errors   of a command: an unknown kind, a way beyond 1e6 m or rad; of a car, what needs a tighter turn than its tightest, such as a TURN. They are
 ///          refused where the command comes in, with the reason.
 /// State    none until the first maneuver (devices/kind.h, late).
 /// Cost     one arc tangent and a few square roots per tick while a maneuver is in force.
