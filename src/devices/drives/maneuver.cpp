@@ -37,8 +37,18 @@ double approach(double left, double most, double acceleration, double t_s) {
 }
 
 /// Whether a drive that has this left at this rate stops within the tolerance.
-bool is_there(double left, double rate, double acceleration, double near) {
-  return std::abs(left) <= near && rate * rate <= acceleration * near;
+bool is_there(double left, double rate, double acceleration, double near, double response_s) {
+  return std::abs(left) <= near && rate * rate <= acceleration * near && std::abs(rate) * response_s <= near;
+}
+
+/// Time after which a drive follows what is requested: the odometry may be a tick old.
+double reaction_s(const Limits& limits, double tick_s) { return 2 * tick_s + limits.response_s; }
+
+void slow_down(State& state, const Limits& limits, double tick_s) {
+  const double a = acceleration(limits.acceleration_mps2, usual_mps2);
+  const double alpha = acceleration(limits.angular_acceleration_radps2, usual_radps2);
+  state.setpoint.x = towards(state.setpoint.x, 0, a * tick_s);
+  state.setpoint.turn = towards(state.setpoint.turn, 0, alpha * tick_s);
 }
 
 /// Distance and angle of the arc that leads to (x, y) along the present heading; backward to what is behind.
@@ -191,14 +201,14 @@ void step_turn(State& state, const Limits& limits, double turning_radps, double 
   const double alpha = acceleration(limits.angular_acceleration_radps2, usual_radps2);
   const double left = state.heading_rad + state.angle_rad - state.pose.theta_rad;
   state.remaining_rad = left;
-  if (is_there(left, turning_radps, alpha, std::max(near_rad, limits.edge_rad))) {
-    state.setpoint.turn = 0;
+  if (is_there(left, turning_radps, alpha, std::max(near_rad, limits.edge_rad), limits.response_s)) {
+    slow_down(state, limits, tick_s);
     state.remaining_rad = 0;
     if (state.kind == DriveManeuver::to_point) return go_on_to_point(state);
     state.done = 1;
     return;
   }
-  const double wanted = approach(left, state.turning_rate_radps, alpha, tick_s + limits.response_s);
+  const double wanted = approach(left, state.turning_rate_radps, alpha, reaction_s(limits, tick_s));
   state.setpoint.turn = towards(state.setpoint.turn, wanted, alpha * tick_s);
   state.setpoint.x = towards(state.setpoint.x, 0, a * tick_s);
 }
@@ -222,24 +232,21 @@ void step_way(State& state, const Limits& limits, double moving_mps, double tick
   const bool heading_counts = !limits.max_curvature_pm && state.angle_rad != 0;
   const bool heading_fits = !heading_counts ||
                             std::abs(state.remaining_rad) <= std::max(near_rad, limits.edge_rad);
-  if (is_there(left, moving_mps, a, std::max(near_m, limits.edge_m)) && heading_fits) {
+  if (is_there(left, moving_mps, a, std::max(near_m, limits.edge_m), limits.response_s) && heading_fits) {
     state.done = 1;
-    state.setpoint = {};
+    slow_down(state, limits, tick_s);
     state.remaining_m = state.remaining_rad = 0;
     return;
   }
-  const double v = towards(state.setpoint.x, approach(left, speed, a, tick_s + limits.response_s),
+  const double v = towards(state.setpoint.x, approach(left, speed, a, reaction_s(limits, tick_s)),
                            a * tick_s);
-  double correction = off / std::max(heading_s + limits.response_s, 2 * tick_s);
+  double correction = off / std::max(heading_s, 2 * reaction_s(limits, tick_s));
   if (limits.max_curvature_pm) correction = off * std::abs(v) * *limits.max_curvature_pm;
   state.setpoint = {v, 0, curvature * v + correction};
 }
 
 void step_stop(State& state, const Limits& limits, double moving_mps, double turning_radps, double tick_s) {
-  state.setpoint.x = towards(state.setpoint.x, 0,
-                             acceleration(limits.acceleration_mps2, usual_mps2) * tick_s);
-  state.setpoint.turn = towards(state.setpoint.turn, 0,
-                                acceleration(limits.angular_acceleration_radps2, usual_radps2) * tick_s);
+  slow_down(state, limits, tick_s);
   state.done = state.setpoint == PlanarMotion{} && std::abs(moving_mps) < standing_mps &&
                std::abs(turning_radps) < standing_radps;
 }
@@ -253,7 +260,7 @@ void step(State& state, const Limits& limits, const PlanarPose& now, double tick
   state.pose = now;
   if (!state.turning) state.way_m += forward;
   if (state.done) {
-    state.setpoint = {};
+    slow_down(state, limits, tick_s);
   } else if (state.kind == DriveManeuver::stop) {
     step_stop(state, limits, forward / tick_s, turned / tick_s, tick_s);
   } else if (state.turning) {

@@ -15,14 +15,15 @@
 ///          curve of curvature k speed and acceleration are those at which turning rate and angular acceleration keep their
 ///          limits, too. A speed limit above 100 m/s or rad/s is none: 0.5 m/s and 1 rad/s are taken where the message gives
 ///          no speed. Likewise an acceleration above 100: 1 m/s^2 and 2 rad/s^2.
-/// Loop     once per tick, on the odometry. The speed v for what is left, s, solves v t + v^2 / (2 a) = s with t = tick +
-///          response time of the speed loop, so that it ends there. The heading follows the way covered. Within half of the
+/// Loop     once per tick, on the odometry. The speed v for what is left, s, solves v t + v^2 / (2 a) = s with t = two ticks +
+///          response time of the speed loops, so that it ends there. The heading follows the way covered. Within half of the
 ///          tolerance and slow enough to stop there it is done; the odometry then is within 1 mm and 1 mrad of the goal, or
-///          within one edge of the encoders where that is more. What is across the way is not corrected.
+///          within one edge of the encoders where that is more, with PI loops on v and w (`control:`) 5 mm and 10 mrad. What
+///          is across the way is not corrected.
 /// Stall    a motor whose wheel is driven at 1 mm/s or more and turns at less than a tenth of that and less than 10 mm/s, for
 ///          0.25 s.
-/// Errors   of a command: an unknown kind, a way beyond 1e6 m or rad; of a car, what needs a tighter turn than its tightest, such as a TURN. They are
-///          refused where the command comes in, with the reason.
+/// Errors   of a command: an unknown kind, a way beyond 1e6 m or rad; of a car, what needs a tighter turn than its tightest,
+///          such as a TURN. They are refused where the command comes in, with the reason.
 /// State    none until the first maneuver (devices/kind.h, late).
 /// Cost     one arc tangent and a few square roots per tick while a maneuver is in force.
 /// Source   T. Braunl, Embedded Robotics, 3rd ed. (2008), sec. 4.4 (v-omega interface); facts of RoBIOS-7's VWStraight, VWTurn,

@@ -51,9 +51,9 @@ struct Plant {
   }
 };
 
-/// Near the goal the profile slows down by less than its acceleration: that costs T/2 ln(v / (a T)), here below 2.5 ticks, and
-/// what is slower than a T another few.
-constexpr double end_s = 6 * tick_s;
+/// Near the goal the profile slows down by less than its acceleration: with t of two ticks that costs t/2 ln(v / (a t)), here
+/// below 4 ticks, and what is slower than a t another few.
+constexpr double end_s = 10 * tick_s;
 
 TEST(Maneuver, AStraightTakesTheTimeOfItsTrapezoid) {
   Plant plant;

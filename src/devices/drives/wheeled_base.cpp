@@ -151,8 +151,8 @@ void take_wheel_command(Drive drive, const msg::JointState& message, Joints join
   }
 }
 
-/// Reaction time of the PI loops on v and w.
-constexpr double loop_response_s = 0.1;
+/// Reaction time of the PI loops on v and w, and how near to a goal they come against friction.
+constexpr double loop_response_s = 0.1, loop_near_m = 2.5e-3, loop_near_rad = 5e-3;
 
 maneuver::Limits maneuver_limits(const Drive& drive, Level level) {
   const Common& spec = drive.spec;
@@ -160,8 +160,9 @@ maneuver::Limits maneuver_limits(const Drive& drive, Level level) {
   maneuver::Limits limits{.speed_mps = spec.max_linear_speed_mps,
                           .turning_rate_radps = spec.max_angular_speed_radps,
                           .acceleration_mps2 = spec.max_linear_acceleration_mps2,
-                          .angular_acceleration_radps2 = spec.max_angular_acceleration_radps2,
-                          .response_s = level != ideal && spec.control ? loop_response_s : 0};
+                          .angular_acceleration_radps2 = spec.max_angular_acceleration_radps2};
+  if (level != ideal && spec.control)
+    limits.edge_m = loop_near_m, limits.edge_rad = loop_near_rad, limits.response_s = loop_response_s;
   if (base.car) limits.max_curvature_pm = base.car->max_curvature();
   if (spec.encoder_ticks > 0)
     for (const kinematics::Wheel& wheel : base.geometry) {
