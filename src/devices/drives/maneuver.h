@@ -116,6 +116,7 @@ struct Topics {
   Slot* command = nullptr;
   Topic<msg::DriveProgress>* progress = nullptr;
 };
+/// Comes last: the first topics and commands of a device are those that it is named for.
 Topics make_topics(const DeviceBuild& build, std::optional<double> max_curvature_pm = std::nullopt);
 
 /// A command that the drive has not seen yet.

@@ -246,8 +246,6 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
   joints.position.resize(joints.name.size());
   joints.velocity.resize(joints.name.size());
   joints.effort.resize(joints.name.size());
-  base.maneuver = maneuver::make_topics(build,
-                                        base.car ? std::optional(base.car->max_curvature()) : std::nullopt);
   const char* const names[] = {"ideal", "contact", "rollers"};
   for (std::uint32_t level = 0; level < (has_rollers ? 3u : 2u); ++level) {
     const std::string name = names[level];
@@ -263,6 +261,8 @@ Status finish(Base& base, State& state, const DeviceBuild& build, const Common& 
     base.ticks[level] = build.publish<msg::Int64MultiArray>(level, (name + "/ticks").c_str());
     base.ticks[level]->message.data.resize(base.wheels.size());
   }
+  base.maneuver = maneuver::make_topics(build,
+                                        base.car ? std::optional(base.car->max_curvature()) : std::nullopt);
   return {};
 }
 

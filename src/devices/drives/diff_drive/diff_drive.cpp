@@ -343,7 +343,6 @@ Result<Drive> Drive::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
     for (const Wheel& wheel : *wheels)
       drive.max_wheel_speed_radps = std::min(drive.max_wheel_speed_radps, wheel.max_speed);
 
-  drive.maneuver = maneuver::make_topics(build);
   const std::string& robot = build.instance.name;
   for (const Level level : {ideal, contact}) {
     const char* const name = level == ideal ? "ideal" : "contact";
@@ -353,6 +352,7 @@ Result<Drive> Drive::create(const DeviceBuild& build, SharedSpec<Spec> spec) {
     drive.odometry[level]->message.header.frame_id = robot + "/odom";
     drive.odometry[level]->message.child_frame_id = robot + "/" + build.instance.model->links[0].name;
   }
+  drive.maneuver = maneuver::make_topics(build);
   return drive;
 }
 
