@@ -44,6 +44,20 @@ bool is_there(double left, double rate, double acceleration, double near, double
 /// Time after which a drive follows what is requested: the odometry may be a tick old.
 double reaction_s(const Limits& limits, double tick_s) { return 2 * tick_s + limits.response_s; }
 
+/// Acceleration that the drive attains, learnt while it stays behind the setpoint by more than its reaction and the resolution of
+/// its odometry.
+double attained(Ramp& ramp, double setpoint, double rate, double acceleration, double reaction_s, double edge,
+                double tick_s) {
+  constexpr double least_share = 0.2;
+  ramp.time_s += tick_s;
+  const double sign = setpoint < 0 ? -1 : 1;
+  if (sign * (setpoint - rate) > acceleration * reaction_s + edge / tick_s) {
+    const double gained = sign * (rate - ramp.from) + acceleration * tick_s;
+    ramp.share = std::clamp(gained / (acceleration * ramp.time_s), least_share, ramp.share);
+  }
+  return ramp.share * acceleration;
+}
+
 void slow_down(State& state, const Limits& limits, double tick_s) {
   const double a = acceleration(limits.acceleration_mps2, usual_mps2);
   const double alpha = acceleration(limits.angular_acceleration_radps2, usual_radps2);
@@ -139,6 +153,7 @@ void begin(State& state, const DriveManeuver& command, const Limits& limits, con
   state.heading_rad = now.theta_rad;
   state.way_m = 0;
   state.setpoint = {moving.x, 0, moving.turn};
+  state.ramp = {};
   state.turning = 0;
   state.distance_m = state.angle_rad = state.x_m = state.y_m = 0;
   switch (state.kind) {
@@ -170,6 +185,7 @@ void begin(State& state, const DriveManeuver& command, const Limits& limits, con
     }
     default: break;
   }
+  state.ramp.from = state.turning ? moving.turn : moving.x;
   state.remaining_m = state.turning && state.kind != DriveManeuver::to_point ? 0 : state.distance_m;
   state.remaining_rad = state.angle_rad;
 }
@@ -194,11 +210,13 @@ void go_on_to_point(State& state) {
   state.heading_rad = state.pose.theta_rad + math::wrap_angle(math::atan2(y, x) - state.pose.theta_rad);
   state.angle_rad = 0;
   state.way_m = 0;
+  state.ramp = {};
 }
 
 void step_turn(State& state, const Limits& limits, double turning_radps, double tick_s) {
-  const double a = acceleration(limits.acceleration_mps2, usual_mps2);
-  const double alpha = acceleration(limits.angular_acceleration_radps2, usual_radps2);
+  const double a = acceleration(limits.acceleration_mps2, usual_mps2), t_s = reaction_s(limits, tick_s);
+  double alpha = acceleration(limits.angular_acceleration_radps2, usual_radps2);
+  alpha = attained(state.ramp, state.setpoint.turn, turning_radps, alpha, t_s, limits.edge_rad, tick_s);
   const double left = state.heading_rad + state.angle_rad - state.pose.theta_rad;
   state.remaining_rad = left;
   if (is_there(left, turning_radps, alpha, std::max(near_rad, limits.edge_rad), limits.response_s)) {
@@ -208,7 +226,7 @@ void step_turn(State& state, const Limits& limits, double turning_radps, double 
     state.done = 1;
     return;
   }
-  const double wanted = approach(left, state.turning_rate_radps, alpha, reaction_s(limits, tick_s));
+  const double wanted = approach(left, state.turning_rate_radps, alpha, t_s);
   state.setpoint.turn = towards(state.setpoint.turn, wanted, alpha * tick_s);
   state.setpoint.x = towards(state.setpoint.x, 0, a * tick_s);
 }
@@ -223,6 +241,8 @@ void step_way(State& state, const Limits& limits, double moving_mps, double tick
     speed = std::min(speed, rate / std::abs(curvature));
     a = std::min(a, alpha / std::abs(curvature));
   }
+  const double t_s = reaction_s(limits, tick_s);
+  a = attained(state.ramp, state.setpoint.x, moving_mps, a, t_s, limits.edge_m, tick_s);
   const double left = state.distance_m - state.way_m;
   const double share = state.distance_m != 0 ? std::clamp(state.way_m / state.distance_m, 0.0, 1.0) : 1;
   const double off = state.heading_rad + state.angle_rad * share - state.pose.theta_rad;
@@ -238,9 +258,8 @@ void step_way(State& state, const Limits& limits, double moving_mps, double tick
     state.remaining_m = state.remaining_rad = 0;
     return;
   }
-  const double v = towards(state.setpoint.x, approach(left, speed, a, reaction_s(limits, tick_s)),
-                           a * tick_s);
-  double correction = off / std::max(heading_s, 2 * reaction_s(limits, tick_s));
+  const double v = towards(state.setpoint.x, approach(left, speed, a, t_s), a * tick_s);
+  double correction = off / std::max(heading_s, 2 * t_s);
   if (limits.max_curvature_pm) correction = off * std::abs(v) * *limits.max_curvature_pm;
   state.setpoint = {v, 0, curvature * v + correction};
 }
@@ -312,10 +331,12 @@ bool fits(const std::optional<Late>& late, std::size_t motors) {
   if (!late) return true;
   const State& s = late->maneuver;
   bool sound = s.kind <= DriveManeuver::stop && s.standing_s.size() == motors;
-  for (const double x : {s.distance_m, s.angle_rad, s.x_m, s.y_m, s.speed_mps, s.turning_rate_radps,
-                         s.heading_rad, s.way_m, s.pose.x_m, s.pose.y_m, s.pose.theta_rad, s.setpoint.x,
-                         s.setpoint.y, s.setpoint.turn, s.remaining_m, s.remaining_rad})
+  for (const double x :
+       {s.distance_m, s.angle_rad, s.x_m, s.y_m, s.speed_mps, s.turning_rate_radps, s.heading_rad, s.way_m,
+        s.pose.x_m, s.pose.y_m, s.pose.theta_rad, s.setpoint.x, s.setpoint.y, s.setpoint.turn, s.ramp.time_s,
+        s.ramp.from, s.remaining_m, s.remaining_rad})
     sound = sound && std::abs(x) <= 1e10;
+  sound = sound && s.ramp.time_s >= 0 && s.ramp.share > 0 && s.ramp.share <= 1;
   for (const double x : s.standing_s) sound = sound && x >= 0 && x <= 1;
   return sound;
 }

@@ -20,6 +20,7 @@
 ///          tolerance and slow enough to stop there it is done; the odometry then is within 1 mm and 1 mrad of the goal, or
 ///          within one edge of the encoders where that is more, with PI loops on v and w (`control:`) 5 mm and 10 mrad. What
 ///          is across the way is not corrected.
+///          A drive that stays behind while it speeds up brakes earlier, by the acceleration that it attains.
 /// Stall    a motor whose wheel is driven at 1 mm/s or more and turns at less than a tenth of that and less than 10 mm/s, for
 ///          0.25 s.
 /// Errors   of a command: an unknown kind, a way beyond 1e6 m or rad; of a car, what needs a tighter turn than its tightest,
@@ -50,6 +51,18 @@ struct Limits {
   double response_s = 0;                   ///< of its speed loops
 };
 
+/// Acceleration that a drive attains: weak motors and heavy robots stay behind what is requested.
+struct Ramp {
+  double time_s = 0, from = 0;  ///< since, and the rate at, its beginning
+  double share = 1;             ///< of the acceleration requested
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"time", "s", "Time since the beginning."}, s.time_s);
+    visit(Field{"from", "", "Rate at the beginning."}, s.from);
+    visit(Field{"share", "1", "Share of the acceleration that the drive attains."}, s.share);
+  }
+};
+
 struct State {
   std::uint64_t taken = 0;    ///< commands seen
   std::uint64_t begun = 0;    ///< maneuvers
@@ -64,6 +77,7 @@ struct State {
   double way_m = 0;                              ///< covered
   PlanarPose pose;                               ///< odometry of the latest tick
   PlanarMotion setpoint;
+  Ramp ramp;
   double remaining_m = 0, remaining_rad = 0;
   std::vector<double> standing_s;  ///< per motor: how long it has been driven without turning
 
@@ -84,6 +98,7 @@ struct State {
     visit(Field{"way", "m", "Way covered."}, s.way_m);
     visit(Field{"pose", "m", "Odometry of the latest tick."}, s.pose);
     visit(Field{"setpoint", "", "Velocity requested now."}, s.setpoint);
+    visit(Field{"ramp", "", "Acceleration attained on this way or turn."}, s.ramp);
     visit(Field{"remaining_distance", "m", "Way left."}, s.remaining_m);
     visit(Field{"remaining_angle", "rad", "Change of heading left."}, s.remaining_rad);
     visit(Field{"standing", "s", "Time for which each motor has been driven without turning."}, s.standing_s);
