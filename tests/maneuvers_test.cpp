@@ -119,5 +119,32 @@ TEST(Maneuver, IsACommandOfTheConsole) {
   EXPECT_NE(refused.out.find("there is no maneuver of kind 7"), std::string::npos) << refused.out;
 }
 
+/// A velocity with errors is computed anew in each tick, until a maneuver ends it.
+TEST(Maneuver, EndsAVelocityWithErrors) {
+  const TestFolder scratch;
+  const std::string file = scratch.write("s.yaml", R"(version: 1
+name: errors
+physics: planar
+time: {step: 10 ms, control_interval: 1, stop: 5 s}
+robots:
+  - name: rover
+    model: {builder: diff_robot}
+    devices: {drive: {command_errors: {linear: [{gaussian: {std: 0.02}}]}}}
+    controller:
+      kind: sequence
+      steps:
+        - {at: 0.1 s, orders: {drive: [0.2]}}
+        - {at: 1 s, orders: {drive: {maneuver: straight, distance: 0.4, speed: 0.5}}}
+)");
+  const Printed printed = sandlot("run " + file + " --log " + scratch.file("log.csv") +
+                                  " --log-values rover/drive.odometry.x,rover/drive/maneuver.done");
+  ASSERT_EQ(printed.exit_code, 0) << printed.out;
+  const auto rows = numbers(scratch.file("log.csv"));
+  // The order of 1 s acts from then on.
+  EXPECT_NEAR(rows.back()[1] - rows[100][1], 0.4, 5e-3);
+  EXPECT_EQ(rows.back()[2], 1);
+  EXPECT_EQ(rows[150][2], 0);
+}
+
 }  // namespace
 }  // namespace sandlot::test
