@@ -159,8 +159,7 @@ events:
      .text = R"(physics: rigid
 time: {step: 10 ms, substeps: 2, control_interval: 4, stop: 2 s}
 robots:
-  - &one
-    name: rover
+  - name: rover
     model: @rover
     devices: {drive: {level: contact}}
     controller:
@@ -168,7 +167,10 @@ robots:
       steps:
         - {at: 0.1 s, orders: {drive: {maneuver: straight, distance: 0.1}}}
         - {at: 0.8 s, orders: {drive: {maneuver: to_point, x: -0.3, y: 0.2}}}
-  - {<<: *one, name: other, pose: [0, 2, 0], devices: {drive: {level: ideal}}}
+  - name: other
+    model: @rover
+    pose: [0, 2, 0]
+    controller: {kind: sequence, steps: [{at: 0.1 s, orders: {drive: {maneuver: turn, angle: 2}}}]}
 events:
   - {name: second, when: rover/drive/maneuver.maneuvers > 1}
   - {name: turned, when: other.pose.yaw > 1}

@@ -49,15 +49,15 @@ TEST_P(Maneuvers, EndWhereAndWhenTheyAreExpected) {
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
   const auto rows = numbers(scratch.file("log.csv"));
   ASSERT_EQ(rows.size(), 1601u);
-  /// When, and where by the odometry (within 1 mm and 1 mrad of each goal) and in truth, which on wheels slips by some 1e-3 of the
-  /// way. Goals add up.
+  // When, and where by the odometry, within 1 mm and 1 mrad of each goal; and in truth, where wheels slip in turns by some 2 %.
+  // Goals add up.
   const struct {
     double begin_s, takes_s, x, y, heading;
   } ends[] = {
       {0.5, 1 / 0.5 + 0.5 / 2, 1, 0, 0},
       {4, 0.5 * pi / 1 + 1.0 / 10, 1, 0, 0.5 * pi},
-      // A quarter of a circle of 0.5 m: at most 1 m/s, and a triangle, since 1 m/s would take 1 m to reach and leave at 2 m/s^2.
-      {7, 2 * std::sqrt(0.25 * pi / 2), 0.5, 0.5, pi},
+      // A quarter of a circle of 0.5 m at 1 m/s and 2 m/s^2.
+      {7, 0.25 * pi / 1 + 1.0 / 2, 0.5, 0.5, pi},
       // A turn of 135 degrees at 3 rad/s and 10 rad/s^2, then a triangle of sqrt(0.5) m.
       {10, 0.75 * pi / 3 + 0.3 + 2 * std::sqrt(std::sqrt(0.5) / 2), 1, 0, 1.75 * pi},
   };
@@ -72,7 +72,8 @@ TEST_P(Maneuvers, EndWhereAndWhenTheyAreExpected) {
     EXPECT_EQ(row[7], 1);
     EXPECT_EQ(row[8], counted);
     for (const std::size_t k : {1u, 4u}) {
-      const double near = k == 4 ? 1e-3 * (counted + 1) : 0.01;
+      const bool slips = k == 1 && std::string(std::get<1>(GetParam())) == "contact";
+      const double near = k == 4 ? 1e-3 * (counted + 1) : slips ? 0.05 : 0.01;
       EXPECT_NEAR(row[k], end.x, near);
       EXPECT_NEAR(row[k + 1], end.y, near);
       EXPECT_NEAR(std::remainder(row[k + 2] - end.heading, 2 * pi), 0, 2 * near);
@@ -85,15 +86,16 @@ TEST_P(Maneuvers, AWallStallsBothMotors) {
   const Printed printed = sandlot("run " + run() + " --log " + scratch.file("log.csv") +
                                   " --log-values 'rammer.pose.x,rammer/drive/maneuver.done,"
                                   "rammer/drive/maneuver.remaining_distance,"
-                                  "sum(rammer/drive/maneuver.stalled[*])'");
+                                  "rammer/drive/maneuver.stalled[0],rammer/drive/maneuver.stalled[1]'");
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
   const auto rows = numbers(scratch.file("log.csv"));
   const auto& last = rows.back();
   EXPECT_LT(last[1], 4);
   EXPECT_EQ(last[2], 0);
   EXPECT_NEAR(last[3], 3 - (last[1] - 2.5), 0.02);  // by its own odometry
-  EXPECT_EQ(last[4], 1 + 2);
-  EXPECT_EQ(rows[200][4], 0) << "it still rolls";
+  EXPECT_EQ(last[4], 1);
+  EXPECT_EQ(last[5], 2);
+  EXPECT_TRUE(std::isnan(rows[200][4])) << "it still rolls";
 }
 
 TEST_P(Maneuvers, EndInTheSameStateFor12And4Threads) {
