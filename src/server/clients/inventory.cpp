@@ -115,7 +115,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
   const auto fits = [&](const Slot& slot) {
     if (visible && !visible(slot)) return false;
     if (wanted.empty() || wanted == slot.info->name) return true;
-    of_other_type = &slot;
+    if (!of_other_type) of_other_type = &slot;
     return false;
   };
   for (const Slot& slot : slots)
