@@ -15,9 +15,9 @@ extern "C" {
 #define ROBIOS_DEFAULT(x)
 #endif
 #if defined(__GNUC__)
-#define ROBIOS_PRINTF(format, first) __attribute__((format(printf, format, first)))
+#define ROBIOS_PRINTF(at, first) __attribute__((__format__(__printf__, at, first)))
 #else
-#define ROBIOS_PRINTF(format, first)
+#define ROBIOS_PRINTF(at, first)
 #endif
 
 /* Screen */
