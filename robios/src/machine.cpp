@@ -29,7 +29,7 @@ struct Row {
   std::int64_t ns;
 };
 constexpr Row rows[] = {
-#define ROBIOS_COST(name, microseconds, reason) {#name, static_cast<std::int64_t>((microseconds) * 1000.0)},
+#define ROBIOS_COST(name, microseconds, reason) {#name, static_cast<std::int64_t>((microseconds)*1000.0)},
 #include "costs.def"
 #undef ROBIOS_COST
 };
@@ -65,15 +65,17 @@ void take_turn() {
   m.clock_ns = std::max(m.clock_ns, s.now_ns);
   m.slot_work_ns = m.work_ns;
   const std::uint32_t kept = std::min<std::uint32_t>(s.keys, most_key_presses);
-  const std::uint64_t fresh =
-      std::min<std::uint64_t>(kept, s.key_presses - std::min(s.key_presses, m.key_presses));
+  const std::uint64_t fresh = std::min<std::uint64_t>(kept,
+                                                      s.key_presses - std::min(s.key_presses, m.key_presses));
   for (std::uint64_t i = kept - fresh; i < kept; i++) {
     const KeyPress& press = s.key[i];
+    const std::uint32_t key = press.key > 0 ? press.key : screen.menu_key(press.x, press.y);
     if (press.key == 0) {
       m.touches.push_back(press);
       if (m.touches.size() > most_key_presses) m.touches.pop_front();
-    } else {
-      m.keys.push_back(press.key);
+    }
+    if (key > 0) {
+      m.keys.push_back(key);
       if (m.keys.size() > most_key_presses) m.keys.pop_front();
     }
   }
@@ -87,6 +89,7 @@ void take_turn() {
     }
     m.messages.push_back({r.from, {r.bytes, r.bytes + std::min<std::size_t>(r.size, most_radio_bytes)}});
   }
+  turn_came();
 }
 
 void await_turn() {
@@ -94,7 +97,10 @@ void await_turn() {
   for (;;) {
     const std::uint32_t now = turn.load(std::memory_order_acquire);
     if (now == static_cast<std::uint32_t>(Turn::program)) return;
-    if (now == static_cast<std::uint32_t>(Turn::ended)) _exit(0);
+    if (now == static_cast<std::uint32_t>(Turn::ended)) {
+      fflush(nullptr);
+      _exit(0);
+    }
     futex_wait(turn, now);
   }
 }
@@ -111,7 +117,7 @@ const char* words_of(int signal) {
     case SIGFPE: return "the program divided by zero (SIGFPE)\n";
     case SIGILL: return "the program ran into what is no instruction (SIGILL)\n";
     case SIGABRT: return "the program gave up (abort)\n";
-    default: return "the program was told to end\n";
+    default: return "the program was ended from outside\n";
   }
 }
 
@@ -124,9 +130,7 @@ void on_signal(int signal) {
 }
 
 void on_leave(int code, void*) {
-  if (is_child) return;
-  end_of_main();
-  finish(code);
+  if (!is_child) finish(code);
 }
 
 __attribute__((constructor)) void attach() {
@@ -134,7 +138,7 @@ __attribute__((constructor)) void attach() {
   if (!variable) {
     quit(
         "this is a RoBIOS program: it runs within a simulation of Sandlot, as `program:` of a robot, not by "
-        "itself");
+        "itself (SANDLOT_ROBIOS_FD is not set)");
   }
   const int descriptor = atoi(variable);
   struct stat status {};
@@ -175,7 +179,7 @@ __attribute__((constructor)) void attach() {
 
 }  // namespace
 
-Machine machine;
+[[gnu::init_priority(200)]] Machine machine;  // before attach()
 
 std::int64_t cost_ns(Call call) { return rows[static_cast<int>(call)].ns; }
 const char* name_of(Call call) { return rows[static_cast<int>(call)].name; }
@@ -210,8 +214,6 @@ void hand_over(std::int64_t until_ns, std::uint32_t events) {
     for (;;) pause();
   }
   send_screen();
-  order_at_hand_over(OrderKind::wait, nullptr, 0);
-  machine.order_bytes -= needed(0);
   const WaitOrder wait{until_ns, events, 0};
   put(OrderKind::wait, &wait, sizeof(wait), nullptr, 0);
   give_turn();
@@ -244,8 +246,8 @@ void note(std::string_view text) {
 }
 
 void note_once(const char* what, std::string_view text) {
-  static std::set<std::string>* const said = new std::set<std::string>;
-  if (said->insert(what).second) note(text);
+  static std::set<std::string>* const noted = new std::set<std::string>;
+  if (noted->insert(what).second) note(text);
 }
 
 void finish(int exit_code) noexcept {
