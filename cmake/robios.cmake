@@ -11,3 +11,12 @@ foreach(generation 6 7)
   target_link_libraries(robios${generation} PRIVATE ${CMAKE_DL_LIBS})
   target_link_options(robios${generation} PRIVATE -static-libstdc++ LINKER:--exclude-libs,ALL LINKER:-z,nodelete)
 endforeach()
+
+# Included by cmake/tests.cmake: programs in C run against a fake simulator.
+function(sandlot_robios_tests)
+  file(GLOB sources CONFIGURE_DEPENDS robios/tests/*.cpp)
+  sandlot_test_executable(robios_tests "${sources}" "")
+  add_dependencies(robios_tests robios6 robios7)
+  file(RELATIVE_PATH libraries ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/robios)
+  target_compile_definitions(robios_tests PRIVATE SANDLOT_ROBIOS_LIBRARIES="${libraries}")
+endfunction()

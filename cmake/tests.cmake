@@ -86,6 +86,7 @@ list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
 target_include_directories(scenario_tests PRIVATE clients/cpp)
 add_dependencies(scenario_tests sandlot client_clearing ${plugins})
+sandlot_robios_tests()
 # tests/vision: what software written for real cameras makes of our pictures.
 if(TARGET sandlot_opencv)
   file(GLOB sources CONFIGURE_DEPENDS tests/vision/*_test.cpp)
