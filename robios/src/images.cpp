@@ -30,7 +30,8 @@ void filter(const Byte* in, Byte* out, int width, int height, Value value) {
 
 void laplace(const Byte* in, Byte* out, int width, int height) {
   const std::ptrdiff_t w = width;
-  filter(in, out, width, height, [=](const Byte* p) { return std::abs(4 * p[0] - p[-1] - p[1] - p[-w] - p[w]); });
+  filter(in, out, width, height,
+         [=](const Byte* p) { return std::abs(4 * p[0] - p[-1] - p[1] - p[-w] - p[w]); });
 }
 
 void sobel(const Byte* in, Byte* out, int width, int height) {

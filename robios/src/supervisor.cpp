@@ -13,7 +13,9 @@ void set(int* to, int value) {
 
 void get(int id, bool robot, int* x, int* y, int* z, int* phi) {
   const EntityPose* const e = entity(id, robot);
-  if (!e) note_once("pose", "a SIM... call asked for a robot or object that is not there, or the robot is no supervisor");
+  if (!e)
+    note_once("pose",
+              "a SIM... call asked for a robot or object that is not there, or the robot is no supervisor");
   set(x, e ? to_int(e->x_m * 1e3) : 0);
   set(y, e ? to_int(e->y_m * 1e3) : 0);
   set(z, e ? to_int(e->z_m * 1e3) : 0);
@@ -23,11 +25,12 @@ void get(int id, bool robot, int* x, int* y, int* z, int* phi) {
 void put(int id, bool robot, int x, int y, int z, int phi) {
   if (robot && id == 0) id = static_cast<int>(machine.robot().id);
   if (!machine.robot().supervisor || !entity(id, robot)) {
-    note_once("move", "a SIM... call would move a robot or object that is not there, or the robot is no supervisor");
+    note_once("move",
+              "a SIM... call would move a robot or object that is not there, or the robot is no supervisor");
     return;
   }
-  order(OrderKind::set_entity, EntityPose{static_cast<std::uint32_t>(id), robot ? 1u : 0u, metres(x), metres(y),
-                                          metres(z), phi * radians_per_degree});
+  order(OrderKind::set_entity, EntityPose{static_cast<std::uint32_t>(id), robot ? 1u : 0u, metres(x),
+                                          metres(y), metres(z), phi * radians_per_degree});
 }
 
 }  // namespace

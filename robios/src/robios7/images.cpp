@@ -21,14 +21,17 @@ namespace {
 constexpr int widths[] = {QQVGA_X, QVGA_X, VGA_X, CAM1MP_X, CAMHD_X, CAM5MP_X};
 constexpr int heights[] = {QQVGA_Y, QVGA_Y, VGA_Y, CAM1MP_Y, CAMHD_Y, CAM5MP_Y};
 bool camera_on = false;
-int camera_size = QVGA, ip_size = QVGA;  // programs may write into the variables above: they decide nothing here
+int camera_size = QVGA,
+    ip_size = QVGA;  // programs may write into the variables above: they decide nothing here
 
 bool is_size(int size) { return size >= QQVGA && size <= CAM5MP; }
 int camera_width() { return widths[camera_size]; }
 int camera_height() { return heights[camera_size]; }
 int ip_width() { return widths[ip_size]; }
 int ip_height() { return heights[ip_size]; }
-std::size_t ip_pixels() { return static_cast<std::size_t>(ip_width()) * static_cast<std::size_t>(ip_height()); }
+std::size_t ip_pixels() {
+  return static_cast<std::size_t>(ip_width()) * static_cast<std::size_t>(ip_height());
+}
 
 void use_size(int size) {
   ip_size = size;
@@ -105,7 +108,8 @@ extern "C" {
 int CAMInit(int resolution) {
   enter(Call::CAMInit);
   if (!is_size(resolution) || !machine.robot().has_camera) {
-    if (!machine.robot().has_camera) note_once("camera", "the program takes a picture, and the robot has no camera");
+    if (!machine.robot().has_camera)
+      note_once("camera", "the program takes a picture, and the robot has no camera");
     if (is_size(resolution)) use_size(resolution);
     return failed;
   }
@@ -185,7 +189,8 @@ void IPGray2Col(BYTE* gray, BYTE* rgb) {
 }
 void IPRGB2Col(BYTE* r, BYTE* g, BYTE* b, BYTE* rgb) {
   enter(Call::IPRGB2Col);
-  for (std::size_t i = 0; i < ip_pixels(); i++) rgb[3 * i] = r[i], rgb[3 * i + 1] = g[i], rgb[3 * i + 2] = b[i];
+  for (std::size_t i = 0; i < ip_pixels(); i++)
+    rgb[3 * i] = r[i], rgb[3 * i + 1] = g[i], rgb[3 * i + 2] = b[i];
 }
 void IPCol2HSI(BYTE* rgb, BYTE* h, BYTE* s, BYTE* i) {
   enter(Call::IPCol2HSI);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <vector>
 
+#include "../clocks.h"
 #include "api.h"
 
 using namespace robios;
@@ -11,7 +12,8 @@ using namespace robios;
 namespace {
 
 bool radio_on = false;
-std::array<char, 16> directions{{'i', 'i', 'i', 'i', 'i', 'i', 'i', 'i', 'o', 'o', 'o', 'o', 'o', 'o', 'o', 'o'}};
+std::array<char, 16> directions{
+    {'i', 'i', 'i', 'i', 'i', 'i', 'i', 'i', 'o', 'o', 'o', 'o', 'o', 'o', 'o', 'o'}};
 unsigned outputs = 0;
 std::vector<BYTE>& record() {
   static auto* const values = new std::vector<BYTE>;
