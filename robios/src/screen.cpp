@@ -57,11 +57,16 @@ void Screen::set_pixel(int x, int y, Color color) {
   touch(x, y, x, y);
 }
 
-void Screen::line(int x1, int y1, int x2, int y2, Color color) {
+/// Calls `mark` of each pixel of a line that is on the screen.
+template <class Mark>
+void Screen::walk(int x1, int y1, int x2, int y2, Mark mark) {
   // Far outside only the part near the screen is walked along.
   const std::int64_t dx = std::int64_t{x2} - x1, dy = std::int64_t{y2} - y1;
   const std::int64_t steps = std::max(std::llabs(dx), std::llabs(dy));
-  if (steps == 0) return set_pixel(x1, y1, color);
+  if (steps == 0) {
+    if (x1 >= 0 && y1 >= 0 && x1 < width_ && y1 < height_) mark(x1, y1);
+    return;
+  }
   double first = 0, last = static_cast<double>(steps);
   const auto cut = [&](double from, double by, double size) {
     if (by == 0) return;
@@ -82,7 +87,27 @@ void Screen::line(int x1, int y1, int x2, int y2, Color color) {
   for (std::int64_t i = begin; i <= end; i++) {
     const std::int64_t x = x1 + at(dx, i), y = y1 + at(dy, i);
     if (x >= 0 && y >= 0 && x < width_ && y < height_)
-      set_pixel(static_cast<int>(x), static_cast<int>(y), color);
+      mark(static_cast<int>(x), static_cast<int>(y));
+  }
+}
+
+void Screen::line(int x1, int y1, int x2, int y2, Color color) {
+  walk(x1, y1, x2, y2, [&](int x, int y) { set_pixel(x, y, color); });
+}
+
+void Screen::invert_line(int x1, int y1, int x2, int y2) {
+  walk(x1, y1, x2, y2, [&](int x, int y) { invert_pixel(x, y); });
+}
+
+void Screen::invert_pixel(int x, int y) {
+  const auto inverse_of = [](std::uint8_t c) { return static_cast<std::uint8_t>(255 - c); };
+  const Color c = pixel(x, y);
+  set_pixel(x, y, {inverse_of(c.r), inverse_of(c.g), inverse_of(c.b)});
+}
+
+void Screen::invert_area(int x1, int y1, int x2, int y2) {
+  for (int y = std::max(std::min(y1, y2), 0); y <= std::min(std::max(y1, y2), height_ - 1); y++) {
+    for (int x = std::max(std::min(x1, x2), 0); x <= std::min(std::max(x1, x2), width_ - 1); x++) invert_pixel(x, y);
   }
 }
 

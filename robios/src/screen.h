@@ -37,7 +37,9 @@ class Screen {
   Color pixel(int x, int y) const;
   void set_pixel(int x, int y, Color color);
   void line(int x1, int y1, int x2, int y2, Color color);
+  void invert_line(int x1, int y1, int x2, int y2);
   void area(int x1, int y1, int x2, int y2, Color color, bool fill);
+  void invert_area(int x1, int y1, int x2, int y2);
   void circle(int x, int y, int radius, Color color, bool fill);
 
   void clear();
@@ -58,6 +60,9 @@ class Screen {
   void send();
 
  private:
+  template <class Mark>
+  void walk(int x1, int y1, int x2, int y2, Mark mark);
+  void invert_pixel(int x, int y);
   void new_line();
   void scroll();
   void touch(int x1, int y1, int x2, int y2);

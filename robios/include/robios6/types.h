@@ -101,6 +101,7 @@ typedef struct {
 /* Tasks */
 #define COOP 0
 #define PREEMPT 1
+#define NOTASK 2 /* before OSMTInit */
 #define MIN_PRI 1
 #define MED_PRI 4
 #define MAX_PRI 8
