@@ -130,7 +130,10 @@ void on_signal(int signal) {
 }
 
 void on_leave(int code, void*) {
-  if (!is_child) finish(code);
+  if (is_child || finished) return;
+  screen.refresh();
+  send_screen();
+  finish(code);
 }
 
 __attribute__((constructor)) void attach() {

@@ -1,0 +1,1 @@
+/* RoBIOS-7 has no tasks of its own. */

@@ -1,0 +1,50 @@
+/// The order in which tasks run, against traces made by hand.
+#include <gtest/gtest.h>
+
+#include "fake_simulator.h"
+
+namespace {
+
+std::string trace(const std::string& what, int exit_code = 0) {
+  fake::Simulator sim;
+  const auto r = sim.run(fake::compile("r6_tasks.c", 6), {what});
+  EXPECT_EQ(r.exit_code, exit_code) << fake::compile("r6_tasks.c", 6) << r.errors;
+  EXPECT_EQ(r.finished, exit_code);
+  return r.output;
+}
+
+TEST(RobiosTasks, CooperativeOnesGiveWay) {
+  // The task of the highest priority yields to none of the others; those two take turns. OSSleep counts for main as being ready.
+  EXPECT_EQ(trace("coop"), "main 3:0 3:1 3:2 1:0 2:0 1:1 2:1 1:2 2:2 back sleeps woke end\n");
+}
+
+TEST(RobiosTasks, SemaphoresWakeTheHigherPriority) {
+  // Preemptive: each V lets the consumer run at once. Cooperative: when the producer sleeps or ends.
+  EXPECT_EQ(trace("sem preempt"), "+0 -0 +1 -1 +2 -2 c. p. end\n");
+  EXPECT_EQ(trace("sem coop"), "+0 +1 -0 -1 +2 p. -2 c. end\n");
+}
+
+TEST(RobiosTasks, SlicesOfTenMilliseconds) {
+  // 10 ms of LCDPutChar (50 us) are 200 calls; the cost of OSGetUID (10 us) takes one call from a task's first slice. The call
+  // whose time ends the slice has not done its work yet: the other task runs before it does.
+  EXPECT_EQ(trace("preempt"), "1@0 2@0 1@199 2@199 1@399 2@399 1@599 2@599 1@799 2@799 1@999 2@999 end\n");
+}
+
+TEST(RobiosTasks, HighPriorityRunsWhenItWakes) {
+  // Times in 1/100 s. From the sixth round of the lower task until its ninth nothing switches.
+  EXPECT_EQ(trace("priorities"), "1 2 H3 3 4 5 6 7 8 9 H9 10 H12 end\n");
+}
+
+TEST(RobiosTasks, SuspendReadyRunKillExit) { EXPECT_EQ(trace("control", 4), "1 2 s 2 2 k 1 r 1 5 end\n"); }
+
+TEST(RobiosTasks, MainGoesOnWhenNoOtherCan) { EXPECT_EQ(trace("stuck"), "back\n"); }
+
+TEST(RobiosTasks, PanicEndsTheProgram) {
+  fake::Simulator sim;
+  const auto r = sim.run(fake::compile("r6_tasks.c", 6), {"panic"});
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.errors.find("no more"), std::string::npos);
+  EXPECT_EQ(sim.lines.at(1), "no more");
+}
+
+}  // namespace
