@@ -14,6 +14,7 @@ install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__py
 install(DIRECTORY clients/cpp/sandlot_client DESTINATION include)
 install(FILES cmake/sandlot_clientConfig.cmake DESTINATION lib/cmake/sandlot_client)
 install(DIRECTORY clients/javascript/ DESTINATION share/sandlot/javascript)
+sandlot_robios_install()
 install(FILES LICENSE DESTINATION share/sandlot)
 install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)
 

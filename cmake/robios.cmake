@@ -1,6 +1,6 @@
 # The libraries robios6 and robios7 that RoBIOS programs are linked with. They use the C library alone and show only the programs'
 # header and what stands in front of functions of the C library.
-# lib/sandlot/librobios7.so and include/robios7/eyebot.h of an installation: gcc prog.c -I<include>/robios7 -L<lib>/sandlot -lrobios7
+# gcc prog.c -IPREFIX/include/robios7 -LPREFIX/lib -lrobios7
 file(GLOB robios_common CONFIGURE_DEPENDS robios/src/*.cpp)
 foreach(generation 6 7)
   file(GLOB sources CONFIGURE_DEPENDS robios/src/robios${generation}/*.cpp)
@@ -12,11 +12,25 @@ foreach(generation 6 7)
   target_link_options(robios${generation} PRIVATE -static-libstdc++ LINKER:--exclude-libs,ALL LINKER:-z,nodelete)
 endforeach()
 
+# Runs programs that are shared libraries.
+add_executable(robios_host robios/host/host.cpp)
+set_target_properties(robios_host PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+target_link_libraries(robios_host PRIVATE ${CMAKE_DL_LIBS})
+target_link_options(robios_host PRIVATE -static-libstdc++)
+
+# Part of cmake/install.cmake.
+macro(sandlot_robios_install)
+  install(TARGETS robios6 robios7 LIBRARY DESTINATION lib)
+  install(TARGETS robios_host RUNTIME DESTINATION bin)
+  install(DIRECTORY robios/include/robios6 robios/include/robios7 DESTINATION include)
+endmacro()
+
 # Included by cmake/tests.cmake: programs in C run against a fake simulator.
 function(sandlot_robios_tests)
   file(GLOB sources CONFIGURE_DEPENDS robios/tests/*.cpp)
   sandlot_test_executable(robios_tests "${sources}" "")
-  add_dependencies(robios_tests robios6 robios7)
+  add_dependencies(robios_tests robios6 robios7 robios_host)
   file(RELATIVE_PATH libraries ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/robios)
-  target_compile_definitions(robios_tests PRIVATE SANDLOT_ROBIOS_LIBRARIES="${libraries}")
+  file(RELATIVE_PATH host ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/robios_host)
+  target_compile_definitions(robios_tests PRIVATE SANDLOT_ROBIOS_LIBRARIES="${libraries}" SANDLOT_ROBIOS_HOST="${host}")
 endfunction()

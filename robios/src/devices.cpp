@@ -104,7 +104,9 @@ void expect_pose(double x_m, double y_m, double phi_rad) {
 
 void begin_maneuver(const ManeuverOrder& maneuver) {
   order(OrderKind::maneuver, maneuver);
-  way.number = way.turn == machine.turns ? way.number + 1 : machine.senses().maneuvers + 1;
+  // Of several in one turn the last one counts; one that was ordered earlier and has not begun comes before.
+  const bool earlier = way.active && way.turn != machine.turns && !begun();
+  way.number = (earlier ? way.number : machine.senses().maneuvers) + 1;
   way.active = true;
   way.turn = machine.turns;
   way.ordered_ns = machine.clock_ns;

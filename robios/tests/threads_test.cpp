@@ -102,6 +102,22 @@ TEST(RobiosEnd, HostileProgramsAreBounded) {
   EXPECT_EQ(threads.output, "255 threads\n");
 }
 
+TEST(RobiosHost, RunsASharedLibrary) {
+  fake::Simulator sim;
+  sim.press(400 * fake::millisecond, 1);
+  const std::string library = fake::compile("first.c", 7, "-shared -fPIC");
+  const auto r = sim.run(SANDLOT_ROBIOS_HOST, {library});
+  EXPECT_EQ(r.exit_code, 5) << r.errors;
+  EXPECT_EQ(r.output, "key at 400\n500 0 90, front 100\n");
+  EXPECT_EQ(sim.run(SANDLOT_ROBIOS_HOST, {"/bin/true"}).exit_code, 2);
+}
+
+TEST(RobiosHost, SharedLibrariesHaveVirtualTime) {
+  fake::Simulator sim;
+  const auto r = sim.run(SANDLOT_ROBIOS_HOST, {fake::compile("clocks.c", 7, "-w -shared -fPIC")});
+  EXPECT_EQ(r.exit_code, 0) << r.output << r.errors;
+}
+
 TEST(RobiosProtocol, MismatchIsReported) {
   fake::Simulator sim;
   sim.memory().protocol++;
