@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <set>
 
 #include "screen.h"
@@ -34,6 +35,7 @@ constexpr Row rows[] = {
 #undef ROBIOS_COST
 };
 
+alignas(Machine) std::byte machine_place[sizeof(Machine)];  // zeros until attach()
 bool finished = false;
 bool is_child = false;  // of a fork
 
@@ -137,6 +139,8 @@ void on_leave(int code, void*) {
 }
 
 __attribute__((constructor)) void attach() {
+  new (machine_place) Machine;
+  make_screen();
   const char* const variable = getenv(descriptor_variable);
   if (!variable) {
     quit(
@@ -182,7 +186,7 @@ __attribute__((constructor)) void attach() {
 
 }  // namespace
 
-[[gnu::init_priority(200)]] Machine machine;  // before attach()
+Machine& machine = reinterpret_cast<Machine&>(machine_place);
 
 std::int64_t cost_ns(Call call) { return rows[static_cast<int>(call)].ns; }
 const char* name_of(Call call) { return rows[static_cast<int>(call)].name; }

@@ -55,7 +55,7 @@ struct Machine {
   const Senses& senses() const { return memory->senses; }
   std::int64_t slot_end() const { return memory->senses.slot_end_ns; }
 };
-extern Machine machine;
+extern Machine& machine;  ///< made by attach(), never destroyed: programs call functions until their very end
 
 /// First of every call: the thread is known, its time has passed. May hand the turn over and let other threads run.
 void enter(Call call);

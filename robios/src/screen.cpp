@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <cstddef>
 #include <cstdlib>
+#include <new>
 
 #include "font.h"
 #include "machine.h"
 
 namespace robios {
 
-[[gnu::init_priority(200)]] Screen screen;  // before the library attaches
+namespace {
+alignas(Screen) std::byte screen_place[sizeof(Screen)];
+}
+Screen& screen = reinterpret_cast<Screen&>(screen_place);
+void make_screen() { new (screen_place) Screen; }
 
 void send_screen() { screen.send(); }
 

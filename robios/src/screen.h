@@ -76,7 +76,8 @@ class Screen {
   bool text_changed_ = false, refresh_ = false;
   int dirty_x1_ = 0, dirty_y1_ = 0, dirty_x2_ = -1, dirty_y2_ = -1;
 };
-extern Screen screen;
+extern Screen& screen;  ///< made by make_screen(), never destroyed
+void make_screen();
 
 /// Of the generation: its size, colours and font.
 void begin_screen();
