@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdarg>
-#include <cstdio>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 
@@ -92,8 +92,7 @@ void Screen::walk(int x1, int y1, int x2, int y2, Mark mark) {
   };
   for (std::int64_t i = begin; i <= end; i++) {
     const std::int64_t x = x1 + at(dx, i), y = y1 + at(dy, i);
-    if (x >= 0 && y >= 0 && x < width_ && y < height_)
-      mark(static_cast<int>(x), static_cast<int>(y));
+    if (x >= 0 && y >= 0 && x < width_ && y < height_) mark(static_cast<int>(x), static_cast<int>(y));
   }
 }
 
@@ -113,7 +112,8 @@ void Screen::invert_pixel(int x, int y) {
 
 void Screen::invert_area(int x1, int y1, int x2, int y2) {
   for (int y = std::max(std::min(y1, y2), 0); y <= std::min(std::max(y1, y2), height_ - 1); y++) {
-    for (int x = std::max(std::min(x1, x2), 0); x <= std::min(std::max(x1, x2), width_ - 1); x++) invert_pixel(x, y);
+    for (int x = std::max(std::min(x1, x2), 0); x <= std::min(std::max(x1, x2), width_ - 1); x++)
+      invert_pixel(x, y);
   }
 }
 

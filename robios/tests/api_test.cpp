@@ -86,8 +86,8 @@ TEST(RobiosApi, ScreenOf7) {
   check(sim, "r7_screen.c", 7);
   EXPECT_EQ(sim.pixel(7, 300), 0x00FF00);
   EXPECT_EQ(sim.pixel(200, 300), 0x008080);
-  EXPECT_EQ(sim.lines.at(4), "n = 42");
-  EXPECT_EQ(sim.lines.at(5), "next");
+  EXPECT_EQ(sim.lines.at(3), "n = 42");
+  EXPECT_EQ(sim.lines.at(4), "next");
   EXPECT_EQ(sim.menu, (std::vector<std::string>{"ONE", "2", "THREE", "FOUR"}));
 }
 

@@ -247,7 +247,8 @@ bool Simulator::take_orders(Result& result) {
 Result Simulator::run(const std::string& program, const std::vector<std::string>& arguments, double most_s) {
   Result result;
   const std::string out = scratch() + "/out", err = scratch() + "/err";
-  std::vector<char*> words{const_cast<char*>(program.c_str())};
+  const std::string path = std::filesystem::absolute(program);
+  std::vector<char*> words{const_cast<char*>(path.c_str())};
   for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
   words.push_back(nullptr);
   const pid_t child = fork();
@@ -255,12 +256,13 @@ Result Simulator::run(const std::string& program, const std::vector<std::string>
     dup2(open(out.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 1);
     dup2(open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 2);
     setenv(descriptor_variable, std::to_string(dup(descriptor_)).c_str(), 1);
-    execv(program.c_str(), words.data());
+    if (chdir(scratch().c_str()) == 0) execv(path.c_str(), words.data());
     _exit(127);
   }
   Senses& s = senses();
   const auto limit = static_cast<std::int64_t>(most_s * 1e9);
   std::int64_t now = 0;
+  if (on_slot) on_slot(now);
   inputs(now);
   int status = 0;
   bool gone = false;
@@ -268,7 +270,6 @@ Result Simulator::run(const std::string& program, const std::vector<std::string>
     s.now_ns = now;
     s.slot_end_ns = now + slot_ns;
     s.wall_ns = now * 2;
-    if (on_slot) on_slot(now);
     memory_->order_bytes = 0;
     memory_->turn.store(static_cast<std::uint32_t>(Turn::program));
     auto* word = reinterpret_cast<std::uint32_t*>(&memory_->turn);
@@ -292,6 +293,7 @@ Result Simulator::run(const std::string& program, const std::vector<std::string>
     do {
       step(slot_ns);
       now += slot_ns;
+      if (on_slot) on_slot(now);
       events = inputs(now);
     } while (until_ns_ >= now + slot_ns && !(events & events_) && now < limit);
     if (now >= limit) {

@@ -61,7 +61,7 @@ class Simulator {
   /// Runs until the program's end, or for `most_s` of simulated time.
   Result run(const std::string& program, const std::vector<std::string>& arguments = {}, double most_s = 60);
 
-  std::function<void(std::int64_t now_ns)> on_slot;  ///< before each turn
+  std::function<void(std::int64_t now_ns)> on_slot;  ///< at the beginning of each slot
   std::int64_t slot_ns = 50 * millisecond;
   bool listens = true;  ///< false: pictures are not taken, ways not begun
   // What the screen shows.

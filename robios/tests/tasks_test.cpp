@@ -25,9 +25,9 @@ TEST(RobiosTasks, SemaphoresWakeTheHigherPriority) {
 }
 
 TEST(RobiosTasks, SlicesOfTenMilliseconds) {
-  // 10 ms of LCDPutChar (50 us) are 200 calls; the cost of OSGetUID (10 us) takes one call from a task's first slice. The call
-  // whose time ends the slice has not done its work yet: the other task runs before it does.
-  EXPECT_EQ(trace("preempt"), "1@0 2@0 1@199 2@199 1@399 2@399 1@599 2@599 1@799 2@799 1@999 2@999 end\n");
+  // 10 ms of LCDPutChar (50 us) are 200 calls. The other task runs within the call whose time ends the slice, before it has
+  // done its work: a task that comes back counts that call first.
+  EXPECT_EQ(trace("preempt"), "1@0 2@0 1@200 2@200 1@400 2@400 1@600 2@600 1@800 2@800 end\n");
 }
 
 TEST(RobiosTasks, HighPriorityRunsWhenItWakes) {
@@ -35,7 +35,7 @@ TEST(RobiosTasks, HighPriorityRunsWhenItWakes) {
   EXPECT_EQ(trace("priorities"), "1 2 H3 3 4 5 6 7 8 9 H9 10 H12 end\n");
 }
 
-TEST(RobiosTasks, SuspendReadyRunKillExit) { EXPECT_EQ(trace("control", 4), "1 2 s 2 2 k 1 r 1 5 end\n"); }
+TEST(RobiosTasks, SuspendReadyRunKillExit) { EXPECT_EQ(trace("control", 4), "1 2 s 2 2 k 1 1 r 5 end\n"); }
 
 TEST(RobiosTasks, MainGoesOnWhenNoOtherCan) { EXPECT_EQ(trace("stuck"), "back\n"); }
 

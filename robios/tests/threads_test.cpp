@@ -30,9 +30,8 @@ TEST(RobiosThreads, ProgramOutlivesMain) { EXPECT_EQ(trace("late"), "late 300\n"
 TEST(RobiosThreads, ExitOfAThreadIsThePrograms) { trace("exit", 6); }
 
 TEST(RobiosThreads, SlicesOfTenMilliseconds) {
-  // A round costs 20 + 10 + 10 + 50 + 10 = 100 us, so a slice is 100 rounds; it ends in the last call of a round, before the
-  // round is counted.
-  EXPECT_EQ(trace("slices"), "a0 b0 a99 b99 a199 b199 a299 b299 a399 b399 a499 b499 end\n");
+  // A round costs 20 + 10 + 10 + 50 + 10 = 100 us, so a slice is 100 rounds; it ends in the last call of a round.
+  EXPECT_EQ(trace("slices"), "a0 b0 a100 b100 a200 b200 a300 b300 a400 b400 end\n");
 }
 
 TEST(RobiosThreads, SlicesAreTheSameWithoutDelays) {

@@ -67,6 +67,7 @@ int OSReady(struct tcb* thread) {
   Task* const task = task_of(thread);
   if (!task) return failed;
   resume(*task);
+  let_others_run();
   return ok;
 }
 int OSSuspend(struct tcb* thread) {
@@ -156,6 +157,7 @@ int OSSemV(struct sem* semaphore) {
   enter(Call::OSSemV);
   if (!semaphore) return failed;
   if (!grant(semaphore)) semaphore->val++;
+  let_others_run();
   return ok;
 }
 

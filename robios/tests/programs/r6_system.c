@@ -34,6 +34,7 @@ int main() {
   EQUAL(OSSetTime(0, 60, 0), 1);
   LCDClear();
   EQUAL(OSShowTime(), 0);
+  LCDPutChar('\n');
   timer = OSAttachTimer(10, beat); /* 10 Hz */
   CHECK(timer != 0);
   OSWait(105);
