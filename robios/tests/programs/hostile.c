@@ -23,7 +23,7 @@ int main(int argc, char **argv) {
   if (!strcmp(what, "recursion")) return deep(0);
   if (!strcmp(what, "null")) *(volatile int *)0 = 1;
   if (!strcmp(what, "abort")) abort();
-  if (!strcmp(what, "zero")) return 1 / (argc - 2);
+  if (!strcmp(what, "zero")) return 100 / (argc - 2);
   if (!strcmp(what, "exit in thread")) {
     pthread_create(&t, 0, thread_exit, 0);
     pthread_join(t, 0);
