@@ -1,5 +1,6 @@
 #include "machine.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <sys/mman.h>
@@ -15,6 +16,7 @@
 #include <new>
 #include <set>
 
+#include "interpose.h"
 #include "screen.h"
 #include "tasks.h"
 
@@ -37,7 +39,8 @@ constexpr Row rows[] = {
 
 alignas(Machine) std::byte machine_place[sizeof(Machine)];  // zeros until attach()
 bool finished = false;
-bool is_child = false;  // of a fork
+bool exit_called = false;  // otherwise main has returned
+bool is_child = false;     // of a fork
 
 void futex_wait(std::atomic<std::uint32_t>& word, std::uint32_t value) {
   syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), FUTEX_WAIT, value, nullptr, nullptr, 0);
@@ -133,6 +136,7 @@ void on_signal(int signal) {
 
 void on_leave(int code, void*) {
   if (is_child || finished) return;
+  if (!exit_called) main_returns();
   screen.refresh();
   send_screen();
   finish(code);
@@ -268,3 +272,10 @@ void finish(int exit_code) noexcept {
 }
 
 }  // namespace robios
+
+ROBIOS_INTERPOSE(void, exit, int code) {
+  static const auto next = reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"));
+  robios::exit_called = true;
+  next(code);
+  _exit(code);
+}

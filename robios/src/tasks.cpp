@@ -203,6 +203,13 @@ void begin_tasks() {
   all().push_back(std::move(task));
 }
 
+void main_returns() {
+  if (tasks.current != tasks.main || !tasks.begun || tasks.main_waited) return;
+  tasks.main->background = true;
+  tasks.forbidden = false;
+  give_way();
+}
+
 void check_thread() {
   if (own != tasks.current)
     quit("a thread that the RoBIOS library did not start called one of its functions");
@@ -233,6 +240,7 @@ bool wait_for(std::int64_t until_ns, std::uint32_t events, const std::function<b
   Task& self = *tasks.current;
   while (!condition()) {
     if (machine.clock_ns >= until_ns || self.killed) return false;
+    if (&self == tasks.main) tasks.main_waited = true;
     self.wake_ns = until_ns;
     self.events = events;
     self.condition = &condition;

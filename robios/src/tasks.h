@@ -51,6 +51,8 @@ struct Tasks {
   Mode mode = Mode::preempt;
   bool multitasking = false;  ///< OSMTInit was called
   bool forbidden = false;
+  bool begun = false;        ///< main started the others
+  bool main_waited = false;  ///< since it did
   Task* current = nullptr;
   Task* holder = nullptr;  ///< has the processor when nothing may be switched
   Task* main = nullptr;
@@ -59,6 +61,8 @@ struct Tasks {
 extern Tasks tasks;
 
 void begin_tasks();
+/// main returns. If all that it did since it started the tasks was to return, they go on until none can.
+void main_returns();
 /// Ends the process if the calling thread is one that this library does not know.
 void check_thread();
 /// At each call: others that have come first run.

@@ -37,6 +37,12 @@ TEST(RobiosTasks, HighPriorityRunsWhenItWakes) {
 
 TEST(RobiosTasks, SuspendReadyRunKillExit) { EXPECT_EQ(trace("control", 4), "1 2 s 2 2 k 1 1 r 5 end\n"); }
 
+TEST(RobiosTasks, MainOfPreemptiveProgramsGoesOnWhileOthersWait) {
+  // The task counts at 0, 5 and 10 hundredths; at 22, after 11 of forbidding, it continues.
+  EXPECT_EQ(trace("main"), "main 1 3 3 4\n");
+  EXPECT_EQ(trace("main returns"), "main 1 ticked ");
+}
+
 TEST(RobiosTasks, MainGoesOnWhenNoOtherCan) { EXPECT_EQ(trace("stuck"), "back\n"); }
 
 TEST(RobiosTasks, PanicEndsTheProgram) {

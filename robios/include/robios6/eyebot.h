@@ -67,6 +67,7 @@ int IPColor2Grey(colimage *source, image *destination);
 
 /* Screen: 128 x 64 pixels, 16 x 7 characters above the menu */
 int LCDPrintf(const char *format, ...) ROBIOS_PRINTF(1, 2);
+int LCDSetPrintf(int row, int column, const char *format, ...) ROBIOS_PRINTF(3, 4);
 int LCDClear(void);
 int LCDPutChar(char character);
 int LCDSetChar(int row, int column, char character);

@@ -34,6 +34,7 @@ enum {
   SERVO12 = -52,
   SERVO13 = -53,
   SERVO14 = -54,
+  VW = -99,
   VW_DRIVE = -100,
   DIFFERENTIAL_DRIVE = -101,
   OMNI_DRIVE = -102,

@@ -67,6 +67,17 @@ typedef BYTE colimage[imagerows][imagecolumns][3];
 #define TELE 2
 #define NOINIT 255
 #define INITERROR 254
+#define NOCAM NOINIT
+#define COLCAM 16 /* colour cameras from here */
+#define CAMWAIT 10
+#define FPS60 0
+#define FPS30 1
+#define FPS15 2
+#define FPS7_5 3
+#define FPS3_75 4
+#define FPS1_875 5
+#define FPS0_9375 6
+#define FPS0_46875 7
 #define AUTOBRIGHTNESS 0
 #define NOAUTOBRIGHTNESS 1
 

@@ -81,6 +81,16 @@ int LCDPrintf(const char* pattern, ...) {
   va_end(arguments);
   return ok;
 }
+int LCDSetPrintf(int row, int column, const char* pattern, ...) {
+  enter(Call::LCDSetPrintf);
+  if (!is_place(row, column)) return failed;
+  screen.row = row, screen.column = column;
+  va_list arguments;
+  va_start(arguments, pattern);
+  screen.print(format(pattern, arguments));
+  va_end(arguments);
+  return ok;
+}
 int LCDClear() {
   enter(Call::LCDClear);
   screen.clear();

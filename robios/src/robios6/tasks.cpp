@@ -14,11 +14,14 @@ Task* task_of(struct tcb* thread) {
   return exists(task) && !task->ended && !task->timer ? task : nullptr;
 }
 
-/// In main the first of these calls starts the tasks: main goes on when no other can.
+/// In main the first of these calls starts the tasks. Cooperative: main goes on when no other can run by itself; preemptive: when
+/// none is ready.
 void give_way_of_main() {
   if (tasks.multitasking && tasks.current == tasks.main) {
-    tasks.main->background = true;
+    tasks.main->background = tasks.mode == Mode::coop;
     tasks.main->priority = MIN_PRI - 1;
+    tasks.main_waited = false;
+    tasks.begun = true;
   }
   give_way();
 }

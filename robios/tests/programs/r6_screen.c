@@ -28,6 +28,8 @@ int main() {
   EQUAL(LCDPutIntS(42, 5), 0);
   EQUAL(LCDPutFloat(2.5f), 0);
   EQUAL(LCDPutFloatS(3.14159f, 6, 3), 0);
+  EQUAL(LCDSetPrintf(0, 10, "%d", 99), 0);
+  EQUAL(LCDSetPrintf(0, 16, "x"), 1);
   EQUAL(LCDMode(NOSCROLLING), 0);
   LCDSetString(6, 0, "wrap\n");
   LCDGetPos(&row, &column);

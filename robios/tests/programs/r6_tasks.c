@@ -180,6 +180,32 @@ static void run_control(void) {
   OSExit(4); /* of the program */
 }
 
+/* main of a preemptive program goes on while the others wait. */
+static void ticks(void) {
+  int i;
+  for (i = 0; i < 6; i++) {
+    calls[1]++;
+    OSWait(5);
+  }
+  printf("ticked ");
+}
+static void run_main(int waits) {
+  OSMTInit(PREEMPT);
+  a = OSSpawn("ticks", ticks, 4096, MIN_PRI, 1);
+  OSReady(a);
+  OSPermit();
+  printf("main %d ", calls[1]);
+  if (!waits) return; /* the task goes on to its end */
+  OSWait(11);
+  printf("%d ", calls[1]);
+  OSForbid();
+  OSWait(11);
+  printf("%d ", calls[1]);
+  OSPermit();
+  OSWait(1);
+  printf("%d\n", calls[1]);
+}
+
 static void locked(void) {
   OSSemP(&s);
   printf("never ");
@@ -194,6 +220,8 @@ int main(int argc, char **argv) {
   if (!strcmp(what, "preempt")) run_preempt();
   if (!strcmp(what, "priorities")) run_priorities();
   if (!strcmp(what, "control")) run_control();
+  if (!strcmp(what, "main")) run_main(1);
+  if (!strcmp(what, "main returns")) run_main(0);
   if (!strcmp(what, "stuck")) { /* main goes on when the others wait for each other */
     OSMTInit(COOP);
     OSSemInit(&s, 0);
