@@ -66,6 +66,8 @@ int IPDiffer(image *current, image *last, image *destination);
 int IPColor2Grey(colimage *source, image *destination);
 
 /* Screen: 128 x 64 pixels, 16 x 7 characters above the menu */
+int LCDInit(void); /* of older releases: no effect */
+int LCDRelease(void);
 int LCDPrintf(const char *format, ...) ROBIOS_PRINTF(1, 2);
 int LCDSetPrintf(int row, int column, const char *format, ...) ROBIOS_PRINTF(3, 4);
 int LCDClear(void);

@@ -21,6 +21,8 @@ extern "C" {
 #endif
 
 /* Screen */
+int LCDInit(void); /* of older releases: no effect */
+int LCDRelease(void);
 int LCDPrintf(const char *format, ...) ROBIOS_PRINTF(1, 2);
 int LCDSetPrintf(int row, int column, const char *format, ...) ROBIOS_PRINTF(3, 4);
 int LCDClear(void);

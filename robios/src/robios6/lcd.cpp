@@ -73,6 +73,15 @@ void begin_screen() {
 
 extern "C" {
 
+int LCDInit() {
+  enter(Call::LCDInit);
+  return ok;
+}
+int LCDRelease() {
+  enter(Call::LCDRelease);
+  return ok;
+}
+
 int LCDPrintf(const char* pattern, ...) {
   enter(Call::LCDPrintf);
   va_list arguments;

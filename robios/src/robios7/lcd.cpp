@@ -60,6 +60,15 @@ void set(int* to, int value) {
 
 extern "C" {
 
+int LCDInit() {
+  enter(Call::LCDInit);
+  return ok;
+}
+int LCDRelease() {
+  enter(Call::LCDRelease);
+  return ok;
+}
+
 int LCDPrintf(const char* pattern, ...) {
   enter(Call::LCDPrintf);
   va_list arguments;

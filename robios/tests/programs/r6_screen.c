@@ -8,6 +8,8 @@ static BYTE packed[1024];
 
 int main() {
   int row, column, i;
+  EQUAL(LCDInit(), 0);
+  EQUAL(LCDRelease(), 0);
   EQUAL(LCDClear(), 0);
   EQUAL(LCDPrintf("a%d\n", 12), 0);
   EQUAL(LCDPutChar('c'), 0);

@@ -10,6 +10,8 @@ int main() {
   EQUAL(x, 320);
   EQUAL(y, 480);
   EQUAL(LCDSetColor(RED, BLUE), 0);
+  EQUAL(LCDInit(), 0);
+  EQUAL(LCDRelease(), 0);
   EQUAL(LCDClear(), 0);
   EQUAL(LCDGetPixel(5, 5), BLUE);
   /* Text: cells of 8 x 16. '|' has ink in the middle of its cell: column 1 + 2. */
