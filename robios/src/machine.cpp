@@ -39,6 +39,7 @@ constexpr Row rows[] = {
 
 alignas(Machine) std::byte machine_place[sizeof(Machine)];  // zeros until attach()
 bool finished = false;
+int exit_code_sent = 0;
 bool exit_called = false;  // otherwise main has returned
 bool is_child = false;     // of a fork
 
@@ -221,8 +222,9 @@ void pass_time(std::int64_t ns) {
 
 void hand_over(std::int64_t until_ns, std::uint32_t events) {
   if (finished) {
-    // Something still runs after the program's end: it waits for the process to go.
-    for (;;) pause();
+    // A destructor that runs after the program's end would wait: there is no further turn.
+    fflush(nullptr);
+    _exit(exit_code_sent);
   }
   send_screen();
   const WaitOrder wait{until_ns, events, 0};
@@ -265,7 +267,7 @@ void finish(int exit_code) noexcept {
   if (finished || !machine.memory) return;
   if (machine.memory->turn.load() != static_cast<std::uint32_t>(Turn::program)) return;
   finished = true;
-  const std::int32_t code = exit_code;
+  const std::int32_t code = exit_code_sent = exit_code;
   if (needed(sizeof(code)) <= most_order_bytes - machine.order_bytes)
     put(OrderKind::finished, &code, sizeof(code), nullptr, 0);
   give_turn();

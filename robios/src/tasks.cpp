@@ -133,10 +133,24 @@ void run_others() {
   }
 }
 
+/// Stack for the signal of a stack that is full.
+void use_signal_stack() {
+  stack_t stack{};
+  stack.ss_size = signal_stack;
+  stack.ss_sp = mmap(nullptr, signal_stack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (stack.ss_sp != MAP_FAILED) sigaltstack(&stack, nullptr);
+}
+void leave_signal_stack() {
+  stack_t none{}, stack{};
+  none.ss_flags = SS_DISABLE;
+  if (sigaltstack(&none, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) munmap(stack.ss_sp, stack.ss_size);
+}
+
 /// Last thing that a thread does, after its cleanup handlers.
 void end_task(void* argument) {
   Task& self = *static_cast<Task*>(argument);
   if (tasks.current != &self) return;
+  leave_signal_stack();
   self.ended = true;
   self.waiting = false;
   grant_all(&self);
@@ -165,13 +179,6 @@ void end_task(void* argument) {
     }
   }
   run_others();
-}
-
-void use_signal_stack() {
-  stack_t stack{};
-  stack.ss_size = signal_stack;
-  stack.ss_sp = mmap(nullptr, signal_stack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (stack.ss_sp != MAP_FAILED) sigaltstack(&stack, nullptr);
 }
 
 void* run_thread(void* argument) {
@@ -332,6 +339,7 @@ void kill_task(Task& task) {
   task.killer = tasks.current;
   pass_baton(task);
   await_baton(*task.killer);
+  if (task.detached && !task.is_own) forget(task);
 }
 
 void suspend(Task& task) {

@@ -140,6 +140,7 @@ ROBIOS_INTERPOSE(int, pthread_create, pthread_t* thread, const pthread_attr_t* a
                  void* (*code)(void*), void* argument) {
   enter_thread();
   if (!code || !thread) return EINVAL;
+  if (!attached()) return EAGAIN;
   Task* const task = make_task(
       "thread", [code, argument] { return code(argument); }, 8u << 20, tasks.current->priority, attributes);
   if (!task) return EAGAIN;

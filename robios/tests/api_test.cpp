@@ -229,8 +229,8 @@ TEST(RobiosApi, ScreenOf6) {
   check(sim, "r6_screen.c", 6);
   EXPECT_EQ(sim.pixel(16, 3), 0);
   EXPECT_EQ(sim.pixel(17, 3), 0xFFFFFF);
-  EXPECT_EQ(lines, (std::vector<std::string>{"a12       99", "c", "               x", "text -5", "hex 0000BEEF34",
-                                             "   422.50 3.142", "wrap"}));
+  EXPECT_EQ(lines, (std::vector<std::string>{"a12       99", "c", "               x", "text -5",
+                                             "hex 0000BEEF34", "   422.50 3.142", "wrap"}));
   EXPECT_EQ(menu, (std::vector<std::string>{"GO", "LONG", "3rd", "END"}));
 }
 

@@ -99,6 +99,12 @@ TEST(RobiosEnd, HostileProgramsAreBounded) {
   EXPECT_EQ(run("hostile.c", "fork").output, "child 1\n");
   const auto threads = run("hostile.c", "threads");
   EXPECT_EQ(threads.output, "255 threads\n");
+  EXPECT_EQ(run("hostile.c", "many").output, "5000 threads\n");
+  const auto late = run("hostile.c", "late");
+  EXPECT_EQ(late.output, "ends\n");
+  EXPECT_EQ(late.exit_code, 7);
+  EXPECT_GE(late.end_ns, 950 * fake::millisecond);
+  EXPECT_EQ(run("hostile.c", "double free").finished, 128 + SIGABRT);
 }
 
 TEST(RobiosHost, RunsASharedLibrary) {

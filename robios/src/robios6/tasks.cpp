@@ -126,7 +126,7 @@ int OSPanic(const char* message) {
 int OSSleep(int n) {
   enter(Call::OSSleep);
   if (n < 0) return failed;
-  sleep_until(after(n * 10 * millisecond), Others::run);
+  sleep_until(after(n * (10 * millisecond)), Others::run);
   return ok;
 }
 int OSForbid() {

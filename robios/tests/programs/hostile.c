@@ -9,10 +9,16 @@ static int deep(int n) {
   room[0] = (char)n;
   return deep(n + 1) + room[0];
 }
+static void *nothing(void *unused) { return unused; }
 static void *thread_exit(void *unused) {
   (void)unused;
   OSWait(10);
   exit(9);
+}
+
+static void late(void) { OSWait(1000); }
+__attribute__((destructor)) static void later(void) {
+  for (;;) OSWait(1000);
 }
 
 int main(int argc, char **argv) {
@@ -68,6 +74,26 @@ int main(int argc, char **argv) {
       if (pthread_create(&t, 0, thread_exit, 0) != 0) break;
     }
     printf("%d threads\n", i);
+  }
+  if (!strcmp(what, "many")) { /* one after the other */
+    for (i = 0; i < 5000; i++) {
+      if (pthread_create(&t, 0, nothing, 0) != 0 || pthread_join(t, 0) != 0) break;
+    }
+    for (i = 0; i < 5000; i++) {
+      if (pthread_create(&t, 0, nothing, 0) != 0 || pthread_detach(t) != 0) break;
+      OSWait(1);
+    }
+    printf("%d threads\n", i);
+  }
+  if (!strcmp(what, "late")) {
+    atexit(late);
+    printf("ends\n");
+    return 7;
+  }
+  if (!strcmp(what, "double free")) {
+    char *volatile p = malloc(100);
+    free(p);
+    free(p);
   }
   if (!strcmp(what, "busy")) {
     for (;;) VWDone();
