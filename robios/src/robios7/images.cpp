@@ -64,28 +64,33 @@ int header_number(FILE* file) {
   return value;  // with the one character behind it
 }
 
-/// Pixels of a PNM file of kind 1 to 6 into `to`; false: the file ends too early.
-bool read_pixels(FILE* file, int kind, int most, BYTE* to) {
-  const std::size_t values = ip_pixels() * (kind == 3 || kind == 6 ? 3 : 1);
-  if (kind == 1) {
-    for (std::size_t i = 0; i < values; i++) {
-      int c = fgetc(file);
-      while (c != '0' && c != '1' && c != EOF) c = fgetc(file);
-      if (c == EOF) return false;
-      to[i] = c == '1' ? 0 : 1;  // 1 is black in the file
-    }
-  } else if (kind == 4) {
-    const auto w = static_cast<std::size_t>(ip_width()), bytes = (w + 7) / 8;
-    std::vector<BYTE> line(bytes);
-    for (std::size_t y = 0; y < values / w; y++) {
-      if (fread(line.data(), 1, bytes, file) != bytes) return false;
-      for (std::size_t x = 0; x < w; x++) to[y * w + x] = line[x / 8] >> (7 - x % 8) & 1 ? 0 : 1;
-    }
-  } else {
-    for (std::size_t i = 0; i < values; i++) {
-      const int value = kind >= 5 ? fgetc(file) : header_number(file);
-      if (value < 0) return false;
-      to[i] = static_cast<BYTE>(std::min(value, most) * 255 / most);
+/// Pixels of a PNM file of kind 1 to 6 into `to`, cut or filled with 0 to the size of the IP functions; false: it ends too early.
+bool read_pixels(FILE* file, int kind, int width, int height, int most, BYTE* to) {
+  const std::size_t channels = kind == 3 || kind == 6 ? 3 : 1;
+  std::fill_n(to, ip_pixels() * channels, BYTE{0});
+  int byte = 0;
+  for (int y = 0; y < height && y < ip_height(); y++) {
+    for (int x = 0; x < width; x++) {
+      for (std::size_t c = 0; c < channels; c++) {
+        int value = 0;
+        if (kind == 1) {
+          do value = fgetc(file);
+          while (value != '0' && value != '1' && value != EOF);
+          if (value != EOF) value = '1' - value;  // 1 is black in the file
+        } else if (kind == 4) {
+          if (x % 8 == 0) byte = fgetc(file);
+          value = byte == EOF ? EOF : 1 - (byte >> (7 - x % 8) & 1);
+        } else {
+          value = kind >= 5 ? fgetc(file) : header_number(file);
+          if (value >= 0) value = std::min(value, most) * 255 / most;
+        }
+        if (value < 0) return false;
+        if (x < ip_width())
+          to[(static_cast<std::size_t>(y) * static_cast<std::size_t>(ip_width()) +
+              static_cast<std::size_t>(x)) *
+                 channels +
+             c] = static_cast<BYTE>(value);
+      }
     }
   }
   return true;
@@ -158,8 +163,8 @@ int IPReadFile(const char* name, BYTE* image) {
   const int width = header_number(file.get()), height = header_number(file.get());
   const bool bits = kind == 1 || kind == 4;
   const int most = bits ? 1 : header_number(file.get());
-  if (width != ip_width() || height != ip_height() || most < 1 || most > 255) return -1;
-  if (!read_pixels(file.get(), kind, most, image)) return -1;
+  if (width < 1 || height < 1 || most < 1 || most > 255) return -1;
+  if (!read_pixels(file.get(), kind, width, height, most, image)) return -1;
   return bits ? 1 : kind == 3 || kind == 6 ? 3 : 2;
 }
 int IPWriteFile(const char* name, BYTE* rgb) {

@@ -108,7 +108,10 @@ int main() {
   EQUAL(IPWriteFile("no/such/folder/x.ppm", rgb), 1);
   EQUAL(IPReadFile("nothing.pgm", b), -1);
   IPSetSize(QVGA);
-  EQUAL(IPReadFile("test.pgm", b), -1); /* not that size */
+  EQUAL(IPReadFile("test.pgm", b), 2); /* filled to 320 x 240 */
+  EQUAL(b[100 * 320 + 159], 50);
+  EQUAL(b[100 * 320 + 160], 0);
+  EQUAL(b[120 * 320], 0);
   IPSetSize(QQVGA);
   {
     FILE *f = fopen("test.pbm", "w");
