@@ -204,9 +204,16 @@ void quit(const char* sentence) {
 
 void enter(Call call) {
   if (is_child) _exit(1);  // a fork has no robot
+  if (finished) return;
   check_thread();
   pass_time(cost_ns(call));
   let_others_run();
+}
+
+void leave_if_finished() {
+  if (!finished) return;
+  fflush(nullptr);
+  _exit(exit_code_sent);
 }
 
 void pass_time(std::int64_t ns) {
@@ -221,11 +228,7 @@ void pass_time(std::int64_t ns) {
 }
 
 void hand_over(std::int64_t until_ns, std::uint32_t events) {
-  if (finished) {
-    // A destructor that runs after the program's end would wait: there is no further turn.
-    fflush(nullptr);
-    _exit(exit_code_sent);
-  }
+  leave_if_finished();
   send_screen();
   const WaitOrder wait{until_ns, events, 0};
   put(OrderKind::wait, &wait, sizeof(wait), nullptr, 0);

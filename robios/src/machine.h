@@ -62,6 +62,9 @@ void enter(Call call);
 /// Adds `ns` to the clock; hands the turn over as often as the clock says.
 void pass_time(std::int64_t ns);
 
+/// Ends the process if its last order is given: destructors that run after it may call functions, but not wait.
+void leave_if_finished();
+
 /// Gives the turn to the simulator, with what the program waits for; returns in the next one.
 void hand_over(std::int64_t until_ns, std::uint32_t events);
 

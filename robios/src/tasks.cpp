@@ -126,6 +126,7 @@ void switch_to(Task& next) {
 }
 
 void run_others() {
+  leave_if_finished();
   for (;;) {
     wake_due();
     if (Task* const next = pick()) return switch_to(*next);
