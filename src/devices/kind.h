@@ -13,6 +13,7 @@
 ///     static void settle(PoolView<Device>, const Context&);   // batteries: between physics and sensing, once per tick
 ///     void restored();      // only where something beside State follows from it: called after State was loaded
 ///     bool fits() const;    // only where sizes in State or messages are trusted: false refuses a snapshot
+///     std::uint64_t changes() const;  // only of a large State that seldom changes: grows when a phase other than sense does it
 ///   };
 /// and `const Kind kind = make_kind<Device>({...})`. Reading the spec, hashing, snapshots, parameters while
 /// running, `sandlot list`, the schema and the docs follow from the field lists. All devices of a kind live
@@ -45,7 +46,7 @@
 namespace sandlot {
 
 /// Bumped when the structs below change; plugins built against another version are refused.
-inline constexpr int device_api_version = 9;
+inline constexpr int device_api_version = 10;
 
 /// The devices a phase function works on: `all`, of which the indices `due` are to be served now.
 /// For actuate, pre_substep and post_substep every device is due.
@@ -66,8 +67,7 @@ class PoolBase {
   virtual Status add(const DeviceBuild& build) = 0;
   /// Removes one device; those behind it move up by one.
   virtual void remove(std::uint32_t index) = 0;
-  /// Writes what an actuator that is removed leaves behind (a joint set free, a base released) to
-  /// context.actuation.
+  /// Writes what a removed actuator leaves behind (a joint set free, a base released) to context.actuation.
   virtual void release(std::uint32_t index, const Context& context) = 0;
   virtual double rate_hz(std::uint32_t index) const = 0;  ///< 0: every tick
   /// For a kind: whether its devices have errors; for a device: its own factor on them.
@@ -86,7 +86,7 @@ class PoolBase {
   virtual void post_substep(const Context& context, const Due& due, double h_s) = 0;
   virtual void settle(const Context& context, const Due& due) = 0;
   virtual void sense(const Context& context, const Due& due) = 0;
-  /// State handed over when the active levels of a device change from `before` to `after`.
+  /// Hands the State over when the active levels change from `before` to `after`.
   virtual Status switch_level(std::uint32_t index, std::uint32_t before, std::uint32_t after,
                               const Context& context) = 0;
   virtual Status set_parameter(std::uint32_t index, std::string_view path, const Node& value) = 0;
@@ -100,10 +100,16 @@ class PoolBase {
   virtual void load(std::uint32_t index, ByteReader& r) = 0;
   /// Whether the device can go on with its State and the messages in its topics (Device::fits).
   virtual bool fits(std::uint32_t index) const = 0;
+  virtual std::optional<std::uint64_t> changes(std::uint32_t index) const = 0;  ///< Device::changes, if any
 };
 
-enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
-inline constexpr unsigned phase_settle = 16;
+enum Phases : unsigned {
+  phase_actuate = 1,
+  phase_pre_substep = 2,
+  phase_sense = 4,
+  phase_post_substep = 8,
+  phase_settle = 16
+};
 
 /// A kind of device. Function pointers and constants only, so that a plugin can fill one.
 struct Kind {
@@ -240,6 +246,10 @@ class DevicePool final : public PoolBase {
   bool fits([[maybe_unused]] std::uint32_t index) const override {
     if constexpr (requires { devices_[index].fits(); }) return devices_[index].fits();
     else return true;
+  }
+  std::optional<std::uint64_t> changes([[maybe_unused]] std::uint32_t index) const override {
+    if constexpr (requires { devices_[index].changes(); }) return devices_[index].changes();
+    else return {};
   }
 
  private:

@@ -28,6 +28,7 @@
   device(joint_motor)           \
   device(joint_state)           \
   device(joint_trajectory)      \
+  device(keys)                  \
   device(kicker)                \
   device(lamp)                  \
   device(laser_scanner)         \
@@ -46,8 +47,10 @@
   device(range_bearing)         \
   device(range_finder)          \
   device(rgbd_camera)           \
+  device(screen)                \
   device(segmentation_camera)   \
   device(skid_drive)            \
+  device(speaker)               \
   device(stereo_camera)         \
   device(swerve_drive)          \
   device(text_display)          \

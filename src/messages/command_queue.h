@@ -32,8 +32,8 @@ class CommandQueue final : public Topic<M> {
   /// Removes the oldest order. @pre not empty
   void pop() {
     SL_CHECK(size_ > 0);
-    first_ = (first_ + 1) % ring_.size();
-    --size_;
+    // An empty one begins at the front again: only as many places hold long messages as have waited at once.
+    first_ = --size_ == 0 ? 0 : (first_ + 1) % ring_.size();
   }
   void clear() { first_ = size_ = 0; }
 

@@ -47,6 +47,9 @@ class DevicePools {
   /// Null: there is none of that name.
   const Kind* find_kind(std::string_view name) const;
   const Kind& kind(const Device& device) const { return *pools_[device.kind].kind; }
+  std::optional<std::uint64_t> changes(const Device& device) const {
+    return pools_[device.kind].pool->changes(device.index);
+  }
   const PoolBase& pool(const Device& device) const { return *pools_[device.kind].pool; }
   const Timing& timing(const Device& device) const { return pools_[device.kind].timing[device.index]; }
   /// Numbers of a device by path, of its kind and of the common keys.

@@ -192,7 +192,7 @@ void Publisher::fill_topics(Frame& frame) {
   });
 }
 
-/// A device that only senses, without a meter and common keys, changes when it takes a sample, a program when it runs and when its orders are carried
+/// A device that only senses or counts its other changes, without a meter and common keys, changes when it takes a sample, a program when it runs and when its orders are carried
 /// out; both also by requests. Between those their hashes stay.
 void Publisher::fill_hashes(Frame& frame) {
   frame.hash = 0;
@@ -227,14 +227,14 @@ void Publisher::fill_hashes(Frame& frame) {
     add(entity->key, always, [&](ByteWriter& w) { sim_.engine_->save(entity->id, w); });
     for (const auto& device : entity->devices) {
       // Meters and messages on their way change between samples, too.
-      const bool only_senses = sim_.devices_.kind(*device).phases == phase_sense && !device->energy &&
-                               !device->keys;
-      // Samples, commands and deliveries only become more, and so does their sum.
-      std::uint64_t version = sim_.timing(*device).sample;
+      const std::optional<std::uint64_t> changes = sim_.devices_.changes(*device);
+      const bool is_kept = (sim_.devices_.kind(*device).phases == phase_sense || changes) &&
+                           !device->energy && !device->keys;
+      // Samples, changes, commands and deliveries only become more, and so does their sum.
+      std::uint64_t version = sim_.timing(*device).sample + changes.value_or(0);
       if (device->inbox()) version += device->inbox()->arrived();
       for (const SimulationParts::Slot& slot : device->commands) version += slot.topic->count;
-      add(device->key, only_senses ? version : always,
-          [&](ByteWriter& w) { sim_.devices_.save(*device, w); });
+      add(device->key, is_kept ? version : always, [&](ByteWriter& w) { sim_.devices_.save(*device, w); });
     }
     add_programs(entity->programs);
   }
