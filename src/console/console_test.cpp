@@ -248,6 +248,45 @@ TEST(Console, CommandsADevice) {
   EXPECT_TRUE(has(talk.refused("command rover1/drve Twist {}"), "did you mean 'rover1/drive'"));
 }
 
+TEST(Console, PressesKeys) {
+  model::Setup setup = test::arena("planar", 2);
+  for (const char* name : {"keys", "more"}) {
+    model::DeviceDecl keys;
+    keys.name = name;
+    keys.kind = "keys";
+    setup.instances.back().devices.push_back(keys);
+  }
+  Talk talk(std::move(setup));
+  talk.step();
+  EXPECT_EQ(talk.ok("press rover2 3"), "rover2/keys got key 3 with the next tick");
+  EXPECT_EQ(talk.ok("press rover2 touch 12 -5"), "rover2/keys got a touch at 12 -5 with the next tick");
+  talk.ok("press rover2/more 1");
+  talk.step();
+  const auto presses = [&](const std::string& device) {
+    return talk.ask([&](const Simulation& s) {
+      msg::KeyPresses found;
+      for (const auto& each : s.find_entity("rover2")->devices)
+        for (const auto& topic : each->topics)
+          if (topic.topic->name() == "/rover2/" + device + "/presses")
+            found = topic_cast<msg::KeyPresses>(topic.topic.get())->message;
+      return found;
+    });
+  };
+  const msg::KeyPresses pressed = presses("keys");
+  ASSERT_EQ(pressed.latest.size(), 2u);
+  EXPECT_EQ(pressed.latest[0].key, 3u);
+  EXPECT_EQ(pressed.latest[1].key, 0u);
+  EXPECT_EQ(pressed.latest[1].x, 12);
+  EXPECT_EQ(pressed.latest[1].y, -5);
+  EXPECT_EQ(presses("more").count, 1u);
+  EXPECT_TRUE(has(talk.refused("press rover1 1"), "rover1 has no keys"));
+  EXPECT_TRUE(has(talk.refused("press rovr2 1"), "did you mean 'rover2'"));
+  for (const char* line : {"press rover2 -1", "press rover2 0", "press rover2 one", "press rover2 touch 1",
+                           "press rover2 1 2", "press rover2 touch 1 x", "press rover2 99999999999"})
+    EXPECT_TRUE(has(talk.refused(line), "press")) << line;
+  talk.refused("press rover2 1", false);
+}
+
 TEST(Console, CallsServicesOfDevices) {
   model::Setup setup = test::arena("planar", 1);
   model::DeviceDecl odometry;

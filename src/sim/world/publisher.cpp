@@ -192,8 +192,8 @@ void Publisher::fill_topics(Frame& frame) {
   });
 }
 
-/// A device that only senses or counts its other changes, without a meter and common keys, changes when it takes a sample, a program when it runs and when its orders are carried
-/// out; both also by requests. Between those their hashes stay.
+/// A device that only senses or counts its other changes, without a meter and common keys, changes when it takes a sample; a
+/// program when it runs and when its orders are carried out; both also by requests. Between those their hashes stay.
 void Publisher::fill_hashes(Frame& frame) {
   frame.hash = 0;
   frame.parts.clear();

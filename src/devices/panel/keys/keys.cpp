@@ -1,7 +1,8 @@
 /// keys: push buttons of a robot, and its touch screen, pressed by people, scripts and clients.
 ///
 /// Command  level `presses`: sandlot_msgs/KeyPress, up to 64 in a tick, in their order: key 1 is the leftmost one, key 0 is a touch
-///          at (x, y) of the screen. A number above `keys`, and a touch where `touch` is false, is no press; `refused` counts it.
+///          at (x, y) of the screen. A key above `count`, and a touch where `touch` is false, is refused and
+///          counted.
 /// Output   level `presses`: sandlot_msgs/KeyPresses, the 16 latest presses, published in the tick of a press.
 /// Time     a press is read in the tick it arrives in. A press has no length: a key is not held.
 /// Limits   no bounce, no chords. Labels that change are those of the screen (ScreenText.menu).
@@ -18,12 +19,12 @@ namespace {
 constexpr std::size_t most_waiting = 64, most_kept = 16;
 
 struct Spec {
-  int keys = 4;
+  int count = 4;
   std::vector<std::string> labels;
   bool touch = true;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"keys", "1", "Number of keys.", 0, 64}, s.keys);
+    visit(Field{"count", "1", "Number of keys.", 0, 64}, s.count);
     visit(Field{"labels", "", "Labels of the keys, from the left; a screen with a menu replaces them.", 0, 0,
                 Field::none, 64},
           s.labels);
@@ -32,13 +33,13 @@ struct Spec {
 };
 
 struct State {
-  std::uint64_t count = 0, published = 0, refused = 0;
+  std::uint64_t presses = 0, published = 0, refused = 0;
   std::vector<msg::KeyPress> latest;  ///< the oldest first
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"count", "1", "Number of presses so far."}, s.count);
+    visit(Field{"presses", "1", "Number of presses so far."}, s.presses);
     visit(Field{"published", "1", "Number of the press that was published last."}, s.published);
-    visit(Field{"refused", "1", "Number of commands that were no press of a key there is."}, s.refused);
+    visit(Field{"refused", "1", "Number of commands for keys that do not exist."}, s.refused);
     visit(Field{"latest", "", "Latest presses, the oldest first."}, s.latest);
   }
 };
@@ -53,8 +54,8 @@ struct Keys {
 
   static Result<Keys> create(const DeviceBuild& build, Spec spec) {
     Keys made{std::move(spec), {}};
-    if (made.spec.labels.size() > static_cast<std::size_t>(made.spec.keys))
-      return build.error("labels", "there are more labels than keys", "set keys, or leave labels out");
+    if (made.spec.labels.size() > static_cast<std::size_t>(made.spec.count))
+      return build.error("labels", "there are more labels than keys", "raise count, or leave labels out");
     made.state.latest.reserve(most_kept);
     made.presses = build.accept_queue<msg::KeyPress>(0, "presses", most_waiting);
     made.pressed = build.publish<msg::KeyPresses>(0, "presses");
@@ -64,14 +65,14 @@ struct Keys {
   }
 
   void press(const msg::KeyPress& press) {
-    if (press.key == 0 ? !spec.touch : press.key > static_cast<std::uint32_t>(spec.keys)) {
+    if (press.key == 0 ? !spec.touch : press.key > static_cast<std::uint32_t>(spec.count)) {
       ++state.refused;
       return;
     }
     if (state.latest.size() == most_kept) state.latest.erase(state.latest.begin());
     // A key has no place.
     state.latest.push_back(press.key == 0 ? press : msg::KeyPress{press.key, 0, 0});
-    ++state.count;
+    ++state.presses;
   }
 
   static void actuate(PoolView<Keys> pool, const Context&) {
@@ -84,19 +85,19 @@ struct Keys {
   static void sense(PoolView<Keys> pool, const Context& context) {
     for (const std::uint32_t index : pool.due) {
       Keys& keys = pool.all[index];
-      if (keys.state.published == keys.state.count) continue;
-      keys.state.published = keys.state.count;
-      keys.pressed->message.count = keys.state.count;
+      if (keys.state.published == keys.state.presses) continue;
+      keys.state.published = keys.state.presses;
+      keys.pressed->message.count = keys.state.presses;
       keys.pressed->message.latest = keys.state.latest;
       keys.pressed->publish(context.now);
     }
   }
 
   bool fits() const {
-    return state.latest.size() <= most_kept && state.latest.size() <= state.count &&
-           state.published <= state.count &&
+    return state.latest.size() <= most_kept && state.latest.size() <= state.presses &&
+           state.published <= state.presses &&
            std::all_of(state.latest.begin(), state.latest.end(), [&](const msg::KeyPress& press) {
-             return press.key <= static_cast<std::uint32_t>(spec.keys);
+             return press.key <= static_cast<std::uint32_t>(spec.count);
            });
   }
 };

@@ -1,6 +1,7 @@
 #include "devices/panel/screen/screen.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sandlot::screen {
 namespace {
@@ -45,7 +46,11 @@ void Screen::draw(const msg::ScreenPatch& patch) {
   ++state.taken;
   // The product of two 32-bit numbers has room in 64 bits; three times it may not.
   const std::uint64_t area = std::uint64_t{patch.width} * patch.height;
-  if (patch.data.size() % 3 != 0 || patch.data.size() / 3 != area) {
+  const auto width = static_cast<std::uint32_t>(spec.width_px);
+  const auto height = static_cast<std::uint32_t>(spec.height_px);
+  const bool is_inside = area == 0 || (patch.x < width && patch.width <= width - patch.x &&
+                                       patch.y < height && patch.height <= height - patch.y);
+  if (!is_inside || patch.data.size() % 3 != 0 || patch.data.size() / 3 != area) {
     ++state.refused;
     return;
   }
@@ -54,16 +59,12 @@ void Screen::draw(const msg::ScreenPatch& patch) {
     take_texts(patch.menu, most_labels, state.menu);
     ++state.written;
   }
-  const auto width = static_cast<std::uint32_t>(spec.width_px);
-  const auto height = static_cast<std::uint32_t>(spec.height_px);
-  if (area == 0 || patch.x >= width || patch.y >= height) return;
-  if (state.pixels.empty()) state.pixels.resize(bytes());
-  const std::size_t columns = std::min(patch.width, width - patch.x);
-  const std::size_t rows = std::min(patch.height, height - patch.y);
-  for (std::size_t row = 0; row < rows; ++row) {
+  if (area == 0) return;
+  if (state.pixels.empty()) fill(state.pixels);
+  for (std::size_t row = 0; row < patch.height; ++row) {
     const auto from = patch.data.begin() + static_cast<std::ptrdiff_t>(3 * row * patch.width);
     const std::size_t to = 3 * ((patch.y + row) * width + patch.x);
-    std::copy_n(from, 3 * columns, state.pixels.begin() + static_cast<std::ptrdiff_t>(to));
+    std::copy_n(from, 3 * std::size_t{patch.width}, state.pixels.begin() + static_cast<std::ptrdiff_t>(to));
   }
   ++state.drawn;
 }
@@ -75,8 +76,14 @@ void Screen::actuate(PoolView<Screen> pool, const Context&) {
   }
 }
 
+void Screen::fill(std::vector<std::uint8_t>& pixels) const {
+  pixels.resize(bytes());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = static_cast<std::uint8_t>(std::lround(255 * spec.background[i % 3]));
+}
+
 void Screen::publish_picture(Time now) {
-  if (state.pixels.empty()) image->message.data.assign(bytes(), 0);
+  if (state.pixels.empty()) fill(image->message.data);
   else image->message.data = state.pixels;
   image->publish(now);
   state.pictures = state.drawn;
@@ -114,7 +121,7 @@ Result<msg::std_srvs::Trigger::Response> Screen::clear(const msg::std_srvs::Trig
   state.menu.clear();
   ++state.drawn;
   ++state.written;
-  return msg::std_srvs::Trigger::Response{true, "the screen is black"};
+  return msg::std_srvs::Trigger::Response{true, "the screen is empty"};
 }
 
 namespace {
@@ -122,7 +129,7 @@ constexpr LevelInfo levels[] = {
     {"pixels", msg::Image::ros_type, msg::ScreenPatch::ros_type, "Picture and text of the screen."},
 };
 constexpr DeviceService services[] = {
-    device_service<Screen, msg::std_srvs::Trigger, &Screen::clear>("clear", "Makes the screen black."),
+    device_service<Screen, msg::std_srvs::Trigger, &Screen::clear>("clear", "Empties the screen."),
 };
 }  // namespace
 

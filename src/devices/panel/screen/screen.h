@@ -3,18 +3,20 @@
 ///
 /// Frame    pixel (0, 0) is the upper left one.
 /// Command  level `pixels`: sandlot_msgs/ScreenPatch, up to 64 in a tick, drawn in their order: new pixels of a rectangle, or the
-///          lines of text and the labels of the keys, or both. What lies outside of the screen is cut off. A patch whose data are
-///          not width x height x 3 bytes is not drawn and counted as `refused`.
+///          lines of text and the labels of the keys, or both. A patch that reaches outside of the screen, or whose data are
+///          not width x height x 3 bytes, is refused as a whole and counted.
 /// Output   level `pixels`: sensor_msgs/Image rgb8 on `pixels`, and sandlot_msgs/ScreenText on `text`; each when it has changed, at
 ///          most `rate` times per second, and again every `repeat` for those who came later. There is no image until something is
-///          drawn: the screen is black.
-/// Service  clear (std_srvs/Trigger): a black screen without text.
+///          drawn: the screen has its background.
+/// Service  clear (std_srvs/Trigger): a screen of the background without text.
 /// Time     a patch is drawn in its tick.
 /// Limits   the picture and the text are independent: who draws letters sends both. At most 200 lines and 16 labels, 400 bytes
 ///          each; longer ones are cut. No backlight, no viewing angle. Cameras do not see it.
 /// Cost     nothing until something is drawn; then width x height x 3 bytes twice, copied when a changed picture is published.
 ///          The state is hashed in ticks with a change or a sample. Allocates when first drawn.
 /// Errors   none beyond the ranges of the keys.
+#include <array>
+
 #include "base/time.h"
 #include "devices/kind.h"
 #include "messages/device_services.h"
@@ -27,6 +29,7 @@ struct Spec {
   int width_px = 320, height_px = 240;
   double rate_hz = 10;
   double repeat_s = 1;
+  std::array<double, 3> background{0, 0, 0};
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"width", "px", "Number of columns.", 16, 1024}, s.width_px);
@@ -38,6 +41,8 @@ struct Spec {
                 "never.",
                 0, 1e6},
           s.repeat_s);
+    visit(Field{"background", "", "Colour of the empty screen: red, green and blue, each 0 to 1.", 0, 1},
+          s.background);
   }
 };
 
@@ -50,7 +55,7 @@ struct State {
   Time picture_at, text_at;               ///< when
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"pixels", "", "Pixels: red, green, blue, row by row; none while the screen is black."},
+    visit(Field{"pixels", "", "Pixels: red, green, blue, row by row; none while the screen is empty."},
           s.pixels);
     visit(Field{"lines", "", "Lines of text."}, s.lines);
     visit(Field{"menu", "", "Labels of the keys."}, s.menu);
@@ -78,7 +83,7 @@ struct Screen {
   static void actuate(PoolView<Screen> pool, const Context& context);
   static void sense(PoolView<Screen> pool, const Context& context);
   bool fits() const;
-  std::uint64_t changes() const { return state.taken; }
+  std::uint64_t changes() const { return state.taken; }  // `clear` is a request, which is hashed anyway
   void draw(const msg::ScreenPatch& patch);
   Result<msg::std_srvs::Trigger::Response> clear(const msg::std_srvs::Trigger::Request&, const Context&);
 
@@ -86,6 +91,7 @@ struct Screen {
   std::size_t bytes() const {
     return static_cast<std::size_t>(spec.width_px) * static_cast<std::size_t>(spec.height_px) * 3;
   }
+  void fill(std::vector<std::uint8_t>& pixels) const;
   void publish_picture(Time now);
 };
 

@@ -1,7 +1,7 @@
 /// speaker: makes tones and plays recordings, for the ears of people.
 ///
 /// Command  level `sound`: sandlot_msgs/Sound, ends the sound before it; of several in a tick the last one is heard. A duration
-///          of 0, below 0 or beyond 0 is silence; one above `max_duration` is cut to it. A name of more than 200 bytes is refused.
+///          of 0 or less is silence; one above `max_duration` is cut to it. A name of more than 200 bytes is refused and counted.
 /// Output   level `sound`: sandlot_msgs/SpeakerState when a sound begins and ends, and every second while one lasts.
 /// Time     a sound begins with the tick it is ordered in and lasts `duration` of simulated time.
 /// Limits   no loudness, no samples: a recording is a name and a length. Robots do not hear it; those that shall use a voice
@@ -67,12 +67,14 @@ struct Speaker {
       ++state.refused;
       return;
     }
-    const Time length = Time::from_s(std::clamp(sound.duration, 0.0, spec.max_duration_s));
+    // A duration that is not a number is silence, too.
+    const double wanted_s = sound.duration > 0 ? sound.duration : 0;
+    const Time length = Time::from_s(std::min(wanted_s, spec.max_duration_s));
     state.playing = length.ns > 0;
     if (!state.playing) return;
     ++state.sounds;
     state.sound = sound;
-    state.sound.frequency = std::max(sound.frequency, 0.0);
+    state.sound.frequency = sound.frequency > 0 ? sound.frequency : 0;
     state.sound.duration = length.s();
     state.until = from + length;
   }
