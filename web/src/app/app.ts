@@ -24,6 +24,7 @@ import {CameraMode, cameras, overlays, SceneTools, Tool} from '../ui/scene_tools
 import {Teleop} from '../ui/teleop';
 import {TopicsPanel} from '../ui/topics';
 import {PicturesPanel} from '../ui/pictures';
+import {RobotPanelsPane} from '../ui/robot_panels';
 import {Tree} from '../ui/tree';
 import {Video} from '../ui/video';
 import {Actions, keyOf} from './actions';
@@ -106,7 +107,7 @@ export class App {
     this.console = new ConsolePanel(this.context);
     const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
     const matrix = new MatrixPanel(this.context);
-    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
+    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['panels', 'Panels', new RobotPanelsPane(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
       ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
       this.frame.addPane({id, title, panel});
     }

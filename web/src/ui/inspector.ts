@@ -12,6 +12,7 @@ import {icon} from './icons';
 import {heading, PoseSection} from './pose_section';
 import {Readings} from './readings';
 import {teamColor} from './teams';
+import {hasPanel, RobotPanelSection} from './robot_panel';
 import type {Teleop} from './teleop';
 import {WorldSection} from './world_section';
 
@@ -145,6 +146,7 @@ export class Inspector implements Panel {
     const world = this.context.store.world;
     const fixed = world?.models.find((m) => m.id === instance.model)?.static ?? false;
     this.parts.push(new PoseSection(this.context, instance.name, !fixed));
+    if (hasPanel(instance)) this.parts.push(new RobotPanelSection(this.context, instance));
     if (instance.robot) this.parts.push(new DriveSection(this.context, this.teleop, instance));
     if ((instance.devices ?? []).length > 0) this.form([errorsView(instance.name, 'Factor on the errors of all its devices')], 'Errors');
     this.list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));

@@ -18,7 +18,7 @@ export const cameras: [CameraMode, string][] = [
 
 export const overlays: [string, string, boolean][] = [
   ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['names', 'Names', true], ['trails', 'Trails', true], ['links', 'Communication links', true], ['batteries', 'Batteries', true],
-  ['scans', 'Laser scans', true], ['ranges', 'Range cones', true], ['frusta', 'Camera views', false], ['objects', 'Detected objects', true], ['velocity', 'Velocities', false], ['frames', 'Frames', false], ['contacts', 'Contacts', false], ['collisions', 'Collision shapes', false], ['teams', 'Team colours', true],
+  ['scans', 'Laser scans', true], ['ranges', 'Ranges with distances', true], ['frusta', 'Camera views', false], ['objects', 'Detected objects', true], ['velocity', 'Velocities', false], ['frames', 'Frames', false], ['contacts', 'Contacts', false], ['collisions', 'Collision shapes', false], ['teams', 'Team colours', true],
 ];
 
 export class SceneTools {

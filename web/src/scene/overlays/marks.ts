@@ -1,9 +1,10 @@
-// Marks at bodies and devices: frames, team rings, velocities, contacts, camera pyramids, sonar cones.
+// Marks at bodies and devices: frames, team rings, velocities, contacts, camera pyramids, cones and beams of ranges.
 import * as THREE from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { Contacts } from '../../protocol';
 import type { Bodies, Body } from '../bodies';
 import { composeMatrix, yawOf } from '../poses';
+import { Beams } from './beams';
 import { alongMatrix, arrowGeometry, axesGeometry, Stamps } from './stamps';
 
 export interface RangeReading {
@@ -60,6 +61,7 @@ export class Marks {
   private readonly circles: Stamps;
   private readonly diamonds: Stamps;
   private readonly cones: Stamps;
+  private readonly beams: Beams;
   private readonly all: Record<string, Stamps>;
   private readonly ranges = new Map<string, RangeReading>();
   private readonly detections = new Map<string, Detection[]>();
@@ -81,6 +83,7 @@ export class Marks {
     this.diamonds = new Stamps(root, new THREE.OctahedronGeometry(0.09), flat('#ffffff', 0.75, { depthTest: false }), true);
     this.circles = new Stamps(root, new THREE.TorusGeometry(1, 0.006, 6, 72), flat('#6aa5ff', 0.5));
     this.cones = new Stamps(root, coneGeometry(), flat('#37c2d6', 0.15, { side: THREE.DoubleSide }));
+    this.beams = new Beams(root);
     this.all = { frames: this.frames, teams: this.rings, velocity: this.velocities, contacts: this.contacts, frusta: this.pyramids, circles: this.circles, objects: this.diamonds, ranges: this.cones };
     for (const [name, stamps] of Object.entries(this.all)) {
       stamps.visible = this.shown[name] ?? false;
@@ -93,6 +96,7 @@ export class Marks {
     const stamps = this.all[name];
     if (stamps) stamps.visible = show;
     if (name === 'frusta') this.circles.visible = show;
+    if (name === 'ranges') this.beams.visible = show;
   }
 
   /** @param topic  that told of the view; `path`: of its device */
@@ -161,6 +165,7 @@ export class Marks {
 
   dispose(): void {
     for (const stamps of Object.values(this.all)) stamps.dispose();
+    this.beams.dispose();
   }
 
   private writeRings(bodies: Bodies): void {
@@ -245,17 +250,21 @@ export class Marks {
 
   private writeCones(bodies: Bodies): void {
     this.cones.begin();
+    const drawn = new Set<string>();
     for (const [path, reading] of this.ranges) {
       const found = bodies.devices.get(path);
       if (found === undefined) continue;
       const reach_m = Number.isFinite(reading.range) ? Math.max(0, reading.range) : reading.range === Infinity ? reading.max_range : 0;
       if (!(reach_m > 0) || !Number.isFinite(reach_m)) continue;
       found.body.devicePose(found.device, this.pose);
+      this.beams.set(path, this.pose, reach_m, reading.range);
+      drawn.add(path);
       const half = Math.tan(Math.min(1.4, Math.max(0.01, reading.field_of_view / 2 || 0.05)));
       this.setScale(reach_m, reach_m * half, reach_m * half);
       composeMatrix(this.pose, 0, this.local, this.cones.matrices, this.cones.next());
     }
     this.cones.end();
+    this.beams.keepOnly((path) => drawn.has(path));
   }
 
   private setScale(x: number, y: number, z: number): void {
