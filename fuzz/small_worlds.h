@@ -250,6 +250,9 @@ robots:
       lamp: {kind: lamp, levels: [brightness, color]}
       eyes: {kind: agent_eyes}
       health: {kind: property_sensor, property: health}
+      lcd: {kind: screen, width: 16, height: 16}
+      keys: {kind: keys}
+      speaker: {kind: speaker}
     properties: {health: {value: 100, min: 0, max: 100}, age: 3}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {foot: 0.1, go: [0.3, 1]}}, {at: 0.29 s, orders: {foot: 0.05}}]}
 )"},

@@ -103,24 +103,17 @@ class PoolBase {
   virtual std::optional<std::uint64_t> changes(std::uint32_t index) const = 0;  ///< Device::changes, if any
 };
 
-enum Phases : unsigned {
-  phase_actuate = 1,
-  phase_pre_substep = 2,
-  phase_sense = 4,
-  phase_post_substep = 8,
-  phase_settle = 16
-};
+enum Phases : unsigned { phase_actuate = 1, phase_pre_substep = 2, phase_sense = 4, phase_post_substep = 8 };
+inline constexpr unsigned phase_settle = 16;
 
 /// A kind of device. Function pointers and constants only, so that a plugin can fill one.
 struct Kind {
   const char* name;  ///< as scenario files spell it: "laser_scanner"
   const char* help;  ///< one sentence
   std::span<const LevelInfo> levels;
-  /// "sensor:gpu_lidar", "plugin:DiffDrive": what it answers to in SDF and URDF. A plugin is called by its
-  /// class or by its library without "lib" and ".so".
+  /// SDF and URDF names: "sensor:gpu_lidar", "plugin:DiffDrive" (its class, or its library without "lib" and ".so").
   std::span<const char* const> sdf_types = {};
-  /// Turns the SDF element into keys of the spec (and `level`, `link`); null when sdf_types is empty. Names
-  /// what it cannot use.
+  /// Turns the SDF element into keys of the spec, `level` and `link`; warns of what it cannot use. Null without sdf_types.
   Result<Node> (*from_sdf)(const Node& element, Diagnostics& diagnostics) = nullptr;
   /// Tells elements of one type apart when several kinds answer to it; null: takes them all.
   bool (*accepts)(const Node& element) = nullptr;

@@ -281,7 +281,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),

@@ -5,9 +5,9 @@
 ///          counted.
 /// Output   level `presses`: sandlot_msgs/KeyPresses, the 16 latest presses, published in the tick of a press.
 /// Time     a press is read in the tick it arrives in. A press has no length: a key is not held.
-/// Limits   no bounce, no chords. Labels that change are those of the screen (ScreenText.menu).
+/// Limits   no bounce, no chords. Labels are those of the screen (ScreenText.menu).
 /// Cost     a few comparisons per tick; no allocation.
-/// Errors   more labels than keys.
+/// Errors   none beyond the ranges of the keys.
 #include <algorithm>
 
 #include "devices/kind.h"
@@ -20,14 +20,10 @@ constexpr std::size_t most_waiting = 64, most_kept = 16;
 
 struct Spec {
   int count = 4;
-  std::vector<std::string> labels;
   bool touch = true;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"count", "1", "Number of keys.", 0, 64}, s.count);
-    visit(Field{"labels", "", "Labels of the keys, from the left; a screen with a menu replaces them.", 0, 0,
-                Field::none, 64},
-          s.labels);
     visit(Field{"touch", "", "Whether the screen can be touched."}, s.touch);
   }
 };
@@ -54,8 +50,6 @@ struct Keys {
 
   static Result<Keys> create(const DeviceBuild& build, Spec spec) {
     Keys made{std::move(spec), {}};
-    if (made.spec.labels.size() > static_cast<std::size_t>(made.spec.count))
-      return build.error("labels", "there are more labels than keys", "raise count, or leave labels out");
     made.state.latest.reserve(most_kept);
     made.presses = build.accept_queue<msg::KeyPress>(0, "presses", most_waiting);
     made.pressed = build.publish<msg::KeyPresses>(0, "presses");
