@@ -99,10 +99,10 @@ test("the screen shows the robot's pixels and labels", { skip }, async () => {
   const data = [];
   for (let y = 0; y < 5 * cell; ++y) for (let x = 0; x < columns * cell; ++x) data.push(...(letters[Math.floor(y / cell)][Math.floor(x / cell)] === "1" ? [255, 220, 40] : [0, 0, 102]));
   const bar = Array.from({ length: 80 * 6 }, (_, i) => [255 - (i % 80) * 3, (i % 80) * 3, 30]).flat();
+  const patches = probe.client.advertise({ topic: "/rover/lcd/pixels/command", encoding: "json", schemaName: "sandlot_msgs/msg/ScreenPatch" });
   for (const patch of [{ x: 8, y: 10, width: columns * cell, height: 5 * cell, data }, { x: 8, y: 50, width: 80, height: 6, data: bar },
     { has_text: true, lines: ["HI", "", "ready"], menu: ["GO", "STOP", "", "END"] }]) {
-    const answer = await probe.say(`command rover/lcd ScreenPatch ${JSON.stringify(patch)}`);
-    assert.ok(answer.ok, answer.text);
+    probe.client.sendMessage(patches, new TextEncoder().encode(JSON.stringify(patch)));
   }
   await page.locator(`${inspector} ${by("lcd")}`).waitFor();
   await until("the pixels", async () => (await pixel(inspector, 8, 10))[0] === 255);

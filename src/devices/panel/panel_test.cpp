@@ -108,7 +108,8 @@ TEST(Screen, KeepsTextWithinItsLimits) {
   text.has_text = true;
   text.lines.assign(300, "x");
   // 399 bytes and a character of two: the cut at 400 lies within the character.
-  text.lines[0] = std::string(399, 'a') + "\xc3\xa4";
+  text.lines[0].assign(399, 'a');
+  text.lines[0] += "\xc3\xa4";
   text.menu = {"GO", "", "", "END"};
   ASSERT_TRUE(send(rig, "lcd/pixels", text));
   tick(rig);

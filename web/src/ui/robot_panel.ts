@@ -91,7 +91,7 @@ export class RobotPanel {
 
   /** How many keys there are, and their labels when no program gives them others. */
   private async readKeys(keys: Device): Promise<void> {
-    const answer = await this.context.steer.ask(`show ${word(`${keys.path}.count`)} --json`);
+    const answer = await this.context.steer.ask(`show ${word(`${keys.path}.parameter.count`)} --json`);
     const count = answer.ok ? Number(/"value":\s*(\d+)/.exec(answer.text)?.[1]) : Number.NaN;
     if (!(count >= 0 && count <= 64)) return;
     this.own = Array<string>(count).fill('');

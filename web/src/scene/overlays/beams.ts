@@ -5,7 +5,7 @@ import { transform } from '../poses';
 const WIDTH = 128;
 const HEIGHT = 48;
 /** Part of the view's height that a number takes. */
-const PLATE = 0.05;
+const PLATE = 0.042;
 
 interface Beam {
   line: THREE.Line<THREE.BufferGeometry, THREE.LineBasicMaterial>;
