@@ -57,6 +57,8 @@ export class RobotPanel {
   private readonly sound = h('span', {class: 'sound', hidden: true, testid: 'sound', role: 'status'}, icon('speaker', 14), h('span'));
   private readonly lines = h('pre', {class: 'lcd-text mono', testid: 'lcd-text'});
   private readonly text = h('details', {hidden: true}, h('summary', {}, 'Text'), this.lines);
+  /** Name, sound, and the way to the output of its program. */
+  readonly head = h('div', {class: 'lcd-head'});
   readonly element = h('div', {class: 'robot-panel', testid: `panel-${this.instance.name}`});
   private readonly screen: Device | undefined;
   private readonly keys: Device | undefined;
@@ -73,7 +75,8 @@ export class RobotPanel {
     const programs = instance.controllers ?? [];
     const output = programs.length > 0 ? h('button', {class: 'plain small', title: 'Output of its program, in the log', testid: 'output', on: {click: () => context.showLog(programs[0].path)}}, icon('terminal', 14), h('span', {}, 'Output')) : null;
     const name = titled ? h('button', {class: 'plain small who ellipsis', title: `Select ${instance.name}`, on: {click: () => context.store.select(instance.name)}}, instance.name) : null;
-    this.element.append(h('div', {class: 'lcd-head'}, name, this.sound, h('span', {class: 'grow'}), output));
+    this.head.append(...[name, this.sound, h('span', {class: 'grow'}), output].filter((part) => part !== null));
+    if (titled) this.element.append(this.head);
     if (this.screen) this.element.append(h('div', {class: 'lcd-frame'}, this.canvas, this.dark));
     if (this.keys) {
       this.element.append(this.keyRow);
@@ -178,7 +181,7 @@ export class RobotPanelSection {
 
   constructor(context: Context, instance: Instance) {
     this.panel = new RobotPanel(context, instance, false);
-    this.element = h('section', {class: 'block'}, h('h3', {}, 'Panel'), this.panel.element);
+    this.element = h('section', {class: 'block'}, h('div', {class: 'lcd-title'}, h('h3', {}, 'Panel'), this.panel.head), this.panel.element);
     this.panel.setVisible(true);
   }
 
