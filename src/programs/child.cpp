@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "base/text.h"
@@ -51,6 +52,7 @@ struct Plan {
   const char* folder = "";
   const User* user = nullptr;
   const Limits* limits = nullptr;
+  std::span<const int> inherited;
   bool may_gain_rights = true;
   pid_t parent = 0;
   int in = -1, out = -1, error = -1, report = -1;
@@ -77,13 +79,19 @@ bool apply(const Limits& limits) {
          (limits.processes == 0 || at_most(RLIMIT_NPROC, limits.processes));
 }
 
+bool keep_open(std::span<const int> descriptors) {
+  for (const int each : descriptors)
+    if (fcntl(each, F_SETFD, 0) != 0) return false;
+  return true;
+}
+
 /// What the child does between fork and exec: system calls alone, since other threads may hold any lock.
 [[noreturn]] void become(const Plan& plan) {
   setpgid(0, 0);
   // A change of the user makes the kernel forget the death signal: first the one, then the other.
   if ((!plan.user || become_user(*plan.user)) && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 &&
       getppid() == plan.parent && dup2(plan.in, 0) >= 0 && dup2(plan.out, 1) >= 0 &&
-      dup2(plan.error, 2) >= 0 && (!*plan.folder || chdir(plan.folder) == 0) &&
+      dup2(plan.error, 2) >= 0 && keep_open(plan.inherited) && (!*plan.folder || chdir(plan.folder) == 0) &&
       (!plan.limits || apply(*plan.limits)) &&
       (plan.may_gain_rights || prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0)) {
     sigset_t none;
@@ -157,6 +165,7 @@ Result<Child> Child::start(const Launch& launch) {
   plan.folder = folder.c_str();
   plan.user = launch.user ? &*launch.user : nullptr;
   plan.limits = launch.limits ? &*launch.limits : nullptr;
+  plan.inherited = launch.inherited;
   plan.may_gain_rights = launch.may_gain_rights;
   plan.parent = getpid();
   plan.in = in.theirs, plan.out = out.theirs, plan.error = error.theirs, plan.report = report.theirs;

@@ -30,6 +30,7 @@ struct Launch {
   bool may_gain_rights = true;   ///< by programs that are set-user-ID
   bool ends_with_child = false;  ///< it collects what it runs, and ends then: bubblewrap
   bool answers = true;  ///< its output answers its input; else there is no input, and long lines are cut
+  std::vector<int> inherited = {};  ///< descriptors that stay open in it
 };
 
 class Child {

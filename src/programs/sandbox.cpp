@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -99,14 +100,19 @@ Result<Bubblewrap> find_bubblewrap() {
                "allow user namespaces, or give `sandbox: off` to run the program with your rights"};
 }
 
-/// Where the sandbox shows a file of the machine; "": nowhere.
-std::string inside(const std::string& file, const std::string& folder) {
-  const auto below = [&](const std::string& top) {
+const std::vector<std::string> shown_folders{"/usr", "/bin", "/sbin", "/lib", "/lib64"};
+
+bool is_below_any(const std::string& file, const std::vector<std::string>& folders) {
+  return std::any_of(folders.begin(), folders.end(), [&](const std::string& top) {
     return file.compare(0, top.size(), top) == 0 && (file.size() == top.size() || file[top.size()] == '/');
-  };
-  for (const char* const shown : {"/usr", "/bin", "/sbin", "/lib", "/lib64"})
-    if (below(shown)) return file;
-  return below(folder) ? team_folder + file.substr(folder.size()) : "";
+  });
+}
+
+/// Where the sandbox shows a file of the machine; "": nowhere.
+std::string inside(const std::string& file, const std::string& folder,
+                   const std::vector<std::string>& read_folders) {
+  if (is_below_any(file, shown_folders) || is_below_any(file, read_folders)) return file;
+  return is_below_any(file, {folder}) ? team_folder + file.substr(folder.size()) : "";
 }
 
 /// The folder without "." and a slash at its end.
@@ -190,6 +196,7 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
   Launch out;
   out.user = program_user();
   out.answers = false;
+  out.inherited = program.inherited;
   out.limits.emplace();
   out.limits->memory_bytes = static_cast<std::uint64_t>(program.budget.memory_bytes);
   const std::string folder = plain(program.folder.empty() ? "." : program.folder);
@@ -226,14 +233,16 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
         out.environment->emplace_back(*each);
     for (const std::string& each : program.python_folders) modules += each + ":";
     if (const char* const own = std::getenv("PYTHONPATH")) modules += own;
-    out.environment->push_back(variable("SANDLOT_URL", "unix:" + program.socket_folder + "/" + socket_name));
+    if (!program.socket_folder.empty())
+      out.environment->push_back(
+          variable("SANDLOT_URL", "unix:" + program.socket_folder + "/" + socket_name));
   } else {
     SL_ASSIGN(const Bubblewrap bwrap, find_bubblewrap());
     const std::string& name = program.command.front();
     const std::string file = find_program(name, folder, sandbox_path);
     const std::string shown = name.find('/') == std::string::npos || name.front() != '/'
                                   ? name
-                                  : inside(plain(name), folder);
+                                  : inside(plain(name), folder, program.read_folders);
     if (file.empty() || shown.empty())
       return Error{"cannot start '" + name +
                        "': " + (file.empty() ? "there is no such program" : "the sandbox does not show it") +
@@ -244,7 +253,12 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
     const auto add = [&](std::initializer_list<std::string> words) {
       out.command.insert(out.command.end(), words.begin(), words.end());
     };
-    add({"--ro-bind", folder, team_folder, "--bind", program.socket_folder, socket_inside});
+    add({"--ro-bind", folder, team_folder});
+    if (!program.socket_folder.empty()) add({"--bind", program.socket_folder, socket_inside});
+    for (const std::string& each : program.read_folders) {
+      if (out.user && !can_read(*out.user, each)) return unreadable(each);
+      if (!is_below_any(each, shown_folders)) add({"--ro-bind", each, each});
+    }
     int number = 0;
     for (const std::string& each : program.python_folders) {
       if (out.user && !can_read(*out.user, each)) continue;
@@ -258,9 +272,10 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
     add({"/usr/bin/prlimit", "--nproc=" + most + ":" + most, "--", shown});
     out.command.insert(out.command.end(), program.command.begin() + 1, program.command.end());
     out.folder = "/";
-    out.environment = std::vector<std::string>{
-        variable("PATH", sandbox_path), "HOME=/tmp", "LANG=C.UTF-8",
-        variable("SANDLOT_URL", std::string("unix:") + socket_inside + "/" + socket_name)};
+    out.environment = std::vector<std::string>{variable("PATH", sandbox_path), "HOME=/tmp", "LANG=C.UTF-8"};
+    if (!program.socket_folder.empty())
+      out.environment->push_back(
+          variable("SANDLOT_URL", std::string("unix:") + socket_inside + "/" + socket_name));
   }
   if (!modules.empty()) {
     if (modules.back() == ':') modules.pop_back();

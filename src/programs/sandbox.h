@@ -50,9 +50,11 @@ struct ProgramLaunch {
   std::vector<std::string> command;
   std::string folder;
   Budget budget;
-  std::string socket_folder;                ///< holds `socket_name`
-  std::vector<std::string> environment;     ///< "NAME=value"
-  std::vector<std::string> python_folders;  ///< of modules that it may import
+  std::string socket_folder;                   ///< holds `socket_name`; "": it has no socket
+  std::vector<std::string> environment;        ///< "NAME=value"
+  std::vector<std::string> python_folders;     ///< of modules that it may import
+  std::vector<std::string> read_folders = {};  ///< further ones that it may read, at their own paths
+  std::vector<int> inherited = {};             ///< descriptors that stay open in it
 };
 inline constexpr const char* socket_name = "run.sock";
 
