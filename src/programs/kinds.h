@@ -4,5 +4,6 @@
 // clang-format off
 #define SANDLOT_PROGRAMS(program) \
   program(pipe) \
+  program(robios) \
   program(remote)
 // clang-format on

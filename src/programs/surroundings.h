@@ -14,6 +14,7 @@ namespace sandlot::programs {
 /// Kind and numbers of a device: the parameters that are a number each, by path.
 struct DeviceFacts {
   std::string name, kind;
+  std::vector<std::string> levels;  ///< that are active
   std::map<std::string, double> numbers;
 };
 

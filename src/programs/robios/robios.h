@@ -1,0 +1,96 @@
+#pragma once
+/// RoBIOS: a program of EyeBot and EyeSim as a robot's controller, unchanged, in a process of its own.
+///
+///   controller: {kind: robios, program: wander.c}
+///   controller: {kind: robios, program: chase.so, api: 6, slot: 20 ms, delays: off, supervisor: on}
+///
+/// Turns        by a memory that both sides share (robios/slot.h). The program senses and orders once per time slot: at the first
+///              tick that ends at a slot's beginning or later it gets the turn, and the orders of its answer act at the beginning
+///              of the next tick. Slots count from the beginning of the run. Programs of several robots have their turns at once.
+/// Waiting      a program that waits for a time or an event has no turn until the slot in which it comes, and costs nothing.
+/// Senses       are those at the beginning of the turn: no message and no picture comes from the future.
+/// End          of the process, by itself, by a signal, or because it used more than `deadline` of wall time in a turn, which counts
+///              as spinning: drive and motors stop, and the run goes on. Its last words are in the log.
+/// Trust        none: orders are checked (robios/orders.h); it runs in a sandbox unless told otherwise (programs/sandbox.h).
+/// Determinism  orders and ends are input from outside and logged: replays get them from there, without the process. Its real-time
+///              clock is the one thing that it sees of this machine; what it makes of that is in its orders.
+/// State        what it waits for, what has come for it, its own odometry, numbers of turns and refused orders.
+/// Limits       1000 orders and 4 MB a turn; 200 lines of its output are logged per turn. Robots are numbered in the order of their
+///              creation; when one is deleted, those behind it move up. Of a radio that samples more often than the run has control
+///              steps, messages in between are lost. The gains of VWStartControl have no effect.
+/// Cost         two switches of processes per turn.
+#include "control/program.h"
+#include "programs/process_tree.h"
+#include "programs/robios/robot.h"
+#include "programs/robios/shared_memory.h"
+#include "programs/sandbox.h"
+
+namespace sandlot::programs::robios {
+
+class Robios final : public Program, public Outside, public Surrounded {
+ public:
+  Status init(const Description& robot, const Node& config, Outputs& out) override;
+  Resumed resume(const Observation& obs, Command& cmd) override;
+  Resumed answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms, Command& cmd) override;
+  Outside* outside() override { return this; }
+  Status set_parameter(std::string_view path, const Node& value) override;
+  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
+    return value_at(part, spec_, state_, path);
+  }
+  void list_values(ValuePart part, const ValueVisit& visit) const override {
+    sandlot::list_values(part, spec_, state_, visit);
+  }
+  void save(ByteWriter& w) const override;
+  void load(ByteReader& r) override;
+
+  Status connect() override;
+  bool connected() const override { return child_.has_value(); }
+  bool connects_again() const override { return spec_.after_restore == AfterRestore::restart; }
+  bool expects_answer() const override { return child_ && waiting_; }
+  Clock::time_point deadline() const override { return deadline_; }
+  void watched(std::vector<Watched>& out) const override;
+  void adopt(Outside& before) override;
+  std::optional<OutsideAnswer> receive() override;
+
+  void describe_devices(std::vector<DeviceFacts> devices) override { facts_ = std::move(devices); }
+  bool looks_around() const override { return spec_.supervisor && connected(); }
+  void see(std::span<const Being> beings) override { beings_.assign(beings.begin(), beings.end()); }
+  void meet(std::span<const Being> beings) override;
+  bool await(Clock::time_point until) override;
+  std::vector<Move> take_moves() override { return std::move(moves_); }
+
+ private:
+  std::int64_t slot_ns() const;
+  void take_messages(const Observation& obs);
+  bool is_due(const Observation& obs) const;
+  Resumed wait_on() const;
+  void fill(const Observation& obs);
+  void give_turn(const Observation& obs);
+  void request_moves(std::span<const std::byte> orders);
+  Resumed ended(std::uint8_t how, Command& cmd);
+  void move_output();
+  OutsideAnswer leave(std::string why);
+  std::optional<std::string> over_budget();
+
+  Spec spec_;
+  State state_;
+  std::string path_;  ///< "rover/brain"
+  Description robot_;
+  std::vector<DeviceFacts> facts_;
+  RobotDevices devices_;
+
+  // The process; none of it is State.
+  std::optional<SharedMemory> memory_;
+  std::optional<Child> child_;
+  bool waiting_ = false, halted_ = false;
+  Clock::time_point deadline_, begun_, measured_;
+  std::chrono::microseconds slice_{};
+  std::uint64_t sent_pictures_ = 0;
+  std::vector<Being> beings_;
+  std::vector<Move> moves_;
+  std::vector<std::string> last_words_;
+  std::size_t lines_ = 0;  ///< of output in this turn
+  ProcessMeter meter_;
+};
+
+}  // namespace sandlot::programs::robios
