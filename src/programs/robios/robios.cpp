@@ -204,6 +204,8 @@ Status Robios::connect() {
   SL_ASSIGN(const Launch launch, launch_of(program));
   SL_ASSIGN(child_, Child::start(launch));
   waiting_ = halted_ = false;
+  begins_anew_ = state_.turns > 0 && state_.running == 0;
+  deadline_ = Clock::now() + 1s;
   sent_pictures_ = 0;
   begun_ = measured_ = Clock::now();
   last_words_.clear();
@@ -216,6 +218,7 @@ void Robios::adopt(Outside& before) {
   child_ = std::exchange(old.child_, std::nullopt);
   waiting_ = old.waiting_;
   halted_ = old.halted_;
+  begins_anew_ = old.begins_anew_;
   deadline_ = old.deadline_;
   begun_ = old.begun_;
   measured_ = old.measured_;
@@ -336,6 +339,8 @@ void Robios::request_moves(std::span<const std::byte> orders) {
 
 std::optional<OutsideAnswer> Robios::receive() {
   if (!child_) return std::nullopt;
+  // Its first turn shall be the next slot: what the process before waited for is over. As an answer without orders.
+  if (std::exchange(begins_anew_, false) && !waiting_) return OutsideAnswer{OutsideAnswer::Kind::message, {}};
   if (!memory_->has_turn()) {
     move_output();
     if (memory_->has_turn()) return receive();

@@ -46,7 +46,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   Status connect() override;
   bool connected() const override { return child_.has_value(); }
   bool connects_again() const override { return spec_.after_restore == AfterRestore::restart; }
-  bool expects_answer() const override { return child_ && waiting_; }
+  bool expects_answer() const override { return child_ && (waiting_ || begins_anew_); }
   Clock::time_point deadline() const override { return deadline_; }
   void watched(std::vector<Watched>& out) const override;
   void adopt(Outside& before) override;
@@ -83,6 +83,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   std::optional<SharedMemory> memory_;
   std::optional<Child> child_;
   bool waiting_ = false, halted_ = false;
+  bool begins_anew_ = false;  ///< where another process had got to a time or event that it waits for
   Clock::time_point deadline_, begun_, measured_;
   std::chrono::microseconds slice_{};
   std::uint64_t sent_pictures_ = 0;

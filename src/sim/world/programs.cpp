@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "physics/parallel.h"
+#include "sim/world/beings.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -46,6 +47,17 @@ void set_failure(SimulationParts::ProgramEntry& entry, std::optional<std::string
 /// Sources of orders of teams come after those of robots, whose sources are their creation order.
 constexpr std::uint64_t first_team = std::uint64_t{1} << 63;
 
+/// Tells programs outside that need it which robots and objects there are.
+void meet_surroundings(Programs::Entities entities, std::span<Programs::ProgramEntry* const> outside) {
+  std::vector<programs::Being> beings;
+  for (Programs::ProgramEntry* const entry : outside) {
+    auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry->program.get());
+    if (!surrounded) continue;
+    if (beings.empty()) beings = beings_of(entities);
+    surrounded->meet(beings);
+  }
+}
+
 }  // namespace
 
 // --------------------------------------------------------------------------------------------- phases of a tick
@@ -67,6 +79,7 @@ void Programs::gather(Entities entities) {
     for (auto& program : entity->programs) add(*program, entity->serial);
   for (std::size_t i = 0; i < teams_.size(); ++i)
     for (auto& program : teams_[i].programs) add(*program, first_team + i);
+  meet_surroundings(entities, outside_);
   // Kind by kind, in the order in which the kinds first appear.
   for (auto* const list : {&running_, &timed_}) {
     std::map<const ControllerKind*, std::size_t> place;

@@ -9,6 +9,7 @@
 #include "programs/programs.h"
 #include "sim/load/device_settings.h"
 #include "sim/load/plugin.h"
+#include "sim/world/beings.h"
 #include "sim/world/programs.h"
 #include "sim/world/simulation.h"
 
@@ -169,6 +170,9 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
     } else {
       program->program = other_kind->create();
       program->wait = std::make_unique<SimulationParts::Wait>();
+      if (auto* const surrounded = dynamic_cast<programs::Surrounded*>(program->program.get());
+          surrounded && !driven.team)
+        surrounded->describe_devices(facts_of(*driven.robots.front(), devices_));
     }
     program->description = describe(driven, before, period_s);
     if (program->description->robot == driven.name) {

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "base/log.h"
+#include "programs/surroundings.h"
 #include "sim/world/programs.h"
 
 namespace sandlot {
@@ -39,9 +40,13 @@ Status Programs::connect(Entities entities, Time now, bool allowed, bool restore
 /// Sends what the program observes once more if the run was left between that and the answer, which is no State: with it the
 /// run goes on as the one that was not left.
 void Programs::ask_again(ProgramEntry& entry, Time now) {
-  if (entry.ended || entry.wait->waiting_for != Program::Waiting::outside) return;
-  const Stream random(setup_.seed, entry.key, Purpose::controller, entry.steps - 1);
-  entry.program->resume({now, entry.topics, entry.seen, random}, entry.command);
+  if (entry.ended) return;
+  if (entry.wait->waiting_for == Program::Waiting::outside) {
+    const Stream random(setup_.seed, entry.key, Purpose::controller, entry.steps - 1);
+    entry.program->resume({now, entry.topics, entry.seen, random}, entry.command);
+  } else if (!entry.program->outside()->expects_answer()) {
+    return;
+  }
   (entry.program->outside()->is_client() ? awaited_clients_ : awaited_).push_back(&entry);
 }
 
@@ -59,6 +64,9 @@ bool Programs::take_answers(ProgramEntry& entry) {
     auto answer = outside.receive();
     if (!answer) return false;
     submit_answer(entry, std::move(*answer));
+    if (auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry.program.get()))
+      for (const programs::Move& move : surrounded->take_moves())
+        commands_.submit(PoseRequest{move.name, move.X_WM}, {});
   }
   return true;
 }
@@ -93,6 +101,12 @@ void Programs::await_answers() {
       return true;
     });
     if (awaited_.empty()) return;
+    // The first of those that no descriptor tells of; the others run meanwhile.
+    const bool waited = std::any_of(awaited_.begin(), awaited_.end(), [](ProgramEntry* entry) {
+      auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry->program.get());
+      return surrounded && surrounded->await(entry->program->outside()->deadline());
+    });
+    if (waited) continue;
     watched.clear();
     Clock::time_point deadline = Clock::time_point::max();
     for (ProgramEntry* const entry : awaited_) {
