@@ -54,19 +54,22 @@ Language language_of(const fs::path& file) {
 struct Library {
   std::string folder;   ///< of librobios7.so
   std::string headers;  ///< of eyebot.h
+  std::string host;     ///< the file that runs programs that are libraries
 };
 
-/// Empty folders: there is none.
+/// Empty where there is none.
 Library find_library(int api) {
   const std::string generation = "robios" + std::to_string(api);
   Library out;
   std::error_code none;
   for (const std::string& each : folders_above_program()) {
     const fs::path above = each;
-    for (const fs::path& at : {above / "robios", above / "lib" / "sandlot"})
+    for (const fs::path& at : {above / "robios", above / "lib"})
       if (out.folder.empty() && fs::exists(at / ("lib" + generation + ".so"), none)) out.folder = at.string();
     for (const fs::path& at : {above / "robios" / "include" / generation, above / "include" / generation})
       if (out.headers.empty() && fs::exists(at / "eyebot.h", none)) out.headers = at.string();
+    for (const fs::path& at : {above / "robios_host", above / "bin" / "robios_host"})
+      if (out.host.empty() && fs::exists(at, none)) out.host = at.string();
   }
   return out;
 }
@@ -276,9 +279,9 @@ Result<ProgramLaunch> prepare(const Source& source) {
     out.read_folders.push_back(made.string());
     out.command = {(made / "program").string()};
   } else if (file.extension() == ".so") {
-    const fs::path runner = fs::path(library.folder) / "robios_runner";
-    if (library.folder.empty() || !fs::exists(runner, none)) return Error{missing, "install it whole"};
-    out.command = {runner.string(), shown};
+    if (library.folder.empty() || library.host.empty()) return Error{missing, "install it whole"};
+    out.read_folders.push_back(fs::path(library.host).parent_path().string());
+    out.command = {library.host, shown};
   } else if (access(file.c_str(), X_OK) == 0) {
     out.command = {shown};
   } else {

@@ -6,7 +6,7 @@
 ///           variables.
 /// Cache     $XDG_CACHE_HOME/sandlot/robios or ~/.cache/sandlot/robios (of root, if `nobody` cannot read there,
 ///           /var/cache/sandlot/robios): by the source, what it includes, flags, headers and compiler.
-/// Library   robios6 or robios7: beside the build, or in lib/sandlot and include of the installation.
+/// Library   robios6 or robios7: beside the build, or in lib and include of the installation.
 /// Errors    no such file, no compiler, no library; what the compiler wrote, by the source's own lines.
 #include <string>
 #include <vector>
