@@ -183,7 +183,8 @@ TEST_F(RobiosWorld, ProgramsThatMeanHarmEndAlone) {
                                             {"scribble", 0, 5},
                                             {"shorten", 0}}) {
     SCOPED_TRACE(each.mode);
-    const auto live = build(with({each.mode, "drive"}, {{"deadline", "1 s"}}), {.start_programs = true});
+    const auto live = build(with({each.mode, "drive"}, {{"deadline", each.ended == 3 ? "1 s" : "20 s"}}),
+                            {.start_programs = true});
     ASSERT_TRUE(live);
     advance(*live, 101);
     EXPECT_EQ(value(*live, "rover1/brain.ended"), each.ended);
