@@ -42,6 +42,7 @@ std::vector<Row> viewer();     ///< P9: what looking at a run costs it
 std::vector<Row> radio();      ///< packets among many robots
 std::vector<Row> lockstep();   ///< P7: a step of a client over TCP
 std::vector<Row> rollers();    ///< P4: a robot on wheels with rollers
+std::vector<Row> robios();     ///< a time slot of a RoBIOS program
 
 /// Processor time of the calling thread: other work on the machine does not count.
 inline double thread_seconds() {
