@@ -201,7 +201,8 @@ Status Robios::connect() {
   program.inherited.push_back(memory_->descriptor());
   program.environment.push_back(std::string(descriptor_variable) + "=" +
                                 std::to_string(memory_->descriptor()));
-  SL_ASSIGN(const Launch launch, launch_of(program));
+  SL_ASSIGN(Launch launch, launch_of(program));
+  launch.limits->niceness = 0;  // the run waits for it
   SL_ASSIGN(child_, Child::start(launch));
   waiting_ = halted_ = false;
   begins_anew_ = state_.turns > 0 && state_.running == 0;
