@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct Language {
   const char* name;
-  const char* library;    ///< folder of the client library in the source tree
+  const char* library;    ///< folder of the client library in the source tree; "": it is no client
   const char* installed;  ///< the same below the prefix of an installation
   const char* build;      ///< command before the program can run; "": none
   const char* start;      ///< command that runs the program
@@ -36,6 +36,7 @@ constexpr Language languages[] = {
     {"js", "clients/javascript", "share/sandlot/javascript", "", "node @NAME@_controller.mjs"},
     {"cpp", "clients/cpp/sandlot_client", "include/sandlot_client", "cmake -B build && cmake --build build",
      "build/@NAME@_controller"},
+    {"robios", "", "", "", ""},
 };
 
 /// A file of the project.
@@ -101,11 +102,14 @@ Status write_project(const NewOptions& options, const Language& language) {
   SL_TRY(check_name(options.name));
   SL_ASSIGN(const fs::path templates,
             data_folder("templates/controller", "share/sandlot/templates/controller"));
-  SL_ASSIGN(const fs::path library, data_folder(language.library, language.installed));
+  const bool is_client = *language.library != 0;
   std::vector<ProjectFile> files;
-  SL_TRY(add_files(templates / "any", "", options.name, true, files));
   SL_TRY(add_files(templates / language.name, "", options.name, true, files));
-  SL_TRY(add_files(library, "sandlot_client", options.name, false, files));
+  if (is_client) {
+    SL_ASSIGN(const fs::path library, data_folder(language.library, language.installed));
+    SL_TRY(add_files(templates / "any", "", options.name, true, files));
+    SL_TRY(add_files(library, "sandlot_client", options.name, false, files));
+  }
   std::sort(files.begin(), files.end(),
             [](const ProjectFile& a, const ProjectFile& b) { return a.to < b.to; });
   const fs::path folder = options.out.empty() ? options.name : options.out;
@@ -113,14 +117,15 @@ Status write_project(const NewOptions& options, const Language& language) {
   for (const ProjectFile& each : files)
     if (fs::exists(fs::symlink_status(folder / each.to, error)))
       return Error{(folder / each.to).string() + " exists already", "another folder: --out DIR"};
-  fs::create_directories(folder / "sandlot_client", error);
+  fs::create_directories(is_client ? folder / "sandlot_client" : folder, error);
   if (error) return Error{"cannot make the folder " + folder.string() + ": " + error.message()};
   for (const ProjectFile& each : files) SL_TRY(write_project_file(each, folder, options.name));
   const auto command = [&](const char* text) { return with_name(text, "@NAME@", options.name); };
   fmt::print("{}: {} files, explained in README.md\n", folder.string(), files.size());
   fmt::print("  cd {}\n", folder.string());
   if (*language.build) fmt::print("  {}\n", language.build);
-  fmt::print("  sandlot run {}.yaml --port 8765\n  {}\n", options.name, command(language.start));
+  fmt::print("  sandlot run {}.yaml --port 8765\n", options.name);
+  if (is_client) fmt::print("  {}\n", command(language.start));
   return {};
 }
 
