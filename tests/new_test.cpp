@@ -84,6 +84,18 @@ TEST(SlowNew, ACppProjectBuildsAndPassesItsTest) {
   EXPECT_EQ(rebuilt.exit_code, 0) << rebuilt.out;
 }
 
+TEST(New, ARobiosProgramArrives) {
+  const TestFolder scratch;
+  fs::permissions(scratch.path, fs::perms(0755));  // programs of root run as nobody
+  const Printed made = in_folder(scratch.path, "$SANDLOT new controller wall --lang robios");
+  ASSERT_EQ(made.exit_code, 0) << made.out;
+  EXPECT_THAT(made.out, HasSubstr("cd wall\n  sandlot run wall.yaml --port 8765\n"));
+  EXPECT_EQ(files_in(scratch.file("wall")), (std::set<std::string>{"README.md", "wall.c", "wall.yaml"}));
+  const Printed run = in_folder(scratch.file("wall"), "XDG_CACHE_HOME=$PWD/.. $SANDLOT run wall.yaml");
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("arrived"));
+}
+
 TEST(New, NamesAreCheckedAndLanguagesSuggested) {
   const TestFolder scratch;
   for (const char* name : {"''", "2nd", "a-b", "../a", "a/b", "_a", "a.b", "\"a b\"", "é"}) {
