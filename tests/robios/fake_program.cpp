@@ -117,6 +117,13 @@ int main(int, char** words) {
         std::free(room);
         std::free(room);
       }
+      if (mode == "burn" && turn == 3) {
+        const pid_t child = fork();
+        if (child == 0)
+          for (;;) {}
+        std::printf("burner %d\n", static_cast<int>(child));
+        std::fflush(stdout);
+      }
       if (mode == "fork")
         for (int i = 0; i < 100'000; ++i) {
           const pid_t child = fork();

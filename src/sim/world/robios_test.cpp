@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <thread>
 
 #include "base/log.h"
 #include "base/test_folder.h"
@@ -209,6 +212,33 @@ TEST_F(RobiosWorld, FloodsAndForksStayInTheirSandbox) {
   ASSERT_TRUE(fork);
   advance(*fork, 40);
   EXPECT_EQ(value(*fork, "rover2/brain.turns"), 9);
+}
+
+char state_of(int process) {
+  std::ifstream in("/proc/" + std::to_string(process) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t end = text.rfind(')');
+  return end == std::string::npos ? ' ' : text[end + 2];
+}
+
+TEST_F(RobiosWorld, WhoUsesMoreThanItsShareIsHaltedBetweenTurns) {
+  int burner = 0;
+  log::set_listener([&](log::Level, std::string_view text) {
+    if (const auto at = text.find("burner "); at != text.npos)
+      burner = std::stoi(std::string(text.substr(at + 7)));
+  });
+  const auto live = build(with({"burn"}, {{"cpu", "10 %"}}), {.start_programs = true});
+  ASSERT_TRUE(live);
+  bool halted = false;
+  for (int i = 0; i < 500 && !halted; ++i) {
+    advance(*live, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    halted = burner > 0 && state_of(burner) == 'T';
+  }
+  EXPECT_TRUE(halted);
+  const double turns = value(*live, "rover1/brain.turns");
+  advance(*live, 50);
+  EXPECT_EQ(value(*live, "rover1/brain.turns"), turns + 10);
 }
 
 TEST_F(RobiosWorld, LastWordsAreShown) {
