@@ -78,8 +78,8 @@ int main(int, char** words) {
     }
     if (mode == "pose") {
       // Its own place is 3 m, 4 m, whatever the drive counted; later it is where it drove from there.
-      if (turn == 3) add(OrderKind::set_pose, PoseOrder{3, 4, 0});
-      if (turn == 4 && std::hypot(senses.x_m - 3, senses.y_m - 4) > 0.02) return 5;
+      if (turn == 20) add(OrderKind::set_pose, PoseOrder{3, 4, 0});
+      if (turn == 21 && std::hypot(senses.x_m - 3, senses.y_m - 4) > 0.02) return 5;
       add(OrderKind::speed, SpeedOrder{0.2, 0});
     }
     if (mode == "supervise") {
