@@ -46,7 +46,18 @@ Result<WorldContent> read_world(const std::string& path, const ReadOptions& opti
     kind = *std::find_if(format_kinds().begin(), format_kinds().end(),
                          [](const FormatKind* each) { return each->world != nullptr; });
   SL_ASSIGN(const std::string text, read_text_file(path, kind->max_bytes));
+  // Saphira's simulator and Gazebo both end their worlds in .world.
+  if (std::filesystem::path(path).extension() == ".world" && text.find('<') == std::string::npos)
+    kind = find_format("a.wld");
   return kind->world(text, path, options, diagnostics);
+}
+
+Result<Scenario> read_scenario_file(const std::string& path, std::span<const Override> overrides,
+                                    Diagnostics& diagnostics) {
+  const FormatKind* const kind = find_format(path);
+  if (!kind || !kind->scenario) return read_scenario(path, overrides, diagnostics);
+  SL_ASSIGN(const std::string text, read_text_file(path, kind->max_bytes));
+  return kind->scenario(text, path, overrides, diagnostics);
 }
 
 }  // namespace sandlot::formats

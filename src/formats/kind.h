@@ -24,6 +24,9 @@ struct FormatKind {
   // A format declares scenarios, or worlds and models: exactly one of these is given.
   Result<Scenario> (*scenario)(std::string_view text, const std::string& file,
                                std::span<const Override> overrides, Diagnostics& diagnostics) = nullptr;
+  /// The scenario as a tree of the keys of scenario files, when the format is read by way of them.
+  Result<Node> (*scenario_tree)(std::string_view text, const std::string& file,
+                                Diagnostics& diagnostics) = nullptr;
   Result<WorldContent> (*world)(std::string_view text, const std::string& file, const ReadOptions& options,
                                 Diagnostics& diagnostics) = nullptr;
 
@@ -37,6 +40,9 @@ struct FormatKind {
   Result<Xml> (*write_model)(const model::Instance& instance, Diagnostics& diagnostics) = nullptr;
   /// For formats that are no XML and name no files.
   Result<std::string> (*write_plain_world)(const model::Setup& setup, Diagnostics& diagnostics) = nullptr;
+  Result<std::string> (*write_plain_model)(const model::Instance& instance,
+                                           Diagnostics& diagnostics) = nullptr;
+  Result<std::string> (*write_scenario)(const Scenario& scenario, Diagnostics& diagnostics) = nullptr;
 };
 
 std::span<const FormatKind* const> format_kinds();
@@ -51,5 +57,9 @@ std::string known_extensions();
 /// Errors   a scenario; those of the format.
 Result<WorldContent> read_world(const std::string& path, const ReadOptions& options,
                                 Diagnostics& diagnostics);
+
+/// Reads a scenario in the format of its extension.
+Result<Scenario> read_scenario_file(const std::string& path, std::span<const Override> overrides,
+                                    Diagnostics& diagnostics);
 
 }  // namespace sandlot::formats

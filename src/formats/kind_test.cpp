@@ -30,7 +30,7 @@ TEST(FormatKinds, AFileOfNoFormatHasNoKind) {
   EXPECT_EQ(find_format("yaml"), nullptr);
   EXPECT_EQ(find_format(""), nullptr);
   EXPECT_EQ(known_extensions(),
-            ".yaml, .yml, .sdf, .world, .urdf, .xacro, .wld, .maz, .maze, .robi, .esObj or .esobj");
+            ".yaml, .yml, .sdf, .world, .urdf, .xacro, .wld, .maz, .maze, .robi, .esObj, .esobj or .sim");
 }
 
 TEST(FormatKinds, AModelMayHaveAnyExtensionButThatOfAScenario) {

@@ -8,5 +8,6 @@
   format(eyesim_world)          \
   format(eyesim_maze)           \
   format(eyesim_robot)          \
-  format(eyesim_object)
+  format(eyesim_object)         \
+  format(eyesim_scenario)
 // clang-format on

@@ -4,6 +4,7 @@
 #include "formats/eyesim/lines.h"
 #include "formats/eyesim/plan.h"
 #include "formats/eyesim/robi.h"
+#include "formats/eyesim/sim.h"
 #include "formats/kind.h"
 
 namespace sandlot::formats {
@@ -39,14 +40,22 @@ Result<WorldContent> read_object_content(std::string_view text, const std::strin
   return out;
 }
 
+Result<Scenario> read_sim(std::string_view text, const std::string& file, std::span<const Override> overrides,
+                          Diagnostics& diagnostics) {
+  SL_ASSIGN(Node root, eyesim::sim_tree(text, file, diagnostics));
+  return scenario_of_tree(std::move(root), file, overrides, diagnostics);
+}
+
 constexpr std::string_view wld_extensions[] = {".wld"};
 constexpr std::string_view maze_extensions[] = {".maz", ".maze"};
 constexpr std::string_view robi_extensions[] = {".robi"};
 constexpr std::string_view object_extensions[] = {".esObj", ".esobj"};
+constexpr std::string_view sim_extensions[] = {".sim"};
 
 }  // namespace
 
-extern const FormatKind eyesim_world_format, eyesim_maze_format, eyesim_robot_format, eyesim_object_format;
+extern const FormatKind eyesim_world_format, eyesim_maze_format, eyesim_robot_format, eyesim_object_format,
+    eyesim_scenario_format;
 
 constinit const FormatKind eyesim_world_format{
     .name = "wld",
@@ -80,6 +89,15 @@ constinit const FormatKind eyesim_object_format{
     .extensions = object_extensions,
     .max_bytes = eyesim::most_bytes,
     .world = read_object_content,
+};
+constinit const FormatKind eyesim_scenario_format{
+    .name = "sim",
+    .help = "Scenarios of EyeSim: a world, robots with their programs, objects, markers.",
+    .contents = "scenarios",
+    .extensions = sim_extensions,
+    .max_bytes = eyesim::most_bytes,
+    .scenario = read_sim,
+    .scenario_tree = eyesim::sim_tree,
 };
 
 }  // namespace sandlot::formats

@@ -556,6 +556,11 @@ Result<Pose> read_pose(const Node& node, const std::string& path) {
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
                                 std::span<const Override> overrides, Diagnostics& diagnostics) {
   SL_ASSIGN(Node root, parse_with_includes(text, file));
+  return scenario_of_tree(std::move(root), file, overrides, diagnostics);
+}
+
+Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<const Override> overrides,
+                                  Diagnostics& diagnostics) {
   SL_TRY(apply_overrides(root, overrides));
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));

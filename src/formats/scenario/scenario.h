@@ -87,6 +87,10 @@ Result<Scenario> read_scenario(const std::string& path, std::span<const Override
 Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
                                 std::span<const Override> overrides, Diagnostics& diagnostics);
 
+/// As above from the tree of a file, for formats whose files are scenarios in other words.
+Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<const Override> overrides,
+                                  Diagnostics& diagnostics);
+
 /// The folder that a relative path written at `place` starts from: that of the file it stands in (an included file's
 /// own), the scenario's for what came from `--set`.
 std::string base_folder(const Scenario& scenario, const Place& place);

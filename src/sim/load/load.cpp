@@ -77,8 +77,8 @@ Result<model::Setup> load_file(const std::string& path, const LoadOptions& optio
   const formats::FormatKind* const format = words ? nullptr : formats::find_format(path);
   if (format && format->scenario) {
     SL_ASSIGN(formats::Scenario scenario,
-              options.text ? formats::parse_scenario(*options.text, path, options.overrides, diagnostics)
-                           : formats::read_scenario(path, options.overrides, diagnostics));
+              options.text ? format->scenario(*options.text, path, options.overrides, diagnostics)
+                           : formats::read_scenario_file(path, options.overrides, diagnostics));
     return load_scenario(std::move(scenario), options, diagnostics);
   }
   if (words) {
