@@ -23,4 +23,7 @@ struct TextLimits {
 /// @param file  name for messages
 Result<Node> parse_yaml(std::string_view text, const std::string& file, const TextLimits& limits = {});
 
+/// A tree as YAML that parse_yaml() reads as the same tree.
+std::string yaml_text(const Node& root);
+
 }  // namespace sandlot

@@ -12,6 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "files/text.h"
+#include "files/yaml.h"
 #include "formats/kind.h"
 #include "formats/sdf/write.h"
 #include "geometry/height_grid.h"
@@ -146,6 +147,52 @@ struct Job {
     return "# " + comment() + "\n" + text;
   }
 
+  Result<std::string> model_to_plain_file() const {
+    SL_ASSIGN(const formats::WorldContent content,
+              formats::read_world(options.in, {.path = search}, diagnostics));
+    if (content.is_world())
+      return Error{"'" + options.in + "' is a world, and a " + format_name() + " file holds one robot",
+                   "name a file with one robot"};
+    SL_ASSIGN(const std::string text, to.write_plain_model(content.instances.front(), diagnostics));
+    return "# " + comment() + "\n" + text;
+  }
+
+  /// A scenario of one format in another.
+  Result<std::string> scenario_to_scenario() const {
+    if (from == &to || (!to.write_scenario && !from->scenario_tree))
+      return Error{"'" + options.in + "' is a scenario already",
+                   "convert makes scenarios of worlds and robots"};
+    SL_ASSIGN(const std::string text, read_text_file(options.in, from->max_bytes));
+    const std::string old_folder = folder_of(options.in), new_folder = folder_of(options.out);
+    const auto move = [&](std::string& file) {
+      if (!file.empty() && !is_builder(file)) file = moved(file, old_folder, new_folder, search);
+    };
+    if (to.write_scenario) {
+      SL_ASSIGN(formats::Scenario scenario, from->scenario(text, options.in, {}, diagnostics));
+      move(scenario.world);
+      for (auto* const groups : {&scenario.robots, &scenario.things})
+        for (formats::RobotGroup& group : *groups) move(group.model);
+      SL_ASSIGN(const std::string out, to.write_scenario(scenario, diagnostics));
+      return "# " + comment() + "\n" + out;
+    }
+    SL_ASSIGN(Node root, from->scenario_tree(text, options.in, diagnostics));
+    const auto move_key = [&](Node* map, const char* key) {
+      Node* const value = map ? map->find(key) : nullptr;
+      if (!value || !value->is_scalar()) return;
+      std::string file = value->text();
+      move(file);
+      *value = Node::scalar(file, value->place());
+    };
+    move_key(&root, "world");
+    for (const char* const list : {"robots", "things"})
+      if (Node* const groups = root.find(list))
+        for (Node& group : groups->items()) {
+          move_key(&group, "model");
+          move_key(group.find("controller"), "program");
+        }
+    return "# " + comment() + "\n" + yaml_text(root);
+  }
+
   /// A model with parameters as the one model of a file.
   Result<std::string> built_to_file() const {
     SL_ASSIGN(const model::Instance instance,
@@ -232,21 +279,23 @@ Result<std::string> converted(const Job& job) {
     return Error{"scenarios name builders themselves: model: {builder: ...}", "convert it to .sdf"};
   }
   if (job.to.scenario) {
-    if (job.from->scenario)
-      return Error{"'" + job.options.in + "' is a scenario already",
-                   "convert makes scenarios of worlds and robots"};
+    if (job.from->scenario) return job.scenario_to_scenario();
+    if (job.to.write_scenario)
+      return Error{"'" + job.options.in + "' is not a scenario",
+                   "convert makes .yaml scenarios of worlds and robots"};
     return job.file_to_scenario();
   }
   if (job.to.sdf_tree && job.from->sdf_tree && job.to.write_world) return job.tree_to_sdf();
   if (job.to.write_world) return job.setup_to_file();
   if (job.to.write_plain_world) return job.setup_to_plain_file();
-  if (!job.to.write_model)
+  if (!job.to.write_model && !job.to.write_plain_model)
     return Error{"convert writes no " + job.format_name() + " files",
-                 "it writes .sdf, .urdf, .yaml and .wld"};
+                 "it writes .sdf, .urdf, .yaml, .wld, .maz, .robi and .sim"};
   if (job.from->scenario)
     return Error{
         "'" + job.options.in + "' is a scenario, and a " + job.format_name() + " file holds one robot",
         "convert it to .sdf"};
+  if (job.to.write_plain_model) return job.model_to_plain_file();
   return job.model_to_file();
 }
 

@@ -73,6 +73,7 @@ constinit const FormatKind eyesim_maze_format{
     .extensions = maze_extensions,
     .max_bytes = eyesim::most_bytes,
     .world = read_maze_content,
+    .write_plain_world = eyesim::maze_of,
 };
 constinit const FormatKind eyesim_robot_format{
     .name = "robi",
@@ -81,6 +82,7 @@ constinit const FormatKind eyesim_robot_format{
     .extensions = robi_extensions,
     .max_bytes = eyesim::most_bytes,
     .world = read_robi_content,
+    .write_plain_model = eyesim::robi_of,
 };
 constinit const FormatKind eyesim_object_format{
     .name = "esobj",
@@ -98,6 +100,7 @@ constinit const FormatKind eyesim_scenario_format{
     .max_bytes = eyesim::most_bytes,
     .scenario = read_sim,
     .scenario_tree = eyesim::sim_tree,
+    .write_scenario = eyesim::sim_of,
 };
 
 }  // namespace sandlot::formats

@@ -41,6 +41,14 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
 Result<WorldContent> world_of(const Plan& plan, const std::string& name, const std::string& file,
                               const ReadOptions& options, Diagnostics& diagnostics);
 
+/// A plan as a .maz file. Walls lose their thickness, height and colour.
+/// Errors   walls that do not lie on a grid.
+Result<std::string> maze_text(const Plan& plan, Diagnostics& diagnostics);
+/// A world as a .maz file: upright boxes that stand still are walls, robots are starts, balls and boxes are letters.
+Result<std::string> maze_of(const model::Setup& setup, Diagnostics& diagnostics);
+/// Appends the upright boxes of a thing that stands still as walls; of other shapes one warning says that they are left out.
+void walls_of_instance(const model::Instance& instance, std::vector<Wall>& out, Diagnostics& diagnostics);
+
 /// Upright boxes that stand still, and the floor, as a .wld file; of everything else one warning says that it is left out.
 Result<std::string> wld_of(const model::Setup& setup, Diagnostics& diagnostics);
 

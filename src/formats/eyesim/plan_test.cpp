@@ -164,7 +164,7 @@ TEST(EyesimPlan, LeavesOutWhatAWorldFileCannotSay) {
   setup.instances = world->instances;
   ASSERT_TRUE(wld_of(setup, d));
   ASSERT_EQ(d.warnings.size(), 2u);
-  EXPECT_EQ(d.warnings[0].what, "'ball' is left out: a .wld file has no things that move");
+  EXPECT_EQ(d.warnings[0].what, "'ball' is left out: a world of EyeSim has no things that move");
   setup.instances.clear();
   EXPECT_FALSE(wld_of(setup, d));
 }

@@ -8,6 +8,7 @@
 #include "base/math.h"
 #include "base/text.h"
 #include "builders/wheeled.h"
+#include "formats/eyesim/errors.h"
 #include "formats/eyesim/lines.h"
 #include "formats/eyesim/shapes.h"
 
@@ -26,12 +27,17 @@ struct Psd {
   std::string name;
   int number = 0;
   Pose X_RS;
+  double range_m = 9.999;
   Place place;
 };
 struct Camera {
   Pose X_RS;
   double fov_rad = 1.0471975511965976, aspect = 4.0 / 3;
   std::optional<double> fisheye_rad;
+  Place place;
+};
+struct Bumper {
+  std::string name;
   Place place;
 };
 struct Lidar {
@@ -43,6 +49,9 @@ struct Solid {
   Shape shape;
   Pose X_RC;
 };
+
+constexpr double psd_range_m = 9.999, infrared_range_m = 0.15;
+constexpr double older_height_m = 0.03;  ///< of sensors in polar coordinates, over the robot's point
 
 Vec3 point(const std::vector<double>& n, std::size_t first) {
   return {n[first] * mm, n[first + 1] * mm, n[first + 2] * mm};
@@ -80,7 +89,10 @@ class Reader {
       return axle(line, 2, *which);
     }
     if (word == "wheel") return wheel(line);
-    if (word == "psd") return psd(line);
+    if (word == "psd" || word == "ir") return psd(line, word == "ir" ? infrared_range_m : psd_range_m);
+    if (word == "bump") return bump(line);
+    if (word == "speed" || word == "maxspeed" || word == "turn") return top_speed(line, word == "turn");
+    if (word == "error") return errors_.take(line);
     if (word == "camera") return camera(line);
     if (word == "fisheye") {
       SL_ASSIGN(const double angle, number_at(line, 1, "an opening angle in degrees"));
@@ -187,25 +199,54 @@ class Reader {
     return {};
   }
 
-  /// Name and number in either order: psd PSD_FRONT 1 x y z angle, psd 1 PSD_FRONT x y z [tilt] angle [roll].
-  Status psd(const Line& line) {
-    if (line.arguments() < 6) return line.error("a psd has a name, a number, x y z in mm and an angle");
+  /// Name and number in either order: psd PSD_FRONT 1 x y z angle, psd 1 PSD_FRONT x y z [tilt] angle [roll]; with three numbers
+  /// the older form, in polar coordinates: psd PSD_LEFT 2 angle distance offset.
+  Status psd(const Line& line, double range_m) {
+    if (line.arguments() < 5)
+      return line.error("a " + lower(line.keyword()) + " has a name, a number, x y z in mm and an angle");
     const bool number_first = is_number(line.words[1]);
     SL_ASSIGN(const double number, number_at(line, number_first ? 1 : 2, "the number of a psd"));
     if (std::floor(number) != number || !(std::abs(number) < 1e6))
       return line.error("the number of a psd is a whole number");
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 3));
-    const double angle = n.size() >= 6 ? n[4] : n[3];
-    Psd out{sanitised(line.words[number_first ? 2 : 1]),
-            static_cast<int>(number),
-            {point(n, 0), quat_from_axis_angle({0, 0, 1}, radians(angle))},
-            line.place};
+    Psd out{sanitised(line.words[number_first ? 2 : 1]), static_cast<int>(number), {}, range_m, line.place};
+    if (n.size() == 3) {
+      const double angle = radians(n[0]);
+      out.X_RS = {{n[1] * mm * math::cos(angle), n[1] * mm * math::sin(angle), older_height_m},
+                  quat_from_axis_angle({0, 0, 1}, radians(n[0] + n[2]))};
+    } else {
+      out.X_RS = {point(n, 0), quat_from_axis_angle({0, 0, 1}, radians(n.size() >= 6 ? n[4] : n[3]))};
+    }
     for (const Psd& other : psds_)
       if (other.name == out.name || other.number == out.number)
         return line.error(
             "two psds have the name '" + out.name + "' or the number " + std::to_string(out.number),
             "the other one is at " + to_string(other.place));
     psds_.push_back(std::move(out));
+    return {};
+  }
+
+  /// bump NAME number from to: a sector of the robot's edge.
+  Status bump(const Line& line) {
+    if (line.arguments() < 4) return line.error("a bumper has a name, a number and two angles in degrees");
+    SL_ASSIGN(const std::vector<double> n, numbers_from(line, 2));
+    const double sector = n[2] - n[1];
+    if (sector < 360 && sector > -360 && sector != 0)
+      diagnostics_.warn(line.error("bumpers feel the whole body, whatever their angles"));
+    Bumper out{sanitised(line.words[1]), line.place};
+    for (const Bumper& other : bumpers_)
+      if (other.name == out.name)
+        return line.error("two bumpers have the name '" + out.name + "'",
+                          "the other one is at " + to_string(other.place));
+    bumpers_.push_back(std::move(out));
+    return {};
+  }
+
+  /// speed cm/s, turn deg/s: of the robot, where `wheel` says nothing.
+  Status top_speed(const Line& line, bool turn) {
+    SL_ASSIGN(const double speed, number_at(line, 1, turn ? "deg/s" : "cm/s"));
+    if (!(speed > 0)) return line.error("the largest speed of a robot is above 0");
+    (turn ? top_turn_radps_ : top_speed_mps_) = turn ? radians(speed) : speed / 100;
     return {};
   }
 
@@ -265,7 +306,7 @@ class Reader {
                             {"fov", "0"},
                             {"rings", "0"},
                             {"min_range", "0"},
-                            {"max_range", "9.999"}},
+                            {"max_range", number_text(psd.range_m)}},
                            base, X_BR * psd.X_RS);
       model_.devices.back().place = psd.place;
       out.psds[psd.number] = psd.name;
@@ -295,6 +336,12 @@ class Reader {
                            base, {{0, 0, top_m_ + 0.02}, {}});
       model_.devices.back().place = lidar_->place;
     }
+    for (const Bumper& bumper : bumpers_) {
+      builders::add_device(model_, bumper.name, "contact", {}, base);
+      model_.devices.back().place = bumper.place;
+    }
+    for (model::DeviceDecl& device : model_.devices)
+      if (const Node keys = errors_.keys_for(device.kind); !keys.is_null()) merge(device.config, keys);
     out.instance.name = out.instance.original_name = name_;
     out.instance.devices = model_.devices;
     out.instance.place = place;
@@ -361,9 +408,11 @@ class Reader {
   }
 
   std::string max_speed(const Axle& axle) const {
+    if (top_speed_mps_) return number_text(*top_speed_mps_);
     return number_text(axle.max_speed_radps * axle.diameter_m / 2);
   }
   std::string max_turn(const Axle& axle) const {
+    if (top_turn_radps_) return number_text(*top_turn_radps_);
     return number_text(axle.max_speed_radps * axle.diameter_m / axle.track_m);
   }
 
@@ -452,6 +501,9 @@ class Reader {
   Pose X_RMesh_;
   std::array<Axle, 2> axles_;  ///< that drives, that turns
   std::vector<Psd> psds_;
+  std::vector<Bumper> bumpers_;
+  std::optional<double> top_speed_mps_, top_turn_radps_;
+  ErrorModels errors_;
   std::optional<Camera> camera_;
   std::optional<double> fisheye_rad_, body_radius_m_;
   std::optional<Lidar> lidar_;

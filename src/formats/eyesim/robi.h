@@ -19,6 +19,15 @@ struct Robi {
 
 Result<Robi> read_robi(std::string_view text, const std::string& file, const ReadOptions& options,
                        Diagnostics& diagnostics);
+/// A robot on wheels as a .robi file; of what such files do not have one warning each says that it is left out.
+/// Errors   no drive on two wheels, of a car or on Mecanum wheels.
+Result<std::string> robi_of(const model::Instance& instance, Diagnostics& diagnostics);
+
+/// Share of the mass that a .robi file names in that of the whole model, by drive: body, wheels, balls, forks.
+namespace shares {
+inline constexpr double differential = 0.99, ackermann = 1.02, omni = 1;
+}
+
 Result<model::Instance> read_object(std::string_view text, const std::string& file,
                                     const ReadOptions& options, Diagnostics& diagnostics);
 

@@ -58,6 +58,27 @@ struct Type {
   std::optional<Robi> robi;  ///< null: it could not be read
 };
 
+/// The name that the file of a type gives it; its own name when it cannot be read, of which loading tells.
+std::string name_in(Type& type, const std::string& folder, const SearchPath& search) {
+  std::string name = fs::path(type.file).stem().string();
+  const auto found = find_resource(type.file, folder, search, type.place);
+  if (!found) return name;
+  const auto text = read_text_file(*found, most_bytes);
+  if (!text) return name;
+  Diagnostics repeated;
+  const ReadOptions options{search, true};
+  if (type.is_robot) {
+    auto robi = read_robi(*text, *found, options, repeated);
+    if (robi) {
+      name = robi->instance.name;
+      type.robi = std::move(*robi);
+    }
+  } else if (const auto object = read_object(*text, *found, options, repeated)) {
+    name = object->name;
+  }
+  return name;
+}
+
 struct Placed {
   Line line;
   const Type* type = nullptr;
@@ -96,34 +117,13 @@ class Reader {
       return line.error("'" + word + "' names no " + std::string(robot ? ".robi" : ".esObj") + " file",
                         "write " + word + (robot ? " scout.robi" : " post.esObj"));
     Type type{"", path_of(line.words[at]), line.place, robot, {}};
-    type.name = name_in(type);
+    type.name = name_in(type, folder_of(file_), search_);
     if (!names_.insert(type.name).second) {
       diagnostics_.warn(line.error("'" + type.name + "' is loaded a second time; the first one counts"));
       return {};
     }
     types_.push_back(std::move(type));
     return {};
-  }
-
-  /// The name that the file of a type gives it; its own name when it cannot be read, of which loading tells.
-  std::string name_in(Type& type) {
-    std::string name = fs::path(type.file).stem().string();
-    const auto found = find_resource(type.file, folder_of(file_), search_, type.place);
-    if (!found) return name;
-    const auto text = read_text_file(*found, most_bytes);
-    if (!text) return name;
-    Diagnostics repeated;
-    ReadOptions options{search_, true};
-    if (type.is_robot) {
-      auto robi = read_robi(*text, *found, options, repeated);
-      if (robi) {
-        name = robi->instance.name;
-        type.robi = std::move(*robi);
-      }
-    } else if (const auto object = read_object(*text, *found, options, repeated)) {
-      name = object->name;
-    }
-    return name;
   }
 
   Status world(const Line& line) {
@@ -177,7 +177,7 @@ class Reader {
         for (const Type& known : types_)
           if (known.file == each.file) return &known;
         Type type{each.name, each.file, {}, is_robot, {}};
-        name_in(type);
+        name_in(type, folder_of(file_), search_);
         return &types_.emplace_back(std::move(type));
       }
       return nullptr;
@@ -408,6 +408,18 @@ class Reader {
 };
 
 }  // namespace
+
+std::string built_in_type(const std::string& model, bool robot) {
+  for (const BuiltIn& each : robot ? std::span<const BuiltIn>(robots) : std::span<const BuiltIn>(objects))
+    if (model == each.file) return each.name;
+  return "";
+}
+
+std::string declared_type(const std::string& written, const std::string& folder, bool robot,
+                          const Place& place) {
+  Type type{"", written, place, robot, {}};
+  return name_in(type, folder, search_path());
+}
 
 Result<Node> sim_tree(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   SL_ASSIGN(const std::vector<Line> lines, lines_of(text, file));

@@ -9,9 +9,21 @@
 
 #include "base/node.h"
 #include "base/result.h"
+#include "formats/scenario/scenario.h"
 
 namespace sandlot::formats::eyesim {
 
 Result<Node> sim_tree(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+
+/// A scenario of single robots and objects in a world of EyeSim as a .sim file; of everything else one warning each says that
+/// it is left out.
+/// Errors   a world that is neither .wld nor .maz.
+Result<std::string> sim_of(const Scenario& scenario, Diagnostics& diagnostics);
+
+/// EyeSim's word for one of our files of its robots or objects; "" for others.
+std::string built_in_type(const std::string& model, bool robot);
+/// The name that a .robi or .esObj file gives its type; that of the file when it cannot be read.
+std::string declared_type(const std::string& written, const std::string& folder, bool robot,
+                          const Place& place);
 
 }  // namespace sandlot::formats::eyesim
