@@ -53,7 +53,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
   for (const std::string_view each : split(text, '\n')) {
     ++number;
     const std::string_view row = without_return(each);
-    if (row.empty()) continue;
+    if (row.empty() || row.front() == '#' || row.front() == ';') continue;
     const Place place = place_in(name, number);
     double size_mm = 0;
     if (parse_number(row, size_mm)) {

@@ -9,7 +9,7 @@
 
 #include "base/node.h"
 #include "base/result.h"
-#include "formats/scenario/scenario.h"
+#include "formats/kind.h"
 
 namespace sandlot::formats::eyesim {
 
