@@ -72,7 +72,7 @@ TEST_F(EyesimScenario, HasRobotsObjectsAndMarkersInMetres) {
   ASSERT_EQ(s.robots.size(), 3u);
   EXPECT_EQ(s.robots[0].name, "S4");
   EXPECT_EQ(s.robots[0].model, "eyesim/s4.robi");
-  EXPECT_EQ(s.robots[0].placement.X_WM.p, (Vec3{0.5, 0.7, 0}));
+  EXPECT_NEAR(norm(s.robots[0].placement.X_WM.p - Vec3{0.5, 0.7, 0}), 0, 1e-12);
   EXPECT_NEAR(yaw_of(s.robots[0].placement.X_WM.q), M_PI / 2, 1e-12);
   const auto& programs = s.robots[0].instance.controllers.get();
   ASSERT_EQ(programs.size(), 1u);
@@ -85,7 +85,7 @@ TEST_F(EyesimScenario, HasRobotsObjectsAndMarkersInMetres) {
   ASSERT_EQ(s.things.size(), 3u);
   EXPECT_EQ(s.things[0].name, "Can");
   EXPECT_EQ(s.things[1].name, "Can_2");
-  EXPECT_EQ(s.things[1].placement.X_WM.p, (Vec3{1.2, 1.3, 0}));
+  EXPECT_NEAR(norm(s.things[1].placement.X_WM.p - Vec3{1.2, 1.3, 0}), 0, 1e-12);
   EXPECT_EQ(s.things[2].model, "post.esObj");
   ASSERT_EQ(s.setup.markers.size(), 2u);
   EXPECT_EQ(key(s.setup.markers[0].config, {"radius"}), "0.05");
@@ -111,7 +111,7 @@ TEST_F(EyesimScenario, PutsRobotsOnTheStartsOfTheWorldInTheirOrder) {
 TEST_F(EyesimScenario, KnowsTheOlderForm) {
   const Scenario s = read("maze two.maz\nrobi Joe scout.robi drive.so joe.ms3d\nposition 100 200 90\n");
   ASSERT_EQ(s.robots.size(), 1u);
-  EXPECT_EQ(s.robots[0].placement.X_WM.p, (Vec3{0.1, 0.2, 0}));
+  EXPECT_NEAR(norm(s.robots[0].placement.X_WM.p - Vec3{0.1, 0.2, 0}), 0, 1e-12);
   EXPECT_EQ(key(s.robots[0].instance.controllers.get()[0].config, {"program"}), "drive.so");
   ASSERT_EQ(diagnostics_.warnings.size(), 1u);  // the model
 }

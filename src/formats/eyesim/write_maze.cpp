@@ -104,6 +104,9 @@ class Drawing {
   std::string text() const {
     std::string out;
     for (std::string row : rows_) {
+      // Walls of neighbouring cells are drawn as one line.
+      for (std::size_t i = 2; i + 1 < row.size(); i += 2)
+        if (row[i] == ' ' && row[i - 1] == '_' && row[i + 1] == '_') row[i] = '_';
       while (row.size() > 1 && row.back() == ' ') row.pop_back();
       out += row + "\n";
     }

@@ -54,7 +54,7 @@ TEST(EyesimMazeWriter, DrawsWhatWasRead) {
 TEST(EyesimMazeWriter, KeepsWallsAndSpotsOfBothStyles) {
   // With and without characters between cells; a cell that is open to the right.
   for (const char* const text :
-       {" _ _ _\n|  _  |\n|_|_ _\n", " _____\n|  _  |\n|_|___\n100\n", "  _\n |_|\n"}) {
+       {" _ _ _\n|  _  |\n|_|_ _\n", " _____\n|  _  |\n|_|___\n100\n", "   _\n  |_|\n"}) {
     SCOPED_TRACE(text);
     const Plan plan = maze(text);
     Diagnostics d;
