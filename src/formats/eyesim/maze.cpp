@@ -11,6 +11,7 @@
 namespace sandlot::formats::eyesim {
 namespace {
 
+/// With posts there are twice as many of both.
 constexpr std::size_t most_rows = 1000, most_columns = 2001;
 constexpr double usual_cell_mm = 360;
 
@@ -42,6 +43,39 @@ std::string_view without_return(std::string_view text) {
   return text;
 }
 
+/// Whether a row is drawn with posts, as collections of micromouse mazes are: o---o   o.
+bool has_posts(std::string_view row) {
+  if (row.size() < 5 || (row.front() != 'o' && row.front() != '+')) return false;
+  const std::string_view between = row.substr(1, 3);
+  return row[4] == row.front() && (between == "---" || between == "   ");
+}
+
+/// Rows with posts as rows without: the walls of a row of posts stand below the cells above it.
+Result<std::vector<std::string>> without_posts(const std::vector<Row>& rows,
+                                               const std::shared_ptr<const std::string>& name) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < rows.size(); i += 2) {
+    const std::string_view posts = rows[i].text;
+    if (!has_posts(posts))
+      return Error{"this line is not a row of posts", "rows of posts and of cells take turns: o---o, |   |",
+                   place_in(name, rows[i].line)};
+    const std::string_view cells = i == 0 ? std::string_view() : rows[i - 1].text;
+    std::string row((std::max(posts.size(), cells.size()) + 3) / 4 * 2 + 1, ' ');
+    for (std::size_t c = 0; 4 * c < row.size() * 2; ++c) {
+      if (4 * c < cells.size() && cells[4 * c] == '|') row[2 * c] = '|';
+      const bool floor = 4 * c + 2 < posts.size() && posts[4 * c + 2] == '-';
+      const char letter = 4 * c + 2 < cells.size() ? cells[4 * c + 2] : ' ';
+      if (2 * c + 1 >= row.size()) continue;
+      if (floor) row[2 * c + 1] = '_';
+      // Of its letters a start has a meaning here; G is where the mouse should go.
+      if (letter == 'S' || letter == 's') row[2 * c + 1] = floor ? 'S' : 's';
+    }
+    while (row.size() > 1 && row.back() == ' ') row.pop_back();
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
@@ -62,17 +96,23 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
       cell_m = size_mm * mm;
       continue;
     }
-    if (row.front() != ' ' && row.front() != '|' && row.front() != '_') {
+    if (row.front() != ' ' && row.front() != '|' && row.front() != '_' && !has_posts(row)) {
       diagnostics.warn(
           {"this line is no row of a maze and left out", "rows begin with a blank or with |", place});
       continue;
     }
-    if (row.size() > most_columns || rows.size() >= most_rows)
+    if (row.size() > 2 * most_columns || rows.size() >= 2 * most_rows + 1)
       return Error{"a maze has at most 1000 rows of 1000 cells", "", place};
     rows.push_back({row, number});
   }
   if (rows.empty()) return Error{"there is no row of a maze", "draw it with | and _", place_in(name)};
 
+  std::vector<std::string> redrawn;
+  if (has_posts(rows.front().text)) {
+    SL_ASSIGN(redrawn, without_posts(rows, name));
+    for (std::size_t i = 0; i < redrawn.size(); ++i) rows[i] = {redrawn[i], rows[2 * i].line};
+    rows.resize(redrawn.size());
+  }
   Plan plan;
   std::size_t columns = 0;
   for (const Row& row : rows) columns = std::max(columns, row.text.size() / 2);

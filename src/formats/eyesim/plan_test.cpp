@@ -30,6 +30,21 @@ void expect_wall(const Wall& wall, double x1, double y1, double x2, double y2) {
   EXPECT_NEAR(wall.y2_m, y2, 1e-12);
 }
 
+TEST(EyesimMaze, DrawnWithPostsIsTheSameMaze) {
+  Diagnostics d;
+  const Plan with = maze("/* a comment\no---o---o\n|   |  G|\no   o   o\n| S     |\no---o---o\n180\n", d);
+  EXPECT_EQ(d.warnings.size(), 1u);  // the comment
+  const Plan without = maze(" ___\n| | |\n|S__|\n180\n", d);
+  ASSERT_EQ(with.walls.size(), without.walls.size());
+  for (std::size_t i = 0; i < with.walls.size(); ++i) {
+    const Wall& wall = without.walls[i];
+    expect_wall(with.walls[i], wall.x1_m, wall.y1_m, wall.x2_m, wall.y2_m);
+  }
+  ASSERT_EQ(with.starts.size(), 1u);
+  EXPECT_NEAR(with.starts[0].x_m, 0.09, 1e-12);
+  EXPECT_NEAR(with.height_m, 0.36, 1e-12);
+}
+
 TEST(EyesimWorld, HasWallsInMillimetresAndTheirUsualSizes) {
   Diagnostics d;
   const Plan plan = wld(

@@ -36,7 +36,6 @@ constexpr BuiltIn objects[] = {{"can", "Can", "eyesim/can.sdf"},
 /// Devices of the control unit that every robot of EyeSim carries.
 constexpr const char* unit_devices[] = {"radio"};
 
-constexpr std::string_view step_ms = "50";
 constexpr const char* substeps = "10";
 constexpr double marker_radius_m = 0.05;
 
@@ -152,7 +151,8 @@ class Reader {
     if (word == "error") return errors_.take(line);
     if (word == "step") {
       SL_ASSIGN(const double ms, number_at(line, 1, "a step in ms"));
-      if (!(ms >= 1 && ms <= 1000)) return line.error("a step is 1 to 1000 ms long", "EyeSim has 50");
+      if (!(ms >= 1 && ms <= 50)) return line.error("a step is 1 to 50 ms long", "EyeSim has 50");
+      step_ms_ = ms;
       step_ = Node::scalar(number_text(ms) + " ms", line.place);
       return {};
     }
@@ -351,7 +351,7 @@ class Reader {
     out.set("name", Node::scalar(fs::path(file_).stem().string(), place));
     if (world_) out.set("world", Node::scalar(path_of(world_->words[1]), world_->place));
     Node time = Node::map(place);
-    time.set("step", step_.is_null() ? Node::scalar(std::string(step_ms) + " ms", place) : step_);
+    time.set("step", step_.is_null() ? Node::scalar("50 ms", place) : step_);
     time.set("substeps", Node::scalar(substeps, place));
     out.set("time", std::move(time));
     Node robot_list = Node::sequence(place), thing_list = Node::sequence(place);
@@ -366,6 +366,8 @@ class Reader {
       if (each.type->is_robot) {
         if (each.program) keys.set("controller", controller(*each.program, each.line.place));
         keys.set("devices", devices(each));
+        // A sample of every sensor in every slot, where its type says nothing else.
+        keys.set("rate", Node::scalar(number_text(1e3 / step_ms_) + " Hz", each.line.place));
       } else {
         keys.set("label", Node::scalar(lower(each.type->name), each.line.place));
       }
@@ -403,6 +405,7 @@ class Reader {
   std::set<std::string> names_;
   std::vector<Placed> placed_;
   Node markers_, step_;
+  double step_ms_ = 50;
   ErrorModels errors_;
   std::set<std::string> used_{"ground", "walls", "ball", "box"};  ///< of the world
 };

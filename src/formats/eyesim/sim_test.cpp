@@ -135,7 +135,7 @@ TEST_F(EyesimScenario, SaysWhatIsWrongWithItsLine) {
             "test.sim:2: there are two worlds; the other one is at test.sim:1");
   EXPECT_EQ(error("marker 1 2 256 0 0\n"), "test.sim:1: colours are from 0 to 255");
   EXPECT_EQ(error("error psd -1\n"), "test.sim:1: a standard deviation is not below 0");
-  EXPECT_EQ(error("step 0\n"), "test.sim:1: a step is 1 to 1000 ms long; EyeSim has 50");
+  EXPECT_EQ(error("step 0\n"), "test.sim:1: a step is 1 to 50 ms long; EyeSim has 50");
 }
 
 TEST_F(EyesimScenario, GivesErrorModelsToTheDevicesThatHaveThem) {
