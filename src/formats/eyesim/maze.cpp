@@ -13,7 +13,8 @@ namespace {
 
 /// With posts there are twice as many of both.
 constexpr std::size_t most_rows = 1000, most_columns = 2001;
-constexpr double usual_cell_mm = 360;
+/// With posts it is that of the rules of micromouse contests.
+constexpr double usual_cell_mm = 360, usual_posts_mm = 180;
 
 /// Direction of a start, or nothing: up, down, left, right.
 std::optional<double> direction_of(char c) {
@@ -81,7 +82,7 @@ Result<std::vector<std::string>> without_posts(const std::vector<Row>& rows,
 Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   SL_TRY(check_text(text, file));
   const auto name = std::make_shared<const std::string>(file);
-  double cell_m = usual_cell_mm * mm;
+  std::optional<double> given_m;
   std::vector<Row> rows;
   int number = 0;
   for (const std::string_view each : split(text, '\n')) {
@@ -93,7 +94,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
     if (parse_number(row, size_mm)) {
       if (!(size_mm >= 1 && size_mm <= 1e5))
         return Error{"the cells of a maze are 1 to 1e5 mm wide", "", place};
-      cell_m = size_mm * mm;
+      given_m = size_mm * mm;
       continue;
     }
     if (row.front() != ' ' && row.front() != '|' && row.front() != '_' && !has_posts(row)) {
@@ -107,6 +108,8 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
   }
   if (rows.empty()) return Error{"there is no row of a maze", "draw it with | and _", place_in(name)};
 
+  const double cell_m = given_m.value_or((has_posts(rows.front().text) ? usual_posts_mm : usual_cell_mm) *
+                                         mm);
   std::vector<std::string> redrawn;
   if (has_posts(rows.front().text)) {
     SL_ASSIGN(redrawn, without_posts(rows, name));
