@@ -323,7 +323,16 @@ class Reader {
     constexpr std::string_view ours = "controller:";
     Node out = Node::map(place);
     if (starts_with(program, ours)) {
-      out.set("kind", Node::scalar(program.substr(ours.size()), place));
+      // Keys of its own stand behind a ?, as those of builders.
+      const std::string_view words = std::string_view(program).substr(ours.size());
+      const std::size_t mark = std::min(words.find('?'), words.size());
+      out.set("kind", Node::scalar(std::string(words.substr(0, mark)), place));
+      if (mark < words.size())
+        for (const std::string_view each : split(words.substr(mark + 1), '&')) {
+          const std::size_t equals = std::min(each.find('='), each.size());
+          out.set(std::string(each.substr(0, equals)),
+                  Node::scalar(std::string(each.substr(std::min(equals + 1, each.size()))), place));
+        }
       return out;
     }
     out.set("kind", Node::scalar("robios", place));

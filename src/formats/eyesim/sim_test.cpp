@@ -170,7 +170,8 @@ TEST_F(EyesimScenario, TakesValuesFromTheCommandLine) {
 TEST_F(EyesimScenario, WrittenAndReadAgainIsTheSame) {
   const std::string text =
       "world room.wld\nstep 20\nobject post.esObj\nrobot scout.robi\nCan 1000 1100 30\nPost 10.5 20 0\n"
-      "S4 500 700 90 \"my program.c\"\nScout 1500 500 -179\nLabBot 1 2 3 controller:wander\n"
+      "S4 500 700 90 \"my program.c\"\nScout 1500 500 -179\nLabBot 1 2 3 "
+      "controller:wander?radius=0.1&margin=0\n"
       "marker 1800 1900 255 0 51\n";
   const Scenario s = read(text);
   const auto written = sim_of(s, diagnostics_);

@@ -83,9 +83,13 @@ class Writer {
       leave_out("a second controller of '" + group.name + "'", controllers[1].place);
     const Node* const program = first.config.find("program");
     if (first.kind == "robios" && program) return " " + in_quotes(program->text());
+    std::string out = "controller:" + first.kind;
+    char mark = '?';
     for (const Node::Entry& key : first.config.entries())
-      leave_out("'" + key.key + "' of the controller of '" + group.name + "'", key.key_place);
-    return " controller:" + first.kind;
+      if (key.value.is_scalar() && key.value.text().find_first_of("&\"") == std::string::npos)
+        out += mark + key.key + "=" + key.value.text(), mark = '&';
+      else leave_out("'" + key.key + "' of the controller of '" + group.name + "'", key.key_place);
+    return " " + in_quotes(out);
   }
 
   std::string marker_line(const model::ElementDecl& marker) const {
