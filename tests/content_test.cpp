@@ -43,7 +43,7 @@ formats::WorldContent rover_file() {
 TEST(Content, EveryScenarioLoadsAndBuildsWithoutAWarning) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator("scenarios")) {
-    if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().extension() != ".yaml" && entry.path().extension() != ".sim") continue;
     SCOPED_TRACE(entry.path().string());
     ++files;
     EXPECT_TRUE(test::build(loaded(entry.path().string())));

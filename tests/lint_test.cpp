@@ -75,7 +75,7 @@ TEST(Lint, OurOwnScenariosAndModelsHaveNothingSuspicious) {
   int checked = 0;
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    if (!file.ends_with(".yaml") && !file.ends_with(".sdf")) continue;
+    if (!file.ends_with(".yaml") && !file.ends_with(".sdf") && !file.ends_with(".sim")) continue;
     // Whether they load without a warning is content_test's affair.
     Diagnostics diagnostics;
     auto setup = load(file, {}, diagnostics);

@@ -125,7 +125,7 @@ TEST(SnapshotFiles, OptionsThatDoNotGoTogetherAreRefused) {
 TEST(SlowSnapshotFiles, EveryScenarioGoesOnFromHalfTimeToTheSameHash) {
   int scenarios = 0;
   for (const auto& entry : std::filesystem::directory_iterator("scenarios")) {
-    if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().extension() != ".yaml" && entry.path().extension() != ".sim") continue;
     ++scenarios;
     const std::string scenario = entry.path().string();
     const TestFolder scratch;
