@@ -42,5 +42,23 @@ TEST(EyesimFiles, ARobotInAMazeMeasuresItsWalls) {
   }
 }
 
+TEST(EyesimFiles, AScenarioRunsOnBothEnginesAndItsSensorsSeeItsMaze) {
+  for (const char* const engine : {"rigid", "planar"}) {
+    SCOPED_TRACE(engine);
+    auto sim = test::build(loaded("scenarios/maze.sim", {{"physics", engine},
+                                                         {"errors", "0"},
+                                                         {"robots.mouse.controller", "null"},
+                                                         {"robots.S4.controller", "null"}}));
+    ASSERT_TRUE(sim);
+    EXPECT_EQ(sim->setup().step, Time::from_s(0.05));
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(static_cast<bool>(sim->tick()));
+    // The first start: the middle of the top left cell of 360 mm, looking up. Walls of 10 mm are 175 mm away, the beams begin
+    // 45 mm to the side and 60 mm ahead.
+    EXPECT_NEAR(range_of(*sim, "PSD_LEFT"), 0.175 - 0.045, 2e-3);
+    EXPECT_NEAR(range_of(*sim, "PSD_RIGHT"), 0.175 - 0.045, 2e-3);
+    EXPECT_NEAR(range_of(*sim, "PSD_FRONT"), 0.175 - 0.06, 2e-3);
+  }
+}
+
 }  // namespace
 }  // namespace sandlot
