@@ -129,7 +129,7 @@ TEST_F(EyesimScenario, WarnsOnceOfWhatItDoesNotKnow) {
 }
 
 TEST_F(EyesimScenario, SaysWhatIsWrongWithItsLine) {
-  EXPECT_EQ(error("S4 1 2\n"), "test.sim:1: 'S4' has no an angle in degrees; give it an angle in degrees");
+  EXPECT_EQ(error("S4 1 2\n"), "test.sim:1: 'S4' lacks an angle in degrees");
   EXPECT_EQ(error("robot\n"), "test.sim:1: 'robot' names no .robi file; write robot scout.robi");
   EXPECT_EQ(error("world a.maz\nworld b.maz\n"),
             "test.sim:2: there are two worlds; the other one is at test.sim:1");
