@@ -82,8 +82,7 @@ TEST(EyesimWorld, SaysWhatIsWrongWithItsLine) {
   EXPECT_EQ(wld_error("\n0 0 10 x\n"), "room.wld:2: 'x' is no number for this place; give one within 1e9");
   EXPECT_EQ(wld_error("width -3\n"),
             "room.wld:1: a floor of this size is none; give its width and height in mm");
-  EXPECT_EQ(wld_error("push 1 2\n"),
-            "room.wld:1: 'push' lacks an angle in degrees");
+  EXPECT_EQ(wld_error("push 1 2\n"), "room.wld:1: 'push' lacks an angle in degrees");
   EXPECT_EQ(wld_error("floor_texture \"grass.png\n"), "room.wld:1: a name has no closing quotation mark");
   EXPECT_EQ(wld_error("0 0 9 9 0 200\n"), "room.wld:1: a wall has a thickness and a height above 0");
 }
