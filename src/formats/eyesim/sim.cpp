@@ -34,7 +34,7 @@ constexpr BuiltIn objects[] = {{"can", "Can", "eyesim/can.sdf"},
                                {"box", "Crate", "eyesim/crate.sdf"},
                                {"golf", "Golf", "eyesim/golf.sdf"}};
 /// Devices of the control unit that every robot of EyeSim carries.
-constexpr const char* unit_devices[] = {"radio"};
+constexpr const char* unit_devices[] = {"screen", "keys", "speaker", "radio"};
 
 constexpr const char* substeps = "10";
 constexpr double marker_radius_m = 0.05;
