@@ -126,5 +126,18 @@ TEST(TextFile, EachObstacleHasItsOwnError) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(YamlText, IsReadAsTheSameTree) {
+  const std::string text =
+      "a: plain text\n\"b: c\": \"null\"\nempty: \"\"\nnothing: null\nmap: {}\nlist: [1, \"x, y\", \"- z\"]\n"
+      "groups:\n  - name: one\n    inner:\n      - gaussian:\n          std: 0.1\n  - [1, 2]\nquote: "
+      "\"a\\\"b\\\\c\\x0a\"\n";
+  const auto tree = parse_yaml(text, "a.yaml");
+  ASSERT_TRUE(tree) << tree.error().text();
+  EXPECT_EQ(tree->find("quote")->text(), "a\"b\\c\n");
+  EXPECT_TRUE(tree->find("nothing")->is_null());
+  EXPECT_EQ(tree->find("b: c")->text(), "null");
+  EXPECT_EQ(yaml_text(*tree), text);
+}
+
 }  // namespace
 }  // namespace sandlot
