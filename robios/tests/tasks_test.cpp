@@ -19,8 +19,8 @@ TEST(RobiosTasks, CooperativeOnesGiveWay) {
 }
 
 TEST(RobiosTasks, SemaphoresWakeTheHigherPriority) {
-  // Preemptive: each V lets the consumer run at once. Cooperative: when the producer sleeps or ends.
-  EXPECT_EQ(trace("sem preempt"), "+0 -0 +1 -1 +2 -2 c. p. end\n");
+  // Preemptive: each V lets the consumer run at once; main goes on while the producer sleeps. Cooperative: when the producer sleeps or ends.
+  EXPECT_EQ(trace("sem preempt"), "+0 -0 +1 -1 end\n+2 -2 c. p. ");
   EXPECT_EQ(trace("sem coop"), "+0 +1 -0 -1 +2 p. -2 c. end\n");
 }
 
@@ -31,8 +31,9 @@ TEST(RobiosTasks, SlicesOfTenMilliseconds) {
 }
 
 TEST(RobiosTasks, HighPriorityRunsWhenItWakes) {
-  // Times in 1/100 s. From the sixth round of the lower task until its ninth nothing switches.
-  EXPECT_EQ(trace("priorities"), "1 2 H3 3 4 5 6 7 8 9 H9 10 H12 end\n");
+  // Times in 1/100 s. main goes on when both wait for the first time. From the sixth
+  // round of the lower task until its ninth nothing switches.
+  EXPECT_EQ(trace("priorities"), "end\n1 2 H3 3 4 5 6 7 8 9 H9 10 H12 ");
 }
 
 TEST(RobiosTasks, SuspendReadyRunKillExit) { EXPECT_EQ(trace("control", 4), "1 2 s 2 2 k 1 1 r 5 end\n"); }
