@@ -143,6 +143,15 @@ void on_leave(int code, void*) {
   finish(code);
 }
 
+using Main = int (*)(int, char**, char**);
+Main program_main = nullptr;
+
+/// Registers on_leave() here: after the program's own exit handlers, which may still drive, and before destructors.
+int run_main(int argc, char** argv, char** environment) {
+  on_exit(on_leave, nullptr);
+  return program_main(argc, argv, environment);
+}
+
 __attribute__((constructor)) void attach() {
   new (machine_place) Machine;
   make_screen();
@@ -172,7 +181,6 @@ __attribute__((constructor)) void attach() {
   }
   setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
   begin_tasks();
-  on_exit(on_leave, nullptr);
   pthread_atfork(nullptr, nullptr, [] {
     is_child = true;
     finished = true;
@@ -283,4 +291,12 @@ ROBIOS_INTERPOSE(void, exit, int code) {
   robios::exit_called = true;
   next(code);
   _exit(code);
+}
+
+ROBIOS_INTERPOSE(int, __libc_start_main, robios::Main main, int argc, char** argv, void (*init)(),
+                 void (*fini)(), void (*loader_fini)(), void* stack_end) {
+  using Start = int (*)(robios::Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
+  static const auto next = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));
+  robios::program_main = main;
+  return next(robios::run_main, argc, argv, init, fini, loader_fini, stack_end);
 }
