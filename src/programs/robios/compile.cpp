@@ -92,7 +92,8 @@ Result<fs::path> cache_folder() {
     folder = "/var/cache/sandlot/robios";
     made = make(folder);
   }
-  if (made) return folder;
+  // As the sandbox compares it, and shows it.
+  if (made) return fs::canonical(folder, failed);
   return Error{"cannot keep compiled programs in '" + folder.string() + "'",
                "let XDG_CACHE_HOME name a folder that is yours and that you alone can write"};
 }
