@@ -319,7 +319,23 @@ class Reader {
     return out;
   }
 
-  Node controller(const std::string& program, const Place& place) const {
+  /// Numbers of the distance sensors, where they do not simply count from 1 in their order.
+  static void add_numbers(const Robi& robi, const Place& place, Node& out) {
+    std::vector<std::pair<int, std::string>> numbers;
+    for (const model::DeviceDecl& device : robi.instance.devices)
+      for (const auto& [number, name] : robi.psds)
+        if (name == device.name) numbers.emplace_back(number, name);
+    bool counted = true;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      counted = counted && numbers[i].first == static_cast<int>(i + 1);
+    if (counted) return;
+    Node& distances = out.set("distances", Node::sequence(place));
+    for (const auto& [number, name] : numbers)
+      distances.push(Node::scalar(std::to_string(number) + "=" + name, place));
+  }
+
+  /// @param robi  null: a robot of Sandlot
+  static Node controller(const std::string& program, const Robi* robi, const Place& place) {
     constexpr std::string_view ours = "controller:";
     Node out = Node::map(place);
     if (starts_with(program, ours)) {
@@ -337,6 +353,7 @@ class Reader {
     }
     out.set("kind", Node::scalar("robios", place));
     out.set("program", Node::scalar(program, place));
+    if (robi) add_numbers(*robi, place, out);
     return out;
   }
 
@@ -373,7 +390,9 @@ class Reader {
       SL_ASSIGN(Node X, pose(each));
       keys.set("pose", std::move(X));
       if (each.type->is_robot) {
-        if (each.program) keys.set("controller", controller(*each.program, each.line.place));
+        if (each.program)
+          keys.set("controller",
+                   controller(*each.program, each.type->robi ? &*each.type->robi : nullptr, each.line.place));
         keys.set("devices", devices(each));
         // A sample of every sensor in every slot, where its type says nothing else.
         keys.set("rate", Node::scalar(number_text(1e3 / step_ms_) + " Hz", each.line.place));

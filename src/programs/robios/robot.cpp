@@ -1,6 +1,7 @@
 #include "programs/robios/robot.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -97,16 +98,25 @@ Status RobotDevices::find_distances(const Description& robot, const Spec& spec) 
   for (const Entry& each : robot.readings)
     if (!each.program && each.level.empty() && each.type == msg::Range::ros_type)
       known.push_back(each.device);
-  std::vector<std::string> wanted = spec.distances.empty() ? known : spec.distances;
+  const std::vector<std::string>& wanted = spec.distances.empty() ? known : spec.distances;
   for (std::size_t i = 0; i < wanted.size() && distances_.size() < most_distances; ++i) {
     if (wanted[i].empty()) continue;
-    const Entry* const found = find_entry(robot.readings, msg::Range::ros_type, wanted[i]);
+    // "PSD_LEFT", or with a number of its own "-205=PSD_LEFT".
+    std::string name = wanted[i];
+    auto number = static_cast<std::int32_t>(i + 1);
+    if (const std::size_t equals = name.find('='); equals != std::string::npos) {
+      const auto [end, wrong] = std::from_chars(name.data(), name.data() + equals, number);
+      if (wrong != std::errc() || end != name.data() + equals)
+        return Error{"'" + name + "' has no number", "NAME, or NUMBER=NAME", {}, "/distances"};
+      name.erase(0, equals + 1);
+    }
+    const Entry* const found = find_entry(robot.readings, msg::Range::ros_type, name);
     if (!found)
-      return Error{"robot '" + robot.robot + "' has no distance sensor '" + wanted[i] + "'",
-                   suggestion(wanted[i], known),
+      return Error{"robot '" + robot.robot + "' has no distance sensor '" + name + "'",
+                   suggestion(name, known),
                    {},
                    "/distances"};
-    distances_.push_back({found->index, wanted[i], static_cast<std::int32_t>(i + 1)});
+    distances_.push_back({found->index, name, number});
   }
   return {};
 }

@@ -136,6 +136,15 @@ TEST_F(OneOfEverything, DistancesHaveTheNumbersThatWereGiven) {
   robot.describe(spec, state, out);
   EXPECT_STREQ(out.distance_names[0], "PSD_LEFT");
   EXPECT_EQ(out.distance_numbers[1], 3);
+  spec.distances = {"-205=PSD_LEFT", "7=PSD_FRONT"};
+  RobotDevices older;
+  ASSERT_TRUE(older.find(description, {}, spec));
+  older.describe(spec, state, out);
+  EXPECT_STREQ(out.distance_names[0], "PSD_LEFT");
+  EXPECT_EQ(out.distance_numbers[0], -205);
+  EXPECT_EQ(out.distance_numbers[1], 7);
+  spec.distances = {"two=PSD_LEFT"};
+  EXPECT_FALSE(RobotDevices().find(description, {}, spec));
   spec.distances = {"PSD_LEFD"};
   const Status wrong = RobotDevices().find(description, {}, spec);
   ASSERT_FALSE(wrong);

@@ -63,12 +63,12 @@ struct Spec {
                 "Reaction to a restored or rewound run. restart: the program begins once more; detach: no "
                 "orders."},
           s.after_restore);
-    visit(
-        Field{"distances", "",
-              "Distance sensors by name, in the order of their numbers from 1; an empty name leaves a number "
-              "out; by default all, in the order of the robot's description.",
-              0, 0, Field::none, sandlot::robios::most_distances},
-        s.distances);
+    visit(Field{"distances", "",
+                "Distance sensors by name, in the order of their numbers from 1; an empty name leaves a "
+                "number out, "
+                "NUMBER=NAME gives another one; by default all, in the order of the robot's description.",
+                0, 0, Field::none, sandlot::robios::most_distances},
+          s.distances);
     visit(Field{"wheel_diameter", "m", "Diameter of the wheels; by default that of the drive.", 1e-4, 100},
           s.wheel_diameter_m);
     visit(Field{"track", "m", "Distance between left and right wheels; by default that of the drive.", 1e-3,
