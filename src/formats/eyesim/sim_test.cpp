@@ -60,6 +60,20 @@ class EyesimScenario : public testing::Test {
   Diagnostics diagnostics_;
 };
 
+TEST_F(EyesimScenario, ProgramsKnowTheNumbersOfTheirRobotsSensors) {
+  write("old.robi",
+        "drive DIFFERENTIAL_DRIVE\nname Old\nwheel 54 1800 1100 90\n"
+        "psd PSD_FRONT -200 70 0 30 0\npsd PSD_LEFT -205 0 70 30 90\n");
+  const Scenario s = read(
+      "world room.wld\nrobot old.robi\nrobot scout.robi\nOld 500 700 90 a.c\nScout 900 700 0 a.c\n");
+  ASSERT_EQ(s.robots.size(), 2u);
+  const Node* const distances = s.robots[0].instance.controllers.get().front().config.find("distances");
+  ASSERT_TRUE(distances && distances->items().size() == 2);
+  EXPECT_EQ(distances->items()[0].text(), "-200=PSD_FRONT");
+  EXPECT_EQ(distances->items()[1].text(), "-205=PSD_LEFT");
+  EXPECT_FALSE(s.robots[1].instance.controllers.get().front().config.find("distances"));
+}
+
 TEST_F(EyesimScenario, HasRobotsObjectsAndMarkersInMetres) {
   const Scenario s = read(
       "# both generations\nworld room.wld\nsettings VIS TRACE\nrobot scout.robi\nobj post.esObj\n"
