@@ -21,7 +21,8 @@ class RobiosPrograms : public testing::Test {
  protected:
   RobiosPrograms() {
     fs::permissions(folder.path, fs::perms(0755));
-    ::setenv("XDG_CACHE_HOME", folder.file("cache").c_str(), 1);
+    ::setenv("XDG_CACHE_HOME", (folder.path / "x/../cache").c_str(), 1);
+    fs::create_directory(folder.file("x"));
     fs::create_directory(folder.file("cache"));
     log::set_listener([this](log::Level, std::string_view text) { said += std::string(text) + "\n"; });
   }
