@@ -2,6 +2,7 @@
 /// Packet: payload of the emissions and deliveries of media that carry data from device to device (radio, infrared).
 ///
 /// Bytes    the head as it lies in memory, the names, the data.
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -27,10 +28,33 @@ struct PacketHead {
 };
 static_assert(sizeof(PacketHead) == 48, "no padding: its bytes are State");
 
+/// Points into the bytes of a packet, so that a reader takes from its head what he needs.
 struct PacketView {
-  PacketHead head;
+  const std::uint8_t* bytes = nullptr;
   std::string_view from, to;
   std::span<const std::uint8_t> data;
+
+  PacketHead head() const {
+    PacketHead out;
+    std::memcpy(&out, bytes, sizeof out);
+    return out;
+  }
+  std::uint64_t number() const { return at<std::uint64_t>(offsetof(PacketHead, number)); }
+  std::uint32_t wrong_bits() const { return at<std::uint32_t>(offsetof(PacketHead, wrong_bits)); }
+  /// Where it was emitted.
+  Vec3 point() const {
+    return {at<double>(offsetof(PacketHead, x_m)), at<double>(offsetof(PacketHead, y_m)),
+            at<double>(offsetof(PacketHead, z_m))};
+  }
+
+ private:
+  template <class T>
+  T at(std::size_t offset) const {
+    T out;
+    std::memcpy(&out, bytes + offset, sizeof out);
+    return out;
+  }
+  friend std::optional<PacketView> read_packet(std::span<const std::uint8_t> bytes);
 };
 
 /// Replaces `out` by the bytes of a packet. @pre names and data within the limits above
@@ -52,13 +76,14 @@ inline void write_packet(PacketHead head, std::string_view from, std::string_vie
 
 /// Nothing: the bytes are not a packet. The view points into them.
 inline std::optional<PacketView> read_packet(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < sizeof(PacketHead)) return std::nullopt;
   PacketView packet;
-  if (bytes.size() < sizeof packet.head) return std::nullopt;
-  std::memcpy(&packet.head, bytes.data(), sizeof packet.head);
-  const std::size_t from = packet.head.from_size, to = packet.head.to_size;
+  packet.bytes = bytes.data();
+  const std::size_t from = packet.at<std::uint16_t>(offsetof(PacketHead, from_size)),
+                    to = packet.at<std::uint16_t>(offsetof(PacketHead, to_size));
   if (from > most_packet_name || to > most_packet_name) return std::nullopt;
-  if (bytes.size() < sizeof packet.head + from + to) return std::nullopt;
-  const auto names = bytes.subspan(sizeof packet.head);
+  if (bytes.size() < sizeof(PacketHead) + from + to) return std::nullopt;
+  const auto names = bytes.subspan(sizeof(PacketHead));
   packet.from = {reinterpret_cast<const char*>(names.data()), from};
   packet.to = {reinterpret_cast<const char*>(names.data()) + from, to};
   packet.data = names.subspan(from + to);
@@ -70,7 +95,5 @@ inline std::optional<PacketView> read_packet(std::span<const std::uint8_t> bytes
 inline void write_head(const PacketHead& head, std::span<std::uint8_t> bytes) {
   std::memcpy(bytes.data(), &head, sizeof head);
 }
-
-inline Vec3 point_of(const PacketHead& head) { return {head.x_m, head.y_m, head.z_m}; }
 
 }  // namespace sandlot

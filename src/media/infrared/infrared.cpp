@@ -72,7 +72,7 @@ struct Infrared {
     const std::span<const std::byte> bytes = context.buffer.bytes(emission);
     const auto packet = read_packet({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     if (!packet) return;
-    const double order = packet->head.lambertian_order;
+    const double order = packet->head().lambertian_order;
     places.find_within(emission.point_W, spec.range_m, to.receivers);
     double farthest_m = 0;
     const auto is_dark = [&](std::uint32_t index) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -118,19 +119,21 @@ double obstacles_dB(const Spec& spec, const MediumContext& context, Vec3 from_W,
 
 void look(const Spec& spec, const Start& start, const Places& places, const MediumContext& context,
           Reached& to) {
-  to.distances_m.clear();
-  to.powers_dBm.clear();
   to.directions.clear();
   const Receiver& sender = context.receivers[start.sender];
   const Vec3 from_W = places.point(start.sender);
   const double limit_m = reach_m(spec, start.power_dBm), least_dBm = floor_dBm(spec);
   const bool by_distance = spec.model == Model::log_distance;
-  places.find_within(from_W, limit_m, to.receivers);
+  places.find_within(from_W, limit_m, to.near);
+  to.receivers.resize(to.near.size());
+  to.distances_m.resize(to.near.size());
+  to.powers_dBm.resize(to.near.size());
   double farthest_m = 0;
-  const auto is_out = [&](std::uint32_t index) {
-    if (index == start.sender || !places.hears(index, start.channel)) return true;
-    const double distance_m = norm(places.point(index) - from_W);
-    if (!(distance_m <= limit_m)) return true;
+  std::size_t count = 0;
+  for (const auto& [index, squared_m2] : to.near) {
+    if (index == start.sender || !places.hears(index, start.channel)) continue;
+    const double distance_m = std::sqrt(squared_m2);
+    if (!(distance_m <= limit_m)) continue;
     double power_dBm = start.power_dBm;
     if (by_distance) {
       power_dBm -= path_loss_dB(spec, distance_m);
@@ -138,13 +141,15 @@ void look(const Spec& spec, const Start& start, const Places& places, const Medi
       if (spec.shadowing_dB > 0) power_dBm -= shadowing_dB(spec, context.seed, sender.key, key);
       if (spec.fading_dB > 0) power_dBm -= fading_dB(spec, context.seed, sender.key, key, start.number);
     }
-    if (power_dBm < least_dBm) return true;
-    to.distances_m.push_back(distance_m);
-    to.powers_dBm.push_back(power_dBm);
+    if (power_dBm < least_dBm) continue;
+    to.receivers[count] = index;
+    to.distances_m[count] = distance_m;
+    to.powers_dBm[count++] = power_dBm;
     farthest_m = std::max(farthest_m, distance_m);
-    return false;
-  };
-  std::erase_if(to.receivers, is_out);
+  }
+  to.receivers.resize(count);
+  to.distances_m.resize(count);
+  to.powers_dBm.resize(count);
   if (to.receivers.empty() || farthest_m == 0 || !loses_by_obstacles(spec)) return;
   for (std::size_t i = 0; i < to.receivers.size(); ++i)
     to.directions.push_back(to.distances_m[i] > 0

@@ -24,7 +24,8 @@ namespace sandlot::media::radio {
 
 /// Whom a transmission reaches. Kept for its memory.
 struct Reached {
-  std::vector<std::uint32_t> receivers;  ///< indices, in creation order
+  std::vector<Places::Near> near;
+  std::vector<std::uint32_t> receivers;  ///< indices, in any order
   std::vector<double> distances_m;
   std::vector<double> powers_dBm;  ///< as received
   // For the rays.

@@ -24,6 +24,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/math.h"
@@ -57,10 +58,12 @@ struct Radio {
   std::vector<Sender> senders;                ///< per receiver
   std::vector<std::vector<Signal>> arrivals;  ///< per receiver; in judge() by end
   std::vector<std::uint32_t> active;          ///< receivers that have packets to send
+  std::vector<std::uint8_t> marked;           ///< per receiver
   std::vector<std::uint32_t> touched;         ///< receivers at which something arrives or that send
   std::vector<Start> starts;
   std::vector<Reached> reached;
-  std::size_t on_the_way = 0;  ///< signals in `arrivals`
+  std::size_t on_the_way = 0;                    ///< signals in `arrivals`
+  std::vector<std::vector<std::uint8_t>> spare;  ///< packets that are over, for their memory
 
   Status init(const ElementBuild& build) {
     if (spec.csma.max_exponent < spec.csma.min_exponent)
@@ -147,9 +150,19 @@ struct Radio {
       if (const auto index = finder.find(each.receiver)) add(*index, each);
   }
 
-  static void sort_once(std::vector<std::uint32_t>& indices) {
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  /// Sorts indices of receivers, each once.
+  void sort_once(std::vector<std::uint32_t>& indices, std::size_t receivers) {
+    constexpr std::size_t few = 16;
+    if (indices.size() < receivers / few) {
+      std::sort(indices.begin(), indices.end());
+      indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+      return;
+    }
+    marked.assign(receivers, 0);
+    for (const std::uint32_t each : indices) marked[each] = 1;
+    indices.clear();
+    for (std::uint32_t i = 0; i < receivers; ++i)
+      if (marked[i]) indices.push_back(i);
   }
   void touch(std::uint32_t index) { touched.push_back(index); }
   void add(std::uint32_t index, const Signal& signal) {
@@ -165,17 +178,23 @@ struct Radio {
     std::uint64_t needed = state.first + state.transmissions.size();
     for (const std::uint32_t index : touched) {
       Sender& sender = senders[index];
-      if (!sender.queue.empty() || sender.free > context.now) state.senders.push_back(std::move(sender));
-      sender = {};
-      for (const Signal& each : arrivals[index]) {
+      if (!sender.queue.empty() || sender.free > context.now) {
+        state.senders.push_back(std::move(sender));
+        sender = {};
+      } else {  // its queue keeps its memory
+        sender.radio = 0, sender.free = sender.attempt = {}, sender.attempts = 0;
+      }
+      for (Signal& each : arrivals[index]) {
+        each.receiver = places.key(index);
         state.signals.push_back(each);
         if (!each.done && !each.own) needed = std::min(needed, each.transmission);
       }
       arrivals[index].clear();
     }
-    state.transmissions.erase(
-        state.transmissions.begin(),
-        state.transmissions.begin() + static_cast<std::ptrdiff_t>(needed - state.first));
+    const auto over = state.transmissions.begin() + static_cast<std::ptrdiff_t>(needed - state.first);
+    for (auto each = state.transmissions.begin(); each != over; ++each)
+      spare.push_back(std::move(each->packet));
+    state.transmissions.erase(state.transmissions.begin(), over);
     state.first = needed;
   }
 
@@ -200,8 +219,7 @@ struct Radio {
       const double jitter_s = spec.jitter_s.value_or(context.step.s());
       Time ready = emission.at;
       if (jitter_s > 0) {
-        Stream random(context.seed, hash_combine(emission.emitter, use), Purpose::medium,
-                      packet->head.number);
+        Stream random(context.seed, hash_combine(emission.emitter, use), Purpose::medium, packet->number());
         // Rounded down, so that a wait of up to a tick ends within the tick.
         ready.ns += static_cast<std::int64_t>(jitter_s * 1e9 * random.uniform());
       }
@@ -209,10 +227,15 @@ struct Radio {
         active.push_back(*index);
         touch(*index);
       }
-      sender.queue.push_back({.ready = ready,
-                              .channel = emission.channel,
-                              .power_dBm = emission.strength,
-                              .packet = {first, first + bytes.size()}});
+      Waiting& waiting = sender.queue.emplace_back();
+      waiting.ready = ready;
+      waiting.channel = emission.channel;
+      waiting.power_dBm = emission.strength;
+      if (!spare.empty()) {
+        waiting.packet = std::move(spare.back());
+        spare.pop_back();
+      }
+      waiting.packet.assign(first, first + bytes.size());
     }
   }
 
@@ -229,21 +252,48 @@ struct Radio {
   std::vector<std::size_t> heads;  ///< per receiver: packets of the queue that were sent in this tick
 
   void send(const MediumContext& context) {
-    constexpr std::size_t most_at_once = 256;
     starts.clear();
     attempts.clear();
     heads.resize(std::max(heads.size(), context.receivers.size()));
-    sort_once(active);
+    sort_once(active, context.receivers.size());
+    for (const std::uint32_t index : active) heads[index] = 0;
+    if (spec.access == Access::aloha) send_all(context);
+    else sense_and_send(context);
+    spread(context);
     for (const std::uint32_t index : active) {
-      heads[index] = 0;
-      plan(index, context);
+      std::vector<Waiting>& queue = senders[index].queue;
+      queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(heads[index]));
     }
+  }
+
+  /// aloha: no attempt depends on what others send.
+  void send_all(const MediumContext& context) {
+    constexpr std::size_t most_at_once = 256;
+    for (const std::uint32_t index : active) {
+      Time free = senders[index].free;
+      for (const Waiting& waiting : senders[index].queue) {
+        const Time at = std::max({waiting.ready, free, context.now - context.step});
+        if (at >= context.now) break;
+        attempts.push_back({at, senders[index].radio, index});
+        free = at + air_time(waiting.packet);
+      }
+    }
+    std::sort(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) { return b < a; });
+    for (const Attempt& attempt : attempts) {
+      start(attempt);
+      if (starts.size() == most_at_once) spread(context);
+    }
+  }
+
+  /// csma: one after the other.
+  void sense_and_send(const MediumContext& context) {
+    for (const std::uint32_t index : active) plan(index, context);
     while (!attempts.empty()) {
       std::pop_heap(attempts.begin(), attempts.end());
       const Attempt attempt = attempts.back();
       attempts.pop_back();
       Sender& sender = senders[attempt.sender];
-      if (spec.access == Access::csma && is_busy(attempt)) {
+      if (is_busy(attempt)) {
         if (++sender.attempts > static_cast<std::uint32_t>(spec.csma.attempts)) {
           ++state.given_up;
           next_packet(sender, attempt.sender);
@@ -253,18 +303,18 @@ struct Radio {
         plan(attempt.sender, context);
         continue;
       }
-      Waiting& packet = sender.queue[heads[attempt.sender]];
-      sender.free = attempt.at + air_time(packet.packet);
-      begin(attempt, packet);
-      next_packet(sender, attempt.sender);
+      start(attempt);
       plan(attempt.sender, context);
-      if (spec.access == Access::csma || starts.size() == most_at_once) spread(context);
+      spread(context);
     }
-    spread(context);
-    for (const std::uint32_t index : active) {
-      std::vector<Waiting>& queue = senders[index].queue;
-      queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(heads[index]));
-    }
+  }
+
+  void start(const Attempt& attempt) {
+    Sender& sender = senders[attempt.sender];
+    Waiting& packet = sender.queue[heads[attempt.sender]];
+    sender.free = attempt.at + air_time(packet.packet);
+    begin(attempt, packet);
+    next_packet(sender, attempt.sender);
   }
 
   void next_packet(Sender& sender, std::uint32_t index) {
@@ -282,25 +332,23 @@ struct Radio {
     constexpr std::uint64_t use = 0x6261636b6f6666;  // "backoff"
     const auto before = static_cast<int>(sender.attempts) - 1;
     const int exponent = std::min(spec.csma.min_exponent + before, spec.csma.max_exponent);
-    const PacketHead head = read_packet(sender.queue[heads[index]].packet)->head;
-    const Stream of_packet(context.seed, hash_combine(sender.radio, use), Purpose::medium, head.number);
+    const std::uint64_t number = read_packet(sender.queue[heads[index]].packet)->number();
+    const Stream of_packet(context.seed, hash_combine(sender.radio, use), Purpose::medium, number);
     Stream random = of_packet.fork(sender.attempts);
     const std::uint32_t slots = 1 + random.below(std::uint32_t{1} << exponent);
     sender.attempt = from + Time::from_s(slots * spec.csma.slot_s);
   }
 
-  /// Puts the next attempt of a radio among those of this tick, if it lies in it.
+  /// csma: puts the next attempt of a radio among those of this tick, if it lies in it.
   void plan(std::uint32_t index, const MediumContext& context) {
     Sender& sender = senders[index];
     if (heads[index] >= sender.queue.size()) return;
-    Time at = std::max({sender.queue[heads[index]].ready, sender.free, context.now - context.step});
-    if (spec.access == Access::csma) {
-      if (sender.attempts == 0) {
-        sender.attempts = 1;
-        wait(sender, index, at, context);
-      }
-      at = std::max(sender.attempt, context.now - context.step);
+    const Time begin = context.now - context.step;
+    if (sender.attempts == 0) {
+      sender.attempts = 1;
+      wait(sender, index, std::max({sender.queue[heads[index]].ready, sender.free, begin}), context);
     }
+    const Time at = std::max(sender.attempt, begin);
     if (at >= context.now) return;
     attempts.push_back({at, sender.radio, index});
     std::push_heap(attempts.begin(), attempts.end());
@@ -318,7 +366,7 @@ struct Radio {
 
   /// Makes a transmission of a packet. Its signals follow in spread().
   void begin(const Attempt& attempt, Waiting& waiting) {
-    PacketHead head = read_packet(waiting.packet)->head;
+    PacketHead head = read_packet(waiting.packet)->head();
     const Vec3 at_W = places.point(attempt.sender);
     head.x_m = at_W.x, head.y_m = at_W.y, head.z_m = at_W.z;
     write_head(head, waiting.packet);
@@ -345,7 +393,6 @@ struct Radio {
       const Time air = air_time(state.transmissions[number - state.first].packet);
       Signal signal{.transmission = number, .channel = start.channel};
       if (spec.half_duplex) {
-        signal.receiver = places.key(start.sender);
         signal.start = start.at, signal.end = start.at + air;
         signal.own = 1;
         add(start.sender, signal);
@@ -357,7 +404,6 @@ struct Radio {
           continue;
         }
         const std::uint32_t index = reached[i].receivers[k];
-        signal.receiver = places.key(index);
         signal.start = start.at + Time::from_s(reached[i].distances_m[k] / spec.speed_mps);
         signal.end = signal.start + air;
         signal.power_dBm = reached[i].powers_dBm[k];
@@ -370,7 +416,7 @@ struct Radio {
   // ------------------------------------------------------------------------------------------------------ judging
 
   void judge(const MediumContext& context) {
-    sort_once(touched);
+    sort_once(touched, context.receivers.size());
     std::array<std::atomic<std::uint64_t>, counts> sums{};
     parallel_for(touched.size(), 16, [&](std::size_t first, std::size_t last) {
       std::array<std::uint64_t, counts> own{};
@@ -387,49 +433,75 @@ struct Radio {
     state.damaged += sums[Count::damaged];
   }
 
+  /// A function with its latest value: powers at a receiver are often the same.
+  template <double (*f)(double)>
+  class Latest {
+   public:
+    double operator()(double x) {
+      if (x != x_) x_ = x, value_ = f(x);
+      return value_;
+    }
+
+   private:
+    double x_ = std::numeric_limits<double>::quiet_NaN(), value_ = x_;
+  };
+  struct Powers {
+    Latest<milliwatts> in_mW;
+    Latest<decibels> in_dB;
+  };
+
   /// Judges all that has arrived at a radio by now, in the order of arrival.
   void judge_at(std::uint32_t index, const MediumContext& context, std::array<std::uint64_t, counts>& sums) {
     std::vector<Signal>& signals = arrivals[index];
-    std::sort(signals.begin(), signals.end(), [](const Signal& a, const Signal& b) {
+    const auto sooner = [](const Signal& a, const Signal& b) {
       return a.end != b.end ? a.end < b.end : a.transmission < b.transmission;
-    });
+    };
+    // Mostly they come so.
+    if (!std::is_sorted(signals.begin(), signals.end(), sooner))
+      std::sort(signals.begin(), signals.end(), sooner);
     Time longest;
     for (const Signal& each : signals) longest = std::max(longest, each.end - each.start);
     const Time delay = Time::from_s(spec.delay_s);
-    for (Signal& each : signals) {
-      if (each.done || each.own || each.end + delay > context.now) continue;
-      each.done = 1;
-      const double interference_mW = meet(each, signals, longest, sums);
-      if (interference_mW >= 0) receive(each, index, interference_mW, context, sums);
-    }
+    Powers powers;
     // What is over disturbs only what was there before it ended.
     Time earliest = context.now;
-    for (const Signal& each : signals)
-      if (!each.done && !each.own) earliest = std::min(earliest, each.start);
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      Signal& each = signals[i];
+      if (each.done || each.own) continue;
+      if (each.end + delay > context.now) {
+        earliest = std::min(earliest, each.start);
+        continue;
+      }
+      each.done = 1;
+      const double interference_mW = meet(i, signals, longest, powers, sums);
+      if (interference_mW >= 0) receive(each, index, interference_mW, context, sums);
+    }
     std::erase_if(signals,
                   [&](const Signal& each) { return (each.done || each.own) && each.end <= earliest; });
   }
 
   /// Holds a packet against all that overlaps it. @return what interferes, on average over the packet; -1: it is lost
-  double meet(const Signal& packet, const std::vector<Signal>& signals, Time longest,
+  double meet(std::size_t at, const std::vector<Signal>& signals, Time longest, Powers& powers,
               std::array<std::uint64_t, counts>& sums) const {
+    const Signal& packet = signals[at];
     if (packet.power_dBm < spec.sensitivity_dBm) return ++sums[Count::weak], -1;
     double sum_mW = 0, mean_mW = 0;
     bool overlapped = false;
-    auto other = std::upper_bound(signals.begin(), signals.end(), packet.start,
-                                  [](Time t, const Signal& each) { return t < each.end; });
-    for (; other != signals.end() && other->end - longest < packet.end; ++other) {
-      if (&*other == &packet || other->start >= packet.end) continue;
-      if (other->own) return ++sums[Count::deaf], -1;
-      if (!spec.collisions || other->channel != packet.channel) continue;
+    std::size_t first = at;
+    while (first > 0 && signals[first - 1].end > packet.start) --first;
+    for (std::size_t i = first; i < signals.size() && signals[i].end - longest < packet.end; ++i) {
+      const Signal& other = signals[i];
+      if (i == at || other.start >= packet.end || other.end <= packet.start) continue;
+      if (other.own) return ++sums[Count::deaf], -1;
+      if (!spec.collisions || other.channel != packet.channel) continue;
       overlapped = true;
-      const double power_mW = milliwatts(other->power_dBm);
-      const Time shared = std::min(packet.end, other->end) - std::max(packet.start, other->start);
+      const double power_mW = powers.in_mW(other.power_dBm);
+      const Time shared = std::min(packet.end, other.end) - std::max(packet.start, other.start);
       const auto whole_ns = static_cast<double>(std::max<std::int64_t>(1, (packet.end - packet.start).ns));
       sum_mW += power_mW;
       mean_mW += power_mW * (static_cast<double>(shared.ns) / whole_ns);
     }
-    if (overlapped && packet.power_dBm - decibels(sum_mW) < spec.capture_dB)
+    if (overlapped && packet.power_dBm - powers.in_dB(sum_mW) < spec.capture_dB)
       return ++sums[Count::collided], -1;
     return mean_mW;
   }
@@ -450,7 +522,7 @@ struct Radio {
     std::optional<Stream> random;
     if (spec.drop > 0 || spec.bit_error_rate > 0 || spec.modulation != Modulation::none) {
       random.emplace(context.seed, hash_combine(hash_combine(sent.emitter, places.key(index)), use),
-                     Purpose::medium, packet.head.number);
+                     Purpose::medium, packet.number());
       if (random->uniform() < spec.drop) return void(++sums[Count::dropped]);
     }
     ++sums[Count::delivered];
@@ -465,14 +537,14 @@ struct Radio {
     delivery.strength = signal.power_dBm;
     delivery.payload.assign(sent.packet.begin(), sent.packet.end());
     if (random) {
-      PacketHead head = packet.head;
+      PacketHead head = packet.head();
       const std::span<std::uint8_t> payload(delivery.payload);
       head.wrong_bits = flip_bits(payload.last(data), p, *random);
       if (head.wrong_bits > 0) write_head(head, payload);
       sums[Count::wrong_bits] += head.wrong_bits;
       sums[Count::damaged] += head.wrong_bits > 0;
     }
-    const Vec3 way_W = point_of(packet.head) - places.point(index);
+    const Vec3 way_W = packet.point() - places.point(index);
     const double distance_m = norm(way_W);
     delivery.direction_W = distance_m > 0 ? way_W * (1 / distance_m) : Vec3{};
   }

@@ -90,6 +90,10 @@ class HashGrid {
         for (std::int64_t i = r.x0; i <= r.x1; ++i) things_[--start_[slot(i, j)]] = k;
     }
   }
+  /// All things, slot by slot: those of a slot lie from first_of(slot) to first_of(slot + 1), and slots of a row one behind the
+  /// other.
+  std::span<const std::uint32_t> things() const { return things_; }
+  std::uint32_t first_of(std::uint32_t s) const { return start_[s]; }
   std::span<const std::uint32_t> in_slot(std::uint32_t s) const {
     return {things_.data() + start_[s], start_[s + 1] - start_[s]};
   }

@@ -579,7 +579,7 @@ TEST(Packet, ItsBytesGiveItBackAndOthersAreRefused) {
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->from, "me");
   EXPECT_EQ(packet->to, "you");
-  EXPECT_EQ(packet->head.number, 7u);
+  EXPECT_EQ(packet->number(), 7u);
   EXPECT_EQ(std::vector<std::uint8_t>(packet->data.begin(), packet->data.end()), data);
   for (std::size_t size = 0; size < sizeof(PacketHead) + 5; ++size)
     EXPECT_FALSE(read_packet(std::span(bytes).first(size))) << size;

@@ -298,9 +298,11 @@ void WorldElements::note_touches(std::uint32_t substep, double h_s) {
 void WorldElements::deliver(const MediumContext& context, bool traced) {
   if (media_.empty()) return;
   gather();
+  const bool only_one = media_.size() == 1;
   for (NamedMedium& each : media_) each.emissions.clear();
-  for (const Emission& emission : context.buffer.emissions)
-    media_[emission.medium].emissions.push_back(emission);
+  if (!only_one)
+    for (const Emission& emission : context.buffer.emissions)
+      media_[emission.medium].emissions.push_back(emission);
   for (NamedMedium& each : media_) {
     if (!each.kind->delivers) continue;
     if (traced) trace_.begin(each.receivers);
@@ -310,7 +312,8 @@ void WorldElements::deliver(const MediumContext& context, bool traced) {
                           .seed = context.seed,
                           .world = *this,
                           .rays = context.rays,
-                          .emissions = each.emissions,
+                          .emissions = only_one ? std::span<const Emission>(context.buffer.emissions)
+                                                : std::span<const Emission>(each.emissions),
                           .buffer = context.buffer,
                           .receivers = each.receivers,
                           .receivers_by_key = each.receivers_by_key});

@@ -105,7 +105,7 @@ struct Radio {
     for (const Delivery& delivery : port.inbox->items()) {
       const auto packet = read_packet(delivery.payload);
       if (!packet || !(spec.promiscuous || port.is_for_us(packet->to))) continue;
-      const bool damaged = packet->head.wrong_bits > 0;
+      const bool damaged = packet->wrong_bits() > 0;
       ++state.received;
       state.damaged += damaged;
       for (const Level level : {packets, bits}) {

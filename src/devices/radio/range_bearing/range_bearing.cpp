@@ -162,12 +162,12 @@ struct RangeBearing {
     std::vector<msg::RangeBearing>& neighbours = topic->message.neighbours;
     for (const Delivery& delivery : port.inbox->items()) {
       const auto packet = read_packet(delivery.payload);
-      if (!packet || packet->head.wrong_bits > 0 || !port.is_for_us(packet->to)) continue;
+      if (!packet || packet->wrong_bits() > 0 || !port.is_for_us(packet->to)) continue;
       msg::RangeBearing& to = refill.next(neighbours);
       to.stamp = delivery.at;
       to.from = packet->from;
       to.data.assign(packet->data.begin(), packet->data.end());
-      measure(X_SW * point_of(packet->head), delivery.emitter, packet->head.number, context, to);
+      measure(X_SW * packet->point(), delivery.emitter, packet->number(), context, to);
     }
     port.inbox->clear();
     if (spec.rate_hz == 0 && refill.used() == 0) return;
