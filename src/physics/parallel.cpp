@@ -14,6 +14,20 @@
 #endif
 
 namespace sandlot {
+namespace {
+
+/// The chunks that tbb::simple_partitioner makes, one after the other.
+void run_alone(std::size_t begin, std::size_t end, std::size_t grain, const void* closure,
+               void (*body)(const void* closure, std::size_t begin, std::size_t end)) {
+  while (end - begin > grain) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    run_alone(begin, middle, grain, closure, body);
+    begin = middle;
+  }
+  body(closure, begin, end);
+}
+
+}  // namespace
 
 std::size_t parallel_threads() {
   return static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
@@ -23,6 +37,8 @@ void parallel_for(std::size_t count, std::size_t grain, const void* closure,
                   void (*body)(const void* closure, std::size_t begin, std::size_t end)) {
   if (count == 0) return;
   if (count <= grain) return body(closure, 0, count);
+  // A task costs more than a small chunk.
+  if (parallel_threads() == 1) return run_alone(0, count, grain, closure, body);
 #if SL_THREAD_SANITIZER
   // The sanitizer cannot see how libtbb hands work over and would call every hand-over a race. Plain threads
   // it understands, so there the bodies run on those and real races between them show.
