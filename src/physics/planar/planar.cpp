@@ -113,7 +113,9 @@ Result<InstanceId> PlanarEngine::add(const model::Instance& declared) {
   for (std::size_t l = 0; l < model.links.size(); ++l) {
     const std::uint32_t body = take_index(free_bodies_, body_slot_);
     body_generation_.resize(body_slot_.size());
+    body_is_first_.resize(body_slot_.size());
     body_slot_[body] = slot;
+    body_is_first_[body] = l == 0;
     instance.bodies.push_back(body_id(body));
   }
   for (const model::Joint& joint : model.joints) {
@@ -351,7 +353,7 @@ void PlanarEngine::states_of(std::span<const std::uint32_t> bodies, std::span<Bo
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::uint32_t slot = body_slot_[bodies[i]];
     SL_CHECK_MSG(slot != none, "no such body");
-    out[i] = instances_[slot].bodies[0].index == bodies[i] ? canonical_state(slot) : states()[bodies[i]];
+    out[i] = body_is_first_[bodies[i]] ? canonical_state(slot) : states()[bodies[i]];
   }
 }
 

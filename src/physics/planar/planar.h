@@ -241,6 +241,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   double last_z_m_ = 0;
 
   std::vector<std::uint32_t> body_slot_, body_generation_;
+  std::vector<std::uint8_t> body_is_first_;  ///< of its instance: its canonical link
   std::vector<Motor> motors_;
   std::vector<std::uint32_t> turning_;  ///< kinematic joints with a velocity target, and those that had one
   std::vector<Roll> rolls_;
