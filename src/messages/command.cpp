@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "messages/json.h"
 #include "messages/registry.h"
 
 namespace sandlot {
@@ -46,6 +47,12 @@ bool is_deliverable(const MessageInfo& info, const std::byte* message) {
   return true;
 }
 
+Result<std::vector<std::byte>> command_of(const TopicBase& slot, const AnyMessage& message) {
+  std::vector<std::byte> cdr;
+  message.to_cdr(cdr);
+  return command_from_cdr(slot, cdr);
+}
+
 }  // namespace
 
 Status check_command(const MessageInfo& info, const void* message) {
@@ -65,9 +72,13 @@ Result<std::vector<std::byte>> command_from_cdr(const TopicBase& slot, std::span
 
 Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, std::string_view json) {
   SL_ASSIGN(const AnyMessage message, message_from_json(slot.info(), json));
-  std::vector<std::byte> cdr;
-  message.to_cdr(cdr);
-  return command_from_cdr(slot, cdr);
+  return command_of(slot, message);
+}
+
+Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, const nlohmann::json& document) {
+  AnyMessage message(slot.info());
+  SL_TRY(read_json(slot.info(), document, message.data()));
+  return command_of(slot, message);
 }
 
 }  // namespace sandlot

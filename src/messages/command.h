@@ -4,6 +4,7 @@
 ///
 /// Errors   bytes that are not a message of the slot's type, named with the field. Numbers are judged where the command
 ///          is delivered: check_command() of messages/topic.h.
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,5 +23,6 @@ std::vector<std::byte> command_bytes(const M& message) {
 /// For messages whose type is known by the slot alone. @param slot  gives the type; what it holds does not matter
 Result<std::vector<std::byte>> command_from_cdr(const TopicBase& slot, std::span<const std::byte> cdr);
 Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, std::string_view json);
+Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, const nlohmann::json& document);
 
 }  // namespace sandlot

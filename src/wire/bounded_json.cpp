@@ -8,12 +8,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-Status check_size(std::string_view text, const JsonLimits& limits) {
+/// @return the number of keys
+Result<std::size_t> check_size(std::string_view text, const JsonLimits& limits) {
   if (text.size() > limits.bytes)
     return Error{"a message of " + std::to_string(text.size()) + " bytes",
                  "at most " + std::to_string(limits.bytes)};
   int depth = 0;
   std::size_t marks = 0;  // a bound on the values that parsing makes
+  std::size_t keys = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -26,12 +28,36 @@ Status check_size(std::string_view text, const JsonLimits& limits) {
     else if (c == '[' || c == '{') ++depth, ++marks;
     else if (c == ']' || c == '}') --depth;
     else if (c == ',') ++marks;
+    else if (c == ':') ++keys;
     if (depth > limits.depth)
       return Error{"a message nested more than " + std::to_string(limits.depth) + " deep"};
     if (marks > limits.values)
       return Error{"a message of more than " + std::to_string(limits.values) + " values"};
   }
-  return {};
+  return keys;
+}
+
+/// Members of all objects in a document.
+std::size_t members(const Json& document) {
+  std::size_t sum = document.is_object() ? document.size() : 0;
+  if (document.is_structured())
+    for (const Json& each : document) sum += members(each);
+  return sum;
+}
+
+/// A key that an object has twice. @pre there is one
+std::string key_twice(std::string_view text) {
+  std::vector<std::set<std::string>> keys;
+  std::string twice;
+  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
+    return true;
+  };
+  const Json document = Json::parse(text, watch, false);
+  return document.is_discarded() ? std::string() : twice;
 }
 
 }  // namespace
@@ -43,20 +69,11 @@ std::string shown(std::string_view text) {
 }
 
 Result<Json> read_object(std::string_view text, const JsonLimits& limits) {
-  SL_TRY(check_size(text, limits));
-  std::vector<std::set<std::string>> keys;
-  std::string twice;
-  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      twice = parsed.get<std::string>();
-    return true;
-  };
-  Json document = Json::parse(text, watch, false);
+  SL_ASSIGN(const std::size_t keys, check_size(text, limits));
+  Json document = Json::parse(text, nullptr, false);
   if (document.is_discarded()) return Error{"a message that is not JSON"};
   if (!document.is_object()) return Error{"a message that is not a JSON object"};
-  if (!twice.empty()) return Error{"a message with the key " + shown(twice) + " twice"};
+  if (members(document) < keys) return Error{"a message with the key " + shown(key_twice(text)) + " twice"};
   return document;
 }
 

@@ -6,6 +6,7 @@
 #include "base/json_writer.h"
 #include "messages/cbor.h"
 #include "messages/cdr.h"
+#include "messages/command.h"
 #include "wire/bounded_json.h"
 
 namespace sandlot::rosbridge {
@@ -215,6 +216,10 @@ Result<std::vector<std::byte>> Body::to_cdr(const MessageInfo& info) const {
   std::vector<std::byte> out;
   message.to_cdr(out);
   return out;
+}
+
+Result<std::vector<std::byte>> Body::to_command(const TopicBase& slot) const {
+  return command_from_json(slot, document_ ? *document_ : Json());
 }
 
 std::string Body::text() const {

@@ -20,6 +20,10 @@
 #include "messages/json.h"
 #include "messages/registry.h"
 
+namespace sandlot {
+class TopicBase;
+}
+
 namespace sandlot::rosbridge {
 
 inline constexpr std::size_t most_bytes = 1 << 20;  ///< of one message of a client
@@ -33,6 +37,8 @@ class Body {
   explicit operator bool() const { return document_ != nullptr; }
   /// As a message of a type, in CDR; what it leaves out keeps its default. Errors as in messages/json.h.
   Result<std::vector<std::byte>> to_cdr(const MessageInfo& info) const;
+  /// As the command that a slot takes.
+  Result<std::vector<std::byte>> to_command(const TopicBase& slot) const;
   std::string text() const;
   const nlohmann::json* document() const { return document_.get(); }
 

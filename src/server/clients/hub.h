@@ -86,6 +86,9 @@ class Hub final : private ServiceHost {
   bool unadvertise(ClientId id, std::uint32_t number);
   Publication* find_publication(ClientId id, std::uint32_t number);
   void publish(ClientId id, Publication& publication, std::span<const std::byte> bytes, Encoding encoding);
+  /// @param read  the bytes of the command for a slot
+  using ReadCommand = std::function<Result<std::vector<std::byte>>(const TopicBase& slot)>;
+  void publish(ClientId id, Publication& publication, const ReadCommand& read);
 
   std::vector<const ServiceOffer*> offered_services(ClientId id) const;
   const ServiceOffer* find_service(ClientId id, std::uint32_t number) const;

@@ -183,6 +183,15 @@ Hub::Publication* Hub::find_publication(ClientId id, std::uint32_t number) {
 
 void Hub::publish(ClientId id, Publication& publication, std::span<const std::byte> bytes,
                   Encoding encoding) {
+  publish(id, publication, [&](const TopicBase& slot) {
+    return encoding == Encoding::json
+               ? command_from_json(
+                     slot, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()))
+               : command_from_cdr(slot, bytes);
+  });
+}
+
+void Hub::publish(ClientId id, Publication& publication, const ReadCommand& read) {
   if (publication.world != inventory_) {  // levels may have changed, and with them who takes it
     if (Status allowed = judge(id, publication); !allowed) return refuse(id, allowed.error().text());
     const auto target = find_target(id, publication);
@@ -191,10 +200,7 @@ void Hub::publish(ClientId id, Publication& publication, std::span<const std::by
     publication.target = *target;
   }
   const Inventory::Slot& slot = *publication.target.slot;
-  auto command = encoding == Encoding::json
-                     ? command_from_json(*slot.blank,
-                                         {reinterpret_cast<const char*>(bytes.data()), bytes.size()})
-                     : command_from_cdr(*slot.blank, bytes);
+  auto command = read(*slot.blank);
   if (!command) return refuse(id, publication.topic + ": " + command.error().text());
   roster_.commanded(id, Clock::now());
   Client& client = clients_.at(id);

@@ -275,8 +275,8 @@ void RosbridgeFace::publish(const std::string& id, const rosbridge::Publish& req
     if (found == publications_.end()) return;
     publication = hub_.find_publication(client_, found->second);
   }
-  const std::string json = request.message.text();
-  hub_.publish(client_, *publication, bytes_of(json), Hub::Encoding::json);
+  hub_.publish(client_, *publication,
+               [&](const TopicBase& slot) { return request.message.to_command(slot); });
 }
 
 void RosbridgeFace::call(const std::string& id, const rosbridge::CallService& request) {
