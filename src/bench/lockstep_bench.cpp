@@ -1,12 +1,18 @@
 /// P7: one lockstep exchange over loopback TCP: a tick's notice to a client and its command back, through the server.
 ///
 /// Measured is the wall time of a run of one robot in lockstep less that of the same run without a client, per step. The
-/// reference is a bare echo of messages of the same sizes between two threads over loopback TCP, one after the other.
+/// reference is a bare echo of messages of the same sizes over loopback TCP, one after the other: the same client, and a
+/// server of Asio's that does nothing else.
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -22,6 +28,8 @@
 
 namespace sandlot::bench {
 namespace {
+
+namespace asio = boost::asio;
 
 constexpr int steps = 2000;
 constexpr std::string_view notice =
@@ -132,39 +140,63 @@ double one_run(bool lockstep) {
   return used_s / steps;
 }
 
+/// A server of Asio's that says the same and takes the same answers, and does nothing with them.
+class Echo {
+ public:
+  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  /// Takes the client and exchanges so many messages. @return seconds per exchange
+  double run(int exchanges) {
+    acceptor_.async_accept(socket_, [&](boost::system::error_code error) {
+      SL_CHECK(!error);
+      socket_.set_option(asio::ip::tcp::no_delay(true));
+      begin_ = wall_seconds();
+      left_ = exchanges;
+      tell();
+    });
+    io_.run();
+    return (wall_seconds() - begin_) / exchanges;
+  }
+
+ private:
+  void tell() {
+    asio::async_write(socket_, asio::buffer(notice),
+                      [&](boost::system::error_code error, std::size_t) { SL_CHECK(!error), hear(0); });
+  }
+  void hear(std::ptrdiff_t lines) {
+    socket_.async_read_some(asio::buffer(bytes_),
+                            [this, lines](boost::system::error_code error, std::size_t size) {
+                              SL_CHECK(!error);
+                              const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(size);
+                              const auto heard = lines + std::count(bytes_.begin(), end, '\n');
+                              if (heard < 2) return hear(heard);
+                              if (--left_ > 0) tell();
+                            });
+  }
+  asio::io_context io_{1};
+  asio::ip::tcp::acceptor acceptor_{io_, {asio::ip::address_v4::loopback(), 0}};
+  asio::ip::tcp::socket socket_{io_};
+  std::array<char, 16 << 10> bytes_{};
+  int left_ = 0;
+  double begin_ = 0;
+};
+
 /// Seconds per message and answer of the same sizes.
 double echo() {
-  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in at{};
-  at.sin_family = AF_INET;
-  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  SL_CHECK(::bind(listener, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0 &&
-           ::listen(listener, 1) == 0);
-  socklen_t size = sizeof at;
-  ::getsockname(listener, reinterpret_cast<sockaddr*>(&at), &size);
+  Echo server;
   const std::string answer = command("1000");
-  std::thread client([&] {
-    const int fd = connected_to(ntohs(at.sin_port));
+  std::thread client([&answer, port = server.port()] {
+    const int fd = connected_to(port);
     Lines lines(fd);
-    for (std::string line; lines.next(line);) write_all(fd, answer);
+    for (int i = 0; i < steps; ++i) {
+      std::string line;
+      SL_CHECK(lines.next(line));
+      write_all(fd, answer);
+    }
     ::close(fd);
   });
-  const int fd = ::accept(listener, nullptr, nullptr);
-  const int on = 1;
-  ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  Lines lines(fd);
-  std::string line;
-  const double begin = wall_seconds();
-  for (int i = 0; i < steps; ++i) {
-    write_all(fd, notice);
-    for (int k = 0; k < 2; ++k) SL_CHECK(lines.next(line));
-  }
-  const double used_s = wall_seconds() - begin;
-  ::shutdown(fd, SHUT_RDWR);
-  ::close(fd);
-  ::close(listener);
+  const double used_s = server.run(steps);
   client.join();
-  return used_s / steps;
+  return used_s;
 }
 
 }  // namespace
