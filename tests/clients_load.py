@@ -279,7 +279,9 @@ def twelve_clients(queue, port, seconds):
 
 
 def twelve_once(file, rate, clients, seconds=3.0):
-    with Server(file, "--rate", rate) as server:
+    """The robots drive with and without clients, by the same commands: a world in which nothing moves takes a tenth less time."""
+    driving = ['command r%d/drive Twist {"linear": {"x": 0.2}, "angular": {"z": 0.2}}' % i for i in range(12)]
+    with Server(file, "--rate", rate, *(word for each in driving for word in ("--command", each))) as server:
         process = None
         if clients:
             process, queue = child(twelve_clients, server.port, 3 * seconds)
@@ -293,7 +295,7 @@ def twelve_once(file, rate, clients, seconds=3.0):
             process.kill()
             process.join()
         server.quit()
-    return sim_s / wall_s, used_s / wall_s
+    return sim_s / wall_s, used_s / wall_s, sim_s / used_s
 
 
 def twelve(options, folder):
@@ -305,8 +307,8 @@ def twelve(options, folder):
                 result[clients].append(twelve_once(file, rate, clients))
         without, with_ = ([statistics.median(x) for x in zip(*result[each])] for each in (False, True))
         out.append("Twelve clients that command at 100 Hz each, %s, on the run's own processor: %.4g times real time without, %.4g with, "
-                   "ratio %.3f; %.1f and %.1f %% of the processor." % (name, without[0], with_[0], with_[0] / without[0],
-                                                                      100 * without[1], 100 * with_[1]))
+                   "ratio %.3f; %.1f and %.1f %% of the processor; simulated time per processor time, of that without, %.3f."
+                   % (name, without[0], with_[0], with_[0] / without[0], 100 * without[1], 100 * with_[1], with_[2] / without[2]))
     return out
 
 
