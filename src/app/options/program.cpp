@@ -15,8 +15,9 @@ void add_new(CommandLine& line) {
   CLI::App* const controller_verb = new_verb->add_subcommand(
       "controller", "Write a program that drives a robot, a scenario for it, a test and a README");
   controller_verb->add_option("name", options.name, "Name: a letter, then letters, digits and _")->required();
-  controller_verb->add_option("--lang", options.language,
-                              "Language: python, js or cpp; robios: a program of EyeBot in C")
+  controller_verb
+      ->add_option("--lang", options.language,
+                   "Language: python, js or cpp; robios: a program of EyeBot in C")
       ->required();
   controller_verb->add_option("--out", options.out,
                               "Folder to write into; one with the name if left out. Files that exist are "
