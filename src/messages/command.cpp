@@ -75,7 +75,7 @@ Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, std::str
   return command_of(slot, message);
 }
 
-Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, const nlohmann::json& document) {
+Result<std::vector<std::byte>> command_from_document(const TopicBase& slot, const nlohmann::json& document) {
   AnyMessage message(slot.info());
   SL_TRY(read_json(slot.info(), document, message.data()));
   return command_of(slot, message);

@@ -23,6 +23,6 @@ std::vector<std::byte> command_bytes(const M& message) {
 /// For messages whose type is known by the slot alone. @param slot  gives the type; what it holds does not matter
 Result<std::vector<std::byte>> command_from_cdr(const TopicBase& slot, std::span<const std::byte> cdr);
 Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, std::string_view json);
-Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, const nlohmann::json& document);
+Result<std::vector<std::byte>> command_from_document(const TopicBase& slot, const nlohmann::json& document);
 
 }  // namespace sandlot

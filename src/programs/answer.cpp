@@ -89,7 +89,7 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
     SL_ASSIGN(const Named* const actuator, find(actuators, name, "actuator"));
     const TopicBase* const form = actuator->index < forms.size() ? forms[actuator->index] : nullptr;
     if (!form) return Error{"'" + name + "' takes no orders now"};
-    auto bytes = command_from_json(*form, message);
+    auto bytes = command_from_document(*form, message);
     if (!bytes) {
       bytes.error().what = "order for '" + name + "': " + bytes.error().what;
       return std::move(bytes.error());

@@ -219,7 +219,7 @@ Result<std::vector<std::byte>> Body::to_cdr(const MessageInfo& info) const {
 }
 
 Result<std::vector<std::byte>> Body::to_command(const TopicBase& slot) const {
-  return command_from_json(slot, document_ ? *document_ : Json());
+  return command_from_document(slot, document_ ? *document_ : Json());
 }
 
 std::string Body::text() const {
