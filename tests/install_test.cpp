@@ -175,6 +175,9 @@ TEST(SlowInstall, PublicHeadersCompileTogetherInAnyOrder) {
   const Package package;
   const std::string include = package.prefix + "/include";
   std::vector<std::string> headers = public_headers(include);
+  // The two generations of RoBIOS have the same names: a program has one of them.
+  const auto is_older = [](const std::string& header) { return header.rfind("robios6/", 0) == 0; };
+  headers.erase(std::remove_if(headers.begin(), headers.end(), is_older), headers.end());
   EXPECT_GT(headers.size(), 40u);
   for (int i = 0; i < 2; ++i) {
     std::string includes;
