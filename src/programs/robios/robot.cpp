@@ -134,6 +134,7 @@ void RobotDevices::find_drive(const Description& robot, const Spec& spec) {
                 : kind == "mecanum_drive" || kind == "omni_drive" || kind == "swerve_drive"
                     ? Drive::omni
                     : Drive::differential;
+  if (kind == "mecanum_drive") wheels_ = index_of<msg::JointState>(robot.actuators, drive->device);
   const double radius_m = number(drive->device, {"wheel_radius"}, 0.025);
   wheel_diameter_m_ = spec.wheel_diameter_m.value_or(2 * radius_m);
   track_m_ = spec.track_m.value_or(number(drive->device, {"wheel_separation", "track"}, 0.1));
@@ -164,14 +165,20 @@ void RobotDevices::find_motors(const Description& robot) {
   }
 }
 
+std::size_t RobotDevices::drive_motors() const {
+  if (!motors_.empty()) return 0;
+  if (drive_kind_ == Drive::differential) return 2;
+  return wheels_ ? 4 : 0;
+}
+
 void RobotDevices::describe(const Spec& spec, const State& state, sandlot::robios::Robot& out) const {
   set_name(out.name, state.number >= 1 && state.number <= state.robots.size() ? state.robots[state.number - 1]
                                                                               : std::string());
   set_name(out.type, "");
   out.id = state.number;
   out.drive = drive_kind_;
-  const bool by_drive = motors_.empty() && drive_kind_ == Drive::differential;
-  out.motors = by_drive ? 2 : static_cast<std::uint32_t>(motors_.size());
+  const std::size_t by_drive = drive_motors();
+  out.motors = static_cast<std::uint32_t>(by_drive + motors_.size());
   out.servos = static_cast<std::uint32_t>(servos_.size());
   out.distances = static_cast<std::uint32_t>(distances_.size());
   out.bumpers = static_cast<std::uint32_t>(bumpers_.size());
@@ -192,18 +199,17 @@ void RobotDevices::describe(const Spec& spec, const State& state, sandlot::robio
   out.track_m = track_m_;
   out.max_speed_mps = max_speed_mps_;
   out.max_turning_rate_radps = max_turning_rate_radps_;
-  out.max_motor_radps = by_drive && wheel_diameter_m_ > 0 ? max_speed_mps_ / (wheel_diameter_m_ / 2)
-                        : motors_.empty()                 ? 0
-                                                          : motors_.front().full;
+  out.max_motor_radps = by_drive > 0 && wheel_diameter_m_ > 0 ? max_speed_mps_ / (wheel_diameter_m_ / 2)
+                        : motors_.empty()                     ? 0
+                                                              : motors_.front().full;
   out.slot_s = spec.slot_s;
   for (std::size_t i = 0; i < distances_.size(); ++i) {
     set_name(out.distance_names[i], distances_[i].name);
     out.distance_numbers[i] = distances_[i].number;
   }
-  if (by_drive) {
-    set_name(out.motor_names[0], "left");
-    set_name(out.motor_names[1], "right");
-  }
+  static constexpr const char* two[] = {"left", "right"};
+  static constexpr const char* four[] = {"frontleft", "frontright", "backleft", "backright"};
+  for (std::size_t i = 0; i < by_drive; ++i) set_name(out.motor_names[i], by_drive == 2 ? two[i] : four[i]);
   for (std::size_t i = 0; i < motors_.size(); ++i) set_name(out.motor_names[i], motors_[i].name);
   for (std::size_t i = 0; i < servos_.size(); ++i) set_name(out.servo_names[i], servos_[i].name);
   for (std::size_t i = 0; i < bumpers_.size(); ++i) set_name(out.bumper_names[i], bumpers_[i].name);
@@ -355,9 +361,16 @@ bool RobotDevices::order_motor(const MotorOrder& order, State& state, Command& c
     cmd.set_bytes(motor.index, command_bytes(command));
     return true;
   }
-  if (!motors_.empty() || drive_kind_ != Drive::differential || order.number > 1) return false;
+  if (order.number >= drive_motors()) return false;
   state.wheels[order.number] = order.mode == 1 ? order.value * wheel_diameter_m_ / 2
                                                : std::clamp(order.value, -1.0, 1.0) * max_speed_mps_;
+  if (drive_motors() == 4) {
+    msg::JointState wheels;
+    for (const double speed_mps : state.wheels)
+      wheels.velocity.push_back(speed_mps / (wheel_diameter_m_ / 2));
+    cmd.set_bytes(*wheels_, command_bytes(wheels));
+    return true;
+  }
   return order_speed((state.wheels[0] + state.wheels[1]) / 2, (state.wheels[1] - state.wheels[0]) / track_m_,
                      cmd);
 }

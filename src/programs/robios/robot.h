@@ -4,7 +4,8 @@
 ///   drive       first device that takes Twist; its odometry, and DriveManeuver and DriveProgress if it has them
 ///   distances   Range, one device each; lidar: the first LaserScan; camera: the first colour Image
 ///   encoders    devices with `ticks_per_turn`; bumpers: ContactsState; compass: Imu, or MagneticField (north along y)
-///   motors      devices that take Float64 at another level than `position`; without any, the two sides of a differential drive
+///   motors      devices that take Float64 at another level than `position`; without any, the two sides of a differential drive or the
+///               four wheels of a Mecanum drive
 ///   servos      devices that take Float64 at level `position`
 ///   battery, radio, keys, screen, speaker   by their messages
 #include <optional>
@@ -58,6 +59,8 @@ class RobotDevices {
   Status find_distances(const Description& robot, const Spec& spec);
   void find_drive(const Description& robot, const Spec& spec);
   void find_motors(const Description& robot);
+  /// Motors that are wheels of the drive.
+  std::size_t drive_motors() const;
   bool order_speed(double v_mps, double w_radps, Command& cmd) const;
   bool order_motor(const sandlot::robios::MotorOrder& order, State& state, Command& cmd) const;
 
@@ -66,8 +69,8 @@ class RobotDevices {
   double wheel_diameter_m_ = 0, track_m_ = 0, max_speed_mps_ = 0, max_turning_rate_radps_ = 0,
          servo_range_rad_ = 0;
   std::uint32_t ticks_per_turn_ = 0, screen_width_ = 0, screen_height_ = 0;
-  Index twist_, maneuver_, odometry_, progress_, lidar_, camera_, imu_, magnetometer_, battery_, keys_,
-      screen_, sound_, speaker_, packet_, reception_;
+  Index twist_, wheels_, maneuver_, odometry_, progress_, lidar_, camera_, imu_, magnetometer_, battery_,
+      keys_, screen_, sound_, speaker_, packet_, reception_;
   std::vector<Sensor> distances_, encoders_, bumpers_;
   std::vector<Actor> motors_, servos_;
 };

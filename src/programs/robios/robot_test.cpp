@@ -58,10 +58,10 @@ class OneOfEverything : public testing::Test {
     state.robots = {"other", "r"};
     state.number = 2;
   }
-  void find() {
+  void find(const char* drive = "diff_drive") {
     ASSERT_TRUE(robot.find(description,
                            {{"drive",
-                             "diff_drive",
+                             drive,
                              {},
                              {{"wheel_radius", 0.03},
                               {"wheel_separation", 0.2},
@@ -277,6 +277,24 @@ TEST_F(OneOfEverything, MotorsAreTheSidesOfTheDrive) {
   EXPECT_NEAR(both->linear.x, 0.3, 1e-12);
   EXPECT_NEAR(both->angular.z, 0, 1e-12);
   EXPECT_FALSE(ordered<msg::Twist>(MotorOrder{2, 0, 1}, 0));
+}
+
+TEST_F(OneOfEverything, MotorsAreTheWheelsOfAMecanumDrive) {
+  actuator<msg::JointState>("drive");
+  find("mecanum_drive");
+  sandlot::robios::Robot out{};
+  robot.describe(spec, state, out);
+  EXPECT_EQ(out.motors, 4u);
+  EXPECT_STREQ(out.motor_names[1], "frontright");
+  // Half of 0.6 m/s on wheels of 3 cm; what was ordered before stays.
+  const auto first = ordered<msg::JointState>(MotorOrder{1, 0, -0.5}, 6);
+  ASSERT_TRUE(first);
+  EXPECT_THAT(first->velocity, testing::ElementsAre(0, testing::DoubleNear(-10, 1e-9), 0, 0));
+  const auto second = ordered<msg::JointState>(MotorOrder{3, 1, 7}, 6);
+  ASSERT_TRUE(second);
+  EXPECT_THAT(second->velocity,
+              testing::ElementsAre(0, testing::DoubleNear(-10, 1e-9), 0, testing::DoubleNear(7, 1e-9)));
+  EXPECT_FALSE(ordered<msg::JointState>(MotorOrder{4, 0, 1}, 6));
 }
 
 TEST_F(OneOfEverything, ItsOdometryBeginsWhereItIsSet) {

@@ -103,7 +103,7 @@ struct State {
   std::uint32_t number = 0;
   std::vector<std::string> robots;
   std::array<double, 3> odometry{}, origin{};
-  std::array<double, 2> wheels{};
+  std::array<double, 4> wheels{};
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"turns", "1", "Number of turns that the program took."}, s.turns);
@@ -127,7 +127,7 @@ struct State {
     visit(Field{"odometry", "", "Odometry at its latest turn: x [m], y [m], heading [rad]."}, s.odometry);
     visit(Field{"origin", "", "Place that its own odometry counts from: x [m], y [m], heading [rad]."},
           s.origin);
-    visit(Field{"wheels", "m/s", "Speeds ordered of the left and the right motor."}, s.wheels);
+    visit(Field{"wheels", "m/s", "Speeds ordered of the motors that are wheels of the drive."}, s.wheels);
   }
 };
 
