@@ -51,7 +51,8 @@ double attained(Ramp& ramp, double setpoint, double rate, double acceleration, d
   constexpr double least_share = 0.2;
   ramp.time_s += tick_s;
   const double sign = setpoint < 0 ? -1 : 1;
-  if (sign * (setpoint - rate) > acceleration * reaction_s + edge / tick_s) {
+  // Before that, a way that began in motion has no rate yet.
+  if (ramp.time_s > reaction_s && sign * (setpoint - rate) > acceleration * reaction_s + edge / tick_s) {
     const double gained = sign * (rate - ramp.from) + acceleration * tick_s;
     ramp.share = std::clamp(gained / (acceleration * ramp.time_s), least_share, ramp.share);
   }

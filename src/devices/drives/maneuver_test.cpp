@@ -222,6 +222,18 @@ TEST(DiffDriveManeuver, CoversItsWayAtBothLevels) {
   }
 }
 
+TEST(DiffDriveManeuver, BeginsInMotionWithItsFullBrakes) {
+  for (const std::uint32_t level : {ideal_bit, contact_bit}) {
+    Rig rig(diff_drive::kind, test::two_wheels());
+    ASSERT_TRUE(rig.add("drive", diff(), level));
+    rig.command(level == ideal_bit ? "drive/ideal" : "drive/contact", msg::Twist{{0.4, 0, 0}, {}});
+    for (int i = 0; i < 1 / tick_s; ++i) rig.act();
+    rig.command("drive/maneuver",
+                DriveManeuver{.kind = DriveManeuver::straight, .distance = 0.3, .speed = 0.4});
+    EXPECT_NEAR(until_done(rig) * tick_s, 0.3 / 0.4 + 0.5 * 0.4 / 1, end_s) << level;
+  }
+}
+
 TEST(DiffDriveManeuver, NothingIsPublishedOrSavedBeforeTheFirst) {
   Rig rig(diff_drive::kind, test::two_wheels());
   ASSERT_TRUE(rig.add("drive", diff(), contact_bit));
