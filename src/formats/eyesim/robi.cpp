@@ -434,6 +434,8 @@ class Reader {
     builders::add_device(model_, "drive", "diff_drive",
                          {{"left_joint", "left_joint"},
                           {"right_joint", "right_joint"},
+                          {"wheel_radius", number_text(axle.diameter_m / 2)},
+                          {"wheel_separation", number_text(axle.track_m)},
                           {"max_linear_speed", max_speed(axle)},
                           {"max_angular_speed", max_turn(axle)}});
     add_encoder("left_encoder", "left_joint", axle);
@@ -467,6 +469,7 @@ class Reader {
          {"passive_joint", std::vector<std::string>{"front_left_joint", "front_right_joint"}},
          {"left_steering_joint", "front_left_steering"},
          {"right_steering_joint", "front_right_steering"},
+         {"wheel_radius", number_text(back.diameter_m / 2)},
          {"max_linear_speed", max_speed(back)},
          {"max_angular_speed", max_turn(back)}});
     add_encoder("left_encoder", "left_joint", back);
@@ -484,6 +487,8 @@ class Reader {
                           {"back_left_joint", "rear_left_joint"},
                           {"back_right_joint", "rear_right_joint"},
                           {"encoder_ticks", std::to_string(static_cast<long long>(axle.ticks))},
+                          {"wheel_radius", number_text(axle.diameter_m / 2)},
+                          {"track", number_text(axle.track_m)},
                           {"max_linear_speed", max_speed(axle)},
                           {"max_angular_speed", max_turn(axle)}});
   }
