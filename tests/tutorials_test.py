@@ -6,6 +6,7 @@ SANDLOT_BIN is the built command; its folder is what is installed for the tutori
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -85,6 +86,7 @@ def main():
     failed = 0
     with tempfile.TemporaryDirectory(prefix="tutorials") as scratch:
         home = pathlib.Path(scratch)
+        home.chmod(0o755)  # programs that a run starts are not root, and read their folder
         environment = {**os.environ, "HOME": scratch, "BUILD": str(command.parent),
                        "PATH": f"{home}/bin:{os.environ['PATH']}"}
         (home / "bin").mkdir()
@@ -100,6 +102,8 @@ def main():
                 (folder / "room.sdf").write_text(room)
             if page.stem.startswith("3_"):
                 (folder / "first.yaml").write_text(first)
+            if page.stem.startswith("7_"):  # "copy the folder examples/robios"
+                shutil.copytree(ROOT / "examples/robios", folder / "robios")
             wrong = run_page(page, folder, environment)
             print(f"{page.name}: {'ok' if wrong is None else wrong}", flush=True)
             failed += wrong is not None
