@@ -7,6 +7,7 @@
 
 #define WIDTH QQVGA_X
 #define HEIGHT QQVGA_Y
+#define BOTTOM 220       /* row of the screen where the histogram stands */
 #define BALL_HUE 17     /* orange: 24 degrees; 256 are a whole turn */
 #define TOLERANCE 8
 #define ENOUGH 2        /* pixels in a column */
@@ -37,9 +38,9 @@ static int find_ball(int histogram[WIDTH]) {
 static void show(const int histogram[WIDTH], int column) {
   int x;
   LCDImage(picture);
-  LCDArea(0, HEIGHT, WIDTH - 1, 2 * HEIGHT, BLACK, 1);
-  for (x = 0; x < WIDTH; x++) LCDLine(x, 2 * HEIGHT, x, 2 * HEIGHT - histogram[x], ORANGE);
-  if (column >= 0) LCDLine(column, 0, column, 2 * HEIGHT, WHITE);
+  LCDArea(0, HEIGHT, WIDTH - 1, BOTTOM, BLACK, 1);
+  for (x = 0; x < WIDTH; x++) LCDLine(x, BOTTOM, x, BOTTOM - histogram[x], ORANGE);
+  if (column >= 0) LCDLine(column, 0, column, BOTTOM, WHITE);
 }
 
 int main(void) {
@@ -53,14 +54,14 @@ int main(void) {
     front = PSDGet(PSD_FRONT);
     if (column < 0) {
       VWSetSpeed(0, 40); /* look around */
-      LCDSetPrintf(16, 0, "search");
+      LCDSetPrintf(0, 21, "search           ");
       continue;
     }
     if (!seen++) printf("seen\n");
     /* The ball is at this angle, to the left if positive; turn towards it within about half a second. */
     int angle = (WIDTH / 2 - column) * FIELD_OF_VIEW / WIDTH;
     int facing = abs(angle) < 8;
-    LCDSetPrintf(16, 0, "%4d deg %5d mm", angle, front);
+    LCDSetPrintf(0, 21, "%4d deg %4d mm", angle, front);
     if (facing && front <= STOP_MM + 10) break;
     VWSetSpeed(!facing ? 0 : front < SLOW_MM ? 20 + (front - STOP_MM) / 2 : 200, 2 * angle);
   }

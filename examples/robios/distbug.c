@@ -41,14 +41,14 @@ static void show(const char *what, double d, double d_min) {
   int i;
   LCDSetPrintf(0, 0, "%-8s", what);
   LCDSetPrintf(1, 0, "goal %5.0f, was %5.0f", d, d_min);
-  LCDArea(0, 40, 319, 359, BLACK, 1);
+  LCDArea(0, 32, 319, 223, BLACK, 1);
   for (i = 0; i < 360; i += 4)
-    if (scan[i] < 1600) {
+    if (scan[i] < 1600) { /* 18 mm a pixel */
       double a = (180 - i) * M_PI / 180;
-      LCDArea(160 - (int)(scan[i] * sin(a) / 10), 200 - (int)(scan[i] * cos(a) / 10), 162 - (int)(scan[i] * sin(a) / 10),
-              202 - (int)(scan[i] * cos(a) / 10), GREEN, 1);
+      int column = 160 - (int)(scan[i] * sin(a) / 18), row = 128 - (int)(scan[i] * cos(a) / 18);
+      LCDArea(column, row, column + 2, row + 2, GREEN, 1);
     }
-  LCDCircle(160, 200, 8, RED, 1);
+  LCDCircle(160, 128, 5, RED, 1);
 }
 
 int main(void) {

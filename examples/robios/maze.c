@@ -32,7 +32,7 @@ static int x = N / 2, y = N / 2, direction = 0, cells = 0;
 
 /* Ahead is up on the screen. */
 static int screen_x(int cell_y) { return 160 - (cell_y - N / 2) * PIXELS; }
-static int screen_y(int cell_x) { return 230 - (cell_x - N / 2) * PIXELS; }
+static int screen_y(int cell_x) { return 205 - (cell_x - N / 2) * PIXELS; }
 
 static void draw_wall(int cx, int cy, int d) {
   /* The two ends of the wall lie half a cell ahead of the middle, and half a cell to both sides. */
