@@ -30,7 +30,6 @@ struct LogSpec {
 class LogFile {
  public:
   /// Opens the file and writes the header.
-  /// @param sensors, motors  numbers of the robot's values, columns x_R and y_R; 0: none
   Status open(const std::string& path, const LogSpec& spec, const Controller& controller);
   bool is_open() const { return out_.is_open(); }
   /// A line with the controller's values, if one is due.

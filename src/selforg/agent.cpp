@@ -1,0 +1,169 @@
+#include "selforg/agent.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "base/atomic_file.h"
+#include "base/text.h"
+
+namespace sandlot::selforg {
+namespace {
+
+constexpr std::string_view magic = "SELFAGT\n";
+constexpr std::uint32_t version = 1;
+
+}  // namespace
+
+Result<std::unique_ptr<WiredController>> WiredController::make(std::size_t sensors, std::size_t motors, const AgentSpec& spec) {
+  std::unique_ptr<WiredController> made(new WiredController);
+  Setup robot{sensors, motors, spec.seed, spec.name};
+  if (spec.wiring.empty()) {
+    SL_ASSIGN(made->wiring_, make_wiring("one_to_one", robot));
+  } else {
+    std::vector<std::unique_ptr<Wiring>> parts;
+    for (std::size_t i = 0; i < spec.wiring.size(); ++i) {
+      Setup between = robot;
+      between.name = i == 0 ? spec.name : fmt::format("{}/wiring{}", spec.name, i);
+      auto part = make_wiring(spec.wiring[i].kind, between, spec.wiring[i].parameters);
+      if (!part) {
+        part.error().path = fmt::format("/wiring/{}{}", i, part.error().path);
+        return std::move(part).error();
+      }
+      robot.sensors = part.value()->controller_sensors();
+      robot.motors = part.value()->controller_motors();
+      parts.push_back(std::move(part).value());
+    }
+    if (parts.size() == 1) {
+      made->wiring_ = std::move(parts.front());
+    } else {
+      SL_ASSIGN(made->wiring_, make_sequence(std::move(parts)));
+    }
+  }
+  Setup inner{made->wiring_->controller_sensors(), made->wiring_->controller_motors(), spec.seed, spec.name};
+  SL_ASSIGN(made->controller_, make_controller(spec.controller, inner, spec.parameters));
+  inner.name += "/babbling";
+  SL_ASSIGN(made->babbler_, make_controller("babbling", inner));
+  made->x_.resize(inner.sensors);
+  made->y_.resize(inner.motors);
+  made->set_noise(spec.noise);
+  return made;
+}
+
+void WiredController::step(std::span<const double> x, std::span<double> y, Mode mode) {
+  wiring_->wire_sensors(x, x_, noise_);
+  if (babbling_left_ > 0) {
+    --babbling_left_;
+    babbler_->step(x_, y_);
+    controller_->step(x_, y_, Mode::babble);
+  } else {
+    controller_->step(x_, y_, mode);
+  }
+  wiring_->wire_motors(y_, y, noise_);
+  ++steps_;
+}
+
+void WiredController::save(ByteWriter& w) const {
+  write(w, noise_);
+  write(w, steps_);
+  write(w, babbling_left_);
+  controller_->save(w);
+  babbler_->save(w);
+  wiring_->save(w);
+}
+
+void WiredController::load(ByteReader& r) {
+  ByteWriter before;
+  save(before);
+  const auto take = [&](ByteReader& from) {
+    read(from, noise_);
+    read(from, steps_);
+    read(from, babbling_left_);
+    if (!std::isfinite(noise_)) from.fail();
+    controller_->load(from);
+    babbler_->load(from);
+    wiring_->load(from);
+  };
+  take(r);
+  if (r.ok()) return;
+  ByteReader back(before.bytes());
+  take(back);
+  SL_CHECK(back.ok());
+}
+
+Status WiredController::store(const std::string& path) const {
+  ByteWriter body, w;
+  write(body, fmt::format("{} behind {}", controller_->kind(), wiring_->kind()));
+  write(body, static_cast<std::uint64_t>(wiring_->robot_sensors()));
+  write(body, static_cast<std::uint64_t>(wiring_->robot_motors()));
+  write(body, controller_->fixed_key());
+  save(body);
+  w.raw(magic.data(), magic.size());
+  write(w, version);
+  write(w, hash64(body.bytes()));
+  w.raw(body.bytes().data(), body.size());
+  return write_file(path, {reinterpret_cast<const char*>(w.bytes().data()), w.size()});
+}
+
+Status WiredController::load(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{fmt::format("cannot read '{}'", path), "check the path"};
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto bytes = std::as_bytes(std::span(text));
+  ByteReader r(bytes);
+  const auto first = r.take(magic.size());
+  if (!r.ok() || std::memcmp(first.data(), magic.data(), magic.size()) != 0)
+    return Error{fmt::format("'{}' is not a stored agent", path), "files of an agent begin with SELFAGT"};
+  std::uint32_t found_version = 0;
+  std::uint64_t sum = 0, sensors = 0, motors = 0, key = 0;
+  read(r, found_version);
+  if (r.ok() && found_version != version)
+    return Error{fmt::format("'{}' has version {}; this program reads version {}", path, found_version, version),
+                 "store it again with this program"};
+  read(r, sum);
+  const Error damaged{fmt::format("'{}' is damaged or incomplete", path), "store it again"};
+  if (!r.ok() || hash64(bytes.last(r.remaining())) != sum) return damaged;
+  std::string kinds;
+  read(r, kinds);
+  read(r, sensors);
+  read(r, motors);
+  read(r, key);
+  if (!r.ok()) return damaged;
+  const std::string own = fmt::format("{} behind {}", controller_->kind(), wiring_->kind());
+  if (kinds != own) return Error{fmt::format("'{}' holds {}; this agent is {}", path, kinds, own), "load it into one of its kind"};
+  if (sensors != wiring_->robot_sensors() || motors != wiring_->robot_motors())
+    return Error{fmt::format("'{}' holds an agent of {} sensors and {} motors; this one has {} and {}", path, sensors, motors,
+                             wiring_->robot_sensors(), wiring_->robot_motors()),
+                 "load it into one of its size"};
+  if (key != controller_->fixed_key())
+    return Error{fmt::format("'{}' was stored by a controller with other fixed parameters", path),
+                 "make the agent with the parameters that it was stored with"};
+  load(r);
+  if (!r.ok()) return damaged;
+  return {};
+}
+
+Result<std::unique_ptr<Agent>> Agent::make(Robot& robot, const AgentSpec& spec) {
+  std::unique_ptr<Agent> made(new Agent);
+  made->robot_ = &robot;
+  SL_ASSIGN(made->wired_, WiredController::make(robot.sensors(), robot.motors(), spec));
+  made->x_.resize(robot.sensors());
+  made->y_.resize(robot.motors());
+  return made;
+}
+
+void Agent::step(double dt_s, Mode mode) {
+  robot_->read_sensors(x_);
+  wired_->step(x_, y_, mode);
+  robot_->set_motors(y_);
+  if (log_.is_open()) log_.step(time_s_, controller());
+  time_s_ += dt_s;
+}
+
+Status Agent::set(std::string_view parameter, double number) {
+  SL_TRY(controller().set(parameter, number));
+  if (log_.is_open()) log_.comment(fmt::format("{}={}", parameter, number_text(number)));
+  return {};
+}
+
+}  // namespace sandlot::selforg
