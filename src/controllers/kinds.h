@@ -15,6 +15,7 @@
   controller(predator)                  \
   controller(prey)                      \
   controller(seeker)                    \
+  controller(selforg)                   \
   controller(sequence)                  \
   controller(sine)                      \
   controller(wander)                    \

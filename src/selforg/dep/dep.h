@@ -36,10 +36,10 @@ struct Dep {
     std::vector<Matrix> velocities;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"t", "1", "Steps so far."}, s.t);
-      visit(Field{"C", "1", "Correlations, before normalisation."}, s.C);
-      visit(Field{"h", "1", "Bias of the controller."}, s.h);
       visit(Field{"x", "1", "Smoothed sensor values."}, s.x);
       visit(Field{"y", "1", "Motor values."}, s.y);
+      visit(Field{"C", "1", "Correlations, before normalisation."}, s.C);
+      visit(Field{"h", "1", "Bias of the controller."}, s.h);
       visit(Field{"velocities", "1", "Changes of the sensor values in the last steps."}, s.velocities);
     }
   };

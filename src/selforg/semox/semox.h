@@ -57,13 +57,13 @@ struct Semox final : Teachable {
     bool teach = false;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"t", "1", "Steps so far."}, s.t);
+      visit(Field{"x", "1", "Smoothed sensor values."}, s.x);
+      visit(Field{"y", "1", "Motor values."}, s.y);
       visit(Field{"A", "1", "Model: motors to sensors."}, s.A);
       visit(Field{"C", "1", "Controller: sensors to motors."}, s.C);
       visit(Field{"S", "1", "Model: sensors to next sensors."}, s.S);
       visit(Field{"H", "1", "Bias of the controller."}, s.H);
       visit(Field{"b", "1", "Bias of the model."}, s.b);
-      visit(Field{"x", "1", "Smoothed sensor values."}, s.x);
-      visit(Field{"y", "1", "Motor values."}, s.y);
       visit(Field{"x_buffer", "1", "Smoothed sensor values of the last steps."}, s.x_buffer);
       visit(Field{"y_buffer", "1", "Motor values of the last steps."}, s.y_buffer);
       visit(Field{"xi", "1", "Prediction error of the model."}, s.xi);

@@ -72,6 +72,8 @@ struct Sox final : Teachable, Rewardable {
     double reward = 0;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"t", "1", "Steps so far."}, s.t);
+      visit(Field{"x", "1", "Smoothed sensor values."}, s.x);
+      visit(Field{"y", "1", "Motor values."}, s.y);
       visit(Field{"A", "1", "Model: motors to sensors."}, s.A);
       visit(Field{"C", "1", "Controller: sensors to motors."}, s.C);
       visit(Field{"S", "1", "Model: sensors to next sensors, caused by the environment."}, s.S);
@@ -79,8 +81,6 @@ struct Sox final : Teachable, Rewardable {
       visit(Field{"b", "1", "Bias of the model."}, s.b);
       visit(Field{"A_native", "1", "Model that damping pulls towards."}, s.A_native);
       visit(Field{"C_native", "1", "Controller that damping pulls towards."}, s.C_native);
-      visit(Field{"x", "1", "Smoothed sensor values."}, s.x);
-      visit(Field{"y", "1", "Motor values."}, s.y);
       visit(Field{"x_buffer", "1", "Smoothed sensor values of the last steps."}, s.x_buffer);
       visit(Field{"y_buffer", "1", "Motor values of the last steps."}, s.y_buffer);
       visit(Field{"v", "1", "Reconstruction error."}, s.v);

@@ -1,0 +1,239 @@
+#include "controllers/selforg/selforg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace sandlot::controllers::selforg {
+namespace {
+
+constexpr std::string_view twist_components[] = {"linear.x", "linear.y", "angular.z"};
+
+double& component_of(msg::Twist& twist, int component) {
+  if (component == 0) return twist.linear.x;
+  return component == 1 ? twist.linear.y : twist.angular.z;
+}
+
+std::vector<std::string> names_in(const std::vector<Description::Entry>& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.level.empty() ? entry.device : entry.device + "/" + entry.level);
+  return names;
+}
+
+/// The entry of `device` or `device/level`; of several for a device alone the first, which follows the active level.
+const Description::Entry* entry_of(const std::vector<Description::Entry>& entries, std::string_view name) {
+  for (const auto& entry : entries)
+    if (entry.device == name || entry.device + "/" + entry.level == name) return &entry;
+  return nullptr;
+}
+
+Error not_there(const std::vector<Description::Entry>& entries, const std::string& device, const std::string& path) {
+  const auto names = names_in(entries);
+  return {fmt::format("the robot has no '{}'", device), suggestion(device, names), {}, path};
+}
+
+}  // namespace
+
+Status Place::check(const Node& node, const std::string& path) const {
+  if (min < max) return {};
+  return node.error(fmt::format("an empty range: min {} is not below max {}", min, max), "", path + "/min");
+}
+
+Status SelfOrg::init(const Description& robot, const Node& config, Outputs& out) {
+  SL_ASSIGN(spec_, read_spec<Spec>(config));
+  robot_ = robot.robot;
+  SL_TRY(find_sensors(robot));
+  SL_TRY(find_motors(robot));
+  x_.assign(sensors_.size(), 0);
+  y_.assign(motors_.size(), 0);
+  SL_ASSIGN(agent_, make_agent(0));
+  if (spec_.publish_interval == 0) return {};
+  agent_->controller().channels([&](const so::Channel& channel) {
+    if (channel.values.size() == 1 && channel.rows == 1 && channel.cols == 1 && channel.name == "t") return;
+    Topic& topic = topics_.emplace_back();
+    topic.name = channel.name;
+    topic.publication = out.publish<msg::Float64MultiArray>(topic.name);
+    const auto rows = static_cast<std::uint32_t>(channel.rows), cols = static_cast<std::uint32_t>(channel.cols);
+    topic.message.layout.dim = {{"rows", rows, rows * cols}, {"columns", cols, cols}};
+    topic.message.data.resize(channel.values.size());
+  });
+  return {};
+}
+
+Status SelfOrg::find_sensors(const Description& robot) {
+  for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
+    const Place& place = spec_.sensors[i];
+    const std::string path = fmt::format("/sensors/{}", i);
+    const auto* const entry = entry_of(robot.readings, place.device);
+    if (!entry) return not_there(robot.readings, place.device, path + "/device");
+    auto value = parse_value_path(place.value.empty() ? "data" : place.value);
+    if (!value) return value.error().path = path + "/value", std::move(value).error();
+    sensors_.push_back({entry->index, *value, (place.max + place.min) / 2, (place.max - place.min) / 2});
+  }
+  return {};
+}
+
+Status SelfOrg::find_motors(const Description& robot) {
+  if (spec_.motors.empty()) {
+    for (const auto& entry : robot.actuators)
+      if (entry.level.empty() && entry.type == msg::Float64::ros_type) {
+        motors_.push_back({numbers_.size(), -1, 0, 1});
+        numbers_.push_back({entry.index});
+      }
+    if (motors_.empty()) return Error{fmt::format("robot '{}' has no device that takes a number", robot.robot), "list `motors`"};
+    return {};
+  }
+  for (std::size_t i = 0; i < spec_.motors.size(); ++i) {
+    const Place& place = spec_.motors[i];
+    const std::string path = fmt::format("/motors/{}", i);
+    const auto* const entry = entry_of(robot.actuators, place.device);
+    if (!entry) return not_there(robot.actuators, place.device, path + "/device");
+    Motor motor{0, -1, (place.max + place.min) / 2, (place.max - place.min) / 2};
+    if (entry->type == msg::Float64::ros_type) {
+      motor.target = numbers_.size();
+      numbers_.push_back({entry->index});
+    } else if (entry->type == msg::Twist::ros_type) {
+      const auto found = std::find(std::begin(twist_components), std::end(twist_components), place.value);
+      if (found == std::end(twist_components))
+        return Error{fmt::format("'{}' takes a Twist, which has no '{}'", place.device, place.value),
+                     "linear.x, linear.y or angular.z", {}, path + "/value"};
+      motor.component = static_cast<int>(found - std::begin(twist_components));
+      motor.target = 0;
+      while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index) ++motor.target;
+      if (motor.target == twists_.size()) twists_.push_back({{entry->index}, {}});
+    } else {
+      return Error{fmt::format("'{}' takes a {}", place.device, entry->type), "a motor takes a Float64 or a Twist", {},
+                   path + "/device"};
+    }
+    motors_.push_back(motor);
+  }
+  return {};
+}
+
+Result<std::unique_ptr<so::WiredController>> SelfOrg::make_agent(std::uint64_t seed) const {
+  so::AgentSpec spec;
+  spec.controller = spec_.agent;
+  spec.parameters = spec_.parameters;
+  for (const Part& part : spec_.wiring) spec.wiring.push_back({part.kind, part.parameters});
+  spec.noise = spec_.noise;
+  spec.seed = seed;
+  spec.name = robot_;
+  SL_ASSIGN(auto made, so::WiredController::make(sensors_.size(), motors_.size(), spec));
+  made->babble(spec_.babbling);
+  return made;
+}
+
+void SelfOrg::step(const Observation& obs, Command& cmd) {
+  if (!begun_) {
+    // The run's seed reaches a controller in its steps only. Parameters that were tuned meanwhile are kept.
+    seed_ = obs.random().bits64();
+    auto made = make_agent(seed_);
+    SL_CHECK(made);
+    for (const FieldInfo& field : agent_->controller().describe())
+      if (field.tunable && (field.type == "number" || field.type == "integer"))
+        if (const auto number = agent_->controller().get(field.path)) (void)(*made)->controller().set(field.path, *number);
+    agent_ = std::move(*made);
+    begun_ = true;
+  }
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const Sensor& sensor = sensors_[i];
+    const TopicBase& topic = obs.topic(sensor.topic);
+    x_[i] = 0;
+    if (topic.count == 0) continue;
+    const ValueFound found = topic.value(sensor.path);
+    if (found.is == ValueFound::Is::value) x_[i] = (found.value - sensor.middle) / sensor.scale;
+  }
+  agent_->set_noise(spec_.noise);
+  agent_->step(x_, y_);
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const Motor& motor = motors_[i];
+    const double value = motor.middle + motor.scale * std::clamp(y_[i], -1.0, 1.0);
+    if (motor.component < 0) cmd.set(numbers_[motor.target], msg::Float64{value});
+    else component_of(twists_[motor.target].order, motor.component) = value;
+  }
+  for (const TwistTarget& target : twists_) cmd.set(target.actuator, target.order);
+  if (spec_.publish_interval > 0 && (agent_->steps() - 1) % static_cast<std::uint64_t>(spec_.publish_interval) == 0) publish(cmd);
+}
+
+/// Topics are in the order of the channels.
+void SelfOrg::publish(Command& cmd) {
+  std::size_t at = 0;
+  agent_->controller().channels([&](const so::Channel& channel) {
+    if (at >= topics_.size() || topics_[at].name != channel.name) return;
+    Topic& topic = topics_[at++];
+    // ROS arrays are row after row.
+    for (std::size_t i = 0; i < channel.rows; ++i)
+      for (std::size_t j = 0; j < channel.cols; ++j)
+        topic.message.data[i * channel.cols + j] = channel.values[i + j * channel.rows];
+    cmd.publish(topic.publication, topic.message);
+  });
+}
+
+Status SelfOrg::set_parameter(std::string_view path, const Node& value) {
+  const std::string_view first = first_part(path);
+  const std::string_view rest = first.size() < path.size() ? path.substr(first.size() + 1) : std::string_view();
+  if (first == "parameters" && !rest.empty()) return agent_->controller().set_parameter(rest, value);
+  if (first == "wiring" && !rest.empty()) return agent_->wiring().set_parameter(rest, value);
+  Spec changed = spec_;
+  SL_TRY(set_tunable(changed, path, value));
+  spec_ = std::move(changed);
+  return {};
+}
+
+ValueFound SelfOrg::value(ValuePart part, std::span<const ValueStep> path) const {
+  if (part == ValuePart::state) return agent_->controller().value(part, path);
+  if (path.size() > 1 && path[0].key == "parameters") return agent_->controller().value(part, path.subspan(1));
+  if (path.size() > 1 && path[0].key == "wiring") return agent_->wiring().value(part, path.subspan(1));
+  return value_at(spec_, path);
+}
+
+void SelfOrg::list_values(ValuePart part, const ValueVisit& visit) const {
+  if (part == ValuePart::state) return agent_->controller().list_values(part, visit);
+  sandlot::list_values(spec_, "", "", "", visit);
+  agent_->controller().list_values(part, [&](ValueEntry entry) {
+    entry.path = "parameters." + entry.path;
+    visit(std::move(entry));
+  });
+}
+
+void SelfOrg::save(ByteWriter& w) const {
+  write(w, spec_.noise);  // the only tunable of the spec itself
+  write(w, begun_);
+  write(w, seed_);
+  for (const TwistTarget& target : twists_) write(w, target.order);
+  agent_->save(w);
+}
+
+void SelfOrg::load(ByteReader& r) {
+  bool begun = false;
+  std::uint64_t seed = 0;
+  double noise = 0;
+  read(r, noise);
+  if (!(noise >= 0 && noise <= 100)) r.fail();
+  read(r, begun);
+  read(r, seed);
+  std::vector<TwistTarget> twists = twists_;
+  for (TwistTarget& target : twists) read(r, target.order);
+  if (!r.ok()) return;
+  auto made = make_agent(seed);
+  SL_CHECK(made);
+  (*made)->load(r);
+  if (!r.ok()) return;
+  spec_.noise = noise;
+  begun_ = begun;
+  seed_ = seed;
+  twists_ = std::move(twists);
+  agent_ = std::move(*made);
+}
+
+extern const ControllerKind kind;
+constinit const ControllerKind kind = {
+    .name = "selforg",
+    .help = "Finds behaviour by itself: homeokinesis and its kin.",
+    .describe = [] { return describe_fields<Spec>(); },
+    .create = []() -> std::unique_ptr<Controller> { return std::make_unique<SelfOrg>(); },
+};
+
+}  // namespace sandlot::controllers::selforg

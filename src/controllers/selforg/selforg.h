@@ -1,0 +1,123 @@
+#pragma once
+/// SelfOrg: an agent of the library selforg drives the robot: homeokinesis and its kin find behaviours by themselves.
+///
+/// Reads    numbers of any messages, by device and path: {device: hip, value: 'position[0]', min: -1.2, max: 1.2}. The range
+///          becomes [-1, 1]. A device without a message so far counts as the middle of the range.
+/// Orders   a Float64, or one component of a Twist, per motor: {device: hip, min: -5, max: 5}, {device: drive, value: angular.z}.
+///          The agent's [-1, 1] becomes the range.
+/// Topics   each matrix and vector of the controller as Float64MultiArray, its name in the equations: /ROBOT/PROGRAM/A. One per
+///          `publish_interval` control steps.
+/// State    the whole agent, with its seed, which is drawn in the first step: learning goes on after a restore to the same hash.
+/// Tunable  noise, and the parameters of agent and wirings: `parameters/epsC`, `wiring/0/noise/strength` in a sequence, without
+///          the index for a single wiring.
+/// Limits   the border to controllers gives no limits of devices: a range that is not [-1, 1] has to be stated.
+/// Errors   sensors and motors that are not there, ranges that are empty, unknown controllers and parameters.
+#include <memory>
+
+#include "control/controller.h"
+#include "selforg/agent.h"
+
+namespace sandlot::controllers::selforg {
+
+namespace so = ::sandlot::selforg;
+
+/// Number of a device's message, and the range of it that is [-1, 1] for the agent.
+struct Place {
+  std::string device, value;
+  double min = -1, max = 1;
+  Status check(const Node& node, const std::string& path) const;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"device", "", "Device, or device/level.", 0, 0, Field::required, 1000, 1}, s.device);
+    visit(Field{"value", "",
+                "Path of the number in the message; empty: data. Of a Twist as motor: linear.x, linear.y or angular.z."},
+          s.value);
+    visit(Field{"min", "", "Value that is -1 for the agent."}, s.min);
+    visit(Field{"max", "", "Value that is 1 for the agent."}, s.max);
+  }
+};
+
+struct Part {
+  std::string kind;
+  Node parameters;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"kind", "", "Kind of the wiring: one_to_one, selective, derivative, feedback, motor_noise.", 0, 0,
+                Field::required, 100, 1},
+          s.kind);
+    visit(Field{"parameters", "", "Parameters of the wiring."}, s.parameters);
+  }
+};
+
+struct Spec {
+  std::string agent = "sox";
+  Node parameters;
+  std::vector<Part> wiring;
+  std::vector<Place> sensors, motors;
+  double noise = 0.1;
+  int publish_interval = 1;
+  std::uint32_t babbling = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"agent", "", "Kind of the agent's controller: sox, semox, dep, experts, sine, ...", 0, 0, Field::none, 100, 1},
+          s.agent);
+    visit(Field{"parameters", "", "Parameters of the agent's controller."}, s.parameters);
+    visit(Field{"wiring", "", "Wirings from the robot to the controller; none: one_to_one.", 0, 0, Field::none, 16}, s.wiring);
+    visit(Field{"sensors", "", "Sensor values of the agent.", 0, 0, Field::none, 1000}, s.sensors);
+    visit(Field{"motors", "", "Motor values of the agent; none: every device of the robot that takes a number.", 0, 0,
+                Field::none, 1000},
+          s.motors);
+    visit(Field{"noise", "1", "Factor on the noise of the wirings.", 0, 100, Field::tunable}, s.noise);
+    visit(Field{"publish_interval", "1", "Control steps per message of each topic; 0: no topics.", 0, 1e6}, s.publish_interval);
+    visit(Field{"babbling", "1", "Control steps at the beginning in which motors move at random and the model learns.", 0, 1e9},
+          s.babbling);
+  }
+};
+
+class SelfOrg final : public Controller {
+ public:
+  Status init(const Description& robot, const Node& config, Outputs& out) override;
+  void step(const Observation& obs, Command& cmd) override;
+  Status set_parameter(std::string_view path, const Node& value) override;
+  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override;
+  void list_values(ValuePart part, const ValueVisit& visit) const override;
+  void save(ByteWriter& w) const override;
+  void load(ByteReader& r) override;
+
+ private:
+  struct Sensor {
+    std::uint32_t topic = 0;
+    ValuePath path;
+    double middle = 0, scale = 1;
+  };
+  struct Motor {
+    std::size_t target = 0;  ///< index in numbers_ or twists_
+    int component = -1;      ///< -1: a number; 0, 1, 2: of a Twist
+    double middle = 0, scale = 1;
+  };
+  struct TwistTarget {
+    Actuator<msg::Twist> actuator;
+    msg::Twist order;
+  };
+  struct Topic {
+    Publication<msg::Float64MultiArray> publication;
+    std::string name;
+    msg::Float64MultiArray message;
+  };
+  Status find_sensors(const Description& robot);
+  Status find_motors(const Description& robot);
+  Result<std::unique_ptr<so::WiredController>> make_agent(std::uint64_t seed) const;
+  void publish(Command& cmd);
+
+  Spec spec_;
+  std::string robot_;
+  std::vector<Sensor> sensors_;
+  std::vector<Motor> motors_;
+  std::vector<Actuator<msg::Float64>> numbers_;
+  std::vector<TwistTarget> twists_;
+  std::vector<Topic> topics_;
+  std::unique_ptr<so::WiredController> agent_;
+  std::vector<double> x_, y_;
+  // State:
+  std::uint64_t seed_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace sandlot::controllers::selforg
