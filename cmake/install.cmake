@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
 install(TARGETS sandlot_bench_command RUNTIME DESTINATION bin OPTIONAL)  # `./dev bench` builds it
-install(TARGETS sandlot_library LIBRARY DESTINATION lib)
+install(TARGETS sandlot_library selforg_library LIBRARY DESTINATION lib)
 set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
   -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
@@ -36,3 +36,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/sandlotConfigVersio
 install(FILES ${CMAKE_BINARY_DIR}/package/sandlotConfig.cmake ${CMAKE_BINARY_DIR}/package/sandlotConfigVersion.cmake
   DESTINATION lib/cmake/sandlot)
 install(FILES ${CMAKE_BINARY_DIR}/package/sandlot.pc DESTINATION lib/pkgconfig)
+configure_file(cmake/selforgConfig.cmake.in ${CMAKE_BINARY_DIR}/package/selforgConfig.cmake @ONLY)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/selforgConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/package/selforgConfig.cmake ${CMAKE_BINARY_DIR}/package/selforgConfigVersion.cmake
+  DESTINATION lib/cmake/selforg)

@@ -85,7 +85,7 @@ list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
 sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
 target_include_directories(scenario_tests PRIVATE clients/cpp)
-add_dependencies(scenario_tests sandlot client_clearing robios6 robios7 robios_host ${plugins})
+add_dependencies(scenario_tests sandlot client_clearing selforg_wheels robios6 robios7 robios_host ${plugins})
 sandlot_robios_tests()
 # tests/vision: what software written for real cameras makes of our pictures.
 if(TARGET sandlot_opencv)

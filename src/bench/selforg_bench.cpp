@@ -16,7 +16,8 @@ namespace {
 constexpr int size = 18, steps = 2000;
 
 struct Bare {
-  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size, size), C = A, S = 0.05 * A, native_A = A, native_C = 1.2 * A;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size, size), C = A, S = 0.05 * A, native_A = A,
+                  native_C = 1.2 * A;
   Eigen::VectorXd h = Eigen::VectorXd::Zero(size), b = h, x_then = h, y_then = h;
   Eigen::MatrixXd L, L_inverse, A_inverse;
   Eigen::VectorXd xi, z, y, g, eta, y_hat, v, chi, mu, Cv, epsrel, v_avg = h;
@@ -67,8 +68,9 @@ std::vector<Row> homeokinesis() {
   std::uint64_t k = 0, bare_k = 0;
   const auto world = [](auto& to, const auto& from, std::uint64_t at) {
     for (int i = 0; i < size; ++i)
-      to[static_cast<std::size_t>(i)] = 0.8 * from[static_cast<std::size_t>(i)] +
-                                        0.1 * std::abs(static_cast<double>((at + 7 * static_cast<std::uint64_t>(i)) % 40) - 20) / 20;
+      to[static_cast<std::size_t>(i)] =
+          0.8 * from[static_cast<std::size_t>(i)] +
+          0.1 * std::abs(static_cast<double>((at + 7 * static_cast<std::uint64_t>(i)) % 40) - 20) / 20;
   };
   const Timing time = compare(
       15,
@@ -82,7 +84,11 @@ std::vector<Row> homeokinesis() {
         for (int n = 0; n < steps; ++n) {
           bare.step(bare_x, bare_y);
           for (int i = 0; i < size; ++i)
-            bare_x[i] = 0.8 * bare_y[i] + 0.1 * std::abs(static_cast<double>((bare_k + 7 * static_cast<std::uint64_t>(i)) % 40) - 20) / 20;
+            bare_x[i] = 0.8 * bare_y[i] +
+                        0.1 *
+                            std::abs(static_cast<double>((bare_k + 7 * static_cast<std::uint64_t>(i)) % 40) -
+                                     20) /
+                            20;
           ++bare_k;
         }
       });

@@ -15,7 +15,8 @@ constexpr std::uint32_t version = 1;
 
 }  // namespace
 
-Result<std::unique_ptr<WiredController>> WiredController::make(std::size_t sensors, std::size_t motors, const AgentSpec& spec) {
+Result<std::unique_ptr<WiredController>> WiredController::make(std::size_t sensors, std::size_t motors,
+                                                               const AgentSpec& spec) {
   std::unique_ptr<WiredController> made(new WiredController);
   Setup robot{sensors, motors, spec.seed, spec.name};
   if (spec.wiring.empty()) {
@@ -118,8 +119,9 @@ Status WiredController::load(const std::string& path) {
   std::uint64_t sum = 0, sensors = 0, motors = 0, key = 0;
   read(r, found_version);
   if (r.ok() && found_version != version)
-    return Error{fmt::format("'{}' has version {}; this program reads version {}", path, found_version, version),
-                 "store it again with this program"};
+    return Error{
+        fmt::format("'{}' has version {}; this program reads version {}", path, found_version, version),
+        "store it again with this program"};
   read(r, sum);
   const Error damaged{fmt::format("'{}' is damaged or incomplete", path), "store it again"};
   if (!r.ok() || hash64(bytes.last(r.remaining())) != sum) return damaged;
@@ -130,10 +132,12 @@ Status WiredController::load(const std::string& path) {
   read(r, key);
   if (!r.ok()) return damaged;
   const std::string own = fmt::format("{} behind {}", controller_->kind(), wiring_->kind());
-  if (kinds != own) return Error{fmt::format("'{}' holds {}; this agent is {}", path, kinds, own), "load it into one of its kind"};
+  if (kinds != own)
+    return Error{fmt::format("'{}' holds {}; this agent is {}", path, kinds, own),
+                 "load it into one of its kind"};
   if (sensors != wiring_->robot_sensors() || motors != wiring_->robot_motors())
-    return Error{fmt::format("'{}' holds an agent of {} sensors and {} motors; this one has {} and {}", path, sensors, motors,
-                             wiring_->robot_sensors(), wiring_->robot_motors()),
+    return Error{fmt::format("'{}' holds an agent of {} sensors and {} motors; this one has {} and {}", path,
+                             sensors, motors, wiring_->robot_sensors(), wiring_->robot_motors()),
                  "load it into one of its size"};
   if (key != controller_->fixed_key())
     return Error{fmt::format("'{}' was stored by a controller with other fixed parameters", path),

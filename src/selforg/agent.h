@@ -38,13 +38,14 @@ struct AgentSpec {
   std::vector<Part> wiring = {};  ///< empty: one_to_one
   double noise = 0.1;             ///< factor on the noise of the wirings
   std::uint64_t seed = 0;
-  std::string name = "agent";     ///< key of random numbers
+  std::string name = "agent";  ///< key of random numbers
 };
 
 class WiredController {
  public:
   /// @param sensors, motors  of the robot
-  static Result<std::unique_ptr<WiredController>> make(std::size_t sensors, std::size_t motors, const AgentSpec& spec);
+  static Result<std::unique_ptr<WiredController>> make(std::size_t sensors, std::size_t motors,
+                                                       const AgentSpec& spec);
 
   /// @param x  the robot's sensor values  @param y  out: the robot's motor values
   void step(std::span<const double> x, std::span<double> y, Mode mode = Mode::learn);
@@ -93,7 +94,9 @@ class Agent {
   std::span<const double> last_motors() const { return y_; }
   double time_s() const { return time_s_; }
 
-  Status start_log(const std::string& path, const LogSpec& spec = {}) { return log_.open(path, spec, controller()); }
+  Status start_log(const std::string& path, const LogSpec& spec = {}) {
+    return log_.open(path, spec, controller());
+  }
   Status stop_log() { return log_.close(); }
   /// Sets a parameter of the controller and notes it in the log.
   Status set(std::string_view parameter, double number);
@@ -107,6 +110,8 @@ class Agent {
   double time_s_ = 0;
 };
 
-inline Result<std::unique_ptr<Agent>> make_agent(Robot& robot, const AgentSpec& spec) { return Agent::make(robot, spec); }
+inline Result<std::unique_ptr<Agent>> make_agent(Robot& robot, const AgentSpec& spec) {
+  return Agent::make(robot, spec);
+}
 
 }  // namespace sandlot::selforg

@@ -77,7 +77,8 @@ TEST(Store, ControllersOfEveryKindGoOnBitForBit) {
 TEST(Store, ForeignFilesAreRefusedAndChangeNothing) {
   sandlot::test::TestFolder folder;
   const std::string path = folder.file("stored");
-  auto sox = make_controller("sox", {3, 2}), wide = make_controller("sox", {3, 3}), other = make_controller("semox", {3, 2});
+  auto sox = make_controller("sox", {3, 2}), wide = make_controller("sox", {3, 3}),
+       other = make_controller("semox", {3, 2});
   Node plain = Node::map();
   plain.set("extended_model", Node::scalar("false"));
   auto fixed = make_controller("sox", {3, 2}, plain);
@@ -114,7 +115,8 @@ TEST(Store, ForeignFilesAreRefusedAndChangeNothing) {
   }
   ByteWriter after;
   (*sox)->save(after);
-  EXPECT_TRUE(std::equal(before.bytes().begin(), before.bytes().end(), after.bytes().begin(), after.bytes().end()));
+  EXPECT_TRUE(
+      std::equal(before.bytes().begin(), before.bytes().end(), after.bytes().begin(), after.bytes().end()));
   EXPECT_EQ(load(**sox, folder.file("none")).error().what.find("cannot read"), 0u);
 }
 
@@ -205,7 +207,8 @@ TEST(Wiring, KindsDoWhatTheirPageSays) {
   ASSERT_TRUE(static_cast<bool>(derivative));
   ASSERT_EQ((*derivative)->controller_sensors(), 6u);
   const double path[] = {0.1, 0.1, 0.3, 0.6};  // changes 0, 0.2, 0.3; of them 0.2, 0.1
-  for (const double p : path) (*derivative)->wire_sensors(std::vector<double>{p, 0}, std::span(out).first(6), 1);
+  for (const double p : path)
+    (*derivative)->wire_sensors(std::vector<double>{p, 0}, std::span(out).first(6), 1);
   EXPECT_EQ(out[0], 0.6);
   EXPECT_NEAR(out[2], 5 * 0.3, 1e-14);
   EXPECT_NEAR(out[4], 25 * 0.1, 1e-13);
@@ -222,8 +225,9 @@ TEST(Wiring, NoiseHasItsDeviationWhateverItsColour) {
     const char* kind;
     double variance;
   };
-  for (const Case& each : {Case{"white_normal", 1}, Case{"white_uniform", 1.0 / 3}, Case{"colour_normal", 1},
-                           Case{"colour_uniform", 1.0 / 3}, Case{"none", 0}, Case{"sine_white", 1.0 / 3 + 0.5}}) {
+  for (const Case& each :
+       {Case{"white_normal", 1}, Case{"white_uniform", 1.0 / 3}, Case{"colour_normal", 1},
+        Case{"colour_uniform", 1.0 / 3}, Case{"none", 0}, Case{"sine_white", 1.0 / 3 + 0.5}}) {
     Node noise = Node::map();
     noise.set("kind", Node::scalar(each.kind));
     Node node = Node::map();
@@ -278,7 +282,11 @@ TEST(Agent, SequencesOfWiringsStoreAndGoOn) {
 
   Echo third;
   auto plain = make_agent(third, {});
-  EXPECT_NE((*plain)->wired().load(folder.file("agent")).error().what.find("sox behind sequence; this agent is sox behind one_to_one"),
+  EXPECT_NE((*plain)
+                ->wired()
+                .load(folder.file("agent"))
+                .error()
+                .what.find("sox behind sequence; this agent is sox behind one_to_one"),
             std::string::npos);
   AgentSpec wrong = wired_spec();
   wrong.wiring[2].kind = "motor";
@@ -291,19 +299,22 @@ TEST(Agent, LogsTheFormatAndReadsItBack) {
   sandlot::test::TestFolder folder;
   Echo robot;
   auto agent = make_agent(robot, {.seed = 3});
-  ASSERT_TRUE(static_cast<bool>((*agent)->start_log(folder.file("log"), {.interval = 5, .channels = {"x[*", "y*", "A*", "-A[1,*"}})));
+  ASSERT_TRUE(static_cast<bool>(
+      (*agent)->start_log(folder.file("log"), {.interval = 5, .channels = {"x[*", "y*", "A*", "-A[1,*"}})));
   std::vector<double> A00;
   for (int k = 0; k < 50; ++k) {
-    if (k == 20) {
-      ASSERT_TRUE(static_cast<bool>((*agent)->set("epsC", 0.2)));
-    }
+    if (k == 20) { ASSERT_TRUE(static_cast<bool>((*agent)->set("epsC", 0.2))); }
     (*agent)->step(0.02);
-    if (k % 5 == 0) (*agent)->controller().channels([&](const Channel& c) { if (c.name == "A") A00.push_back(c.values[0]); });
+    if (k % 5 == 0)
+      (*agent)->controller().channels([&](const Channel& c) {
+        if (c.name == "A") A00.push_back(c.values[0]);
+      });
   }
   ASSERT_TRUE(static_cast<bool>((*agent)->stop_log()));
   auto table = read_log(folder.file("log"));
   ASSERT_TRUE(static_cast<bool>(table)) << table.error().text();
-  EXPECT_EQ(table->columns, (std::vector<std::string>{"t", "x[0]", "x[1]", "y[0]", "y[1]", "A[0,0]", "A[0,1]"}));
+  EXPECT_EQ(table->columns,
+            (std::vector<std::string>{"t", "x[0]", "x[1]", "y[0]", "y[1]", "A[0,0]", "A[0,1]"}));
   ASSERT_EQ(table->rows.size(), 10u);
   for (std::size_t k = 0; k < 10; ++k) {
     EXPECT_NEAR(table->rows[k][0], 0.1 * static_cast<double>(k), 1e-12);
@@ -358,7 +369,8 @@ TEST(CrossMotorTeaching, TheMeanOfTheSourcesIsTaught) {
   } last;
   auto teaching = CrossMotorTeaching::make({{1, 2}, {0}, {2}}, 0.2);
   teaching->teach(last);
-  EXPECT_EQ(last.got, (std::vector<double>{0.25, 0.8, 0.1}));  // (0.4 + 0.1) / 2; motor 2's source is below the threshold
+  EXPECT_EQ(last.got, (std::vector<double>{
+                          0.25, 0.8, 0.1}));  // (0.4 + 0.1) / 2; motor 2's source is below the threshold
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ std::uint64_t hash_after(const char* kind, std::size_t n, std::size_t m) {
   std::vector<double> x(n), y(m);
   for (int k = 0; k < 400; ++k) {
     (*made)->step(x, y);
-    for (std::size_t i = 0; i < n; ++i) x[i] = 0.7 * x[i] + 0.3 * y[i % m] * (1 + 0.1 * static_cast<double>(i));
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = 0.7 * x[i] + 0.3 * y[i % m] * (1 + 0.1 * static_cast<double>(i));
   }
   ByteWriter w;
   (*made)->save(w);

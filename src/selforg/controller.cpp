@@ -8,7 +8,8 @@
 namespace sandlot::selforg {
 
 std::string channel_name(const Channel& channel, std::size_t element) {
-  if (channel.cols > 1) return fmt::format("{}[{},{}]", channel.name, element % channel.rows, element / channel.rows);
+  if (channel.cols > 1)
+    return fmt::format("{}[{},{}]", channel.name, element % channel.rows, element / channel.rows);
   if (channel.rows > 1 || channel.values.size() != 1) return fmt::format("{}[{}]", channel.name, element);
   return std::string(channel.name);
 }
@@ -40,7 +41,8 @@ Result<double> Controller::get(std::string_view parameter) const {
   return Error{fmt::format("'{}' has no number '{}'", kind(), parameter), "describe() lists the parameters"};
 }
 
-Result<std::unique_ptr<Controller>> make_controller(std::string_view kind, const Setup& setup, const Node& parameters) {
+Result<std::unique_ptr<Controller>> make_controller(std::string_view kind, const Setup& setup,
+                                                    const Node& parameters) {
   std::vector<std::string> names;
   for (const ControllerKind& each : controller_kinds()) {
     if (each.name == kind) {

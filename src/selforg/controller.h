@@ -135,7 +135,8 @@ bool same_sizes(const T& a, const T& b) {
     std::size_t i = 0;
     bool same = true;
     T::fields(a, [&](const Field&, const auto& member) {
-      same = same && same_sizes(member, *static_cast<const std::remove_cvref_t<decltype(member)>*>(others[i]));
+      same = same &&
+             same_sizes(member, *static_cast<const std::remove_cvref_t<decltype(member)>*>(others[i]));
       ++i;
     });
     return same;
@@ -267,6 +268,7 @@ class ControllerOf final : public ElementAdapter<Controller, T> {
 /// The kinds of controllers, in alphabetical order.
 std::span<const ControllerKind> controller_kinds();
 /// @return the controller, initialised; an unknown kind or a wrong parameter is an error
-Result<std::unique_ptr<Controller>> make_controller(std::string_view kind, const Setup& setup, const Node& parameters = {});
+Result<std::unique_ptr<Controller>> make_controller(std::string_view kind, const Setup& setup,
+                                                    const Node& parameters = {});
 
 }  // namespace sandlot::selforg

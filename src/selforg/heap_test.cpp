@@ -12,7 +12,7 @@ namespace {
 std::uint64_t allocations = 0;
 }
 // Eigen does not allocate by operator new but by malloc, so that is counted; operator new calls it.
-extern "C" void* __libc_malloc(std::size_t size);                          // NOLINT(bugprone-reserved-identifier)
+extern "C" void* __libc_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier)
 extern "C" void* malloc(std::size_t size) { return ++allocations, __libc_malloc(size); }  // NOLINT
 
 namespace sandlot::selforg {

@@ -11,8 +11,10 @@
 namespace sandlot::selforg {
 
 std::span<const ControllerKind> controller_kinds() {
-#define SL_ENTRY(name, type, help) \
-  ControllerKind{#name, help, []() -> std::unique_ptr<Controller> { return std::make_unique<ControllerOf<type>>(#name); }},
+#define SL_ENTRY(name, type, help)                                     \
+  ControllerKind{#name, help, []() -> std::unique_ptr<Controller> {    \
+                   return std::make_unique<ControllerOf<type>>(#name); \
+                 }},
   static const ControllerKind table[] = {SELFORG_CONTROLLERS(SL_ENTRY)};
 #undef SL_ENTRY
   return table;

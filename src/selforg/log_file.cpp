@@ -44,7 +44,8 @@ Status LogFile::open(const std::string& path, const LogSpec& spec, const Control
   std::string head = "# Start date: -\n";
   head += fmt::format("#IN {}\n# Recording every {}th dataset\n", controller.kind(), spec_.interval);
   controller.list_values(ValuePart::parameter, [&](const ValueEntry& entry) {
-    if (!entry.list && entry.is == ValueFound::Is::value) head += fmt::format("# {}= {}\n", entry.path, number_text(entry.value));
+    if (!entry.list && entry.is == ValueFound::Is::value)
+      head += fmt::format("# {}= {}\n", entry.path, number_text(entry.value));
   });
   head += "#I D t time (s)\n#######\n#C t";
   controller.channels([&](const Channel& channel) {
@@ -107,7 +108,8 @@ Result<LogTable> read_log(const std::string& path) {
       continue;
     }
     if (trim(line).empty()) continue;
-    if (table.columns.empty()) return at_line("values before the names of the columns", "a line '#C t ...' precedes them");
+    if (table.columns.empty())
+      return at_line("values before the names of the columns", "a line '#C t ...' precedes them");
     std::vector<double> row;
     for (const auto text : split(line, ' ')) {
       if (trim(text).empty()) continue;

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/math.h"
+#include "selforg/arrays.h"
 
 namespace sandlot::selforg {
 
@@ -17,7 +18,7 @@ Matrix Matrix::identity(std::size_t r, std::size_t c, double scale) {
 void multiply(const Matrix& A, const Matrix& x, Matrix& out) {
   SL_CHECK(A.cols == x.size() && A.rows == out.size());
   out.set(0);
-  for (std::size_t k = 0; k < A.cols; ++k) out.array() += A.column(k) * x[k];
+  for (std::size_t k = 0; k < A.cols; ++k) array(out) += column(A, k) * x[k];
 }
 
 void multiply_transposed(const Matrix& A, const Matrix& x, Matrix& out) {
@@ -56,7 +57,8 @@ void product(const Matrix& A, std::size_t cols, B&& b, Matrix& out) {
     std::size_t i = 0;
     for (; i + block <= n; i += block) {
       Block sum = Block::Zero();
-      for (std::size_t k = 0; k < inner; ++k) sum += Eigen::Map<const Block>(A.data.data() + k * n + i) * b(k, j);
+      for (std::size_t k = 0; k < inner; ++k)
+        sum += Eigen::Map<const Block>(A.data.data() + k * n + i) * b(k, j);
       Eigen::Map<Block>(to + i) = sum;
     }
     for (; i < n; ++i) {
@@ -71,12 +73,14 @@ void product(const Matrix& A, std::size_t cols, B&& b, Matrix& out) {
 
 void multiply_matrices(const Matrix& A, const Matrix& B, Matrix& out) {
   SL_CHECK(A.cols == B.rows && out.rows == A.rows && out.cols == B.cols && &out != &A && &out != &B);
-  product(A, B.cols, [&](std::size_t k, std::size_t j) { return B(k, j); }, out);
+  product(
+      A, B.cols, [&](std::size_t k, std::size_t j) { return B(k, j); }, out);
 }
 
 void multiply_by_transposed(const Matrix& A, const Matrix& B, Matrix& out) {
   SL_CHECK(A.cols == B.cols && out.rows == A.rows && out.cols == B.rows && &out != &A && &out != &B);
-  product(A, B.rows, [&](std::size_t k, std::size_t j) { return B(j, k); }, out);
+  product(
+      A, B.rows, [&](std::size_t k, std::size_t j) { return B(j, k); }, out);
 }
 
 void multiply_transposed_matrices(const Matrix& A, const Matrix& B, Matrix& out) {
@@ -92,7 +96,8 @@ void multiply_transposed_matrices(const Matrix& A, const Matrix& B, Matrix& out)
 void multiply_scaled_rows(const Matrix& A, const Matrix& B, const Matrix& g, Matrix& out) {
   SL_CHECK(A.cols == B.rows && g.size() == B.rows && out.rows == A.rows && out.cols == B.cols);
   SL_CHECK(&out != &A && &out != &B);
-  product(A, B.cols, [&](std::size_t k, std::size_t j) { return B(k, j) * g[k]; }, out);
+  product(
+      A, B.cols, [&](std::size_t k, std::size_t j) { return B(k, j) * g[k]; }, out);
 }
 
 double squared_norm(const Matrix& x) {
@@ -111,8 +116,11 @@ bool all_finite(std::span<const double> x) {
 }
 
 PseudoInverse::PseudoInverse(std::size_t rows, std::size_t cols)
-    : m_(rows, cols), lu_(rows == cols ? rows : 0, rows == cols ? rows : 0),
-      normal_(std::min(rows, cols), std::min(rows, cols)), small_(std::max(rows, cols), 1), order_(rows) {}
+    : m_(rows, cols),
+      lu_(rows == cols ? rows : 0, rows == cols ? rows : 0),
+      normal_(std::min(rows, cols), std::min(rows, cols)),
+      small_(std::max(rows, cols), 1),
+      order_(rows) {}
 
 void PseudoInverse::factor(const Matrix& M) {
   SL_CHECK(M.rows == m_.rows && M.cols == m_.cols);
@@ -148,9 +156,9 @@ bool PseudoInverse::factor_lu() {
     }
     const double scale = 1 / lu_(k, k);
     const auto below = static_cast<Eigen::Index>(n - k - 1);
-    auto factors = lu_.column(k).tail(below);
+    auto factors = column(lu_, k).tail(below);
     factors *= scale;
-    for (std::size_t j = k + 1; j < n; ++j) lu_.column(j).tail(below) -= factors * lu_(k, j);
+    for (std::size_t j = k + 1; j < n; ++j) column(lu_, j).tail(below) -= factors * lu_(k, j);
     lu_(k, k) = scale;
   }
   return true;
@@ -178,10 +186,10 @@ bool PseudoInverse::factor_cholesky(double shift) {
     const double scale = 1 / std::sqrt(pivot);
     const auto rest = static_cast<Eigen::Index>(k - j - 1);
     normal_(j, j) = scale;
-    normal_.column(j).tail(rest) *= scale;
+    column(normal_, j).tail(rest) *= scale;
     for (std::size_t i = j + 1; i < k; ++i) {
       const auto below = static_cast<Eigen::Index>(k - i);
-      normal_.column(i).tail(below) -= normal_.column(j).tail(below) * normal_(i, j);
+      column(normal_, i).tail(below) -= column(normal_, j).tail(below) * normal_(i, j);
     }
   }
   return true;

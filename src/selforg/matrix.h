@@ -3,10 +3,10 @@
 ///
 /// Eigen's own products choose the order of their sums by sizes, alignment and instruction set. Here each element of a result
 /// is summed in ascending order of the inner index, without fused multiply-adds, so that every compiler and every level of
-/// optimisation gives the same bits. Rows and columns are Eigen expressions that work element by element.
+/// optimisation gives the same bits. selforg/arrays.h has views for Eigen's arithmetic element by element.
 ///
 /// Heap     none in any function below, as long as the results have the right size; SL_CHECK holds them to it.
-#include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,18 +34,6 @@ struct Matrix {
   void set(double value) { std::fill(data.begin(), data.end(), value); }
   std::span<const double> values() const { return data; }
 
-  using Map = Eigen::Map<Eigen::MatrixXd>;
-  using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
-  using ArrayMap = Eigen::Map<Eigen::ArrayXd>;
-  using ConstArrayMap = Eigen::Map<const Eigen::ArrayXd>;
-  Map map() { return {data.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols)}; }
-  ConstMap map() const { return {data.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols)}; }
-  /// All elements in one column, for operations element by element.
-  ArrayMap array() { return {data.data(), static_cast<Eigen::Index>(data.size())}; }
-  ConstArrayMap array() const { return {data.data(), static_cast<Eigen::Index>(data.size())}; }
-  ArrayMap column(std::size_t j) { return {data.data() + j * rows, static_cast<Eigen::Index>(rows)}; }
-  ConstArrayMap column(std::size_t j) const { return {data.data() + j * rows, static_cast<Eigen::Index>(rows)}; }
-
   static void fields(auto& s, auto&& visit) {
     visit(Field{"rows", "1", "Number of rows."}, s.rows);
     visit(Field{"cols", "1", "Number of columns."}, s.cols);
@@ -71,7 +59,9 @@ double squared_norm(const Matrix& x);
 void tanh_of(const Matrix& z, Matrix& out);
 
 /// Number within +-limit; 0 in place of one that is not a number.
-inline double clipped(double x, double limit) { return x > limit ? limit : x < -limit ? -limit : x == x ? x : 0; }
+inline double clipped(double x, double limit) {
+  return x > limit ? limit : x < -limit ? -limit : x == x ? x : 0;
+}
 
 /// Whether all elements are finite.
 bool all_finite(std::span<const double> x);

@@ -11,8 +11,10 @@ TEST(Matrix, ProductsOfRandomSizesMatchTheLiteralOnes) {
   for (std::uint64_t k = 0; k < 40; ++k) {
     Stream random = stream(k);
     const std::size_t n = 1 + random.below(20), m = 1 + random.below(20), p = 1 + random.below(20);
-    const Matrix A = random_matrix(random, n, m), B = random_matrix(random, m, p), x = random_matrix(random, m, 1);
-    const Matrix y = random_matrix(random, n, 1), g = random_matrix(random, m, 1), D = random_matrix(random, p, m);
+    const Matrix A = random_matrix(random, n, m), B = random_matrix(random, m, p),
+                 x = random_matrix(random, m, 1);
+    const Matrix y = random_matrix(random, n, 1), g = random_matrix(random, m, 1),
+                 D = random_matrix(random, p, m);
     Matrix AB(n, p), Ax(n, 1), Aty(m, 1), ADt(n, p), AtA(m, m);
     multiply_matrices(A, B, AB);
     expect_near(AB, Ref(A) * Ref(B), 1e-14, "A B");

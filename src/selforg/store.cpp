@@ -37,10 +37,13 @@ Status read_controller(std::span<const std::byte> bytes, Controller& controller,
   std::uint64_t sum = 0;
   read(r, found_version);
   if (r.ok() && found_version != version)
-    return Error{fmt::format("'{}' has version {}; this program reads version {}", from, found_version, version),
-                 "store it again with this program"};
+    return Error{
+        fmt::format("'{}' has version {}; this program reads version {}", from, found_version, version),
+        "store it again with this program"};
   read(r, sum);
-  const auto damaged = [&] { return Error{fmt::format("'{}' is damaged or incomplete", from), "store it again"}; };
+  const auto damaged = [&] {
+    return Error{fmt::format("'{}' is damaged or incomplete", from), "store it again"};
+  };
   if (!r.ok() || hash64(bytes.last(r.remaining())) != sum) return damaged();
   std::string kind;
   std::uint64_t sensors = 0, motors = 0, key = 0;
@@ -53,8 +56,8 @@ Status read_controller(std::span<const std::byte> bytes, Controller& controller,
     return Error{fmt::format("'{}' holds a controller of kind '{}', not '{}'", from, kind, controller.kind()),
                  "load it into one of its kind"};
   if (sensors != controller.sensors() || motors != controller.motors())
-    return Error{fmt::format("'{}' holds a controller of {} sensors and {} motors; this one has {} and {}", from, sensors, motors,
-                             controller.sensors(), controller.motors()),
+    return Error{fmt::format("'{}' holds a controller of {} sensors and {} motors; this one has {} and {}",
+                             from, sensors, motors, controller.sensors(), controller.motors()),
                  "load it into one of its size"};
   if (key != controller.fixed_key())
     return Error{fmt::format("'{}' was stored by a controller with other fixed parameters", from),

@@ -4,12 +4,16 @@
 
 namespace sandlot::selforg {
 
-Result<CrossMotorTeaching> CrossMotorTeaching::make(std::vector<std::vector<std::size_t>> sources, double threshold) {
-  if (!(threshold >= 0 && threshold <= 1)) return Error{"the threshold of cross-motor teaching lies in [0, 1]", ""};
+Result<CrossMotorTeaching> CrossMotorTeaching::make(std::vector<std::vector<std::size_t>> sources,
+                                                    double threshold) {
+  if (!(threshold >= 0 && threshold <= 1))
+    return Error{"the threshold of cross-motor teaching lies in [0, 1]", ""};
   for (std::size_t i = 0; i < sources.size(); ++i)
     for (const std::size_t source : sources[i])
       if (source >= sources.size())
-        return Error{fmt::format("motor {} has source {}, but there are {} motors", i, source, sources.size()), "count from 0"};
+        return Error{
+            fmt::format("motor {} has source {}, but there are {} motors", i, source, sources.size()),
+            "count from 0"};
   CrossMotorTeaching made;
   made.taught_.resize(sources.size());
   made.sources_ = std::move(sources);
@@ -17,7 +21,8 @@ Result<CrossMotorTeaching> CrossMotorTeaching::make(std::vector<std::vector<std:
   return made;
 }
 
-Result<CrossMotorTeaching> CrossMotorTeaching::permutation(std::span<const std::size_t> permutation, double threshold) {
+Result<CrossMotorTeaching> CrossMotorTeaching::permutation(std::span<const std::size_t> permutation,
+                                                           double threshold) {
   std::vector<std::vector<std::size_t>> sources;
   for (const std::size_t source : permutation) sources.push_back({source});
   return make(std::move(sources), threshold);

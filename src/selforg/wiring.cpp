@@ -96,15 +96,20 @@ struct OneToOne {
     noise.draw(spec.noise, state.noise, factor);
     for (std::size_t i = 0; i < in.size(); ++i) out[i] = in[i] + state.noise.value[i];
   }
-  void motors(std::span<const double> in, std::span<double> out, double) { std::copy(in.begin(), in.end(), out.begin()); }
+  void motors(std::span<const double> in, std::span<double> out, double) {
+    std::copy(in.begin(), in.end(), out.begin());
+  }
 };
 
 struct Selective {
   struct Spec {
     std::vector<int> sensors, motors;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"sensors", "1", "Indices of the sensors, in the controller's order; empty: all.", 0, 10'000}, s.sensors);
-      visit(Field{"motors", "1", "Indices of the motors, in the controller's order; empty: all.", 0, 10'000}, s.motors);
+      visit(
+          Field{"sensors", "1", "Indices of the sensors, in the controller's order; empty: all.", 0, 10'000},
+          s.sensors);
+      visit(Field{"motors", "1", "Indices of the motors, in the controller's order; empty: all.", 0, 10'000},
+            s.motors);
     }
   };
   using State = NoFields;
@@ -117,7 +122,10 @@ struct Selective {
       for (std::size_t i = 0; i < size; ++i) list.push_back(static_cast<int>(i));
     for (const int index : list)
       if (static_cast<std::size_t>(index) >= size)
-        return Error{fmt::format("no index {} in {} {}", index, size, what), "count from 0", {}, fmt::format("/{}", what)};
+        return Error{fmt::format("no index {} in {} {}", index, size, what),
+                     "count from 0",
+                     {},
+                     fmt::format("/{}", what)};
     return {};
   }
   Status init(const Setup& robot) {
@@ -144,8 +152,12 @@ struct Derivative {
       visit(Field{"identity", "", "Sensor values themselves."}, s.identity);
       visit(Field{"first", "", "Change of the smoothed sensor values per step."}, s.first);
       visit(Field{"second", "", "Change of that change per step."}, s.second);
-      visit(Field{"smoothing", "1", "Rate at which smoothed values follow; 1: at once.", 1e-6, 1, Field::tunable}, s.smoothing);
-      visit(Field{"factor", "1", "Factor on the first derivative; squared on the second.", -1e3, 1e3, Field::tunable}, s.factor);
+      visit(Field{"smoothing", "1", "Rate at which smoothed values follow; 1: at once.", 1e-6, 1,
+                  Field::tunable},
+            s.smoothing);
+      visit(Field{"factor", "1", "Factor on the first derivative; squared on the second.", -1e3, 1e3,
+                  Field::tunable},
+            s.factor);
     }
   };
   struct State {
@@ -165,7 +177,8 @@ struct Derivative {
   Status init(const Setup& robot) {
     state = {};
     state.x0 = state.x1 = state.x2 = Matrix(robot.sensors, 1);
-    controller_sensors = robot.sensors * (std::size_t{spec.identity} + std::size_t{spec.first} + std::size_t{spec.second});
+    controller_sensors = robot.sensors *
+                         (std::size_t{spec.identity} + std::size_t{spec.first} + std::size_t{spec.second});
     controller_motors = robot.motors;
     if (controller_sensors == 0 && robot.sensors > 0)
       return Error{"a derivative wiring without identity, first and second has no sensors", "choose one"};
@@ -191,19 +204,24 @@ struct Derivative {
         out[at++] = spec.factor * spec.factor * (state.x0[i] - 2 * state.x1[i] + state.x2[i]);
     ++state.t;
   }
-  void motors(std::span<const double> in, std::span<double> out, double) { std::copy(in.begin(), in.end(), out.begin()); }
+  void motors(std::span<const double> in, std::span<double> out, double) {
+    std::copy(in.begin(), in.end(), out.begin());
+  }
 };
 
 struct Feedback {
   struct Spec {
     double factor = 1;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"factor", "1", "Factor on the motor values that are fed back.", -100, 100, Field::tunable}, s.factor);
+      visit(Field{"factor", "1", "Factor on the motor values that are fed back.", -100, 100, Field::tunable},
+            s.factor);
     }
   };
   struct State {
     Matrix y;
-    static void fields(auto& s, auto&& visit) { visit(Field{"y", "1", "Last motor values of the controller."}, s.y); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"y", "1", "Last motor values of the controller."}, s.y);
+    }
   };
   Spec spec;
   State state;
@@ -243,7 +261,9 @@ struct MotorNoise {
     state.noise = noise.fresh();
     return {};
   }
-  void sensors(std::span<const double> in, std::span<double> out, double) { std::copy(in.begin(), in.end(), out.begin()); }
+  void sensors(std::span<const double> in, std::span<double> out, double) {
+    std::copy(in.begin(), in.end(), out.begin());
+  }
   void motors(std::span<const double> in, std::span<double> out, double factor) {
     noise.draw(spec.noise, state.noise, factor);
     for (std::size_t i = 0; i < in.size(); ++i) out[i] = clipped(in[i] + state.noise.value[i], 1);
@@ -262,19 +282,23 @@ class Sequence final : public Wiring {
     }
   }
   const char* kind() const override { return "sequence"; }
-  Status init(const Node&, const Setup&) override { return Error{"a sequence is made of wirings", "use make_sequence"}; }
+  Status init(const Node&, const Setup&) override {
+    return Error{"a sequence is made of wirings", "use make_sequence"};
+  }
   std::size_t controller_sensors() const override { return parts_.back()->controller_sensors(); }
   std::size_t controller_motors() const override { return parts_.back()->controller_motors(); }
   void wire_sensors(std::span<const double> robot, std::span<double> controller, double noise) override {
     SL_CHECK(controller.size() == controller_sensors());
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      parts_[i]->wire_sensors(i == 0 ? robot : std::span<const double>(sensor_values_[i - 1].data), sensor_values_[i].data, noise);
+      parts_[i]->wire_sensors(i == 0 ? robot : std::span<const double>(sensor_values_[i - 1].data),
+                              sensor_values_[i].data, noise);
     std::copy(sensor_values_.back().data.begin(), sensor_values_.back().data.end(), controller.begin());
   }
   void wire_motors(std::span<const double> controller, std::span<double> robot, double noise) override {
     for (std::size_t i = parts_.size(); i-- > 0;)
-      parts_[i]->wire_motors(i + 1 == parts_.size() ? controller : std::span<const double>(motor_values_[i].data),
-                             i == 0 ? robot : std::span<double>(motor_values_[i - 1].data), noise);
+      parts_[i]->wire_motors(
+          i + 1 == parts_.size() ? controller : std::span<const double>(motor_values_[i].data),
+          i == 0 ? robot : std::span<double>(motor_values_[i - 1].data), noise);
   }
   void channels(const ChannelVisit& visit) const override {
     for (const auto& part : parts_) part->channels(visit);
@@ -282,7 +306,8 @@ class Sequence final : public Wiring {
   Status set_parameter(std::string_view path, const Node& value) override {
     const std::string_view first = first_part(path);
     double index = 0;
-    if (!parse_number(first, index) || !(index >= 0) || index >= static_cast<double>(parts_.size()) || first.size() == path.size())
+    if (!parse_number(first, index) || !(index >= 0) || index >= static_cast<double>(parts_.size()) ||
+        first.size() == path.size())
       return Error{fmt::format("no parameter '{}' in a sequence of {} wirings", path, parts_.size()),
                    "begin with the index of the wiring: 0/noise/strength"};
     return parts_[static_cast<std::size_t>(index)]->set_parameter(path.substr(first.size() + 1), value);
@@ -313,8 +338,10 @@ class Sequence final : public Wiring {
 }  // namespace
 
 std::span<const WiringKind> wiring_kinds() {
-#define SL_ENTRY(name, type, help) \
-  WiringKind { #name, help, []() -> std::unique_ptr<Wiring> { return std::make_unique<WiringOf<type>>(#name); } }
+#define SL_ENTRY(name, type, help)                                                                     \
+  WiringKind {                                                                                         \
+#name, help, []() -> std::unique_ptr < Wiring> { return std::make_unique<WiringOf<type>>(#name); } \
+  }
   static const WiringKind table[] = {
       SL_ENTRY(derivative, Derivative, "Sensors, their change per step and the change of that."),
       SL_ENTRY(feedback, Feedback, "Last motor values as further sensors."),
@@ -326,7 +353,8 @@ std::span<const WiringKind> wiring_kinds() {
   return table;
 }
 
-Result<std::unique_ptr<Wiring>> make_wiring(std::string_view kind, const Setup& robot, const Node& parameters) {
+Result<std::unique_ptr<Wiring>> make_wiring(std::string_view kind, const Setup& robot,
+                                            const Node& parameters) {
   std::vector<std::string> names;
   for (const WiringKind& each : wiring_kinds()) {
     if (each.name == kind) {
@@ -344,9 +372,9 @@ Result<std::unique_ptr<Wiring>> make_sequence(std::vector<std::unique_ptr<Wiring
   for (std::size_t i = 1; i < parts.size(); ++i)
     if (parts[i]->robot_sensors() != parts[i - 1]->controller_sensors() ||
         parts[i]->robot_motors() != parts[i - 1]->controller_motors())
-      return Error{fmt::format("wiring {} takes {} sensors and {} motors, the one before it gives {} and {}", i,
-                               parts[i]->robot_sensors(), parts[i]->robot_motors(), parts[i - 1]->controller_sensors(),
-                               parts[i - 1]->controller_motors()),
+      return Error{fmt::format("wiring {} takes {} sensors and {} motors, the one before it gives {} and {}",
+                               i, parts[i]->robot_sensors(), parts[i]->robot_motors(),
+                               parts[i - 1]->controller_sensors(), parts[i - 1]->controller_motors()),
                    "make each with the sizes of the one before it"};
   return std::unique_ptr<Wiring>(std::make_unique<Sequence>(std::move(parts)));
 }

@@ -16,7 +16,14 @@
 
 namespace sandlot::selforg {
 
-enum class NoiseKind : std::uint8_t { none, white_uniform, white_normal, colour_uniform, colour_normal, sine_white };
+enum class NoiseKind : std::uint8_t {
+  none,
+  white_uniform,
+  white_normal,
+  colour_uniform,
+  colour_normal,
+  sine_white
+};
 inline std::span<const EnumName<NoiseKind>> enum_names(NoiseKind) {
   using E = NoiseKind;
   static constexpr EnumName<E> names[] = {{"none", E::none},
@@ -35,7 +42,8 @@ struct Noise {
     double strength = 1, tau = 10, period = 50;
     static void fields(auto& s, auto&& visit) {
       constexpr unsigned tunable = Field::tunable;
-      visit(Field{"kind", "", "Distribution and colour; sine_white: white noise on a sine.", 0, 0, tunable}, s.kind);
+      visit(Field{"kind", "", "Distribution and colour; sine_white: white noise on a sine.", 0, 0, tunable},
+            s.kind);
       visit(Field{"strength", "1", "Half width or standard deviation.", 0, 100, tunable}, s.strength);
       visit(Field{"tau", "1", "Steps over which coloured noise is correlated.", 1, 1e6, tunable}, s.tau);
       visit(Field{"period", "1", "Steps of a period of the sine.", 1, 1e6, tunable}, s.period);
@@ -87,7 +95,8 @@ struct WiringKind {
   std::unique_ptr<Wiring> (*create)() = nullptr;
 };
 std::span<const WiringKind> wiring_kinds();
-Result<std::unique_ptr<Wiring>> make_wiring(std::string_view kind, const Setup& robot, const Node& parameters = {});
+Result<std::unique_ptr<Wiring>> make_wiring(std::string_view kind, const Setup& robot,
+                                            const Node& parameters = {});
 /// Sequence of wirings. @param parts  from the robot to the controller; each made with the sizes that the one before it gives
 Result<std::unique_ptr<Wiring>> make_sequence(std::vector<std::unique_ptr<Wiring>> parts);
 

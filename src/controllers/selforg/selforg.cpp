@@ -18,7 +18,8 @@ double& component_of(msg::Twist& twist, int component) {
 
 std::vector<std::string> names_in(const std::vector<Description::Entry>& entries) {
   std::vector<std::string> names;
-  for (const auto& entry : entries) names.push_back(entry.level.empty() ? entry.device : entry.device + "/" + entry.level);
+  for (const auto& entry : entries)
+    names.push_back(entry.level.empty() ? entry.device : entry.device + "/" + entry.level);
   return names;
 }
 
@@ -29,7 +30,8 @@ const Description::Entry* entry_of(const std::vector<Description::Entry>& entrie
   return nullptr;
 }
 
-Error not_there(const std::vector<Description::Entry>& entries, const std::string& device, const std::string& path) {
+Error not_there(const std::vector<Description::Entry>& entries, const std::string& device,
+                const std::string& path) {
   const auto names = names_in(entries);
   return {fmt::format("the robot has no '{}'", device), suggestion(device, names), {}, path};
 }
@@ -55,7 +57,8 @@ Status SelfOrg::init(const Description& robot, const Node& config, Outputs& out)
     Topic& topic = topics_.emplace_back();
     topic.name = channel.name;
     topic.publication = out.publish<msg::Float64MultiArray>(topic.name);
-    const auto rows = static_cast<std::uint32_t>(channel.rows), cols = static_cast<std::uint32_t>(channel.cols);
+    const auto rows = static_cast<std::uint32_t>(channel.rows),
+               cols = static_cast<std::uint32_t>(channel.cols);
     topic.message.layout.dim = {{"rows", rows, rows * cols}, {"columns", cols, cols}};
     topic.message.data.resize(channel.values.size());
   });
@@ -82,7 +85,8 @@ Status SelfOrg::find_motors(const Description& robot) {
         motors_.push_back({numbers_.size(), -1, 0, 1});
         numbers_.push_back({entry.index});
       }
-    if (motors_.empty()) return Error{fmt::format("robot '{}' has no device that takes a number", robot.robot), "list `motors`"};
+    if (motors_.empty())
+      return Error{fmt::format("robot '{}' has no device that takes a number", robot.robot), "list `motors`"};
     return {};
   }
   for (std::size_t i = 0; i < spec_.motors.size(); ++i) {
@@ -98,13 +102,18 @@ Status SelfOrg::find_motors(const Description& robot) {
       const auto found = std::find(std::begin(twist_components), std::end(twist_components), place.value);
       if (found == std::end(twist_components))
         return Error{fmt::format("'{}' takes a Twist, which has no '{}'", place.device, place.value),
-                     "linear.x, linear.y or angular.z", {}, path + "/value"};
+                     "linear.x, linear.y or angular.z",
+                     {},
+                     path + "/value"};
       motor.component = static_cast<int>(found - std::begin(twist_components));
       motor.target = 0;
-      while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index) ++motor.target;
+      while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index)
+        ++motor.target;
       if (motor.target == twists_.size()) twists_.push_back({{entry->index}, {}});
     } else {
-      return Error{fmt::format("'{}' takes a {}", place.device, entry->type), "a motor takes a Float64 or a Twist", {},
+      return Error{fmt::format("'{}' takes a {}", place.device, entry->type),
+                   "a motor takes a Float64 or a Twist",
+                   {},
                    path + "/device"};
     }
     motors_.push_back(motor);
@@ -133,7 +142,8 @@ void SelfOrg::step(const Observation& obs, Command& cmd) {
     SL_CHECK(made);
     for (const FieldInfo& field : agent_->controller().describe())
       if (field.tunable && (field.type == "number" || field.type == "integer"))
-        if (const auto number = agent_->controller().get(field.path)) (void)(*made)->controller().set(field.path, *number);
+        if (const auto number = agent_->controller().get(field.path))
+          (void)(*made)->controller().set(field.path, *number);
     agent_ = std::move(*made);
     begun_ = true;
   }
@@ -154,7 +164,9 @@ void SelfOrg::step(const Observation& obs, Command& cmd) {
     else component_of(twists_[motor.target].order, motor.component) = value;
   }
   for (const TwistTarget& target : twists_) cmd.set(target.actuator, target.order);
-  if (spec_.publish_interval > 0 && (agent_->steps() - 1) % static_cast<std::uint64_t>(spec_.publish_interval) == 0) publish(cmd);
+  if (spec_.publish_interval > 0 &&
+      (agent_->steps() - 1) % static_cast<std::uint64_t>(spec_.publish_interval) == 0)
+    publish(cmd);
 }
 
 /// Topics are in the order of the channels.
@@ -173,7 +185,8 @@ void SelfOrg::publish(Command& cmd) {
 
 Status SelfOrg::set_parameter(std::string_view path, const Node& value) {
   const std::string_view first = first_part(path);
-  const std::string_view rest = first.size() < path.size() ? path.substr(first.size() + 1) : std::string_view();
+  const std::string_view rest = first.size() < path.size() ? path.substr(first.size() + 1)
+                                                           : std::string_view();
   if (first == "parameters" && !rest.empty()) return agent_->controller().set_parameter(rest, value);
   if (first == "wiring" && !rest.empty()) return agent_->wiring().set_parameter(rest, value);
   Spec changed = spec_;
@@ -184,7 +197,8 @@ Status SelfOrg::set_parameter(std::string_view path, const Node& value) {
 
 ValueFound SelfOrg::value(ValuePart part, std::span<const ValueStep> path) const {
   if (part == ValuePart::state) return agent_->controller().value(part, path);
-  if (path.size() > 1 && path[0].key == "parameters") return agent_->controller().value(part, path.subspan(1));
+  if (path.size() > 1 && path[0].key == "parameters")
+    return agent_->controller().value(part, path.subspan(1));
   if (path.size() > 1 && path[0].key == "wiring") return agent_->wiring().value(part, path.subspan(1));
   return value_at(spec_, path);
 }

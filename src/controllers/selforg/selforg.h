@@ -29,7 +29,8 @@ struct Place {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"device", "", "Device, or device/level.", 0, 0, Field::required, 1000, 1}, s.device);
     visit(Field{"value", "",
-                "Path of the number in the message; empty: data. Of a Twist as motor: linear.x, linear.y or angular.z."},
+                "Path of the number in the message; empty: data. Of a Twist as motor: linear.x, linear.y or "
+                "angular.z."},
           s.value);
     visit(Field{"min", "", "Value that is -1 for the agent."}, s.min);
     visit(Field{"max", "", "Value that is 1 for the agent."}, s.max);
@@ -40,8 +41,8 @@ struct Part {
   std::string kind;
   Node parameters;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"kind", "", "Kind of the wiring: one_to_one, selective, derivative, feedback, motor_noise.", 0, 0,
-                Field::required, 100, 1},
+    visit(Field{"kind", "", "Kind of the wiring: one_to_one, selective, derivative, feedback, motor_noise.",
+                0, 0, Field::required, 100, 1},
           s.kind);
     visit(Field{"parameters", "", "Parameters of the wiring."}, s.parameters);
   }
@@ -56,18 +57,25 @@ struct Spec {
   int publish_interval = 1;
   std::uint32_t babbling = 0;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"agent", "", "Kind of the agent's controller: sox, semox, dep, experts, sine, ...", 0, 0, Field::none, 100, 1},
+    visit(Field{"agent", "", "Kind of the agent's controller: sox, semox, dep, experts, sine, ...", 0, 0,
+                Field::none, 100, 1},
           s.agent);
     visit(Field{"parameters", "", "Parameters of the agent's controller."}, s.parameters);
-    visit(Field{"wiring", "", "Wirings from the robot to the controller; none: one_to_one.", 0, 0, Field::none, 16}, s.wiring);
+    visit(Field{"wiring", "", "Wirings from the robot to the controller; none: one_to_one.", 0, 0,
+                Field::none, 16},
+          s.wiring);
     visit(Field{"sensors", "", "Sensor values of the agent.", 0, 0, Field::none, 1000}, s.sensors);
-    visit(Field{"motors", "", "Motor values of the agent; none: every device of the robot that takes a number.", 0, 0,
-                Field::none, 1000},
-          s.motors);
+    visit(
+        Field{"motors", "", "Motor values of the agent; none: every device of the robot that takes a number.",
+              0, 0, Field::none, 1000},
+        s.motors);
     visit(Field{"noise", "1", "Factor on the noise of the wirings.", 0, 100, Field::tunable}, s.noise);
-    visit(Field{"publish_interval", "1", "Control steps per message of each topic; 0: no topics.", 0, 1e6}, s.publish_interval);
-    visit(Field{"babbling", "1", "Control steps at the beginning in which motors move at random and the model learns.", 0, 1e9},
-          s.babbling);
+    visit(Field{"publish_interval", "1", "Control steps per message of each topic; 0: no topics.", 0, 1e6},
+          s.publish_interval);
+    visit(
+        Field{"babbling", "1",
+              "Control steps at the beginning in which motors move at random and the model learns.", 0, 1e9},
+        s.babbling);
   }
 };
 

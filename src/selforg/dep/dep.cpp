@@ -1,6 +1,7 @@
 #include "selforg/dep/dep.h"
 
 #include "base/math.h"
+#include "selforg/arrays.h"
 
 namespace sandlot::selforg {
 
@@ -22,13 +23,13 @@ void Dep::step(const Matrix& x, Matrix& y, Mode mode) {
   State& s = state;
   std::copy(s.x.data.begin(), s.x.data.end(), old_x_.data.begin());
   if (s.t == 0) {
-    s.x.array() = x.array();
-    old_x_.array() = x.array();
+    array(s.x) = array(x);
+    array(old_x_) = array(x);
   } else {
-    s.x.array() += (x.array() - s.x.array()) / spec.s4avg;
+    array(s.x) += (array(x) - array(s.x)) / spec.s4avg;
   }
   Matrix& velocity = s.velocities[s.t % buffer];
-  velocity.array() = s.x.array() - old_x_.array();
+  array(velocity) = array(s.x) - array(old_x_);
   const auto distance = static_cast<std::uint64_t>(spec.timedist);
   if (mode != Mode::act && s.t > distance) {
     const Matrix& before = s.velocities[(s.t + buffer - distance) % buffer];
@@ -42,16 +43,16 @@ void Dep::step(const Matrix& x, Matrix& y, Mode mode) {
   if (mode != Mode::babble) {
     const double floor = math::pow(10, -spec.regularization);
     norm_.set(0);
-    for (std::size_t j = 0; j < s.C.cols; ++j) norm_.array() += s.C.column(j) * s.C.column(j);
+    for (std::size_t j = 0; j < s.C.cols; ++j) array(norm_) += column(s.C, j) * column(s.C, j);
     double all = 0;
     for (const double each : norm_.data) all += each;
     for (double& each : norm_.data) each = spec.synboost / (std::sqrt(spec.indnorm ? each : all) + floor);
     multiply(s.C, s.x, z_);
-    z_.array() = z_.array() * norm_.array() + s.h.array();
+    array(z_) = array(z_) * array(norm_) + array(s.h);
     tanh_of(z_, y);
-    if (mode == Mode::learn) s.h.array() -= spec.epsh * y.array();
+    if (mode == Mode::learn) array(s.h) -= spec.epsh * array(y);
   }
-  s.y.array() = y.array();
+  array(s.y) = array(y);
   ++s.t;
 }
 

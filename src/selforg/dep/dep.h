@@ -25,7 +25,9 @@ struct Dep {
       visit(Field{"synboost", "1", "Gain after normalisation.", 0, 100, tunable}, s.synboost);
       visit(Field{"timedist", "1", "Steps between the correlated velocities.", 1, 20, tunable}, s.timedist);
       visit(Field{"indnorm", "", "Normalisation per motor instead of over all.", 0, 0, tunable}, s.indnorm);
-      visit(Field{"regularization", "1", "Exponent n of the 10^-n that is added to the norm.", 0, 100, tunable}, s.regularization);
+      visit(
+          Field{"regularization", "1", "Exponent n of the 10^-n that is added to the norm.", 0, 100, tunable},
+          s.regularization);
       visit(Field{"s4avg", "1", "Steps over which sensor values are smoothed.", 1, 1e6, tunable}, s.s4avg);
     }
   };

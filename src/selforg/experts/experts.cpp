@@ -1,5 +1,7 @@
 #include "selforg/experts/experts.h"
 
+#include "selforg/arrays.h"
+
 namespace sandlot::selforg {
 
 void ExpertMemory::init(const Setup& setup) {
@@ -33,23 +35,24 @@ void ExpertMemory::predict(const Expert& expert, const Matrix& x1, const Matrix&
   to = std::copy(x2.data.begin(), x2.data.end(), to);
   std::copy(y2.data.begin(), y2.data.end(), to);
   multiply(expert.W1, in_, hidden_);
-  hidden_.array() += expert.b1.array();
+  array(hidden_) += array(expert.b1);
   tanh_of(hidden_, hidden_);
   multiply(expert.W2, hidden_, out_);
-  out_.array() += expert.b2.array();
+  array(out_) += array(expert.b2);
 }
 
 /// One step of gradient descent on 1/2 |target - out|^2, with delta_ = target - out of the last predict().
 void ExpertMemory::descend(Expert& expert, double rate) {
   multiply_transposed(expert.W2, delta_, back_);
-  back_.array() *= 1 - hidden_.array() * hidden_.array();
+  array(back_) *= 1 - array(hidden_) * array(hidden_);
   for (double& each : back_.data) each = clipped(each, 10);
   for (double& each : delta_.data) each = clipped(each, 10);
-  for (std::size_t j = 0; j < expert.W2.cols; ++j) expert.W2.column(j) += delta_.array() * (rate * hidden_[j]);
-  expert.b2.array() += delta_.array() * rate;
+  for (std::size_t j = 0; j < expert.W2.cols; ++j)
+    column(expert.W2, j) += array(delta_) * (rate * hidden_[j]);
+  array(expert.b2) += array(delta_) * rate;
   for (std::size_t j = 0; j < expert.W1.cols; ++j)
-    expert.W1.column(j) += back_.array() * (rate * clipped(in_[j], 10));
-  expert.b1.array() += back_.array() * rate;
+    column(expert.W1, j) += array(back_) * (rate * clipped(in_[j], 10));
+  array(expert.b1) += array(back_) * rate;
   for (Matrix* each : {&expert.W1, &expert.b1, &expert.W2, &expert.b2})
     for (double& weight : each->data) weight = clipped(weight, 1e3);
 }
@@ -63,11 +66,12 @@ void ExpertMemory::observe(const Matrix& x, bool learn) {
   for (std::size_t i = 0; i < s.experts.size(); ++i) {
     Expert& expert = s.experts[i];
     predict(expert, s.x1, s.x2, s.y2);
-    delta_.array() = target_.array() - out_.array();
+    array(delta_) = array(target_) - array(out_);
     expert.error = clipped(squared_norm(delta_), 1e12);
     expert.average1 += (expert.error - expert.average1) / spec.tauE1;
     expert.average2 += (expert.error - expert.average2) / spec.tauE2;
-    if (expert.epsMod > s.experts[static_cast<std::size_t>(s.companion)].epsMod) s.companion = static_cast<int>(i);
+    if (expert.epsMod > s.experts[static_cast<std::size_t>(s.companion)].epsMod)
+      s.companion = static_cast<int>(i);
   }
   double best = 0;
   for (std::size_t i = 0; i < s.experts.size(); ++i) {
@@ -81,7 +85,7 @@ void ExpertMemory::observe(const Matrix& x, bool learn) {
   for (const int which : {s.winner, s.companion}) {
     Expert& expert = s.experts[static_cast<std::size_t>(which)];
     predict(expert, s.x1, s.x2, s.y2);
-    delta_.array() = target_.array() - out_.array();
+    array(delta_) = array(target_) - array(out_);
     descend(expert, spec.eps0 * expert.epsMod);
     if (s.winner == s.companion) break;
   }

@@ -26,7 +26,8 @@ struct ExpertMemory {
       visit(Field{"tauW", "1", "Steps in which a winner without error matures.", 1, 1e9, tunable}, s.tauW);
       visit(Field{"tauE1", "1", "Steps of the short average of the error.", 1, 1e6, tunable}, s.tauE1);
       visit(Field{"tauE2", "1", "Steps of the long average of the error.", 1, 1e6, tunable}, s.tauE2);
-      visit(Field{"lambda_w", "1", "Handicap of the companion in the competition.", 0, 100, tunable}, s.lambda_w);
+      visit(Field{"lambda_w", "1", "Handicap of the companion in the competition.", 0, 100, tunable},
+            s.lambda_w);
     }
   };
   struct Expert {
@@ -86,8 +87,10 @@ struct Experts final : Teachable, Rewardable {
     static void fields(auto& s, auto&& visit) {
       visit(Field{"main", "", "Parameters of the main controller, a Sox."}, s.main);
       visit(Field{"memory", "", "Parameters of the experts."}, s.memory);
-      visit(Field{"expert_share", "1", "Share of the winner in the motor values.", 0, 1, Field::tunable}, s.expert_share);
-      visit(Field{"recall", "1", "Index of the expert that drives alone; -1: none.", -1, 999, Field::tunable}, s.recall);
+      visit(Field{"expert_share", "1", "Share of the winner in the motor values.", 0, 1, Field::tunable},
+            s.expert_share);
+      visit(Field{"recall", "1", "Index of the expert that drives alone; -1: none.", -1, 999, Field::tunable},
+            s.recall);
     }
   };
   struct State {

@@ -1,5 +1,6 @@
 #include "selforg/experts/experts.h"
 
+#include "base/math.h"
 #include "selforg/primitives/primitives.h"
 #include "selforg/test_reference.h"
 
@@ -27,7 +28,7 @@ TEST(Experts, NetworksLearnAsTheLiteralOnes) {
       std::vector<Real> averages;
       for (std::size_t i = 0; i < 4; ++i) {
         const auto& e = s.experts[i];
-        const Ref out = Ref(e.W2) * tanh(Ref(e.W1) * in + Ref(e.b1)) + Ref(e.b2);
+        const Ref out = Ref(e.W2) * squash(Ref(e.W1) * in + Ref(e.b1)) + Ref(e.b2);
         averages.push_back(Real(e.average1) + (norm2(target - out) - Real(e.average1)) / 20);
         EXPECT_NEAR(memory.state.experts[i].average1, static_cast<double>(averages[i]), 1e-12);
         if (e.epsMod > s.experts[companion].epsMod) companion = i;
@@ -42,7 +43,7 @@ TEST(Experts, NetworksLearnAsTheLiteralOnes) {
         const auto& e = s.experts[i];
         Ref W1 = e.W1, W2 = e.W2, b1 = e.b1, b2 = e.b2;
         if (i == winner || i == companion) {
-          const Ref hidden = tanh(W1 * in + b1), delta = target - (W2 * hidden + b2);
+          const Ref hidden = squash(W1 * in + b1), delta = target - (W2 * hidden + b2);
           const Ref back = (W2.T() * delta) & hidden.map([](Real u) { return 1 - u * u; });
           const Real rate = Real(0.05) * Real(e.epsMod);
           W2 = W2 + rate * (delta * hidden.T());
@@ -55,7 +56,8 @@ TEST(Experts, NetworksLearnAsTheLiteralOnes) {
         expect_near(memory.state.experts[i].b1, b1, 1e-12, "b1");
         expect_near(memory.state.experts[i].b2, b2, 1e-12, "b2");
         const Real mature = i == winner ? std::max<Real>(0, (Real(0.3) - averages[i]) / Real(0.3)) : 0;
-        EXPECT_NEAR(memory.state.experts[i].epsMod, static_cast<double>(e.epsMod * (1 - mature / 1000)), 1e-12);
+        EXPECT_NEAR(memory.state.experts[i].epsMod, static_cast<double>(e.epsMod * (1 - mature / 1000)),
+                    1e-12);
       }
     }
     memory.sent(x, y);
@@ -75,7 +77,7 @@ TEST(Experts, DifferentBehavioursGetDifferentExpertsThatRecallThem) {
   for (int k = 0; k < 60'000; ++k) {
     const int behaviour = k / 2000 % 2;
     const double angle = 0.2 * k;
-    x[0] = 0.8 * std::cos(angle), x[1] = 0.8 * std::sin(angle);
+    x[0] = 0.8 * math::cos(angle), x[1] = 0.8 * math::sin(angle);
     y[0] = behaviour == 0 ? 0.8 * x[0] : -0.8 * x[0];
     memory.observe(x, k < 56'000);
     if (k % 2000 == 1999) winners[behaviour] = memory.state.winner;
@@ -117,7 +119,7 @@ TEST(QLearning, FindsTheOptimalValuesOfAChain) {
     place = action == 1 ? (place + 1) % 5 : place > 0 ? place - 1 : 0;
   }
   for (std::uint32_t s = 0; s < 5; ++s) {
-    EXPECT_NEAR(q.state.Q(s, 1), std::pow(0.9, 4.0 - s) / (1 - std::pow(0.9, 5)), 0.02) << s;
+    EXPECT_NEAR(q.state.Q(s, 1), math::pow(0.9, 4.0 - s) / (1 - math::pow(0.9, 5)), 0.02) << s;
     EXPECT_GT(q.state.Q(s, 1), q.state.Q(s, 0));
   }
 }

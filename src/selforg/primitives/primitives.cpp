@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "selforg/arrays.h"
+
 namespace sandlot::selforg {
 
 void QLearning::init(std::size_t states, std::size_t actions) {
@@ -17,8 +19,8 @@ std::uint32_t QLearning::choose(std::uint32_t now, double reward, bool learn, St
   if (learn && s.begun) {
     const double delta = reward + spec.discount * s.Q(now, best) - s.Q(s.state, s.action);
     s.trace(s.state, s.action) = 1;
-    s.Q.array() += s.trace.array() * (spec.eps * delta);
-    s.trace.array() *= spec.discount * spec.elig;
+    array(s.Q) += array(s.trace) * (spec.eps * delta);
+    array(s.trace) *= spec.discount * spec.elig;
   }
   // The values have changed: choose by what they are now.
   best = 0;
@@ -45,18 +47,27 @@ Status Primitives::init(const Setup& setup) {
     states *= spec.bins;
   }
   if (states * static_cast<double>(spec.primitives.size()) > 1e6)
-    return Error{fmt::format("{:.0f} situations are too many", states), "take fewer senses or bins: at most 1e6 values", {}, "/bins"};
+    return Error{fmt::format("{:.0f} situations are too many", states),
+                 "take fewer senses or bins: at most 1e6 values",
+                 {},
+                 "/bins"};
   weights_.clear();
   biases_.clear();
   for (std::size_t k = 0; k < spec.primitives.size(); ++k) {
     const Primitive& each = spec.primitives[k];
     const std::string path = fmt::format("/primitives/{}", k);
     if (!each.weights.empty() && each.weights.size() != n * m)
-      return Error{fmt::format("primitive '{}' has {} weights for {} motors and {} sensors", each.name, each.weights.size(), m, n),
-                   "give motors times sensors", {}, path + "/weights"};
+      return Error{fmt::format("primitive '{}' has {} weights for {} motors and {} sensors", each.name,
+                               each.weights.size(), m, n),
+                   "give motors times sensors",
+                   {},
+                   path + "/weights"};
     if (!each.biases.empty() && each.biases.size() != m)
-      return Error{fmt::format("primitive '{}' has {} biases for {} motors", each.name, each.biases.size(), m),
-                   "give one per motor", {}, path + "/biases"};
+      return Error{
+          fmt::format("primitive '{}' has {} biases for {} motors", each.name, each.biases.size(), m),
+          "give one per motor",
+          {},
+          path + "/biases"};
     Matrix& weights = weights_.emplace_back(m, n);
     if (!each.weights.empty())
       for (std::size_t i = 0; i < m; ++i)

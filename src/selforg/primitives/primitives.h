@@ -21,9 +21,11 @@ struct QLearning {
     static void fields(auto& s, auto&& visit) {
       constexpr unsigned tunable = Field::tunable;
       visit(Field{"eps", "1", "Learning rate.", 0, 1, tunable}, s.eps);
-      visit(Field{"discount", "1", "Weight of the value one choice later.", 0, 0.999999, tunable}, s.discount);
+      visit(Field{"discount", "1", "Weight of the value one choice later.", 0, 0.999999, tunable},
+            s.discount);
       visit(Field{"expl", "1", "Probability of a choice at random.", 0, 1, tunable}, s.expl);
-      visit(Field{"elig", "1", "Decay of eligibility from one choice to the next: lambda.", 0, 1, tunable}, s.elig);
+      visit(Field{"elig", "1", "Decay of eligibility from one choice to the next: lambda.", 0, 1, tunable},
+            s.elig);
     }
   };
   struct State {
@@ -56,7 +58,8 @@ struct Primitives final : Rewardable {
     static void fields(auto& s, auto&& visit) {
       visit(Field{"name", "", "Name of the primitive, for messages.", 0, 0, Field::none, 100}, s.name);
       visit(Field{"weights", "1", "Weights, motor after motor; empty: zero.", -1e3, 1e3}, s.weights);
-      visit(Field{"biases", "1", "Motor values without stimulus, one per motor; empty: zero.", -1, 1}, s.biases);
+      visit(Field{"biases", "1", "Motor values without stimulus, one per motor; empty: zero.", -1, 1},
+            s.biases);
     }
   };
   struct Spec {
@@ -65,8 +68,10 @@ struct Primitives final : Rewardable {
     int bins = 3, interval = 10;
     QLearning::Spec learning;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"primitives", "", "Behaviours to choose from.", 0, 0, Field::required, 100, 1}, s.primitives);
-      visit(Field{"senses", "1", "Indices of the sensors that tell situations apart; empty: all.", 0, 10'000, Field::none, 16},
+      visit(Field{"primitives", "", "Behaviours to choose from.", 0, 0, Field::required, 100, 1},
+            s.primitives);
+      visit(Field{"senses", "1", "Indices of the sensors that tell situations apart; empty: all.", 0, 10'000,
+                  Field::none, 16},
             s.senses);
       visit(Field{"bins", "1", "Intervals of each of these sensors.", 1, 100}, s.bins);
       visit(Field{"interval", "1", "Steps from choice to choice.", 1, 1e6}, s.interval);

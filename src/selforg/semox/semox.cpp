@@ -1,6 +1,7 @@
 #include "selforg/semox/semox.h"
 
 #include "base/check.h"
+#include "selforg/arrays.h"
 
 namespace sandlot::selforg {
 namespace {
@@ -11,7 +12,9 @@ void bounded(Matrix& x, double limit) {
   for (double& each : x.data) each = clipped(each, limit);
 }
 
-void copy_of(const Matrix& from, Matrix& to) { std::copy(from.data.begin(), from.data.end(), to.data.begin()); }
+void copy_of(const Matrix& from, Matrix& to) {
+  std::copy(from.data.begin(), from.data.end(), to.data.begin());
+}
 
 template <class Expression>
 auto squashed(const Expression& x, double limit) {
@@ -48,7 +51,7 @@ Status Semox::init(const Setup& setup) {
 void Semox::step(const Matrix& x, Matrix& y, Mode mode) {
   const std::uint64_t t = state.t;
   if (t == 0) copy_of(x, state.x);
-  else state.x.array() += (x.array() - state.x.array()) / spec.s4avg;
+  else array(state.x) += (array(x) - array(state.x)) / spec.s4avg;
   copy_of(state.x, state.x_buffer[t % buffer]);
   const auto delay = static_cast<std::uint64_t>(spec.s4delay);
   const Matrix& x_then = state.x_buffer[(t + buffer - delay) % buffer];
@@ -58,14 +61,14 @@ void Semox::step(const Matrix& x, Matrix& y, Mode mode) {
   if (mode != Mode::act && t > buffer) {
     multiply(state.A, y_then, state.xi);
     multiply(state.S, x_then, s_.n1);
-    state.xi.array() = state.x.array() - (state.xi.array() + state.b.array() + s_.n1.array());
+    array(state.xi) = array(state.x) - (array(state.xi) + array(state.b) + array(s_.n1));
     bounded(state.xi, huge_value);
     if (mode == Mode::learn) learn_controller(x_then, y_before);
     learn_model(x_then, y_then);
   }
   if (mode != Mode::babble) {
     multiply(state.C, state.x, s_.z);
-    s_.z.array() += state.H.array();
+    array(s_.z) += array(state.H);
     tanh_of(s_.z, y);
   }
   copy_of(y, state.y);
@@ -77,9 +80,9 @@ void Semox::step(const Matrix& x, Matrix& y, Mode mode) {
 void Semox::learn_controller(const Matrix& x, const Matrix& y_before) {
   State& s = state;
   multiply(s.C, x, s_.z);
-  s_.z.array() += s.H.array();
+  array(s_.z) += array(s.H);
   tanh_of(s_.z, s_.y);
-  s_.g.array() = 1 - s_.y.array() * s_.y.array();
+  array(s_.g) = 1 - array(s_.y) * array(s_.y);
 
   // eta = g((A^T A + 0.001)^-1 A^T xi): the error as motor values. zeta: the same before the squashing.
   multiply_transposed_matrices(s.A, s.A, s_.RA);
@@ -88,7 +91,7 @@ void Semox::learn_controller(const Matrix& x, const Matrix& y_before) {
   multiply_transposed(s.A, s.xi, s_.m1);
   s_.A_inverse.apply(s_.m1, s_.z);
   tanh_of(s_.z, s_.eta);
-  s_.zeta.array() = s_.eta.array() / s_.g.array().max(0.01);
+  array(s_.zeta) = array(s_.eta) / array(s_.g).max(0.01);
 
   multiply_matrices(s.C, s.A, s_.R);
   multiply_by_transposed(s_.R, s_.R, s_.RR);
@@ -100,38 +103,38 @@ void Semox::learn_controller(const Matrix& x, const Matrix& y_before) {
   bounded(s.v, 3);
   s.E = 0.5 * squared_norm(s.v);
   // rho = -(g''/g') (chi & zeta), and g''/g' = -2 g for the hyperbolic tangent.
-  s_.rho.array() = 2 * s_.y.array() * s_.chi.array() * s_.zeta.array();
+  array(s_.rho) = 2 * array(s_.y) * array(s_.chi) * array(s_.zeta);
 
   if (s.teach) {
-    s_.delta.array() = (s.taught.array() - s_.y.array()) * s_.g.array();
+    array(s_.delta) = (array(s.taught) - array(s_.y)) * array(s_.g);
     pull(s_.delta, spec.gamma_teach, x);
   }
   if (spec.gamma_cont > 0) {
-    s_.delta.array() = (y_before.array() - s_.y.array()) * s_.g.array();
+    array(s_.delta) = (array(y_before) - array(s_.y)) * array(s_.g);
     pull(s_.delta, spec.gamma_cont, x);
   }
 
   const double rate = spec.epsC * factor_of(spec.error, s.E);
   multiply(s.A, s.v, s_.n1);  // (v^T A^T)^T
   for (std::size_t j = 0; j < s.C.cols; ++j) {
-    auto column = s.C.column(j);
-    column += squashed((s_.chi.array() * s_.n1[j] - s_.rho.array() * x[j]) * rate, spec.squashsize) -
-              column * spec.dampController;
+    auto to = column(s.C, j);
+    to += squashed((array(s_.chi) * s_.n1[j] - array(s_.rho) * x[j]) * rate, spec.squashsize) -
+          to * spec.dampController;
   }
-  s.H.array() += squashed(s_.rho.array() * -rate, spec.squashsize) - s.H.array() * spec.dampController;
+  array(s.H) += squashed(array(s_.rho) * -rate, spec.squashsize) - array(s.H) * spec.dampController;
 }
 
 /// C += rate epsC ((R & g')(R & g')^T + 0.001)^-1 delta x^T
 void Semox::pull(const Matrix& delta, double rate, const Matrix& x) {
-  for (std::size_t j = 0; j < s_.R.cols; ++j) s_.RA.column(j) = s_.R.column(j) * s_.g.array();
+  for (std::size_t j = 0; j < s_.R.cols; ++j) column(s_.RA, j) = column(s_.R, j) * array(s_.g);
   multiply_by_transposed(s_.RA, s_.RA, s_.RR);
   for (std::size_t i = 0; i < s_.RR.rows; ++i) s_.RR(i, i) += 0.001;
   s_.RR_inverse.factor(s_.RR);
   s_.RR_inverse.apply(delta, s_.m1);
   bounded(s_.m1, huge_value);
   for (std::size_t j = 0; j < state.C.cols; ++j)
-    state.C.column(j) += squashed(s_.m1.array() * (rate * spec.epsC * x[j]), spec.squashsize);
-  state.H.array() += squashed(s_.m1.array() * (rate * spec.epsC), spec.squashsize);
+    column(state.C, j) += squashed(array(s_.m1) * (rate * spec.epsC * x[j]), spec.squashsize);
+  array(state.H) += squashed(array(s_.m1) * (rate * spec.epsC), spec.squashsize);
 }
 
 void Semox::learn_model(const Matrix& x, const Matrix& y) {
@@ -149,20 +152,21 @@ void Semox::learn_model(const Matrix& x, const Matrix& y) {
   const double rate = spec.epsA * factor_of(spec.model_error, error * error);
   const double limit = spec.squashsize;
   for (std::size_t j = 0; j < s.A.cols; ++j) {
-    auto column = s.A.column(j);
-    column += squashed(s.xi.array() * (rate * s_.noisy[j]), limit) - column * spec.dampModel;
+    auto to = column(s.A, j);
+    to += squashed(array(s.xi) * (rate * s_.noisy[j]), limit) - to * spec.dampModel;
   }
   if (spec.extended_model)
     for (std::size_t j = 0; j < s.S.cols; ++j) {
-      auto column = s.S.column(j);
-      column += squashed(s.xi.array() * (rate * x[j]), limit) - column * (spec.discountS + spec.dampModel);
+      auto to = column(s.S, j);
+      to += squashed(array(s.xi) * (rate * x[j]), limit) - to * (spec.discountS + spec.dampModel);
     }
-  s.b.array() += squashed(s.xi.array() * (rate * spec.factorB), limit) - s.b.array() * spec.dampModel;
+  array(s.b) += squashed(array(s.xi) * (rate * spec.factorB), limit) - array(s.b) * spec.dampModel;
 }
 
 void Semox::teach_motors(std::span<const double> y) {
   SL_CHECK(y.size() == state.taught.size());
-  for (std::size_t i = 0; i < y.size(); ++i) state.taught[i] = std::isfinite(y[i]) ? clipped(y[i], 0.95) : state.y[i];
+  for (std::size_t i = 0; i < y.size(); ++i)
+    state.taught[i] = std::isfinite(y[i]) ? clipped(y[i], 0.95) : state.y[i];
   state.teach = true;
 }
 

@@ -18,7 +18,8 @@ struct Semox final : Teachable {
   struct Spec {
     double epsC = 0.1, epsA = 0.1, s4avg = 1, factorB = 0.2, squashsize = 0.01;
     int s4delay = 1;
-    double dampModel = 0, dampController = 0, modelNoise = 0, gamma_cont = 0, gamma_teach = 0.01, discountS = 0.001, pain = 5;
+    double dampModel = 0, dampController = 0, modelNoise = 0, gamma_cont = 0, gamma_teach = 0.01,
+           discountS = 0.001, pain = 5;
     ErrorFunction error = ErrorFunction::plain, model_error = ErrorFunction::plain;
     double init_feedback = 1;
     bool extended_model = true;
@@ -28,22 +29,35 @@ struct Semox final : Teachable {
       visit(Field{"epsA", "1", "Learning rate of the model.", 0, 5, tunable}, s.epsA);
       visit(Field{"s4avg", "1", "Steps over which sensor values are smoothed.", 1, 1e6, tunable}, s.s4avg);
       visit(Field{"factorB", "1", "Factor on the learning rate of b.", 0, 100, tunable}, s.factorB);
-      visit(Field{"squashsize", "1", "Bound of the change of one element in one step.", 0, 1, tunable}, s.squashsize);
-      visit(Field{"s4delay", "1", "Steps from motor values to the sensor values that they cause.", 1, 9, tunable}, s.s4delay);
+      visit(Field{"squashsize", "1", "Bound of the change of one element in one step.", 0, 1, tunable},
+            s.squashsize);
+      visit(Field{"s4delay", "1", "Steps from motor values to the sensor values that they cause.", 1, 9,
+                  tunable},
+            s.s4delay);
       visit(Field{"dampModel", "1", "Decay of A, S and b per step.", 0, 0.1, tunable}, s.dampModel);
       visit(Field{"dampController", "1", "Decay of C and H per step.", 0, 0.1, tunable}, s.dampController);
-      visit(Field{"modelNoise", "1", "Standard deviation of noise on the motor values that the model learns from.", 0, 1, tunable},
-            s.modelNoise);
-      visit(Field{"gamma_cont", "1", "Strength of the pull towards the motor values of the step before.", 0, 1, tunable},
+      visit(
+          Field{"modelNoise", "1",
+                "Standard deviation of noise on the motor values that the model learns from.", 0, 1, tunable},
+          s.modelNoise);
+      visit(Field{"gamma_cont", "1", "Strength of the pull towards the motor values of the step before.", 0,
+                  1, tunable},
             s.gamma_cont);
       visit(Field{"gamma_teach", "1", "Strength of teaching.", 0, 1, tunable}, s.gamma_teach);
-      visit(Field{"discountS", "1", "Decay of S per step, which leaves to A what A can explain.", 0, 0.1, tunable}, s.discountS);
-      visit(Field{"pain", "1", "Ratio of the model's error to its average from which on the model does not learn.", 1, 1e6, tunable},
+      visit(Field{"discountS", "1", "Decay of S per step, which leaves to A what A can explain.", 0, 0.1,
+                  tunable},
+            s.discountS);
+      visit(Field{"pain", "1",
+                  "Ratio of the model's error to its average from which on the model does not learn.", 1, 1e6,
+                  tunable},
             s.pain);
-      visit(Field{"error", "", "Error function of the controller: E, its logarithm or its root.", 0, 0, tunable}, s.error);
+      visit(Field{"error", "", "Error function of the controller: E, its logarithm or its root.", 0, 0,
+                  tunable},
+            s.error);
       visit(Field{"model_error", "", "Error function of the model.", 0, 0, tunable}, s.model_error);
       visit(Field{"init_feedback", "1", "Diagonal of C at the beginning.", -10, 10}, s.init_feedback);
-      visit(Field{"extended_model", "", "Model with S, which tells what the environment causes from what the motors cause."},
+      visit(Field{"extended_model", "",
+                  "Model with S, which tells what the environment causes from what the motors cause."},
             s.extended_model);
     }
   };
@@ -74,7 +88,8 @@ struct Semox final : Teachable {
       visit(Field{"teach", "", "Whether motor values are taught in the next step."}, s.teach);
     }
   };
-  static constexpr std::string_view channels[] = {"x", "y", "A", "C", "S", "H", "b", "v", "xi", "E", "error_average"};
+  static constexpr std::string_view channels[] = {
+      "x", "y", "A", "C", "S", "H", "b", "v", "xi", "E", "error_average"};
   Spec spec;
   State state;
 
@@ -99,7 +114,8 @@ struct Semox final : Teachable {
 
 inline std::span<const EnumName<Semox::ErrorFunction>> enum_names(Semox::ErrorFunction) {
   using E = Semox::ErrorFunction;
-  static constexpr EnumName<E> names[] = {{"plain", E::plain}, {"logarithmic", E::logarithmic}, {"root", E::root}};
+  static constexpr EnumName<E> names[] = {
+      {"plain", E::plain}, {"logarithmic", E::logarithmic}, {"root", E::root}};
   return names;
 }
 

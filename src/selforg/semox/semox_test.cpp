@@ -31,7 +31,8 @@ TEST(Semox, EachLearningStepIsTheLiteralOne) {
   for (std::uint64_t k = 0; k < 40; ++k) {
     SCOPED_TRACE(k);
     Stream random = stream(k);
-    const std::size_t n = 1 + random.below(15), m = 1 + random.below(std::min<std::uint32_t>(6, static_cast<std::uint32_t>(n)));
+    const std::size_t n = 1 + random.below(15),
+                      m = 1 + random.below(std::min<std::uint32_t>(6, static_cast<std::uint32_t>(n)));
     Semox::Spec p;
     p.epsC = random.uniform(0, 0.5);
     p.epsA = random.uniform(0, 0.5);
@@ -56,9 +57,9 @@ TEST(Semox, EachLearningStepIsTheLiteralOne) {
     const Ref before = s.y_buffer[(s.t + 9 - static_cast<std::size_t>(p.s4delay)) % 10];
     Ref C = s.C, H = s.H;
     const Ref xi = Ref(x_new) - (A * yc + Ref(s.b) + Ref(s.S) * x);
-    const Ref y = tanh(C * x + H);
+    const Ref y = squash(C * x + H);
     const Ref g = y.map([](Real u) { return 1 - u * u; });
-    const Ref eta = tanh(inverse(with_diagonal(A.T() * A, 0.001)) * A.T() * xi);
+    const Ref eta = squash(inverse(with_diagonal(A.T() * A, 0.001)) * A.T() * xi);
     const Ref zeta = eta & g.map([](Real u) { return 1 / std::max<Real>(u, 0.01); });
     const Ref R = C * A;
     const Ref chi = inverse(with_diagonal(R * R.T(), 0.001)) * zeta;
@@ -72,13 +73,15 @@ TEST(Semox, EachLearningStepIsTheLiteralOne) {
     };
     const auto pull = [&](const Ref& delta, double gamma) {
       const Ref G = R & g;
-      const Ref step = static_cast<Real>(gamma * 1) * static_cast<Real>(p.epsC) * (inverse(with_diagonal(G * G.T(), 0.001)) * delta);
+      const Ref step = static_cast<Real>(gamma * 1) * static_cast<Real>(p.epsC) *
+                       (inverse(with_diagonal(G * G.T(), 0.001)) * delta);
       C = C + clip(step * x.T(), size);
       H = H + clip(step, size);
     };
     if (s.teach) pull((Ref(s.taught) - y) & g, p.gamma_teach);
     if (p.gamma_cont > 0) pull((before - y) & g, p.gamma_cont);
-    const Real rate = static_cast<Real>(p.epsC) * scale(p.error, E), damp = static_cast<Real>(p.dampController);
+    const Real rate = static_cast<Real>(p.epsC) * scale(p.error, E),
+               damp = static_cast<Real>(p.dampController);
     C = C + clip(rate * (chi * (v.T() * A.T()) - rho * x.T()), size) - damp * C;
     H = H + clip(-rate * rho, size) - damp * H;
     // The regularisation 0.001 bounds the condition of what is inverted at about 1e4: 1e-16 becomes 1e-12.
@@ -86,13 +89,17 @@ TEST(Semox, EachLearningStepIsTheLiteralOne) {
     expect_near(semox.state.v, v, 1e-12, "v");
     expect_near(semox.state.C, C, 1e-12, "C");
     expect_near(semox.state.H, H, 1e-12, "H");
-    const Real rate_A = static_cast<Real>(p.epsA) * scale(p.model_error, norm2(xi)), damp_A = static_cast<Real>(p.dampModel);
+    const Real rate_A = static_cast<Real>(p.epsA) * scale(p.model_error, norm2(xi)),
+               damp_A = static_cast<Real>(p.dampModel);
     expect_near(semox.state.A, A + clip(rate_A * (xi * yc.T()), size) - damp_A * A, 1e-12, "A");
     if (p.extended_model)
-      expect_near(semox.state.S, Ref(s.S) + clip(rate_A * (xi * x.T()), size) - (Real(p.discountS) + damp_A) * Ref(s.S), 1e-12, "S");
+      expect_near(semox.state.S,
+                  Ref(s.S) + clip(rate_A * (xi * x.T()), size) - (Real(p.discountS) + damp_A) * Ref(s.S),
+                  1e-12, "S");
     else EXPECT_EQ(semox.state.S.data, s.S.data);
-    expect_near(semox.state.b, Ref(s.b) + clip(rate_A * Real(p.factorB) * xi, size) - damp_A * Ref(s.b), 1e-12, "b");
-    expect_near(y_out, tanh(C * Ref(x_new) + H), 1e-12, "y");
+    expect_near(semox.state.b, Ref(s.b) + clip(rate_A * Real(p.factorB) * xi, size) - damp_A * Ref(s.b),
+                1e-12, "b");
+    expect_near(y_out, squash(C * Ref(x_new) + H), 1e-12, "y");
   }
 }
 
@@ -109,9 +116,9 @@ TEST(Semox, ControllerDescendsTheGradientOfItsError) {
   Matrix y(2, 1);
   semox.step(random_matrix(random, 5, 1, 0.3), y, Mode::learn);
   const Ref A = s.A, x = s.x_buffer[(s.t + 9) % 10], xi = semox.state.xi;
-  const Ref eta = tanh(inverse(with_diagonal(A.T() * A, 0.001)) * A.T() * xi);
+  const Ref eta = squash(inverse(with_diagonal(A.T() * A, 0.001)) * A.T() * xi);
   const auto E = [&](const Ref& C, const Ref& H) {
-    const Ref zeta = eta & tanh(C * x + H).map([](Real u) { return 1 / (1 - u * u); });
+    const Ref zeta = eta & squash(C * x + H).map([](Real u) { return 1 / (1 - u * u); });
     const Ref R = C * A;
     return (zeta.T() * inverse(R * R.T()) * zeta)(0, 0) / 2;
   };

@@ -56,23 +56,28 @@ Status Braitenberg::init(const Setup& setup) {
   weights_ = Matrix(m, n);
   biases_ = Matrix(m, 1);
   if (!spec.biases.empty() && spec.biases.size() != m)
-    return Error{fmt::format("'biases' has {} values for {} motors", spec.biases.size(), m), "give one per motor", {}, "/biases"};
+    return Error{fmt::format("'biases' has {} values for {} motors", spec.biases.size(), m),
+                 "give one per motor",
+                 {},
+                 "/biases"};
   std::copy(spec.biases.begin(), spec.biases.end(), biases_.data.begin());
   if (spec.type == Type::custom) {
     if (spec.weights.size() != m * n)
-      return Error{fmt::format("'weights' has {} values for {} motors and {} sensors", spec.weights.size(), m, n),
-                   "give motors times sensors, motor after motor",
-                   {},
-                   "/weights"};
+      return Error{
+          fmt::format("'weights' has {} values for {} motors and {} sensors", spec.weights.size(), m, n),
+          "give motors times sensors, motor after motor",
+          {},
+          "/weights"};
     for (std::size_t i = 0; i < m; ++i)
       for (std::size_t j = 0; j < n; ++j) weights_(i, j) = spec.weights[i * n + j];
     return {};
   }
   const auto left = static_cast<std::size_t>(spec.left), right = static_cast<std::size_t>(spec.right);
   if (m != 2 || left >= n || right >= n)
-    return Error{fmt::format("a vehicle has 2 motors and the sensors {} and {}; here are {} motors and {} sensors", left, right,
-                             m, n),
-                 "use 'type: custom' with weights"};
+    return Error{
+        fmt::format("a vehicle has 2 motors and the sensors {} and {}; here are {} motors and {} sensors",
+                    left, right, m, n),
+        "use 'type: custom' with weights"};
   const bool crossed = spec.type == Type::aggressive;
   weights_(0, crossed ? right : left) += 1;
   weights_(1, crossed ? left : right) += 1;
@@ -96,7 +101,8 @@ Status Replay::init(const Setup& setup) {
                    fmt::format("replay of {} motors needs y[0] to y[{}]", setup.motors, setup.motors - 1)};
     columns.push_back(static_cast<std::size_t>(found - table.columns.begin()));
   }
-  if (table.rows.empty()) return Error{fmt::format("'{}' has no line of values", spec.file), "record some steps"};
+  if (table.rows.empty())
+    return Error{fmt::format("'{}' has no line of values", spec.file), "record some steps"};
   recording_ = Matrix(setup.motors, table.rows.size());
   for (std::size_t k = 0; k < table.rows.size(); ++k)
     for (std::size_t i = 0; i < columns.size(); ++i) recording_(i, k) = clipped(table.rows[k][columns[i]], 1);

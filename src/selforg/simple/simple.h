@@ -16,16 +16,23 @@ struct Sine {
     Shape shape = Shape::sine;
     static void fields(auto& s, auto&& visit) {
       constexpr unsigned tunable = Field::tunable;
-      visit(Field{"period", "1", "Steps of a period; a new one goes on from the phase of now.", 1, 1e9, tunable}, s.period);
-      visit(Field{"phaseshift", "1", "Quarter turns of each motor behind the one before it.", -1e3, 1e3, tunable}, s.phaseshift);
+      visit(Field{"period", "1", "Steps of a period; a new one goes on from the phase of now.", 1, 1e9,
+                  tunable},
+            s.period);
+      visit(Field{"phaseshift", "1", "Quarter turns of each motor behind the one before it.", -1e3, 1e3,
+                  tunable},
+            s.phaseshift);
       visit(Field{"amplitude", "1", "Amplitude of all motors.", 0, 1, tunable}, s.amplitude);
-      visit(Field{"impulswidth", "1", "Share of a period that an impulse is up.", 0, 1, tunable}, s.impulswidth);
+      visit(Field{"impulswidth", "1", "Share of a period that an impulse is up.", 0, 1, tunable},
+            s.impulswidth);
       visit(Field{"shape", "", "Shape of the motion.", 0, 0, tunable}, s.shape);
     }
   };
   struct State {
     double phase = 0;
-    static void fields(auto& s, auto&& visit) { visit(Field{"phase", "1", "Turns of the first motor's phase."}, s.phase); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"phase", "1", "Turns of the first motor's phase."}, s.phase);
+    }
   };
   Spec spec;
   State state;
@@ -81,7 +88,8 @@ struct Braitenberg {
       visit(Field{"right", "1", "Index of the right sensor of a vehicle.", 0, 10'000}, s.right);
       visit(Field{"gain", "1", "Factor on all weights.", -100, 100, Field::tunable}, s.gain);
       visit(Field{"weights", "1", "Weights of `custom`, motor after motor.", -1e3, 1e3}, s.weights);
-      visit(Field{"biases", "1", "Motor values without stimulus, one per motor; empty: zero.", -1, 1}, s.biases);
+      visit(Field{"biases", "1", "Motor values without stimulus, one per motor; empty: zero.", -1, 1},
+            s.biases);
     }
   };
   using State = NoFields;
@@ -101,13 +109,17 @@ struct Replay {
     std::string file;
     End end = End::hold;
     static void fields(auto& s, auto&& visit) {
-      visit(Field{"file", "", "Log file with the columns y[0], y[1] ...", 0, 0, Field::required, 4096, 1}, s.file);
-      visit(Field{"end", "", "What follows the last line: its values, the first line again, or zeros."}, s.end);
+      visit(Field{"file", "", "Log file with the columns y[0], y[1] ...", 0, 0, Field::required, 4096, 1},
+            s.file);
+      visit(Field{"end", "", "What follows the last line: its values, the first line again, or zeros."},
+            s.end);
     }
   };
   struct State {
     std::uint64_t line = 0;
-    static void fields(auto& s, auto&& visit) { visit(Field{"line", "1", "Index of the next line."}, s.line); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"line", "1", "Index of the next line."}, s.line);
+    }
   };
   Spec spec;
   State state;

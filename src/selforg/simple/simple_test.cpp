@@ -19,7 +19,8 @@ TEST(Sine, EachMotorFollowsTheOneBeforeIt) {
   for (int k = 0; k < 100; ++k) {
     sine.step(x, y, Mode::learn);
     for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(y[static_cast<std::size_t>(i)], 0.5 * std::sin(2 * math::pi * k / 40 - i * math::pi / 2), 1e-12);
+      EXPECT_NEAR(y[static_cast<std::size_t>(i)], 0.5 * math::sin(2 * math::pi * k / 40 - i * math::pi / 2),
+                  1e-12);
   }
   sine.spec.shape = Sine::Shape::impulse;
   sine.spec.impulswidth = 0.25;
@@ -86,7 +87,7 @@ TEST(Replay, RepeatsALogToTheBit) {
   std::vector<std::vector<double>> sent;
   std::vector<double> x(2), y(2);
   for (int k = 0; k < 40; ++k) {
-    x = {0.3 * std::sin(k * 0.7), 0.1 * k / 40};
+    x = {0.3 * math::sin(k * 0.7), 0.1 * k / 40};
     (*sox)->step(x, y);
     log.step(0.01 * k, **sox);
     sent.push_back(y);
@@ -134,7 +135,7 @@ TEST(Dep, EachStepIsTheLiteralOne) {
         for (std::size_t j = 0; j < 4; ++j) row += C(i, j) * C(i, j), sum += C(i, j) * xs[t](j);
         z.at[i][0] = 5 * sum / (std::sqrt(individual ? row : norm2(C)) + 0.01L) + h(i);
       }
-      const Ref wanted = tanh(z);
+      const Ref wanted = squash(z);
       expect_near(y, wanted, 1e-12, "y");
       h = h - 0.1L * wanted;
     }

@@ -1,6 +1,7 @@
 #include "selforg/sox/sox.h"
 
 #include "base/check.h"
+#include "selforg/arrays.h"
 
 namespace sandlot::selforg {
 namespace {
@@ -29,10 +30,12 @@ Status Sox::init(const Setup& setup) {
   state.C_native = Matrix::identity(m, n, 1.2);
   state.S = spec.extended_model ? Matrix::identity(n, n, 0.05) : Matrix(n, n);
   state.h = state.y = state.taught = state.goal = Matrix(m, 1);
-  state.b = state.x = state.v = state.v_avg = state.xi = state.self_caused = state.environment_caused = Matrix(n, 1);
+  state.b = state.x = state.v = state.v_avg = state.xi = state.self_caused = state.environment_caused =
+      Matrix(n, 1);
   state.x_buffer.assign(buffer, Matrix(n, 1));
   state.y_buffer.assign(buffer, Matrix(m, 1));
-  s_.z = s_.y = s_.g = s_.eta = s_.y_hat = s_.mu = s_.Cv = s_.epsrel = s_.delta = s_.m1 = s_.m2 = Matrix(m, 1);
+  s_.z = s_.y = s_.g = s_.eta = s_.y_hat = s_.mu = s_.Cv = s_.epsrel = s_.delta = s_.m1 = s_.m2 = Matrix(m,
+                                                                                                         1);
   s_.v_hat = s_.chi = s_.n1 = s_.n2 = s_.input = Matrix(n, 1);
   s_.L = Matrix(n, n);
   s_.P = s_.PL = Matrix(m, n);
@@ -44,14 +47,12 @@ Status Sox::init(const Setup& setup) {
   return {};
 }
 
-bool Sox::fits(const State& s) const {
-  return s.reward >= -1 && s.reward <= 1;
-}
+bool Sox::fits(const State& s) const { return s.reward >= -1 && s.reward <= 1; }
 
 void Sox::step(const Matrix& x, Matrix& y, Mode mode) {
   const std::uint64_t t = state.t;
   if (t == 0) copy(x, state.x);
-  else state.x.array() += (x.array() - state.x.array()) / spec.s4avg;
+  else array(state.x) += (array(x) - array(state.x)) / spec.s4avg;
   copy(state.x, state.x_buffer[t % buffer]);
   const auto delay = static_cast<std::uint64_t>(spec.s4delay);
   const Matrix& x_then = state.x_buffer[(t + buffer - delay) % buffer];
@@ -62,9 +63,9 @@ void Sox::step(const Matrix& x, Matrix& y, Mode mode) {
     if (t > buffer) learn_from(x_then, y_then, state.x);
   } else {
     if (mode == Mode::learn && t > buffer) learn(x_then, y_then, state.x);
-    s_.input.array() = state.x.array() + spec.creativity * state.v_avg.array();
+    array(s_.input) = array(state.x) + spec.creativity * array(state.v_avg);
     multiply(state.C, s_.input, s_.z);
-    s_.z.array() += state.h.array();
+    array(s_.z) += array(state.h);
     tanh_of(s_.z, y);
     copy(y, state.y);
   }
@@ -81,23 +82,23 @@ void Sox::learn(const Matrix& x, const Matrix& y_sent, const Matrix& x_next) {
   // Error of the model.
   multiply(s.A, y_sent, s.self_caused);
   multiply(s.S, x, s.environment_caused);
-  s.xi.array() = x_next.array() - (s.self_caused.array() + s.b.array() + s.environment_caused.array());
+  array(s.xi) = array(x_next) - (array(s.self_caused) + array(s.b) + array(s.environment_caused));
   limit(s.xi);
 
   // Jacobian L of the loop at x.
   multiply(s.C, x, s_.z);
-  s_.z.array() += s.h.array();
+  array(s_.z) += array(s.h);
   tanh_of(s_.z, s_.y);
-  s_.g.array() = 1 - s_.y.array() * s_.y.array();
+  array(s_.g) = 1 - array(s_.y) * array(s_.y);
   multiply_scaled_rows(s.A, s.C, s_.g, s_.L);
-  s_.L.array() += s.S.array();
+  array(s_.L) += array(s.S);
 
   // Time-loop error and its gradient.
   s_.A_inverse.factor(s.A);
   s_.A_inverse.apply(s.xi, s_.eta);
   limit(s_.eta);
   const double causeaware = spec.extended_model ? spec.causeaware : 0;
-  s_.y_hat.array() = s_.y.array() + causeaware * s_.eta.array();
+  array(s_.y_hat) = array(s_.y) + causeaware * array(s_.eta);
   factor_L();
   invert_L(s.xi, s.v);
   limit(s.v);
@@ -105,11 +106,11 @@ void Sox::learn(const Matrix& x, const Matrix& y_sent, const Matrix& x_next) {
   limit(s_.chi);
   s.E = squared_norm(s.v);
   multiply_transposed(s.A, s_.chi, s_.mu);
-  s_.mu.array() *= s_.g.array();
+  array(s_.mu) *= array(s_.g);
   multiply(s.C, s.v, s_.Cv);
-  s_.epsrel.array() = s_.mu.array() * s_.Cv.array() * (2 * spec.sense);
-  s_.v_hat.array() = s.v.array() + spec.harmony * x.array();
-  s.v_avg.array() += 0.1 * (s.v.array() - s.v_avg.array());
+  array(s_.epsrel) = array(s_.mu) * array(s_.Cv) * (2 * spec.sense);
+  array(s_.v_hat) = array(s.v) + spec.harmony * array(x);
+  array(s.v_avg) += 0.1 * (array(s.v) - array(s.v_avg));
   limit(s_.mu);
   limit(s_.epsrel);
 
@@ -119,33 +120,33 @@ void Sox::learn(const Matrix& x, const Matrix& y_sent, const Matrix& x_next) {
 
   // Guidance with the values from before this step's change, as the rule itself. The metric needs A as it was.
   const bool teach = s.teach, pursue = s.pursue;
-  if (teach) s_.delta.array() = (s.taught.array() - s_.y.array()) * s_.g.array();
+  if (teach) array(s_.delta) = (array(s.taught) - array(s_.y)) * array(s_.g);
   if (teach) guide(s_.delta, spec.gamma, x);
-  if (pursue) s_.delta.array() = s.goal.array() * s_.g.array();
+  if (pursue) array(s_.delta) = array(s.goal) * array(s_.g);
   if (pursue) guide(s_.delta, spec.goal_weight, x);
 
   // Model.
   for (std::size_t j = 0; j < s.A.cols; ++j) {
-    auto column = s.A.column(j);
-    const auto pull = s.A_native.column(j) - column;
-    column += clip(s.xi.array() * (spec.epsA * s_.y_hat[j]), 0.1) + clip(pull * pull * pull * spec.damping, 0.1);
+    auto to = column(s.A, j);
+    const auto pull = column(s.A_native, j) - to;
+    to += clip(array(s.xi) * (spec.epsA * s_.y_hat[j]), 0.1) + clip(pull * pull * pull * spec.damping, 0.1);
   }
   if (spec.extended_model)
     for (std::size_t j = 0; j < s.S.cols; ++j) {
-      auto column = s.S.column(j);
-      column += clip(s.xi.array() * (spec.epsA * spec.factorS * x[j]) - column * (10 * spec.damping), 0.1);
+      auto to = column(s.S, j);
+      to += clip(array(s.xi) * (spec.epsA * spec.factorS * x[j]) - to * (10 * spec.damping), 0.1);
     }
-  s.b.array() += clip(s.xi.array() * (spec.epsA * spec.factorb) - s.b.array() * spec.damping, 0.1);
+  array(s.b) += clip(array(s.xi) * (spec.epsA * spec.factorb) - array(s.b) * spec.damping, 0.1);
 
   // Controller.
-  s_.m1.array() = s_.epsrel.array() * s_.y.array();
+  array(s_.m1) = array(s_.epsrel) * array(s_.y);
   for (std::size_t j = 0; j < s.C.cols; ++j) {
-    auto column = s.C.column(j);
-    const auto pull = s.C_native.column(j) - column;
-    column += clip((s_.mu.array() * s_.v_hat[j] - s_.m1.array() * x[j]) * rate, 0.05) +
-              clip(pull * pull * pull * spec.damping, 0.05);
+    auto to = column(s.C, j);
+    const auto pull = column(s.C_native, j) - to;
+    to += clip((array(s_.mu) * s_.v_hat[j] - array(s_.m1) * x[j]) * rate, 0.05) +
+          clip(pull * pull * pull * spec.damping, 0.05);
   }
-  s.h.array() += clip((s_.mu.array() * spec.harmony - s_.m1.array()) * (rate * spec.factorh), 0.05);
+  array(s.h) += clip((array(s_.mu) * spec.harmony - array(s_.m1)) * (rate * spec.factorh), 0.05);
 }
 
 /// C and h along a desired change of the motors: C += clip(rate epsC metric delta x^T), with the natural metric A^T (L^+)^T L^+ A.
@@ -158,8 +159,8 @@ void Sox::guide(const Matrix& delta, double rate, const Matrix& x) {
   multiply_transposed(state.A, s_.n1, s_.m2);
   limit(s_.m2);
   for (std::size_t j = 0; j < state.C.cols; ++j)
-    state.C.column(j) += clip(s_.m2.array() * (rate * spec.epsC * x[j]), 0.05);
-  state.h.array() += clip(s_.m2.array() * (rate * spec.epsC * spec.factorh), 0.05);
+    column(state.C, j) += clip(array(s_.m2) * (rate * spec.epsC * x[j]), 0.05);
+  array(state.h) += clip(array(s_.m2) * (rate * spec.epsC * spec.factorh), 0.05);
 }
 
 /// Babbling: model and controller learn what somebody else's motor values show, by the delta rule.
@@ -167,20 +168,21 @@ void Sox::learn_from(const Matrix& x, const Matrix& y_sent, const Matrix& x_next
   State& s = state;
   multiply(s.A, y_sent, s.self_caused);
   multiply(s.S, x, s.environment_caused);
-  s.xi.array() = x_next.array() - (s.self_caused.array() + s.b.array() + s.environment_caused.array());
+  array(s.xi) = array(x_next) - (array(s.self_caused) + array(s.b) + array(s.environment_caused));
   limit(s.xi);
   const double epsA = 0.1 * spec.epsA, epsC = 0.1 * spec.epsC;
-  for (std::size_t j = 0; j < s.A.cols; ++j) s.A.column(j) += clip(s.xi.array() * (epsA * y_sent[j]), 0.1);
+  for (std::size_t j = 0; j < s.A.cols; ++j) column(s.A, j) += clip(array(s.xi) * (epsA * y_sent[j]), 0.1);
   if (spec.extended_model)
-    for (std::size_t j = 0; j < s.S.cols; ++j) s.S.column(j) += clip(s.xi.array() * (epsA * spec.factorS * x[j]), 0.1);
-  s.b.array() += clip(s.xi.array() * (epsA * spec.factorb), 0.1);
+    for (std::size_t j = 0; j < s.S.cols; ++j)
+      column(s.S, j) += clip(array(s.xi) * (epsA * spec.factorS * x[j]), 0.1);
+  array(s.b) += clip(array(s.xi) * (epsA * spec.factorb), 0.1);
 
   multiply(s.C, x, s_.z);
-  s_.z.array() += s.h.array();
+  array(s_.z) += array(s.h);
   tanh_of(s_.z, s_.y);
-  s_.delta.array() = (y_sent.array() - s_.y.array()) * (1 - s_.y.array() * s_.y.array());
-  for (std::size_t j = 0; j < s.C.cols; ++j) s.C.column(j) += clip(s_.delta.array() * (epsC * x[j]), 0.05);
-  s.h.array() += clip(s_.delta.array() * (epsC * spec.factorh), 0.05);
+  array(s_.delta) = (array(y_sent) - array(s_.y)) * (1 - array(s_.y) * array(s_.y));
+  for (std::size_t j = 0; j < s.C.cols; ++j) column(s.C, j) += clip(array(s_.delta) * (epsC * x[j]), 0.05);
+  array(s.h) += clip(array(s_.delta) * (epsC * spec.factorh), 0.05);
   copy(s.A, s.A_native);
   copy(s.C, s.C_native);
 }
@@ -213,7 +215,8 @@ void Sox::invert_L_transposed(const Matrix& in, Matrix& out) {
 
 void Sox::teach_motors(std::span<const double> y) {
   SL_CHECK(y.size() == state.taught.size());
-  for (std::size_t i = 0; i < y.size(); ++i) state.taught[i] = std::isfinite(y[i]) ? clipped(y[i], 0.95) : state.y[i];
+  for (std::size_t i = 0; i < y.size(); ++i)
+    state.taught[i] = std::isfinite(y[i]) ? clipped(y[i], 0.95) : state.y[i];
   state.teach = true;
 }
 
@@ -224,6 +227,16 @@ void Sox::teach_sensors(std::span<const double> x) {
   s_.A_inverse.factor(state.A);
   s_.A_inverse.apply(s_.n1, s_.m1);
   teach_motors(s_.m1.data);
+}
+
+void Sox::correct_last_motors(const Matrix& y) {
+  copy(y, state.y);
+  if (state.t > 0) copy(y, state.y_buffer[(state.t - 1) % buffer]);
+}
+
+void Sox::loop_matrix(Matrix& R) const {
+  multiply_matrices(state.A, state.C, R);
+  array(R) += array(state.S);
 }
 
 void Sox::set_goal(std::span<const double> gradient) {

@@ -23,7 +23,8 @@ struct Sox final : Teachable, Rewardable {
   enum class Pseudo : std::uint8_t { moore_penrose, sensor_space, motor_space, special };
 
   struct Spec {
-    double epsC = 0.1, epsA = 0.1, sense = 1, creativity = 0, damping = 1e-5, causeaware = 0.01, harmony = 0, gamma = 0.01;
+    double epsC = 0.1, epsA = 0.1, sense = 1, creativity = 0, damping = 1e-5, causeaware = 0.01, harmony = 0,
+           gamma = 0.01;
     Pseudo pseudo = Pseudo::moore_penrose;
     ErrorFunction error = ErrorFunction::plain;
     double s4avg = 1;
@@ -35,26 +36,38 @@ struct Sox final : Teachable, Rewardable {
       constexpr unsigned tunable = Field::tunable;
       visit(Field{"epsC", "1", "Learning rate of the controller.", 0, 5, tunable}, s.epsC);
       visit(Field{"epsA", "1", "Learning rate of the model.", 0, 5, tunable}, s.epsA);
-      visit(Field{"sense", "1", "Sensibility: weight of the term that leads out of saturation.", 0.2, 5, tunable}, s.sense);
-      visit(Field{"creativity", "1", "Share of the mean reconstruction error in the input.", 0, 1, tunable}, s.creativity);
-      visit(Field{"damping", "1", "Forgetting: pull towards the native matrices.", 0, 0.01, tunable}, s.damping);
-      visit(Field{"causeaware", "1", "Awareness of causes: share of the model's error that the motors are taken to have caused.",
+      visit(Field{"sense", "1", "Sensibility: weight of the term that leads out of saturation.", 0.2, 5,
+                  tunable},
+            s.sense);
+      visit(Field{"creativity", "1", "Share of the mean reconstruction error in the input.", 0, 1, tunable},
+            s.creativity);
+      visit(Field{"damping", "1", "Forgetting: pull towards the native matrices.", 0, 0.01, tunable},
+            s.damping);
+      visit(Field{"causeaware", "1",
+                  "Awareness of causes: share of the model's error that the motors are taken to have caused.",
                   0, 0.1, tunable},
             s.causeaware);
-      visit(Field{"harmony", "1", "Harmony: share of the sensor values in the learning signal.", 0, 0.1, tunable}, s.harmony);
-      visit(Field{"gamma", "1", "Strength of teaching.", 0, 1, tunable}, s.gamma);
-      visit(Field{"pseudo", "", "Inverse of L: Moore-Penrose, or an inverse in a space of as many dimensions as motors.", 0, 0,
+      visit(Field{"harmony", "1", "Harmony: share of the sensor values in the learning signal.", 0, 0.1,
                   tunable},
+            s.harmony);
+      visit(Field{"gamma", "1", "Strength of teaching.", 0, 1, tunable}, s.gamma);
+      visit(Field{"pseudo", "",
+                  "Inverse of L: Moore-Penrose, or an inverse in a space of as many dimensions as motors.", 0,
+                  0, tunable},
             s.pseudo);
       visit(Field{"error", "", "Error function: E, its logarithm or its root.", 0, 0, tunable}, s.error);
       visit(Field{"s4avg", "1", "Steps over which sensor values are smoothed.", 1, 1e6, tunable}, s.s4avg);
-      visit(Field{"s4delay", "1", "Steps from motor values to the sensor values that they cause.", 1, 9, tunable}, s.s4delay);
+      visit(Field{"s4delay", "1", "Steps from motor values to the sensor values that they cause.", 1, 9,
+                  tunable},
+            s.s4delay);
       visit(Field{"factorS", "1", "Factor on the learning rate of S.", 0, 100, tunable}, s.factorS);
       visit(Field{"factorb", "1", "Factor on the learning rate of b.", 0, 100, tunable}, s.factorb);
       visit(Field{"factorh", "1", "Factor on the learning rate of h.", 0, 100, tunable}, s.factorh);
-      visit(Field{"goal_weight", "1", "Strength of goals, the additional error functions.", 0, 10, tunable}, s.goal_weight);
+      visit(Field{"goal_weight", "1", "Strength of goals, the additional error functions.", 0, 10, tunable},
+            s.goal_weight);
       visit(Field{"init_feedback", "1", "Diagonal of C at the beginning.", -10, 10}, s.init_feedback);
-      visit(Field{"extended_model", "", "Model with S, which tells what the environment causes from what the motors cause."},
+      visit(Field{"extended_model", "",
+                  "Model with S, which tells what the environment causes from what the motors cause."},
             s.extended_model);
     }
   };
@@ -86,19 +99,23 @@ struct Sox final : Teachable, Rewardable {
       visit(Field{"v", "1", "Reconstruction error."}, s.v);
       visit(Field{"v_avg", "1", "Mean reconstruction error."}, s.v_avg);
       visit(Field{"xi", "1", "Prediction error of the model."}, s.xi);
-      visit(Field{"self_caused", "1", "Part of the predicted sensor values that the motors cause: A y."}, s.self_caused);
-      visit(Field{"environment_caused", "1", "Part of the predicted sensor values that the environment causes: S x."},
+      visit(Field{"self_caused", "1", "Part of the predicted sensor values that the motors cause: A y."},
+            s.self_caused);
+      visit(Field{"environment_caused", "1",
+                  "Part of the predicted sensor values that the environment causes: S x."},
             s.environment_caused);
       visit(Field{"E", "1", "Time-loop error."}, s.E);
       visit(Field{"taught", "1", "Desired motor values of the next step."}, s.taught);
-      visit(Field{"goal", "1", "Descent direction of an additional error function in the next step, per motor."}, s.goal);
+      visit(Field{"goal", "1",
+                  "Descent direction of an additional error function in the next step, per motor."},
+            s.goal);
       visit(Field{"teach", "", "Whether motor values are taught in the next step."}, s.teach);
       visit(Field{"pursue", "", "Whether there is an additional error function in the next step."}, s.pursue);
       visit(Field{"reward", "1", "Reward in the next step."}, s.reward);
     }
   };
-  static constexpr std::string_view channels[] = {
-      "x", "y", "A", "C", "S", "h", "b", "v", "xi", "E", "self_caused", "environment_caused"};
+  static constexpr std::string_view channels[] = {"x", "y", "A",  "C", "S",           "h",
+                                                  "b", "v", "xi", "E", "self_caused", "environment_caused"};
 
   Spec spec;
   State state;
@@ -118,12 +135,9 @@ struct Sox final : Teachable, Rewardable {
   /// The additional error function 1/2 sum_i weight_i (x_goal_i - predicted x_i)^2, through the world model.
   void set_goal_sensors(std::span<const double> x_goal, std::span<const double> weights);
   /// Motor values that were sent in place of the last output: the model learns from what was sent.
-  void correct_last_motors(const Matrix& y) {
-    state.y.array() = y.array();
-    if (state.t > 0) state.y_buffer[(state.t - 1) % buffer].array() = y.array();
-  }
+  void correct_last_motors(const Matrix& y);
   /// R = A C + S, the feedback strength of the loop; a view for plots.
-  void loop_matrix(Matrix& R) const { multiply_matrices(state.A, state.C, R), R.array() += state.S.array(); }
+  void loop_matrix(Matrix& R) const;
 
  private:
   void learn(const Matrix& x, const Matrix& y_sent, const Matrix& x_next);
@@ -142,7 +156,8 @@ struct Sox final : Teachable, Rewardable {
 
 inline std::span<const EnumName<Sox::ErrorFunction>> enum_names(Sox::ErrorFunction) {
   using E = Sox::ErrorFunction;
-  static constexpr EnumName<E> names[] = {{"plain", E::plain}, {"logarithmic", E::logarithmic}, {"root", E::root}};
+  static constexpr EnumName<E> names[] = {
+      {"plain", E::plain}, {"logarithmic", E::logarithmic}, {"root", E::root}};
   return names;
 }
 inline std::span<const EnumName<Sox::Pseudo>> enum_names(Sox::Pseudo) {

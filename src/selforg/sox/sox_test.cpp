@@ -18,7 +18,7 @@ struct Literal {
     const Ref x = s.x_buffer[then], yc = s.y_buffer[then];
     const Ref x_next = Ref(s.x) + (1 / static_cast<Real>(p.s4avg)) * (Ref(x_new) - Ref(s.x));
     xi = x_next - (A * yc + b + S * x);
-    const Ref y = tanh(C * x + h);
+    const Ref y = squash(C * x + h);
     const Ref g = y.map([](Real u) { return 1 - u * u; });
     const Ref L = A * (C & g) + S;
     Ref Lplus = pinv(L);
@@ -57,7 +57,8 @@ struct Literal {
     b = b + clip((epsA * static_cast<Real>(p.factorb)) * xi - d * b, Real(0.1));
     C = C + clip(epsC * (mu * v_hat.T() - (epsrel & y) * x.T()), Real(0.05)) +
         clip(d * cube(Ref(s.C_native) - C), Real(0.05));
-    h = h + clip((epsC * static_cast<Real>(p.factorh)) * (static_cast<Real>(p.harmony) * mu - (epsrel & y)), Real(0.05));
+    h = h + clip((epsC * static_cast<Real>(p.factorh)) * (static_cast<Real>(p.harmony) * mu - (epsrel & y)),
+                 Real(0.05));
   }
 };
 
@@ -127,7 +128,7 @@ TEST(Sox, EachLearningStepIsTheLiteralOne) {
     expect_near(sox.state.C, literal.C, 1e-12, "C");
     expect_near(sox.state.h, literal.h, 1e-12, "h");
     const Ref input = Ref(sox.state.x) + static_cast<Real>(spec.creativity) * literal.v_avg;
-    expect_near(y, tanh(literal.C * input + literal.h), 1e-12, "y");
+    expect_near(y, squash(literal.C * input + literal.h), 1e-12, "y");
     EXPECT_FALSE(sox.state.teach || sox.state.pursue);
     EXPECT_EQ(sox.state.reward, 0) << "a signal holds for one step";
   }
@@ -142,7 +143,7 @@ TEST(Sox, TheTimeLoopErrorIsTheQuadraticForm) {
     Matrix y(m, 1);
     sox.step(random_matrix(random, n, 1), y, Mode::learn);
     const Ref x = before.x_buffer[(before.t + 9) % 10];
-    const Ref g = tanh(Ref(before.C) * x + Ref(before.h)).map([](Real u) { return 1 - u * u; });
+    const Ref g = squash(Ref(before.C) * x + Ref(before.h)).map([](Real u) { return 1 - u * u; });
     const Ref L = Ref(before.A) * (Ref(before.C) & g) + Ref(before.S);
     const Ref xi = sox.state.xi;
     const Real E = (xi.T() * inverse(L * L.T()) * xi)(0, 0);
@@ -152,7 +153,7 @@ TEST(Sox, TheTimeLoopErrorIsTheQuadraticForm) {
 
 /// E as a function of C and h, with the model's error held.
 Real error_of(const Ref& A, const Ref& C, const Ref& S, const Ref& h, const Ref& x, const Ref& xi) {
-  const Ref g = tanh(C * x + h).map([](Real u) { return 1 - u * u; });
+  const Ref g = squash(C * x + h).map([](Real u) { return 1 - u * u; });
   return norm2(inverse(A * (C & g) + S) * xi);
 }
 
@@ -180,12 +181,13 @@ TEST(Sox, ControllerDescendsTheGradientOfE) {
     // Delta C = -epsC/2 dE/dC.
     for (std::size_t i = 0; i < m; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
-        const double gradient =
-            static_cast<double>(slope([&](Ref& c, Ref&, Real s) { c.at[i][j] += s; }));
-        EXPECT_NEAR((sox.state.C(i, j) - before.C(i, j)) / spec.epsC, -0.5 * gradient, 1e-7 * (1 + std::abs(gradient)));
+        const double gradient = static_cast<double>(slope([&](Ref& c, Ref&, Real s) { c.at[i][j] += s; }));
+        EXPECT_NEAR((sox.state.C(i, j) - before.C(i, j)) / spec.epsC, -0.5 * gradient,
+                    1e-7 * (1 + std::abs(gradient)));
       }
       const double gradient = static_cast<double>(slope([&](Ref&, Ref& hh, Real s) { hh.at[i][0] += s; }));
-      EXPECT_NEAR((sox.state.h[i] - before.h[i]) / spec.epsC, -0.5 * gradient, 1e-7 * (1 + std::abs(gradient)));
+      EXPECT_NEAR((sox.state.h[i] - before.h[i]) / spec.epsC, -0.5 * gradient,
+                  1e-7 * (1 + std::abs(gradient)));
     }
   }
 }
@@ -201,7 +203,7 @@ TEST(Sox, BabblingTeachesModelAndController) {
   const Ref x = s.x_buffer[(s.t + 9) % 10], yc = s.y_buffer[(s.t + 9) % 10];
   const Ref xi = Ref(x_new) - (Ref(s.A) * yc + Ref(s.b) + Ref(s.S) * x);
   expect_near(sox.state.A, Ref(s.A) + 0.01L * (xi * yc.T()), 1e-12, "A");
-  const Ref z = tanh(Ref(s.C) * x + Ref(s.h));
+  const Ref z = squash(Ref(s.C) * x + Ref(s.h));
   const Ref delta = (yc - z) & z.map([](Real u) { return 1 - u * u; });
   expect_near(sox.state.C, Ref(s.C) + 0.01L * (delta * x.T()), 1e-12, "C");
   EXPECT_EQ(sox.state.A.data, sox.state.A_native.data);
@@ -246,7 +248,8 @@ TEST(Sox, AGoalInSensorSpaceIsDescendedThroughTheModel) {
   const auto F = [&](const Ref& y) {
     const Ref predicted = Ref(sox.state.A) * y + Ref(sox.state.b) + Ref(sox.state.S) * Ref(sox.state.x);
     Real sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) sum += static_cast<Real>(weights[i]) / 2 * (goal[i] - predicted(i)) * (goal[i] - predicted(i));
+    for (std::size_t i = 0; i < 3; ++i)
+      sum += static_cast<Real>(weights[i]) / 2 * (goal[i] - predicted(i)) * (goal[i] - predicted(i));
     return sum;
   };
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,0 +1,162 @@
+#include "controllers/selforg/selforg.h"
+
+#include <gtest/gtest.h>
+
+namespace sandlot::controllers::selforg {
+namespace {
+
+Node place(const char* device, const char* value, const char* min, const char* max) {
+  Node node = Node::map();
+  node.set("device", Node::scalar(device));
+  if (*value) node.set("value", Node::scalar(value));
+  node.set("min", Node::scalar(min));
+  node.set("max", Node::scalar(max));
+  return node;
+}
+
+/// A robot with a hinge of +-2 rad, a drive, and motors for both.
+struct Rig {
+  Description robot;
+  sandlot::Topic<msg::Float64MultiArray> hinge{"/me/hinge/angles"};
+  sandlot::Topic<msg::Float64> light{"/me/light/level"};
+  Outputs out{"me/controller"};
+  SelfOrg controller;
+  Command cmd;
+  std::uint64_t steps = 0;
+
+  Rig() {
+    robot.robot = "me";
+    robot.readings = {{"hinge", "angles", msg::Float64MultiArray::ros_type, 0, {}},
+                      {"light", "level", msg::Float64::ros_type, 1, {}}};
+    robot.actuators = {{"drive", "", msg::Twist::ros_type, 0, {}},
+                       {"hip", "", msg::Float64::ros_type, 1, {}}};
+    hinge.message.data = {0, 0};
+    cmd.bind(&out);
+  }
+  static Node config() {
+    Node node = Node::map();
+    Node sensors = Node::sequence(), motors = Node::sequence();
+    sensors.push(place("hinge", "data[1]", "-2", "2"));
+    sensors.push(place("light", "", "0", "10"));
+    motors.push(place("hip", "", "0", "4"));
+    motors.push(place("drive", "angular.z", "-3", "3"));
+    motors.push(place("drive", "linear.x", "-1", "1"));
+    node.set("sensors", sensors);
+    node.set("motors", motors);
+    node.set("noise", Node::scalar("0"));
+    return node;
+  }
+  Status init(const Node& node = config()) { return controller.init(robot, node, out); }
+  void step() {
+    const TopicBase* const topics[] = {&hinge, &light};
+    const std::vector<std::uint64_t> seen{0, 0};
+    ++steps;
+    const Observation obs(Time::from_s(static_cast<double>(steps)), topics, seen,
+                          Stream(1, 2, Purpose::controller, steps));
+    cmd.clear();
+    controller.step(obs, cmd);
+  }
+  template <class M>
+  M order(std::uint32_t slot) {
+    M message{};
+    for (const auto& each : cmd.orders()) {
+      if (each.slot != slot) continue;
+      ByteReader r(cmd.bytes(each));
+      read(r, message);
+    }
+    return message;
+  }
+  void see(int k) {
+    hinge.message.data[1] = k % 7 - 3.0;
+    light.message.data = k % 5;
+    hinge.publish(Time::from_s(1));
+    light.publish(Time::from_s(1));
+  }
+};
+
+TEST(SelfOrg, TheAgentIsThatOfThePlainProgramToTheBit) {
+  Rig rig;
+  const Status ready = rig.init();
+  ASSERT_TRUE(static_cast<bool>(ready)) << ready.error().text();
+  ::sandlot::selforg::AgentSpec spec;
+  spec.noise = 0;
+  spec.name = "me";
+  auto plain = ::sandlot::selforg::WiredController::make(2, 3, spec);
+  ASSERT_TRUE(static_cast<bool>(plain));
+  std::vector<double> x(2), y(3);
+  for (int k = 0; k < 200; ++k) {
+    rig.see(k);
+    rig.step();
+    x = {(k % 7 - 3.0) / 2, (k % 5 - 5.0) / 5};
+    (*plain)->step(x, y);
+    ASSERT_EQ(rig.order<msg::Float64>(1).data, 2 + 2 * y[0]) << k;
+    ASSERT_EQ(rig.order<msg::Twist>(0).angular.z, 3 * y[1]);
+    ASSERT_EQ(rig.order<msg::Twist>(0).linear.x, y[2]);
+  }
+}
+
+TEST(SelfOrg, SavedAgentsGoOnToTheSameBytes) {
+  Rig one, two;
+  ASSERT_TRUE(static_cast<bool>(one.init()));
+  ASSERT_TRUE(static_cast<bool>(two.init()));
+  for (int k = 0; k < 77; ++k) one.see(k), one.step();
+  ASSERT_TRUE(static_cast<bool>(one.controller.set_parameter("parameters/epsC", Node::scalar("0.3"))));
+  ByteWriter w;
+  one.controller.save(w);
+  ByteReader r(w.bytes());
+  two.controller.load(r);
+  ASSERT_TRUE(r.ok());
+  two.steps = one.steps;
+  for (int k = 77; k < 150; ++k) one.see(k), one.step(), two.see(k), two.step();
+  ByteWriter a, b;
+  one.controller.save(a);
+  two.controller.save(b);
+  EXPECT_TRUE(std::equal(a.bytes().begin(), a.bytes().end(), b.bytes().begin(), b.bytes().end()));
+  EXPECT_EQ(two.controller.value(ValuePart::parameter, *parse_value_path("parameters.epsC")).value, 0.3);
+  std::vector<std::byte> cut(w.bytes().begin(), w.bytes().end() - 9);
+  ByteReader short_one(cut);
+  two.controller.load(short_one);
+  EXPECT_FALSE(short_one.ok());
+}
+
+TEST(SelfOrg, PublishesMatricesRowAfterRow) {
+  Rig rig;
+  ASSERT_TRUE(static_cast<bool>(rig.init()));
+  rig.see(1);
+  rig.step();
+  rig.out.commit(Time::from_s(1));
+  const msg::Float64MultiArray* C = nullptr;
+  for (const auto& output : rig.out.all())
+    if (output.topic->name() == "/me/controller/C") {
+      const auto* topic = topic_cast<msg::Float64MultiArray>(output.topic.get());
+      C = &topic->message;
+    }
+  ASSERT_NE(C, nullptr);
+  EXPECT_EQ(C->layout.dim[0].size, 3u);
+  EXPECT_EQ(C->layout.dim[1].size, 2u);
+  EXPECT_EQ(C->data, (std::vector<double>{1, 0, 0, 1, 0, 0}));  // the identity of 3 x 2
+}
+
+TEST(SelfOrg, RefusesWhatIsNotThere) {
+  const auto complaint = [](auto&& change) {
+    Rig rig;
+    Node node = Rig::config();
+    change(node);
+    const Status ready = rig.init(node);
+    return ready ? std::string() : ready.error().path + ": " + ready.error().what;
+  };
+  EXPECT_EQ(complaint([](Node&) {}), "");
+  EXPECT_EQ(complaint([](Node& n) { n.find("sensors")->items()[0].set("device", Node::scalar("hing")); }),
+            "/sensors/0/device: the robot has no 'hing'");
+  EXPECT_EQ(complaint([](Node& n) { n.find("motors")->items()[1].set("value", Node::scalar("angular.x")); }),
+            "/motors/1/value: 'drive' takes a Twist, which has no 'angular.x'");
+  EXPECT_NE(complaint([](Node& n) {
+              n.find("sensors")->items()[0].set("max", Node::scalar("-2"));
+            }).find("an empty range"),
+            std::string::npos);
+  EXPECT_NE(complaint([](Node& n) { n.set("agent", Node::scalar("sax")); }).find("no controller kind 'sax'"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace sandlot::controllers::selforg
