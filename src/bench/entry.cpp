@@ -24,7 +24,7 @@ constexpr Suite suites[] = {
     {"swarm", bench::swarm},       {"rays", bench::rays},           {"images", bench::images},
     {"loading", bench::loading},   {"recording", bench::recording}, {"viewer", bench::viewer},
     {"rollers", bench::rollers},   {"levels", bench::levels},       {"radio", bench::radio},
-    {"lockstep", bench::lockstep}, {"robios", bench::robios},       {"homeokinesis", bench::homeokinesis}};
+    {"lockstep", bench::lockstep}, {"robios", bench::robios},       {"sox", bench::sox}};
 
 /// A ratio this much over its budget is a mistake in the code; less may be the machine's other work.
 constexpr double guard_factor = 2;

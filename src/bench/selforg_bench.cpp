@@ -60,7 +60,7 @@ struct Bare {
 
 }  // namespace
 
-std::vector<Row> homeokinesis() {
+std::vector<Row> sox() {
   auto ours = selforg::make_controller("sox", {size, size});
   Bare bare;
   std::vector<double> x(size), y(size);
