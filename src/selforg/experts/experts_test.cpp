@@ -13,7 +13,9 @@ TEST(Experts, NetworksLearnAsTheLiteralOnes) {
   memory.spec.numSats = 4;
   memory.spec.numHidden = 3;
   memory.spec.eps0 = 0.05;
+  memory.spec.tauE1 = 200;
   memory.init({2, 2, 1, "experts"});
+  for (ExpertMemory::Expert& each : memory.state.experts) each.average1 = 0.1;  // good enough to mature
   for (int k = 0; k < 30; ++k) {
     const Matrix x = random_matrix(random, 2, 1), y = random_matrix(random, 2, 1);
     const ExpertMemory::State s = memory.state;
@@ -29,7 +31,7 @@ TEST(Experts, NetworksLearnAsTheLiteralOnes) {
       for (std::size_t i = 0; i < 4; ++i) {
         const auto& e = s.experts[i];
         const Ref out = Ref(e.W2) * squash(Ref(e.W1) * in + Ref(e.b1)) + Ref(e.b2);
-        averages.push_back(Real(e.average1) + (norm2(target - out) - Real(e.average1)) / 20);
+        averages.push_back(Real(e.average1) + (norm2(target - out) - Real(e.average1)) / 200);
         EXPECT_NEAR(memory.state.experts[i].average1, static_cast<double>(averages[i]), 1e-12);
         if (e.epsMod > s.experts[companion].epsMod) companion = i;
       }
