@@ -177,6 +177,30 @@ events:
 )",
      .add = "copy of rover as late 3 3",
      .more = R"(command rover/drive DriveManeuver {"kind": 2, "distance": 1, "angle": 0.5})"},
+    // At 1 s the agent is in the middle of learning.
+    {.name = "SelfOrg",
+     .text = R"(physics: planar
+time: {step: 10 ms, control_interval: 4, stop: 2 s}
+robots:
+  - name: rover
+    model: @rover
+    controller:
+      kind: selforg
+      agent: experts
+      parameters: {main: {epsC: 0.5}, expert_share: 0.1}
+      wiring: [{kind: derivative}, {kind: one_to_one, parameters: {noise: {kind: colour_normal}}}]
+      babbling: 10
+      sensors:
+        - {device: drive, value: twist.twist.linear.x, min: -0.5, max: 0.5}
+        - {device: drive, value: twist.twist.angular.z, min: -2, max: 2}
+      motors:
+        - {device: drive, value: linear.x, min: -0.5, max: 0.5}
+        - {device: drive, value: angular.z, min: -2, max: 2}
+events:
+  - {name: moved, when: abs(rover.pose.yaw) > 0.01}
+)",
+     .add = "copy of rover as late 3 3",
+     .more = "set rover/controller.parameters.expert_share 0.2"},
 };
 
 class GoesOn : public testing::TestWithParam<Scenario> {

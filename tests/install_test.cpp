@@ -155,6 +155,18 @@ TEST(SlowInstall, AClientInCppNeedsNothingOfTheSimulator) {
   EXPECT_THAT(nowhere.out, HasSubstr("'http://here' is no address"));
 }
 
+TEST(SlowInstall, AnAgentWithoutSimulatorNeedsLibselforgAlone) {
+  const Package package;
+  package.build("selforg");
+  const std::string wheels = package.built("selforg") + "/wheels";
+  EXPECT_THAT(shell("ldd " + wheels).out,
+              AllOf(HasSubstr("libselforg"), Not(HasSubstr("libsandlot")), Not(HasSubstr("ode"))));
+  const Printed run = shell(wheels + " --steps 2000 --seed 3");
+  ASSERT_EQ(run.exit_code, 0) << run.out;
+  // The same bits as the program that the build made of the same source.
+  EXPECT_EQ(run.out, shell(build_folder() + "/selforg_wheels --steps 2000 --seed 3").out);
+}
+
 /// Paths of the installed headers, from its include folder.
 std::vector<std::string> public_headers(const std::string& include) {
   std::vector<std::string> headers;

@@ -23,13 +23,12 @@ double way_m(const std::string& out) {
 TEST(SelfOrgExample, TheTwoWheelerBeginsToDriveByItself) {
   const Printed sox = shell(program() + " --steps 6000 --seed 1");
   ASSERT_EQ(sox.exit_code, 0) << sox.out;
-  // 120 s at 0.5 m/s are 60 m. A robot that only trembles stays within some metres.
-  EXPECT_GT(way_m(sox.out), 10) << sox.out;
+  // Noise alone drives it 7 m in 120 s, with learning off; what learning adds is at least as much again.
+  const Printed fixed = shell(program() + " --steps 6000 --seed 1 --set epsC=0");
+  ASSERT_EQ(fixed.exit_code, 0) << fixed.out;
+  EXPECT_GT(way_m(sox.out), 2 * way_m(fixed.out)) << sox.out << fixed.out;
   EXPECT_EQ(shell(program() + " --steps 6000 --seed 1").out, sox.out);
   EXPECT_NE(shell(program() + " --steps 6000 --seed 2").out, sox.out);
-  // Without learning and noise of a C of 1 at rest: it stays.
-  const Printed still = shell(program() + " --steps 6000 --controller braitenberg");
-  EXPECT_EQ(way_m(still.out), 0) << still.out;
 }
 
 TEST(SelfOrgExample, LogsStoresAndLoads) {

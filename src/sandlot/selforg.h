@@ -2,6 +2,7 @@
 /// Robots that find their own behaviour: controllers, wirings and agents without a simulator, numbers in and numbers out. The
 /// package `selforg` alone is enough to use them.
 #include "selforg/agent.h"
+#include "selforg/arrays.h"
 #include "selforg/dep/dep.h"
 #include "selforg/experts/experts.h"
 #include "selforg/log_file.h"

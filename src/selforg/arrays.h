@@ -1,6 +1,7 @@
 #pragma once
 /// Views of a Matrix for Eigen: arithmetic element by element, whose bits do not depend on the order of anything, and whole
-/// matrices for programs that go on with Eigen.
+/// matrices for programs that go on with Eigen. Without Eigen this header is empty.
+#if __has_include(<Eigen/Core>)
 #include <Eigen/Core>
 
 #include "selforg/matrix.h"
@@ -29,3 +30,4 @@ inline Eigen::Map<const Eigen::MatrixXd> eigen(const Matrix& m) {
 }
 
 }  // namespace sandlot::selforg
+#endif

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "messages/registry.h"
 
 namespace sandlot::controllers::selforg {
 namespace {
@@ -28,6 +29,35 @@ const Description::Entry* entry_of(const std::vector<Description::Entry>& entrie
   for (const auto& entry : entries)
     if (entry.device == name || entry.device + "/" + entry.level == name) return &entry;
   return nullptr;
+}
+
+/// Whether messages of a type have a number at the path. A list may be too short for an index: that shows in its messages.
+bool has_number(const std::string& type, std::span<const ValueStep> path) {
+  const auto found = find_message(type);
+  if (!found) return true;  // of a plugin: its messages show
+  const MessageInfo* info = *found;
+  const MessageField* field = nullptr;
+  bool indexed = false;
+  for (const ValueStep& step : path) {
+    const bool list = field && field->count != MessageField::Count::one;
+    if (step.key.empty()) {
+      if (!list || indexed) return false;
+      indexed = true;
+      continue;
+    }
+    if (field) {
+      if ((list && !indexed) || !field->message) return false;
+      info = field->message;
+    }
+    const auto next = std::find_if(info->fields.begin(), info->fields.end(),
+                                   [&](const MessageField& each) { return each.name == step.key; });
+    if (next == info->fields.end()) return false;
+    field = &*next;
+    indexed = false;
+  }
+  const bool one = field && (field->count == MessageField::Count::one || indexed);
+  return one && field->type != Wire::string &&
+         (field->type != Wire::message || (field->message && field->message->is_time));
 }
 
 Error not_there(const std::vector<Description::Entry>& entries, const std::string& device,
@@ -69,10 +99,22 @@ Status SelfOrg::find_sensors(const Description& robot) {
   for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
     const Place& place = spec_.sensors[i];
     const std::string path = fmt::format("/sensors/{}", i);
-    const auto* const entry = entry_of(robot.readings, place.device);
-    if (!entry) return not_there(robot.readings, place.device, path + "/device");
-    auto value = parse_value_path(place.value.empty() ? "data" : place.value);
+    if (!entry_of(robot.readings, place.device))
+      return not_there(robot.readings, place.device, path + "/device");
+    const std::string text = place.value.empty() ? "data" : place.value;
+    auto value = parse_value_path(text);
     if (!value) return value.error().path = path + "/value", std::move(value).error();
+    const auto entry = std::find_if(
+        robot.readings.begin(), robot.readings.end(), [&](const Description::Entry& each) {
+          return (each.device == place.device || each.device + "/" + each.level == place.device) &&
+                 has_number(each.type, *value);
+        });
+    if (entry == robot.readings.end())
+      return Error{fmt::format("'{}' gives no number '{}'", place.device, text),
+                   fmt::format("'sandlot list messages' has the fields of {}",
+                               entry_of(robot.readings, place.device)->type),
+                   {},
+                   path + "/value"};
     sensors_.push_back({entry->index, *value, (place.max + place.min) / 2, (place.max - place.min) / 2});
   }
   return {};
