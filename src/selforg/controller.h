@@ -96,6 +96,9 @@ class Controller : public Element {
   virtual Rewardable* rewardable() { return nullptr; }
   /// Key of the parameters that are fixed after init(): stored controllers fit those with the same.
   virtual std::uint64_t fixed_key() const = 0;
+  /// The tunable parameters alone, for another object of the same kind.
+  virtual void save_parameters(ByteWriter& w) const = 0;
+  virtual void load_parameters(ByteReader& r) = 0;
 
   /// A tunable parameter by its name: set("epsC", 0.2). Errors: unknown, out of range, fixed.
   Status set(std::string_view parameter, double number);
@@ -245,6 +248,8 @@ class ControllerOf final : public ElementAdapter<Controller, T> {
     write_fixed(w, this->element_.spec);
     return hash64(w.bytes());
   }
+  void save_parameters(ByteWriter& w) const override { write_tunables(w, this->element_.spec); }
+  void load_parameters(ByteReader& r) override { read_tunables(r, this->element_.spec); }
   void save(ByteWriter& w) const override {
     write(w, this->input_);
     ElementAdapter<Controller, T>::save(w);

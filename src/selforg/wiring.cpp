@@ -64,6 +64,8 @@ class WiringOf final : public ElementAdapter<Wiring, T> {
   }
   void channels(const ChannelVisit& visit) const override { visit_channels(this->element_.state, {}, visit); }
   void load(ByteReader& r) override { load_sized(r, this->element_); }
+  void save_parameters(ByteWriter& w) const override { write_tunables(w, this->element_.spec); }
+  void load_parameters(ByteReader& r) override { read_tunables(r, this->element_.spec); }
 
  private:
   const char* kind_;
@@ -328,6 +330,12 @@ class Sequence final : public Wiring {
   }
   void load(ByteReader& r) override {
     for (const auto& part : parts_) part->load(r);
+  }
+  void save_parameters(ByteWriter& w) const override {
+    for (const auto& part : parts_) part->save_parameters(w);
+  }
+  void load_parameters(ByteReader& r) override {
+    for (const auto& part : parts_) part->load_parameters(r);
   }
 
  private:

@@ -84,6 +84,9 @@ class Wiring : public Element {
   /// Once per step, after the controller.
   virtual void wire_motors(std::span<const double> controller, std::span<double> robot, double noise) = 0;
   virtual void channels(const ChannelVisit& visit) const = 0;
+  /// The tunable parameters alone, for another object of the same kind.
+  virtual void save_parameters(ByteWriter& w) const = 0;
+  virtual void load_parameters(ByteReader& r) = 0;
 
  protected:
   Setup robot_;

@@ -182,10 +182,13 @@ void SelfOrg::step(const Observation& obs, Command& cmd) {
     seed_ = obs.random().bits64();
     auto made = make_agent(seed_);
     SL_CHECK(made);
-    for (const FieldInfo& field : agent_->controller().describe())
-      if (field.tunable && (field.type == "number" || field.type == "integer"))
-        if (const auto number = agent_->controller().get(field.path))
-          (void)(*made)->controller().set(field.path, *number);
+    ByteWriter tuned;
+    agent_->controller().save_parameters(tuned);
+    agent_->wiring().save_parameters(tuned);
+    ByteReader taken(tuned.bytes());
+    (*made)->controller().load_parameters(taken);
+    (*made)->wiring().load_parameters(taken);
+    SL_CHECK(taken.ok());
     agent_ = std::move(*made);
     begun_ = true;
   }

@@ -119,6 +119,26 @@ TEST(SelfOrg, SavedAgentsGoOnToTheSameBytes) {
   EXPECT_FALSE(short_one.ok());
 }
 
+TEST(SelfOrg, ParametersThatAreTunedBeforeTheFirstStepAreKept) {
+  Rig rig;
+  Node node = Rig::config();
+  Node wiring = Node::map();
+  wiring.set("kind", Node::scalar("feedback"));
+  node.set("wiring", Node::sequence()).push(wiring);
+  ASSERT_TRUE(static_cast<bool>(rig.init(node)));
+  ASSERT_TRUE(static_cast<bool>(rig.controller.set_parameter("parameters/error", Node::scalar("root"))));
+  ASSERT_TRUE(static_cast<bool>(rig.controller.set_parameter("wiring/factor", Node::scalar("0.5"))));
+  ASSERT_TRUE(static_cast<bool>(rig.controller.set_parameter("noise", Node::scalar("0.2"))));
+  EXPECT_FALSE(static_cast<bool>(rig.controller.set_parameter("agent", Node::scalar("dep")))) << "fixed";
+  rig.step();
+  const auto parameter = [&](const char* path) {
+    return rig.controller.value(ValuePart::parameter, *parse_value_path(path)).value;
+  };
+  EXPECT_EQ(parameter("parameters.error"), 2);
+  EXPECT_EQ(parameter("wiring.factor"), 0.5);
+  EXPECT_EQ(parameter("noise"), 0.2);
+}
+
 TEST(SelfOrg, PublishesMatricesRowAfterRow) {
   Rig rig;
   ASSERT_TRUE(static_cast<bool>(rig.init()));
