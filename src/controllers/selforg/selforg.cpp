@@ -287,11 +287,36 @@ void SelfOrg::load(ByteReader& r) {
   agent_ = std::move(*made);
 }
 
+namespace {
+
+/// The keys, and the tunable parameters of all kinds of agents: an agent has the values of its own kind only. Ranges of a name that
+/// several kinds have are united; the agent checks its own.
+std::vector<FieldInfo> describe() {
+  std::vector<FieldInfo> all = describe_fields<Spec>();
+  const std::size_t own = all.size();
+  for (const so::ControllerKind& each : so::controller_kinds())
+    for (FieldInfo field : each.create()->describe()) {
+      if (!field.tunable) continue;
+      field.path = "parameters/" + field.path;
+      const auto known = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(own), all.end(),
+                                      [&](const FieldInfo& other) { return other.path == field.path; });
+      if (known == all.end()) {
+        all.push_back(std::move(field));
+      } else {
+        known->min = std::min(known->min, field.min);
+        known->max = std::max(known->max, field.max);
+      }
+    }
+  return all;
+}
+
+}  // namespace
+
 extern const ControllerKind kind;
 constinit const ControllerKind kind = {
     .name = "selforg",
     .help = "Finds behaviour by itself: homeokinesis and its kin.",
-    .describe = [] { return describe_fields<Spec>(); },
+    .describe = describe,
     .create = []() -> std::unique_ptr<Controller> { return std::make_unique<SelfOrg>(); },
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace sandlot::controllers::selforg {
+extern const ControllerKind kind;
 namespace {
 
 Node place(const char* device, const char* value, const char* min, const char* max) {
@@ -137,6 +138,19 @@ TEST(SelfOrg, ParametersThatAreTunedBeforeTheFirstStepAreKept) {
   EXPECT_EQ(parameter("parameters.error"), 2);
   EXPECT_EQ(parameter("wiring.factor"), 0.5);
   EXPECT_EQ(parameter("noise"), 0.2);
+}
+
+TEST(SelfOrg, DescribesTheParametersOfAllAgents) {
+  const auto fields = kind.describe();
+  const auto has = [&](std::string_view path) {
+    return std::count_if(fields.begin(), fields.end(),
+                         [&](const FieldInfo& each) { return each.path == path; });
+  };
+  EXPECT_EQ(has("noise"), 1);
+  EXPECT_EQ(has("parameters/epsC"), 1) << "Sox and SeMoX have it";
+  EXPECT_EQ(has("parameters/main/epsC"), 1);
+  EXPECT_EQ(has("parameters/synboost"), 1);
+  EXPECT_EQ(has("parameters/init_feedback"), 0) << "fixed";
 }
 
 TEST(SelfOrg, PublishesMatricesRowAfterRow) {
