@@ -289,14 +289,14 @@ void SelfOrg::load(ByteReader& r) {
 
 namespace {
 
-/// The keys, and the tunable parameters of all kinds of agents: an agent has the values of its own kind only. Ranges of a name that
+/// The keys, and the parameters of all kinds of agents: an agent has the values of its own kind only. Ranges of a name that
 /// several kinds have are united; the agent checks its own.
 std::vector<FieldInfo> describe() {
   std::vector<FieldInfo> all = describe_fields<Spec>();
   const std::size_t own = all.size();
   for (const so::ControllerKind& each : so::controller_kinds())
     for (FieldInfo field : each.create()->describe()) {
-      if (!field.tunable) continue;
+      field.required = false;
       field.path = "parameters/" + field.path;
       const auto known = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(own), all.end(),
                                       [&](const FieldInfo& other) { return other.path == field.path; });

@@ -150,7 +150,11 @@ TEST(SelfOrg, DescribesTheParametersOfAllAgents) {
   EXPECT_EQ(has("parameters/epsC"), 1) << "Sox and SeMoX have it";
   EXPECT_EQ(has("parameters/main/epsC"), 1);
   EXPECT_EQ(has("parameters/synboost"), 1);
-  EXPECT_EQ(has("parameters/init_feedback"), 0) << "fixed";
+  EXPECT_EQ(has("parameters/init_feedback"), 1);
+  for (const FieldInfo& each : fields) {
+    EXPECT_FALSE(each.path == "parameters/init_feedback" && each.tunable);
+    EXPECT_FALSE(each.path == "parameters/file" && each.required) << "of some agents only";
+  }
 }
 
 TEST(SelfOrg, PublishesMatricesRowAfterRow) {
