@@ -280,9 +280,9 @@ std::size_t saved_readings(const SimulationParts::ProgramEntry& program) {
 void Programs::save(const ProgramEntry& program, ByteWriter& w) {
   write(w, program.steps);
   write(w, program.ended);
-  write(w, std::vector<std::uint64_t>(
-               program.seen.begin(),
-               program.seen.begin() + static_cast<std::ptrdiff_t>(saved_readings(program))));
+  const std::size_t readings = saved_readings(program);
+  write(w, static_cast<std::uint32_t>(readings));
+  for (std::size_t i = 0; i < readings; ++i) write(w, program.seen[i]);
   write(w, static_cast<std::uint32_t>(program.command.orders().size()));
   for (const Command::Order& order : program.command.orders()) {
     const auto bytes = program.command.bytes(order);
