@@ -132,6 +132,9 @@ add_test(NAME clearing COMMAND Python3::Interpreter tests/clearing_test.py WORKI
 set_tests_properties(clearing PROPERTIES LABELS slow TIMEOUT 600
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+# What takes longest begins first, also where nothing has been measured yet.
+set_tests_properties(robios_programs clients started_programs tutorials PROPERTIES COST 60)
+
 # The page's own tests, and the check of its types, for which nothing has to run.
 if(SANDLOT_PAGE)
   add_test(NAME page_types COMMAND ${SANDLOT_NODE} node_modules/typescript/bin/tsc --noEmit
