@@ -200,7 +200,7 @@ Result<fs::path> compile(const Source& source, const fs::path& file, const std::
   };
   if (is_c)
     add({"-std=gnu17", "-fcommon", "-Wno-implicit-function-declaration", "-Wno-implicit-int",
-         "-Wno-int-conversion", "-Wno-incompatible-pointer-types", "-Wno-return-mismatch"});
+         "-Wno-int-conversion", "-Wno-incompatible-pointer-types", "-Wno-return-type", "-fpermissive"});
   add({"-I" + library.headers, "-MMD", "-MF", out + "/includes", "-o", out + "/program", shown});
   program.command.insert(program.command.end(), source.flags.begin(), source.flags.end());
   add({"-L" + library.folder, "-Wl,--no-as-needed", "-lrobios" + std::to_string(api), "-lm"});
