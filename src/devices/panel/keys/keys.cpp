@@ -49,7 +49,7 @@ struct Keys {
   Topic<msg::KeyPresses>* pressed = nullptr;
 
   static Result<Keys> create(const DeviceBuild& build, Spec spec) {
-    Keys made{std::move(spec), {}};
+    Keys made{spec, {}};
     made.state.latest.reserve(most_kept);
     made.presses = build.accept_queue<msg::KeyPress>(0, "presses", most_waiting);
     made.pressed = build.publish<msg::KeyPresses>(0, "presses");
