@@ -237,6 +237,7 @@ export interface Status {
   reason: string;
   begin_s: number;
   end_s: number | null;
+  kept_from_s?: number;
   history_s: number[];
   target_s: number | null;
   may_steer: boolean;

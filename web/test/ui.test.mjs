@@ -168,6 +168,8 @@ test('the time line spans a live run, a run with an end, and a rewound one', () 
   assert.deepEqual(spanOf(s), [0, 4]);
   assert.deepEqual(spanOf({ ...s, end_s: 60 }), [0, 60]);
   assert.deepEqual(spanOf({ ...s, time_s: 1, history_s: [0, 2, 8] }), [0, 8]);
+  assert.deepEqual(spanOf({ ...s, kept_from_s: 2 }), [2, 4]);  // what was before is forgotten: only a reset goes there
+  assert.deepEqual(spanOf({ ...s, kept_from_s: 2, time_s: 0, history_s: [0, 2, 8] }), [0, 8]);
 });
 
 test('completion takes what is common and replaces the last word only', () => {

@@ -208,6 +208,7 @@ void Hub::send_status(bool to_new_ones_only) {
       w.key("reason").text(report_.reason);
       w.key("begin_s").real(report_.begin.s());
       seconds("end_s", report_.end);
+      w.key("kept_from_s").real(report_.kept_from.s());
       w.key("history_s").list([&] {
         for (const Time time : report_.history) w.real(time.s());
       });

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "sim/test_log.h"
 #include "sim/test_world.h"
 
 namespace sandlot::test {
@@ -22,7 +23,7 @@ model::Setup falling_ball() {
   return setup;
 }
 
-void advance(RunHooks& run, int ticks) {
+void run_ticks(RunHooks& run, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     const Status status = run.tick();
     ASSERT_TRUE(status) << status.error().text();
@@ -50,7 +51,7 @@ TEST(RunHooks, HooksAreCalledInTheOrderThatIsPromised) {
   RunHooks run(*sim, hooks);
   ASSERT_TRUE(run.start());
   run.emit("first");
-  advance(run, 2);
+  run_ticks(run, 2);
   ASSERT_TRUE(run.finish());
   EXPECT_THAT(called,
               ElementsAre("start0", "before0", "first1", "after1", "before1", "second2", "after2", "end2"));
@@ -75,7 +76,7 @@ TEST(RunHooks, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
     return {};
   };
   RunHooks run(*sim, hooks);
-  advance(run, 40);
+  run_ticks(run, 40);
   // 50 mm take sqrt(2 * 0.05 / 9.81) = 101 ms; contacts are those that the last step began with.
   ASSERT_FALSE(ticks.empty());
   EXPECT_GE(ticks.front(), 10u);
@@ -85,15 +86,9 @@ TEST(RunHooks, AContactIsToldOncePerTickWithThePairInOrderAndWhereItIs) {
 }
 
 /// Keeps the log of every tick.
-struct Log : Observer {
-  Wants wants() const override { return {.log = true}; }
-  void on_frame(const std::shared_ptr<const Frame>& frame) override { ticks.push_back(frame->log); }
-  std::vector<std::vector<LogEntry>> ticks;
-};
-
 TEST(RunHooks, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
   const auto with_hooks = build(falling_ball());
-  Log log;
+  TickLog log;
   with_hooks->add_observer(&log);
   Hooks hooks;
   hooks.after_tick = [](RunHooks& e) -> Status {
@@ -106,7 +101,7 @@ TEST(RunHooks, WhatHooksDoIsInTheLogAndTheLogAloneGivesTheSameState) {
     return {};
   };
   RunHooks run(*with_hooks, hooks);
-  advance(run, 60);
+  run_ticks(run, 60);
   ASSERT_TRUE(with_hooks->find_instance("ball2"));
 
   const auto without = build(falling_ball());

@@ -118,11 +118,17 @@ Status Session::reset() {
   return {};
 }
 
+Error Session::forgotten_before(Time kept_from) {
+  return {"the history of the run begins at " + time_text(kept_from) + ": input before it was forgotten",
+          "a reset goes back to the beginning"};
+}
+
 Status Session::jump(Time to) {
   {
     const std::lock_guard lock(mutex_);
     if (to < report_.begin) return Error{"the run begins at " + time_text(report_.begin)};
     if (to < report_.now) SL_TRY(may_rewind());
+    if (to < report_.kept_from) return forgotten_before(report_.kept_from);
     const std::optional<Time> end = report_.end;
     if (end && to > *end) return Error{"the run ends at " + time_text(*end)};
   }
@@ -243,6 +249,7 @@ void Session::refresh_report() {
   if (options_.input_log) report_.end = past_.end;
   report_.target = target_;
   report_.takes_no_input = why_no_input();
+  report_.kept_from = history_.empty() ? report_.begin : kept_from();
   if (report_.history.size() != history_.size() ||
       (!history_.empty() && report_.history.back() != history_.back().now)) {
     report_.history.clear();

@@ -16,13 +16,14 @@
 ///             pause, step and reset end a jump that is under way. See Session::next_step().
 /// Rewinding   snapshots are kept while the run goes on, and the input since. A jump back restores one and runs again up
 ///             to the target with the same input: the world there is the same to the bit. The history after the
-///             target is dropped.
+///             target is dropped. Snapshots are thinned out where they become too much; where the input does, the oldest part of
+///             the history is forgotten: the run then goes back to kept_from at most, or by a reset to its beginning.
 /// Worlds      a reset, a jump back and a load replace the Simulation by another one: epoch() counts them, and
 ///             Options::on_world is called. References to the old one become invalid there.
 /// Input log   of a recording, given as Options::input_log: the run repeats the recording, ends where it ends, and takes no
 ///             other input.
 /// Threads     run() belongs to one thread, the simulation's. Orders may come from any thread.
-/// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and `history_mb` of memory.
+/// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and twice `history_mb` of memory.
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -59,6 +60,18 @@ struct InputLog {
   std::map<std::uint64_t, std::vector<LogEntry>> entries;
   std::uint64_t last_tick = 0;  ///< last tick of the log
   Time end;                     ///< time of that tick
+
+  /// Sets the input of a tick, in place of what there was; empty: none.
+  void set(std::uint64_t tick, std::vector<LogEntry> input);
+  void forget_before(std::uint64_t tick);
+  void forget_after(std::uint64_t tick);
+  /// Memory of the entries that came by set(), near enough to hold a limit. Bytes
+  std::size_t size() const { return size_; }
+
+ private:
+  using Entries = std::map<std::uint64_t, std::vector<LogEntry>>;
+  void forget(Entries::iterator first, Entries::iterator last);
+  std::size_t size_ = 0;
 };
 
 class Session {
@@ -75,7 +88,8 @@ class Session {
     Pace pace;
     bool paused = false;  ///< begins paused
     bool stay = false;    ///< when the run ends by itself, wait for orders instead of returning from run()
-    double history_mb = 256;     ///< memory for snapshots to rewind to; 0: none
+    double history_mb =
+        256;  ///< memory for snapshots to rewind to, and for the input since as much again; 0: none
     double history_every_s = 1;  ///< simulated time between two, at least; more as the run becomes long
     SimulationOptions simulation = {};       ///< for the worlds that follow the first
     std::optional<InputLog> input_log = {};  ///< input of a recording to repeat
@@ -126,6 +140,7 @@ class Session {
   struct Report {
     State state = State::playing;
     Time now, step, begin;
+    Time kept_from;           ///< jumps back reach it; it is `begin` until the history becomes too large
     std::optional<Time> end;  ///< time at which it will stop by itself
     std::uint64_t tick = 0, epoch = 1, revision = 0;
     std::optional<double> speed;
@@ -229,6 +244,10 @@ class Session {
   Status replace(std::span<const std::byte> bytes, const std::string& why);
   void forget_future();
   void keep_snapshot();
+  void keep_within_limits();
+  Time kept_from() const;
+  Status may_go_back(Time to) const;
+  static Error forgotten_before(Time kept_from);
 
   Options options_;
   std::unique_ptr<Simulation> simulation_;  ///< replaced under the mutex
@@ -239,9 +258,10 @@ class Session {
   std::unique_ptr<InputRecorder> input_recorder_;  ///< null for a run with an input log
   std::uint64_t epoch_ = 1;
   std::uint64_t first_serials_ = 0;  ///< entities of the beginning have serials below it
-  InputLog past_;                    ///< input since the first snapshot kept; or the recording's
+  InputLog past_;                    ///< input since kept_from(); or the recording's
   std::deque<Kept> history_;         ///< ascending; the first is the beginning of the run
   std::size_t history_bytes_ = 0;
+  bool begins_late_ = false;  ///< input between the first and the second snapshot was forgotten
   double history_gap_s_ = 1, snapshot_cost_s_ = 0, snapshot_at_s_ = -1e9;  ///< wall clock
   std::uint64_t rerun_until_ = 0;                                          ///< tick
   Status status_;                                                          ///< of the latest tick

@@ -10,6 +10,14 @@ namespace {
 
 constexpr std::size_t most_kept = 512;
 
+/// Memory of a tick's input: its entries, what they hold, and the node of the map.
+std::size_t size_of(const std::vector<LogEntry>& input) {
+  std::size_t size = 80 + input.size() * sizeof(LogEntry);
+  for (const LogEntry& entry : input)
+    size += entry.target.capacity() + entry.type.capacity() + entry.bytes.capacity() + entry.why.capacity();
+  return size;
+}
+
 double wall_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -20,8 +28,24 @@ void Session::InputRecorder::on_frame(const std::shared_ptr<const Frame>& frame)
   std::vector<LogEntry> entries;
   for (const LogEntry& entry : frame->log)
     if (entry.is_input()) entries.push_back(entry);
-  if (entries.empty()) input.entries.erase(frame->tick);
-  else input.entries[frame->tick] = std::move(entries);
+  input.set(frame->tick, std::move(entries));
+}
+
+void InputLog::set(std::uint64_t tick, std::vector<LogEntry> input) {
+  if (const auto before = entries.find(tick); before != entries.end()) forget(before, std::next(before));
+  if (input.empty()) return;
+  input.shrink_to_fit();
+  size_ += size_of(input);
+  entries.emplace(tick, std::move(input));
+}
+
+void InputLog::forget_before(std::uint64_t tick) { forget(entries.begin(), entries.lower_bound(tick)); }
+
+void InputLog::forget_after(std::uint64_t tick) { forget(entries.upper_bound(tick), entries.end()); }
+
+void InputLog::forget(Entries::iterator first, Entries::iterator last) {
+  for (auto at = first; at != last; ++at) size_ -= size_of(at->second);
+  entries.erase(first, last);
 }
 
 /// Submits the logged input of the next tick. @return the logged length of the tick, if it was measured
@@ -46,8 +70,7 @@ std::optional<Time> Session::feed_input_log() {
   return measured;
 }
 
-/// Takes a snapshot where that costs little, and thins them out so that their number and size stay bounded: the older, the
-/// farther apart.
+/// Takes a snapshot where that costs little.
 void Session::keep_snapshot() {
   if (options_.history_mb <= 0) return;
   const Time now = simulation_->now();
@@ -61,6 +84,12 @@ void Session::keep_snapshot() {
   history_bytes_ += history_.back().bytes.size();
   snapshot_cost_s_ = wall_s() - at_s;
   snapshot_at_s_ = at_s;
+  keep_within_limits();
+}
+
+/// Thins snapshots out so that their number and size stay bounded: the older, the farther apart. Forgets the older half of
+/// the input, and the snapshots of that time but for the first, where it would fill more than the snapshots may.
+void Session::keep_within_limits() {
   const auto most_bytes = static_cast<std::size_t>(options_.history_mb * 1024 * 1024);
   while (history_.size() > 2 && (history_bytes_ > most_bytes || history_.size() > most_kept)) {
     std::deque<Kept> thinner;
@@ -72,18 +101,41 @@ void Session::keep_snapshot() {
     }
     history_ = std::move(thinner);
     history_gap_s_ *= 2;
+    if (begins_late_) past_.forget_before(history_[1].tick + 1);
   }
+  if (past_.size() <= most_bytes || history_.size() < 2) return;
+  std::size_t oldest = 1;  // snapshot, behind the first, that stays
+  past_.forget_before(history_[oldest].tick + 1);
+  while (past_.size() > most_bytes / 2 && oldest + 1 < history_.size())
+    past_.forget_before(history_[++oldest].tick + 1);
+  for (std::size_t i = 1; i < oldest; ++i) history_bytes_ -= history_[i].bytes.size();
+  history_.erase(history_.begin() + 1, history_.begin() + static_cast<std::ptrdiff_t>(oldest));
+  begins_late_ = true;
+}
+
+/// @return an error where the input that leads to `to` was forgotten
+Status Session::may_go_back(Time to) const {
+  if (to >= kept_from()) return {};
+  return forgotten_before(kept_from());
+}
+
+/// Time of the first snapshot behind which all input is known.
+Time Session::kept_from() const {
+  return begins_late_ && history_.size() > 1 ? history_[1].now
+         : history_.empty()                  ? Time()
+                                             : history_.front().now;
 }
 
 /// Drops snapshots and input after the present tick: the run goes on from here in another way.
 void Session::forget_future() {
   rerun_until_ = 0;
   if (options_.input_log) return;
-  past_.entries.erase(past_.entries.upper_bound(simulation_->tick_index()), past_.entries.end());
+  past_.forget_after(simulation_->tick_index());
   while (history_.size() > 1 && history_.back().tick > simulation_->tick_index()) {
     history_bytes_ -= history_.back().bytes.size();
     history_.pop_back();
   }
+  if (history_.size() < 2) begins_late_ = false;
 }
 
 /// Builds the world of a snapshot in place of the present one. Requests that still wait are refused.
@@ -116,7 +168,9 @@ Status Session::go_back(Time to) {
   const Time now = simulation_->now();
   const bool ahead = to >= now && status_;
   if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // forward: only run on
-  SL_TRY(may_rewind());  // the run may have passed the target since the order
+  // Since the order the run may have passed the target, and forgotten it.
+  SL_TRY(may_rewind());
+  SL_TRY(may_go_back(to));
   const std::uint64_t frontier = simulation_->tick_index();
   const std::uint64_t before = rerun_until_;
   if (!options_.input_log) rerun_until_ = std::max(frontier, rerun_until_);

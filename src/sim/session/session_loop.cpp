@@ -166,6 +166,7 @@ Status Session::load_last(std::vector<Load> loads) {
     past_ = {};
     history_.clear();
     history_bytes_ = 0;
+    begins_late_ = false;
     history_gap_s_ = options_.history_every_s;
     rerun_until_ = 0;
     note_first_entities();

@@ -409,6 +409,48 @@ TEST(Session, ForgetsSnapshotsInBetweenButNeverTheFirst) {
   EXPECT_EQ(session.simulation().state_hash(), hash_after(rolling(), 10));
 }
 
+TEST(Session, ForgetsTheOldestInputWhereItFillsMoreThanSnapshotsMay) {
+  // A request per tick, of 200 to 600 bytes in the log; memory for 100 KB of it, so for some 160 to 500 ticks.
+  const auto with_input = [](const Simulation& simulation, const auto& submit) {
+    submit(PoseRequest{"ball", {{0.01 * static_cast<double>(simulation.tick_index()), 0, 1}, {}}});
+  };
+  const auto reference = build(rolling());
+  std::vector<std::uint64_t> hashes{reference->state_hash()};
+  for (int tick = 0; tick < 1000; ++tick) {
+    with_input(*reference, [&](Request request) { reference->submit(std::move(request)); });
+    ASSERT_TRUE(reference->tick());
+    hashes.push_back(reference->state_hash());
+  }
+  Session session(build(rolling()), {.history_mb = 0.1, .history_every_s = 0.05});
+  std::optional<std::uint64_t> back_at;
+  Time kept_from;
+  RunReport report;
+  ASSERT_TRUE(session.run(report, [&](const Simulation& simulation) {
+    const std::uint64_t tick = simulation.tick_index();
+    if (session.epoch() == 1 && tick < 1000) {
+      with_input(simulation, [&](Request request) { EXPECT_TRUE(session.submit(std::move(request))); });
+    } else if (session.epoch() == 1 && !session.report().target) {
+      session.pause();
+      kept_from = session.report().kept_from;
+      const Status early = session.jump(kept_from - Time::from_s(0.01));
+      EXPECT_NE(early.error().text().find("a reset goes back to the beginning"), std::string::npos)
+          << early.error().text();
+      EXPECT_TRUE(session.jump(kept_from + Time::from_s(0.02)));
+    } else if (session.epoch() == 2 && session.report().state == Session::State::paused &&
+               !session.report().target) {
+      if (!back_at) { EXPECT_EQ(simulation.state_hash(), hashes[tick]); }
+      if (!std::exchange(back_at, tick)) { EXPECT_TRUE(session.reset()); }
+    }
+    return session.epoch() < 3;
+  }));
+  // Half of the memory's ticks at least, and all of them at most, are kept.
+  EXPECT_GT(kept_from, Time::from_s(10 - 5.0));
+  EXPECT_LT(kept_from, Time::from_s(10 - 0.8));
+  EXPECT_EQ(back_at, static_cast<std::uint64_t>(std::lround(kept_from.s() / 0.01)) + 2);
+  EXPECT_EQ(session.simulation().state_hash(), hashes[0]);
+  EXPECT_EQ(session.report().kept_from, Time());
+}
+
 /// By what takes longer than a tick may wait: between two of them there is a tick, and none is lost.
 TEST(Session, GoesOnWhileOthersAskMuch) {
   Session session(build(rolling()), {});

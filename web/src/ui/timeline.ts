@@ -1,12 +1,14 @@
-// The line of time: what has been, snapshots that are kept, and, where the end is known, what is to come. Click or drag to jump.
+// The line of time: what has been and can be gone back to, snapshots that are kept, and, where the end is known, what is to come.
+// Click or drag to jump.
 import type {Context} from '../app/context';
 import {formatTime} from '../app/format';
 import {ticker} from '../app/ticker';
 import {h, setTitle} from './dom';
 
 /** Times that the line spans. A live run without an end grows to the right: the newest time is the end. */
-export function spanOf(status: {begin_s: number; end_s: number | null; time_s: number; history_s: number[]; replay: boolean}): [number, number] {
-  const begin = Math.min(status.begin_s, ...status.history_s.slice(0, 1));
+export function spanOf(status: {begin_s: number; kept_from_s?: number; end_s: number | null; time_s: number; history_s: number[]; replay: boolean}): [number, number] {
+  const first = Math.min(status.begin_s, ...status.history_s.slice(0, 1));
+  const begin = Math.min(Math.max(first, status.kept_from_s ?? first), status.time_s);
   const newest = Math.max(status.time_s, status.history_s[status.history_s.length - 1] ?? status.time_s);
   const end = status.end_s !== null && Number.isFinite(status.end_s) ? Math.max(status.end_s, newest) : newest;
   return [begin, Math.max(end, begin + 1e-9)];
@@ -99,7 +101,8 @@ export class Timeline {
     this.element.setAttribute('aria-valuemax', String(end));
     this.element.setAttribute('aria-valuenow', String(status.time_s));
     this.element.setAttribute('aria-valuetext', formatTime(status.time_s));
-    const thinned = status.history_s.length > 400 ? status.history_s.filter((_, i) => i % Math.ceil(status.history_s.length / 400) === 0) : status.history_s;
+    const kept = status.history_s.filter((t) => t >= begin);
+    const thinned = kept.length > 400 ? kept.filter((_, i) => i % Math.ceil(kept.length / 400) === 0) : kept;
     const key = status.replay ? '' : thinned.map((t) => part(t).toFixed(3)).join();
     if (key === this.marksKey) return;
     this.marksKey = key;
