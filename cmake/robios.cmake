@@ -1,6 +1,15 @@
 # The libraries robios6 and robios7 that RoBIOS programs are linked with. They use the C library alone and show only the programs'
 # header and what stands in front of functions of the C library.
 # gcc prog.c -IPREFIX/include/robios7 -LPREFIX/lib -lrobios7
+
+# Without a sanitizer: programs are compiled by whatever compiler their machine has, which knows nothing of it.
+function(sandlot_robios_plain target)
+  if(SANDLOT_SANITIZE)
+    target_compile_options(${target} PRIVATE -fno-sanitize=all)
+    target_link_options(${target} PRIVATE -fno-sanitize=all)
+  endif()
+endfunction()
+
 file(GLOB robios_common CONFIGURE_DEPENDS robios/src/*.cpp)
 foreach(generation 6 7)
   file(GLOB sources CONFIGURE_DEPENDS robios/src/robios${generation}/*.cpp)
@@ -10,6 +19,7 @@ foreach(generation 6 7)
     UNITY_BUILD OFF LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/robios)
   target_link_libraries(robios${generation} PRIVATE ${CMAKE_DL_LIBS})
   target_link_options(robios${generation} PRIVATE -static-libstdc++ LINKER:--exclude-libs,ALL LINKER:-z,nodelete)
+  sandlot_robios_plain(robios${generation})
 endforeach()
 
 # Runs programs that are shared libraries.
@@ -17,6 +27,7 @@ add_executable(robios_host robios/host/host.cpp)
 set_target_properties(robios_host PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 target_link_libraries(robios_host PRIVATE ${CMAKE_DL_LIBS})
 target_link_options(robios_host PRIVATE -static-libstdc++)
+sandlot_robios_plain(robios_host)
 
 # Part of cmake/install.cmake.
 macro(sandlot_robios_install)

@@ -311,13 +311,18 @@ Result Simulator::run(const std::string& program, const std::vector<std::string>
 }
 
 std::string scratch() {
-  static const std::string folder = [] {
-    std::string pattern = std::filesystem::temp_directory_path() / "robios_XXXXXX";
-    if (!mkdtemp(pattern.data())) abort();
-    atexit([] { std::filesystem::remove_all(scratch()); });
-    return pattern;
-  }();
-  return folder;
+  struct Folder {
+    std::string path = std::filesystem::temp_directory_path() / "robios_XXXXXX";
+    Folder() {
+      if (!mkdtemp(path.data())) abort();
+    }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
 }
 
 bool compiles(const std::string& command, std::string* errors) {
