@@ -6,7 +6,9 @@ Reads paths of sources from standard input, separated by newlines; an empty line
 every machine builds the same batches.
 
 A name is what stands at the beginning of a line inside an unnamed namespace, a `static`, or a macro; it also keeps a file from
-those that include a header of ours with the same name in it. The reading is rough and errs on the side of keeping files apart. A file that must be compiled alone says `unity: alone` in one of its first 15 lines.
+those that include a header of ours with the same name in it. What `using a::b;` and `using b = a::c;` name may be named so by others,
+and be in headers: it is the same thing. The reading is rough and errs on the side of keeping files apart. A file that must be compiled
+alone says `unity: alone` in one of its first 15 lines.
 
 Usage: unity_groups.py < paths
 """
@@ -19,7 +21,7 @@ MOST_FILES, MOST_LINES = 12, 3000
 BLANK = re.compile(r'R"(?P<d>[^()\\\s]{0,16})\(.*?\)(?P=d)"|//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 NAMESPACE = re.compile(r"(?:inline )?namespace(?:\s+([\w:]+))?\s*\{")
 TYPE = re.compile(r"(?:template\s*<.*>\s*)?(?:struct|class|enum(?:\s+class)?|union)\s+(\w+)")
-ALIAS = re.compile(r"using\s+(\w+)\s*=|namespace\s+(\w+)\s*=|using\s+[\w:]*?(\w+);")
+ALIAS = re.compile(r"(?:using|namespace)\s+(\w+)\s*=\s*([\w:]*)|using\s+(?:::)?((?:\w+::)*)(\w+);")
 VALUE = re.compile(r"[\w:<>,&*\s\[\]().\"']*?[\s&*>](\w+)\s*(?:\(|=|\{|;|\[)")
 MACRO = re.compile(r"\s*#\s*define\s+(\w+)")
 TEST = re.compile(r"(?:TYPED_)?TEST(?:_[FP])?\(|INSTANTIATE_")
@@ -51,6 +53,7 @@ class File:
         self.lines = raw.count("\n")
         self.includes = re.findall(r'^#include "([^"]+)"', raw, re.MULTILINE)
         self.hidden, self.shown = set(), set()  # names that only this file sees; names that a header declares
+        self.used = {}  # of the hidden names those of `using a::b;`, `using b = a::c;`, with what they stand for
         text = BLANK.sub(lambda m: "\n" * m[0].count("\n") or '""', raw.replace("'{'", "''").replace("'}'", "''"))
         stack = []
         for line in namespaces_closed(text).splitlines():
@@ -69,7 +72,10 @@ class File:
             if "{" in line or not line.rstrip().endswith(";"):
                 (self.hidden if unnamed else self.shown).add((space, match[1]))
         elif match := ALIAS.match(line):
-            self.hidden.add((space, match[1] or match[2] or match[3]))
+            name = (space, match[1] or match[4])
+            self.hidden.add(name)
+            if match[4] or match[2] and line[match.end():].strip() == ";":
+                self.used[name] = match[2] or match[3] + match[4]
         elif match := VALUE.match(line):
             names = self.hidden if unnamed or line.startswith("static ") else self.shown
             names.add((space, match[1]))
@@ -87,39 +93,68 @@ class File:
 
 
 def declared(path, src, done):
-    """The words that the headers of ours behind a file declare."""
-    words = set()
+    """The names that the headers of ours behind a file declare: spaces by word."""
+    names = {}
     for include in File.of(path).includes:
         header = f"{src}/{include}"
         if header in done or not File.of(header):
             continue
         done.add(header)
-        words |= {word for _, word in File.of(header).shown} | declared(header, src, done)
-    return words
+        for space, word in File.of(header).shown:
+            names.setdefault(word, set()).add(space)
+        for word, spaces in declared(header, src, done).items():
+            names.setdefault(word, set()).update(spaces)
+    return names
+
+
+class Batch:
+    """Files of one number."""
+
+    def __init__(self, number):
+        self.number, self.files, self.lines = number, 0, 0
+        self.hidden, self.headers = {}, {}  # hidden names with what they stand for; spaces by word
+
+    def takes(self, file, hidden, headers):
+        return (self.files < MOST_FILES and self.lines + file.lines <= MOST_LINES
+                and all(name not in self.hidden or self.hidden[name] == meant != "" for name, meant in hidden.items())
+                and not hides(self.hidden, headers) and not hides(hidden, self.headers))
+
+    def add(self, file, hidden, headers):
+        self.files += 1
+        self.lines += file.lines
+        self.hidden.update(hidden)
+        for word, spaces in headers.items():
+            self.headers.setdefault(word, set()).update(spaces)
+
+
+def hides(hidden, headers):
+    """Whether one of the hidden names takes the place of something else that a header declares in its namespace or around it."""
+    return any(around(other, space) and not (meant and f"::{other}::{word}".endswith(f"::{meant}"))
+               for (space, word), meant in hidden.items() for other in headers.get(word, ()))
+
+
+def around(outer, inner):
+    return not outer or inner == "#" or f"{inner}::".startswith(f"{outer}::")
 
 
 def groups_of(paths):
-    batches = []  # [number, files, lines, hidden names, their words, words declared by headers]
-    result, number = [], 0
+    batches, result, number = [], [], 0
     for path in paths:
         file = File.of(path)
-        words = {word for _, word in file.hidden}
-        headers = declared(path, path[: path.index("src/") + 3] if "src/" in path else "src", set()) - words
+        hidden = {name: file.used.get(name, "") for name in sorted(file.hidden)}
+        words = {word for _, word in hidden}
+        behind = declared(path, path[: path.index("src/") + 3] if "src/" in path else "src", set())
+        headers = {word: spaces for word, spaces in behind.items() if word not in words}
         for batch in [] if file.alone else batches:
-            if (batch[1] < MOST_FILES and batch[2] + file.lines <= MOST_LINES and not batch[3] & file.hidden
-                    and not batch[4] & headers and not batch[5] & words):
+            if batch.takes(file, hidden, headers):
                 break
         else:
             number += 1
-            batch = [number, 0, 0, set(), set(), set()]
+            batch = Batch(number)
             if not file.alone:
                 batches.append(batch)
-        batch[1] += 1
-        batch[2] += file.lines
-        batch[3] |= file.hidden
-        batch[4] |= words
-        batch[5] |= headers
-        result.append((path, batch[0]))
+        batch.add(file, hidden, headers)
+        result.append((path, batch.number))
     return result
 
 

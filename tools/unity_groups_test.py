@@ -43,6 +43,22 @@ class Groups(unittest.TestCase):
         header = "namespace sandlot {\nconstexpr int same = 1;\n}  // namespace sandlot\n"
         self.assertEqual(batches(h_h=header, a_cpp='#include "layer/h.h"\n', b_cpp=unnamed("int same() {\n  return 2;\n}")), [1, 2])
 
+    def test_a_header_that_declares_the_name_elsewhere_goes_together(self):
+        for space in ("sandlot::other", "other"):
+            header = f"namespace {space} {{\nconstexpr int same = 1;\n}}  // namespace {space}\n"
+            self.assertEqual(batches(h_h=header, a_cpp='#include "layer/h.h"\n', b_cpp=unnamed("int same() {\n  return 2;\n}")), [1, 1])
+
+    def test_other_names_of_the_same_thing_go_together(self):
+        for body in ("using test::same;", "using same = std::string;", "namespace same = std::filesystem;"):
+            self.assertEqual(batches(a_cpp=unnamed(body), b_cpp=unnamed(body)), [1, 1], body)
+        self.assertEqual(batches(a_cpp=unnamed("using test::same;"), b_cpp=unnamed("using other::same;")), [1, 2])
+        self.assertEqual(batches(a_cpp=unnamed("using same = std::map<int, int>;"), b_cpp=unnamed("using same = std::map<int, bool>;")), [1, 2])
+
+    def test_what_a_header_declares_and_a_file_uses_goes_together(self):
+        header = "namespace sandlot {\nstruct same {\n  int x;\n};\n}  // namespace sandlot\n"
+        for body, expected in (("using sandlot::same;", [1, 1]), ("using other::same;", [1, 2])):
+            self.assertEqual(batches(h_h=header, a_cpp='#include "layer/h.h"\n', b_cpp=unnamed(body)), expected, body)
+
     def test_a_file_can_ask_to_be_alone(self):
         self.assertEqual(batches(a_cpp="// unity: alone\n", b_cpp="", c_cpp=""), [1, 2, 2])
 

@@ -160,4 +160,22 @@ inline std::unique_ptr<Simulation> again(const Simulation& simulation, Simulatio
   return restored ? std::move(*restored) : nullptr;
 }
 
+inline model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map(),
+                                Pose X_LS = {}) {
+  model::DeviceDecl decl;
+  decl.name = name;
+  decl.kind = kind;
+  decl.X_LS = X_LS;
+  decl.config = std::move(config);
+  return decl;
+}
+
+/// @throws std::out_of_range  there is none
+inline model::DeviceDecl& device_of(model::Setup& setup, const char* robot, const char* name) {
+  for (model::Instance& instance : setup.instances)
+    for (model::DeviceDecl& decl : instance.devices)
+      if (instance.name == robot && decl.name == name) return decl;
+  throw std::out_of_range(name);
+}
+
 }  // namespace sandlot::test

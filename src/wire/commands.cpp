@@ -103,7 +103,7 @@ std::string command_text(const LogEntry& entry) {
   return entry.type.substr(entry.type.rfind('/') + 1);
 }
 
-const char* name_of(Source::Kind kind) {
+const char* source_name(Source::Kind kind) {
   switch (kind) {
     case Source::Kind::robot: return "robot";
     case Source::Kind::program: return "program";
@@ -145,7 +145,7 @@ std::string commands_json(const Frame& frame) {
     w.object([&] {
       w.key("tick").integer(frame.tick);
       w.key("time_s").number(frame.now.s());
-      w.key("source").text(name_of(entry.source.kind));
+      w.key("source").text(source_name(entry.source.kind));
       w.key("id").integer(entry.source.id);
       w.key("sequence").integer(entry.sequence);
       w.key("kind").text(request_kind(entry.kind));

@@ -15,7 +15,7 @@ namespace sandlot::app {
 namespace {
 
 /// Result of a replay: how many ticks ran, and the first difference.
-struct Outcome {
+struct ReplayOutcome {
   std::uint64_t ticks = 0;
   bool compared = false;  ///< there were hashes
   bool interrupted = false;
@@ -24,8 +24,8 @@ struct Outcome {
   std::vector<Error> other_errors;  ///< of files that were to be written
 };
 
-Outcome go_through(record::Recording& recording, record::Replay& replay, const ReplayOptions& options) {
-  Outcome out;
+ReplayOutcome go_through(record::Recording& recording, record::Replay& replay, const ReplayOptions& options) {
+  ReplayOutcome out;
   SnapshotFiles snapshots(options.snapshots, replay.simulation());
   const auto record_error = [&](Status status) {
     if (!status) out.other_errors.push_back(std::move(status.error()));
@@ -66,7 +66,7 @@ Outcome go_through(record::Recording& recording, record::Replay& replay, const R
   return out;
 }
 
-nlohmann::ordered_json as_json(const Outcome& out, const record::Recording& recording,
+nlohmann::ordered_json as_json(const ReplayOutcome& out, const record::Recording& recording,
                                const Simulation& simulation, const ReplayOptions& options) {
   using Json = nlohmann::ordered_json;
   Json json{{"file", options.file},
@@ -111,7 +111,7 @@ int replay(const ReplayOptions& options) {
   print_warnings(diagnostics);
   if (!replay) return complain(replay.error());
   catch_interrupts();
-  const Outcome out = go_through(*recording, *replay, options);
+  const ReplayOutcome out = go_through(*recording, *replay, options);
   const Simulation& simulation = replay->simulation();
   const auto json = as_json(out, *recording, simulation, options);
   if (options.json) {

@@ -30,7 +30,7 @@ std::optional<double> as_number(const MessageValue& value) {
 }
 
 /// Columns of one topic.
-struct Source {
+struct TopicSource {
   DynamicSchema schema;
   std::vector<std::string> wanted;
   std::size_t begin = 0, end = 0;                             ///< its columns
@@ -45,7 +45,7 @@ Error at(const std::string& file, std::string what, std::string fix = "") {
 }
 
 /// Paths of all numbers in a message.
-Result<std::vector<std::string>> numbers_in(const Source& source, std::span<const std::byte> cdr) {
+Result<std::vector<std::string>> numbers_in(const TopicSource& source, std::span<const std::byte> cdr) {
   std::vector<std::string> paths;
   SL_TRY(visit_values(source.schema.info(), cdr, [&](std::string_view path, const MessageValue& value) {
     if (as_number(value) && paths.size() <= most_columns) paths.emplace_back(path);
@@ -92,7 +92,7 @@ Status export_csv(const ExportOptions& options) {
   if (options.from_s) query.from = ns(*options.from_s);
   if (options.to_s) query.to = ns(*options.to_s);
   HeldColumns columns;
-  std::map<std::string, Source> sources;
+  std::map<std::string, TopicSource> sources;
   for (WantedTopic& topic : *wanted) {
     query.topics.push_back(topic.topic);
     const mcap::Channel* const channel = reader.find_channel(topic.topic);
@@ -103,7 +103,7 @@ Status export_csv(const ExportOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(schema->data.data()), schema->data.size());
     auto parsed = DynamicSchema::parse(schema->name, text);
     if (!parsed) return at(options.recording, "the schema of '" + topic.topic + "': " + parsed.error().what);
-    Source source{std::move(*parsed), std::move(topic.paths), 0, 0, {}, false};
+    TopicSource source{std::move(*parsed), std::move(topic.paths), 0, 0, {}, false};
     {
       // Names are checked against the first message; a topic without a path stands for all its numbers.
       mcap::Cursor first = reader.messages({.topics = {topic.topic}});
@@ -135,7 +135,7 @@ Status export_csv(const ExportOptions& options) {
   while (true) {
     SL_ASSIGN(const mcap::Message* const message, cursor.next());
     if (!message) break;
-    const Source& source = sources.at(message->channel->topic);
+    const TopicSource& source = sources.at(message->channel->topic);
     columns.message(message->log_time, source.begin, source.end, text);
     const Status visited = visit_values(source.schema.info(), message->data,
                                         [&](std::string_view path, const MessageValue& value) {

@@ -28,7 +28,7 @@ double number_of(const model::DeviceDecl& device, const char* key, double otherw
   return node && node->is_scalar() && parse_number(node->text(), value) ? value : otherwise;
 }
 /// The first name that a key holds.
-std::string name_of(const model::DeviceDecl& device, const char* key) {
+std::string text_of_key(const model::DeviceDecl& device, const char* key) {
   const Node* const node = device.config.find(key);
   if (!node) return "";
   return node->is_sequence() ? (node->items().empty() ? "" : node->items().front().text()) : node->text();
@@ -97,8 +97,8 @@ class Writer {
       if (device.kind == "wheel_encoder") ticks_ = number_of(device, "ticks_per_turn", ticks_);
     ticks_ = std::max(1.0, std::floor(number_of(drive, "encoder_ticks", ticks_)));
     const bool mecanum = drive.kind == "mecanum_drive", car = drive.kind == "ackermann_drive";
-    SL_ASSIGN(const Wheel left, wheel(name_of(drive, mecanum ? "front_left_joint" : "left_joint")));
-    SL_ASSIGN(const Wheel right, wheel(name_of(drive, mecanum ? "front_right_joint" : "right_joint")));
+    SL_ASSIGN(const Wheel left, wheel(text_of_key(drive, mecanum ? "front_left_joint" : "left_joint")));
+    SL_ASSIGN(const Wheel right, wheel(text_of_key(drive, mecanum ? "front_right_joint" : "right_joint")));
     origin_m_ = left.centre_m.z;
     double speed_radps = number_of(drive, "max_linear_speed", 0) / left.radius_m;
     if (!(speed_radps > 0)) speed_radps = left.max_speed_radps;
@@ -108,7 +108,7 @@ class Writer {
       share_ = mecanum ? shares::omni : shares::differential;
       double forward = left.centre_m.x;
       if (mecanum) {
-        SL_ASSIGN(const Wheel back, wheel(name_of(drive, "back_left_joint")));
+        SL_ASSIGN(const Wheel back, wheel(text_of_key(drive, "back_left_joint")));
         forward = (left.centre_m.x + back.centre_m.x) / 2;
       }
       return "axis 0 " + in_mm(forward) + "\n" + wheel_line("", left, right, speed_radps);
@@ -182,7 +182,7 @@ class Writer {
         camera_ = true;
         const double width = number_of(device, "width", 320), height = number_of(device, "height", 240);
         double fov = number_of(device, "horizontal_fov", 1.0471975511965976);
-        const bool fisheye = name_of(device, "lens") == "equidistant";
+        const bool fisheye = text_of_key(device, "lens") == "equidistant";
         const double wide = fisheye ? 1.0471975511965976 : std::min(fov, 3.1);
         const double high = 2 * math::atan2(math::tan(wide / 2) * height / width, 1);
         out_ += "camera " + place + " " + in_degrees(rpy.z) + " " + in_degrees(-rpy.y) + " " +

@@ -51,7 +51,7 @@ void put_at(Node& node, const Place& place) {
 }
 
 /// `name` of a robot, thing, event or zone, `id` of a module; "" where there is none.
-std::string name_of(const Node& item) {
+std::string item_name(const Node& item) {
   for (const char* const key : {"name", "id"})
     if (const Node* const name = item.is_map() ? item.find(key) : nullptr) return name->text();
   return "";
@@ -59,7 +59,7 @@ std::string name_of(const Node& item) {
 
 Node* element_named(Node& list, const std::string& name) {
   for (Node& item : list.items())
-    if (name_of(item) == name) return &item;
+    if (item_name(item) == name) return &item;
   return nullptr;
 }
 
@@ -68,7 +68,7 @@ Result<Node*> only_element(Node& list, const std::string& key, const std::string
   if (list.items().size() == 1) return &list.items().front();
   std::vector<std::string> names;
   for (const Node& item : list.items())
-    if (std::string name = name_of(item); !name.empty()) names.push_back(std::move(name));
+    if (std::string name = item_name(item); !name.empty()) names.push_back(std::move(name));
   const std::string near = nearest(word, names);
   return Error{"'" + key + "' has " + std::to_string(list.items().size()) + " elements" +
                    (names.empty() ? "" : ", none named '" + word + "'"),

@@ -337,7 +337,7 @@ Status check_teams_have_robots(const spec::Root& root, const model::Setup& setup
 }
 
 /// Two groups that would make robots of one address. A group of n stands for stem1 ... stemn.
-Status check_names(const std::vector<RobotGroup>& robots) {
+Status check_group_names(const std::vector<RobotGroup>& robots) {
   std::map<std::string, const RobotGroup*> single, stems;
   const auto clash = [](const RobotGroup& a, const RobotGroup& b, const std::string& name) {
     return Error{"two robots would be called '" + name + "'",
@@ -518,7 +518,7 @@ Result<Scenario> read_root(const Node& node, const std::string& file, Diagnostic
       return each.error("more than " + std::to_string(spec::max_robots) + " robots in all", "", "/robots");
     out.robots.push_back(std::move(group));
   }
-  SL_TRY(check_names(out.robots));
+  SL_TRY(check_group_names(out.robots));
   SL_TRY(read_teams(node, root, setup));
   SL_TRY(read_watch(node, root, setup));
   SL_TRY(read_zones(node, root.zones, setup.zones, diagnostics));

@@ -54,7 +54,7 @@ void redirect(Xml& element, const std::string& proxy) {
 }
 
 /// Gives an element that is placed in the model itself its place in the proxy frame.
-void place_in(Xml& element, const std::string& proxy) {
+void place_in_proxy(Xml& element, const std::string& proxy) {
   Xml* pose = element.child("pose");
   if (!pose) {
     element.children.push_back({"pose", {}, "", {}, element.place});
@@ -90,7 +90,7 @@ Result<std::vector<Xml>> merged(const Xml& include, const Xml& model) {
     const bool own = child.name == "pose" || child.name == "static" || child.name == "self_collide" ||
                      child.name == "allow_auto_disable" || child.name == "enable_wind";
     if (own) continue;
-    if (child.name == "link" || child.name == "model") place_in(child, proxy);
+    if (child.name == "link" || child.name == "model") place_in_proxy(child, proxy);
     if (child.name == "frame") {
       const std::string* const attached = child.attribute("attached_to");
       if (!attached || attached->empty()) child.set_attribute("attached_to", proxy);

@@ -6,7 +6,7 @@
 namespace sandlot::formats {
 namespace {
 
-Result<std::string> name_of(const Xml& element) {
+Result<std::string> own_name(const Xml& element) {
   const std::string* const name = element.attribute("name");
   if (!name || trim(*name).empty())
     return element.error("<" + element.name + "> has no name", "write <" + element.name + " name=\"...\">");
@@ -26,7 +26,7 @@ class Scope {
     Scope scope;
     for (const Xml& child : element.children) {
       if (!is_one_of(child.name, {"link", "joint", "frame", "model"})) continue;
-      SL_ASSIGN(std::string name, name_of(child));
+      SL_ASSIGN(std::string name, own_name(child));
       const auto [known, fresh] = scope.members_.emplace(std::move(name), Member{&child});
       if (fresh) continue;
       const std::string& other = known->second.element->name;
@@ -79,7 +79,7 @@ Status check_unique(const Xml& parent, const char* sort) {
   std::map<std::string, const Xml*> seen;
   for (const Xml& child : parent.children) {
     if (child.name != sort) continue;
-    SL_ASSIGN(std::string name, name_of(child));
+    SL_ASSIGN(std::string name, own_name(child));
     const auto [known, fresh] = seen.emplace(std::move(name), &child);
     if (!fresh)
       return child.error("the name '" + known->first + "' is given to two " + sort + "s",
@@ -261,7 +261,7 @@ Status check_names(const Xml& root) {
   if (!main) return root.error("there is no <world> and no <model> in this file");
   Checker checker;
   if (main->name == "model") {
-    SL_ASSIGN([[maybe_unused]] const std::string name, name_of(*main));
+    SL_ASSIGN([[maybe_unused]] const std::string name, own_name(*main));
     SL_TRY(checker.check_inner(*main, "placement_frame"));
     SL_TRY(checker.check_inner(*main, "canonical_link"));
   }

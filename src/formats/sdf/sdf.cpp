@@ -162,7 +162,7 @@ std::map<std::string, std::vector<const Xml*>, std::less<>> joints_by_model(cons
   return out;
 }
 
-Status read_world(const Xml& world, const Reading& in, WorldContent& out) {
+Status read_sdf_world(const Xml& world, const Reading& in, WorldContent& out) {
   in.notes.unused(world, world_children, silent_world_children);
   const std::string* const name = world.attribute("name");
   out.world_name = name && !name->empty() ? *name : "world";
@@ -214,7 +214,7 @@ Result<WorldContent> parse_sdf(std::string_view text, const std::string& file, D
   const Reading in{options, notes, frames};
   WorldContent out;
   if (main.name == "world") {
-    SL_TRY(read_world(main, in, out));
+    SL_TRY(read_sdf_world(main, in, out));
   } else {
     Instances instances;
     SL_TRY(instances.add(main, {}, in, out));

@@ -110,7 +110,7 @@ std::string without_colons(std::string name) {
   return name;
 }
 
-Result<std::string> name_of(const Xml& element) {
+Result<std::string> name_attribute(const Xml& element) {
   SL_ASSIGN(std::string name, required(element, "name", "..."));
   if (name.size() > 200) return element.error("the name of this <" + element.name + "> is too long");
   return name;
@@ -121,7 +121,7 @@ Status list(const Xml& robot, const char* sort, std::vector<const Xml*>& element
             std::map<std::string, std::size_t>& index) {
   for (const Xml& child : robot.children) {
     if (child.name != sort) continue;
-    SL_ASSIGN(const std::string name, name_of(child));
+    SL_ASSIGN(const std::string name, name_attribute(child));
     const auto [known, fresh] = index.emplace(name, elements.size());
     if (!fresh)
       return child.error("there are two " + std::string(sort) + "s called '" + name.substr(0, 60) + "'",
@@ -381,7 +381,7 @@ Result<std::size_t> add_link(const Robot& robot, std::size_t l, const MassNote& 
 Status add_sensors(const Robot& robot, Xml& model, const std::vector<std::size_t>& links, Notes& notes) {
   for (const Xml& child : robot.element->children) {
     if (child.name != "sensor") continue;
-    SL_ASSIGN([[maybe_unused]] const std::string name, name_of(child));
+    SL_ASSIGN([[maybe_unused]] const std::string name, name_attribute(child));
     const Xml* const parent = child.child("parent");
     if (!parent)
       return child.error("sensor '" + name.substr(0, 60) + "' has no <parent>",

@@ -28,16 +28,16 @@ Xml& at_path(Xml& parent, std::initializer_list<const char*> path, const Xml& fr
 }
 
 /// SDF written before version 1.7, as most <gazebo> elements are, calls relative_to frame.
-void modernise(Xml& element) {
+void modernise_extension(Xml& element) {
   if (element.name == "pose")
     for (auto& [key, value] : element.attributes)
       if (key == "frame") key = "relative_to";
-  for (Xml& child : element.children) modernise(child);
+  for (Xml& child : element.children) modernise_extension(child);
 }
 
 Xml copy_of(const Xml& element) {
   Xml out = element;
-  modernise(out);
+  modernise_extension(out);
   return out;
 }
 

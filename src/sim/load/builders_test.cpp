@@ -39,7 +39,7 @@ std::string refusal(const std::string& words) {
   return built ? "" : built.error().text();
 }
 
-double mass_kg(const model::Model& model) {
+double total_kg(const model::Model& model) {
   double sum = 0;
   for (const model::Link& link : model.links) sum += link.inertial.mass_kg;
   return sum;
@@ -123,7 +123,7 @@ TEST_P(EachBuilder, Settles) {
   }
   if (model.is_static) return;
   EXPECT_LT(most, start + 0.05 * std::abs(start) + 0.1);
-  EXPECT_LT(kinetic, 2e-3 * mass_kg(model)) << "faster than 6 cm/s on average";
+  EXPECT_LT(kinetic, 2e-3 * total_kg(model)) << "faster than 6 cm/s on average";
 }
 
 TEST_P(EachBuilder, IsTheSameWhenItComesFromAFile) {
@@ -172,7 +172,7 @@ TEST(Builders, WeighWhatTheirParametersSay) {
       {"seesaw?mass=5", 7},  // with two cheeks of 1 kg
       {"box_pile?count=5&smallest=0.2&largest=0.2&density=500", 5 * 500 * 0.008},
   };
-  for (const auto& [words, kg] : table) EXPECT_NEAR(mass_kg(made(words).model), kg, 1e-9 * kg) << words;
+  for (const auto& [words, kg] : table) EXPECT_NEAR(total_kg(made(words).model), kg, 1e-9 * kg) << words;
 }
 
 TEST(Builders, MeasureWhatTheirParametersSay) {

@@ -115,7 +115,7 @@ TEST(Presets, TheKeysBesideAPresetGoBefore) {
 }
 
 /// Errors of one beam that looks at a wall 3 m away, one per tick.
-std::vector<double> errors_of(const char* preset, std::uint64_t seed, int samples) {
+std::vector<double> errors_of_preset(const char* preset, std::uint64_t seed, int samples) {
   model::Setup setup;
   setup.step = Time::from_s(0.001);
   setup.seed = seed;
@@ -147,7 +147,8 @@ TEST(Presets, TheNoiseOfTheLaserPresetsIsThatOfTheDataSheet) {
        {Sheet{"sick_lms200", 0.005, 0.015, 0.001}, Sheet{"sick_ld", 0.025, 0.038, 0.00390625}}) {
     double squares = 0, largest = 0;
     for (int d = 0; d < devices; ++d) {
-      const std::vector<double> errors = errors_of(sheet.preset, static_cast<std::uint64_t>(d + 1), samples);
+      const std::vector<double> errors = errors_of_preset(sheet.preset, static_cast<std::uint64_t>(d + 1),
+                                                          samples);
       ASSERT_EQ(errors.size(), static_cast<std::size_t>(samples));
       double mean = 0;
       for (const double e : errors) mean += e / samples;

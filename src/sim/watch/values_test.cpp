@@ -1,5 +1,6 @@
 #include "sim/watch/values.h"
 
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/monitor.h"
 
@@ -9,15 +10,8 @@ namespace {
 using test::advance;
 using test::arena;
 using test::build;
+using test::value;
 
-double read(const Simulation& simulation, const std::string& address) {
-  auto value = NamedValue::find(simulation, address);
-  EXPECT_TRUE(value) << address << ": " << (value ? "" : value.error().text());
-  if (!value) return std::nan("");
-  const auto number = value->read();
-  EXPECT_TRUE(number) << address;
-  return number.value_or(std::nan(""));
-}
 std::string complaint(const Simulation& simulation, const std::string& address) {
   const auto value = NamedValue::find(simulation, address);
   return value ? "" : value.error().text();
@@ -29,30 +23,31 @@ TEST(NamedValue, ReadsWhatTheSimulationHolds) {
   const Engine& engine = simulation->engine();
   const InstanceId id = *simulation->find_instance("rover1");
   const Pose X_WM = engine.pose(id);
-  EXPECT_EQ(read(*simulation, "sim.time"), 0.37);
-  EXPECT_EQ(read(*simulation, "sim.tick"), 37);
-  EXPECT_EQ(read(*simulation, "rover1.pose.x"), X_WM.p.x);
-  EXPECT_EQ(read(*simulation, "rover1.pose.position.y"), X_WM.p.y);
-  EXPECT_EQ(read(*simulation, "rover1.pose.yaw"), rpy_from_quat(X_WM.q).z);
+  EXPECT_EQ(value(*simulation, "sim.time"), 0.37);
+  EXPECT_EQ(value(*simulation, "sim.tick"), 37);
+  EXPECT_EQ(value(*simulation, "rover1.pose.x"), X_WM.p.x);
+  EXPECT_EQ(value(*simulation, "rover1.pose.position.y"), X_WM.p.y);
+  EXPECT_EQ(value(*simulation, "rover1.pose.yaw"), rpy_from_quat(X_WM.q).z);
   const auto bodies = engine.bodies(id);
-  EXPECT_EQ(read(*simulation, "rover1.twist.linear.x"), engine.states()[bodies[0].index].V_WB.linear.x);
-  EXPECT_EQ(read(*simulation, "rover1.links.left_wheel.pose.z"), engine.states()[bodies[1].index].X_WB.p.z);
-  EXPECT_EQ(read(*simulation, "rover1.links.right_wheel.twist.angular.y"),
+  EXPECT_EQ(value(*simulation, "rover1.twist.linear.x"), engine.states()[bodies[0].index].V_WB.linear.x);
+  EXPECT_EQ(value(*simulation, "rover1.links.left_wheel.pose.z"), engine.states()[bodies[1].index].X_WB.p.z);
+  EXPECT_EQ(value(*simulation, "rover1.links.right_wheel.twist.angular.y"),
             engine.states()[bodies[2].index].V_WB.angular.y);
   const JointState& wheel = engine.joint_states()[engine.joints(id)[1].index];
-  EXPECT_EQ(read(*simulation, "rover1.joints.right_wheel_joint.position"), wheel.position);
-  EXPECT_EQ(read(*simulation, "rover1.joints.right_wheel_joint.velocity"), wheel.velocity);
-  EXPECT_EQ(read(*simulation, "rover1.joints.right_wheel_joint.effort"), wheel.effort);
+  EXPECT_EQ(value(*simulation, "rover1.joints.right_wheel_joint.position"), wheel.position);
+  EXPECT_EQ(value(*simulation, "rover1.joints.right_wheel_joint.velocity"), wheel.velocity);
+  EXPECT_EQ(value(*simulation, "rover1.joints.right_wheel_joint.effort"), wheel.effort);
   const auto* const scan = topic_cast<msg::LaserScan>(simulation->find_topic("rover1/laser"));
   ASSERT_NE(scan, nullptr);
-  EXPECT_EQ(read(*simulation, "rover1/laser.ranges[3]"), static_cast<double>(scan->message.ranges[3]));
-  EXPECT_EQ(read(*simulation, "/rover1/laser.header.stamp"), 0.3);
-  EXPECT_EQ(read(*simulation, "rover1/laser.noise.white"), 0.01);
-  EXPECT_EQ(read(*simulation, "rover1/laser.parameter.beams"), 61);
-  EXPECT_EQ(read(*simulation, "rover1/laser.sample"), 4);  // at 0, 0.1, 0.2, 0.3 s
-  EXPECT_EQ(read(*simulation, "rover1/laser.count"), 4);
-  EXPECT_EQ(read(*simulation, "rover1/laser/ranges.angle_min"), static_cast<double>(scan->message.angle_min));
-  EXPECT_EQ(read(*simulation, "rover1/controller.steps"), 8);  // ticks 0, 5 ... 35
+  EXPECT_EQ(value(*simulation, "rover1/laser.ranges[3]"), static_cast<double>(scan->message.ranges[3]));
+  EXPECT_EQ(value(*simulation, "/rover1/laser.header.stamp"), 0.3);
+  EXPECT_EQ(value(*simulation, "rover1/laser.noise.white"), 0.01);
+  EXPECT_EQ(value(*simulation, "rover1/laser.parameter.beams"), 61);
+  EXPECT_EQ(value(*simulation, "rover1/laser.sample"), 4);  // at 0, 0.1, 0.2, 0.3 s
+  EXPECT_EQ(value(*simulation, "rover1/laser.count"), 4);
+  EXPECT_EQ(value(*simulation, "rover1/laser/ranges.angle_min"),
+            static_cast<double>(scan->message.angle_min));
+  EXPECT_EQ(value(*simulation, "rover1/controller.steps"), 8);  // ticks 0, 5 ... 35
 }
 
 TEST(NamedValue, EveryListedAddressCanBeRead) {
@@ -141,8 +136,8 @@ TEST(Monitor, ValuesUseThoseBeforeThem) {
   }
   const auto simulation = build(watched(values, {}));
   advance(*simulation, 3);
-  EXPECT_EQ(read(*simulation, "values.v60"), 3);
-  EXPECT_EQ(read(*simulation, "v30"), 3);
+  EXPECT_EQ(value(*simulation, "values.v60"), 3);
+  EXPECT_EQ(value(*simulation, "v30"), 3);
   Diagnostics diagnostics;
   const auto later = Simulation::create(watched({{"a", "b", {}}, {"b", "1", {}}}, {}), {}, diagnostics);
   ASSERT_FALSE(later);
@@ -303,10 +298,10 @@ TEST(ValueExpression, AggregatesFollowThingsThatComeAndGo) {
   auto nearest = ValueExpression::compile(*simulation,
                                           "mean(rover*/laser.ranges[0] where rover*.errors > 0)");
   ASSERT_TRUE(nearest) << nearest.error().text();
-  const auto x = [&](int i) { return read(*simulation, "rover" + std::to_string(i) + ".pose.x"); };
+  const auto x = [&](int i) { return value(*simulation, "rover" + std::to_string(i) + ".pose.x"); };
   EXPECT_EQ(evaluated(*sum), 0 + x(1) + x(2) + x(3));
   double ranges = 0;
-  for (int i = 1; i <= 3; ++i) ranges += read(*simulation, "rover" + std::to_string(i) + "/laser.ranges[0]");
+  for (int i = 1; i <= 3; ++i) ranges += value(*simulation, "rover" + std::to_string(i) + "/laser.ranges[0]");
   EXPECT_EQ(evaluated(*nearest), ranges / 3);
   simulation->submit(DeleteRequest{"rover2"});
   advance(*simulation, 1);

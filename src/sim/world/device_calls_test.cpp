@@ -5,6 +5,7 @@
 #include "messages/command.h"
 #include "messages/device_services.h"
 #include "messages/messages.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 
@@ -92,14 +93,6 @@ const Kind author_kind = make_kind<Author>({.name = "author", .help = "For tests
 const Kind* const own_kinds[] = {&author_kind, &printer_kind};
 const SimulationOptions with_kinds{.threads = 1, .run_programs = true, .extra_kinds = own_kinds};
 
-model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map()) {
-  model::DeviceDecl decl;
-  decl.name = name;
-  decl.kind = kind;
-  decl.config = std::move(config);
-  return decl;
-}
-
 model::Setup office(std::initializer_list<model::DeviceDecl> devices) {
   model::Setup setup;
   setup.step = Time::from_s(0.01);
@@ -111,7 +104,7 @@ model::Setup office(std::initializer_list<model::DeviceDecl> devices) {
   return setup;
 }
 
-std::string error_of(model::Setup setup) {
+std::string error_with_kinds(model::Setup setup) {
   Diagnostics diagnostics;
   const auto made = Simulation::create(std::move(setup), with_kinds, diagnostics);
   return made ? "" : made.error().text();
@@ -122,11 +115,6 @@ void print(Simulation& simulation, const char* line) {
 }
 const std::string& paper(const Simulation& simulation) {
   return topic_cast<msg::String>(simulation.find_topic("desk/printer"))->message.data;
-}
-double value(const Simulation& simulation, const char* address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << address;
-  return found ? found->read().value_or(-1) : -1;
 }
 
 TEST(OrderQueue, HandsOverSeveralOrdersOfATickInTheirOrderAndRefusesTheRest) {
@@ -223,14 +211,15 @@ TEST(DeviceOrders, KnowNoLatestOneWhileTheOtherDeviceHasFailed) {
 }
 
 TEST(DeviceOrders, AreCheckedWhenTheRobotIsComplete) {
-  EXPECT_EQ(error_of(office(
+  EXPECT_EQ(error_with_kinds(office(
                 {device("author", "author", map({{"printer", "printr"}})), device("printer", "printer")})),
             "/printer: 'desk/author' gives orders to 'desk/printr', which is not there; did you mean "
             "'desk/printer'?");
-  EXPECT_EQ(error_of(office({device("author", "author", map({{"printer", "printer"}, {"part", "ink"}})),
-                             device("printer", "printer")})),
-            "/printer: 'desk/author' gives orders to 'desk/printer', which takes no std_msgs/msg/String at "
-            "/desk/printer/ink/command; name a device that does");
+  EXPECT_EQ(
+      error_with_kinds(office({device("author", "author", map({{"printer", "printer"}, {"part", "ink"}})),
+                               device("printer", "printer")})),
+      "/printer: 'desk/author' gives orders to 'desk/printer', which takes no std_msgs/msg/String at "
+      "/desk/printer/ink/command; name a device that does");
   const auto simulation = build(
       office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer")}),
       with_kinds);
@@ -250,7 +239,7 @@ TEST(DeviceOrders, AreCheckedWhenTheRobotIsComplete) {
   advance(*simulation, 2);
 }
 
-struct Log : Observer {
+struct CallLog : Observer {
   Wants wants() const override { return {.log = true, .input = true, .hash = true}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override {
     for (const LogEntry& entry : frame->log) entries.emplace_back(frame->tick, entry);
@@ -260,7 +249,7 @@ struct Log : Observer {
 
 TEST(DeviceServices, AreCalledLoggedAndAnswered) {
   const auto simulation = build(office({device("printer", "printer")}), with_kinds);
-  Log log;
+  CallLog log;
   simulation->add_observer(&log);
   Trigger::Request nothing;
   std::vector<std::byte> bytes;

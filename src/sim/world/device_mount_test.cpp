@@ -10,14 +10,6 @@ namespace {
 
 using testing::HasSubstr;
 
-model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map()) {
-  model::DeviceDecl decl;
-  decl.name = name;
-  decl.kind = kind;
-  decl.config = std::move(config);
-  return decl;
-}
-
 Status ask(Simulation& simulation, Request request) {
   const std::uint64_t number = simulation.submit(std::move(request));
   SL_TRY(simulation.tick());

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "messages/messages.h"
+#include "sim/test_log.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 
@@ -22,27 +24,15 @@ Node list(std::initializer_list<Node> all) {
   return out;
 }
 
-model::DeviceDecl& device(model::Setup& setup, const char* robot, const char* name) {
-  for (model::Instance& instance : setup.instances)
-    for (model::DeviceDecl& decl : instance.devices)
-      if (instance.name == robot && decl.name == name) return decl;
-  throw std::out_of_range(name);
-}
-
 /// Two rovers that stand still: their lasers (10 Hz, 1 cm of noise per beam) show another scan in every sample.
 model::Setup standing() { return arena("planar", 2, ""); }
 std::unique_ptr<Simulation> with(const char* name, const char* key, Node value) {
   model::Setup setup = standing();
-  device(setup, "rover1", name).config.set(key, std::move(value));
+  device_of(setup, "rover1", name).config.set(key, std::move(value));
   return build(std::move(setup));
 }
 const Topic<msg::LaserScan>& laser(const Simulation& simulation, const char* name = "rover1/laser") {
   return *topic_cast<msg::LaserScan>(simulation.find_topic(name));
-}
-double value(const Simulation& simulation, const char* address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << address;
-  return found ? found->read().value_or(-1) : -1;
 }
 
 TEST(Faults, StuckRepeatsDeadIsSilentAndAfterwardsAllIsAsWithout) {
@@ -89,7 +79,7 @@ TEST(Faults, AStuckDeviceWithoutAMessageBeforeHasNothingToRepeat) {
 
 TEST(Faults, AStuckDeviceRepeatsOnlyWhatItWouldHavePublished) {
   model::Setup setup = standing();
-  device(setup, "rover1", "laser").config.set("failures", list({failure("stuck", "1 s", "3 s")}));
+  device_of(setup, "rover1", "laser").config.set("failures", list({failure("stuck", "1 s", "3 s")}));
   const auto simulation = build(std::move(setup));
   const auto count = [&](const char* topic) { return simulation->find_topic(topic)->count; };
   simulation->submit(LevelRequest{"rover1/laser", {"ranges", "pose"}});
@@ -103,23 +93,13 @@ TEST(Faults, AStuckDeviceRepeatsOnlyWhatItWouldHavePublished) {
   EXPECT_EQ(simulation->find_topic("/rover1/laser/ranges")->stamp, simulation->now());
 }
 
-struct Log : Observer {
-  Wants wants() const override { return {.log = true, .hash = true}; }
-  void on_frame(const std::shared_ptr<const Frame>& frame) override {
-    ticks.push_back(frame->log);
-    hashes.push_back(frame->hash);
-  }
-  std::vector<std::vector<LogEntry>> ticks;
-  std::vector<std::uint64_t> hashes;
-};
-
 TEST(Faults, AnOrderBeginsAndEndsThemInTheRunAndTheLogRepeatsIt) {
   const auto make = [] {
     model::Setup setup = standing();
-    device(setup, "rover2", "laser").config.set("failures", list({failure("dead", "1 s", "9 s")}));
+    device_of(setup, "rover2", "laser").config.set("failures", list({failure("dead", "1 s", "9 s")}));
     return build(std::move(setup));
   };
-  Log live, repeated;
+  TickLog live, repeated;
   const auto whole = build(standing()), run = make();
   run->add_observer(&live);
   const auto order = [&](const char* name, Node value) {
@@ -217,7 +197,7 @@ TEST(Faults, AFailedDriveTakesNoCommandsAndAStuckOneGoesOn) {
   for (const char* engine : {"planar", "rigid"})
     for (const char* kind : {"stuck", "dead"}) {
       model::Setup setup = arena(engine, 1, "");
-      device(setup, "rover1", "drive").config.set("failures", list({failure(kind, "1 s", "2 s")}));
+      device_of(setup, "rover1", "drive").config.set("failures", list({failure(kind, "1 s", "2 s")}));
       const auto simulation = build(std::move(setup));
       const auto order = [&](double v_mps) {
         msg::Twist twist;
@@ -275,10 +255,10 @@ TEST(Faults, AWrongClockShowsInHeadersAlone) {
 
 TEST(Faults, SnapshotsMayBeTakenInTheMiddleOfOne) {
   model::Setup setup = standing();
-  device(setup, "rover1", "laser")
+  device_of(setup, "rover1", "laser")
       .config.set("failures", list({failure("stuck", "1 s", "2 s"), failure("noisy", "2.5 s", "4 s")}));
-  device(setup, "rover1", "truth").config.set("failures", list({failure("dead", "1 s", "3 s")}));
-  device(setup, "rover2", "laser").config.set("clock", map({{"jitter", "2 ms"}}));
+  device_of(setup, "rover1", "truth").config.set("failures", list({failure("dead", "1 s", "3 s")}));
+  device_of(setup, "rover2", "laser").config.set("clock", map({{"jitter", "2 ms"}}));
   setup.instances.back().errors = 1.5;
   setup.errors = 2;
   const auto simulation = build(std::move(setup));
@@ -352,7 +332,7 @@ TEST(Errors, AFactorIsANumberFrom0To1000) {
 TEST(Faults, BadOnesAreRefused) {
   const auto error_of = [](const char* name, const char* key, Node value) {
     model::Setup setup = standing();
-    device(setup, "rover1", name).config.set(key, std::move(value));
+    device_of(setup, "rover1", name).config.set(key, std::move(value));
     Diagnostics diagnostics;
     const auto made = Simulation::create(std::move(setup), {}, diagnostics);
     return made ? std::string() : made.error().text();

@@ -9,15 +9,6 @@ namespace {
 
 constexpr double g = 9.81;
 
-model::DeviceDecl device(const char* name, const char* kind, Node config, Pose X_LS = {}) {
-  model::DeviceDecl decl;
-  decl.name = name;
-  decl.kind = kind;
-  decl.X_LS = X_LS;
-  decl.config = std::move(config);
-  return decl;
-}
-
 /// A cylinder that stands on the ground, or falls from 5 m, with an IMU at (0.3, 0, 0) of its centre.
 model::Setup cylinder(const std::string& engine, bool grounded) {
   model::Setup setup;

@@ -4,6 +4,7 @@
 #include "messages/line_segments.h"
 #include "messages/messages.h"
 #include "messages/sensor_images.h"
+#include "sim/test_log.h"
 #include "sim/test_world.h"
 
 namespace sandlot::test {
@@ -37,18 +38,8 @@ model::Setup rovers(const char* engine) {
   return setup;
 }
 
-struct Log : Observer {
-  Wants wants() const override { return {.log = true, .hash = true}; }
-  void on_frame(const std::shared_ptr<const Frame>& frame) override {
-    ticks.push_back(frame->log);
-    hashes.push_back(frame->hash);
-  }
-  std::vector<std::vector<LogEntry>> ticks;
-  std::vector<std::uint64_t> hashes;
-};
-
 TEST_P(LevelsOnBoth, SwitchedInARunSpeakByTurnsAndTheLogRepeatsIt) {
-  Log live, repeated;
+  TickLog live, repeated;
   const auto run = build(rovers(GetParam()));
   run->add_observer(&live);
   const auto count = [&](const char* topic) { return run->find_topic(topic)->count; };

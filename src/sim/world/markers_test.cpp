@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "geometry/polygon.h"
 #include "markers/marker.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/monitor.h"
 #include "sim/watch/values.h"
@@ -44,11 +45,6 @@ std::string refused(model::Setup setup) {
   Diagnostics diagnostics;
   const auto made = Simulation::create(std::move(setup), {}, diagnostics);
   return made ? "" : made.error().text();
-}
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  if (!found) ADD_FAILURE() << found.error().text();
-  return found ? found->read().value_or(NAN) : NAN;
 }
 double evaluated(const Simulation& simulation, const std::string& text) {
   auto compiled = ValueExpression::compile(simulation, text);

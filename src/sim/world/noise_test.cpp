@@ -55,18 +55,11 @@ model::Setup errant() {
   return setup;
 }
 
-model::DeviceDecl& device(model::Setup& setup, const char* robot, const char* name) {
-  for (model::Instance& instance : setup.instances)
-    for (model::DeviceDecl& decl : instance.devices)
-      if (instance.name == robot && decl.name == name) return decl;
-  throw std::out_of_range(name);
-}
-
 TEST(Noise, ChangingOneDevicesErrorsLeavesEverythingElseAsItWas) {
   const auto plain = build(errant());
   const auto with = [](const char* name, Node noise) {
     model::Setup setup = errant();
-    device(setup, "rover1", name).config.set("noise", std::move(noise));
+    device_of(setup, "rover1", name).config.set("noise", std::move(noise));
     return build(std::move(setup));
   };
   // A stage in front of the others, other numbers, another form, none at all, and another factor.
@@ -78,7 +71,7 @@ TEST(Noise, ChangingOneDevicesErrorsLeavesEverythingElseAsItWas) {
   changed.push_back(with("scanner", map({{"white", "0.3"}})));
   changed.push_back(with("scanner", Node()));
   model::Setup exact = errant();
-  device(exact, "rover1", "scanner").config.set("errors", Node::scalar("0"));
+  device_of(exact, "rover1", "scanner").config.set("errors", Node::scalar("0"));
   changed.push_back(build(std::move(exact)));
   for (int second = 0; second < 3; ++second) {
     advance(*plain, 100);
@@ -117,10 +110,10 @@ TEST(Noise, SnapshotsHoldChainsFactorsAndTunedStages) {
 TEST(Noise, WithoutErrorsAScanIsExact) {
   // Beside the scanner with its factor at 0 one that never had noise shows the same ranges.
   model::Setup setup = errant();
-  model::DeviceDecl twin = device(setup, "rover1", "scanner");
+  model::DeviceDecl twin = device_of(setup, "rover1", "scanner");
   twin.name = "twin";
   twin.config.erase("noise");
-  device(setup, "rover1", "scanner").config.set("errors", Node::scalar("0"));
+  device_of(setup, "rover1", "scanner").config.set("errors", Node::scalar("0"));
   for (model::Instance& instance : setup.instances)
     if (instance.name == "rover1") instance.devices.push_back(twin);
   const auto simulation = build(std::move(setup));

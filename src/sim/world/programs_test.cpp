@@ -6,6 +6,7 @@
 
 #include "messages/command.h"
 #include "sim/load/load.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 
@@ -141,12 +142,6 @@ std::unique_ptr<Simulation> restored(const Simulation& from, int threads = 1) {
                                   diagnostics);
   EXPECT_TRUE(made) << (made ? "" : made.error().text());
   return made ? std::move(*made) : nullptr;
-}
-
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
 }
 
 /// To forge its State.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "messages/messages.h"
+#include "sim/test_log.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 
@@ -86,7 +87,7 @@ model::Setup one_probe(const Node& config, double step_s = 0.01) {
   return setup;
 }
 
-std::string error_of(model::Setup setup) {
+std::string error_with_probe(model::Setup setup) {
   Diagnostics diagnostics;
   const auto made = Simulation::create(std::move(setup), with_probe, diagnostics);
   return made ? "" : made.error().text();
@@ -129,7 +130,8 @@ TEST(Due, ARateEqualToTheTickRateSamplesEveryTickAndOneAboveItIsRefused) {
   const auto simulation = build(one_probe(map({{"rate", "100"}})), with_probe);
   advance(*simulation, 50);
   EXPECT_EQ(simulation->find_topic("ball/probe")->count, 51u);
-  EXPECT_NE(error_of(one_probe(map({{"rate", "101"}}))).find("above the tick rate"), std::string::npos);
+  EXPECT_NE(error_with_probe(one_probe(map({{"rate", "101"}}))).find("above the tick rate"),
+            std::string::npos);
 }
 
 TEST(Due, ARequestTakesOneSampleMore) {
@@ -144,23 +146,27 @@ TEST(Due, ARequestTakesOneSampleMore) {
 TEST(Build, ErrorsNameWhatThereIs) {
   auto setup = one_probe(Node::map());
   setup.instances[0].devices[0].kind = "prob";
-  EXPECT_NE(error_of(setup).find("did you mean 'probe'"), std::string::npos) << error_of(setup);
+  EXPECT_NE(error_with_probe(setup).find("did you mean 'probe'"), std::string::npos)
+      << error_with_probe(setup);
   setup = one_probe(map({{"rat", "1"}}));
-  EXPECT_NE(error_of(setup).find("did you mean 'rate'"), std::string::npos) << error_of(setup);
+  EXPECT_NE(error_with_probe(setup).find("did you mean 'rate'"), std::string::npos)
+      << error_with_probe(setup);
   setup = one_probe(map({{"level", "cuont"}}));
-  EXPECT_NE(error_of(setup).find("did you mean 'count'"), std::string::npos) << error_of(setup);
+  EXPECT_NE(error_with_probe(setup).find("did you mean 'count'"), std::string::npos)
+      << error_with_probe(setup);
   setup = one_probe(Node::map());
   setup.engine = "rigit";
-  EXPECT_NE(error_of(setup).find("did you mean 'rigid'"), std::string::npos) << error_of(setup);
+  EXPECT_NE(error_with_probe(setup).find("did you mean 'rigid'"), std::string::npos)
+      << error_with_probe(setup);
   setup = one_probe(Node::map());
   setup.instances.push_back(setup.instances[0]);
-  EXPECT_NE(error_of(setup).find("two things named 'ball'"), std::string::npos);
+  EXPECT_NE(error_with_probe(setup).find("two things named 'ball'"), std::string::npos);
   setup = one_probe(Node::map());
   setup.instances[0].devices.push_back(setup.instances[0].devices[0]);
-  EXPECT_NE(error_of(setup).find("two devices named 'probe'"), std::string::npos);
+  EXPECT_NE(error_with_probe(setup).find("two devices named 'probe'"), std::string::npos);
   setup = one_probe(Node::map());
   setup.instances[0].controllers.push_back({"controller", "wandr", Node::map(), {}});
-  EXPECT_NE(error_of(setup).find("did you mean 'wander'"), std::string::npos);
+  EXPECT_NE(error_with_probe(setup).find("did you mean 'wander'"), std::string::npos);
 }
 
 std::vector<std::byte> bytes_of(double x) {
@@ -448,7 +454,7 @@ TEST(Levels, PlanarDrivesByContact) {
   auto setup = arena("planar", 1);
   for (auto& device : setup.instances.back().devices)
     if (device.kind == "diff_drive") device.config.set("level", Node::scalar("contact"));
-  EXPECT_EQ(error_of(setup), "");
+  EXPECT_EQ(error_with_probe(setup), "");
 }
 
 /// Every kind of request once, as the log carries it.
@@ -494,15 +500,7 @@ TEST(Requests, EachKindSurvivesBeingBytes) {
 }
 
 TEST(Requests, TheLogOfARunRepeatsItWithEverythingThatWasAskedOfIt) {
-  struct Log : Observer {
-    Wants wants() const override { return {.log = true, .hash = true}; }
-    void on_frame(const std::shared_ptr<const Frame>& frame) override {
-      ticks.push_back(frame->log);
-      hashes.push_back(frame->hash);
-    }
-    std::vector<std::vector<LogEntry>> ticks;
-    std::vector<std::uint64_t> hashes;
-  } live, repeated;
+  TickLog live, repeated;
   const auto original = build(arena("planar", 2));
   original->add_observer(&live);
   model::Instance guest = arena("planar", 1).instances.back();

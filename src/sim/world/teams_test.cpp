@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/load/load.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
 #include "sim/watch/values.h"
 
@@ -28,12 +29,6 @@ model::Setup formation() {
   auto setup = load(formation_file, {}, diagnostics);
   EXPECT_TRUE(setup) << (setup ? "" : setup.error().text());
   return std::move(*setup);
-}
-
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
 }
 
 std::vector<Pose> robots(const Simulation& simulation) {
@@ -175,7 +170,7 @@ TEST(Teams, SurviveASnapshotWithTheirState) {
 constexpr const char* start = "version: 1\nphysics: planar\ntime: {step: 20 ms, stop: 1 s}\n";
 constexpr const char* robot = "robots:\n- {name: a, model: ../models/scout/model.sdf, team: red}\n";
 
-std::string error_of(const std::string& yaml) {
+std::string error_of_text(const std::string& yaml) {
   auto setup = loaded(yaml);
   if (!setup) return setup.error().text();
   Diagnostics diagnostics;
@@ -185,22 +180,23 @@ std::string error_of(const std::string& yaml) {
 
 TEST(Teams, ErrorsNameLineAndWhatWouldBeRight) {
   const std::string begin = start;
-  EXPECT_EQ(error_of(begin + robot), "");  // without teams any name is one
-  EXPECT_EQ(error_of(begin + "teams: [{name: red}]\n" + robot), "");
-  EXPECT_THAT(error_of(begin + "teams:\n- name: rad\n" + robot),
+  EXPECT_EQ(error_of_text(begin + robot), "");  // without teams any name is one
+  EXPECT_EQ(error_of_text(begin + "teams: [{name: red}]\n" + robot), "");
+  EXPECT_THAT(error_of_text(begin + "teams:\n- name: rad\n" + robot),
               HasSubstr("s.yaml:7:53: /robots/0/team: there is no team 'red'; did you mean 'rad'?"));
-  EXPECT_THAT(error_of(begin + "teams:\n- name: red\n- name: red\n" + robot),
+  EXPECT_THAT(error_of_text(begin + "teams:\n- name: red\n- name: red\n" + robot),
               HasSubstr("s.yaml:6:9: /teams/1/name: two teams are called 'red'"));
-  EXPECT_THAT(
-      error_of(begin + "teams:\n- name: a\n" + "robots:\n- {name: a, model: ../models/scout/model.sdf}\n"),
-      HasSubstr("'a' is the name of a team"));
-  EXPECT_THAT(error_of(begin + "teams:\n- name: red\n- name: blue\n  criterion: 1\n" + robot),
+  EXPECT_THAT(error_of_text(begin + "teams:\n- name: a\n" +
+                            "robots:\n- {name: a, model: ../models/scout/model.sdf}\n"),
+              HasSubstr("'a' is the name of a team"));
+  EXPECT_THAT(error_of_text(begin + "teams:\n- name: red\n- name: blue\n  criterion: 1\n" + robot),
               HasSubstr("s.yaml:6:9: /teams/1: no robot is in team 'blue'; name it: team: blue"));
-  EXPECT_THAT(error_of(begin + "teams:\n- name: a/b\n" + robot), HasSubstr("cannot be the name of a team"));
-  EXPECT_THAT(error_of(begin + "teams: [{name: red, controller: wandr}]\n" + robot),
+  EXPECT_THAT(error_of_text(begin + "teams:\n- name: a/b\n" + robot),
+              HasSubstr("cannot be the name of a team"));
+  EXPECT_THAT(error_of_text(begin + "teams: [{name: red, controller: wandr}]\n" + robot),
               HasSubstr("no controller 'wandr'; did you mean 'wander'?"));
   EXPECT_THAT(
-      error_of(begin + "teams: [{name: red, controller: {kind: formation, odometry: gps}}]\n" + robot),
+      error_of_text(begin + "teams: [{name: red, controller: {kind: formation, odometry: gps}}]\n" + robot),
       HasSubstr("robot 'a' has no reading 'gps' of type nav_msgs/msg/Odometry"));
 }
 
@@ -231,7 +227,7 @@ TEST(Rates, ARobotsRateIsTheDefaultOfItsProgramsAndDevices) {
   EXPECT_EQ(programs[1]->schedule->rate_hz, 25);
   EXPECT_EQ(programs[1]->description->control_period_s, 0.04);
   EXPECT_THAT(
-      error_of(
+      error_of_text(
           std::string(start) +
           "robots:\n- name: a\n  model: ../models/scout/model.sdf\n  rate: 100\n  controller: diffusion\n"),
       HasSubstr("s.yaml:7:9: "));

@@ -5,8 +5,8 @@
 
 #include "messages/command.h"
 #include "messages/messages.h"
+#include "sim/test_values.h"
 #include "sim/test_world.h"
-#include "sim/watch/values.h"
 
 namespace sandlot::test {
 
@@ -18,16 +18,6 @@ inline Node list_of(std::initializer_list<std::pair<const char*, Node>> stages) 
     out.push(std::move(stage));
   }
   return out;
-}
-
-inline model::DeviceDecl device(const char* name, const char* kind, Node config = Node::map(),
-                                Pose X_LS = {}) {
-  model::DeviceDecl decl;
-  decl.name = name;
-  decl.kind = kind;
-  decl.X_LS = X_LS;
-  decl.config = std::move(config);
-  return decl;
 }
 
 /// Pucks on a plane that move as commanded, without delay of their own; robot1, robot2 ...
@@ -78,12 +68,6 @@ inline const Topic<msg::Twist>& followed(const Simulation& simulation, const cha
   for (const auto& each : simulation.find_entity(robot)->devices)
     if (each->decl.name == "mover") return *topic_cast<msg::Twist>(each->commands.front().topic.get());
   throw std::out_of_range(robot);
-}
-
-inline double value(const Simulation& simulation, const char* address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << address;
-  return found ? found->read().value_or(-1) : -1;
 }
 
 inline double speed_of(const Simulation& simulation) { return value(simulation, "robot1.twist.linear.x"); }
