@@ -1,6 +1,7 @@
 #include "statistics/intervals.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -18,6 +19,15 @@ Interval mean_interval(const Sample& sample, double confidence) {
   const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.5 + confidence / 2);
   const double half = t * sample.deviation() / std::sqrt(n);
   return {sample.mean() - half, sample.mean() + half};
+}
+
+Interval deviation_interval(const Sample& sample, double confidence) {
+  SL_CHECK(confidence > 0 && confidence < 1);
+  if (sample.count() < 2) return {0, std::numeric_limits<double>::infinity()};
+  const double freedom = static_cast<double>(sample.count() - 1), squares = freedom * sample.variance();
+  const boost::math::chi_squared law(freedom);
+  return {std::sqrt(squares / boost::math::quantile(law, 0.5 + confidence / 2)),
+          std::sqrt(squares / boost::math::quantile(law, 0.5 - confidence / 2))};
 }
 
 Interval wilson_interval(std::uint64_t successes, std::uint64_t trials, double confidence) {

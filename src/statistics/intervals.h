@@ -16,6 +16,10 @@ struct Interval {
 /// @param confidence  in (0, 1)
 Interval mean_interval(const Sample& sample, double confidence = 0.95);
 
+/// Interval of the standard deviation of normal numbers, by the chi-square distribution of (n - 1) s^2 / sigma^2; from 0 to infinity
+/// for fewer than two numbers.
+Interval deviation_interval(const Sample& sample, double confidence = 0.95);
+
 /// Wilson's score interval of a probability; from 0 to 1 without trials. It holds for few trials and at 0 and 1 too.
 /// Source   E. B. Wilson, Probable inference, the law of succession, and statistical inference (1927).
 /// @pre successes <= trials

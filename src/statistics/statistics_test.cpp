@@ -36,6 +36,16 @@ TEST(Intervals, OfTheMeanAreStudents) {
   EXPECT_TRUE(std::isinf(mean_interval(one).low) && std::isinf(mean_interval(one).high));
 }
 
+TEST(Intervals, OfTheDeviationAreThoseOfChiSquare) {
+  Sample sample;
+  for (int i = 0; i < 10; ++i)
+    sample.add(i);  // (n - 1) s^2 = 82.5; chi^2 of 9 degrees of freedom: 2.700389 and 19.022768
+  EXPECT_NEAR(deviation_interval(sample).low, std::sqrt(82.5 / 19.022768), 1e-6);
+  EXPECT_NEAR(deviation_interval(sample).high, std::sqrt(82.5 / 2.700389), 1e-6);
+  EXPECT_EQ(deviation_interval(Sample()).low, 0);
+  EXPECT_TRUE(std::isinf(deviation_interval(Sample()).high));
+}
+
 TEST(Intervals, OfProbabilitiesAreWilsons) {
   // R. G. Newcombe, Two-sided confidence intervals for the single proportion (1998), table I, method 3.
   struct Row {

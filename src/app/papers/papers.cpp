@@ -10,8 +10,11 @@ namespace sandlot::app {
 namespace {
 
 constexpr Paper all[] = {
-    {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 19, make_cooperation},
-    {"msl", "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction", 0, 0, make_msl},
+    {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 19, "95 %",
+     make_cooperation},
+    {"eyesim", "Mobile Robot Simulation with Realistic Error Models", 20, 0, "99.9 %", make_eyesim},
+    {"msl", "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction", 0, 0, "",
+     make_msl},
 };
 
 }  // namespace

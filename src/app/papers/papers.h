@@ -22,7 +22,8 @@ struct Condition {
 /// What an experiment needs from the command.
 struct ReproduceContext {
   int repeat = 20;
-  std::string out;  ///< folder; it is there
+  int at_a_time = 0;  ///< runs at the same time; 0: as many as the machine has processors
+  std::string out;    ///< folder; it is there
   /// Runs a condition, with progress on the terminal.
   std::function<Result<RepeatSummary>(const Condition&)> runs;
   /// The drawing of one run of a condition, from above, after it has ended or after `until_s`.
@@ -41,13 +42,15 @@ struct Paper {
   const char* title;
   /// Runs per condition, unless the command says another number; 0: it takes step times instead, of runs or of files.
   int repeat;
-  int conditions;  ///< how many there are, for the progress
+  int conditions;         ///< how many there are, for the progress
+  const char* intervals;  ///< confidence of its intervals: "95 %"
   Status (*make)(const ReproduceContext& context, ReportPage& page);
 };
 
 std::span<const Paper> papers();
 
 Status make_cooperation(const ReproduceContext& context, ReportPage& page);
+Status make_eyesim(const ReproduceContext& context, ReportPage& page);
 Status make_msl(const ReproduceContext& context, ReportPage& page);
 
 /// --- what reports share ---

@@ -132,6 +132,7 @@ int reproduce(const ReproduceOptions& options) {
   Runner runner(options, *paper, repeat);
   ReproduceContext context;
   context.repeat = repeat;
+  context.at_a_time = options.at_a_time;
   context.out = options.out;
   context.runs = [&](const Condition& condition) { return runner.runs(condition); };
   context.drawing = [&](const Condition& condition, double until_s) {
@@ -148,8 +149,8 @@ int reproduce(const ReproduceOptions& options) {
       paper->title,
       repeats ? fmt::format(
                     "Made by `sandlot reproduce {} --repeat {}`: {} runs with seeds that follow each other "
-                    "in each condition. Intervals are for 95 %.",
-                    paper->name, repeat, repeat)
+                    "in each condition. Intervals are for {}.",
+                    paper->name, repeat, repeat, paper->intervals)
               : fmt::format("Made by `sandlot reproduce {}`.", paper->name));
   if (Status made = paper->make(context, page); !made) {
     complain(made.error());

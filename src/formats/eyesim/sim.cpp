@@ -363,6 +363,8 @@ class Reader {
     for (const char* const kind : unit_devices) {
       Node keys = Node::map(place);
       keys.set("kind", Node::scalar(kind, place));
+      // Programs get packets as the channel leaves them.
+      if (std::string_view(kind) == "radio") keys.set("level", Node::scalar("bits", place));
       out.set(kind, std::move(keys));
     }
     if (placed.type->robi && errors_.of_devices())
@@ -410,11 +412,13 @@ class Reader {
     return out;
   }
 
-  /// Radio that reaches everybody.
+  /// Radio that reaches everybody and loses nothing but what the error model says: EyeBots take turns.
   Node radio(const Place& place) const {
     Node air = Node::map(place), out = Node::sequence(place);
     air.set("kind", Node::scalar("radio", place));
     air.set("name", Node::scalar("air", place));
+    air.set("collisions", Node::scalar("false", place));
+    air.set("half_duplex", Node::scalar("false", place));
     if (errors_.bit_error_rate) {
       air.set("bit_error_rate", number(*errors_.bit_error_rate, errors_.place));
       air.set("drop", number(*errors_.drop, errors_.place));

@@ -96,6 +96,7 @@ TEST_F(EyesimScenario, HasRobotsObjectsAndMarkersInMetres) {
   EXPECT_TRUE(s.robots[1].instance.controllers.get().empty());
   EXPECT_EQ(s.robots[2].model, "labbot/labbot.robi");
   EXPECT_EQ(key(s.robots[2].devices, {"radio", "kind"}), "radio");
+  EXPECT_EQ(key(s.robots[2].devices, {"radio", "level"}), "bits");
   ASSERT_EQ(s.things.size(), 3u);
   EXPECT_EQ(s.things[0].name, "Can");
   EXPECT_EQ(s.things[1].name, "Can_2");
@@ -104,7 +105,9 @@ TEST_F(EyesimScenario, HasRobotsObjectsAndMarkersInMetres) {
   ASSERT_EQ(s.setup.markers.size(), 2u);
   EXPECT_EQ(key(s.setup.markers[0].config, {"radius"}), "0.05");
   EXPECT_EQ(s.setup.markers[0].config.find("color")->items()[2].text(), "0.2");
-  EXPECT_EQ(s.setup.media.size(), 1u);
+  ASSERT_EQ(s.setup.media.size(), 1u);
+  EXPECT_EQ(key(s.setup.media[0].config, {"collisions"}), "false");
+  EXPECT_EQ(key(s.setup.media[0].config, {"half_duplex"}), "false");
 }
 
 TEST_F(EyesimScenario, PutsRobotsOnTheStartsOfTheWorldInTheirOrder) {
