@@ -175,6 +175,7 @@ export class App {
     store.onStatus.on((status) => {
       if (status.state === 'failed' && state !== 'failed' && status.reason) this.toasts.show(`The run failed: ${status.reason}`, 'error');
       state = status.state;
+      scene.setPlaying(state === 'playing');
     });
     this.steer.onError.on((text) => this.toasts.show(text, 'error'));
     this.steer.onNote.on((text) => this.toasts.show(text));

@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import type { Device, Instance, Light, Model, Pose, PoseSlot, World } from '../protocol';
 import type { Assets } from './assets';
 import { Batches, type Slot } from './batches';
+import { Way } from './between';
 import { Chain } from './kinematics';
 import { composeMatrix, multiply, transform, yawOf } from './poses';
 import { collisionParts, partsOfLink, type Part } from './shapes';
@@ -31,12 +32,17 @@ export class Body implements PoseSlot {
   readonly collision_slots: Slot[] = [];
   /** Waits for its matrices to be written. */
   is_queued = false;
+  /** Is in the list of those under way. */
+  is_gliding = false;
   /** When a message told of it last, by the browser's clock. */
   told_ms = -Infinity;
   /** Simulated time of the pose before, and its position and heading: what velocities are taken from. */
   time_s = NaN;
   readonly velocity = new Float64Array(3);
   yaw_rate = 0;
+  readonly way: Way;
+  /** As `world`, where the latest message told it to be. */
+  private readonly goal: Float64Array;
   private readonly before = new Float64Array(7);
 
   constructor(
@@ -46,6 +52,8 @@ export class Body implements PoseSlot {
     this.motions = kin.chain.motions;
     this.values = new Float64Array(7 * kin.chain.links);
     this.world = new Float64Array(7 * kin.chain.links);
+    this.goal = new Float64Array(7 * kin.chain.links);
+    this.way = new Way(this.motions, this.values.length);
     kin.chain.placeAtRest(instance.pose, this.world);
     this.before.set(this.world.subarray(0, 7));
   }
@@ -58,21 +66,29 @@ export class Body implements PoseSlot {
     return this.kin.bounds;
   }
 
-  /** Takes what a message told; false when that is not a pose. */
-  take(time_s: number, scratch: Float64Array): boolean {
-    if (!this.kin.chain.place(this, this.world, scratch, this.instance.pose)) return false;
+  /** Takes what a message told; false when that is not a pose. `glides`: it is on its way there until the next message. */
+  take(time_s: number, scratch: Float64Array, glides = false): boolean {
+    const goal = this.goal;
+    if (!this.kin.chain.place(this, goal, scratch, this.instance.pose)) return false;
     const passed_s = time_s - this.time_s;
     if (passed_s > 0 && passed_s < 1) {
-      for (let c = 0; c < 3; ++c) this.velocity[c] = (this.world[c] - this.before[c]) / passed_s;
-      const turned = yawOf(this.world, 0) - yawOf(this.before, 0);
+      for (let c = 0; c < 3; ++c) this.velocity[c] = (goal[c] - this.before[c]) / passed_s;
+      const turned = yawOf(goal, 0) - yawOf(this.before, 0);
       this.yaw_rate = Math.atan2(Math.sin(turned), Math.cos(turned)) / passed_s;
     } else if (passed_s !== 0) {
       this.velocity.fill(0);
       this.yaw_rate = 0;
     }
     this.time_s = time_s;
-    for (let c = 0; c < 7; ++c) this.before[c] = this.world[c];
+    for (let c = 0; c < 7; ++c) this.before[c] = goal[c];
+    if (!this.way.take(this, time_s, glides)) this.world.set(goal);
     return true;
+  }
+
+  /** Goes to a share of the way to where the latest message told it to be. */
+  advance(share: number, scratch: Float64Array): void {
+    this.way.advance(share);
+    this.kin.chain.place(this.way.shown, this.world, scratch, this.instance.pose);
   }
 
   /** Moves the whole body so that its first link is at `pose`; the next message of it is stronger. */
@@ -88,6 +104,7 @@ export class Body implements PoseSlot {
       multiply(target, 0, relative, 0, scratch, i);
     }
     this.world.set(scratch.subarray(0, this.world.length));
+    this.way.forget();
   }
 
   /** Pose of a device in the world, into out[0..6]. */
@@ -99,7 +116,7 @@ export class Body implements PoseSlot {
   /** As devicePose(), at a time near that of the latest message: as the body moved on between the last two. */
   devicePoseAt(device: Device, time_s: number, out: Float64Array): void {
     this.devicePose(device, out);
-    const dt_s = time_s - this.time_s;
+    const dt_s = time_s - this.way.shown_s;
     if (!(Math.abs(dt_s) < 0.5)) return;
     const half = (this.yaw_rate * dt_s) / 2;
     const c = Math.cos(2 * half), s = Math.sin(2 * half);
@@ -166,6 +183,7 @@ export class Bodies {
   shows_collisions = false;
   private readonly kins = new Map<string, Kin>();
   private moved: Body[] = [];
+  private gliding: Body[] = [];
   private epoch = -1;
   /** As long as the longest model's poses. */
   scratch = new Float64Array(7 * 16);
@@ -216,6 +234,39 @@ export class Bodies {
     return changed;
   }
 
+  /** A body that a message told of; its way begins where it is shown. */
+  take(body: Body, time_s: number, glides: boolean): boolean {
+    if (!body.take(time_s, this.scratch, glides)) return false;
+    if (body.way.active && !body.is_gliding) {
+      body.is_gliding = true;
+      this.gliding.push(body);
+    }
+    this.noteMoved(body);
+    return true;
+  }
+
+  /** A message has come: those under way go on from where they are. */
+  restart(): void {
+    for (const body of this.gliding) body.way.restart();
+  }
+
+  /** Those under way go to a share of it. True while some are. */
+  glide(share: number): boolean {
+    const gliding = this.gliding;
+    let kept = 0;
+    for (let n = 0; n < gliding.length; ++n) {
+      const body = gliding[n];
+      if (body.way.active) {
+        body.advance(share, this.scratch);
+        this.noteMoved(body);
+      }
+      body.is_gliding = body.way.active;
+      if (body.is_gliding) gliding[kept++] = body;
+    }
+    gliding.length = kept;
+    return kept > 0;
+  }
+
   /** Notes that a body is not where its slots are. */
   noteMoved(body: Body): void {
     // Once, however many messages come while nothing is drawn (a hidden tab).
@@ -259,6 +310,7 @@ export class Bodies {
     this.planes = [];
     this.lights = [];
     this.moved = [];
+    this.gliding = [];
     this.epoch = -1;
   }
 
@@ -275,6 +327,7 @@ export class Bodies {
     for (const slot of body.slots) slot.batch.remove(slot);
     for (const slot of body.collision_slots) slot.batch.remove(slot);
     body.slots.length = body.collision_slots.length = 0;
+    body.way.active = false;
     this.by_id.delete(body.instance.id);
   }
 

@@ -11,6 +11,7 @@ import {
 } from '../protocol';
 import { Assets } from './assets';
 import { Backdrop, type Theme } from './backdrop';
+import { Between } from './between';
 import { Bodies, type Body } from './bodies';
 import { CameraRig, type CameraMode, type Subject } from './camera';
 import { Foresight } from './foresight';
@@ -68,6 +69,8 @@ export class SceneView {
   private readonly pull_line: PullLine;
   private readonly hands: Hands | null;
   private readonly foresight: Foresight;
+  private readonly between = new Between();
+  private glides = false;
   private readonly meter = new Meter();
   private readonly overlays: Record<Overlay, boolean> = {
     trails: false, names: false, frames: false, velocity: false, contacts: false, scans: true, ranges: true, frusta: false, objects: true, grid: true, shadows: true, collisions: false, teams: true, links: false, batteries: false,
@@ -229,12 +232,21 @@ export class SceneView {
     if (this.world === null || !readPosesHeader(view, this.header)) return;
     if (this.header.epoch !== (this.world.epoch & 0xffff)) return;
     this.applied_ms = begin_ms;
+    this.bodies.glide(this.between.share(begin_ms));
+    this.glides = this.between.message(begin_ms);
+    this.bodies.restart();
     // A record of a body that is not told yet ends the message; what came before it counts.
     decodePoses(bytes, this.header, this.slot_of, this.on_moved);
     this.trails.advance(this.header.time_s);
     this.dirty = true;
     this.touchShadows();
     this.meter.addScript(performance.now() - begin_ms);
+  }
+
+  /** Whether the run plays: only then is there something between two messages. */
+  setPlaying(playing: boolean): void {
+    this.between.playing = playing;
+    if (!playing) this.touchShadows();
   }
 
   select(address: string | null): void {
@@ -422,9 +434,7 @@ export class SceneView {
 
   private readonly on_moved = (_id: number, slot: unknown): void => {
     const body = slot as Body;
-    if (!body.take(this.header.time_s, this.bodies.scratch)) return;
-    body.told_ms = this.applied_ms;
-    this.bodies.noteMoved(body);
+    if (this.bodies.take(body, this.header.time_s, this.glides)) body.told_ms = this.applied_ms;
   };
 
   private bodyOf(address: string | null): Body | null {
@@ -462,6 +472,7 @@ export class SceneView {
     const dt_s = Math.min(0.1, Math.max(0.001, (now_ms - this.last_frame_ms) / 1000));
     this.last_frame_ms = now_ms;
     this.dirty = false;
+    const gliding = this.bodies.glide(this.between.share(begin_ms));
     if (this.bodies.update()) this.backdrop.placeLamps();
     if (this.is_overview && now_ms > this.overview_ms + OVERVIEW_MS) {
       this.overview_ms = now_ms;
@@ -487,7 +498,8 @@ export class SceneView {
     this.outline.render(renderer, camera, this.selected, this.hands?.isDragging ? null : this.hovered, 1.6 * renderer.getPixelRatio());
     const done_ms = performance.now();
     this.meter.frame(done_ms, scripted_ms - begin_ms, done_ms - scripted_ms);
-    if (changes || fading) this.invalidate();
+    if (gliding) this.touchShadows();
+    else if (changes || fading) this.invalidate();
   }
 
   private readonly labelled_list: Body[] = [];

@@ -6,7 +6,7 @@ import {h, setReason, setText, setTitle, svg} from './dom';
 import {icon} from './icons';
 import {Timeline} from './timeline';
 
-export const speeds = [0.1, 0.2, 0.5, 1, 2, 5, 10];
+export const speeds = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 
 export class Bar {
   private readonly name = h('span', {class: 'name ellipsis'});
