@@ -53,6 +53,12 @@ const LabelledObject* find_thing(const RenderScene& scene, const std::string& na
   return found == scene.labelled_objects.end() ? nullptr : &*found;
 }
 
+RenderScene& scene_at(Simulation& simulation, const Moment* moment) {
+  RenderScene& scene = simulation.render_scene();
+  if (moment) scene.show(moment->X_WB);
+  return scene;
+}
+
 Bounds bounds_of_everything(Simulation& simulation) {
   Bounds all;
   for (const LabelledObject& thing : simulation.render_scene().labelled_objects) {
@@ -123,20 +129,22 @@ Result<Viewpoint> Viewpoint::make(const ViewpointOptions& options, Simulation& s
   return view;
 }
 
-Result<Pose> Viewpoint::pose(Simulation& simulation) {
+Result<Pose> Viewpoint::pose(Simulation& simulation, const Moment* moment) {
   if (follow_.empty()) return X_WS_;
-  const LabelledObject* const thing = find_thing(simulation.render_scene(), follow_);
+  RenderScene& scene = scene_at(simulation, moment);
+  const LabelledObject* const thing = find_thing(scene, follow_);
   if (!thing) return Error{"'" + follow_ + "', which the picture follows, has gone"};
-  const Pose& X_WB = simulation.engine().states()[thing->bodies[0]].X_WB;
+  const std::uint32_t body = thing->bodies[0];
+  const Pose X_WB = moment ? moment->X_WB[body] : simulation.engine().states()[body].X_WB;
+  const Time now = moment ? moment->at : simulation.now();
   const Vec3 place = X_WB * thing->bounds_B.centre();
   const Vec3 ahead = rotate(X_WB.q, {1, 0, 0});
   const double flat = std::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
-  if (!lag_)
-    lag_ = Lag{simulation.now(), place, flat > 0 ? ahead.x / flat : 1, flat > 0 ? ahead.y / flat : 0};
+  if (!lag_) lag_ = Lag{now, place, flat > 0 ? ahead.x / flat : 1, flat > 0 ? ahead.y / flat : 0};
   // A first-order lag of the heading, so that a robot that turns is seen to turn. One that stands on its nose
   // has none.
-  const double share = 1 - math::exp(-(simulation.now() - lag_->at).s() / lag_s);
-  lag_->at = simulation.now();
+  const double share = 1 - math::exp(-(now - lag_->at).s() / lag_s);
+  lag_->at = now;
   lag_->place = place;
   if (flat > 0.1) {
     const double x = lag_->heading_x + share * (ahead.x / flat - lag_->heading_x);
@@ -153,7 +161,7 @@ Result<Pose> Viewpoint::pose(Simulation& simulation) {
   job.near_m = 0.55 * norm(thing->bounds_B.size());  // not the robot itself
   job.far_m = norm(back);
   job.depth_m = {&free_m, 1};
-  simulation.render_scene().pictures.render({&job, 1});
+  scene.pictures.render({&job, 1});
   const double share_of_way = std::min(1.0, 0.9 * static_cast<double>(free_m) / norm(back));
   return looking(place + share_of_way * back, place + 0.2 * distance_m_ * heading);
 }
@@ -163,7 +171,7 @@ std::uint64_t Viewpoint::messages(const Simulation& simulation) const {
   return topic ? topic->count : 0;
 }
 
-Result<assets::Picture> Viewpoint::picture(Simulation& simulation) {
+Result<assets::Picture> Viewpoint::picture(Simulation& simulation, const Moment* moment) {
   if (!topic_.empty()) {
     const TopicBase* const topic = simulation.find_topic(topic_);
     if (!topic) return Error{"the camera '" + topic_ + "' has gone"};
@@ -173,8 +181,8 @@ Result<assets::Picture> Viewpoint::picture(Simulation& simulation) {
       return assets::visible(image->message);
     return Error{"the topic '" + topic_ + "' has no pictures"};
   }
-  RenderScene& scene = simulation.render_scene();
-  SL_ASSIGN(const Pose X_WS, pose(simulation));
+  RenderScene& scene = scene_at(simulation, moment);
+  SL_ASSIGN(const Pose X_WS, pose(simulation, moment));
   const optics::Lens& lens = lens_->lens();
   assets::Picture out{lens.width, lens.height, {}};
   const auto pixels = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);

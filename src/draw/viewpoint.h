@@ -10,9 +10,11 @@
 
 #include "base/result.h"
 #include "base/time.h"
+#include "draw/moment.h"
 #include "geometry/pose.h"
 
 namespace sandlot {
+class RenderScene;
 class Simulation;
 namespace assets {
 struct Picture;
@@ -42,10 +44,11 @@ class Viewpoint {
 
   /// The picture at the end of the last tick. A robot's camera: the last one that it published; an empty
   /// picture if there is none yet.
+  /// @param moment  what a view that is not a device shows instead of the end of the last tick
   /// Errors   the robot has gone, or the camera's messages are not pictures.
-  Result<assets::Picture> picture(Simulation& simulation);
-  /// Pose of a viewpoint that is not a device, at the end of the last tick.
-  Result<Pose> pose(Simulation& simulation);
+  Result<assets::Picture> picture(Simulation& simulation, const Moment* moment = nullptr);
+  /// Pose of a viewpoint that is not a device, at the end of the last tick or at the moment.
+  Result<Pose> pose(Simulation& simulation, const Moment* moment = nullptr);
   bool is_device() const { return !topic_.empty(); }
   std::uint64_t messages(const Simulation& simulation) const;
 

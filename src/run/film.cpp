@@ -1,5 +1,6 @@
 #include "run/film.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -21,15 +22,20 @@ Result<Film> Film::begin(const FilmOptions& options, Simulation& simulation) {
   return film;
 }
 
+Time Film::time_of(std::uint64_t picture) const {
+  // A thousandth of a nanosecond keeps whole ones from being rounded down.
+  const double ns = static_cast<double>(picture) * options_.speed / options_.rate_hz * 1e9 + 1e-3;
+  return begin_ + Time::from_ns(static_cast<std::int64_t>(ns));
+}
+
 Status Film::take_due_pictures(Simulation& simulation) {
-  const auto time_of = [&](std::uint64_t number) {
-    return begin_ + Time::from_ns(static_cast<std::int64_t>(number * 1'000'000'000u /
-                                                            static_cast<unsigned>(options_.rate_hz)));
-  };
-  while (simulation.now() >= time_of(due_)) {
-    // A tick longer than the time between pictures shows one of them several times.
-    ++due_;
-    SL_ASSIGN(const assets::Picture picture, view_.picture(simulation));
+  const Time now = simulation.now();
+  std::optional<draw::TickPoses> after;
+  if (!view_.is_device()) after = draw::TickPoses::of(simulation);
+  for (Time at; now >= (at = time_of(due_)); ++due_) {
+    std::optional<draw::Moment> moment;
+    if (before_ && at < now) moment = draw::moment_between(*before_, *after, std::max(at, before_->at));
+    SL_ASSIGN(const assets::Picture picture, view_.picture(simulation, moment ? &*moment : nullptr));
     if (picture.rgb.empty()) continue;
     if (!writer_) {
       SL_ASSIGN(writer_,
@@ -41,6 +47,7 @@ Status Film::take_due_pictures(Simulation& simulation) {
     }
     SL_TRY(writer_->add(picture.rgb));
   }
+  before_ = std::move(after);
   return {};
 }
 

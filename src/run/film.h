@@ -1,11 +1,14 @@
 #pragma once
-/// Film of a run, taken while it runs: one picture every 1 / rate of simulated time, from a viewpoint.
+/// Film of a run, taken while it runs: one picture every speed / rate of simulated time, from a viewpoint. A speed below 1 is slow
+/// motion, above 1 time lapse.
 ///
+/// Pictures between two ticks show the bodies on the way (draw/moment.h); a robot's camera shows its latest picture.
 /// The run waits for each picture and is not changed by it. A robot's camera that has not sent a picture yet
 /// delays the beginning of the film.
 #include <optional>
 #include <string>
 
+#include "draw/moment.h"
 #include "record/video/video.h"
 #include "run/spec.h"
 
@@ -26,11 +29,14 @@ class Film {
  private:
   Film(FilmOptions options, draw::Viewpoint view, Time begin)
       : options_(std::move(options)), view_(std::move(view)), begin_(begin) {}
+  Time time_of(std::uint64_t picture) const;
 
   FilmOptions options_;
   draw::Viewpoint view_;
   Time begin_;
   std::uint64_t due_ = 0;  ///< the number of the picture that comes next
+  std::optional<draw::TickPoses>
+      before_;  ///< after the tick before, of a view that shows moments between ticks
   std::optional<VideoWriter> writer_;
   int width_ = 0, height_ = 0;
 };

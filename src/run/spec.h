@@ -25,6 +25,7 @@ struct FilmOptions {
   std::string file;  ///< "": none
   draw::ViewpointOptions view;
   int rate_hz = 25;
+  double speed = 1;  ///< simulated seconds per second of the film
 };
 
 struct RunSpec {

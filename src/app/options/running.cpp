@@ -86,9 +86,14 @@ struct RunFlags {
                     "behind it, or overhead");
     verb.add_option("--video-size", video_size,
                     "Width and height, such as 640x480; 960x540 if left out. A robot's camera has its own");
-    verb.add_option("--video-rate", options.spec.film.rate_hz,
-                    "Pictures per simulated second, and per second of the film")
+    verb.add_option("--video-rate", options.spec.film.rate_hz, "Pictures per second of the film")
         ->check(CLI::Range(1, 240))
+        ->capture_default_str();
+    verb.add_option(
+            "--video-speed", options.spec.film.speed,
+            "Simulated seconds per second of the film: below 1 slow motion, with pictures between the "
+            "steps, above 1 time lapse")
+        ->check(CLI::Range(0.001, 1000.0))
         ->capture_default_str();
     verb.add_flag("--watch", options.watch,
                   "Restart programs that the run has started when a file of theirs changes");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/math.h"
 #include "statistics/intervals.h"
 
 namespace sandlot::app {
@@ -35,8 +36,8 @@ Status make_eyesim(const ReproduceContext& context, ReportPage& page) {
 namespace eyesim {
 
 Pose2 relative(const Pose2& a, const Pose2& b) {
-  const double c = std::cos(a.yaw_rad), s = std::sin(a.yaw_rad), x = b.x_m - a.x_m, y = b.y_m - a.y_m;
-  return {c * x + s * y, c * y - s * x, std::remainder(b.yaw_rad - a.yaw_rad, 2 * std::numbers::pi)};
+  const double c = math::cos(a.yaw_rad), s = math::sin(a.yaw_rad), x = b.x_m - a.x_m, y = b.y_m - a.y_m;
+  return {c * x + s * y, c * y - s * x, math::wrap_angle(b.yaw_rad - a.yaw_rad)};
 }
 
 Twist twist_through(std::span<const Pose2> poses, double duration_s) {
@@ -44,8 +45,8 @@ Twist twist_through(std::span<const Pose2> poses, double duration_s) {
   for (std::size_t i = 1; i < poses.size(); ++i) turned += relative(poses[i - 1], poses[i]).yaw_rad;
   const Pose2 way = relative(poses.front(), poses.back());
   // The chord of an arc in the frame of its beginning is the velocity times sin(h)/h, turned by h, half the angle.
-  const double h = turned / 2, k = std::abs(h) < 1e-9 ? 1 : h / std::sin(h);
-  const double c = std::cos(h) * k, s = std::sin(h) * k;
+  const double h = turned / 2, k = std::abs(h) < 1e-9 ? 1 : h / math::sin(h);
+  const double c = math::cos(h) * k, s = math::sin(h) * k;
   return {(c * way.x_m + s * way.y_m) / duration_s, (c * way.y_m - s * way.x_m) / duration_s,
           turned / duration_s};
 }

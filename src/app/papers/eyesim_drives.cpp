@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/papers/eyesim.h"
+#include "base/math.h"
 
 namespace sandlot::app::eyesim {
 namespace {
@@ -219,10 +220,10 @@ Status ackermann(const Report& report, std::string& csv) {
   for (const Motion& each : motions) {
     const double left = run.values[3][each.last], right = run.values[4][each.last];
     // Cotangents of the two angles have their mean in the middle of the axle.
-    const double tangent = std::abs(left) < 1e-9 ? 0 : 2 / (1 / std::tan(left) + 1 / std::tan(right));
+    const double tangent = std::abs(left) < 1e-9 ? 0 : 2 / (1 / math::tan(left) + 1 / math::tan(right));
     const double turn = each.measured.x_mps * tangent / car_wheelbase_m;
     rows.push_back({each.name, fixed(mm(each.measured.x_mps)), fixed(degrees(left)), fixed(degrees(right)),
-                    fixed(degrees(std::atan(tangent))), fixed(degrees(turn)),
+                    fixed(degrees(math::atan(tangent))), fixed(degrees(turn)),
                     fixed(degrees(each.measured.turn_radps))});
     csv += csv_row("ackermann", each.name, {each.measured.x_mps, 0, turn}, each.measured);
   }
@@ -251,7 +252,7 @@ Status ways(const Report& report) {
   const Way wanted[] = {{"straight", "VWStraight(500, 200)", {0.5, 0, 0}},
                         {"turn", "VWTurn(90, 60)", {0, 0, pi / 2}},
                         {"curve", "VWCurve(500, 90, 200)", {radius_m, radius_m, pi / 2}},
-                        {"point", "VWDrive(400, 300, 200)", {0.4, 0.3, 2 * std::atan2(0.3, 0.4)}}};
+                        {"point", "VWDrive(400, 300, 200)", {0.4, 0.3, 2 * math::atan2(0.3, 0.4)}}};
   const auto printed = run.lines("Bare", "way");
   const auto numbers = run.numbers("Bare", "way");
   const std::vector<Pose2> poses = poses_of(run);
@@ -267,7 +268,7 @@ Status ways(const Report& report) {
       return fixed(mm(p.x_m), 1) + ", " + fixed(mm(p.y_m), 1) + ", " + fixed(degrees(p.yaw_rad), 1);
     };
     rows.push_back({wanted[i].call, text(wanted[i].wanted), text(at),
-                    fixed(mm(std::hypot(at.x_m - wanted[i].wanted.x_m, at.y_m - wanted[i].wanted.y_m)), 1)});
+                    fixed(mm(math::hypot(at.x_m - wanted[i].wanted.x_m, at.y_m - wanted[i].wanted.y_m)), 1)});
   }
   report.page.table({"call", "ordered x, y [mm], heading [deg]", "true", "off by [mm]"}, rows);
   report.page.figure(run.drawing, "The four ways one after the other, from above.");

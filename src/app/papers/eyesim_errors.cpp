@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/papers/eyesim.h"
+#include "base/math.h"
 
 namespace sandlot::app::eyesim {
 
@@ -105,8 +106,8 @@ Status radio_errors(const Report& report) {
                                 received * static_cast<std::uint64_t>(bits_of_message)));
     checks.push_back(rate_check(name + "lost messages", channel.packets, sent - received, sent));
     checks.push_back(rate_check(name + "unharmed messages",
-                                (1 - channel.packets) * std::pow(1 - channel.bits, bits_of_message), unharmed,
-                                sent));
+                                (1 - channel.packets) * math::pow(1 - channel.bits, bits_of_message),
+                                unharmed, sent));
   }
   check_table(report.page, checks);
   report.page.table(

@@ -8,6 +8,7 @@
 #include "app/papers/eyesim.h"
 #include "assets/image/write.h"
 #include "base/base64.h"
+#include "base/math.h"
 #include "draw/plan.h"
 #include "draw/plot.h"
 #include "messages/messages.h"
@@ -64,7 +65,7 @@ Result<std::string> histogram(const std::map<int, std::uint64_t>& counts, double
     table.columns[0].push_back(mm);
     table.columns[1].push_back(found == counts.end() ? 0 : 100 * static_cast<double>(found->second) / total);
     table.columns[2].push_back(100 / (psd_std_mm * std::sqrt(2 * std::numbers::pi)) *
-                               std::exp(-0.5 * mm * mm / (psd_std_mm * psd_std_mm)));
+                               math::exp(-0.5 * mm * mm / (psd_std_mm * psd_std_mm)));
   }
   return draw::draw_plot({table}, {.x = "error",
                                    .title = "Readings at 500 mm, sigma 10 mm",

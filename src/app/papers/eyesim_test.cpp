@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/math.h"
+
 namespace sandlot::app::eyesim {
 namespace {
 
@@ -16,10 +18,10 @@ TEST(EyesimReport, ATwistIsTheOneThatMakesThePoses) {
   const double vx = 0.3, vy = -0.1, w = 1.5, a = 0.7;
   std::vector<Pose2> poses;
   for (int i = 0; i <= 60; ++i) {
-    const double t = 0.05 * i, s = std::sin(w * t) / w, c = (1 - std::cos(w * t)) / w;
+    const double t = 0.05 * i, s = math::sin(w * t) / w, c = (1 - math::cos(w * t)) / w;
     const double x = s * vx - c * vy, y = c * vx + s * vy;
-    poses.push_back({2 + std::cos(a) * x - std::sin(a) * y, -1 + std::sin(a) * x + std::cos(a) * y,
-                     std::remainder(a + w * t, 2 * pi)});
+    poses.push_back({2 + math::cos(a) * x - math::sin(a) * y, -1 + math::sin(a) * x + math::cos(a) * y,
+                     math::wrap_angle(a + w * t)});
   }
   // 4.5 rad in all: more than half a turn, which the ends alone do not show.
   const Twist twist = twist_through(poses, 3);

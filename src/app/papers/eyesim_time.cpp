@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/papers/eyesim.h"
+#include "base/math.h"
 #include "draw/plot.h"
 #include "messages/messages.h"
 #include "sim/world/simulation.h"
@@ -53,7 +54,7 @@ Status slots(const Report& report, std::vector<std::vector<std::string>>& statem
   std::string csv = "call,virtual time [ms],beginning of the time slot [ms]\n";
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double own = lines[i][0], slot = lines[i][1];
-    inside += slot <= own && own < slot + slot_ms && std::fmod(slot, slot_ms) == 0;
+    inside += slot <= own && own < slot + slot_ms && math::fmod(slot, slot_ms) == 0;
     csv += fmt::format("{},{:g},{:g}\n", i + 1, own, slot);
     if (i >= 60) continue;
     table.columns[0].push_back(static_cast<double>(i + 1));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "assets/image/image.h"
+#include "base/check.h"
 #include "files/resources.h"
 #include "geometry/mesh.h"
 
@@ -106,6 +107,12 @@ void RenderScene::update(const Engine& engine, std::uint64_t tick, std::uint64_t
   if (std::any_of(lamps_.begin(), lamps_.end(),
                   [](const Lamp& lamp) { return !(lamp.shown == lamp.light->factors()); }))
     set_lights();
+}
+
+void RenderScene::show(std::span<const Pose> X_WB) {
+  SL_CHECK(X_WB.size() + 1 == frame_.X_WG.size());
+  std::copy(X_WB.begin(), X_WB.end(), frame_.X_WG.begin());
+  pictures.update(frame_, velocities_);
 }
 
 }  // namespace sandlot

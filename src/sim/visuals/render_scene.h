@@ -25,6 +25,8 @@ class RenderScene {
                const model::Setup& setup, std::span<const GroundPaint> paint, Diagnostics& diagnostics);
   /// The poses and velocities of this tick, and the lights of devices.
   void update(const Engine& engine, std::uint64_t tick, std::uint64_t revision);
+  /// Other poses of the same bodies until the next update: the world between two ticks.
+  void show(std::span<const Pose> X_WB);
 
  private:
   using TexturePointer = std::shared_ptr<const optics::Texture>;
