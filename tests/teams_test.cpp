@@ -160,6 +160,9 @@ TEST(Reproduce, NamesWhatItDoesNotKnow) {
   EXPECT_EQ(
       sandlot("reproduce cooperation --traces tests/clock/pile.csv --out " + scratch.file("out")).exit_code,
       2);
+  EXPECT_EQ(sandlot("reproduce eyesim --repeat 0 --out " + scratch.file("out")).exit_code, 2);
+  EXPECT_EQ(sandlot("reproduce eyesim --traces tests/clock/pile.csv --out " + scratch.file("out")).exit_code,
+            2);
   const Printed trace = sandlot("reproduce msl --traces scenarios/pile.yaml --out " + scratch.file("out"));
   EXPECT_EQ(trace.exit_code, 2);
   EXPECT_THAT(trace.out, HasSubstr("scenarios/pile.yaml:2: these are no step times"));

@@ -572,3 +572,34 @@ with Robot() as rover:
   const [summary] = run.summary.clients;
   assert.deepEqual([summary.name, summary.drives, summary.mode, summary.connections], ["brain.py", "rover", "lockstep", 2]);
 });
+
+test("in slow motion things glide between the steps, and the run is the same", { skip }, async () => {
+  // 0.2 m/s in steps of 50 ms: 10 mm a step, one every half a second of the wall clock.
+  const yard = readFileSync(makeYard(scratch, { controller: "{kind: sequence, steps: [{at: 0 s, orders: {drive: [0.2, 0, 0]}}]}" }), "utf8");
+  const file = scratch.write("slow.yaml", yard.replace(/^time:.*$/m, "time: {step: 50 ms}"));
+  const alone = JSON.parse(execFileSync(sandlot, ["run", file, "--duration", "1s", "--json"], { stdio: "pipe" })).state_hash;
+  const run = await Served.start(["run", file, "--duration", "1s", "--rate", "0.1"], scratch);
+  const viewer = await watch(run.ws);
+  const shown = await open(run.url);
+  const place = () => shown.evaluate(() => window.sandlot.scene.pose("rover")?.position[0] ?? null);
+  await until("the robot", async () => (await place()) !== null && viewer.status.tick >= 3);
+  const begin = viewer.status.tick;
+  const places = [];
+  while (viewer.status.state === "playing" && viewer.status.tick < begin + 8) {
+    places.push(await place());
+    await new Promise((done) => setTimeout(done, 30));
+  }
+  const ticks = viewer.status.tick - begin;
+  const distinct = new Set(places).size;
+  assert.ok(distinct > 2 * (ticks + 1), `${distinct} places in ${ticks} steps`);
+  const steps = places.slice(1).map((x, i) => x - places[i]).filter((x) => x !== 0);
+  assert.ok(Math.min(...steps) > -1e-4, "it never goes back");
+  assert.ok(Math.max(...steps) < 0.009, `it never jumps a whole step of 10 mm: ${Math.max(...steps)}`);
+  // What stands still is shown where it is.
+  await shown.locator(by("speed")).selectOption("50");
+  assert.equal(await run.ended, 0, run.error);
+  assert.equal(run.summary.state_hash, alone);
+  assert.equal(viewer.status.speed, 50);
+  viewer.close();
+  await shown.context().close();
+});

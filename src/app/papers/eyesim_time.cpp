@@ -226,9 +226,8 @@ Status time_model(const Report& report) {
   SL_TRY(pictures_of_the_past(report, statements));
   statements.push_back(
       {"Time lapse and slow motion by suspending the core; intermediate steps for a fluent display.",
-       "`--rate 0.2`, the page's speed, and films with `--video-speed`: the display is interpolated between "
-       "two "
-       "steps, and the run stays the same."});
+       "The speed of the page, from 0.1 to 50, and `--video-speed` of films: what is shown is interpolated "
+       "between two steps, and the run stays the same."});
   report.page.table({"the paper", "here"}, statements);
   return {};
 }
