@@ -60,12 +60,11 @@ TEST(LongReproduce, EyesimIsOnePageWhoseFormulasHold) {
   const std::string html = make("out", "");
   for (const char* const text :
        {"Section 2", "Section 5", "Section 5.1", "Section 6", "Section 7", "Section 8", "the paper",
-        "front left alone", "VWCurve(500, 90, 200)", "P_b 0.01, P_p 0.1: unharmed messages",
-        "salt and pepper", "data:image/png;base64", "<svg", "side 1, side 2, corner 1, side 3",
-        "sum 4000 of 4000"})
+        "FL alone", "VWCurve(500, 90, 200)", "P_b 0.01, P_p 0.1: unharmed messages", "salt and pepper",
+        "data:image/png;base64", "<svg", "side 1, side 2, corner 1, side 3", "sum 4000 of 4000"})
     EXPECT_THAT(html, HasSubstr(text));
   for (const char* const text : {"src=\"http", "href=\"http", "<script", "<link", "drawing.svg", ">outside<",
-                                 "nan", "The robots differ"})
+                                 ">nan", "The robots differ"})
     EXPECT_THAT(html, Not(HasSubstr(text)));
   EXPECT_FALSE(fs::exists(scratch.file("out/drawing.svg")));
   // Nothing from the future, and every pair of clocks in its slot.
@@ -85,7 +84,7 @@ TEST(LongReproduce, EyesimIsOnePageWhoseFormulasHold) {
   for (const std::size_t i : {0u, 1u, 2u, 3u, 4u, 13u, 14u, 15u, 16u, 17u})
     EXPECT_NEAR(drives[i][4], drives[i][7], 2e-3) << i;
   // The turning rate of four wheels: (-1, 1, -1, 1) and not (-1, 1, 1, -1).
-  EXPECT_NEAR(drives[7][7], -drives[7][4], 1e-4) << "back left alone";
+  EXPECT_NEAR(drives[7][7], -drives[7][4], 1e-4) << "BL alone";
   EXPECT_NEAR(drives[10][7], 0, 1e-6) << "sideways";
   EXPECT_GT(std::abs(drives[10][4]), 0.1);
 

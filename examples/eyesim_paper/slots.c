@@ -7,7 +7,7 @@ int main(void) {
     int kind = rand() % 4;
     if (kind == 0) PSDGet(PSD_FRONT);
     if (kind == 1) LCDSetPrintf(0, 0, "%d", i);
-    if (kind == 2) RADIOSend(2, "x");
+    if (kind == 2) RADIOSend(0, "x");
     if (kind == 3) OSWait(rand() % 30);
     virtual_ms[i] = SIMGetVirtualTime();
     simulation_ms[i] = SIMGetSimulationTime();

@@ -88,7 +88,7 @@ Check rate_check(std::string what, double predicted, std::uint64_t successes, st
 void check_table(ReportPage& page, const std::vector<Check>& checks) {
   std::vector<std::vector<std::string>> rows;
   for (const Check& each : checks) {
-    const auto number = [&](double x) { return fmt::format("{:.{}g}", x, each.digits); };
+    const auto number = [&](double x) { return fmt::format("{:#.{}g}", x, each.digits); };
     rows.push_back({each.what, number(each.predicted) + " " + each.unit,
                     number(each.measured) + " " + each.unit,
                     fmt::format("{} to {}", number(each.low), number(each.high)),

@@ -103,18 +103,21 @@ Status differential(const Report& report, std::string& csv) {
   const Twist left = column(0, 0), right = column(1, 1);
   report.page.paragraph("The matrix itself, from the motions with one wheel alone:");
   report.page.table(
-      {"entry", "paper", "", "measured", ""},
-      {{"v by left, right [mm/tick]", "c/2, c/2", fmt::format("{0:.5f}, {0:.5f}", mm(bare_c / 2)),
-        fmt::format("{:.5f}, {:.5f}", mm(left.x_mps), mm(right.x_mps)), ""},
-       {"turning rate by left, right [deg/tick]", "-c/d, c/d",
-        fmt::format("{:.5f}, {:.5f}", -degrees(bare_c / bare_d), degrees(bare_c / bare_d)),
-        fmt::format("{:.5f}, {:.5f}", degrees(left.turn_radps), degrees(right.turn_radps)), ""}});
+      {"entry", "paper", "measured"},
+      {{"v by left, right [mm/tick]", fmt::format("c/2, c/2 = {0:.5f}, {0:.5f}", mm(bare_c / 2)),
+        fmt::format("{:.5f}, {:.5f}", mm(left.x_mps), mm(right.x_mps))},
+       {"turning rate by left, right [deg/tick]",
+        fmt::format("-c/d, c/d = {:.5f}, {:.5f}", -degrees(bare_c / bare_d), degrees(bare_c / bare_d)),
+        fmt::format("{:.5f}, {:.5f}", degrees(left.turn_radps), degrees(right.turn_radps))}});
   report.page.table(
       {"the paper", "here"},
       {{"[v, turning rate] = [[c/2, c/2], [-c/d, c/d]] [left, right]",
-        fmt::format("The same: v differs by at most {:.2g} mm/s, the turning rate by {:.2g} deg/s. What is "
-                    "left is the resolution of the encoders: a tick within 2 s is {:.2g} mm/s.",
-                    worst_mmps, worst_degps, mm(bare_c / 2))}});
+        fmt::format(
+            "The same: v differs by at most {:.2g} mm/s, the turning rate by {:.2g} deg/s. What is "
+            "left is the resolution of the encoders: one tick of a wheel in {:.3g} s is {:.2g} mm/s and "
+            "{:.2g} deg/s.",
+            worst_mmps, worst_degps, motions[0].duration_s, mm(bare_c / 2) / motions[0].duration_s,
+            degrees(bare_c / bare_d) / motions[0].duration_s)}});
   return {};
 }
 

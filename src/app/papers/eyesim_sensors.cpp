@@ -129,7 +129,7 @@ Result<Pictures> pictures(const Report& report, const std::string& file, double 
   }
   spec.watch = [&](const Simulation& simulation) {
     const auto* const topic = dynamic_cast<const Topic<msg::Image>*>(
-        simulation.find_topic("S4/screen/pixels"));
+        simulation.find_topic("/S4/screen/pixels"));
     if (!topic || topic->count == seen || static_cast<int>(out.all.size()) == count) return;
     seen = topic->count;
     const msg::Image& image = topic->message;
@@ -277,10 +277,28 @@ Status cameras(const Report& report, std::vector<Check>& all) {
   return {};
 }
 
+/// Figure 4.
+Status sensors_seen(const Report& report) {
+  report.page.heading("Section 4: sensors");
+  SL_ASSIGN(const ProgramRun run,
+            report.runs.run({.file = "robios/distbug.sim", .duration_s = 8, .draws = true}));
+  report.page.figure(run.drawing,
+                     "Sensors as a person sees them: a robot that follows the walls of a trap by its laser "
+                     "scanner (examples/robios/distbug.c), its way, and where its beams end.");
+  report.page.table({"the paper", "here"},
+                    {{"Figure 4: beams of distance sensors, graphically and as numbers; outlines of the "
+                      "camera's field of view; messages by radio.",
+                      "The page of a run (--port 8765) shows beams with numbers, frusta of cameras and radio "
+                      "messages; drawings such as the one above "
+                      "show laser scans."}});
+  return {};
+}
+
 }  // namespace
 
 Status sensor_errors(const Report& report) {
   std::vector<Check> checks;
+  SL_TRY(sensors_seen(report));
   SL_TRY(distance_sensors(report, checks));
   SL_TRY(cameras(report, checks));
   return report.context.write("sensors.csv", csv_of(checks));

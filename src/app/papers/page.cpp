@@ -16,6 +16,16 @@ constexpr const char* style =
     "th{border-bottom:2px solid #888}figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto}"
     "figcaption{font-size:.9rem;color:#555}";
 
+/// `text` with `added` behind each `place`.
+std::string with_added(std::string_view text, std::string_view place, std::string_view added) {
+  std::string out;
+  for (std::size_t at; (at = text.find(place)) != std::string_view::npos;) {
+    out.append(text.substr(0, at + place.size())).append(added);
+    text.remove_prefix(at + place.size());
+  }
+  return out.append(text);
+}
+
 }  // namespace
 
 ReportPage::ReportPage(std::string_view title, std::string_view source) : title_(title) {
@@ -46,7 +56,10 @@ void ReportPage::table(const std::vector<std::string>& names,
 void ReportPage::figure(std::string_view svg, std::string_view caption) {
   // A prolog has no place within HTML.
   if (const std::size_t begin = svg.find("<svg"); begin != std::string_view::npos) svg.remove_prefix(begin);
-  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, draw::xml_text(caption));
+  const std::string number = fmt::format("f{}-", ++figures_);
+  std::string own = with_added(svg, " id=\"", number);
+  for (const char* const use : {"url(#", "href=\"#"}) own = with_added(own, use, number);
+  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", own, draw::xml_text(caption));
 }
 
 std::string ReportPage::html() const {

@@ -13,13 +13,14 @@ class ReportPage {
   void paragraph(std::string_view text);
   /// A table; cells are plain text.
   void table(const std::vector<std::string>& names, const std::vector<std::vector<std::string>>& rows);
-  /// An SVG, with a caption.
+  /// An SVG, with a caption. Its ids get a number of their own: all figures share one document.
   void figure(std::string_view svg, std::string_view caption);
   /// The whole file.
   std::string html() const;
 
  private:
   std::string body_, title_;
+  int figures_ = 0;
 };
 
 }  // namespace sandlot::app

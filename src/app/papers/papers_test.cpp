@@ -1,5 +1,6 @@
 #include "app/papers/papers.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,6 +52,12 @@ TEST(ReportPage, IsOneFileWithEverythingInIt) {
   EXPECT_THAT(html, HasSubstr("<title>A &amp; B</title>"));
   EXPECT_THAT(html, HasSubstr("<td>&lt;1&gt;</td>"));
   EXPECT_THAT(html, HasSubstr("<figure><svg>f</svg><figcaption>caption"));
+  // Two drawings with one id in one document: the second would be cut by the first one's frame.
+  for (int i = 0; i < 2; ++i)
+    page.figure("<svg><clipPath id=\"map\"/><g clip-path=\"url(#map)\"/><use href=\"#map\"/></svg>", "");
+  for (const char* const id : {"f2-map", "f3-map"})
+    EXPECT_THAT(page.html(),
+                HasSubstr(fmt::format("id=\"{0}\"/><g clip-path=\"url(#{0})\"/><use href=\"#{0}\"/>", id)));
   EXPECT_THAT(html, Not(HasSubstr("http://")));
   EXPECT_THAT(html, Not(HasSubstr("src=")));
 }
