@@ -81,17 +81,24 @@ test('only slow messages of a run that plays are glided to', () => {
   const clock = new Between();
   assert.equal(clock.message(0), false);
   assert.equal(clock.message(500), false); // it stands still
-  clock.playing = true;
+  clock.pace(true, 500);
   for (let ms = 600; ms <= 900; ms += 33) assert.equal(clock.message(ms), false);
   // Slow motion begins: the second message has the new interval.
   assert.equal(clock.message(1400), true);
   near(clock.share(1400 + 125), 125 / 503);
   assert.equal(clock.message(1900), true);
   assert.equal(clock.share(9999), 1);
-  clock.playing = false;
+  clock.pace(false, 500);
   assert.equal(clock.share(1901), 1);
-  clock.playing = true;
-  assert.equal(clock.message(9000), false); // after a rest
+  clock.pace(true, 500);
+  clock.message(2000);
+  assert.equal(clock.message(2500), true);
+  assert.equal(clock.message(6600), false);
+  // Steps of 50 ms: what moves after 200 ms of rest is shown at once.
+  clock.pace(true, 50);
+  clock.message(7000);
+  assert.equal(clock.message(7050), true);
+  assert.equal(clock.message(7250), false);
 });
 
 const IDENTITY = [0, 0, 0, 1, 0, 0, 0];
@@ -103,7 +110,7 @@ test('a body that drives evenly is drawn evenly, one message late', () => {
   bodies.setWorld({ epoch: 1, revision: 1, lights: [], models: [model], instances: [instance(1, 'x'), instance(2, 'y')] });
   const [x, y] = [bodies.by_id.get(1), bodies.by_id.get(2)];
   const clock = new Between();
-  clock.playing = true;
+  clock.pace(true, 250);
   // Speed 0.2, steps of 50 ms: a message every 250 ms; 1 m/s, hence 0.2 m a second on the screen.
   const drawn = [];
   let message = 0;

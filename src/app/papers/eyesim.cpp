@@ -69,7 +69,7 @@ Check mean_check(std::string what, std::string unit, double predicted, const sta
                  double scale) {
   const statistics::Interval i = statistics::mean_interval(sample, confidence);
   return {std::move(what), std::move(unit), predicted,      scale * sample.mean(),
-          scale * i.low,   scale * i.high,  sample.count(), 5};
+          scale * i.low,   scale * i.high,  sample.count(), predicted == 0 ? 3 : 5};
 }
 
 Check deviation_check(std::string what, std::string unit, double predicted, const statistics::Sample& sample,

@@ -175,7 +175,9 @@ export class App {
     store.onStatus.on((status) => {
       if (status.state === 'failed' && state !== 'failed' && status.reason) this.toasts.show(`The run failed: ${status.reason}`, 'error');
       state = status.state;
-      scene.setPlaying(state === 'playing');
+      // As fast as it goes, or as it was told to, whichever is slower.
+      const factor = Math.min(status.speed ?? Infinity, status.real_time_factor > 0 ? status.real_time_factor : Infinity);
+      scene.setPace(state === 'playing', (1000 * status.step_s) / factor);
     });
     this.steer.onError.on((text) => this.toasts.show(text, 'error'));
     this.steer.onNote.on((text) => this.toasts.show(text));

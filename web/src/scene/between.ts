@@ -134,15 +134,23 @@ export class Way {
 /** The clock of all ways: how long messages take to come, and what share of the way has passed. */
 export class Between {
   /** The run plays; else everything is shown at once. */
-  playing = false;
+  private playing = false;
+  /** Wall time of a step. Messages that come much later follow a rest in which nothing moved. */
+  private step_ms = SLOW_MS;
   private message_ms = NaN;
   private interval_ms = NaN;
+
+  /** @param step_ms  wall time that a step takes at the present speed */
+  pace(playing: boolean, step_ms: number): void {
+    this.playing = playing;
+    this.step_ms = step_ms;
+  }
 
   /** A message has come. @returns whether bodies glide to it */
   message(now_ms: number): boolean {
     const passed_ms = now_ms - this.message_ms;
     this.message_ms = this.playing ? now_ms : NaN;
-    if (!this.playing || !(passed_ms < SLOW_MS)) {
+    if (!this.playing || !(passed_ms < Math.min(SLOW_MS, 3 * Math.max(FAST_MS, this.step_ms)))) {
       this.interval_ms = NaN;
       return false;
     }

@@ -243,9 +243,12 @@ export class SceneView {
     this.meter.addScript(performance.now() - begin_ms);
   }
 
-  /** Whether the run plays: only then is there something between two messages. */
-  setPlaying(playing: boolean): void {
-    this.between.playing = playing;
+  /**
+   * Whether the run plays: only then is there something between two messages.
+   * @param step_ms  wall time that a step takes at the present speed
+   */
+  setPace(playing: boolean, step_ms: number): void {
+    this.between.pace(playing, step_ms);
     if (!playing) this.touchShadows();
   }
 
