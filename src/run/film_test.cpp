@@ -16,10 +16,12 @@ namespace {
 std::unique_ptr<Simulation> world(const std::string& step) {
   Diagnostics diagnostics;
   LoadOptions options;
-  options.text = "version: 1\nname: t\ntime: {step: " + step +
-                 ", stop: 100 s}\nrobots:\n"
-                 "  - {name: bot, model: {builder: diff_robot}, controller: {kind: sequence, steps: "
-                 "[{at: 0 s, orders: {drive: [0, 0, 1]}}]}, devices: {drive: {level: ideal}}}\n";
+  const std::string text =
+      "version: 1\nname: t\ntime: {step: " + step +
+      ", stop: 100 s}\nrobots:\n"
+      "  - {name: bot, model: {builder: diff_robot}, controller: {kind: sequence, steps: "
+      "[{at: 0 s, orders: {drive: [0, 0, 1]}}]}, devices: {drive: {level: ideal}}}\n";
+  options.text = text;
   auto setup = load("t.yaml", options, diagnostics);
   EXPECT_TRUE(setup) << setup.error().text();
   auto made = Simulation::create(std::move(*setup), {}, diagnostics);
