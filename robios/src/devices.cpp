@@ -183,6 +183,7 @@ void drive_motor(int index, std::uint32_t mode, double value) {
 
 int stalled_motors() { return static_cast<int>(machine.senses().stalled); }
 double battery_V() { return machine.robot().has_battery ? machine.senses().battery_V : 0; }
+int battery_level() { return std::clamp(to_int(battery_V() / 12 * 1023), 0, 1023); }
 
 bool take_picture() {
   if (!machine.robot().has_camera) {

@@ -49,6 +49,7 @@ int index_of(const char (*names)[name_size], std::size_t count, std::string_view
 void drive_motor(int index, std::uint32_t mode, double value);
 int stalled_motors();  ///< bits
 double battery_V();
+int battery_level();  ///< of a converter of 10 bits, 1023 for 12 V
 
 // Camera: width and height of the picture that a program wants; false: there is none.
 bool take_picture();

@@ -1,15 +1,12 @@
 #include <cmath>
 
-#include "devices.h"
+#include "functions.h"
 
 /// SIM... calls, the same in both generations.
 namespace robios {
 namespace {
 
 double metres(int mm) { return mm * 1e-3; }
-void set(int* to, int value) {
-  if (to) *to = value;
-}
 
 void get(int id, bool robot, int* x, int* y, int* z, int* phi) {
   const EntityPose* const e = entity(id, robot);
@@ -38,7 +35,6 @@ void put(int id, bool robot, int x, int y, int z, int phi) {
 
 using namespace robios;
 
-#pragma GCC visibility push(default)
 extern "C" {
 
 void SIMGetRobot(int id, int* x, int* y, int* z, int* phi) {
@@ -79,4 +75,3 @@ int SIMGetRealTime() {
 }
 
 }  // extern "C"
-#pragma GCC visibility pop

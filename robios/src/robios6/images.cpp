@@ -13,7 +13,6 @@ namespace {
 
 constexpr int width = 80, height = 60;
 constexpr std::size_t pixels = 80 * 60;
-bool camera_on = false;
 int kept_brightness = 128, kept_hue = 128, kept_saturation = 128;
 
 using Picture = std::vector<BYTE>;
@@ -44,12 +43,6 @@ int CAMInit(int mode) {
   }
   camera_on = true;
   return 17;  // a colour camera
-}
-int CAMRelease() {
-  enter(Call::CAMRelease);
-  if (!camera_on) return failed;
-  camera_on = false;
-  return ok;
 }
 int CAMGetFrame(image* buffer) {
   enter(Call::CAMGetFrame);

@@ -11,10 +11,6 @@ namespace {
 constexpr int width = 128, height = 64, menu_height = 8;
 constexpr Color white{255, 255, 255}, black{0, 0, 0};
 
-bool is_place(int row, int column) {
-  return row >= 0 && column >= 0 && row < screen.rows() && column < screen.columns();
-}
-
 void pixel(int x, int y, int value) {
   const bool is_black = screen.pixel(x, y) == black;
   screen.set_pixel(x, y, value == 0 || (value == 2 && is_black) ? white : black);
@@ -73,38 +69,6 @@ void begin_screen() {
 
 extern "C" {
 
-int LCDInit() {
-  enter(Call::LCDInit);
-  return ok;
-}
-int LCDRelease() {
-  enter(Call::LCDRelease);
-  return ok;
-}
-
-int LCDPrintf(const char* pattern, ...) {
-  enter(Call::LCDPrintf);
-  va_list arguments;
-  va_start(arguments, pattern);
-  screen.print(format(pattern, arguments));
-  va_end(arguments);
-  return ok;
-}
-int LCDSetPrintf(int row, int column, const char* pattern, ...) {
-  enter(Call::LCDSetPrintf);
-  if (!is_place(row, column)) return failed;
-  screen.row = row, screen.column = column;
-  va_list arguments;
-  va_start(arguments, pattern);
-  screen.print(format(pattern, arguments));
-  va_end(arguments);
-  return ok;
-}
-int LCDClear() {
-  enter(Call::LCDClear);
-  screen.clear();
-  return ok;
-}
 int LCDPutChar(char character) {
   enter(Call::LCDPutChar);
   screen.put(character);
@@ -112,8 +76,7 @@ int LCDPutChar(char character) {
 }
 int LCDSetChar(int row, int column, char character) {
   enter(Call::LCDSetChar);
-  if (!is_place(row, column)) return failed;
-  screen.row = row, screen.column = column;
+  if (!go_to(row, column)) return failed;
   screen.put(character);
   return ok;
 }
@@ -125,8 +88,7 @@ int LCDPutString(const char* text) {
 }
 int LCDSetString(int row, int column, const char* text) {
   enter(Call::LCDSetString);
-  if (!text || !is_place(row, column)) return failed;
-  screen.row = row, screen.column = column;
+  if (!text || !go_to(row, column)) return failed;
   screen.print(std::string_view(text).substr(0, 4096));
   return ok;
 }
@@ -161,18 +123,6 @@ int LCDMode(int mode) {
   enter(Call::LCDMode);
   if (mode & SCROLLING) screen.scrolling = true;
   if (mode & NOSCROLLING) screen.scrolling = false;
-  return ok;
-}
-int LCDSetPos(int row, int column) {
-  enter(Call::LCDSetPos);
-  if (!is_place(row, column)) return failed;
-  screen.row = row, screen.column = column;
-  return ok;
-}
-int LCDGetPos(int* row, int* column) {
-  enter(Call::LCDGetPos);
-  set(row, screen.row);
-  set(column, screen.column);
   return ok;
 }
 int LCDPutGraphic(image* buffer) {

@@ -8,7 +8,6 @@ using namespace robios;
 
 namespace {
 
-bool radio_on = false;
 RadioIOParameters parameters{SERIAL2, SER38400, 0, 0, 0, 0};
 std::int64_t recorded_ns = 0;
 
@@ -18,19 +17,9 @@ extern "C" {
 
 // Radio
 
-int RADIOInit() {
-  enter(Call::RADIOInit);
-  if (!machine.robot().has_radio) return failed;
-  if (!radio_on) machine.messages.clear();
-  radio_on = true;
-  return ok;
-}
 int RADIOTerm() {
   enter(Call::RADIOTerm);
-  if (!radio_on) return failed;
-  radio_on = false;
-  machine.messages.clear();
-  return ok;
+  return end_radio();
 }
 int RADIOSend(BYTE id, int byteCount, BYTE* buffer) {
   enter(Call::RADIOSend);
@@ -100,11 +89,6 @@ int AUCheckTone() {
   enter(Call::AUCheckTone);
   return silent() ? 1 : 0;
 }
-int AUBeep() {
-  enter(Call::AUBeep);
-  play(1000, 0.1, "");
-  return ok;
-}
 int AURecordSample(BYTE* buffer, long length, long frequency) {
   enter(Call::AURecordSample);
   if (!buffer || length < 1 || frequency < 1) return 0;
@@ -131,15 +115,6 @@ int IRTVInit(int, int, int, int, int, int, int) {
 int IRTVInitHDT(DeviceSemantics) {
   enter(Call::IRTVInitHDT);
   return failed;
-}
-int IRTVGet() {
-  enter(Call::IRTVGet);
-  sleep_until(after(100 * millisecond), Others::by_mode);
-  return 0;
-}
-int IRTVRead() {
-  enter(Call::IRTVRead);
-  return 0;
 }
 int IRTVPressed() {
   enter(Call::IRTVPressed);

@@ -31,19 +31,6 @@ int KEYGetBuf(char* buffer) {
   if (buffer) *buffer = static_cast<char>(key);
   return ok;
 }
-int KEYGet() {
-  enter(Call::KEYGet);
-  return static_cast<int>(await_key(ANYKEY));
-}
-int KEYRead() {
-  enter(Call::KEYRead);
-  return static_cast<int>(take_key());
-}
-int KEYWait(int exit_code) {
-  enter(Call::KEYWait);
-  return static_cast<int>(await_key(exit_code == 0 ? ANYKEY : static_cast<std::uint32_t>(exit_code)));
-}
-
 // Time
 
 TimerHandle OSAttachTimer(int scale, TimerFnc function) {
@@ -53,10 +40,6 @@ TimerHandle OSAttachTimer(int scale, TimerFnc function) {
 int OSDetachTimer(TimerHandle handle) {
   enter(Call::OSDetachTimer);
   return detach_timer(handle) ? ok : failed;
-}
-int OSSetTime(int hours, int minutes, int seconds) {
-  enter(Call::OSSetTime);
-  return set_time_of_day(hours, minutes, seconds) ? ok : failed;
 }
 int OSGetTime(int* hours, int* minutes, int* seconds, int* ticks) {
   enter(Call::OSGetTime);
@@ -102,18 +85,10 @@ int OSError(const char* message, int number, BOOL dead) {
   if (dead) exit(1);
   return ok;
 }
-int OSMachineID() {
-  enter(Call::OSMachineID);
-  return static_cast<int>(machine.robot().id);
-}
 char* OSMachineName() {
   enter(Call::OSMachineName);
   std::snprintf(name_text, sizeof(name_text), "%.*s", static_cast<int>(name_size) - 1, machine.robot().name);
   return name_text;
-}
-int OSMachineType() {
-  enter(Call::OSMachineType);
-  return machine.robot().drive == Drive::none ? PLATFORM : VEHICLE;
 }
 int OSMachineSpeed() {
   enter(Call::OSMachineSpeed);
@@ -128,7 +103,7 @@ int OSInfoCPU(int* speed, int* memory, int* free_memory) {
 }
 int OSGetAD(int channel) {
   enter(Call::OSGetAD);
-  return channel == 1 ? std::clamp(to_int(battery_V() / 12 * 1023), 0, 1023) : 0;
+  return channel == 1 ? battery_level() : 0;
 }
 BYTE OSReadInLatch(int latch) {
   enter(Call::OSReadInLatch);

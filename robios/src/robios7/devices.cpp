@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "api.h"
+#include "../functions.h"
 
 using namespace robios;
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "api.h"
+#include "../functions.h"
 
 using namespace robios;
 

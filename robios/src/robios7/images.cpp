@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "api.h"
+#include "../functions.h"
 
 using namespace robios;
 
@@ -20,7 +20,6 @@ namespace {
 
 constexpr int widths[] = {QQVGA_X, QVGA_X, VGA_X, CAM1MP_X, CAMHD_X, CAM5MP_X};
 constexpr int heights[] = {QQVGA_Y, QVGA_Y, VGA_Y, CAM1MP_Y, CAMHD_Y, CAM5MP_Y};
-bool camera_on = false;
 int camera_size = QVGA,
     ip_size = QVGA;  // programs may write into the variables above: they decide nothing here
 
@@ -123,12 +122,6 @@ int CAMInit(int resolution) {
   use_size(resolution);
   CAMWIDTH = IP_WIDTH, CAMHEIGHT = IP_HEIGHT, CAMPIXELS = IP_PIXELS, CAMSIZE = IP_SIZE;
   LCDImageSize(resolution);
-  return ok;
-}
-int CAMRelease() {
-  enter(Call::CAMRelease);
-  if (!camera_on) return failed;
-  camera_on = false;
   return ok;
 }
 int CAMGet(BYTE* rgb) {

@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdarg>
 
-#include "api.h"
+#include "../functions.h"
 
 using namespace robios;
 
@@ -52,64 +52,9 @@ void begin_screen() {
                 {});
 }
 
-void set(int* to, int value) {
-  if (to) *to = value;
-}
-
 }  // namespace robios
 
 extern "C" {
-
-int LCDInit() {
-  enter(Call::LCDInit);
-  return ok;
-}
-int LCDRelease() {
-  enter(Call::LCDRelease);
-  return ok;
-}
-
-int LCDPrintf(const char* pattern, ...) {
-  enter(Call::LCDPrintf);
-  va_list arguments;
-  va_start(arguments, pattern);
-  screen.print(format(pattern, arguments));
-  va_end(arguments);
-  return ok;
-}
-
-int LCDSetPrintf(int row, int column, const char* pattern, ...) {
-  enter(Call::LCDSetPrintf);
-  if (row < 0 || column < 0 || row >= screen.rows() || column >= screen.columns()) return failed;
-  screen.row = row;
-  screen.column = column;
-  va_list arguments;
-  va_start(arguments, pattern);
-  screen.print(format(pattern, arguments));
-  va_end(arguments);
-  return ok;
-}
-
-int LCDClear() {
-  enter(Call::LCDClear);
-  screen.clear();
-  return ok;
-}
-
-int LCDSetPos(int row, int column) {
-  enter(Call::LCDSetPos);
-  if (row < 0 || column < 0 || row >= screen.rows() || column >= screen.columns()) return failed;
-  screen.row = row;
-  screen.column = column;
-  return ok;
-}
-
-int LCDGetPos(int* row, int* column) {
-  enter(Call::LCDGetPos);
-  set(row, screen.row);
-  set(column, screen.column);
-  return ok;
-}
 
 int LCDSetColor(COLOR foreground, COLOR background) {
   enter(Call::LCDSetColor);

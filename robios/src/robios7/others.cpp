@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "../clocks.h"
-#include "api.h"
+#include "../functions.h"
 
 using namespace robios;
 
 namespace {
 
-bool radio_on = false;
 std::array<char, 16> directions{
     {'i', 'i', 'i', 'i', 'i', 'i', 'i', 'i', 'o', 'o', 'o', 'o', 'o', 'o', 'o', 'o'}};
 unsigned outputs = 0;
@@ -28,7 +27,7 @@ int line(int io) {
   return there && machine.senses().bumper[io - 1] ? 1 : 0;
 }
 
-int converter(int channel) { return channel == 0 ? std::clamp(to_int(battery_V() / 12 * 1023), 0, 1023) : 0; }
+int converter(int channel) { return channel == 0 ? battery_level() : 0; }
 
 int check(int* from) {
   if (!machine.robot().has_radio) return -1;
@@ -43,19 +42,9 @@ extern "C" {
 
 // Radio
 
-int RADIOInit() {
-  enter(Call::RADIOInit);
-  if (!machine.robot().has_radio) return failed;
-  if (!radio_on) machine.messages.clear();
-  radio_on = true;
-  return ok;
-}
 int RADIORelease() {
   enter(Call::RADIORelease);
-  if (!radio_on) return failed;
-  radio_on = false;
-  machine.messages.clear();
-  return ok;
+  return end_radio();
 }
 int RADIOGetID() {
   enter(Call::RADIOGetID);
@@ -99,11 +88,6 @@ int RADIOStatus(int ids[]) {
 
 // Sound
 
-int AUBeep() {
-  enter(Call::AUBeep);
-  play(1000, 0.1, "");
-  return ok;
-}
 int AUPlay(const char* file) {
   enter(Call::AUPlay);
   if (!file || !*file) return failed;
@@ -166,15 +150,6 @@ int ANALOGTransfer(BYTE* buffer) {
 
 // What the robot has not
 
-int IRTVGet() {
-  enter(Call::IRTVGet);
-  sleep_until(after(100 * millisecond), Others::by_mode);
-  return 0;
-}
-int IRTVRead() {
-  enter(Call::IRTVRead);
-  return 0;
-}
 int IRTVFlush() {
   enter(Call::IRTVFlush);
   return ok;

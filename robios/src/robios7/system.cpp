@@ -3,25 +3,13 @@
 #include <cstring>
 
 #include "../clocks.h"
+#include "../functions.h"
 #include "../timers.h"
-#include "api.h"
 
 using namespace robios;
 
 extern "C" {
 
-int KEYGet() {
-  enter(Call::KEYGet);
-  return static_cast<int>(await_key(~0u));
-}
-int KEYRead() {
-  enter(Call::KEYRead);
-  return static_cast<int>(take_key());
-}
-int KEYWait(int key) {
-  enter(Call::KEYWait);
-  return static_cast<int>(await_key(key == 0 ? ~0u : static_cast<std::uint32_t>(key)));
-}
 int KEYGetXY(int* x, int* y) {
   enter(Call::KEYGetXY);
   const KeyPress touch = await_touch();
@@ -61,21 +49,12 @@ int OSMachineSpeed() {
   enter(Call::OSMachineSpeed);
   return 900;
 }
-int OSMachineType() {
-  enter(Call::OSMachineType);
-  return machine.robot().drive == Drive::none ? PLATFORM : VEHICLE;
-}
 int OSMachineName(char* name) {
   enter(Call::OSMachineName);
   if (!name) return failed;
   std::snprintf(name, name_size, "%.*s", static_cast<int>(name_size) - 1, machine.robot().name);
   return ok;
 }
-int OSMachineID() {
-  enter(Call::OSMachineID);
-  return static_cast<int>(machine.robot().id);
-}
-
 int OSWait(int milliseconds) {
   enter(Call::OSWait);
   if (milliseconds < 0) return failed;
@@ -89,10 +68,6 @@ TIMER OSAttachTimer(int scale, void (*function)()) {
 int OSDetachTimer(TIMER timer) {
   enter(Call::OSDetachTimer);
   return detach_timer(timer) ? ok : failed;
-}
-int OSSetTime(int hours, int minutes, int seconds) {
-  enter(Call::OSSetTime);
-  return set_time_of_day(hours, minutes, seconds) ? ok : failed;
 }
 int OSGetTime(int* hours, int* minutes, int* seconds, int* ticks) {
   enter(Call::OSGetTime);
