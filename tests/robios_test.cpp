@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "base/program.h"
 #include "base/test_folder.h"
+#include "sim/test_input.h"
 #include "sim/test_world.h"
-#include "sim/watch/values.h"
 
 namespace sandlot::test {
 namespace {
@@ -50,12 +50,6 @@ class RobiosPrograms : public testing::Test {
   TestFolder folder;
   std::string said;
 };
-
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
-}
 
 TEST_F(RobiosPrograms, ACProgramDrivesItsRobot) {
   folder.write("speed.h", "#define SPEED 250\n");

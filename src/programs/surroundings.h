@@ -35,8 +35,8 @@ struct Move {
 class Surrounded {
  public:
   virtual ~Surrounded() = default;
-  /// Devices of its robot. Before init().
-  virtual void describe_devices(std::vector<DeviceFacts> devices) = 0;
+  /// Devices of its robot, and the length of a tick, the shortest where they differ. Before init().
+  virtual void describe(std::vector<DeviceFacts> devices, Time tick) = 0;
   /// Whether see() shall be called before each step.
   virtual bool looks_around() const = 0;
   virtual void see(std::span<const Being> beings) = 0;

@@ -37,6 +37,8 @@ constexpr BuiltIn objects[] = {{"can", "Can", "eyesim/can.sdf"},
 constexpr const char* unit_devices[] = {"screen", "keys", "speaker", "radio"};
 
 constexpr const char* substeps = "10";
+/// In place of a program: a controller of Sandlot.
+constexpr std::string_view own_controller = "controller:";
 constexpr double marker_radius_m = 0.05;
 
 bool ends_with(std::string_view text, std::string_view end) {
@@ -336,11 +338,10 @@ class Reader {
 
   /// @param robi  null: a robot of Sandlot
   static Node controller(const std::string& program, const Robi* robi, const Place& place) {
-    constexpr std::string_view ours = "controller:";
     Node out = Node::map(place);
-    if (starts_with(program, ours)) {
+    if (starts_with(program, own_controller)) {
       // Keys of its own stand behind a ?, as those of builders.
-      const std::string_view words = std::string_view(program).substr(ours.size());
+      const std::string_view words = std::string_view(program).substr(own_controller.size());
       const std::size_t mark = std::min(words.find('?'), words.size());
       out.set("kind", Node::scalar(std::string(words.substr(0, mark)), place));
       if (mark < words.size())
@@ -367,9 +368,17 @@ class Reader {
       if (std::string_view(kind) == "radio") keys.set("level", Node::scalar("bits", place));
       out.set(kind, std::move(keys));
     }
-    if (placed.type->robi && errors_.of_devices())
-      for (const model::DeviceDecl& device : placed.type->robi->instance.devices)
-        if (Node keys = errors_.keys_for(device.kind); !keys.is_null()) out.set(device.name, std::move(keys));
+    if (!placed.type->robi) return out;
+    // Pictures are most of what such a robot costs: a program of RoBIOS gets those that it asks for.
+    const bool asks = placed.program && !starts_with(*placed.program, own_controller);
+    for (const model::DeviceDecl& device : placed.type->robi->instance.devices) {
+      Node keys = errors_.of_devices() ? errors_.keys_for(device.kind) : Node();
+      if (asks && device.kind == "camera") {
+        if (keys.is_null()) keys = Node::map(place);
+        keys.set("on_request", Node::scalar("true", place));
+      }
+      if (!keys.is_null()) out.set(device.name, std::move(keys));
+    }
     return out;
   }
 

@@ -176,6 +176,18 @@ TEST_F(EyesimScenario, GivesErrorModelsToTheDevicesThatHaveThem) {
   ASSERT_EQ(s.setup.media.size(), 1u);
   EXPECT_EQ(key(s.setup.media[0].config, {"bit_error_rate"}), "0.001");
   EXPECT_EQ(key(s.setup.media[0].config, {"drop"}), "0.5");
+  // Wrong bits are for the program to see.
+  EXPECT_EQ(key(devices, {"radio", "level"}), "bits");
+  EXPECT_EQ(key(read("S4 0 0 0\n").robots.at(0).devices, {"radio", "level"}), "");
+}
+
+TEST_F(EyesimScenario, CamerasTakePicturesForProgramsThatAsk) {
+  const Scenario s = read(
+      "LabBot 0 0 0 look.c\nLabBot 500 0 0 controller:wander\nLabBot 900 0 0\nerror camera gaussian 5\n");
+  EXPECT_EQ(key(s.robots.at(0).devices, {"camera", "on_request"}), "true");
+  EXPECT_NE(s.robots.at(0).devices.find("camera")->find("noise"), nullptr);
+  EXPECT_EQ(key(s.robots.at(1).devices, {"camera", "on_request"}), "");
+  EXPECT_EQ(key(s.robots.at(2).devices, {"camera", "on_request"}), "");
 }
 
 TEST_F(EyesimScenario, TakesValuesFromTheCommandLine) {

@@ -62,9 +62,9 @@ void Robios::load(ByteReader& r) {
     return std::all_of(all.begin(), all.end(), [](double each) { return std::isfinite(each); });
   };
   // What it is trusted for: sizes of the shared memory, and arithmetic of times.
-  const bool fits = state_.inbox.size() <= most_waiting && state_.offered <= state_.inbox.size() &&
-                    state_.now_ns >= 0 && state_.until_ns >= 0 && finite(state_.odometry) &&
-                    finite(state_.origin) && finite(state_.wheels) &&
+  const bool fits = state_.held.size() <= most_order_bytes && state_.inbox.size() <= most_waiting &&
+                    state_.offered <= state_.inbox.size() && state_.now_ns >= 0 && state_.until_ns >= 0 &&
+                    finite(state_.odometry) && finite(state_.origin) && finite(state_.wheels) &&
                     std::all_of(state_.inbox.begin(), state_.inbox.end(),
                                 [](const Received& each) { return each.data.size() <= most_radio_bytes; });
   if (!fits) r.fail();
@@ -107,16 +107,26 @@ bool Robios::is_due(const Observation& obs) const {
   return (state_.events & wake_picture) != 0 && devices_.pictures(obs) != state_.pictures;
 }
 
-/// The next look at whether it is due: each control step if messages may come, else slots.
+/// From when on orders of the latest turn act: in the tick in which its slot ends.
+std::int64_t Robios::acting_ns() const {
+  return state_.now_ns / slot_ns() * slot_ns() + slot_ns() - tick_.ns;
+}
+
+/// The next look at whether it is due: each control step if messages may come, else slots; or when orders that are held act.
 Program::Resumed Robios::wait_on() const {
+  if (!state_.held.empty())
+    return {.waiting_for = Waiting::time,
+            .until = devices_.has_radio() ? Time{} : Time::from_ns(acting_ns())};
+  if (state_.ended != 0) return {.waiting_for = Waiting::nothing};
   const std::int64_t slot = slot_ns(), next = state_.now_ns / slot * slot + slot;
   if (devices_.has_radio()) return {.waiting_for = Waiting::control_step};
   const std::int64_t wanted = state_.events == 0 ? state_.until_ns / slot * slot : 0;
   return {.waiting_for = Waiting::time, .until = Time::from_ns(std::max(next, wanted))};
 }
 
-Program::Resumed Robios::resume(const Observation& obs, Command&) {
-  if (state_.ended != 0) return {.waiting_for = Waiting::nothing};
+Program::Resumed Robios::resume(const Observation& obs, Command& cmd) {
+  if (!state_.held.empty() && obs.now().ns >= acting_ns()) carry_out(std::exchange(state_.held, {}), cmd);
+  if (state_.ended != 0) return wait_on();
   take_messages(obs);
   if (state_.running == 0) {
     const std::int64_t slot = slot_ns(), now = obs.now().ns;
@@ -141,7 +151,7 @@ Program::Resumed Robios::resume(const Observation& obs, Command&) {
 
 Program::Resumed Robios::answer(const OutsideAnswer& answer, std::span<const TopicBase* const>,
                                 Command& cmd) {
-  if (state_.ended != 0) return {.waiting_for = Waiting::nothing};
+  if (state_.ended != 0) return wait_on();
   if (answer.kind == OutsideAnswer::Kind::gone) return ended(killed, cmd);
   if (answer.kind == OutsideAnswer::Kind::missed) {
     if (child_)
@@ -155,18 +165,11 @@ Program::Resumed Robios::answer(const OutsideAnswer& answer, std::span<const Top
       state_.inbox.begin() + std::min<std::ptrdiff_t>(state_.offered, std::ssize(state_.inbox)));
   state_.offered = state_.dropped = 0;
   const Orders read = read_orders(answer.bytes);
-  std::uint64_t refused = read.refused;
-  for (const Order& order : read.orders) {
-    const bool may = !std::holds_alternative<EntityPose>(order) || spec_.supervisor;
-    if (!may || !devices_.carry_out(order, state_, cmd)) ++refused;
+  if (acting_ns() <= state_.now_ns) carry_out(answer.bytes, cmd);
+  else if (!read.orders.empty() || read.refused > 0) state_.held = answer.bytes;
+  for (const Order& order : read.orders)
     if (const auto* const note = std::get_if<Note>(&order); note && child_)
       log::info(path_ + ": " + note->text);
-  }
-  if (child_ && refused > 0 && state_.refused == 0)
-    log::warning("program '" + path_ + "' gave an order that is not carried out" +
-                 (read.why.empty() ? " by this robot" : ": " + read.why) +
-                 "; further ones are counted alone");
-  state_.refused += refused;
   if (read.finished) {
     state_.exit_code = *read.finished;
     return ended(by_itself, cmd);
@@ -178,17 +181,34 @@ Program::Resumed Robios::answer(const OutsideAnswer& answer, std::span<const Top
   return wait_on();
 }
 
+void Robios::carry_out(std::span<const std::byte> orders, Command& cmd) {
+  const Orders read = read_orders(orders);
+  std::uint64_t refused = read.refused;
+  for (const Order& order : read.orders) {
+    const bool may = !std::holds_alternative<EntityPose>(order) || spec_.supervisor;
+    if (!may || !devices_.carry_out(order, state_, cmd)) ++refused;
+  }
+  if (begun_ != Clock::time_point() && refused > 0 && state_.refused == 0)
+    log::warning("program '" + path_ + "' gave an order that is not carried out" +
+                 (read.why.empty() ? " by this robot" : ": " + read.why) +
+                 "; further ones are counted alone");
+  state_.refused += refused;
+}
+
 /// The program is no more: its robot stands still, and the run goes on.
 Program::Resumed Robios::ended(std::uint8_t how, Command& cmd) {
   state_.ended = how;
   state_.running = 0;
   state_.inbox.clear();
   state_.offered = 0;
-  if (how != by_itself) devices_.stop(cmd);
+  if (how != by_itself) {
+    state_.held.clear();
+    devices_.stop(cmd);
+  }
   child_.reset();
   memory_.reset();
   waiting_ = false;
-  return {.waiting_for = Waiting::nothing};
+  return wait_on();
 }
 
 // --------------------------------------------------------------------------------------------------- the process

@@ -100,6 +100,7 @@ struct State {
   std::uint64_t receptions = 0;
   std::uint32_t offered = 0, dropped = 0;
   std::vector<Received> inbox;
+  std::vector<std::byte> held;
   std::uint32_t number = 0;
   std::vector<std::string> robots;
   std::array<double, 3> odometry{}, origin{};
@@ -122,6 +123,7 @@ struct State {
     visit(Field{"offered", "1", "Number of waiting messages that its turn has brought."}, s.offered);
     visit(Field{"dropped", "1", "Number of messages since its turn that found no room."}, s.dropped);
     visit(Field{"inbox", "", "Messages that wait."}, s.inbox);
+    visit(Field{"held", "", "Orders of its latest turn that act at the end of its slot."}, s.held);
     visit(Field{"number", "1", "Number of the robot, and of its radio."}, s.number);
     visit(Field{"robots", "", "Names of the robots, by number."}, s.robots);
     visit(Field{"odometry", "", "Odometry at its latest turn: x [m], y [m], heading [rad]."}, s.odometry);

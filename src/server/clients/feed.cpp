@@ -87,6 +87,8 @@ void Feed::find_topics() {
                        : topic               ? topic->count
                                              : 0,
                        preview,
+                       {},
+                       topic ? session_.simulation().look_rate_hz(*topic) : std::nullopt,
                        {}});
     previews_ += preview;
   }
@@ -116,19 +118,28 @@ void Feed::send_world_if_changed(bool again_world, bool again_static) {
   next_world_update_ = Clock::now() + std::chrono::milliseconds(500);
 }
 
-ChannelMessage Feed::message(SubscribedTopic& each) const {
+/// Of a device that samples on request, what it would have measured; at its rate.
+void Feed::look_through(SubscribedTopic& each, Batch& batch) const {
+  Simulation& simulation = session_.simulation();
+  const Time now = simulation.now();
+  if (now < each.next_look || (each.preview && Clock::now() < each.next)) return;
+  each.next_look = *each.look_hz > 0 ? now + Time::from_s(1 / *each.look_hz) : now;
+  if (const auto seen = simulation.look_through(*each.topic)) batch.messages.push_back(message(each, *seen));
+}
+
+ChannelMessage Feed::message(SubscribedTopic& each, const TopicBase& seen) const {
   auto bytes = std::make_shared<std::vector<std::byte>>();
   if (each.preview) {
     const Clock::time_point begin = Clock::now();
-    if (const auto* const image = topic_cast<msg::Image>(each.topic)) *bytes = preview_of(image->message);
+    if (const auto* const image = topic_cast<msg::Image>(&seen)) *bytes = preview_of(image->message);
     // All previews together take a quarter of the time at most.
     const auto rest = 4 * static_cast<Clock::rep>(previews_) * (Clock::now() - begin);
     each.next = begin + std::max<Clock::duration>(preview_period, rest);
-    return {each.channel, each.topic->stamp, std::move(bytes)};
+    return {each.channel, seen.stamp, std::move(bytes)};
   }
   bytes->reserve(scratch_.capacity());
-  each.topic->to_cdr(*bytes);
-  return {each.channel, each.topic->stamp, std::move(bytes)};
+  seen.to_cdr(*bytes);
+  return {each.channel, seen.stamp, std::move(bytes)};
 }
 
 void Feed::send_initial(const InitialSend& initial) {
@@ -144,10 +155,14 @@ void Feed::send_initial(const InitialSend& initial) {
   std::vector<ChannelMessage> latest;
   for (SubscribedTopic& each : topics_) {
     const bool wanted = std::binary_search(initial.latest.begin(), initial.latest.end(), each.channel);
+    if (each.topic && each.topic->count == 0 && each.look_hz && bytes <= most_bytes) {
+      look_through(each, batch);
+      if (!batch.messages.empty()) bytes += batch.messages.back().bytes->size();
+    }
     if (!each.topic || each.topic->count == 0) continue;
     if (!wanted && each.topic->count == each.count) continue;
     if (bytes > most_bytes) continue;  // the next message comes as well
-    ChannelMessage made = message(each);
+    ChannelMessage made = message(each, *each.topic);
     bytes += made.bytes->size();
     if (each.topic->count != each.count) {
       each.count = each.topic->count;
@@ -205,10 +220,17 @@ void Feed::on_frame(const std::shared_ptr<const Frame>& frame) {
   // What is run again on the way to an earlier time has been seen.
   if (!session_.rerunning()) {
     for (SubscribedTopic& each : topics_) {
-      if (!each.topic || each.topic->count == each.count) continue;
+      if (!each.topic) continue;
+      if (each.topic->count == each.count) {
+        if (each.look_hz) look_through(each, batch);
+        continue;
+      }
       if (each.preview && Clock::now() < each.next) continue;
       each.count = each.topic->count;
-      if (each.count > 0) batch.messages.push_back(message(each));
+      if (each.count > 0) {
+        batch.messages.push_back(message(each, *each.topic));
+        if (each.look_hz && *each.look_hz > 0) each.next_look = frame->now + Time::from_s(1 / *each.look_hz);
+      }
     }
     add_samples(batch);
     note_deliveries(*frame);

@@ -81,6 +81,8 @@ class Feed final : public Observer {
     std::uint64_t count = 0;           ///< of the message that was sent last
     bool preview = false;              ///< a small JPEG of the topic's image
     Clock::time_point next;            ///< previews: none before
+    std::optional<double> look_hz;     ///< its device samples on request: at this rate it is looked through
+    Time next_look;
   };
   struct Watch {
     ClientId viewer = 0;
@@ -98,7 +100,9 @@ class Feed final : public Observer {
   void follow_session();
   void find_topics();
   void send_world_if_changed(bool again_world, bool again_static);
-  ChannelMessage message(SubscribedTopic& topic) const;
+  /// @param seen  what the topic has: its message, or what was seen through its device
+  ChannelMessage message(SubscribedTopic& topic, const TopicBase& seen) const;
+  void look_through(SubscribedTopic& topic, Batch& batch) const;
   ChannelMessage sample(Watch& watch);
   void add_samples(Batch& batch);
   void note_deliveries(const Frame& frame);

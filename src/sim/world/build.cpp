@@ -273,6 +273,32 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
   return nullptr;
 }
 
+namespace {
+
+/// "rover/camera" of "/rover/camera/image": the device of a topic; a topic of a program has none.
+std::string_view device_of(const TopicBase& topic) {
+  const std::string_view name = std::string_view(topic.name()).substr(1);
+  return name.substr(0, name.find('/', name.find('/') + 1));
+}
+
+}  // namespace
+
+std::optional<double> Simulation::look_rate_hz(const TopicBase& topic) const {
+  const std::string_view path = device_of(topic);
+  const Entity* const entity = find_entity(first_part(path));
+  if (!entity) return std::nullopt;
+  for (const auto& device : entity->devices)
+    if (device->path == path && timing(*device).on_request) return timing(*device).rate_hz;
+  return std::nullopt;
+}
+
+std::unique_ptr<TopicBase> Simulation::look_through(const TopicBase& topic) {
+  Device* const device = find_device(device_of(topic));
+  if (!device || !timing(*device).on_request) return nullptr;
+  if (kind(*device).needs_render_scene) render_scene();
+  return devices_.look_through(*device, topic, context());
+}
+
 std::vector<const TopicBase*> Simulation::topics() const {
   std::vector<const TopicBase*> all;
   for_each_topic([&](const TopicBase& topic, const std::string&) { all.push_back(&topic); });

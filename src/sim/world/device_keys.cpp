@@ -134,6 +134,8 @@ Status DeviceKeys::begin(Device& device, const Kind& kind, double sample_hz, boo
   if (spec.errors != 1 && !spec.command_errors && spec.delay_s == 0)
     return error("errors", "this " + device.decl.kind + " has no errors that a factor could change",
                  "give it command_errors or a delay, or leave errors out");
+  if (spec.on_request && !samples)
+    return error("on_request", a_kind + " takes no samples", "leave on_request out");
   SL_TRY(begin_energy(device, kind, error));
   if (device.energy) device.energy->set_rates(spec.energy);
   if (!spec.command_errors) return {};

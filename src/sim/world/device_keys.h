@@ -6,6 +6,7 @@
 ///   delay: 50 ms                # from a command to its effect, from a measurement to its message
 ///   command_errors: {linear: [{proportional: {std: 5 %}}, {lag: {time_constant: 0.1 s}}], angular: [...]}
 ///   errors: 0.5                 # factor on command_errors and delay, of kinds that have no such key themselves
+///   on_request: true            # samples are taken when a program asks for them, and not at the rate
 ///   drain: 0.5 W                # drawn from the battery of its robot all the time
 ///   drain_per_use: 0.2 J        # drawn per activation in addition
 ///   efficiency: 60 %            # of a drive or motor without a model of its current: mechanical work per energy drawn
@@ -20,6 +21,9 @@
 ///           after t + d; a message measured at t is published at the end of the first tick at or after t + d, with the time
 ///           of its measurement in its header. Nothing overtakes anything. What a device has on the way is lost when it fails
 ///           (a command: stuck or dead; a message: dead), and a command when its level is off meanwhile.
+/// on_request
+///           A device that senses takes a sample when one is requested, and then only. Viewers may look through it at its
+///           rate (DevicePools::look_through), which is no sample. Fixed.
 /// command_errors
 ///           A chain of stages (noise/chain.h) per quantity of the commands; each component of a quantity (x, y, a joint) is a
 ///           channel of its own. In every tick the chains make what the device follows of the latest command, with dt the
@@ -85,6 +89,7 @@ struct CommandErrorsSpec {
 struct DeviceKeysSpec {
   double mass_kg = 0, max_rate_hz = 0, delay_s = 0;
   std::optional<CommandErrorsSpec> command_errors;
+  bool on_request = false;
   double errors = 1;  ///< of kinds that have no such key themselves
   EnergyMeter::Rates energy;
 
@@ -97,6 +102,9 @@ struct DeviceKeysSpec {
                 1e3, Field::tunable},
           s.delay_s);
     visit(Field{"command_errors", "", "Errors of what the device makes of its commands."}, s.command_errors);
+    visit(Field{"on_request", "",
+                "Whether it takes samples when they are requested alone, and none at its rate."},
+          s.on_request);
     visit(errors_field, s.errors);
     EnergyMeter::Rates::fields(s.energy, visit);
   }
@@ -127,6 +135,8 @@ class DeviceKeys {
   Status begin(Device& device, const Kind& kind, double sample_hz, bool samples, std::size_t joints,
                std::uint64_t seed);
 
+  /// Whether there is nothing to remember of them once the device is there.
+  bool only_on_request() const { return places.size() == 1 && places.front().first == "on_request"; }
   /// Whether commands or messages do not simply pass.
   bool act() const {
     return spec.max_rate_hz > 0 || spec.delay_s > 0 || spec.command_errors || !commands_.empty() ||

@@ -300,6 +300,45 @@ TEST(Delay, IsScaledByTheFactorAlsoInARestoredRun) {
   }
 }
 
+TEST(OnRequest, ADeviceSamplesWhenItIsAskedAlone) {
+  model::Setup setup = arena("planar", 1, "");
+  setup.instances.back().devices[1].config.set("on_request", Node::scalar("true"));
+  const auto simulation = build(setup), watched = build(setup);
+  const TopicBase& scan = *simulation->find_topic("rover1/laser");
+  EXPECT_EQ(simulation->look_rate_hz(scan), 10);
+  EXPECT_EQ(simulation->look_rate_hz(*simulation->find_topic("rover1/truth")), std::nullopt);
+  const auto ask = [](Simulation& one) { one.submit(SampleRequest{"rover1/laser"}); };
+  for (int tick = 1; tick <= 60; ++tick) {
+    if (tick == 7 || tick == 8 || tick == 40) ask(*simulation), ask(*watched);
+    advance(*simulation, 1);
+    advance(*watched, 1);
+    ASSERT_EQ(scan.count, tick < 7 ? 0u : tick < 8 ? 1u : tick < 40 ? 2u : 3u) << tick;
+    // Who looks through it sees the present, and leaves no trace.
+    const TopicBase& seen_topic = *watched->find_topic("rover1/laser");
+    const auto seen = watched->look_through(seen_topic);
+    ASSERT_NE(seen, nullptr);
+    EXPECT_EQ(seen->stamp, watched->now());
+    EXPECT_EQ(seen->count, seen_topic.count + 1);
+    EXPECT_EQ(topic_cast<msg::LaserScan>(seen.get())->message.ranges.size(), 61u);
+    ASSERT_EQ(watched->state_hash(), simulation->state_hash()) << tick;
+  }
+  const auto rest = again(*simulation);
+  advance(*rest, 20);
+  advance(*simulation, 20);
+  EXPECT_EQ(rest->find_topic("rover1/laser")->count, 3u);
+  EXPECT_EQ(rest->state_hash(), simulation->state_hash());
+}
+
+TEST(OnRequest, IsOfDevicesThatSampleAlone) {
+  model::Setup setup = movers({});
+  setup.instances.back().devices.push_back(device("voice", "voice", map({{"on_request", "true"}})));
+  setup.media.push_back({"air", "shout", Node::map(), {}});
+  Diagnostics diagnostics;
+  const auto none = Simulation::create(std::move(setup), {}, diagnostics);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().text().find("a voice takes no samples"), std::string::npos) << none.error().text();
+}
+
 TEST(Delay, AMessageOfADeadDeviceIsLost) {
   model::Setup setup = arena("planar", 1, "");
   Node& laser = setup.instances.back().devices[1].config;

@@ -229,6 +229,8 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
     ++pool->metered;
     ledger_.add(*device->energy);
   }
+  const bool on_request = device->keys && device->keys->spec.on_request;
+  if (device->keys && device->keys->only_on_request()) device->keys = nullptr;
   note_keys(*device);
   pool->devices.push_back(device.get());
   pool->meters.push_back(device->energy.get());
@@ -236,7 +238,7 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   pool->levels.push_back(levels);
   pool->sample.push_back(0);
   pool->since.push_back({});
-  pool->timing.push_back({.start = now});
+  pool->timing.push_back({.start = now, .on_request = on_request});
   set_active_levels(*device, levels);
   plan_next_sample(*device);
   entity.devices.push_back(std::move(device));
@@ -414,7 +416,7 @@ void DevicePools::find_due(Pool& pool, Time now, Time step) const {
   pool.due.clear();
   for (std::uint32_t i = 0; i < pool.devices.size(); ++i) {
     Timing& when = pool.timing[i];
-    if (!when.requested && when.due > now) continue;
+    if (!when.requested && (when.on_request || when.due > now)) continue;
     when.requested = false;
     pool.due.push_back(i);
     pool.sample[i] = when.sample;
@@ -450,6 +452,32 @@ void DevicePools::sense_due(Pool& pool, const Context& context) const {
   if (pool.due.empty()) return;
   if (pool.faulty > 0) sense_faulty(pool, context);
   else pool.pool->sense(context, {pool.due, pool.sample, pool.levels, pool.since});
+}
+
+std::unique_ptr<TopicBase> DevicePools::look_through(Device& device, const TopicBase& topic,
+                                                     const Context& context) {
+  Pool& pool = pools_[device.kind];
+  const std::uint32_t i = device.index;
+  const Timing& when = pool.timing[i];
+  if (device.faults && device.faults->at(context.now).dead) return nullptr;
+  std::vector<std::unique_ptr<TopicBase>> before;
+  for (const Slot& slot : device.topics) before.push_back(slot.topic->clone());
+  ByteWriter state;
+  pool.pool->save(i, state);
+  pool.sample[i] = when.sample;
+  pool.since[i] = when.sample > 0 ? context.now - when.last : context.tick;
+  pool.pool->sense(context, {{&i, 1}, pool.sample, pool.levels, pool.since});
+  std::unique_ptr<TopicBase> seen;
+  for (std::size_t slot = 0; slot < before.size(); ++slot) {
+    TopicBase& published = *device.topics[slot].topic;
+    if (&published == &topic && published.count > 0 && published.stamp == context.now)
+      seen = published.clone();
+    published.copy_from(*before[slot]);
+  }
+  ByteReader r(state.bytes());
+  pool.pool->load(i, r);
+  SL_CHECK(r.ok());
+  return seen;
 }
 
 /// Takes the samples that are due in a pool with common keys: messages may be delayed.

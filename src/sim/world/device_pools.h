@@ -76,6 +76,9 @@ class DevicePools {
   Status order_failure(Device& device, const FailureOrder& order);
   /// @param at  the end of the tick that begins
   Status request_sample(Device& device, Time at);
+  /// What a device that samples on request would publish on a topic of its own now, for those who look on: afterwards it is as
+  /// before. Null: nothing. @pre  between the phases; context.now is the end of the latest tick
+  std::unique_ptr<TopicBase> look_through(Device& device, const TopicBase& topic, const Context& context);
   /// Calls a service. Errors: no such service, the device has failed, what the service refuses.
   Status call(Device& device, std::string_view service, std::span<const std::byte> request,
               std::vector<std::byte>& response, const Context& context);

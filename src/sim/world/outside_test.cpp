@@ -9,8 +9,8 @@
 
 #include "base/test_folder.h"
 #include "sim/session/session.h"
+#include "sim/test_input.h"
 #include "sim/test_world.h"
-#include "sim/watch/values.h"
 
 namespace sandlot::test {
 namespace {
@@ -51,37 +51,11 @@ std::vector<int> starts(const TestFolder& folder) {
   return out;
 }
 
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
-}
-
-struct Log : Observer {
-  Wants wants() const override { return {.log = true, .hash = true}; }
-  void on_frame(const std::shared_ptr<const Frame>& frame) override {
-    input[frame->tick] = frame->log;
-    hash[frame->tick] = frame->hash;
-  }
-  std::map<std::uint64_t, std::vector<LogEntry>> input;
-  std::map<std::uint64_t, std::uint64_t> hash;
-};
-
-void feed(Simulation& simulation, const std::vector<LogEntry>& entries) {
-  for (const LogEntry& entry : entries) {
-    if (entry.source.kind == Source::Kind::program) continue;
-    ByteReader r(entry.bytes);
-    Request request;
-    ASSERT_TRUE(read_request(r, request));
-    simulation.submit(std::move(request), entry.source);
-  }
-}
-
 TEST(OutsideProgram, TheLogAloneRepeatsTheRun) {
   const TestFolder folder;
   const auto live = build(with_brain(folder), {.start_programs = true});
   ASSERT_TRUE(live);
-  Log log;
+  InputLog log;
   live->add_observer(&log);
   advance(*live, 33);
   const auto half = live->snapshot();
@@ -146,7 +120,7 @@ TEST(OutsideProgram, AMissIsLoggedAndActsAsItsKindSays) {
     command.push(Node::scalar(word));
   const auto live = build(setup, {.start_programs = true});
   ASSERT_TRUE(live);
-  Log log;
+  InputLog log;
   live->add_observer(&log);
   Status status;
   int ticks = 0;
@@ -195,7 +169,7 @@ TEST(OutsideProgram, WaitsForTimesAndMessages) {
 /// A rewound run repeats the answers up to where it was, and starts the process again there.
 TEST(OutsideProgram, ARewoundRunRepeatsTheAnswersAndThenGoesOn) {
   const TestFolder folder;
-  Log log;
+  InputLog log;
   Session session(build(with_brain(folder), {.start_programs = true}),
                   {.history_every_s = 0.2, .simulation = {.start_programs = true}});
   session.add_observer(&log);
@@ -315,7 +289,7 @@ TEST(OutsideProgram, AnswersOfSeveralAreInTheirOrder) {
   }
   const auto live = build(setup, {.start_programs = true});
   ASSERT_TRUE(live);
-  Log log;
+  InputLog log;
   live->add_observer(&log);
   advance(*live, 1);
   std::vector<std::string> order;

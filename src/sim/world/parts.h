@@ -66,6 +66,7 @@ struct SimulationParts {
     Time due;                  ///< of the next one; follows from start, sample and the rate
     double rate_hz = 0;        ///< 0: every tick
     bool requested = false;
+    bool on_request = false;  ///< it takes samples that are requested alone
   };
   /// Destination of an order of a program at the active levels.
   struct Route {

@@ -10,8 +10,8 @@
 #include "base/log.h"
 #include "base/test_folder.h"
 #include "sim/session/session.h"
+#include "sim/test_input.h"
 #include "sim/test_world.h"
-#include "sim/watch/values.h"
 
 namespace sandlot::test {
 namespace {
@@ -57,51 +57,42 @@ class RobiosWorld : public testing::Test {
 };
 TestFolder* RobiosWorld::made = nullptr;
 
-double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
-}
-
-struct Log : Observer {
-  Wants wants() const override { return {.log = true, .hash = true}; }
-  void on_frame(const std::shared_ptr<const Frame>& frame) override {
-    input[frame->tick] = frame->log;
-    hash[frame->tick] = frame->hash;
-  }
-  std::map<std::uint64_t, std::vector<LogEntry>> input;
-  std::map<std::uint64_t, std::uint64_t> hash;
-};
-
-void feed(Simulation& simulation, const std::vector<LogEntry>& entries) {
-  for (const LogEntry& entry : entries) {
-    if (entry.source.kind == Source::Kind::program) continue;
-    ByteReader r(entry.bytes);
-    Request request;
-    ASSERT_TRUE(read_request(r, request));
-    simulation.submit(std::move(request), entry.source);
-  }
-}
-
 TEST_F(RobiosWorld, SensesAndOrdersOncePerSlot) {
   const auto live = build(with({"drive"}), {.start_programs = true});
   ASSERT_TRUE(live);
   advance(*live, 100);
-  // Slots of 50 ms begin at 0, 0.05 ... 1 s; the answer of the last one acts in the next tick.
+  // Slots of 50 ms begin at 0, 0.05 ... 1 s; the orders of the last one act in the tick in which it ends.
   EXPECT_EQ(value(*live, "rover1/brain.turns"), 21);
   EXPECT_EQ(value(*live, "rover1/brain.refused"), 0);
   EXPECT_NEAR(value(*live, "rover1/drive/ideal/command.linear.x"), 0.01 * 20, 1e-12);
   EXPECT_NEAR(value(*live, "rover1/drive/ideal/command.angular.z"), 0.001 * 61, 1e-12);
 }
 
+TEST_F(RobiosWorld, OrdersActInTheTickInWhichTheirSlotEnds) {
+  const auto live = build(with({"drive"}), {.start_programs = true});
+  ASSERT_TRUE(live);
+  for (int tick = 1; tick <= 100; ++tick) {
+    advance(*live, 1);
+    // The first order is of the slot up to 50 ms, which the fifth tick ends.
+    EXPECT_NEAR(value(*live, "rover1/drive/ideal/command.linear.x"), 0.01 * (tick / 5), 1e-12) << tick;
+  }
+  // A snapshot holds orders that wait.
+  advance(*live, 1);
+  const auto rest = again(*live);
+  advance(*live, 4);
+  advance(*rest, 4);
+  EXPECT_NEAR(value(*rest, "rover1/drive/ideal/command.linear.x"), 0.01 * 21, 1e-12);
+  EXPECT_EQ(rest->state_hash(), live->state_hash());
+}
+
 TEST_F(RobiosWorld, RunsTheSameOnAnyThreadsAndFromItsLog) {
-  Log log;
+  InputLog log;
   std::string half;
   const std::vector<std::string> modes{"drive", "waiter", "kill", "finish", "pose"};
   for (const int threads : {1, 2, 4}) {
     const auto live = build(with(modes), {.threads = threads, .start_programs = true});
     ASSERT_TRUE(live);
-    Log again;
+    InputLog again;
     live->add_observer(&again);
     advance(*live, 33);
     const auto snapshot = live->snapshot();
@@ -194,7 +185,7 @@ TEST_F(RobiosWorld, ProgramsThatMeanHarmEndAlone) {
     EXPECT_EQ(value(*live, "rover1/brain.ended"), each.ended);
     EXPECT_GE(value(*live, "rover1/brain.refused"), each.refused);
     EXPECT_EQ(value(*live, "rover2/brain.turns"), 21);
-    EXPECT_NEAR(value(*live, "rover2/drive/ideal/command.linear.x"), 0.01 * 21, 1e-12);
+    EXPECT_NEAR(value(*live, "rover2/drive/ideal/command.linear.x"), 0.01 * 20, 1e-12);
   }
 }
 

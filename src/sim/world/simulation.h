@@ -166,6 +166,11 @@ class Simulation final : public SimulationParts, public TopicFinder {
   /// no run. Built at the first call where no device needs it; warnings of textures are then dropped.
   RenderScene& render_scene();
 
+  /// Rate [Hz] at which viewers may look through the device of a topic, 0: in each tick. Nothing: it samples by itself.
+  std::optional<double> look_rate_hz(const TopicBase& topic) const;
+  /// What such a device would publish on the topic at the end of the last tick. Not State: a call changes no run. Null: nothing.
+  std::unique_ptr<TopicBase> look_through(const TopicBase& topic);
+
   /// Media, rules and markers.
   const WorldElements& elements() const { return elements_; }
 

@@ -1,0 +1,44 @@
+#pragma once
+/// Values of a run by address, and its input from outside to feed another run with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/watch/values.h"
+#include "sim/world/simulation.h"
+
+namespace sandlot::test {
+
+inline double value(const Simulation& simulation, const std::string& address) {
+  auto found = NamedValue::find(simulation, address);
+  EXPECT_TRUE(found) << (found ? "" : found.error().text());
+  return found ? found->read().value_or(NAN) : NAN;
+}
+
+/// Logs and hashes of a run, by tick.
+struct InputLog : Observer {
+  Wants wants() const override { return {.log = true, .hash = true}; }
+  void on_frame(const std::shared_ptr<const Frame>& frame) override {
+    input[frame->tick] = frame->log;
+    hash[frame->tick] = frame->hash;
+  }
+  std::map<std::uint64_t, std::vector<LogEntry>> input;
+  std::map<std::uint64_t, std::uint64_t> hash;
+};
+
+/// Submits what came from outside in a tick.
+inline void feed(Simulation& simulation, const std::vector<LogEntry>& entries) {
+  for (const LogEntry& entry : entries) {
+    if (entry.source.kind == Source::Kind::program) continue;
+    ByteReader r(entry.bytes);
+    Request request;
+    ASSERT_TRUE(read_request(r, request));
+    simulation.submit(std::move(request), entry.source);
+  }
+}
+
+}  // namespace sandlot::test
