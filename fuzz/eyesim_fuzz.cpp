@@ -12,7 +12,7 @@ using namespace sandlot;
 void scenario(std::string_view text, const std::string& file) {
   Diagnostics diagnostics;
   const formats::FormatKind& format = *formats::find_format(file);
-  const auto read = format.scenario(text, file, {}, diagnostics);
+  const auto read = format.scenario(text, file, {}, {}, diagnostics);
   if (!read) {
     SL_CHECK(!read.error().what.empty() && read.error().place.file);
     return;
@@ -20,7 +20,7 @@ void scenario(std::string_view text, const std::string& file) {
   for (const formats::RobotGroup& robot : read->robots)
     SL_CHECK(!robot.name.empty() && !robot.model.empty() && is_finite(robot.placement.X_WM));
   const auto written = format.write_scenario(*read, diagnostics);
-  if (written) SL_CHECK(format.scenario(*written, file, {}, diagnostics));
+  if (written) SL_CHECK(format.scenario(*written, file, {}, {}, diagnostics));
 }
 
 void maze(std::string_view text, const std::string& file) {

@@ -172,7 +172,10 @@ class Programs(unittest.TestCase):
         self.assertAlmostEqual(run.times()[-1], 0.2 + 100 * 0.05 + 2 * 0.05, delta=0.026)
 
     def test_cooperative_tasks_run_in_this_order(self):
-        run = Run("tasks_cooperative.sim", ["LabBot"], 40, stop_when=ended("LabBot"))
+        with tempfile.TemporaryDirectory() as folder:
+            run = Run("tasks_cooperative.sim", ["LabBot"], 40, "--program-logs", folder, stop_when=ended("LabBot"))
+            with open(os.path.join(folder, "LabBot.controller.log")) as file:
+                self.assertEqual(file.read().splitlines(), run.lines())
         self.assertEqual(run.lines(), ["side 1", "side 2", "corner 1", "side 3", "corner 2", "side 4", "corner 3", "end", "corner 4"])
         self.near(run.path()[-1], 1.2, 0.9, 0.02, 0)
 

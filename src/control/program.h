@@ -59,6 +59,9 @@ class Outside {
     bool writing = false;
   };
   virtual void watched(std::vector<Watched>& out) const = 0;
+  /// Writes what its process prints to a file in the folder, too, from now on. Errors: the file cannot be written.
+  /// @return false: it has no process of its own
+  virtual Result<bool> keep_output(const std::string& /*folder*/) { return false; }
   /// Takes the connection over from a program that this one replaces.
   virtual void adopt(Outside& before) = 0;
   /// Moves data without waiting. @return the next answer that has come, never `missed`

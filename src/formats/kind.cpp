@@ -52,12 +52,12 @@ Result<WorldContent> read_world(const std::string& path, const ReadOptions& opti
   return kind->world(text, path, options, diagnostics);
 }
 
-Result<Scenario> read_scenario_file(const std::string& path, std::span<const Override> overrides,
-                                    Diagnostics& diagnostics) {
+Result<Scenario> read_scenario_file(const std::string& path, const ReadOptions& options,
+                                    std::span<const Override> overrides, Diagnostics& diagnostics) {
   const FormatKind* const kind = find_format(path);
   if (!kind || !kind->scenario) return read_scenario(path, overrides, diagnostics);
   SL_ASSIGN(const std::string text, read_text_file(path, kind->max_bytes));
-  return kind->scenario(text, path, overrides, diagnostics);
+  return kind->scenario(text, path, options, overrides, diagnostics);
 }
 
 }  // namespace sandlot::formats

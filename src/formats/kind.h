@@ -22,10 +22,10 @@ struct FormatKind {
   std::size_t max_bytes;                         ///< of a file
 
   // A format declares scenarios, or worlds and models: exactly one of these is given.
-  Result<Scenario> (*scenario)(std::string_view text, const std::string& file,
+  Result<Scenario> (*scenario)(std::string_view text, const std::string& file, const ReadOptions& options,
                                std::span<const Override> overrides, Diagnostics& diagnostics) = nullptr;
   /// The scenario as a tree of the keys of scenario files, when the format is read by way of them.
-  Result<Node> (*scenario_tree)(std::string_view text, const std::string& file,
+  Result<Node> (*scenario_tree)(std::string_view text, const std::string& file, const ReadOptions& options,
                                 Diagnostics& diagnostics) = nullptr;
   Result<WorldContent> (*world)(std::string_view text, const std::string& file, const ReadOptions& options,
                                 Diagnostics& diagnostics) = nullptr;
@@ -59,7 +59,7 @@ Result<WorldContent> read_world(const std::string& path, const ReadOptions& opti
                                 Diagnostics& diagnostics);
 
 /// Reads a scenario in the format of its extension.
-Result<Scenario> read_scenario_file(const std::string& path, std::span<const Override> overrides,
-                                    Diagnostics& diagnostics);
+Result<Scenario> read_scenario_file(const std::string& path, const ReadOptions& options,
+                                    std::span<const Override> overrides, Diagnostics& diagnostics);
 
 }  // namespace sandlot::formats

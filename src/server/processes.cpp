@@ -7,7 +7,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <map>
 #include <mutex>
@@ -16,6 +15,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "programs/output_file.h"
 #include "programs/process_tree.h"
 #include "programs/remote/remote.h"
 #include "programs/sandbox.h"
@@ -34,7 +34,7 @@ constexpr auto beat = 20ms, measure_every = 40ms, look_every = 500ms, grace = 50
 constexpr double first_pause_s = 0.1, longest_pause_s = 5, long_life_s = 10;
 constexpr int most_short_lives = 6;
 constexpr double lines_per_s = 50, lines_at_once = 200;
-constexpr std::size_t most_log_bytes = 16u << 20, most_files = 1000;
+constexpr std::size_t most_files = 1000;
 constexpr double share_saved_s = 0.1;  ///< processor time that a program may save up, per core of its share
 
 double seconds_since(Clock::time_point then, Clock::time_point now) {
@@ -88,8 +88,7 @@ struct Program {
   FileTimes files;
 
   std::string last_note;
-  std::ofstream log;
-  std::size_t logged_bytes = 0;
+  programs::OutputFile output;
   double lines_left = lines_at_once;
   std::uint64_t lines_left_out = 0;
   Clock::time_point lines_counted;
@@ -118,10 +117,7 @@ Status Program::begin() {
 }
 
 void Program::write_line(const std::string& line, bool is_error) {
-  if (log.is_open() && logged_bytes < most_log_bytes) {
-    log << line << '\n' << std::flush;
-    logged_bytes += line.size() + 1;
-  }
+  output.write(line);
   if (is_error && !line.empty()) last_note = line;
   if (lines_left < 1) {
     ++lines_left_out;
@@ -310,17 +306,7 @@ Result<std::unique_ptr<Processes>> Processes::create(Simulation& simulation, con
         "SANDLOT_PROGRAM=" + made->path, "SANDLOT_TOKEN=" + token,
         std::string("SANDLOT_LOCKSTEP=") + (spec.lockstep ? "1" : "0"),
         "SANDLOT_DEADLINE_S=" + number_text(spec.deadline_s)};
-    if (!options.log_folder.empty()) {
-      std::string name = made->path + ".log";
-      std::replace(name.begin(), name.end(), '/', '.');
-      const fs::path file = fs::path(options.log_folder) / name;
-      std::error_code failed;
-      fs::create_directories(options.log_folder, failed);
-      made->log.open(file, std::ios::binary);
-      if (!made->log)
-        return Error{"--program-logs: '" + file.string() + "' cannot be written",
-                     "name a folder in which you may write"};
-    }
+    if (!options.log_folder.empty()) SL_TRY(made->output.open(options.log_folder, made->path));
     impl->programs.push_back(std::move(made));
     return {};
   };

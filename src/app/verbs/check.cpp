@@ -52,7 +52,8 @@ std::vector<Finding> lint_file(const std::string& file, const FileOptions& optio
   std::vector<Finding> findings = lint(simulation);
   if (const formats::FormatKind* const format = formats::find_format(file); format && format->scenario) {
     Diagnostics repeated;
-    if (const auto scenario = formats::read_scenario_file(file, options.overrides, repeated))
+    if (const auto scenario = formats::read_scenario_file(file, {search_path(options.paths)},
+                                                          options.overrides, repeated))
       for (Finding& finding : lint(*scenario)) findings.push_back(std::move(finding));
   }
   for (Finding& finding : findings)

@@ -168,14 +168,15 @@ struct Job {
       if (!file.empty() && !is_builder(file)) file = moved(file, old_folder, new_folder, search);
     };
     if (to.write_scenario) {
-      SL_ASSIGN(formats::Scenario scenario, from->scenario(text, options.in, {}, diagnostics));
+      SL_ASSIGN(formats::Scenario scenario,
+                from->scenario(text, options.in, {.path = search}, {}, diagnostics));
       move(scenario.world);
       for (auto* const groups : {&scenario.robots, &scenario.things})
         for (formats::RobotGroup& group : *groups) move(group.model);
       SL_ASSIGN(const std::string out, to.write_scenario(scenario, diagnostics));
       return "# " + comment() + "\n" + out;
     }
-    SL_ASSIGN(Node root, from->scenario_tree(text, options.in, diagnostics));
+    SL_ASSIGN(Node root, from->scenario_tree(text, options.in, {.path = search}, diagnostics));
     const auto move_key = [&](Node* map, const char* key) {
       Node* const value = map ? map->find(key) : nullptr;
       if (!value || !value->is_scalar()) return;
@@ -304,7 +305,7 @@ Status check_result(const Job& job, const std::string& text) {
   Diagnostics unheard;
   Error error;
   if (job.to.scenario) {
-    const auto back = job.to.scenario(text, job.options.out, {}, unheard);
+    const auto back = job.to.scenario(text, job.options.out, {.path = job.search}, {}, unheard);
     if (back) return {};
     error = back.error();
   } else {

@@ -67,9 +67,24 @@ Status serve(const RunOptions& options, const RunParts& parts, std::optional<Ser
                                         .watch_files = options.watch,
                                         .log_folder = options.program_logs,
                                         .python_folders = client_folders()};
-  if ((options.watch || !options.program_logs.empty()) && !programs.start)
-    return Error{"--watch and --program-logs are for programs that the run starts, and it starts none",
+  bool keeps_output = programs.start;
+  if (!options.program_logs.empty()) {
+    Status status;
+    parts.session.simulation().for_each_outside([&](const SimulationParts::ProgramEntry&, Outside& outside) {
+      if (!status) return;
+      const Result<bool> kept = outside.keep_output(options.program_logs);
+      if (kept) keeps_output = keeps_output || *kept;
+      else status = kept.error();
+    });
+    SL_TRY(status);
+  }
+  const auto without = [](const char* option) {
+    return Error{std::string(option) + ", and the run starts none",
                  "name one in the scenario: controller: {kind: remote, command: [python3, team.py]}"};
+  };
+  if (options.watch && !programs.start) return without("--watch is for programs with a command");
+  if (!options.program_logs.empty() && !keeps_output)
+    return without("--program-logs is for programs that the run starts");
   if (!options.serve && !programs.start) return {};
   std::optional<ServeOptions> how = options.serve;
   if (how) how->world = options.spec.file;

@@ -40,9 +40,9 @@ Result<WorldContent> read_object_content(std::string_view text, const std::strin
   return out;
 }
 
-Result<Scenario> read_sim(std::string_view text, const std::string& file, std::span<const Override> overrides,
-                          Diagnostics& diagnostics) {
-  SL_ASSIGN(Node root, eyesim::sim_tree(text, file, diagnostics));
+Result<Scenario> read_sim(std::string_view text, const std::string& file, const ReadOptions& options,
+                          std::span<const Override> overrides, Diagnostics& diagnostics) {
+  SL_ASSIGN(Node root, eyesim::sim_tree(text, file, options, diagnostics));
   return scenario_of_tree(std::move(root), file, overrides, diagnostics);
 }
 

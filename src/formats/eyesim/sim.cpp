@@ -90,8 +90,8 @@ struct Placed {
 
 class Reader {
  public:
-  Reader(const std::string& file, Diagnostics& diagnostics)
-      : file_(file), search_(search_path()), diagnostics_(diagnostics) {}
+  Reader(const std::string& file, SearchPath search, Diagnostics& diagnostics)
+      : file_(file), search_(std::move(search)), diagnostics_(diagnostics) {}
 
   Result<Node> read(const std::vector<Line>& lines) {
     // Types may stand behind the robots that are of them.
@@ -465,9 +465,10 @@ std::string declared_type(const std::string& written, const std::string& folder,
   return name_in(type, folder, search_path());
 }
 
-Result<Node> sim_tree(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
+Result<Node> sim_tree(std::string_view text, const std::string& file, const ReadOptions& options,
+                      Diagnostics& diagnostics) {
   SL_ASSIGN(const std::vector<Line> lines, lines_of(text, file));
-  return Reader(file, diagnostics).read(lines);
+  return Reader(file, options.path, diagnostics).read(lines);
 }
 
 }  // namespace sandlot::formats::eyesim

@@ -13,7 +13,8 @@
 
 namespace sandlot::formats::eyesim {
 
-Result<Node> sim_tree(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+Result<Node> sim_tree(std::string_view text, const std::string& file, const ReadOptions& options,
+                      Diagnostics& diagnostics);
 
 /// A scenario of single robots and objects in a world of EyeSim as a .sim file; of everything else one warning each says that
 /// it is left out.

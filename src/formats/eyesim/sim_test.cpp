@@ -33,13 +33,13 @@ class EyesimScenario : public testing::Test {
   std::string file() const { return (folder_ / "test.sim").string(); }
 
   Scenario read(const std::string& text, std::vector<Override> overrides = {}) {
-    auto scenario = find_format("x.sim")->scenario(text, file(), overrides, diagnostics_);
+    auto scenario = find_format("x.sim")->scenario(text, file(), options_, overrides, diagnostics_);
     EXPECT_TRUE(scenario) << scenario.error().text();
     return scenario ? std::move(*scenario) : Scenario{};
   }
   /// The first error, without its folder.
   std::string error(const std::string& text) {
-    const auto scenario = find_format("x.sim")->scenario(text, file(), {}, diagnostics_);
+    const auto scenario = find_format("x.sim")->scenario(text, file(), options_, {}, diagnostics_);
     return scenario ? "none" : bare(scenario.error());
   }
   std::string bare(const Error& error) const {
@@ -57,6 +57,7 @@ class EyesimScenario : public testing::Test {
   }
 
   std::filesystem::path folder_;
+  ReadOptions options_;
   Diagnostics diagnostics_;
 };
 
@@ -190,6 +191,15 @@ TEST_F(EyesimScenario, CamerasTakePicturesForProgramsThatAsk) {
   EXPECT_EQ(key(s.robots.at(2).devices, {"camera", "on_request"}), "");
 }
 
+TEST_F(EyesimScenario, FindsTypesInTheFoldersToSearchFirst) {
+  std::filesystem::create_directory(folder_ / "types");
+  write("types/mover.robi", "drive DIFFERENTIAL_DRIVE\nname Carrier\nwheel 54 1800 1100 90\n");
+  const std::string text = "robot mover.robi\nCarrier 1 2 3\n";
+  EXPECT_TRUE(read(text).robots.empty());  // the name is in a file that is not found
+  options_.path = search_path(std::vector{(folder_ / "types").string()});
+  ASSERT_EQ(read(text).robots.size(), 1u);
+}
+
 TEST_F(EyesimScenario, TakesValuesFromTheCommandLine) {
   const Scenario s = read("S4 1 2 3\n", {{"time.step", "10 ms"}, {"robots.S4.errors", "2"}});
   EXPECT_EQ(s.setup.step, Time::from_s(0.01));
@@ -208,7 +218,7 @@ TEST_F(EyesimScenario, WrittenAndReadAgainIsTheSame) {
   EXPECT_EQ(*written, text);
   EXPECT_TRUE(diagnostics_.warnings.empty()) << diagnostics_.warnings.front().text();
   // As YAML it is the same scenario.
-  const auto tree = sim_tree(text, file(), diagnostics_);
+  const auto tree = sim_tree(text, file(), options_, diagnostics_);
   ASSERT_TRUE(tree);
   const std::string yaml = yaml_text(*tree);
   const auto back = parse_scenario(yaml, (folder_ / "test.yaml").string(), {}, diagnostics_);

@@ -12,7 +12,9 @@ constinit const FormatKind scenario_format{
     .contents = "scenarios",
     .extensions = scenario_extensions,
     .max_bytes = TextLimits{}.max_bytes,
-    .scenario = parse_scenario,
+    .scenario = [](std::string_view text, const std::string& file, const ReadOptions&,
+                   std::span<const Override> overrides,
+                   Diagnostics& diagnostics) { return parse_scenario(text, file, overrides, diagnostics); },
 };
 
 }  // namespace sandlot::formats

@@ -137,6 +137,7 @@ void Pipe::adopt(Outside& before) {
   late_ = std::move(old.late_);
   broken_ = std::move(old.broken_);
   described_ = false;
+  output_ = std::move(old.output_);
 }
 
 void Pipe::watched(std::vector<Watched>& out) const {
@@ -168,8 +169,15 @@ std::optional<OutsideAnswer> Pipe::receive() {
   return OutsideAnswer{OutsideAnswer::Kind::gone, bytes_of(std::exchange(broken_, {}))};
 }
 
+Result<bool> Pipe::keep_output(const std::string& folder) {
+  if (!child_) return false;
+  SL_TRY(output_.open(folder, path_));
+  return true;
+}
+
 void Pipe::log_notes() {
   while (auto note = child_->take_note()) {
+    output_.write(*note);
     log::warning(path_ + ": " + *note);
     if (!note->empty()) last_note_ = std::move(*note);
   }

@@ -19,6 +19,7 @@
 #include "control/program.h"
 #include "programs/answer.h"
 #include "programs/child.h"
+#include "programs/output_file.h"
 
 namespace sandlot::programs::pipe {
 
@@ -95,6 +96,7 @@ class Pipe final : public Program, public Outside {
   bool expects_answer() const override { return child_ && (waiting_ || !late_.empty() || !broken_.empty()); }
   Clock::time_point deadline() const override { return deadline_; }
   void watched(std::vector<Watched>& out) const override;
+  Result<bool> keep_output(const std::string& folder) override;
   void adopt(Outside& before) override;
   std::optional<OutsideAnswer> receive() override;
 
@@ -113,6 +115,7 @@ class Pipe final : public Program, public Outside {
 
   // The process; none of it is State.
   std::optional<Child> child_;
+  OutputFile output_;
   bool described_ = false, waiting_ = false;
   Clock::time_point deadline_;
   std::uint64_t step_ = 0;

@@ -244,7 +244,14 @@ void Robios::adopt(Outside& before) {
   begun_ = old.begun_;
   measured_ = old.measured_;
   last_words_ = std::move(old.last_words_);
+  output_ = std::move(old.output_);
   sent_pictures_ = 0;  // the camera may be another one
+}
+
+Result<bool> Robios::keep_output(const std::string& folder) {
+  if (!child_) return false;
+  SL_TRY(output_.open(folder, path_));
+  return true;
 }
 
 void Robios::watched(std::vector<Watched>& out) const {
@@ -305,6 +312,7 @@ void Robios::move_output() {
   const std::size_t before = lines_;
   child_->move();
   const auto take = [&](std::string& line, bool is_error) {
+    output_.write(line);
     if (++lines_ == most_logged_lines + 1) log::warning(path_ + ": more than 200 lines in one time slot");
     if (lines_ <= most_logged_lines) (is_error ? log::warning : log::info)(path_ + ": " + line);
     if (line.empty()) return;

@@ -23,6 +23,7 @@
 ///              beginning of its slot.
 /// Cost         two switches of processes per turn.
 #include "control/program.h"
+#include "programs/output_file.h"
 #include "programs/process_tree.h"
 #include "programs/robios/robot.h"
 #include "programs/robios/shared_memory.h"
@@ -54,6 +55,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   bool expects_answer() const override { return child_ && (waiting_ || begins_anew_); }
   Clock::time_point deadline() const override { return deadline_; }
   void watched(std::vector<Watched>& out) const override;
+  Result<bool> keep_output(const std::string& folder) override;
   void adopt(Outside& before) override;
   std::optional<OutsideAnswer> receive() override;
 
@@ -101,6 +103,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   std::vector<Being> beings_;
   std::vector<Move> moves_;
   std::vector<std::string> last_words_;
+  OutputFile output_;
   std::size_t lines_ = 0;  ///< of output in this turn
   ProcessMeter meter_;
 };

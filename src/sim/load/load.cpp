@@ -76,9 +76,10 @@ Result<model::Setup> load_file(const std::string& path, const LoadOptions& optio
     return no_such_file(path, options);
   const formats::FormatKind* const format = words ? nullptr : formats::find_format(path);
   if (format && format->scenario) {
+    const formats::ReadOptions reading{search_path(options.paths), options.skip_missing};
     SL_ASSIGN(formats::Scenario scenario,
-              options.text ? format->scenario(*options.text, path, options.overrides, diagnostics)
-                           : formats::read_scenario_file(path, options.overrides, diagnostics));
+              options.text ? format->scenario(*options.text, path, reading, options.overrides, diagnostics)
+                           : formats::read_scenario_file(path, reading, options.overrides, diagnostics));
     return load_scenario(std::move(scenario), options, diagnostics);
   }
   if (words) {

@@ -1,0 +1,39 @@
+#pragma once
+/// File of what a program prints, 16 MB at most.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "base/result.h"
+
+namespace sandlot::programs {
+
+class OutputFile {
+ public:
+  static constexpr std::size_t most_bytes = 16u << 20;
+
+  /// Begins "red1.controller.log" of the program "red1/controller" in the folder, which is made if need be.
+  Status open(const std::string& folder, const std::string& program) {
+    std::string name = program + ".log";
+    std::replace(name.begin(), name.end(), '/', '.');
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    out_.open(file, std::ios::binary);
+    if (out_) return {};
+    return Error{"--program-logs: '" + file.string() + "' cannot be written",
+                 "name a folder in which you may write"};
+  }
+  void write(const std::string& line) {
+    if (!out_.is_open() || bytes_ >= most_bytes) return;
+    out_ << line << '\n' << std::flush;
+    bytes_ += line.size() + 1;
+  }
+
+ private:
+  std::ofstream out_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace sandlot::programs
