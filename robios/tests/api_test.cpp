@@ -117,6 +117,7 @@ TEST(RobiosApi, DriveOf7) {
   const auto point = ways[3].as<fake::ManeuverOrder>();
   EXPECT_EQ(point.kind, 3u);
   EXPECT_DOUBLE_EQ(point.x_m, 0.4);
+  EXPECT_DOUBLE_EQ(ways[4].as<fake::ManeuverOrder>().speed_mps, 0.1);
   const auto control = r.of(OrderKind::control);
   ASSERT_EQ(control.size(), 2u);
   EXPECT_DOUBLE_EQ(control[0].as<fake::ControlOrder>().vv, 0.7);
@@ -145,10 +146,11 @@ TEST(RobiosApi, DevicesOf7) {
   EXPECT_EQ(motors[3].as<fake::MotorOrder>().mode, 1u);
   EXPECT_NEAR(motors[3].as<fake::MotorOrder>().value, 62.83185, 1e-4);
   const auto servos = r.of(OrderKind::servo);
-  ASSERT_EQ(servos.size(), 3u);
+  ASSERT_EQ(servos.size(), 4u);
   EXPECT_DOUBLE_EQ(servos[0].as<fake::MotorOrder>().value, 1);
   EXPECT_DOUBLE_EQ(servos[1].as<fake::MotorOrder>().value, 0.8);
-  EXPECT_DOUBLE_EQ(servos[2].as<fake::MotorOrder>().value, 0);
+  EXPECT_DOUBLE_EQ(servos[2].as<fake::MotorOrder>().value, 0.2);
+  EXPECT_DOUBLE_EQ(servos[3].as<fake::MotorOrder>().value, 0);
 }
 
 TEST(RobiosApi, CameraAndPicturesOf7) {
@@ -168,13 +170,18 @@ void answer(fake::Simulator& sim) {
     sent = true;
     sim.receive(now + 1000 * fake::millisecond, 9, "answer");
     sim.receive(now + 1000 * fake::millisecond, 8, "second");
+    sim.receive(now + 1000 * fake::millisecond, 5, "third");
   };
+  sim.receive(500 * fake::millisecond, 9, "before the radio is on");
 }
 
 TEST(RobiosApi, SystemOf7) {
   fake::Simulator sim;
   answer(sim);
   sim.senses().bumper[1] = 1;
+  sim.senses().battery_V = 9;
+  sim.press(0, 4);  // before the program has begun
+  sim.press(1700 * fake::millisecond, 1);
   sim.press(1000 * fake::millisecond, 2);
   sim.press(1200 * fake::millisecond, 3);
   sim.press(1200 * fake::millisecond, 4);
@@ -242,6 +249,9 @@ TEST(RobiosApi, DriveOf6) {
   ASSERT_EQ(control.size(), 2u);
   EXPECT_NEAR(control[0].as<fake::ControlOrder>().vv, 7, 1e-6);
   EXPECT_NEAR(control[0].as<fake::ControlOrder>().tw, 0.1, 1e-6);
+  // The drive that is given back stands.
+  ASSERT_FALSE(r.of(OrderKind::speed).empty());
+  EXPECT_EQ(r.of(OrderKind::speed).back().as<fake::SpeedOrder>().v_mps, 0);
 }
 
 TEST(RobiosApi, DevicesOf6) {

@@ -1,7 +1,9 @@
-/// A time slot of a RoBIOS program that does nothing in it: the turn to its process and back.
+/// RoBIOS programs: a time slot in which one does nothing, and four robots with cameras.
 ///
-/// Measured is the wall time of a run of one robot with such a program less that of the same run without, per slot. The reference
-/// is a bare exchange of turns between two processes by one futex in shared memory.
+/// A slot       the wall time of a run of one robot with such a program less that of the same run without, per slot. The reference
+///              is a bare exchange of turns between two processes by one futex in shared memory.
+/// Four robots  examples/robios/four.sim: each takes, searches and shows a picture per slot. The reference is the same world with
+///              the controller `wander`, and as many pictures. Wall time, as programs run in processes of their own.
 #include <linux/futex.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -14,10 +16,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "base/check.h"
 #include "base/test_folder.h"
 #include "bench/bench.h"
+#include "files/resources.h"
 #include "sim/load/load.h"
 #include "sim/world/simulation.h"
 
@@ -87,22 +91,73 @@ double exchange() {
   return used_s / slots;
 }
 
+struct Crowd {
+  double wall_s = 0;           ///< per simulated second
+  std::uint64_t pictures = 0;  ///< of all robots
+};
+
+/// @param programs  what stands in the place of the programs
+Crowd four_robots(const std::string& programs) {
+  constexpr int warm_up = 20, ticks = 160;  // of 50 ms
+  const std::string file = own_folder("examples/robios") + "/four.sim", own = "crowd.c";
+  std::ifstream in(file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (std::size_t at = text.find(own); at != std::string::npos; at = text.find(own, at + programs.size()))
+    text.replace(at, own.size(), programs);
+  Diagnostics diagnostics;
+  auto setup = load(file, {.text = text}, diagnostics);
+  SL_CHECK_MSG(setup, setup ? "" : setup.error().text().c_str());
+  const double tick_s = setup->step.s();
+  auto made = Simulation::create(std::move(*setup), {.threads = 1, .start_programs = true}, diagnostics);
+  SL_CHECK_MSG(made, made ? "" : made.error().text().c_str());
+  const auto pictures = [&] {
+    std::uint64_t count = 0;
+    for (const char* const camera : {"LabBot/camera", "LabBot_2/camera", "S4/camera", "S4_2/camera"})
+      if (const TopicBase* const topic = (*made)->find_topic(camera)) count += topic->count;
+    return count;
+  };
+  for (int i = 0; i < warm_up; ++i) SL_CHECK((*made)->tick());
+  const std::uint64_t before = pictures();
+  const double begin = wall_seconds();
+  for (int i = 0; i < ticks; ++i) SL_CHECK((*made)->tick());
+  return {(wall_seconds() - begin) / (ticks * tick_s), pictures() - before};
+}
+
+double median(std::vector<double>& all) {
+  all.erase(all.begin());  // the first warms up
+  std::sort(all.begin(), all.end());
+  return all[all.size() / 2];
+}
+
+/// Nothing where the examples are not installed.
+void add_four_robots(std::vector<Row>& rows) {
+  if (own_folder("examples/robios").empty()) return;
+  std::vector<double> ours, reference;
+  for (int i = 0; i < 4; ++i) {
+    const Crowd programs = four_robots("crowd.c"), controllers = four_robots("controller:wander");
+    // Turns of the robots cost the programs pictures: three quarters of all at least.
+    SL_CHECK(4 * programs.pictures >= 3 * controllers.pictures);
+    ours.push_back(programs.wall_s);
+    reference.push_back(controllers.wall_s);
+  }
+  rows.push_back(
+      row("four RoBIOS robots with cameras, 1 s", "ms", 1e3 * median(ours), 1e3 * median(reference), 1.5));
+}
+
 }  // namespace
 
 std::vector<Row> robios() {
   std::vector<double> ours, reference;
-  for (int i = 0; i < 4; ++i) {  // the first warms up
+  for (int i = 0; i < 4; ++i) {
     const double alone_s = one_run(false);
     ours.push_back(one_run(true) - alone_s);
     reference.push_back(exchange());
   }
-  const auto median = [](std::vector<double>& all) {
-    all.erase(all.begin());
-    std::sort(all.begin(), all.end());
-    return all[all.size() / 2];
-  };
   // Wall time between processes: it swings with the machine's load.
-  return {row("a RoBIOS slot without calls", "us", 1e6 * median(ours), 1e6 * median(reference), 2, 8)};
+  std::vector<Row> rows{
+      row("a RoBIOS slot without calls", "us", 1e6 * median(ours), 1e6 * median(reference), 2, 8)};
+  add_four_robots(rows);
+  return rows;
 }
 
 }  // namespace sandlot::bench

@@ -18,6 +18,7 @@ int main() {
   EQUAL(PSDStart(64, TRUE), -1);
   EQUAL(PSDStart(front | left, FALSE), 0);
   EQUAL(PSDStart(front, TRUE), 1); /* busy */
+  EQUAL(PSDCheck(), 0);
   EQUAL(PSDGet(front), 0);         /* not ready */
   OSWait(10);
   EQUAL(PSDCheck(), 1);
@@ -30,6 +31,13 @@ int main() {
   EQUAL(PSDCheck(), 0);
   EQUAL(PSDRelease(), 0);
   EQUAL(PSDGet(front), PSD_OUT_OF_RANGE);
+  front = PSDInit(PSD_FRONT);
+  EQUAL(PSDStart(front, TRUE), 0);
+  OSWait(10);
+  EQUAL(PSDCheck(), 1);
+  PSDRelease(); /* ends repeated measurements */
+  PSDInit(PSD_FRONT);
+  EQUAL(PSDCheck(), 0);
 
   ml = MOTORInit(MOTOR_LEFT);
   mr = MOTORInit(MOTOR_RIGHT);
@@ -72,7 +80,7 @@ int main() {
   CHECK(bump != 0);
   EQUAL(BUMPInit(BUMP_BACK), 0);
   EQUAL(BUMPCheck(bump, &t), 0);
-  CHECK(t > 0);
+  NEAR(t, OSGetCount(), 5); /* 1/100 s, of the slot's beginning */
   EQUAL(BUMPCheck(BUMPInit(BUMP_LEFT), &t), -1);
   EQUAL(BUMPRelease(bump), 0);
   EQUAL(BUMPCheck(bump, &t), -1);

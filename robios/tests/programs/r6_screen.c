@@ -39,6 +39,7 @@ int main() {
   EQUAL(LCDMode(SCROLLING), 0);
   EQUAL(LCDMenu("GO", "LONGER", "", "END"), 0);
   EQUAL(LCDMenuI(3, "3rd"), 0);
+  EQUAL(LCDMenu(" ", " ", " ", "END"), 0); /* leaves the others */
   EQUAL(LCDMenuI(0, "x"), 1);
   OSWait(10);
   printf("text\n");

@@ -57,6 +57,8 @@ int main() {
   EQUAL(OSWriteOutLatch(0, 0xFF, 0x0F), 0);
   EQUAL(OSWriteOutLatch(0, 0x0F, 0x03), 0x0F);
   EQUAL(OSReadOutLatch(0), 0x03);
+  EQUAL(OSWriteOutLatch(0, 0x00, 0x05), 0x03);
+  EQUAL(OSReadOutLatch(0), 0x06); /* what is not masked is inverted */
   EQUAL(OSReadOutLatch(-1), 0);
 
   EQUAL(RADIOSend(5, 3, buffer), 1); /* not initialised */
@@ -70,7 +72,7 @@ int main() {
   EQUAL(id, 9);
   EQUAL(count, 6);
   EQUAL(memcmp(buffer, "answer", 6), 0);
-  EQUAL(RADIOCheck(), 1);
+  EQUAL(RADIOCheck(), 2);
   EQUAL(RADIOGetIoctl(&io), 0);
   EQUAL(io.id, 3);
   io.speed = SER9600;
@@ -98,7 +100,9 @@ int main() {
   EQUAL(AURecordSample(buffer, 64, 128), 128);
   EQUAL(buffer[63], 128);
   EQUAL(AUCheckRecord(), 0);
-  OSWait(60);
+  OSWait(40);
+  EQUAL(AUCheckRecord(), 0); /* 64 samples take half a second */
+  OSWait(20);
   EQUAL(AUCheckRecord(), 1);
   EQUAL(AUCaptureMic(100), 0);
 

@@ -30,6 +30,8 @@ int main() {
   EQUAL(CAMInit(QQVGA), 0);
   EQUAL(CAMGet(rgb), 0);
   EQUAL(rgb[(50 * 160 + 100) * 3], 100); /* mean of columns 400 to 403 */
+  EQUAL(LCDImage(rgb), 0); /* CAMInit has set its size */
+  EQUAL(LCDGetPixel(100, 50), 100 << 16 | 50 << 8 | 7);
   EQUAL(IPSetSize(QQVGA), 0);
   EQUAL(IPSetSize(-1), 1);
   EQUAL(IP_WIDTH, 160);
@@ -125,6 +127,13 @@ int main() {
     fprintf(f, "P5\n160 120\n255\nshort");
     fclose(f);
     EQUAL(IPReadFile("test.pbm", b), -1);
+    f = fopen("test.pbm", "w");
+    fprintf(f, "P2\n160 120\n100\n");
+    for (k = 0; k < QQVGA_PIXELS; k++) fputs(k == 2 ? "50 " : "100 ", f);
+    fclose(f);
+    EQUAL(IPReadFile("test.pbm", b), 2);
+    EQUAL(b[2], 127); /* of 255 */
+    EQUAL(b[3], 255);
   }
   remove("test.ppm");
   remove("test.pgm");

@@ -51,6 +51,7 @@ int main() {
   EQUAL(SERVOSet(1, 255), 0);
   EQUAL(SERVORange(2, 51, 204), 0);
   EQUAL(SERVOSet(2, 255), 0);
+  EQUAL(SERVOSet(2, 0), 0);
   EQUAL(SERVOSetRaw(2, 0), 0);
   EQUAL(SERVOSet(3, 100), 1);
   EQUAL(SERVOSet(1, 256), 1);

@@ -48,7 +48,7 @@ int main() {
   EQUAL(VWGetSpeed(&v, &w), 0);
   EQUAL(v, 100);
   EQUAL(w, 10);
-  VWStraight(1000, 100); /* interrupted by a turn */
+  VWStraight(1000, -100); /* of speeds the amount counts; interrupted by a turn */
   OSWait(100);
   VWTurn(90, 90);
   VWWait();

@@ -2,7 +2,7 @@
 
 #include "check.h"
 
-static BYTE picture[40 * 30 * 3], gray[40 * 30], bits[40 * 30];
+static BYTE picture[40 * 30 * 3], gray[40 * 30], bits[40 * 30], large[QQVGA_SIZE];
 
 int main() {
   int x, y, row, column, i;
@@ -44,8 +44,21 @@ int main() {
   EQUAL(LCDGetPixel(18 + 1 + 8, 145), RED);
   EQUAL(LCDGetPixel(18 + 1 + 9, 145), BLUE);
   EQUAL(LCDSetFontSize(13), 1);
+  /* A row that large characters have not. */
+  LCDSetFontSize(8);
+  EQUAL(LCDSetPos(50, 0), 0);
+  LCDSetFontSize(24);
+  LCDGetPos(&row, &column);
+  EQUAL(row, 18); /* 464 / 24 rows */
   EQUAL(LCDSetFontSize(12), 0);
   /* Without scrolling the first row follows the last. */
+  LCDSetPos(10, 0);
+  LCDSetMode(NOLINEFEED);
+  LCDPrintf("a\nb");
+  LCDGetPos(&row, &column);
+  EQUAL(row, 10);
+  EQUAL(column, 2);
+  LCDSetMode(LINEFEED);
   EQUAL(LCDSetMode(NOSCROLLING), 0);
   LCDSetPrintf(28, 0, "last\n");
   LCDGetPos(&row, &column);
@@ -106,6 +119,9 @@ int main() {
   EQUAL(LCDGetPixel(319, 479), 9 << 16 | 9 << 8 | 9);
   EQUAL(LCDImageStart(0, 0, -4, 30), 1);
   EQUAL(LCDImageSize(QQVGA), 0);
+  large[0] = 200;
+  EQUAL(LCDImage(large), 0);
+  EQUAL(LCDGetPixel(0, 0), 200 << 16); /* in the corner */
   EQUAL(LCDImageSize(99), 1);
 
   EQUAL(LCDMenu("ONE", "TWO", "", "FOUR"), 0);
