@@ -18,6 +18,7 @@ using namespace sandlot::robios;
 using namespace std::chrono_literals;
 
 constexpr std::size_t most_waiting = 256;  ///< radio messages
+constexpr std::int64_t most_ns = std::int64_t{1} << 62;
 constexpr std::size_t most_logged_lines = 200, most_last_words = 5;
 enum Ended : std::uint8_t { by_itself = 1, killed = 2, spun = 3 };
 
@@ -63,8 +64,9 @@ void Robios::load(ByteReader& r) {
   };
   // What it is trusted for: sizes of the shared memory, and arithmetic of times.
   const bool fits = state_.held.size() <= most_order_bytes && state_.inbox.size() <= most_waiting &&
-                    state_.offered <= state_.inbox.size() && state_.now_ns >= 0 && state_.until_ns >= 0 &&
-                    finite(state_.odometry) && finite(state_.origin) && finite(state_.wheels) &&
+                    state_.offered <= state_.inbox.size() && state_.now_ns >= 0 && state_.now_ns < most_ns &&
+                    state_.until_ns >= 0 && finite(state_.odometry) && finite(state_.origin) &&
+                    finite(state_.wheels) &&
                     std::all_of(state_.inbox.begin(), state_.inbox.end(),
                                 [](const Received& each) { return each.data.size() <= most_radio_bytes; });
   if (!fits) r.fail();
