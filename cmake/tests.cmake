@@ -128,6 +128,11 @@ add_test(NAME robios_programs COMMAND Python3::Interpreter tests/robios_programs
 set_tests_properties(robios_programs PROPERTIES LABELS slow TIMEOUT 600
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+# Programs and files for EyeSim as they are found elsewhere.
+add_test(NAME robios_wild COMMAND Python3::Interpreter tests/robios_wild_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(robios_wild PROPERTIES LABELS unit TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # The same law in four places.
 add_test(NAME clearing COMMAND Python3::Interpreter tests/clearing_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(clearing PROPERTIES LABELS slow TIMEOUT 600

@@ -253,7 +253,15 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
     const auto add = [&](std::initializer_list<std::string> words) {
       out.command.insert(out.command.end(), words.begin(), words.end());
     };
-    add({"--ro-bind", folder, team_folder});
+    const std::string at = program.below.empty() ? team_folder : team_folder + ("/" + program.below);
+    add({"--ro-bind", folder, at});
+    const std::string top = folder.substr(0, folder.size() - (at.size() - std::strlen(team_folder)));
+    for (const std::string& each : program.read_files) {
+      if (out.user && !can_read(*out.user, each)) return unreadable(each);
+      if (is_below_any(each, {top}) && !is_below_any(each, {folder}))
+        add({"--ro-bind", each, team_folder + each.substr(top.size())});
+    }
+    if (!program.write_folder.empty()) add({"--bind", program.write_folder, written_inside});
     if (!program.socket_folder.empty()) add({"--bind", program.socket_folder, socket_inside});
     for (const std::string& each : program.read_folders) {
       if (out.user && !can_read(*out.user, each)) return unreadable(each);
@@ -262,11 +270,11 @@ Result<Launch> launch_of(const ProgramLaunch& program) {
     int number = 0;
     for (const std::string& each : program.python_folders) {
       if (out.user && !can_read(*out.user, each)) continue;
-      const std::string at = "/run/python" + std::to_string(number++);
-      add({"--ro-bind", each, at});
-      modules += at + ":";
+      const std::string shown_at = "/run/python" + std::to_string(number++);
+      add({"--ro-bind", each, shown_at});
+      modules += shown_at + ":";
     }
-    add({"--chdir", team_folder, "--"});
+    add({"--chdir", at, "--"});
     // Within the sandbox the kernel counts its processes alone, with bubblewrap's own first one.
     const std::string most = std::to_string(count + 1);
     add({"/usr/bin/prlimit", "--nproc=" + most + ":" + most, "--", shown});

@@ -55,8 +55,13 @@ struct ProgramLaunch {
   std::vector<std::string> python_folders;     ///< of modules that it may import
   std::vector<std::string> read_folders = {};  ///< further ones that it may read, at their own paths
   std::vector<int> inherited = {};             ///< descriptors that stay open in it
+  std::string below =
+      {};  ///< end of `folder` that the sandbox keeps, so that read_files have places above it
+  std::vector<std::string> read_files = {};  ///< files in the folders of that end
+  std::string write_folder = {};             ///< that it may fill, shown as written_inside
 };
 inline constexpr const char* socket_name = "run.sock";
+inline constexpr const char* written_inside = "/run/files";
 
 /// The command with its sandbox, if it is to have one, its limits, its user and its environment; SANDLOT_URL is added.
 /// Errors   there is no sandbox; `nobody` cannot read the folder; the sandbox has no such program.

@@ -71,6 +71,10 @@ int RADIOCheckAny() {
   enter(Call::RADIOCheck);
   return check(nullptr);
 }
+/// Of programs that bring their own prototype.
+#undef RADIOCheck
+[[gnu::visibility("default")]] int robios_check() __asm__("RADIOCheck");
+int robios_check() { return RADIOCheckAny(); }
 int RADIOCheckID(int* id) {
   enter(Call::RADIOCheck);
   return check(id);

@@ -169,7 +169,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
         plan.balls.push_back(spot);
       } else if (c == 'x' || c == 'X') {
         plan.boxes.push_back(spot);
-      } else if (c != '.') {
+      } else if (c != '.' && c != 'f' && c != 'F') {  // the goal of some mazes
         diagnostics.warn({std::string("'") + c + "' is not known in a maze and left out",
                           "known are | _ and the letters s u d l r o x", place});
       }

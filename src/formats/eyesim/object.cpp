@@ -98,8 +98,8 @@ Result<model::Instance> read_object(std::string_view text, const std::string& fi
   std::shared_ptr<const TriangleMesh> mesh;
   if (object.mesh_line) {
     const double scale = object.scale * mm;
-    SL_ASSIGN(mesh,
-              mesh_of(*object.mesh_line, object.mesh, {scale, scale, scale}, file, options, diagnostics));
+    SL_ASSIGN(mesh, mesh_of(*object.mesh_line, object.mesh, {scale, scale, scale}, file, options, diagnostics,
+                            !object.solids.empty()));
   }
   if (!mesh && object.solids.empty())
     return Error{"the object has neither a mesh nor a collider", "name a mesh: obj can.obj", {nowhere, 0, 0}};

@@ -7,6 +7,7 @@
 #include "builders/parts.h"
 #include "files/resources.h"
 #include "files/text.h"
+#include "formats/eyesim/paths.h"
 
 namespace sandlot::formats::eyesim {
 namespace {
@@ -35,7 +36,9 @@ Result<model::Instance> ground_of(const Plan& plan, const std::string& file, con
     visual.material.diffuse = {0.55f, 0.57f, 0.55f, 1};
     visual.material.from_mesh = false;
     if (!plan.texture.empty()) {
-      auto found = find_resource(plan.texture, folder_of(file), options.path, plan.texture_place);
+      const std::string folder = folder_of(file);
+      auto found = find_resource(located(plan.texture, folder, options.path), folder, options.path,
+                                 plan.texture_place);
       if (found) {
         visual.material.texture = std::move(*found);
         visual.material.diffuse = {1, 1, 1, 1};

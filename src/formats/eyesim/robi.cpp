@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "base/math.h"
 #include "base/text.h"
@@ -63,6 +64,7 @@ class Reader {
       : file_(file), options_(options), diagnostics_(diagnostics) {}
 
   Result<Robi> read(const std::vector<Line>& lines) {
+    numberless_psds_ = are_numberless(lines);
     for (const Line& line : lines) SL_TRY(take(line));
     if (lines.empty()) return Error{"the file describes no robot", "begin with: drive DIFFERENTIAL_DRIVE"};
     if (!drive_line_)
@@ -157,7 +159,8 @@ class Reader {
     if (n.size() >= 3) X_RV.p = from_model_space(point(n, 0));
     if (n.size() >= 6) X_RV.q = turned_in_model_space({n[3], n[4], n[5]});
     X_RV.q = X_RV.q * from_mesh_space;
-    SL_ASSIGN(mesh_, mesh_of(line, line.words[1], {1, 1, 1}, file_, options_, diagnostics_));
+    // A robot has a body without it, too.
+    SL_ASSIGN(mesh_, mesh_of(line, line.words[1], {1, 1, 1}, file_, options_, diagnostics_, true));
     if (!mesh_) return {};
     X_RMesh_ = X_RV;
     return {};
@@ -171,6 +174,11 @@ class Reader {
   }
 
   Status axle(const Line& line, std::size_t first, Axle& out) {
+    if (line.words.size() == first + 1) {  // the older form: the offset alone
+      SL_ASSIGN(const double offset, number_at(line, first, "an offset in mm"));
+      out.forward_m = offset * mm;
+      return {};
+    }
     SL_ASSIGN(const double up, number_at(line, first, "a height in mm"));
     SL_ASSIGN(const double forward, number_at(line, first + 1, "an offset in mm"));
     out.up_m = up * mm;
@@ -199,16 +207,33 @@ class Reader {
     return {};
   }
 
+  /// EyeSim 6 has psds without numbers: psd NAME x y z angle. They have as many words as polar ones, psd NAME number angle distance
+  /// offset, but coordinates are no numbers of sensors: they repeat, or are larger than 16.
+  static bool are_numberless(const std::vector<Line>& lines) {
+    std::set<double> numbers;
+    bool any = false;
+    for (const Line& line : lines) {
+      if (lower(line.keyword()) != "psd" || line.words.size() != 6 || is_number(line.words[1])) continue;
+      double number = 0;
+      if (!parse_number(line.words[2], number)) return false;
+      constexpr double most_psds = 16;
+      any = any || number > most_psds || std::floor(number) != number || !numbers.insert(number).second;
+    }
+    return any;
+  }
+
   /// Name and number in either order: psd PSD_FRONT 1 x y z angle, psd 1 PSD_FRONT x y z [tilt] angle [roll]; with three numbers
   /// the older form, in polar coordinates: psd PSD_LEFT 2 angle distance offset.
   Status psd(const Line& line, double range_m) {
     if (line.arguments() < 5)
       return line.error("a " + lower(line.keyword()) + " has a name, a number, x y z in mm and an angle");
     const bool number_first = is_number(line.words[1]);
-    SL_ASSIGN(const double number, number_at(line, number_first ? 1 : 2, "the number of a psd"));
+    const bool numberless = numberless_psds_ && !number_first && line.words.size() == 6;
+    auto number = static_cast<double>(psds_.size() + 1);
+    if (!numberless) { SL_ASSIGN(number, number_at(line, number_first ? 1 : 2, "the number of a psd")); }
     if (std::floor(number) != number || !(std::abs(number) < 1e6))
       return line.error("the number of a psd is a whole number");
-    SL_ASSIGN(const std::vector<double> n, numbers_from(line, 3));
+    SL_ASSIGN(const std::vector<double> n, numbers_from(line, numberless ? 2 : 3));
     Psd out{sanitised(line.words[number_first ? 2 : 1]), static_cast<int>(number), {}, range_m, line.place};
     if (n.size() == 3) {
       const double angle = radians(n[0]);
@@ -250,8 +275,24 @@ class Reader {
     return {};
   }
 
-  /// camera x y z pan tilt [fovx fovy]; numbers above 180 in their place are pixels.
-  Status camera(const Line& line) {
+  /// camera x y z pan tilt [fovx fovy]; numbers above 180 in their place are pixels. SERVO1(-90,+90) in place of an angle is that of
+  /// a servo in the middle of its range.
+  Status camera(Line line) {
+    for (std::string& word : line.words) {
+      const std::size_t open = word.find('('), comma = word.find(','), close = word.find(')');
+      if (!(open < comma && comma < close) || close == std::string::npos) continue;
+      double from = 0, to = 0;
+      const auto angle = [](std::string text, double& out) {
+        if (starts_with(text, "+")) text.erase(0, 1);
+        return parse_number(text, out);
+      };
+      if (!angle(word.substr(open + 1, comma - open - 1), from) ||
+          !angle(word.substr(comma + 1, close - comma - 1), to))
+        continue;
+      diagnostics_.warn(
+          line.error("'" + word.substr(0, open) + "' does not turn the camera, which looks into the middle"));
+      word = number_text((from + to) / 2);
+    }
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 1));
     if (n.size() < 5) return line.error("a camera has x y z in mm, pan and tilt in degrees");
     Camera out;
@@ -506,6 +547,7 @@ class Reader {
   Pose X_RMesh_;
   std::array<Axle, 2> axles_;  ///< that drives, that turns
   std::vector<Psd> psds_;
+  bool numberless_psds_ = false;
   std::vector<Bumper> bumpers_;
   std::optional<double> top_speed_mps_, top_turn_radps_;
   ErrorModels errors_;

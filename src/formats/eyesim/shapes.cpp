@@ -3,6 +3,7 @@
 #include "assets/mesh/mesh.h"
 #include "files/resources.h"
 #include "files/text.h"
+#include "formats/eyesim/paths.h"
 
 namespace sandlot::formats::eyesim {
 
@@ -15,10 +16,11 @@ Quat turned_in_model_space(Vec3 degrees) {
 
 Result<std::shared_ptr<const TriangleMesh>> mesh_of(const Line& line, const std::string& written, Vec3 scale,
                                                     const std::string& file, const ReadOptions& options,
-                                                    Diagnostics& diagnostics) {
-  const auto found = find_resource(written, folder_of(file), options.path, line.place);
+                                                    Diagnostics& diagnostics, bool has_colliders) {
+  const std::string folder = folder_of(file);
+  const auto found = find_resource(located(written, folder, options.path), folder, options.path, line.place);
   if (!found) {
-    if (!options.skip_missing) return found.error();
+    if (!options.skip_missing && !has_colliders) return found.error();
     diagnostics.warn(found.error());
     return std::shared_ptr<const TriangleMesh>();
   }

@@ -14,10 +14,10 @@ Quat turned_in_model_space(Vec3 degrees);
 /// From the frame of a mesh, which is right-handed (x left, y up, z forward).
 constexpr Quat from_mesh_space{0.5, 0.5, 0.5, 0.5};
 
-/// The mesh that a line names. A missing file is a warning where that is allowed.
+/// The mesh that a line names. A missing file is a warning where that is allowed, and where colliders are seen in its place.
 /// @return null: it is left out
 Result<std::shared_ptr<const TriangleMesh>> mesh_of(const Line& line, const std::string& written, Vec3 scale,
                                                     const std::string& file, const ReadOptions& options,
-                                                    Diagnostics& diagnostics);
+                                                    Diagnostics& diagnostics, bool has_colliders);
 
 }  // namespace sandlot::formats::eyesim

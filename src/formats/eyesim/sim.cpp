@@ -12,6 +12,7 @@
 #include "files/text.h"
 #include "formats/eyesim/errors.h"
 #include "formats/eyesim/lines.h"
+#include "formats/eyesim/paths.h"
 #include "formats/eyesim/plan.h"
 #include "formats/eyesim/robi.h"
 
@@ -43,13 +44,6 @@ constexpr double marker_radius_m = 0.05;
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
-/// Paths of Windows, too.
-std::string path_of(const std::string& written) {
-  std::string out = written;
-  std::replace(out.begin(), out.end(), '\\', '/');
-  return out;
 }
 
 struct Type {
@@ -103,6 +97,24 @@ class Reader {
  private:
   // --- reading ---
 
+  /// The file that a word means, with a warning where it is not the one that is written.
+  std::string file_named(const std::string& written, const Line& line) {
+    return taken(written, located(written, folder_of(file_), search_), line);
+  }
+  std::string program_named(const std::string& written, const Line& line) {
+    if (starts_with(written, "controller:")) return written;
+    return taken(written, located_program(written, folder_of(file_), search_), line);
+  }
+  std::string taken(const std::string& written, std::string found, const Line& line) {
+    if (found == path_of(written)) return found;
+    diagnostics_.warn(line.error("'" + written.substr(0, 200) + "' is not there; '" + found + "' is taken"));
+    // Programs keep the folder that they work in: the scenario's.
+    std::error_code failed;
+    const fs::path folder = fs::weakly_canonical(folder_of(file_).empty() ? "." : folder_of(file_), failed);
+    const fs::path relative = fs::path(found).lexically_relative(folder);
+    return failed || relative.empty() || *relative.begin() == ".." ? found : relative.string();
+  }
+
   static bool is_robot_word(const std::string& word) { return word == "robot" || word == "robi"; }
   static bool is_object_word(const std::string& word) { return word == "object" || word == "obj"; }
 
@@ -114,10 +126,12 @@ class Reader {
     const std::string_view end = robot ? ".robi" : ".esobj";
     std::size_t at = 1;
     while (at < line.words.size() && !ends_with(lower(line.words[at]), end)) ++at;
-    if (at >= line.words.size())
+    if (at >= line.words.size()) {
+      if (!robot && is_classic_object(line)) return {};
       return line.error("'" + word + "' names no " + std::string(robot ? ".robi" : ".esObj") + " file",
                         "write " + word + (robot ? " scout.robi" : " post.esObj"));
-    Type type{"", path_of(line.words[at]), line.place, robot, {}};
+    }
+    Type type{"", file_named(line.words[at], line), line.place, robot, {}};
     type.name = name_in(type, folder_of(file_), search_);
     if (!names_.insert(type.name).second) {
       diagnostics_.warn(line.error("'" + type.name + "' is loaded a second time; the first one counts"));
@@ -131,10 +145,10 @@ class Reader {
     if (line.arguments() < 1) return line.error("'world' names no file", "write world small.maz");
     if (world_) return line.error("there are two worlds", "the other one is at " + to_string(world_->place));
     world_ = line;
-    const std::string written = path_of(line.words[1]);
-    const auto found = find_resource(written, folder_of(file_), search_, line.place);
+    world_->words[1] = file_named(line.words[1], line);
+    const auto found = find_resource(world_->words[1], folder_of(file_), search_, line.place);
     if (!found) return {};  // loading tells
-    const std::string extension = lower(fs::path(written).extension().string());
+    const std::string extension = lower(fs::path(*found).extension().string());
     const bool maze = extension == ".maz" || extension == ".maze";
     if (!maze && extension != ".wld" && extension != ".world") return {};
     SL_ASSIGN(const std::string text, read_text_file(*found, most_bytes));
@@ -147,6 +161,7 @@ class Reader {
 
   Status place(const Line& line) {
     const std::string word = lower(line.keyword());
+    if (is_object_word(word) && is_classic_object(line)) return classic_object(line);
     if (word == "world" || word == "maze" || is_object_word(word)) return {};
     if (word == "settings") return settings(line);
     if (word == "marker") return marker(line);
@@ -246,21 +261,45 @@ class Reader {
     return {};
   }
 
-  /// robot|robi [name] FILE.robi PROGRAM [model]: the older form, placed by the line `position` behind it. Without a program
-  /// the line only loads the type.
+  /// object x y phi friction MODEL: the older form of an object, whose type is the name of its model.
+  static bool is_classic_object(const Line& line) {
+    return line.arguments() == 5 && is_number(line.words[1]) && is_number(line.words[2]) &&
+           is_number(line.words[3]) && is_number(line.words[4]);
+  }
+
+  Status classic_object(const Line& line) {
+    Line short_form = line;
+    short_form.words = {fs::path(path_of(line.words[5])).stem().string(), line.words[1], line.words[2],
+                        line.words[3]};
+    const Type* const type = type_of(short_form);
+    return type && !type->is_robot ? object(short_form, *type) : unknown(short_form);
+  }
+
+  /// robot|robi [name] FILE.robi PROGRAM [model] [x y phi]: the older form, placed by the numbers in its end or by the line
+  /// `position` behind it. Without a program the line only loads the type.
   Status classic_robot(const Line& line) {
     std::optional<std::string> program;
+    std::optional<Spot> spot;
     for (std::size_t i = 1; i < line.words.size(); ++i) {
       const std::string extension = lower(fs::path(line.words[i]).extension().string());
-      if (extension == ".so" || extension == ".x" || extension == ".c" || extension == ".py")
-        program = path_of(line.words[i]);
+      const bool numbers = i + 3 == line.words.size() && is_number(line.words[i]) &&
+                           is_number(line.words[i + 1]) && is_number(line.words[i + 2]);
+      if (numbers && program) {
+        Line end = line;
+        end.words.erase(end.words.begin() + 1, end.words.begin() + static_cast<std::ptrdiff_t>(i));
+        SL_ASSIGN(spot, spot_of(end));
+        break;
+      }
+      if (extension == ".so" || extension == ".dll" || extension == ".x" || extension == ".c" ||
+          extension == ".cpp" || extension == ".py")
+        program = program_named(line.words[i], line);
       else if (extension == ".ms3d" || extension == ".obj")
         diagnostics_.warn(line.error("the model of a robot is named in its .robi file; this one is left out",
                                      "write in the .robi file: model " + line.words[i].substr(0, 60)));
     }
     if (!program) return {};
     for (const Type& type : types_)
-      if (type.place.line == line.place.line) placed_.push_back({line, &type, program, {}, {}});
+      if (type.place.line == line.place.line) placed_.push_back({line, &type, program, spot, {}});
     return {};
   }
 
@@ -278,7 +317,7 @@ class Reader {
         ++next;
       }
     }
-    if (line.words.size() > next) out.program = path_of(line.words[next++]);
+    if (line.words.size() > next) out.program = program_named(line.words[next++], line);
     if (line.words.size() > next)
       diagnostics_.warn(line.error("a robot has its place and a program; what follows is left out"));
     placed_.push_back(std::move(out));
@@ -354,6 +393,8 @@ class Reader {
     }
     out.set("kind", Node::scalar("robios", place));
     out.set("program", Node::scalar(program, place));
+    // Each program of EyeSim may call SIM functions.
+    out.set("supervisor", Node::scalar("true", place));
     if (robi) add_numbers(*robi, place, out);
     return out;
   }
@@ -386,7 +427,7 @@ class Reader {
     Node out = Node::map(place);
     out.set("version", Node::scalar("1", place));
     out.set("name", Node::scalar(fs::path(file_).stem().string(), place));
-    if (world_) out.set("world", Node::scalar(path_of(world_->words[1]), world_->place));
+    if (world_) out.set("world", Node::scalar(world_->words[1], world_->place));
     Node time = Node::map(place);
     time.set("step", step_.is_null() ? Node::scalar("50 ms", place) : step_);
     time.set("substeps", Node::scalar(substeps, place));

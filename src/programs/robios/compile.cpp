@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr int compile_wall_s = 60;
 constexpr std::size_t most_lines = 30;
 constexpr const char* team_folder = "/team/";          // as sandbox.h shows the folder
+constexpr const char* temporary_files = "/tmp/files";  // gone with the process
 constexpr const char* output_inside = "/run/sandlot";  // and the folder that can be written
 
 std::string contents(const fs::path& file) {
@@ -133,6 +134,51 @@ std::vector<std::string> dependencies(std::string rule, const std::string& folde
   return out;
 }
 
+/// Files that a source includes by their names in quotation marks, and that those include; where they are there.
+std::vector<fs::path> included_by(const fs::path& source) {
+  constexpr std::size_t most_files = 200, most_bytes = std::size_t{1} << 20;
+  std::vector<fs::path> out{source};
+  std::error_code failed;
+  for (std::size_t i = 0; i < out.size() && out.size() < most_files; ++i) {
+    if (fs::file_size(out[i], failed) > most_bytes || failed) continue;
+    const std::string text = contents(out[i]);
+    for (std::string_view line : split(text, '\n')) {
+      line = trim(line);
+      if (!starts_with(line, "#")) continue;
+      line = trim(line.substr(1));
+      const std::size_t open = line.find('"');
+      if (!starts_with(line, "include") || open == std::string_view::npos) continue;
+      const std::size_t close = line.find('"', open + 1);
+      if (close == std::string_view::npos) continue;
+      const fs::path named = out[i].parent_path() / line.substr(open + 1, close - open - 1);
+      if (!fs::is_regular_file(named, failed)) continue;
+      const fs::path file = fs::canonical(named, failed);
+      if (!failed && std::find(out.begin(), out.end(), file) == out.end()) out.push_back(file);
+    }
+  }
+  out.erase(out.begin());
+  return out;
+}
+
+/// Lets the compiler see files above the program's folder that it includes, up to three folders up.
+void show_above(const std::vector<fs::path>& files, ProgramLaunch& compiler) {
+  constexpr int most_above = 3;
+  const fs::path folder = compiler.folder;
+  fs::path top = folder;
+  for (int i = 0; i < most_above && top.has_relative_path(); ++i) {
+    top = top.parent_path();
+    for (const fs::path& each : files)
+      if (each.lexically_relative(top).native().rfind("..", 0) != 0 &&
+          each.lexically_relative(folder).native().rfind("..", 0) == 0 && top.has_relative_path()) {
+        const std::string below = folder.lexically_relative(top).string();
+        if (below.size() > compiler.below.size()) compiler.below = below;
+        if (std::find(compiler.read_files.begin(), compiler.read_files.end(), each.string()) ==
+            compiler.read_files.end())
+          compiler.read_files.push_back(each.string());
+      }
+  }
+}
+
 /// Whether the kept program was made of the same texts.
 bool is_current(const fs::path& kept, const std::string& key) {
   if (contents(kept / "key") != key) return false;
@@ -201,6 +247,7 @@ Result<fs::path> compile(const Source& source, const fs::path& file, const std::
   if (is_c)
     add({"-std=gnu17", "-fcommon", "-Wno-implicit-function-declaration", "-Wno-implicit-int",
          "-Wno-int-conversion", "-Wno-incompatible-pointer-types", "-Wno-return-type", "-fpermissive"});
+  else add({"-std=gnu++20"});
   add({"-I" + library.headers, "-MMD", "-MF", out + "/includes", "-o", out + "/program", shown});
   program.command.insert(program.command.end(), source.flags.begin(), source.flags.end());
   add({"-L" + library.folder, "-Wl,--no-as-needed", "-lrobios" + std::to_string(api), "-lm"});
@@ -232,6 +279,29 @@ Result<fs::path> compile(const Source& source, const fs::path& file, const std::
   return kept;
 }
 
+/// The folder for what the program writes; without one it has a temporary one in the sandbox.
+Status open_output(const std::string& output, ProgramLaunch& out) {
+  if (output.empty()) {
+    if (out.budget.sandbox) out.environment.push_back(std::string("SANDLOT_ROBIOS_FILES=") + temporary_files);
+    return {};
+  }
+  const fs::path named = fs::path(out.folder) / output;
+  const Error refused{"the program cannot write into its output folder '" + named.string() + "'",
+                      "output: names a folder that is made when it is not there"};
+  std::error_code failed;
+  const bool made = fs::create_directories(named, failed);
+  out.write_folder = fs::canonical(named, failed).string();
+  struct stat info {};
+  if (failed || ::stat(out.write_folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)) return refused;
+  if (const auto user = program_user()) {
+    if (made && ::chown(out.write_folder.c_str(), user->user, user->group) != 0) return refused;
+    if (!made && info.st_uid != user->user && (info.st_mode & S_IWOTH) == 0) return refused;
+  }
+  out.environment.push_back("SANDLOT_ROBIOS_FILES=" +
+                            (out.budget.sandbox ? std::string(written_inside) : out.write_folder));
+  return {};
+}
+
 }  // namespace
 
 int api_of(std::string_view text) {
@@ -251,6 +321,7 @@ Result<ProgramLaunch> prepare(const Source& source) {
   if (out.folder.empty())
     return Error{"there is no folder '" + source.folder + "' for the program to work in",
                  "folder: is relative to the scenario's file; by default it is that file's own"};
+  SL_TRY(open_output(source.output, out));
   const fs::path named = fs::path(out.folder) / source.program;
   if (!fs::is_regular_file(named, none))
     return Error{"there is no program '" + source.program + "' in '" + out.folder + "'",
@@ -263,7 +334,13 @@ Result<ProgramLaunch> prepare(const Source& source) {
   const std::string shown = within ? "./" + relative.string() : file.string();
 
   const Language language = language_of(file);
-  const int api = source.api != 0 ? source.api : language == Language::none ? 7 : api_of(contents(file));
+  const std::vector<fs::path> included = language == Language::none ? std::vector<fs::path>()
+                                                                    : included_by(file);
+  int api = source.api;
+  if (api == 0) {
+    api = language == Language::none ? 7 : api_of(contents(file));
+    for (const fs::path& each : included) api = std::min(api, api_of(contents(each)));
+  }
   const Library library = find_library(api);
   if (!library.folder.empty()) {
     out.read_folders.push_back(library.folder);
@@ -275,6 +352,7 @@ Result<ProgramLaunch> prepare(const Source& source) {
       return Error{missing, "install it whole, or build the target robios" + std::to_string(api)};
     ProgramLaunch compiler = out;
     compiler.read_folders.push_back(library.headers);
+    show_above(included, compiler);
     SL_ASSIGN(const fs::path made,
               compile(source, file, within ? relative.string() : shown, library, api, compiler));
     out.read_folders.push_back(made.string());

@@ -21,6 +21,7 @@ struct Source {
   std::string folder;
   int api = 0;  ///< 6 or 7; 0: by the text of the program
   std::vector<std::string> flags;
+  std::string output;  ///< folder for files that it writes; "": they go with its process
   Budget budget;
 };
 

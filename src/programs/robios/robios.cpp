@@ -1,6 +1,7 @@
 #include "programs/robios/robios.h"
 
 #include <poll.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
@@ -217,7 +218,7 @@ Program::Resumed Robios::ended(std::uint8_t how, Command& cmd) {
 
 Status Robios::connect() {
   SL_ASSIGN(ProgramLaunch program,
-            prepare({spec_.program, spec_.folder, spec_.api, spec_.flags, spec_.budget}));
+            prepare({spec_.program, spec_.folder, spec_.api, spec_.flags, spec_.output, spec_.budget}));
   SL_ASSIGN(memory_, SharedMemory::make());
   devices_.describe(spec_, state_, memory_->memory().robot);
   program.inherited.push_back(memory_->descriptor());
@@ -226,7 +227,7 @@ Status Robios::connect() {
   SL_ASSIGN(Launch launch, launch_of(program));
   launch.limits->niceness = 0;  // the run waits for it
   SL_ASSIGN(child_, Child::start(launch));
-  waiting_ = halted_ = false;
+  waiting_ = halted_ = answered_ = false;
   begins_anew_ = state_.turns > 0 && state_.running == 0;
   deadline_ = Clock::now() + 1s;
   sent_pictures_ = 0;
@@ -241,6 +242,7 @@ void Robios::adopt(Outside& before) {
   child_ = std::exchange(old.child_, std::nullopt);
   waiting_ = old.waiting_;
   halted_ = old.halted_;
+  answered_ = old.answered_;
   begins_anew_ = old.begins_anew_;
   deadline_ = old.deadline_;
   begun_ = old.begun_;
@@ -380,9 +382,15 @@ std::optional<OutsideAnswer> Robios::receive() {
     if (!status) return std::nullopt;
     if (memory_->has_turn()) return receive();  // its last words came in between
     move_output();
-    return leave(text_of_exit(*status));
+    std::string why = text_of_exit(*status);
+    // Variables of a program that do not fit make the kernel kill it before its first instruction.
+    if (!answered_ && last_words_.empty() && (WIFSIGNALED(*status) || WEXITSTATUS(*status) > 128))
+      why += " before its first call of RoBIOS: its variables may take more than the " +
+             number_text(spec_.budget.memory_bytes / 1e6) + " MB that it may use; memory: 2 GB allows more";
+    return leave(std::move(why));
   }
   waiting_ = false;
+  answered_ = true;
   OutsideAnswer out{OutsideAnswer::Kind::message, memory_->orders()};
   request_moves(out.bytes);
   move_output();

@@ -95,7 +95,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   // The process; none of it is State.
   std::optional<SharedMemory> memory_;
   std::optional<Child> child_;
-  bool waiting_ = false, halted_ = false;
+  bool waiting_ = false, halted_ = false, answered_ = false;
   bool begins_anew_ = false;  ///< where another process had got to a time or event that it waits for
   Clock::time_point deadline_, begun_, measured_;
   std::chrono::microseconds slice_{};

@@ -134,6 +134,8 @@ void RobotDevices::find_drive(const Description& robot, const Spec& spec) {
                 : kind == "mecanum_drive" || kind == "omni_drive" || kind == "swerve_drive"
                     ? Drive::omni
                     : Drive::differential;
+  max_steering_rad_ = number(drive->device, {"max_steering_angle"}, 0.6);
+  wheelbase_m_ = number(drive->device, {"wheelbase"}, 0);
   if (kind == "mecanum_drive") wheels_ = index_of<msg::JointState>(robot.actuators, drive->device);
   const double radius_m = number(drive->device, {"wheel_radius"}, 0.025);
   wheel_diameter_m_ = spec.wheel_diameter_m.value_or(2 * radius_m);
@@ -168,8 +170,11 @@ void RobotDevices::find_motors(const Description& robot) {
 std::size_t RobotDevices::drive_motors() const {
   if (!motors_.empty()) return 0;
   if (drive_kind_ == Drive::differential) return 2;
+  if (drive_kind_ == Drive::ackermann) return 1;
   return wheels_ ? 4 : 0;
 }
+
+bool RobotDevices::steers() const { return drive_kind_ == Drive::ackermann && motors_.empty(); }
 
 void RobotDevices::describe(const Spec& spec, const State& state, sandlot::robios::Robot& out) const {
   set_name(out.name, state.number >= 1 && state.number <= state.robots.size() ? state.robots[state.number - 1]
@@ -179,7 +184,8 @@ void RobotDevices::describe(const Spec& spec, const State& state, sandlot::robio
   out.drive = drive_kind_;
   const std::size_t by_drive = drive_motors();
   out.motors = static_cast<std::uint32_t>(by_drive + motors_.size());
-  out.servos = static_cast<std::uint32_t>(servos_.size());
+  const std::size_t steering = steers() ? 1 : 0;
+  out.servos = static_cast<std::uint32_t>(steering + servos_.size());
   out.distances = static_cast<std::uint32_t>(distances_.size());
   out.bumpers = static_cast<std::uint32_t>(bumpers_.size());
   out.ticks_per_turn = ticks_per_turn_;
@@ -209,9 +215,12 @@ void RobotDevices::describe(const Spec& spec, const State& state, sandlot::robio
   }
   static constexpr const char* two[] = {"left", "right"};
   static constexpr const char* four[] = {"frontleft", "frontright", "backleft", "backright"};
-  for (std::size_t i = 0; i < by_drive; ++i) set_name(out.motor_names[i], by_drive == 2 ? two[i] : four[i]);
+  for (std::size_t i = 0; i < by_drive; ++i)
+    set_name(out.motor_names[i], by_drive == 1 ? "drive" : by_drive == 2 ? two[i] : four[i]);
   for (std::size_t i = 0; i < motors_.size(); ++i) set_name(out.motor_names[i], motors_[i].name);
-  for (std::size_t i = 0; i < servos_.size(); ++i) set_name(out.servo_names[i], servos_[i].name);
+  if (steers()) set_name(out.servo_names[0], "steering");
+  for (std::size_t i = 0; i < servos_.size() && steering + i < most_servos; ++i)
+    set_name(out.servo_names[steering + i], servos_[i].name);
   for (std::size_t i = 0; i < bumpers_.size(); ++i) set_name(out.bumper_names[i], bumpers_[i].name);
 }
 
@@ -352,6 +361,13 @@ bool RobotDevices::order_speed(double v_mps, double w_radps, Command& cmd) const
   return true;
 }
 
+/// Speed of the motor, on the curve of the steering's servo: its 0 is the left end.
+bool RobotDevices::order_car(const State& state, Command& cmd) const {
+  const double steering_rad = state.wheels[1] * max_steering_rad_;
+  const double wheelbase_m = wheelbase_m_ > 0 ? wheelbase_m_ : 1.5 * track_m_;
+  return order_speed(state.wheels[0], state.wheels[0] * math::tan(steering_rad) / wheelbase_m, cmd);
+}
+
 bool RobotDevices::order_motor(const MotorOrder& order, State& state, Command& cmd) const {
   if (order.number < motors_.size()) {
     const Actor& motor = motors_[order.number];
@@ -364,6 +380,7 @@ bool RobotDevices::order_motor(const MotorOrder& order, State& state, Command& c
   if (order.number >= drive_motors()) return false;
   state.wheels[order.number] = order.mode == 1 ? order.value * wheel_diameter_m_ / 2
                                                : std::clamp(order.value, -1.0, 1.0) * max_speed_mps_;
+  if (steers()) return order_car(state, cmd);
   if (drive_motors() == 4) {
     msg::JointState wheels;
     for (const double speed_mps : state.wheels)
@@ -404,10 +421,15 @@ bool RobotDevices::carry_out(const Order& order, State& state, Command& cmd) con
   }
   if (const auto* motor = std::get_if<MotorOrder>(&order)) return order_motor(*motor, state, cmd);
   if (const auto* servo = std::get_if<ServoOrder>(&order)) {
-    if (servo->number >= servos_.size()) return false;
+    const std::size_t steering = steers() ? 1 : 0;
+    if (servo->number >= steering + servos_.size()) return false;
+    if (servo->number < steering) {
+      state.wheels[1] = std::clamp(1 - 2 * servo->value, -1.0, 1.0);
+      return order_car(state, cmd);
+    }
     msg::Float64 command;
     command.data = (servo->value - 0.5) * servo_range_rad_;
-    cmd.set_bytes(servos_[servo->number].index, command_bytes(command));
+    cmd.set_bytes(servos_[servo->number - steering].index, command_bytes(command));
     return true;
   }
   if (const auto* pixels = std::get_if<ScreenPixels>(&order)) {

@@ -4,9 +4,9 @@
 ///   drive       first device that takes Twist; its odometry, and DriveManeuver and DriveProgress if it has them
 ///   distances   Range, one device each; lidar: the first LaserScan; camera: the first colour Image
 ///   encoders    devices with `ticks_per_turn`; bumpers: ContactsState; compass: Imu, or MagneticField (north along y)
-///   motors      devices that take Float64 at another level than `position`; without any, the two sides of a differential drive or the
-///               four wheels of a Mecanum drive
-///   servos      devices that take Float64 at level `position`
+///   motors      devices that take Float64 at another level than `position`; without any, the two sides of a differential drive, the
+///               four wheels of a Mecanum drive, or the one motor of a car
+///   servos      devices that take Float64 at level `position`; before them the steering of a car without motors of its own
 ///   battery, radio, keys, screen, speaker   by their messages
 #include <optional>
 
@@ -61,13 +61,16 @@ class RobotDevices {
   void find_motors(const Description& robot);
   /// Motors that are wheels of the drive.
   std::size_t drive_motors() const;
+  /// Whether motor 1 and servo 1 are those of a car: state.wheels[0] is its speed, state.wheels[1] the steering, 1 on the left end.
+  bool steers() const;
+  bool order_car(const State& state, Command& cmd) const;
   bool order_speed(double v_mps, double w_radps, Command& cmd) const;
   bool order_motor(const sandlot::robios::MotorOrder& order, State& state, Command& cmd) const;
 
   std::vector<DeviceFacts> facts_;
   sandlot::robios::Drive drive_kind_ = sandlot::robios::Drive::none;
   double wheel_diameter_m_ = 0, track_m_ = 0, max_speed_mps_ = 0, max_turning_rate_radps_ = 0,
-         servo_range_rad_ = 0;
+         servo_range_rad_ = 0, max_steering_rad_ = 0, wheelbase_m_ = 0;
   std::uint32_t ticks_per_turn_ = 0, screen_width_ = 0, screen_height_ = 0;
   Index twist_, wheels_, maneuver_, odometry_, progress_, lidar_, camera_, imu_, magnetometer_, battery_,
       keys_, screen_, sound_, speaker_, packet_, reception_;

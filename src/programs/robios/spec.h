@@ -19,7 +19,7 @@ inline std::span<const EnumName<AfterRestore>> enum_names(AfterRestore) {
 }
 
 struct Spec {
-  std::string program, folder;
+  std::string program, folder, output;
   int api = 0;
   std::vector<std::string> flags;
   double slot_s = 0.05;
@@ -44,6 +44,11 @@ struct Spec {
             "scenario's file.",
             0, 0, Field::none, 4096},
         s.folder);
+    visit(Field{"output", "",
+                "Folder for files that the program writes, relative to `folder`; none: they are gone when it "
+                "ends.",
+                0, 0, Field::none, 4096},
+          s.output);
     visit(Field{"api", "1", "Generation of RoBIOS, 6 or 7; 0: by the text of the program, else 7.", 0, 7},
           s.api);
     visit(Field{"flags", "", "Further words for the compiler, such as -DBLUE or a second source.", 0, 0,
