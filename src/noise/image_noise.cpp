@@ -164,9 +164,27 @@ void ImageNoise::reset(const ImageNoiseSpec& spec, const Stream& device) {
     keys_.push_back(hash_combine(hash64(each.name()), before[each.stage.index()]++));
 }
 
+namespace {
+
+/// Whether a stage changes nothing as it is set now. A chain of those costs nothing, so that it may be there for a slider.
+template <class Stage>
+bool is_idle(const Stage& stage) {
+  using namespace image_stage;
+  if constexpr (std::is_same_v<Stage, Gaussian>) return stage.std == 0;
+  else if constexpr (std::is_same_v<Stage, SaltAndPepper>) return stage.salt == 0 && stage.pepper == 0;
+  else if constexpr (std::is_same_v<Stage, HundredsAndThousands>) return stage.rate == 0;
+  else return false;
+}
+
+}  // namespace
+
 void ImageNoise::corrupt(const ImageNoiseSpec& spec, std::span<std::uint8_t> pixels, int width, int height,
                          int channels, const Stream& random, double errors, int first_row) const {
-  if (spec.stages.empty() || errors == 0 || pixels.empty()) return;
+  if (errors == 0 || pixels.empty()) return;
+  if (std::all_of(spec.stages.begin(), spec.stages.end(), [](const ImageStageSpec& each) {
+        return std::visit([](const auto& stage) { return is_idle(stage); }, each.stage);
+      }))
+    return;
   SL_CHECK(keys_.size() == spec.stages.size() && keys_.size() <= max_stages && device_);
   SL_CHECK(width > 0 && channels > 0 && channels <= most_channels);
   const std::size_t row_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);

@@ -1,5 +1,7 @@
 #include "formats/eyesim/errors.h"
 
+#include <algorithm>
+
 #include "base/text.h"
 
 namespace sandlot::formats::eyesim {
@@ -89,6 +91,30 @@ Node ErrorModels::keys_for(const std::string& kind) const {
     Node errors = Node::map(place);
     if (v_std_mps > 0) errors.set("linear", one_stage(place, v_std_mps));
     if (omega_std_radps > 0) errors.set("angular", one_stage(place, omega_std_radps));
+    out.set("command_errors", std::move(errors));
+  }
+  return out.entries().empty() ? Node() : out;
+}
+
+Node ErrorModels::keys_to_tune(const std::string& kind, const Place& at) const {
+  const Place& here = place.file ? place : at;
+  Node out = Node::map(here);
+  if (kind == "range_finder") {
+    out.set("noise", one_stage(here, psd_std_m));
+  } else if (kind == "camera") {
+    Node stages = camera.is_null() ? Node::sequence(here) : camera;
+    const auto has = [&](const char* name) {
+      return std::any_of(stages.items().begin(), stages.items().end(),
+                         [&](const Node& each) { return each.find(name) != nullptr; });
+    };
+    if (!has("gaussian")) stages.push(stage(here, "gaussian", {{"std", 0}}));
+    if (!has("salt_and_pepper")) stages.push(stage(here, "salt_and_pepper", {{"salt", 0}, {"pepper", 0}}));
+    if (!has("hundreds_and_thousands")) stages.push(stage(here, "hundreds_and_thousands", {{"rate", 0}}));
+    out.set("noise", std::move(stages));
+  } else if (kind.size() > 6 && kind.substr(kind.size() - 6) == "_drive") {
+    Node errors = Node::map(here);
+    errors.set("linear", one_stage(here, v_std_mps));
+    errors.set("angular", one_stage(here, omega_std_radps));
     out.set("command_errors", std::move(errors));
   }
   return out.entries().empty() ? Node() : out;

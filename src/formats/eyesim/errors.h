@@ -24,11 +24,10 @@ struct ErrorModels {
 
   /// Takes a line `error ...`.
   Status take(const Line& line);
-  bool of_devices() const {
-    return psd_std_m > 0 || v_std_mps > 0 || omega_std_radps > 0 || !camera.is_null();
-  }
   /// What a device of this kind gets, as keys; null: nothing.
   Node keys_for(const std::string& device_kind) const;
+  /// The same with a stage of strength 0 for each model without a line, so that the page has sliders for all of them.
+  Node keys_to_tune(const std::string& device_kind, const Place& at) const;
 };
 
 }  // namespace sandlot::formats::eyesim

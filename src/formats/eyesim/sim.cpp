@@ -413,7 +413,9 @@ class Reader {
     // Pictures are most of what such a robot costs: a program of RoBIOS gets those that it asks for.
     const bool asks = placed.program && !starts_with(*placed.program, own_controller);
     for (const model::DeviceDecl& device : placed.type->robi->instance.devices) {
-      Node keys = errors_.of_devices() ? errors_.keys_for(device.kind) : Node();
+      // What the robot's own file says of its errors stays, unless this one says something.
+      const bool own = device.config.find("noise") || device.config.find("command_errors");
+      Node keys = own ? errors_.keys_for(device.kind) : errors_.keys_to_tune(device.kind, place);
       if (asks && device.kind == "camera") {
         if (keys.is_null()) keys = Node::map(place);
         keys.set("on_request", Node::scalar("true", place));

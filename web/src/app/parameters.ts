@@ -55,13 +55,16 @@ export class Parameters {
 
   /** Null when the value holds now, else why not. */
   async set(name: string, value: ParameterValue): Promise<string | null> {
-    const parameter: Parameter = {name, value};
-    if (typeof value === 'number') parameter.type = 'float64';
-    if (Array.isArray(value) && typeof value[0] === 'number') parameter.type = 'float64_array';
+    return this.setAll([name], value);
+  }
+
+  /** Sets one value at several places: in one request, and so in one tick. */
+  async setAll(names: string[], value: ParameterValue): Promise<string | null> {
+    const type = typeof value === 'number' ? 'float64' : Array.isArray(value) && typeof value[0] === 'number' ? 'float64_array' : undefined;
     try {
-      const answer = await this.client.setParameters([parameter]);
+      const answer = await this.client.setParameters(names.map((name): Parameter => (type ? {name, value, type} : {name, value})));
       if (answer.reasons.length === 0) return null;
-      return answer.reasons.find((reason) => reason.includes(name)) ?? answer.reasons[answer.reasons.length - 1] ?? null;
+      return answer.reasons.find((reason) => names.some((name) => reason.includes(name))) ?? answer.reasons[answer.reasons.length - 1] ?? null;
     } catch (error) {
       return error instanceof Error ? error.message : String(error);
     }

@@ -15,7 +15,7 @@ export class FieldRow {
   private reason: string | null = null;
   private shown: ParameterValue = undefined;
 
-  constructor(private readonly view: FieldView, private readonly parameters: Parameters) {
+  constructor(private readonly view: FieldView, private readonly parameters: Pick<Parameters, 'values' | 'set'>) {
     const label = {'aria-label': `${view.label}${view.unit ? `, ${view.unit}` : ''}`, testid: `param-${view.address}`};
     if (view.control === 'switch') {
       this.input = h('input', {type: 'checkbox', class: 'switch', role: 'switch', ...label});

@@ -7,10 +7,11 @@ import type {Device, Instance, Kind, Part as WorldPart} from '../protocol';
 import {clear, h, setReason} from './dom';
 import {DriveSection} from './drive_section';
 import {FieldRow} from './field_row';
+import {ErrorModels} from './error_models';
 import {errorsView, FieldView, fieldViews} from './forms';
 import {icon} from './icons';
 import {heading, PoseSection} from './pose_section';
-import {Readings} from './readings';
+import {Listed, Readings} from './readings';
 import {teamColor} from './teams';
 import {hasPanel, RobotPanelSection} from './robot_panel';
 import type {Teleop} from './teleop';
@@ -83,6 +84,7 @@ export class Inspector implements Panel {
       this.parts.push(section);
       for (const {title, parts} of worldParts(store.world)) this.list(title, title === 'Teams' ? 'brain' : title === 'Media' ? 'waves' : 'flag', parts.map((p) => partRow(p, title === 'Teams' ? p.path : p.name)));
       this.form([errorsView('sim', 'Factor on the errors of all devices of all robots')], 'Errors');
+      this.parts.push(new ErrorModels(this.context, store.world, store.world.instances.filter((each) => each.robot), true));
       for (const part of this.parts) this.body.append(part.element);
       return;
     }
@@ -149,6 +151,7 @@ export class Inspector implements Panel {
     if (hasPanel(instance)) this.parts.push(new RobotPanelSection(this.context, instance));
     if (instance.robot) this.parts.push(new DriveSection(this.context, this.teleop, instance));
     if ((instance.devices ?? []).length > 0) this.form([errorsView(instance.name, 'Factor on the errors of all its devices')], 'Errors');
+    if (world && (instance.devices ?? []).length > 0) this.parts.push(new ErrorModels(this.context, world, [instance], false));
     this.list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
     this.list('Controllers', 'brain', (instance.controllers ?? []).map((c) => partRow(c, c.name)));
     this.list('Team', 'brain', (world?.teams ?? []).find((team) => team.name === instance.team)?.programs.map((p) => partRow(p, p.path)) ?? []);
@@ -158,8 +161,12 @@ export class Inspector implements Panel {
     const kind = this.context.store.world?.kinds[device.kind];
     if (kind && kind.levels?.length > 0) this.levels(device, kind.levels);
     const views = fieldViews(device.path, kind?.fields ?? []);
-    this.parts.push(new Readings(this.context, device.path, new Set(views.map((v) => v.address)), (device.topics ?? []).map((t) => t.name)));
-    this.form(views);
+    const listed = this.context.steer.list<Listed[]>(word(device.path));
+    this.parts.push(new Readings(this.context, device.path, new Set(views.map((v) => v.address)), (device.topics ?? []).map((t) => t.name), listed));
+    this.form(views, 'Parameters', listed);
+    const {world} = this.context.store;
+    const owner = world?.instances.find((each) => (each.devices ?? []).some((d) => d.path === device.path));
+    if (world && owner) this.parts.push(new ErrorModels(this.context, world, [{...owner, devices: [device]}], false));
   }
 
   private kindOf(part: WorldPart): Kind | undefined {
@@ -196,7 +203,8 @@ export class Inspector implements Panel {
     this.parts.push(part);
   }
 
-  private form(views: FieldView[], title = 'Parameters'): void {
+  /** @param actual  values of what is fixed, where they are known; else the defaults are shown */
+  private form(views: FieldView[], title = 'Parameters', actual: Promise<Listed[] | null> | null = null): void {
     const {parameters, store} = this.context;
     if (views.length === 0) return;
     const ordered = [...views].sort((a, b) => Number(b.tunable) - Number(a.tunable));
@@ -228,6 +236,17 @@ export class Inspector implements Panel {
     const show = (names: Iterable<string>): void => {
       for (const name of names) rows.get(name)?.show(parameters.values.get(name));
     };
+    void actual?.then((listed) => {
+      const values = new Map((Array.isArray(listed) ? listed : []).map((entry) => [entry.address, entry.value]));
+      for (const view of fixed) {
+        const dot = view.address.indexOf('.');
+        const value = values.get(`${view.address.slice(0, dot)}.parameter${view.address.slice(dot)}`) ?? values.get(view.address);
+        if (value === undefined || value === null) continue;
+        if (view.control === 'number') rows.get(view.address)?.show(value);
+        else if (view.control === 'switch') rows.get(view.address)?.show(value !== 0);
+        else if (view.control === 'choice') rows.get(view.address)?.show(view.choices[value] ?? String(value));
+      }
+    });
     const stopChange = parameters.onChange.on(show);
     const stopLook = parameters.look(tunable.map((v) => v.address));
     show([...rows.keys()].filter((name) => parameters.values.has(name)));

@@ -15,6 +15,9 @@ export interface Listed {
   count: number;
 }
 
+/** A parameter of a stage of noise, which has a slider of its own. */
+const isStage = (address: string): boolean => /\.stages\[\d+\]\.\w+\.\w+$/.test(address);
+
 const rate_hz = 5;
 const page_rows = 40;
 const watched_max = 40;  // the server allows 200 for each client
@@ -39,14 +42,15 @@ export class Readings {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private closed = false;
 
-  constructor(private readonly context: Context, private readonly path: string, private readonly parameters: ReadonlySet<string>, private readonly topics: string[]) {
+  constructor(private readonly context: Context, private readonly path: string, private readonly parameters: ReadonlySet<string>, private readonly topics: string[],
+    private readonly listed: Promise<Listed[] | null> = context.steer.list<Listed[]>(word(path))) {
     void this.load();
   }
 
   private async load(): Promise<void> {
-    const listed = await this.context.steer.list<Listed[]>(word(this.path));
+    const listed = await this.listed;
     if (this.closed) return;
-    const entries = (Array.isArray(listed) ? listed : []).filter((e) => typeof e?.address === 'string' && !this.parameters.has(e.address));
+    const entries = (Array.isArray(listed) ? listed : []).filter((e) => typeof e?.address === 'string' && !this.parameters.has(e.address) && !isStage(e.address));
     clear(this.body);
     if (entries.length === 0) this.body.append(h('div', {class: 'none faint'}, 'No readings'));
     this.more(entries, 0);
