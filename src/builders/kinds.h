@@ -11,6 +11,9 @@
   builder(slider_wheelie)         \
   builder(armband)                \
   builder(hexapod)                \
+  builder(dog)                    \
+  builder(humanoid)               \
+  builder(wheel_chain)            \
   builder(diff_robot)             \
   builder(blade_robot)            \
   builder(skid_robot)             \
@@ -23,6 +26,7 @@
   builder(square_playground)      \
   builder(octagon_playground)     \
   builder(terrain)                \
+  builder(basin)                  \
   builder(box_pile)               \
   builder(block)                  \
   builder(soccer_goal)            \

@@ -123,6 +123,14 @@ void add_senses(model::Model& model) {
   add_device(model, "imu", "imu", {{"rate", "50"}});
 }
 
+void set_units(model::Model& model, Units units) {
+  if (units == Units::si) return;
+  for (model::DeviceDecl& device : model.devices) {
+    if (device.kind == "joint_motor") device.config.set("commands", KeyValue("centred"));
+    if (device.kind == "joint_state") device.config.set("units", KeyValue("centred"));
+  }
+}
+
 Pose along(Vec3 axis, Vec3 at) { return {at, quat_between({0, 0, 1}, axis)}; }
 
 std::string numbered(const char* stem, int number) {

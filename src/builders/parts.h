@@ -2,9 +2,11 @@
 /// Parts of models: links made of solids, joints, devices. Poses of links and joints are given in the model's
 /// frame M, with all joints at 0.
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "base/fields.h"
 #include "model/model.h"
 
 namespace sandlot::builders {
@@ -63,6 +65,20 @@ void add_motor(model::Model& model, std::string name, std::uint32_t joint);
 /// Own senses of a creature: angles and speeds of the joints it has so far, and an IMU in its first
 /// link.
 void add_senses(model::Model& model);
+
+/// Units of a creature's motors and joint states.
+enum class Units : std::uint8_t {
+  si,       ///< rad, m, rad/s, m/s
+  centred,  ///< -1 to 1 between a joint's limits, and of its largest speed
+};
+inline std::span<const EnumName<Units>> enum_names(Units) {
+  static constexpr EnumName<Units> names[] = {{"si", Units::si}, {"centred", Units::centred}};
+  return names;
+}
+inline constexpr Field units_field{"units", "",
+                                   "Units of motors and joint states: SI, or -1 to 1 between the limits."};
+/// Gives all motors and joint states of a model these units.
+void set_units(model::Model& model, Units units);
 
 /// The rotation that lays a cylinder, whose axis is z, along `axis` (unit).
 Pose along(Vec3 axis, Vec3 at = {});

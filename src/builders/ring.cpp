@@ -49,6 +49,7 @@ Built build_ring(const RingSpec& s) {
     add_motor(m, name, joint);
   }
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

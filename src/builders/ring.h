@@ -16,6 +16,7 @@ struct RingSpec {
   bool sliders = false;                        ///< every second joint slides along the rim
   double slide_m = 0;                          ///< travel of a slider each way
   Color color;
+  Units units = Units::si;
 
   /// Parameters whose texts are the same for all rings.
   static void fields(auto& s, auto&& visit) {
@@ -25,6 +26,7 @@ struct RingSpec {
     visit(Field{"speed", "rad/s", "Fastest turn of a hinge.", 0, 1e3}, s.speed_radps);
     visit(Field{"limit_in", "rad", "Largest angle of a hinge inwards.", 0, 3}, s.limit_in_rad);
     visit(Field{"limit_out", "rad", "Largest angle of a hinge outwards.", 0, 3}, s.limit_out_rad);
+    visit(units_field, s.units);
   }
 };
 

@@ -2,9 +2,11 @@
 /// The kinds of rules there are: one line each, the name of the folder. Nothing else knows their names.
 // clang-format off
 #define SANDLOT_RULES(rule) \
+  rule(coverage)            \
   rule(energy)              \
   rule(goals)               \
   rule(impact)              \
+  rule(path)                \
   rule(place)               \
   rule(set)                 \
   rule(statistics)          \

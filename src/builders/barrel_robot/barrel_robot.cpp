@@ -14,6 +14,7 @@ namespace {
 struct Spec {
   double diameter_m = 1, length_m = 1, shell_mass_kg = 0.3;
   InnerMassSpec inner{.mass_kg = 1, .range_m = 0.25, .power_N = 150, .speed_mps = 2};
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"diameter", "m", "Diameter of the barrel.", 0.02, 20}, s.diameter_m);
@@ -22,6 +23,7 @@ struct Spec {
           s.shell_mass_kg);
     visit(Field{"mass", "kg", "Mass of each of the two inner masses.", 1e-4, 1e5}, s.inner.mass_kg);
     InnerMassSpec::fields(s.inner, visit);
+    visit(units_field, s.units);
   }
   Status check(const Node& node, const std::string& path) const {
     return inner.check(node, path, diameter_m, "barrel");
@@ -53,6 +55,7 @@ Result<Built> build(const Spec& s) {
         m, shell, names[i], axes[i], s.inner, Cylinder{0.03 * radius, 1.98 * radius},
         {Cylinder{0.16 * radius, 0.5 * s.length_m}, along({0, 1, 0}), s.inner.mass_kg, shades[i], {}, false});
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

@@ -13,6 +13,7 @@ namespace {
 struct Spec {
   double size_m = 1, force_Nm = 3, speed_radps = 15, body_mass_kg = 4, wheel_mass_kg = 0.5;
   WheelShape wheels = WheelShape::discs;
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the body; all other lengths follow from it.", 0.02, 20}, s.size_m);
@@ -21,6 +22,7 @@ struct Spec {
     visit(Field{"body_mass", "kg", "Mass of the body.", 1e-4, 1e5}, s.body_mass_kg);
     visit(Field{"wheel_mass", "kg", "Mass of each wheel.", 1e-4, 1e5}, s.wheel_mass_kg);
     visit(Field{"wheels", "", "Shape of the wheels."}, s.wheels);
+    visit(units_field, s.units);
   }
 };
 
@@ -61,6 +63,7 @@ Result<Built> build(const Spec& s) {
                          .max_velocity = s.speed_radps}));
   }
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

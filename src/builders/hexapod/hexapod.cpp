@@ -19,6 +19,7 @@ struct Spec {
   double swing_limit_rad = math::pi / 4, lift_limit_rad = math::pi / 8;
   double spread_rad = math::pi / 6;
   bool knees = false;
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the body.", 0.02, 20}, s.size_m);
@@ -33,6 +34,7 @@ struct Spec {
           s.lift_limit_rad);
     visit(Field{"knees", "", "Whether the lower half of a leg turns, too."}, s.knees);
     visit(Field{"knee_power", "Nm", "Largest torque at a knee.", 0, 1e6}, s.knee_power_Nm);
+    visit(units_field, s.units);
   }
 };
 
@@ -96,6 +98,7 @@ Result<Built> build(const Spec& s) {
       add_part(m, last, {Sphere{foot}, {end, {}}, 0.1 * leg_mass, colors::dark});
     }
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

@@ -31,6 +31,7 @@ struct Spec {
          speed_radps = 5;
   double friction_along = 0.1, friction_across = 1;
   Joints joints = Joints::yaw;
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"segments", "1", "Number of segments.", 2, 200}, s.segments);
@@ -46,6 +47,7 @@ struct Spec {
           s.friction_along);
     visit(Field{"friction_across", "1", "Coulomb coefficient of the skin across a segment.", 0, 10},
           s.friction_across);
+    visit(units_field, s.units);
   }
   Status check(const Node& node, const std::string& path) const {
     if (length_m >= diameter_m) return {};
@@ -108,6 +110,7 @@ Result<Built> build(const Spec& s) {
     previous = segment;
   }
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

@@ -13,12 +13,14 @@ namespace {
 struct Spec {
   double diameter_m = 1, shell_mass_kg = 0.3;
   InnerMassSpec inner{.mass_kg = 1, .range_m = 0.2, .power_N = 100, .speed_mps = 2};
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"diameter", "m", "Diameter of the shell.", 0.02, 20}, s.diameter_m);
     visit(Field{"shell_mass", "kg", "Mass of the shell.", 1e-4, 1e5}, s.shell_mass_kg);
     visit(Field{"mass", "kg", "Mass of each of the three inner masses.", 1e-4, 1e5}, s.inner.mass_kg);
     InnerMassSpec::fields(s.inner, visit);
+    visit(units_field, s.units);
   }
   Status check(const Node& node, const std::string& path) const {
     return inner.check(node, path, diameter_m, "shell");
@@ -42,6 +44,7 @@ Result<Built> build(const Spec& s) {
     add_inner_mass(m, shell, names[i], axes[i], s.inner, Cylinder{0.02 * radius, 1.98 * radius},
                    {Sphere{ball}, {}, s.inner.mass_kg, shades[i], {}, false});
   add_senses(m);
+  set_units(m, s.units);
   return out;
 }
 

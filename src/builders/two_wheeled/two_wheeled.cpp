@@ -16,6 +16,7 @@ namespace {
 struct Spec {
   double size_m = 1, force_Nm = 5, speed_radps = 12, body_mass_kg = 8, wheel_mass_kg = 1, range_m = 3;
   WheelShape wheels = WheelShape::balls;
+  Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"size", "m", "Length of the whole robot; all other lengths follow from it.", 0.02, 20},
@@ -26,6 +27,7 @@ struct Spec {
     visit(Field{"wheel_mass", "kg", "Mass of each wheel.", 1e-4, 1e5}, s.wheel_mass_kg);
     visit(Field{"wheels", "", "Shape of the wheels."}, s.wheels);
     visit(Field{"range", "m", "Range of the two range finders; 0: the robot has none.", 0, 1e3}, s.range_m);
+    visit(units_field, s.units);
   }
 };
 
@@ -72,6 +74,7 @@ Result<Built> build(const Spec& s) {
       add_device(m, side > 0 ? "ir_left" : "ir_right", "range_finder",
                  {{"min_range", "0"}, {"max_range", number_text(s.range_m)}, {"rate", "20"}}, body,
                  pose_from_rpy({0.4 * s.size_m, side * 0.16 * s.size_m, 0.1 * s.size_m}, {0, 0, side * 0.4}));
+  set_units(m, s.units);
   return out;
 }
 

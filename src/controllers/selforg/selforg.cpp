@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
-#include "messages/registry.h"
 
 namespace sandlot::controllers::selforg {
 namespace {
@@ -17,53 +17,34 @@ double& component_of(msg::Twist& twist, int component) {
   return component == 1 ? twist.linear.y : twist.angular.z;
 }
 
-std::vector<std::string> names_in(const std::vector<Description::Entry>& entries) {
+/// Devices whose names fit a pattern, or the one name.
+std::vector<std::string> devices_like(const std::vector<Description::Entry>& entries,
+                                      const std::string& pattern) {
+  if (pattern.find('*') == std::string::npos) return {pattern};
   std::vector<std::string> names;
   for (const auto& entry : entries)
-    names.push_back(entry.level.empty() ? entry.device : entry.device + "/" + entry.level);
+    if (fits_pattern(entry.device, pattern) &&
+        std::find(names.begin(), names.end(), entry.device) == names.end())
+      names.push_back(entry.device);
   return names;
 }
 
-/// The entry of `device` or `device/level`; of several for a device alone the first, which follows the active level.
-const Description::Entry* entry_of(const std::vector<Description::Entry>& entries, std::string_view name) {
-  for (const auto& entry : entries)
-    if (entry.device == name || entry.device + "/" + entry.level == name) return &entry;
-  return nullptr;
-}
-
-/// Whether messages of a type have a number at the path. A list may be too short for an index: that shows in its messages.
-bool has_number(const std::string& type, std::span<const ValueStep> path) {
-  const auto found = find_message(type);
-  if (!found) return true;  // of a plugin: its messages show
-  const MessageInfo* info = *found;
-  const MessageField* field = nullptr;
-  bool indexed = false;
-  for (const ValueStep& step : path) {
-    const bool list = field && field->count != MessageField::Count::one;
-    if (step.key.empty()) {
-      if (!list || indexed) return false;
-      indexed = true;
-      continue;
-    }
-    if (field) {
-      if ((list && !indexed) || !field->message) return false;
-      info = field->message;
-    }
-    const auto next = std::find_if(info->fields.begin(), info->fields.end(),
-                                   [&](const MessageField& each) { return each.name == step.key; });
-    if (next == info->fields.end()) return false;
-    field = &*next;
-    indexed = false;
-  }
-  const bool one = field && (field->count == MessageField::Count::one || indexed);
-  return one && field->type != Wire::string &&
-         (field->type != Wire::message || (field->message && field->message->is_time));
-}
-
-Error not_there(const std::vector<Description::Entry>& entries, const std::string& device,
-                const std::string& path) {
-  const auto names = names_in(entries);
-  return {fmt::format("the robot has no '{}'", device), suggestion(device, names), {}, path};
+/// "position[2..4]" as position[2], position[3] and position[4].
+std::vector<std::string> spread(const std::string& text) {
+  const std::size_t dots = text.find(".."), open = text.rfind('[', dots), close = text.find(']', dots);
+  if (dots == std::string::npos || open == std::string::npos || close == std::string::npos) return {text};
+  const auto number = [&](std::size_t from, std::size_t to) {
+    const std::string digits = text.substr(from, to - from);
+    const bool whole = !digits.empty() && digits.size() < 5 &&
+                       digits.find_first_not_of("0123456789") == std::string::npos;
+    return whole ? std::stoi(digits) : -1;
+  };
+  const int first = number(open + 1, dots), last = number(dots + 2, close);
+  std::vector<std::string> paths;
+  if (first < 0 || last - first > 1000) return {text};
+  for (int i = first; i <= last; ++i)
+    paths.push_back(text.substr(0, open + 1) + std::to_string(i) + text.substr(close));
+  return paths;
 }
 
 }  // namespace
@@ -81,6 +62,7 @@ Status SelfOrg::init(const Description& robot, const Node& config, Outputs& out)
   x_.assign(sensors_.size(), 0);
   y_.assign(motors_.size(), 0);
   SL_ASSIGN(agent_, make_agent(0));
+  SL_TRY(guidance_.init(spec_.guidance, robot, agent_->controller()));
   if (spec_.publish_interval == 0) return {};
   agent_->controller().channels([&](const so::Channel& channel) {
     if (channel.values.size() == 1 && channel.rows == 1 && channel.cols == 1 && channel.name == "t") return;
@@ -99,23 +81,16 @@ Status SelfOrg::find_sensors(const Description& robot) {
   for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
     const Place& place = spec_.sensors[i];
     const std::string path = fmt::format("/sensors/{}", i);
-    if (!entry_of(robot.readings, place.device))
-      return not_there(robot.readings, place.device, path + "/device");
-    const std::string text = place.value.empty() ? "data" : place.value;
-    auto value = parse_value_path(text);
-    if (!value) return value.error().path = path + "/value", std::move(value).error();
-    const auto entry = std::find_if(
-        robot.readings.begin(), robot.readings.end(), [&](const Description::Entry& each) {
-          return (each.device == place.device || each.device + "/" + each.level == place.device) &&
-                 has_number(each.type, *value);
-        });
-    if (entry == robot.readings.end())
-      return Error{fmt::format("'{}' gives no number '{}'", place.device, text),
-                   fmt::format("'sandlot list messages' has the fields of {}",
-                               entry_of(robot.readings, place.device)->type),
-                   {},
-                   path + "/value"};
-    sensors_.push_back({entry->index, *value, (place.max + place.min) / 2, (place.max - place.min) / 2});
+    const auto devices = devices_like(robot.readings, place.device);
+    if (devices.empty()) return not_there(robot.readings, place.device, path + "/device");
+    for (const std::string& device : devices)
+      for (const std::string& text : spread(place.value.empty() ? "data" : place.value)) {
+        auto value = parse_value_path(text);
+        if (!value) return value.error().path = path + "/value", std::move(value).error();
+        SL_ASSIGN(const std::uint32_t topic, find_number(robot, device, text, *value, path, "/value"));
+        sensors_.push_back(
+            {topic, std::move(*value), (place.max + place.min) / 2, (place.max - place.min) / 2});
+      }
   }
   return {};
 }
@@ -132,34 +107,40 @@ Status SelfOrg::find_motors(const Description& robot) {
     return {};
   }
   for (std::size_t i = 0; i < spec_.motors.size(); ++i) {
-    const Place& place = spec_.motors[i];
     const std::string path = fmt::format("/motors/{}", i);
-    const auto* const entry = entry_of(robot.actuators, place.device);
-    if (!entry) return not_there(robot.actuators, place.device, path + "/device");
-    Motor motor{0, -1, (place.max + place.min) / 2, (place.max - place.min) / 2};
-    if (entry->type == msg::Float64::ros_type) {
-      motor.target = numbers_.size();
-      numbers_.push_back({entry->index});
-    } else if (entry->type == msg::Twist::ros_type) {
-      const auto found = std::find(std::begin(twist_components), std::end(twist_components), place.value);
-      if (found == std::end(twist_components))
-        return Error{fmt::format("'{}' takes a Twist, which has no '{}'", place.device, place.value),
-                     "linear.x, linear.y or angular.z",
-                     {},
-                     path + "/value"};
-      motor.component = static_cast<int>(found - std::begin(twist_components));
-      motor.target = 0;
-      while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index)
-        ++motor.target;
-      if (motor.target == twists_.size()) twists_.push_back({{entry->index}, {}});
-    } else {
-      return Error{fmt::format("'{}' takes a {}", place.device, entry->type),
-                   "a motor takes a Float64 or a Twist",
-                   {},
-                   path + "/device"};
-    }
-    motors_.push_back(motor);
+    const auto devices = devices_like(robot.actuators, spec_.motors[i].device);
+    if (devices.empty()) return not_there(robot.actuators, spec_.motors[i].device, path + "/device");
+    for (const std::string& device : devices) SL_TRY(add_motor(robot, device, spec_.motors[i], path));
   }
+  return {};
+}
+
+Status SelfOrg::add_motor(const Description& robot, const std::string& device, const Place& place,
+                          const std::string& path) {
+  const auto* const entry = entry_of(robot.actuators, device);
+  if (!entry) return not_there(robot.actuators, device, path + "/device");
+  Motor motor{0, -1, (place.max + place.min) / 2, (place.max - place.min) / 2};
+  if (entry->type == msg::Float64::ros_type) {
+    motor.target = numbers_.size();
+    numbers_.push_back({entry->index});
+  } else if (entry->type == msg::Twist::ros_type) {
+    const auto found = std::find(std::begin(twist_components), std::end(twist_components), place.value);
+    if (found == std::end(twist_components))
+      return Error{fmt::format("'{}' takes a Twist, which has no '{}'", device, place.value),
+                   "linear.x, linear.y or angular.z",
+                   {},
+                   path + "/value"};
+    motor.component = static_cast<int>(found - std::begin(twist_components));
+    while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index)
+      ++motor.target;
+    if (motor.target == twists_.size()) twists_.push_back({{entry->index}, {}});
+  } else {
+    return Error{fmt::format("'{}' takes a {}", device, entry->type),
+                 "a motor takes a Float64 or a Twist",
+                 {},
+                 path + "/device"};
+  }
+  motors_.push_back(motor);
   return {};
 }
 
@@ -198,9 +179,12 @@ void SelfOrg::step(const Observation& obs, Command& cmd) {
     x_[i] = 0;
     if (topic.count == 0) continue;
     const ValueFound found = topic.value(sensor.path);
-    if (found.is == ValueFound::Is::value) x_[i] = (found.value - sensor.middle) / sensor.scale;
+    if (found.is == ValueFound::Is::value)
+      x_[i] = std::isinf(found.value) ? std::copysign(1.0, found.value)
+                                      : (found.value - sensor.middle) / sensor.scale;
   }
   agent_->set_noise(spec_.noise);
+  guidance_.apply(obs, agent_->controller());
   agent_->step(x_, y_);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const Motor& motor = motors_[i];

@@ -2,9 +2,11 @@
 /// SelfOrg: an agent of the library selforg drives the robot: homeokinesis and its kin find behaviours by themselves.
 ///
 /// Reads    numbers of any messages, by device and path: {device: hip, value: 'position[0]', min: -1.2, max: 1.2}. The range
-///          becomes [-1, 1]. A device without a message so far counts as the middle of the range.
+///          becomes [-1, 1]. A device without a message so far counts as the middle of the range, an infinite number as its end.
+///          'position[0..5]' is six numbers; a device with a * is each that fits, in the robot's order.
 /// Orders   a Float64, or one component of a Twist, per motor: {device: hip, min: -5, max: 5}, {device: drive, value: angular.z}.
 ///          The agent's [-1, 1] becomes the range.
+/// Guided   by cross-motor teaching and rewards (guidance.h).
 /// Topics   each matrix and vector of the controller as Float64MultiArray, its name in the equations: /ROBOT/PROGRAM/A. One per
 ///          `publish_interval` control steps.
 /// State    the whole agent, with its seed, which is drawn in the first step: learning goes on after a restore to the same hash.
@@ -14,7 +16,7 @@
 /// Errors   sensors and motors that are not there, ranges that are empty, unknown controllers and parameters.
 #include <memory>
 
-#include "control/controller.h"
+#include "controllers/selforg/guidance.h"
 #include "selforg/agent.h"
 
 namespace sandlot::controllers::selforg {
@@ -27,7 +29,9 @@ struct Place {
   double min = -1, max = 1;
   Status check(const Node& node, const std::string& path) const;
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"device", "", "Device, or device/level.", 0, 0, Field::required, 1000, 1}, s.device);
+    visit(Field{"device", "", "Device, or device/level; of all devices that fit, with *.", 0, 0,
+                Field::required, 1000, 1},
+          s.device);
     visit(Field{"value", "",
                 "Path of the number in the message; empty: data. Of a Twist as motor: linear.x, linear.y or "
                 "angular.z."},
@@ -56,6 +60,7 @@ struct Spec {
   double noise = 0.1;
   int publish_interval = 1;
   std::uint32_t babbling = 0;
+  GuidanceSpec guidance;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"agent", "", "Kind of the agent's controller: sox, semox, dep, experts, sine, ...", 0, 0,
                 Field::none, 100, 1},
@@ -111,6 +116,8 @@ class SelfOrg final : public Controller {
   };
   Status find_sensors(const Description& robot);
   Status find_motors(const Description& robot);
+  Status add_motor(const Description& robot, const std::string& device, const Place& place,
+                   const std::string& path);
   Result<std::unique_ptr<so::WiredController>> make_agent(std::uint64_t seed) const;
   void publish(Command& cmd);
 
@@ -121,6 +128,7 @@ class SelfOrg final : public Controller {
   std::vector<Actuator<msg::Float64>> numbers_;
   std::vector<TwistTarget> twists_;
   std::vector<Topic> topics_;
+  Guidance guidance_;
   std::unique_ptr<so::WiredController> agent_;
   std::vector<double> x_, y_;
   // State:

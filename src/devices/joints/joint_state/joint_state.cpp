@@ -1,5 +1,6 @@
 #include "devices/joints/joint_state/joint_state.h"
 
+#include "base/math.h"
 #include "devices/sdf_noise.h"
 
 namespace sandlot::joint_state {
@@ -9,6 +10,23 @@ bool one_axis(const model::Joint& joint) {
   using model::JointType;
   return joint.type == JointType::revolute || joint.type == JointType::continuous ||
          joint.type == JointType::prismatic || joint.type == JointType::screw;
+}
+
+/// Limits beyond this are none.
+constexpr double unlimited = 1e9;
+
+Joints::Scale scale_of(const model::Joint& joint) {
+  Joints::Scale scale;
+  if (joint.upper - joint.lower < unlimited && joint.lower < joint.upper) {
+    scale.middle = (joint.lower + joint.upper) / 2;
+    scale.half = (joint.upper - joint.lower) / 2;
+  } else if (joint.type != model::JointType::prismatic) {
+    scale.half = math::pi;
+    scale.turns = true;
+  }
+  if (joint.max_velocity > 0 && joint.max_velocity < unlimited) scale.velocity = joint.max_velocity;
+  if (joint.max_effort > 0 && joint.max_effort < unlimited) scale.effort = joint.max_effort;
+  return scale;
 }
 
 Result<Node> from_sdf(const Node& element, Diagnostics& diagnostics) {
@@ -44,6 +62,7 @@ Result<Joints> Joints::create(const DeviceBuild& build, Spec spec) {
   if (device.spec.joints.empty()) {
     for (std::uint32_t i = 0; i < all.size(); ++i)
       if (one_axis(all[i])) {
+        if (device.spec.units == Units::centred) device.scales.push_back(scale_of(all[i]));
         names.push_back(all[i].name);
         device.joints.push_back(build.joints[i].index);
       }
@@ -54,6 +73,7 @@ Result<Joints> Joints::create(const DeviceBuild& build, Spec spec) {
         return build.error("joints", "joint '" + name + "' has no single angle or length",
                            "name revolute, continuous, prismatic or screw joints");
       }
+      if (device.spec.units == Units::centred) device.scales.push_back(scale_of(all[index]));
       names.push_back(name);
       device.joints.push_back(build.joints[index].index);
     }
@@ -84,6 +104,16 @@ bool Joints::fits() const {
   return shown.position.size() == n && shown.velocity.size() == n && shown.effort.size() == n;
 }
 
+void Joints::scale(msg::JointState& message) const {
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const Scale& scale = scales[i];
+    const double angle = message.position[i];
+    message.position[i] = ((scale.turns ? math::wrap_angle(angle) : angle) - scale.middle) / scale.half;
+    message.velocity[i] /= scale.velocity;
+    message.effort[i] /= scale.effort;
+  }
+}
+
 void Joints::sense(PoolView<Joints> pool, const Context& context) {
   const auto states = context.engine.joint_states();
   for (const std::uint32_t index : pool.due) {
@@ -101,6 +131,7 @@ void Joints::sense(PoolView<Joints> pool, const Context& context) {
       message.velocity[i] = corrupt(noise.velocity, device.state.velocity[i], joint.velocity);
       message.effort[i] = corrupt(noise.effort, device.state.effort[i], joint.effort);
     }
+    device.scale(message);
     device.message->publish(context.now);
   }
 }
