@@ -4,6 +4,7 @@
 #define SANDLOT_RULES(rule) \
   rule(coverage)            \
   rule(energy)              \
+  rule(episodes)            \
   rule(goals)               \
   rule(impact)              \
   rule(path)                \

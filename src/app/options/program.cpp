@@ -79,7 +79,8 @@ void add_reproduce(CommandLine& line) {
   ReproduceOptions& options = line.keep<ReproduceOptions>();
   CLI::App* const verb = line.app.add_subcommand(
       "reproduce", "Make the experiment of a paper, its figures and tables beside the paper's statements");
-  verb->add_option("paper", options.paper, "Name of the paper: cooperation, eyesim, msl")->required();
+  verb->add_option("paper", options.paper, "Name of the paper: cooperation, eyesim, lpzrobots, msl")
+      ->required();
   verb->add_option("--out", options.out, "Folder to write index.html and the tables (CSV) into")->required();
   verb->add_option("--repeat", options.repeat, "Runs of each condition, with seeds that follow each other");
   verb->add_option("--at-a-time", options.at_a_time,

@@ -51,6 +51,7 @@ std::span<const Paper> papers();
 
 Status make_cooperation(const ReproduceContext& context, ReportPage& page);
 Status make_eyesim(const ReproduceContext& context, ReportPage& page);
+Status make_lpzrobots(const ReproduceContext& context, ReportPage& page);
 Status make_msl(const ReproduceContext& context, ReportPage& page);
 
 /// --- what reports share ---
