@@ -1,0 +1,141 @@
+/// Scenarios of scenarios/selforg: robots that move by themselves, agents that are the same in the simulator and in a plain program,
+/// runs that go on in the middle of learning.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "command.h"
+#include "run/repeat.h"
+#include "selforg/agent.h"
+#include "sim/load/load.h"
+#include "sim/test_world.h"
+#include "sim/watch/values.h"
+
+namespace sandlot::test {
+namespace {
+
+using Settings = std::vector<formats::Override>;
+
+std::string file_of(const std::string& name) { return "scenarios/selforg/" + name + ".yaml"; }
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("scenarios/selforg"))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::unique_ptr<Simulation> world_of(const std::string& name, const Settings& settings = {}) {
+  Diagnostics diagnostics;
+  LoadOptions options;
+  options.overrides = settings;
+  auto setup = load(file_of(name), options, diagnostics);
+  if (!setup) {
+    ADD_FAILURE() << setup.error().text();
+    return nullptr;
+  }
+  for (const Error& warning : diagnostics.warnings) ADD_FAILURE() << name << ": " << warning.text();
+  EXPECT_TRUE(setup->criterion) << name << " has no criterion";
+  return build(std::move(*setup));
+}
+
+TEST(SelfOrgRobots, EachScenarioLoadsWithoutAWarningAndHasACriterion) {
+  EXPECT_GE(all_names().size(), 15u);
+  for (const std::string& name : all_names()) EXPECT_TRUE(world_of(name)) << name;
+}
+
+// --- the same agent in the simulator and in a plain program ---
+
+struct Driven {
+  const char* scenario;
+  const char* robot;
+  /// Addresses of the sensors, and ranges, as the scenario has them; `#` stands for an index.
+  const char* sensors;
+  int count;
+  double half_range;
+};
+
+class SelfOrgAgent : public testing::TestWithParam<Driven> {};
+INSTANTIATE_TEST_SUITE_P(
+    Robots, SelfOrgAgent,
+    testing::Values(Driven{"sphere", "ball", "ball/imu.linear_acceleration.#", 3, 9.81},
+                    Driven{"hexapod", "hexapod", "hexapod/joints.position[#]", 12, 1},
+                    Driven{"slider_wheelie", "wheelie", "wheelie/joints.position[#]", 8, 1},
+                    Driven{"world_model", "nimm", "nimm/joints.velocity[#]", 2, 1},
+                    Driven{"humanoid", "human", "human/joints.position[#]", 16, 1}),
+    [](const auto& each) { return std::string(each.param.scenario); });
+
+/// The robot of a simulation as a plain program sees it: numbers in, numbers out. Its agent begins with the seed that the run gives,
+/// gets what the robot measured in each control step, and must order what the run ordered.
+TEST_P(SelfOrgAgent, OrdersTheSameInAPlainProgram) {
+  const Driven& p = GetParam();
+  const auto simulation = world_of(p.scenario);
+  ASSERT_TRUE(simulation);
+  const auto address = [&](int i) {
+    std::string text = p.sensors;
+    const std::string index = text.find('[') == std::string::npos ? std::string(1, "xyz"[i])
+                                                                  : std::to_string(i);
+    return text.replace(text.find('#'), 1, index);
+  };
+  const std::string controller = std::string(p.robot) + "/controller";
+  std::vector<NamedValue> sensors, motors;
+  const auto find = [&](const std::string& text) {
+    auto value = NamedValue::find(*simulation, text);
+    EXPECT_TRUE(value) << (value ? "" : value.error().text());
+    return std::move(*value);
+  };
+  for (int i = 0; i < p.count; ++i) sensors.push_back(find(address(i)));
+  const auto n = static_cast<std::size_t>(p.count);
+  std::size_t m = 0;
+  while (NamedValue::find_or_wait(*simulation, fmt::format("{}/y.data[{}]", controller, m)).read()) ++m;
+  ASSERT_GT(m, 0u);
+  for (std::size_t i = 0; i < m; ++i) motors.push_back(find(fmt::format("{}/y.data[{}]", controller, i)));
+
+  selforg::AgentSpec spec;
+  spec.name = p.robot;
+  spec.noise = 0.05;
+  spec.seed = Stream(simulation->setup().seed, entity_key(controller), Purpose::controller, 0).bits64();
+  if (std::string(p.scenario) == "sphere") {
+    spec.parameters = Node::map();
+    spec.parameters.set("error", Node::scalar("logarithmic"));
+  }
+  auto plain = selforg::WiredController::make(n, m, spec);
+  ASSERT_TRUE(plain) << plain.error().text();
+  std::vector<double> x(n), y(m);
+  // Tick 0 is taken; control steps are every other tick. What the robot measures in a tick is what its controller sees in it.
+  for (int step = 0; step < 500; ++step) {
+    if (step > 0) advance(*simulation, 2);
+    for (std::size_t i = 0; i < n; ++i) x[i] = sensors[i].read().value_or(0) / p.half_range;
+    (*plain)->step(x, y);
+    for (std::size_t i = 0; i < m; ++i) ASSERT_EQ(*motors[i].read(), y[i]) << "step " << step << ", motor " << i;
+  }
+}
+
+// --- behaviour: three seeds here, twenty in docs/selforg_experiments.md ---
+
+RepeatSummary runs(const std::string& name, const Settings& settings = {}, int count = 3) {
+  RepeatSpec spec;
+  spec.run.file = file_of(name);
+  spec.run.overrides = settings;
+  spec.count = count;
+  auto all = repeat(spec);
+  if (!all) {
+    ADD_FAILURE() << all.error().text();
+    return {};
+  }
+  for (const RepeatedRun& run : all->runs)
+    for (const std::string& error : run.errors) ADD_FAILURE() << name << ", seed " << run.seed << ": " << error;
+  return std::move(*all);
+}
+
+double mean(const RepeatSummary& all) {
+  return all.all && all.all->criterion.mean ? *all.all->criterion.mean : -1e9;
+}
+
+}  // namespace
+}  // namespace sandlot::test
