@@ -1,5 +1,6 @@
 /// Scenarios of scenarios/selforg: robots that move by themselves, agents that are the same in the simulator and in a plain program,
 /// runs that go on in the middle of learning.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,14 +62,14 @@ struct Driven {
 };
 
 class SelfOrgAgent : public testing::TestWithParam<Driven> {};
-INSTANTIATE_TEST_SUITE_P(
-    Robots, SelfOrgAgent,
-    testing::Values(Driven{"sphere", "ball", "ball/imu.linear_acceleration.#", 3, 9.81},
-                    Driven{"hexapod", "hexapod", "hexapod/joints.position[#]", 12, 1},
-                    Driven{"slider_wheelie", "wheelie", "wheelie/joints.position[#]", 8, 1},
-                    Driven{"world_model", "nimm", "nimm/joints.velocity[#]", 2, 1},
-                    Driven{"humanoid", "human", "human/joints.position[#]", 16, 1}),
-    [](const auto& each) { return std::string(each.param.scenario); });
+INSTANTIATE_TEST_SUITE_P(Robots, SelfOrgAgent,
+                         testing::Values(Driven{"sphere", "ball", "ball/imu.linear_acceleration.#", 3, 9.81},
+                                         Driven{"hexapod", "hexapod", "hexapod/joints.position[#]", 12, 1},
+                                         Driven{"slider_wheelie", "wheelie", "wheelie/joints.position[#]", 8,
+                                                1},
+                                         Driven{"world_model", "nimm", "nimm/joints.velocity[#]", 2, 1},
+                                         Driven{"humanoid", "human", "human/joints.position[#]", 16, 1}),
+                         [](const auto& each) { return std::string(each.param.scenario); });
 
 /// The robot of a simulation as a plain program sees it: numbers in, numbers out. Its agent begins with the seed that the run gives,
 /// gets what the robot measured in each control step, and must order what the run ordered.
@@ -112,7 +113,8 @@ TEST_P(SelfOrgAgent, OrdersTheSameInAPlainProgram) {
     if (step > 0) advance(*simulation, 2);
     for (std::size_t i = 0; i < n; ++i) x[i] = sensors[i].read().value_or(0) / p.half_range;
     (*plain)->step(x, y);
-    for (std::size_t i = 0; i < m; ++i) ASSERT_EQ(*motors[i].read(), y[i]) << "step " << step << ", motor " << i;
+    for (std::size_t i = 0; i < m; ++i)
+      ASSERT_EQ(*motors[i].read(), y[i]) << "step " << step << ", motor " << i;
   }
 }
 
@@ -129,7 +131,8 @@ RepeatSummary runs(const std::string& name, const Settings& settings = {}, int c
     return {};
   }
   for (const RepeatedRun& run : all->runs)
-    for (const std::string& error : run.errors) ADD_FAILURE() << name << ", seed " << run.seed << ": " << error;
+    for (const std::string& error : run.errors)
+      ADD_FAILURE() << name << ", seed " << run.seed << ": " << error;
   return std::move(*all);
 }
 

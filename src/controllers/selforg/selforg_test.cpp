@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 namespace sandlot::controllers::selforg {
 extern const ControllerKind kind;
 namespace {
@@ -194,6 +197,135 @@ TEST(SelfOrg, RefusesWhatIsNotThere) {
             std::string::npos);
   EXPECT_NE(complaint([](Node& n) { n.set("agent", Node::scalar("sax")); }).find("no controller kind 'sax'"),
             std::string::npos);
+}
+
+TEST(SelfOrg, PatternsAndSpreadsAreTheirListsWrittenOut) {
+  const auto with_lists = [](const std::vector<std::array<const char*, 2>>& sensors,
+                             const std::vector<const char*>& motors) {
+    Rig rig;
+    Node node = Node::map(), in = Node::sequence(), out = Node::sequence();
+    for (const auto& [device, value] : sensors) in.push(place(device, value, "-2", "2"));
+    for (const char* motor : motors) out.push(place(motor, "", "-1", "1"));
+    node.set("sensors", in);
+    node.set("motors", out);
+    rig.robot.actuators = {{"hip_1", "", msg::Float64::ros_type, 0, {}},
+                           {"hand", "", msg::Float64::ros_type, 1, {}},
+                           {"hip_2", "", msg::Float64::ros_type, 2, {}}};
+    const Status ready = rig.init(node);
+    if (!ready) return ready.error().path + ": " + ready.error().what;
+    for (int k = 0; k < 20; ++k) rig.see(k), rig.step();
+    std::string orders;
+    for (std::uint32_t slot = 0; slot < 3; ++slot)
+      orders += std::to_string(rig.order<msg::Float64>(slot).data) + " ";
+    return orders;
+  };
+  const std::string all = with_lists({{"hinge", "data[0..1]"}}, {"hip_*"});
+  EXPECT_EQ(all, with_lists({{"hinge", "data[0]"}, {"hinge", "data[1]"}}, {"hip_1", "hip_2"}));
+  EXPECT_NE(all, with_lists({{"hinge", "data[0..1]"}}, {"hip_2", "hip_1"}));
+  EXPECT_EQ(with_lists({{"hinge", "data[0]"}}, {"leg_*"}), "/motors/0/device: the robot has no 'leg_*'");
+  EXPECT_NE(with_lists({{"hinge", "data[1..0x]"}}, {"hip_*"}).find("/sensors/0/value"), std::string::npos);
+}
+
+TEST(SelfOrg, AnInfiniteNumberIsTheEndOfTheRange) {
+  Rig rig, other;
+  ASSERT_TRUE(static_cast<bool>(rig.init()));
+  ASSERT_TRUE(static_cast<bool>(other.init()));
+  for (int k = 0; k < 20; ++k) {
+    rig.light.message.data = k % 2 ? INFINITY : -INFINITY;
+    other.light.message.data = k % 2 ? 10 : 0;  // the range's ends
+    for (Rig* each : {&rig, &other}) {
+      each->light.publish(Time::from_s(1));
+      each->step();
+    }
+  }
+  EXPECT_EQ(rig.order<msg::Float64>(1).data, other.order<msg::Float64>(1).data);
+}
+
+TEST(SelfOrg, CrossMotorTeachingIsThatOfTheLibrary) {
+  Rig rig;
+  Node node = Rig::config(), sources = Node::sequence();
+  for (const char* source : {"1", "-1", "0"}) sources.push(Node::scalar(source));
+  node.set("cross_motor", sources);
+  node.set("cross_motor_threshold", Node::scalar("0.1"));
+  ASSERT_TRUE(static_cast<bool>(rig.init(node)));
+  ::sandlot::selforg::AgentSpec spec;
+  spec.noise = 0;
+  spec.name = "me";
+  auto plain = ::sandlot::selforg::WiredController::make(2, 3, spec);
+  auto teaching = ::sandlot::selforg::CrossMotorTeaching::make({{1}, {}, {0}}, 0.1);
+  std::vector<double> x(2), y(3);
+  for (int k = 0; k < 100; ++k) {
+    rig.see(k);
+    rig.step();
+    x = {(k % 7 - 3.0) / 2, (k % 5 - 5.0) / 5};
+    teaching->teach(*(*plain)->controller().teachable());
+    (*plain)->step(x, y);
+    ASSERT_EQ(rig.order<msg::Float64>(1).data, 2 + 2 * y[0]) << k;
+  }
+}
+
+TEST(SelfOrg, TheRewardIsTheSumOfItsTerms) {
+  Rig rig;
+  Node node = Rig::config(), terms = Node::sequence();
+  const auto term = [&](std::vector<const char*> values, const char* min, const char* max, const char* weight,
+                        bool magnitude) {
+    Node each = Node::map(), list = Node::sequence();
+    for (const char* value : values) list.push(Node::scalar(value));
+    each.set("device", Node::scalar("hinge"));
+    each.set("values", list);
+    each.set("min", Node::scalar(min));
+    each.set("max", Node::scalar(max));
+    each.set("weight", Node::scalar(weight));
+    each.set("magnitude", Node::scalar(magnitude ? "true" : "false"));
+    terms.push(each);
+  };
+  term({"data[0]", "data[1]"}, "0", "10", "0.5", true);
+  term({"data[0]", "data[1]"}, "-8", "8", "1", false);
+  node.set("reward", terms);
+  ASSERT_TRUE(static_cast<bool>(rig.init(node)));
+  ::sandlot::selforg::AgentSpec spec;
+  spec.noise = 0;
+  spec.name = "me";
+  auto plain = ::sandlot::selforg::WiredController::make(2, 3, spec);
+  std::vector<double> x(2), y(3);
+  for (int k = 0; k < 100; ++k) {
+    rig.see(k);
+    rig.hinge.message.data[0] = 4;
+    const double other = k % 7 - 3.0;
+    rig.step();
+    x = {other / 2, (k % 5 - 5.0) / 5};
+    const double size = std::sqrt(16 + other * other);
+    (*plain)->controller().rewardable()->set_reward(0.5 * ((size - 5) / 5) + (4 + other) / 8);
+    (*plain)->step(x, y);
+    ASSERT_EQ(rig.order<msg::Float64>(1).data, 2 + 2 * y[0]) << k;
+  }
+}
+
+TEST(SelfOrg, RefusesGuidanceThatCannotBe) {
+  const auto complaint = [](const char* agent, const char* key, const char* value, bool list) {
+    Rig rig;
+    Node node = Rig::config();
+    node.set("agent", Node::scalar(agent));
+    Node all = Node::sequence();
+    if (list) {
+      all.push(Node::scalar(value));
+    } else {
+      Node term = Node::map(), values = Node::sequence();
+      values.push(Node::scalar("data"));
+      term.set("device", Node::scalar(value));
+      term.set("values", values);
+      all.push(term);
+    }
+    node.set(key, all);
+    const Status ready = rig.init(node);
+    return ready ? std::string() : ready.error().path + ": " + ready.error().what;
+  };
+  EXPECT_EQ(complaint("sox", "reward", "light", false), "");
+  EXPECT_EQ(complaint("dep", "reward", "light", false), "/reward: agents of kind dep take no reward");
+  EXPECT_EQ(complaint("sox", "reward", "lamp", false), "/reward/0/device: the robot has no 'lamp'");
+  EXPECT_EQ(complaint("sox", "reward", "hinge", false), "/reward/0/values/0: 'hinge' gives no number 'data'");
+  EXPECT_EQ(complaint("dep", "cross_motor", "0", true), "/cross_motor: agents of kind dep cannot be taught");
+  EXPECT_EQ(complaint("sox", "cross_motor", "0", true), "/cross_motor: 1 teachers for 3 motors");
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "model/model_bytes.h"
 #include "sim/load/load.h"
 #include "sim/test_world.h"
+#include "sim/watch/values.h"
 
 namespace sandlot {
 namespace {
@@ -130,7 +131,7 @@ TEST_P(EachBuilder, IsTheSameWhenItComesFromAFile) {
   Diagnostics diagnostics;
   const auto direct = load_instance("builder:" + GetParam(), GetParam(), {}, diagnostics);
   ASSERT_TRUE(direct);
-  if (GetParam() == "terrain") return;  // has no file: convert makes a mesh of it
+  if (GetParam() == "terrain" || GetParam() == "basin") return;  // have no file: convert makes a mesh of them
   auto xml = formats::sdf_of(*direct, diagnostics);
   ASSERT_TRUE(xml) << xml.error().text();
   const std::string file = testing::TempDir() + "builder_" + GetParam() + ".sdf";
@@ -159,6 +160,9 @@ TEST(Builders, WeighWhatTheirParametersSay) {
       {"armband?segments=9&mass=0.2", 1.8},
       {"hexapod?mass=2", 2},
       {"hexapod?mass=2&knees=true", 2},
+      {"dog?mass=3", 3},
+      {"humanoid?mass=5", 5},
+      {"wheel_chain?members=3&body_mass=2&wheel_mass=0.5", 3 * 3 + 2 * 0.2},  // couplings: a tenth of a body
       {"diff_robot?mass=8", 8},
       {"blade_robot?mass=3", 3},
       {"block?mass=0.7", 0.7},
@@ -233,6 +237,44 @@ TEST(Builders, ATerrainFollowsFromItsSeedAndSinksToItsEdge) {
   for (int i = 0; i < a->columns; ++i) EXPECT_EQ(a->at(i, 0) + a->at(i, a->rows - 1), 0.0f);
 }
 
+TEST(Builders, ABasinTurnsUpFromItsFloorToItsRim) {
+  const auto grid = std::get<Heightfield>(
+                        made("basin?diameter=4&floor=2&depth=1&cell=0.1").model.links[0].collisions[0].shape)
+                        .grid;
+  EXPECT_EQ(grid->columns, 41);
+  EXPECT_EQ(grid->at(20, 20), 0.0f);
+  EXPECT_EQ(grid->at(30, 20), 0.0f) << "the edge of the floor, 1 m from the middle";
+  EXPECT_NEAR(grid->at(35, 20), 0.25, 1e-6) << "half way up: a quarter of the depth";
+  EXPECT_EQ(grid->at(40, 20), 1.0f);
+  EXPECT_EQ(grid->at(0, 0), 1.0f) << "beyond the rim it is flat";
+}
+
+/// A joint of +-0.2 m in the middle and at the command 0.5 of the way, read back in the same unit; a wheel of at most 12 rad/s at half of it.
+TEST(Builders, TakeAndGiveNumbersBetweenMinusOneAndOne) {
+  const auto simulation = world(
+      "robots:\n  - name: ball\n    model: {builder: sphere_robot, units: centred}\n"
+      "    controller: {kind: sequence, steps: [{at: 0, orders: {x: 0.5, y: -2}}]}\n"
+      "  - name: nimm\n    model: {builder: two_wheeled, units: centred}\n    pose: [0, 5, 0]\n"
+      "    controller: {kind: sequence, steps: [{at: 0, orders: {left: 0.5, right: 0.5}}]}\n"
+      "  - name: wheelie\n    model: {builder: slider_wheelie, units: centred}\n    pose: [0, -5, 0]\n");
+  test::advance(*simulation, 300);
+  const auto value = [&](const char* address) {
+    auto found = NamedValue::find(*simulation, address);
+    EXPECT_TRUE(found) << address;
+    return found ? found->read().value_or(NAN) : NAN;
+  };
+  EXPECT_NEAR(value("ball/joints.position[0]"), 0.5, 0.02);
+  EXPECT_NEAR(value("ball.joints.slider_x.position"), 0.1, 0.004);
+  EXPECT_NEAR(value("ball/joints.position[1]"), -1, 0.02) << "cut at the limit";
+  EXPECT_NEAR(value("nimm/joints.velocity[0]"), 0.5, 0.02);
+  EXPECT_NEAR(value("nimm.joints.left_joint.velocity"), 6, 0.2);
+  EXPECT_LE(std::abs(value("nimm/joints.position[0]")), 1) << "part of half a turn";
+  // A hinge from -pi/8 to pi/3: its middle is pi (1/3 - 1/8) / 2.
+  const double hinge = value("wheelie.joints.hinge_1_joint.position");
+  EXPECT_NEAR(value("wheelie/joints.position[0]"),
+              (hinge - math::pi * (1.0 / 3 - 1.0 / 8) / 2) / (math::pi * (1.0 / 3 + 1.0 / 8) / 2), 1e-12);
+}
+
 TEST(Builders, RefuseImpossibleParametersByTheirKey) {
   EXPECT_THAT(refusal("snake?segments=1"), HasSubstr("/segments: "));
   EXPECT_THAT(refusal("snake?segmens=9"), HasSubstr("did you mean 'segments'"));
@@ -244,6 +286,9 @@ TEST(Builders, RefuseImpossibleParametersByTheirKey) {
   EXPECT_THAT(refusal("slider_wheelie?slide=0.3"), HasSubstr("/slide: "));
   EXPECT_THAT(refusal("armband?length=0.1"), HasSubstr("/length: "));
   EXPECT_THAT(refusal("terrain?cell=0.001"), HasSubstr("/cell: "));
+  EXPECT_THAT(refusal("basin?floor=7"), HasSubstr("/floor: "));
+  EXPECT_THAT(refusal("basin?cell=0.001"), HasSubstr("/cell: "));
+  EXPECT_THAT(refusal("humanoid?height=0"), HasSubstr("/height: "));
   EXPECT_THAT(refusal("box_pile?smallest=0.5"), HasSubstr("/smallest: "));
   EXPECT_THAT(refusal("box_pile?length=0.2"), HasSubstr("/largest: "));
   EXPECT_THAT(refusal("diff_robot?track=0.1"), HasSubstr("/track: "));

@@ -188,5 +188,79 @@ TEST(Place, IntoAWallEndsTheRunWithTheRulesPlaceAndWhatWasSoFar) {
   EXPECT_EQ(value(*beside, "speaker.pose.x"), 5.7);
 }
 
+// --- coverage, path, episodes ---
+
+TEST(Coverage, CountsTheCellsThatValuesComeTo) {
+  model::Setup setup = weightless();
+  Node config = map({{"bins", "4"}, {"interval", "100 ms"}, {"at_least", "2"}});
+  config.set("values", texts({"sim.time", "if(sim.time < 0.55, 0.1, 7)"}));
+  config.set("ranges", list({numbers({0, 1}), numbers({0, 2})}));
+  setup.rules.push_back(element("coverage", config));
+  const auto simulation = build(setup);
+  advance(*simulation, 105);
+  // Times 0, 0.1 ... 1 in quarters: 3, 2 (0.3, 0.4) | 0.5 alone in the third, beside the lower second value; then beyond the upper
+  // end of the second range: 0.6, 0.7 in the third quarter, 0.8, 0.9, 1 in the last one.
+  EXPECT_EQ(value(*simulation, "rules/coverage.samples"), 11);
+  EXPECT_EQ(value(*simulation, "rules/coverage.cells[0]"), 3);
+  EXPECT_EQ(value(*simulation, "rules/coverage.cells[1]"), 2);
+  EXPECT_EQ(value(*simulation, "rules/coverage.cells[2]"), 1);
+  EXPECT_EQ(value(*simulation, "rules/coverage.cells[14]"), 2);
+  EXPECT_EQ(value(*simulation, "rules/coverage.cells[15]"), 3);
+  EXPECT_EQ(value(*simulation, "rules/coverage.visited"), 4) << "a single sample is not enough";
+  EXPECT_EQ(value(*simulation, "rules/coverage.share"), 4 / 16.0);
+}
+
+TEST(Path, IsTheSumOfThePiecesBetweenSamples) {
+  model::Setup setup = weightless();
+  Node config = map({{"interval", "100 ms"}, {"from", "200 ms"}});
+  // There and back within 0.4 s: a triangle between 0 and 0.2; along the other axis at 1 m/s.
+  config.set("values", texts({"3 * abs(mod(sim.time, 0.4) - 0.2)", "4 * abs(mod(sim.time, 0.4) - 0.2)"}));
+  setup.rules.push_back(element("path", config));
+  const auto simulation = build(setup);
+  advance(*simulation, 105);
+  // From 0.2 to 1 s eight pieces of 0.5 m each; 5 m/s; at 0.4 s and 0.8 s it is 1 m from where it began.
+  EXPECT_EQ(value(*simulation, "rules/path.samples"), 9);
+  EXPECT_NEAR(value(*simulation, "rules/path.length"), 4, 1e-12);
+  EXPECT_NEAR(value(*simulation, "rules/path.speed"), 5, 1e-12);
+  EXPECT_NEAR(value(*simulation, "rules/path.farthest"), 1, 1e-12);
+}
+
+TEST(Episodes, CountWhatLastsLongEnough) {
+  model::Setup setup = weightless();
+  Node config = map(
+      {{"when", "(sim.time > 0.095 and sim.time < 0.295) or (sim.time > 0.395 and sim.time < 0.445)"},
+       {"at_least", "100 ms"}});
+  setup.rules.push_back(element("episodes", config));
+  const auto simulation = build(setup);
+  advance(*simulation, 15);
+  EXPECT_EQ(value(*simulation, "rules/episodes.count"), 0);
+  EXPECT_EQ(value(*simulation, "rules/episodes.first"), -1);
+  advance(*simulation, 85);
+  // Holds at 0.1 ... 0.29 s, 190 ms from the first sample to the last; at 0.4 ... 0.44 s for 40 ms only.
+  EXPECT_EQ(value(*simulation, "rules/episodes.count"), 1);
+  EXPECT_NEAR(value(*simulation, "rules/episodes.first"), 0.1, 1e-12);
+  EXPECT_NEAR(value(*simulation, "rules/episodes.longest"), 0.19, 1e-12);
+  EXPECT_EQ(value(*simulation, "rules/episodes.holds"), 0);
+}
+
+TEST(Coverage, RefusesSpacesThatAreNone) {
+  const auto refusal = [](Node config) {
+    model::Setup setup = weightless();
+    setup.rules.push_back(element("coverage", std::move(config)));
+    return refused(std::move(setup));
+  };
+  const Node two = with(Node::map(), "values", texts({"sim.time", "sim.tick"}));
+  EXPECT_NE(refusal(with(two, "ranges", list({numbers({1, 1})}))).find("a range is empty"),
+            std::string::npos);
+  EXPECT_NE(refusal(with(two, "ranges", list({numbers({0, 1}), numbers({0, 1}), numbers({0, 1})})))
+                .find("more or fewer ranges"),
+            std::string::npos);
+  Node many = with(two, "ranges", list({numbers({0, 1})}));
+  many.set("bins", Node::scalar("1000"));
+  EXPECT_EQ(refusal(many), "") << "a million cells";
+  many.set("values", texts({"sim.time", "sim.tick", "sim.time"}));
+  EXPECT_NE(refusal(many).find("more than a million cells"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sandlot::test

@@ -23,6 +23,11 @@ inline Node numbers(std::initializer_list<double> values) {
   for (const double value : values) out.push(Node::scalar(std::to_string(value)));
   return out;
 }
+inline Node texts(std::initializer_list<const char*> values) {
+  Node node = Node::sequence();
+  for (const char* each : values) node.push(Node::scalar(each));
+  return node;
+}
 inline Node with(Node node, const char* key, const Node& value) {
   node.set(key, value);
   return node;

@@ -293,6 +293,13 @@ model::Setup everything() {
   setup.rules.push_back(
       element("statistics", with(map({{"each", "rover*.pose.x"}, {"interval", "70 ms"}, {"bins", "5"}}),
                                  "range", numbers({-2, 2}))));
+  Node coverage = with(map({{"bins", "8"}}), "values", texts({"rover1.pose.x", "ball.pose.x"}));
+  coverage.set("ranges", list({numbers({-2, 2})}));
+  setup.rules.push_back(element("coverage", coverage));
+  setup.rules.push_back(element(
+      "path", with(map({{"interval", "50 ms"}}), "values", texts({"rover1.pose.x", "rover1.pose.y"}))));
+  setup.rules.push_back(
+      element("episodes", map({{"when", "mod(sim.time, 0.3) < 0.2"}, {"at_least", "0.1"}})));
   setup.rules.push_back(
       element("set", with(map({{"when", "ball.pose.x > 0.4"}}), "set",
                           list({map({{"parameter", "media/air.threshold"}, {"value", "31 dB"}})}))));
