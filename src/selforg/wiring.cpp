@@ -71,17 +71,19 @@ class WiringOf final : public ElementAdapter<Wiring, T> {
   const char* kind_;
 };
 
-struct NoiseState {
-  Noise::State noise;
-  static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "State of the noise."}, s.noise); }
-};
-
-struct OneToOne {
+/// The same sizes on both sides, with noise on the sensors or on the motors, which are clipped to [-1, 1] then.
+template <bool on_motors>
+struct NoisyWiring {
   struct Spec {
     Noise::Spec noise;
-    static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Noise on the sensors."}, s.noise); }
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"noise", "", on_motors ? "Noise on the motors." : "Noise on the sensors."}, s.noise);
+    }
   };
-  using State = NoiseState;
+  struct State {
+    Noise::State noise;
+    static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "State of the noise."}, s.noise); }
+  };
   Spec spec;
   State state;
   std::size_t controller_sensors = 0, controller_motors = 0;
@@ -90,18 +92,30 @@ struct OneToOne {
   Status init(const Setup& robot) {
     controller_sensors = robot.sensors;
     controller_motors = robot.motors;
-    noise.init(robot, robot.sensors, 10);
+    noise.init(robot, on_motors ? robot.motors : robot.sensors, on_motors ? 11 : 10);
     state.noise = noise.fresh();
     return {};
   }
   void sensors(std::span<const double> in, std::span<double> out, double factor) {
-    noise.draw(spec.noise, state.noise, factor);
-    for (std::size_t i = 0; i < in.size(); ++i) out[i] = in[i] + state.noise.value[i];
-  }
-  void motors(std::span<const double> in, std::span<double> out, double) {
     std::copy(in.begin(), in.end(), out.begin());
+    if constexpr (!on_motors) add_noise(out, factor);
+  }
+  void motors(std::span<const double> in, std::span<double> out, double factor) {
+    std::copy(in.begin(), in.end(), out.begin());
+    if constexpr (on_motors) {
+      add_noise(out, factor);
+      for (double& each : out) each = clipped(each, 1);
+    }
+  }
+
+ private:
+  void add_noise(std::span<double> values, double factor) {
+    noise.draw(spec.noise, state.noise, factor);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += state.noise.value[i];
   }
 };
+using OneToOne = NoisyWiring<false>;
+using MotorNoise = NoisyWiring<true>;
 
 struct Selective {
   struct Spec {
@@ -242,33 +256,6 @@ struct Feedback {
   void motors(std::span<const double> in, std::span<double> out, double) {
     std::copy(in.begin(), in.end(), out.begin());
     for (std::size_t i = 0; i < in.size(); ++i) state.y[i] = clipped(in[i], 1);
-  }
-};
-
-struct MotorNoise {
-  struct Spec {
-    Noise::Spec noise;
-    static void fields(auto& s, auto&& visit) { visit(Field{"noise", "", "Noise on the motors."}, s.noise); }
-  };
-  using State = NoiseState;
-  Spec spec;
-  State state;
-  std::size_t controller_sensors = 0, controller_motors = 0;
-  Noise noise;
-
-  Status init(const Setup& robot) {
-    controller_sensors = robot.sensors;
-    controller_motors = robot.motors;
-    noise.init(robot, robot.motors, 11);
-    state.noise = noise.fresh();
-    return {};
-  }
-  void sensors(std::span<const double> in, std::span<double> out, double) {
-    std::copy(in.begin(), in.end(), out.begin());
-  }
-  void motors(std::span<const double> in, std::span<double> out, double factor) {
-    noise.draw(spec.noise, state.noise, factor);
-    for (std::size_t i = 0; i < in.size(); ++i) out[i] = clipped(in[i] + state.noise.value[i], 1);
   }
 };
 
