@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "base/atomic_file.h"
 #include "base/text.h"
+#include "selforg/store.h"
 
 namespace sandlot::selforg {
 namespace {
 
-constexpr std::string_view magic = "SELFAGT\n";
-constexpr std::uint32_t version = 1;
+constexpr StoredForm form{"SELFAGT\n", 1, "agent"};
 
 }  // namespace
 
@@ -47,6 +45,8 @@ Result<std::unique_ptr<WiredController>> WiredController::make(std::size_t senso
   SL_ASSIGN(made->babbler_, make_controller("babbling", inner));
   made->x_.resize(inner.sensors);
   made->y_.resize(inner.motors);
+  made->robot_x_.resize(sensors);
+  made->robot_y_.resize(motors);
   made->set_noise(spec.noise);
   return made;
 }
@@ -61,7 +61,15 @@ void WiredController::step(std::span<const double> x, std::span<double> y, Mode 
     controller_->step(x_, y_, mode);
   }
   wiring_->wire_motors(y_, y, noise_);
+  std::copy(x.begin(), x.end(), robot_x_.begin());
+  std::copy(y.begin(), y.end(), robot_y_.begin());
   ++steps_;
+}
+
+void WiredController::channels(const ChannelVisit& visit) const {
+  controller_->channels(visit);
+  visit({"x_R", robot_x_.size(), 1, robot_x_});
+  visit({"y_R", robot_y_.size(), 1, robot_y_});
 }
 
 void WiredController::save(ByteWriter& w) const {
@@ -80,7 +88,7 @@ void WiredController::load(ByteReader& r) {
     read(from, noise_);
     read(from, steps_);
     read(from, babbling_left_);
-    if (!std::isfinite(noise_)) from.fail();
+    if (!(std::abs(noise_) <= 1e3)) from.fail();
     controller_->load(from);
     babbler_->load(from);
     wiring_->load(from);
@@ -92,59 +100,53 @@ void WiredController::load(ByteReader& r) {
   SL_CHECK(back.ok());
 }
 
-Status WiredController::store(const std::string& path) const {
+std::string WiredController::kinds() const {
+  return fmt::format("{} behind {}", controller_->kind(), wiring_->kind());
+}
+
+std::vector<std::byte> WiredController::stored() const {
   ByteWriter body, w;
-  write(body, fmt::format("{} behind {}", controller_->kind(), wiring_->kind()));
+  write(body, kinds());
   write(body, static_cast<std::uint64_t>(wiring_->robot_sensors()));
   write(body, static_cast<std::uint64_t>(wiring_->robot_motors()));
   write(body, controller_->fixed_key());
   save(body);
-  w.raw(magic.data(), magic.size());
-  write(w, version);
-  write(w, hash64(body.bytes()));
-  w.raw(body.bytes().data(), body.size());
-  return write_file(path, {reinterpret_cast<const char*>(w.bytes().data()), w.size()});
+  write_stored(w, form, body.bytes());
+  return {w.bytes().begin(), w.bytes().end()};
 }
 
-Status WiredController::load(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return Error{fmt::format("cannot read '{}'", path), "check the path"};
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const auto bytes = std::as_bytes(std::span(text));
-  ByteReader r(bytes);
-  const auto first = r.take(magic.size());
-  if (!r.ok() || std::memcmp(first.data(), magic.data(), magic.size()) != 0)
-    return Error{fmt::format("'{}' is not a stored agent", path), "files of an agent begin with SELFAGT"};
-  std::uint32_t found_version = 0;
-  std::uint64_t sum = 0, sensors = 0, motors = 0, key = 0;
-  read(r, found_version);
-  if (r.ok() && found_version != version)
-    return Error{
-        fmt::format("'{}' has version {}; this program reads version {}", path, found_version, version),
-        "store it again with this program"};
-  read(r, sum);
-  const Error damaged{fmt::format("'{}' is damaged or incomplete", path), "store it again"};
-  if (!r.ok() || hash64(bytes.last(r.remaining())) != sum) return damaged;
-  std::string kinds;
-  read(r, kinds);
+Status WiredController::take_stored(std::span<const std::byte> bytes, const std::string& from) {
+  SL_ASSIGN(const auto body, stored_body(bytes, form, from));
+  ByteReader r(body);
+  std::uint64_t sensors = 0, motors = 0, key = 0;
+  std::string found;
+  read(r, found);
   read(r, sensors);
   read(r, motors);
   read(r, key);
-  if (!r.ok()) return damaged;
-  const std::string own = fmt::format("{} behind {}", controller_->kind(), wiring_->kind());
-  if (kinds != own)
-    return Error{fmt::format("'{}' holds {}; this agent is {}", path, kinds, own),
+  if (!r.ok()) return damaged_file(from);
+  if (found != kinds())
+    return Error{fmt::format("'{}' holds {}; this agent is {}", from, found.substr(0, 100), kinds()),
                  "load it into one of its kind"};
   if (sensors != wiring_->robot_sensors() || motors != wiring_->robot_motors())
-    return Error{fmt::format("'{}' holds an agent of {} sensors and {} motors; this one has {} and {}", path,
+    return Error{fmt::format("'{}' holds an agent of {} sensors and {} motors; this one has {} and {}", from,
                              sensors, motors, wiring_->robot_sensors(), wiring_->robot_motors()),
                  "load it into one of its size"};
   if (key != controller_->fixed_key())
-    return Error{fmt::format("'{}' was stored by a controller with other fixed parameters", path),
+    return Error{fmt::format("'{}' was stored by a controller with other fixed parameters", from),
                  "make the agent with the parameters that it was stored with"};
-  load(r);
-  if (!r.ok()) return damaged;
+  if (!load_whole(r, *this)) return damaged_file(from);
   return {};
+}
+
+Status WiredController::store(const std::string& path) const {
+  const std::vector<std::byte> bytes = stored();
+  return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Status WiredController::load(const std::string& path) {
+  SL_ASSIGN(const std::string text, read_stored_file(path));
+  return take_stored(std::as_bytes(std::span(text)), path);
 }
 
 Result<std::unique_ptr<Agent>> Agent::make(Robot& robot, const AgentSpec& spec) {
@@ -160,7 +162,7 @@ void Agent::step(double dt_s, Mode mode) {
   robot_->read_sensors(x_);
   wired_->step(x_, y_, mode);
   robot_->set_motors(y_);
-  if (log_.is_open()) log_.step(time_s_, controller());
+  if (log_.is_open()) log_.step(time_s_, *wired_);
   time_s_ += dt_s;
 }
 

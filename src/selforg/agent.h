@@ -57,6 +57,8 @@ class WiredController {
   const Controller& controller() const { return *controller_; }
   Wiring& wiring() { return *wiring_; }
   const Wiring& wiring() const { return *wiring_; }
+  /// Named values: the controller's, and the robot's sensor and motor values x_R and y_R.
+  void channels(const ChannelVisit& visit) const;
   double noise() const { return noise_; }
   void set_noise(double factor) { noise_ = clipped(factor, 1e3); }
   std::uint64_t steps() const { return steps_; }
@@ -67,12 +69,18 @@ class WiredController {
   /// Everything that lasts, with version and check sum; errors as of selforg/store.h.
   Status store(const std::string& path) const;
   Status load(const std::string& path);
+  /// The bytes of such a file.
+  std::vector<std::byte> stored() const;
+  /// @param from  name of the source, for messages
+  Status take_stored(std::span<const std::byte> bytes, const std::string& from);
+  /// "sox behind one_to_one": only agents of the same kinds take each other's files.
+  std::string kinds() const;
 
  private:
   WiredController() = default;
   std::unique_ptr<Wiring> wiring_;
   std::unique_ptr<Controller> controller_, babbler_;
-  std::vector<double> x_, y_;
+  std::vector<double> x_, y_, robot_x_, robot_y_;  ///< the robot's are for channels() alone: not State
   double noise_ = 0;
   std::uint64_t steps_ = 0, babbling_left_ = 0;
 };
@@ -95,7 +103,7 @@ class Agent {
   double time_s() const { return time_s_; }
 
   Status start_log(const std::string& path, const LogSpec& spec = {}) {
-    return log_.open(path, spec, controller());
+    return log_.open(path, spec, *wired_);
   }
   Status stop_log() { return log_.close(); }
   /// Sets a parameter of the controller and notes it in the log.

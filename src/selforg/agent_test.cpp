@@ -300,7 +300,7 @@ TEST(Agent, LogsTheFormatAndReadsItBack) {
   Echo robot;
   auto agent = make_agent(robot, {.seed = 3});
   ASSERT_TRUE(static_cast<bool>(
-      (*agent)->start_log(folder.file("log"), {.interval = 5, .channels = {"x[*", "y*", "A*", "-A[1,*"}})));
+      (*agent)->start_log(folder.file("log"), {.interval = 5, .channels = {"x[*", "y[*", "A*", "-A[1,*"}})));
   std::vector<double> A00;
   for (int k = 0; k < 50; ++k) {
     if (k == 20) { ASSERT_TRUE(static_cast<bool>((*agent)->set("epsC", 0.2))); }
@@ -333,7 +333,7 @@ TEST(Agent, LogsTheFormatAndReadsItBack) {
   ASSERT_FALSE(static_cast<bool>(bad));
   EXPECT_EQ(bad.error().place.line, 3);
   std::ofstream(folder.file("bad")) << "#C t a\n0 1 2\n";
-  EXPECT_EQ(read_log(folder.file("bad")).error().what, "3 values for 2 columns");
+  EXPECT_EQ(read_log(folder.file("bad")).error().what, "at least 3 values for 2 columns");
 }
 
 TEST(CrossMotorTeaching, MotorsLearnToMoveTogether) {

@@ -27,18 +27,28 @@ struct LogSpec {
   std::vector<std::string> channels;
 };
 
+class WiredController;
+
 class LogFile {
  public:
   /// Opens the file and writes the header.
   Status open(const std::string& path, const LogSpec& spec, const Controller& controller);
+  Status open(const std::string& path, const LogSpec& spec, const WiredController& agent);
   bool is_open() const { return out_.is_open(); }
-  /// A line with the controller's values, if one is due.
+  /// A line with the values, if one is due.
   void step(double time_s, const Controller& controller);
+  void step(double time_s, const WiredController& agent);
+  /// A comment of one line; line breaks become blanks.
   void comment(std::string_view text);
   /// Writes what is buffered; an error when the disk did not take it all.
   Status close();
 
  private:
+  template <class Source>
+  Status open_for(const std::string& path, const LogSpec& spec, const Source& source,
+                  const Controller& controller);
+  template <class Source>
+  void write_step(double time_s, const Source& source);
   bool wanted(std::string_view name) const;
   LogSpec spec_;
   std::string path_, line_;
@@ -52,7 +62,9 @@ struct LogTable {
   std::vector<std::vector<double>> rows;
   std::vector<std::string> comments;
 };
-/// Reads such a file. Errors name the line.
+/// Reads such a file of at most 1 GiB, with 100,000 columns at most. Errors name the line.
 Result<LogTable> read_log(const std::string& path);
+/// The same from its text. @param name  of the file, for messages
+Result<LogTable> read_log_text(std::string_view text, const std::string& name);
 
 }  // namespace sandlot::selforg
