@@ -47,6 +47,7 @@ enum class Argument : std::uint8_t {
   device,     ///< its path
   level,      ///< of the device before it
   service,    ///< of the device before it
+  agent,      ///< a robot's program
   link,       ///< of the thing before it
   parameter,  ///< its address
   value,      ///< its address
@@ -67,9 +68,10 @@ struct BuiltinCommand {
   std::size_t min_words = 0;  ///< that must follow
   std::vector<Argument> arguments = {Argument::none};  ///< the last one goes for all that follow
   CommandResult (*act)(CommandCall&);
-  bool submits = false;  ///< all its effects go through submit(): it can be rehearsed
-  bool plain = false;    ///< quotes are letters like others
-  bool travels = false;  ///< it leaves the present time
+  bool submits = false;                      ///< all its effects go through submit(): it can be rehearsed
+  bool plain = false;                        ///< quotes are letters like others
+  bool travels = false;                      ///< it leaves the present time
+  std::size_t stays_with = ~std::size_t{0};  ///< with so many words that follow it does not
 };
 
 /// In the order of the help.
@@ -137,6 +139,10 @@ CommandResult cmd_reset(CommandCall& call);
 CommandResult cmd_jump(CommandCall& call);
 CommandResult cmd_store(CommandCall& call);
 CommandResult cmd_load(CommandCall& call);
+// Of robots that learn: `list agents`, `store AGENT FILE`, `load AGENT FILE`.
+CommandResult list_agents(CommandCall& call);
+CommandResult store_agent(CommandCall& call);
+CommandResult load_agent(CommandCall& call);
 CommandResult cmd_record(CommandCall& call);
 CommandResult cmd_time(CommandCall& call);
 CommandResult cmd_clients(CommandCall& call);

@@ -108,7 +108,8 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
       for (std::string& name : console::command_names(options)) out.add(std::move(name));
       break;
     case Argument::list:
-      for (const char* each : {"entities", "models", "topics", "parameters"}) out.add(each);
+      for (const char* each : {"entities", "robots", "agents", "models", "topics", "parameters"})
+        out.add(each);
       for (const auto& entity : simulation.entities()) out.add(entity->instance.name);
       for (const WorldElements::Part& part : simulation.elements().parts()) out.add(part.path);
       for (const Simulation::Team& team : simulation.teams())
@@ -135,6 +136,10 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
     case Argument::service:
       if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
         for (const DeviceService& service : simulation.kind(*device).services) out.add(service.name);
+      break;
+    case Argument::agent:
+      for (const auto& entity : simulation.entities())
+        for (const auto& program : entity->programs) out.add(program->path);
       break;
     case Argument::link:
       if (const Entity* const entity = before.empty() ? nullptr : simulation.find_entity(before.front()))

@@ -248,7 +248,7 @@ Status Console::before_tick() {
     if (due.over) continue;
     const std::vector<Word> words = console::plain_words_of(due.text);
     const BuiltinCommand* const command = words.empty() ? nullptr : console::find_command(words.front().text);
-    due.over = !due.of_run || (command && command->travels);
+    due.over = !due.of_run || (command && command->travels && words.size() <= command->stays_with);
     const Scheduled line = due;
     const std::string when = "at " + console::readable(session_.simulation().now().s()) + " s: ";
     const auto take = [answers = answers_, when, line](const Answer& answer) {

@@ -113,6 +113,7 @@ CommandResult cmd_jump(CommandCall& call) {
 }
 
 CommandResult cmd_store(CommandCall& call) {
+  if (call.words.size() == 2) return store_agent(call);
   SL_ASSIGN(const std::string file, file_within(call.options, call.words.front()));
   std::error_code failed;
   // Nobody shall lose a scenario to a slip.
@@ -124,6 +125,7 @@ CommandResult cmd_store(CommandCall& call) {
 }
 
 CommandResult cmd_load(CommandCall& call) {
+  if (call.words.size() == 2) return load_agent(call);
   SL_ASSIGN(const std::string file, file_within(call.options, call.words.front()));
   SL_ASSIGN(std::vector<std::byte> bytes, read_snapshot(file));
   call.session.load(std::move(bytes),

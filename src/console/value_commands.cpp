@@ -645,6 +645,13 @@ CommandResult cmd_list(CommandCall& call) {
     for (const auto& each : simulation.entities()) all.push_back(each.get());
     return list_entities(call, all);
   }
+  if (what == "robots") {
+    std::vector<const Simulation::Entity*> robots;
+    for (const auto& each : simulation.entities())
+      if (each->instance.is_robot) robots.push_back(each.get());
+    return list_entities(call, robots);
+  }
+  if (what == "agents") return list_agents(call);
   if (what == "topics") return list_topics(call);
   if (what == "parameters") return list_parameters(call);
   if (what == "models") return list_models(call);
@@ -652,7 +659,7 @@ CommandResult cmd_list(CommandCall& call) {
     SL_ASSIGN(const std::vector<const Simulation::Entity*> things, match_things(call, what));
     return list_entities(call, things);
   }
-  std::vector<std::string> known{"entities", "models", "topics", "parameters"};
+  std::vector<std::string> known{"entities", "robots", "agents", "models", "topics", "parameters"};
   for (const auto& each : simulation.entities()) known.push_back(each->instance.name);
   for (const WorldPart& part : world_parts(simulation)) known.push_back(part.path);
   return Error{"there is no '" + what.substr(0, 100) + "' to list", suggestion(what, known)};

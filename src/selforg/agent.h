@@ -62,6 +62,8 @@ class WiredController {
   double noise() const { return noise_; }
   void set_noise(double factor) { noise_ = clipped(factor, 1e3); }
   std::uint64_t steps() const { return steps_; }
+  std::size_t robot_sensors() const { return robot_x_.size(); }
+  std::size_t robot_motors() const { return robot_y_.size(); }
 
   void save(ByteWriter& w) const;
   /// Fails the reader, and leaves the agent as it was, on bytes of another agent.

@@ -14,7 +14,8 @@ constexpr std::size_t most_description_bytes = 300;  ///< bytes of text about on
 void add_node(const Node& node, std::string& out) {
   if (out.size() > most_description_bytes) return;
   if (node.is_scalar()) {
-    out += node.text();
+    out += node.text().substr(0, most_description_bytes);
+    if (node.text().size() > most_description_bytes) out += "...";
   } else if (node.is_sequence()) {
     out += '[';
     for (const Node& each : node.items()) {

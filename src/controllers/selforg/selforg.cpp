@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/base64.h"
 #include "base/text.h"
 
 namespace sandlot::controllers::selforg {
@@ -157,22 +158,46 @@ Result<std::unique_ptr<so::WiredController>> SelfOrg::make_agent(std::uint64_t s
   return made;
 }
 
-void SelfOrg::step(const Observation& obs, Command& cmd) {
-  if (!begun_) {
-    // The run's seed reaches a controller in its steps only. Parameters that were tuned meanwhile are kept.
-    seed_ = obs.random().bits64();
-    auto made = make_agent(seed_);
-    SL_CHECK(made);
-    ByteWriter tuned;
-    agent_->controller().save_parameters(tuned);
-    agent_->wiring().save_parameters(tuned);
-    ByteReader taken(tuned.bytes());
+/// The run's seed reaches a controller in its steps only. What was tuned or loaded meanwhile is kept.
+void SelfOrg::begin(std::uint64_t seed) {
+  seed_ = seed;
+  auto made = make_agent(seed_);
+  SL_CHECK(made);
+  ByteWriter kept;
+  if (phase_ == Phase::learned) {
+    agent_->save(kept);
+  } else {
+    agent_->controller().save_parameters(kept);
+    agent_->wiring().save_parameters(kept);
+  }
+  ByteReader taken(kept.bytes());
+  if (phase_ == Phase::learned) {
+    (*made)->load(taken);
+  } else {
     (*made)->controller().load_parameters(taken);
     (*made)->wiring().load_parameters(taken);
-    SL_CHECK(taken.ok());
-    agent_ = std::move(*made);
-    begun_ = true;
   }
+  SL_CHECK(taken.ok());
+  agent_ = std::move(*made);
+  phase_ = Phase::begun;
+}
+
+Status SelfOrg::check_learned(std::span<const std::byte> stored, const std::string& from) const {
+  SL_ASSIGN(auto made, make_agent(seed_));
+  return made->take_stored(stored, from);
+}
+
+Status SelfOrg::take_learned(std::span<const std::byte> stored, const std::string& from) {
+  SL_ASSIGN(auto made, make_agent(seed_));
+  SL_TRY(made->take_stored(stored, from));
+  agent_ = std::move(made);
+  spec_.noise = std::clamp(agent_->noise(), 0.0, 100.0);
+  if (phase_ == Phase::new_one) phase_ = Phase::learned;
+  return {};
+}
+
+void SelfOrg::step(const Observation& obs, Command& cmd) {
+  if (phase_ != Phase::begun) begin(obs.random().bits64());
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const Sensor& sensor = sensors_[i];
     const TopicBase& topic = obs.topic(sensor.topic);
@@ -217,45 +242,73 @@ Status SelfOrg::set_parameter(std::string_view path, const Node& value) {
   const std::string_view rest = first.size() < path.size() ? path.substr(first.size() + 1)
                                                            : std::string_view();
   if (first == "parameters" && !rest.empty()) return agent_->controller().set_parameter(rest, value);
-  if (first == "wiring" && !rest.empty()) return agent_->wiring().set_parameter(rest, value);
+  if (first == "wiring" && !rest.empty()) {
+    const bool indexed = !is_sequence() && starts_with(rest, "0/");
+    return agent_->wiring().set_parameter(indexed ? rest.substr(2) : rest, value);
+  }
+  if (path == learned_field) {
+    const auto stored = value.is_scalar() ? from_base64(value.text()) : std::nullopt;
+    if (!stored) return value.error("'learned' takes a stored agent in Base64", "load it by the console");
+    return take_learned(std::as_bytes(std::span(*stored)), "learned");
+  }
   Spec changed = spec_;
   SL_TRY(set_tunable(changed, path, value));
   spec_ = std::move(changed);
   return {};
 }
 
+/// A single wiring has the index 0, which may be left out.
+ValueFound SelfOrg::wiring_value(ValuePart part, std::span<const ValueStep> path) const {
+  const bool indexed = path.size() > 1 && path[0].key.empty() && path[0].index == 0;
+  return agent_->wiring().value(part, indexed && !is_sequence() ? path.subspan(1) : path);
+}
+
 ValueFound SelfOrg::value(ValuePart part, std::span<const ValueStep> path) const {
-  if (part == ValuePart::state) return agent_->controller().value(part, path);
+  if (part == ValuePart::state) {
+    if (path.size() > 1 && path[0].key == "wiring") return wiring_value(part, path.subspan(1));
+    if (path.size() == 1 && path[0].key == "bad_sensors")
+      return {ValueFound::Is::value, static_cast<double>(agent_->controller().bad_sensors())};
+    return agent_->controller().value(part, path);
+  }
   if (path.size() > 1 && path[0].key == "parameters")
     return agent_->controller().value(part, path.subspan(1));
-  if (path.size() > 1 && path[0].key == "wiring") return agent_->wiring().value(part, path.subspan(1));
+  if (path.size() > 1 && path[0].key == "wiring") return wiring_value(part, path.subspan(1));
   return value_at(spec_, path);
 }
 
 void SelfOrg::list_values(ValuePart part, const ValueVisit& visit) const {
-  if (part == ValuePart::state) return agent_->controller().list_values(part, visit);
+  const auto of_wiring = [&](ValueEntry entry) {
+    entry.path = (is_sequence() ? "wiring" : "wiring[0].") + entry.path;
+    visit(std::move(entry));
+  };
+  if (part == ValuePart::state) {
+    agent_->controller().list_values(part, visit);
+    return agent_->wiring().list_values(part, of_wiring);
+  }
   sandlot::list_values(spec_, "", "", "", visit);
   agent_->controller().list_values(part, [&](ValueEntry entry) {
     entry.path = "parameters." + entry.path;
     visit(std::move(entry));
   });
+  agent_->wiring().list_values(part, of_wiring);
 }
 
 void SelfOrg::save(ByteWriter& w) const {
   write(w, spec_.noise);  // the only tunable of the spec itself
-  write(w, begun_);
+  write(w, phase_);
   write(w, seed_);
   for (const TwistTarget& target : twists_) write(w, target.order);
   agent_->save(w);
 }
 
 void SelfOrg::load(ByteReader& r) {
-  bool begun = false;
+  Phase phase{};
   std::uint64_t seed = 0;
   double noise = 0;
   read(r, noise);
   if (!(noise >= 0 && noise <= 100)) r.fail();
-  read(r, begun);
+  read(r, phase);
+  if (phase > Phase::learned) r.fail();
   read(r, seed);
   std::vector<TwistTarget> twists = twists_;
   for (TwistTarget& target : twists) read(r, target.order);
@@ -265,7 +318,7 @@ void SelfOrg::load(ByteReader& r) {
   (*made)->load(r);
   if (!r.ok()) return;
   spec_.noise = noise;
-  begun_ = begun;
+  phase_ = phase;
   seed_ = seed;
   twists_ = std::move(twists);
   agent_ = std::move(*made);

@@ -10,8 +10,10 @@
 /// Topics   each matrix and vector of the controller as Float64MultiArray, its name in the equations: /ROBOT/PROGRAM/A. One per
 ///          `publish_interval` control steps.
 /// State    the whole agent, with its seed, which is drawn in the first step: learning goes on after a restore to the same hash.
-/// Tunable  noise, and the parameters of agent and wirings: `parameters/epsC`, `wiring/0/noise/strength` in a sequence, without
-///          the index for a single wiring.
+/// Tunable  noise, and the parameters of agent and wirings: `parameters/epsC`, `wiring/0/noise/strength`, with the index of the
+///          wiring in the list; without the index for a single wiring.
+/// Learned  `learned`, a parameter that is written only: a stored agent (selforg/agent.h) in Base64 replaces all that the agent has
+///          learned. It is input of the run, as every parameter: logged and replayed.
 /// Limits   the border to controllers gives no limits of devices: a range that is not [-1, 1] has to be stated.
 /// Errors   sensors and motors that are not there, ranges that are empty, unknown controllers and parameters.
 #include <memory>
@@ -94,6 +96,12 @@ class SelfOrg final : public Controller {
   void save(ByteWriter& w) const override;
   void load(ByteReader& r) override;
 
+  static constexpr const char* learned_field = "learned";
+  const so::WiredController& agent() const { return *agent_; }
+  const Spec& spec() const { return spec_; }
+  /// Whether set_parameter(learned_field) would take these bytes; the error says why not.
+  Status check_learned(std::span<const std::byte> stored, const std::string& from) const;
+
  private:
   struct Sensor {
     std::uint32_t topic = 0;
@@ -119,6 +127,10 @@ class SelfOrg final : public Controller {
   Status add_motor(const Description& robot, const std::string& device, const Place& place,
                    const std::string& path);
   Result<std::unique_ptr<so::WiredController>> make_agent(std::uint64_t seed) const;
+  bool is_sequence() const { return spec_.wiring.size() > 1; }
+  ValueFound wiring_value(ValuePart part, std::span<const ValueStep> path) const;
+  void begin(std::uint64_t seed);
+  Status take_learned(std::span<const std::byte> stored, const std::string& from);
   void publish(Command& cmd);
 
   Spec spec_;
@@ -132,8 +144,13 @@ class SelfOrg final : public Controller {
   std::unique_ptr<so::WiredController> agent_;
   std::vector<double> x_, y_;
   // State:
+  enum class Phase : std::uint8_t {
+    new_one,
+    begun,    ///< it has its seed
+    learned,  ///< it has no seed yet, but something was loaded into it
+  };
   std::uint64_t seed_ = 0;
-  bool begun_ = false;
+  Phase phase_ = Phase::new_one;
 };
 
 }  // namespace sandlot::controllers::selforg

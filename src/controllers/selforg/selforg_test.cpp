@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include "base/base64.h"
 
 namespace sandlot::controllers::selforg {
 extern const ControllerKind kind;
@@ -141,6 +142,96 @@ TEST(SelfOrg, ParametersThatAreTunedBeforeTheFirstStepAreKept) {
   EXPECT_EQ(parameter("parameters.error"), 2);
   EXPECT_EQ(parameter("wiring.factor"), 0.5);
   EXPECT_EQ(parameter("noise"), 0.2);
+}
+
+std::string base64(std::span<const std::byte> bytes) {
+  std::string text;
+  add_base64(bytes, text);
+  return text;
+}
+
+TEST(SelfOrg, AStoredAgentGoesOnInAnotherRunWhetherItHasBegunOrNot) {
+  for (const int before : {0, 30}) {
+    Rig one, two;
+    ASSERT_TRUE(static_cast<bool>(one.init()) && static_cast<bool>(two.init()));
+    for (int k = 0; k < 77; ++k) one.see(k), one.step();
+    const std::vector<std::byte> file = one.controller.agent().stored();
+    for (int k = 0; k < before; ++k) two.see(k + 3), two.step();
+    ASSERT_TRUE(static_cast<bool>(two.controller.check_learned(file, "file")));
+    const Status taken = two.controller.set_parameter("learned", Node::scalar(base64(file)));
+    ASSERT_TRUE(static_cast<bool>(taken)) << taken.error().text();
+    // Without noise nothing depends on the seed.
+    for (int k = 77; k < 150; ++k) {
+      one.see(k), one.step(), two.see(k), two.step();
+      ASSERT_EQ(one.order<msg::Float64>(1).data, two.order<msg::Float64>(1).data) << before << " " << k;
+    }
+    EXPECT_EQ(one.controller.agent().stored(), two.controller.agent().stored());
+  }
+}
+
+TEST(SelfOrg, WhatWasLoadedBeforeTheFirstStepIsSavedAndKept) {
+  Rig one, two, three;
+  ASSERT_TRUE(static_cast<bool>(one.init()) && static_cast<bool>(two.init()) &&
+              static_cast<bool>(three.init()));
+  for (int k = 0; k < 40; ++k) one.see(k), one.step();
+  ASSERT_TRUE(static_cast<bool>(
+      two.controller.set_parameter("learned", Node::scalar(base64(one.controller.agent().stored())))));
+  ByteWriter w;
+  two.controller.save(w);
+  ByteReader r(w.bytes());
+  three.controller.load(r);
+  ASSERT_TRUE(r.ok());
+  two.see(5), two.step(), three.see(5), three.step();
+  EXPECT_EQ(two.controller.agent().stored(), three.controller.agent().stored());
+  EXPECT_EQ(two.controller.agent().steps(), 41u);
+}
+
+TEST(SelfOrg, ForeignAgentsAreRefusedAndChangeNothing) {
+  Rig rig, other;
+  Node semox = Rig::config();
+  semox.set("agent", Node::scalar("semox"));
+  ASSERT_TRUE(static_cast<bool>(rig.init()) && static_cast<bool>(other.init(semox)));
+  for (int k = 0; k < 20; ++k) rig.see(k), rig.step();
+  ByteWriter before, after;
+  rig.controller.save(before);
+  const auto complaint = [&](const Node& value) {
+    const Status status = rig.controller.set_parameter("learned", value);
+    return status ? std::string() : status.error().what;
+  };
+  EXPECT_EQ(complaint(Node::scalar(base64(other.controller.agent().stored()))),
+            "'learned' holds semox behind one_to_one; this agent is sox behind one_to_one");
+  EXPECT_EQ(complaint(Node::scalar("***")), "'learned' takes a stored agent in Base64");
+  EXPECT_EQ(complaint(Node::map()), "'learned' takes a stored agent in Base64");
+  EXPECT_EQ(complaint(Node::scalar("")), "'learned' is not a stored agent");
+  std::vector<std::byte> cut = rig.controller.agent().stored();
+  cut.resize(cut.size() / 2);
+  EXPECT_EQ(complaint(Node::scalar(base64(cut))), "'learned' is damaged or incomplete");
+  rig.controller.save(after);
+  EXPECT_TRUE(
+      std::equal(before.bytes().begin(), before.bytes().end(), after.bytes().begin(), after.bytes().end()));
+}
+
+TEST(SelfOrg, ParametersAndStateOfWiringsAreValues) {
+  Rig rig;
+  ASSERT_TRUE(static_cast<bool>(rig.init()));
+  const auto number = [&](ValuePart part, const char* path) {
+    return rig.controller.value(part, *parse_value_path(path));
+  };
+  EXPECT_EQ(number(ValuePart::parameter, "wiring[0].noise.strength").value, 1);
+  ASSERT_TRUE(
+      static_cast<bool>(rig.controller.set_parameter("wiring/0/noise/strength", Node::scalar("0.5"))));
+  EXPECT_EQ(number(ValuePart::parameter, "wiring.noise.strength").value, 0.5);
+  rig.hinge.message.data[1] = std::nan("");
+  rig.hinge.publish(Time::from_s(1));
+  rig.step();
+  rig.step();
+  EXPECT_EQ(number(ValuePart::state, "bad_sensors").value, 2);
+  EXPECT_EQ(number(ValuePart::state, "wiring[0].noise.t").value, 2);
+  EXPECT_EQ(number(ValuePart::state, "wiring[1].noise.t").is, ValueFound::Is::unknown);
+  std::vector<std::string> paths;
+  rig.controller.list_values(ValuePart::parameter, [&](const ValueEntry& e) { paths.push_back(e.path); });
+  EXPECT_NE(std::find(paths.begin(), paths.end(), "wiring[0].noise.strength"), paths.end());
+  EXPECT_NE(std::find(paths.begin(), paths.end(), "parameters.epsC"), paths.end());
 }
 
 TEST(SelfOrg, DescribesTheParametersOfAllAgents) {
