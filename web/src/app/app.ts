@@ -3,6 +3,7 @@ import {Client} from '../net/client';
 import {socketAddress, targetOf} from '../net/address';
 import {MatrixPanel} from '../plots/matrix';
 import {PlotsPanel} from '../plots/plots_panel';
+import {AgentsPanel} from '../ui/agents';
 import type {Status, World} from '../protocol';
 import {SceneView} from '../scene/scene';
 import {freeName, openAdd} from '../ui/add_dialog';
@@ -43,6 +44,7 @@ export class App {
   readonly client: Client;
   readonly scene: SceneView;
   readonly plots: PlotsPanel;
+  readonly agents: AgentsPanel;
   private readonly steer: Steer;
   private readonly actions: Actions;
   private readonly toasts = new Toasts();
@@ -76,6 +78,10 @@ export class App {
         this.frame.open('plots');
         this.plots.addValue(address, unit);
       },
+      phase: (addresses) => {
+        this.frame.open('plots');
+        this.plots.addPhase(addresses);
+      },
       showMatrix: (topic) => {
         this.frame.open('matrix');
         matrix.choose(topic);
@@ -107,8 +113,9 @@ export class App {
     this.console = new ConsolePanel(this.context);
     const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
     const matrix = new MatrixPanel(this.context);
+    this.agents = new AgentsPanel(this.context);
     for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['panels', 'Panels', new RobotPanelsPane(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
-      ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
+      ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['agents', 'Agents', this.agents], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
       this.frame.addPane({id, title, panel});
     }
     this.frame.addPhoneTab('tree', 'World', 'list');
@@ -284,7 +291,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'agents', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),
@@ -323,6 +330,7 @@ export class App {
         this.scene.setTheme(this.theme());
         this.bar.showTheme();
         this.plots.themeChanged();
+        this.agents.themeChanged();
       },
       'page.help': () => openHelp(this.actions),
       'page.escape': () => {

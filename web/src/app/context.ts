@@ -19,6 +19,8 @@ export interface Context {
   openPane: (id: string) => void;
   /** Adds a value to a plot and shows it. */
   plot: (address: string, unit: string) => void;
+  /** Opens a phase plot: values against the first one. */
+  phase: (addresses: string[]) => void;
   showMatrix: (topic: string) => void;
   /** Opens the log with the lines of a program alone. */
   showLog: (program: string) => void;

@@ -55,6 +55,7 @@ const table: [string, Action['group'], string, string[], boolean][] = [
   ['pane.topics', 'Panels', 'Topics', [], false],
   ['pane.graph', 'Panels', 'Graph', [], false],
   ['pane.matrix', 'Panels', 'Matrix', [], false],
+  ['pane.agents', 'Panels', 'Agents', [], false],
   ['pane.pictures', 'Panels', 'Cameras', [], false],
   ['pane.panels', 'Panels', 'Screens and keys of robots', [], false],
   ['pane.commands', 'Panels', 'Commands', [], false],

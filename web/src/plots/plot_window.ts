@@ -10,11 +10,15 @@ import {icon} from '../ui/icons';
 import {Suggestions} from '../ui/overlays';
 import {acceptValues, Value} from '../ui/values';
 import {fileName, toCsv} from './csv';
+import {drawPhase} from './phase';
+import {padded} from './scales';
 import {PlotData} from './series';
 
 export interface PlotMemory {
   values: Value[];
   window_s: number;
+  /** Values against the first one, in place of against time. */
+  phase?: boolean;
 }
 
 interface Shown extends Value {
@@ -36,6 +40,8 @@ export class PlotWindow {
   private zoom: [number, number] | null = null;
   private watch: Watch | null = null;
   private plot: uPlot | null = null;
+  private phase: boolean;
+  private readonly phaseCanvas = h('canvas', {class: 'phase-canvas', testid: 'phase-canvas', 'aria-label': 'Values against the first one'});
   private visible = false;
   private readonly legend = h('div', {class: 'plot-legend'});
   private readonly area = h('div', {class: 'plot-area'});
@@ -43,12 +49,14 @@ export class PlotWindow {
   private readonly input = h('input', {class: 'mono', placeholder: 'Add a value: rover.pose.x', 'aria-label': 'Address or expression to plot', testid: 'plot-input'});
   private readonly pauseButton = h('button', {class: 'plain small icon-only', 'aria-label': 'Hold the plot still', title: 'Hold the plot still', 'aria-pressed': 'false'}, icon('pause', 13));
   private readonly fitButton = h('button', {class: 'plain small', hidden: true, title: 'Show the newest again (double click in the plot)'}, 'Back to live');
+  private readonly phaseButton = h('button', {class: 'plain small', title: 'Phase plot: values against the first one', 'aria-pressed': 'false', testid: 'plot-phase'}, 'x–y');
   readonly element: HTMLElement;
   private readonly stops: (() => void)[] = [];
   private legendValues: HTMLElement[] = [];
 
   constructor(private readonly context: Context, memory: PlotMemory, private readonly changed: () => void, private readonly closing: (plot: PlotWindow) => void, private readonly active: (plot: PlotWindow) => void) {
     this.window_s = windows_s.includes(memory.window_s) ? memory.window_s : 30;
+    this.phase = memory.phase === true;
     const span = h('select', {class: 'quiet', 'aria-label': 'Length of the window', title: 'Length of the window'}, ...windows_s.map((s) => h('option', {value: s}, s < 60 ? `${s} s` : `${s / 60} min`)));
     span.value = String(this.window_s);
     span.addEventListener('change', () => {
@@ -59,7 +67,7 @@ export class PlotWindow {
     });
     const button = (name: string, label: string, run: () => void): HTMLElement => h('button', {class: 'plain small icon-only', title: label, 'aria-label': label, on: {click: run}}, icon(name, 13));
     this.element = h('article', {class: 'plot-window', testid: 'plot', on: {pointerdown: () => this.active(this)}},
-        h('div', {class: 'plot-head'}, this.input, span, this.fitButton, this.pauseButton,
+        h('div', {class: 'plot-head'}, this.input, span, this.fitButton, this.phaseButton, this.pauseButton,
           h('button', {class: 'plain small', title: 'Save the numbers as CSV', testid: 'plot-csv', on: {click: () => this.saveCsv()}}, 'CSV'),
           h('button', {class: 'plain small', title: 'Save the picture as PNG', testid: 'plot-png', on: {click: () => this.savePng()}}, 'PNG'),
           button('close', 'Close the plot', () => this.closing(this))),
@@ -72,6 +80,12 @@ export class PlotWindow {
       this.draw();
     });
     this.fitButton.addEventListener('click', () => this.unzoom());
+    this.phaseButton.addEventListener('click', () => {
+      this.phase = !this.phase;
+      this.zoom = null;
+      this.build();
+      this.changed();
+    });
     const suggestions = new Suggestions(this.input, (text) => this.complete(text), (candidate) => {
       this.input.value = candidate;
       if (!candidate.endsWith('/') && !candidate.endsWith('.')) return;
@@ -191,7 +205,7 @@ export class PlotWindow {
   }
 
   memory(): PlotMemory {
-    return {values: this.values.map(({address, unit}) => ({address, unit})), window_s: this.window_s};
+    return {values: this.values.map(({address, unit}) => ({address, unit})), window_s: this.window_s, ...(this.phase ? {phase: true} : {})};
   }
 
   // --- drawing
@@ -199,10 +213,17 @@ export class PlotWindow {
   private build(): void {
     this.plot?.destroy();
     this.plot = null;
+    this.phaseCanvas.remove();
+    this.phaseButton.setAttribute('aria-pressed', String(this.phase));
     this.hint.hidden = this.values.length > 0;
     this.area.hidden = this.values.length === 0;
     this.showLegend();
     if (this.values.length === 0) return;
+    if (this.phase) {
+      this.area.append(this.phaseCanvas);
+      this.draw();
+      return;
+    }
     const css = getComputedStyle(document.documentElement);
     const grid = {stroke: css.getPropertyValue('--plot-grid'), width: 1};
     const text = css.getPropertyValue('--dim');
@@ -250,6 +271,7 @@ export class PlotWindow {
   }
 
   private readonly resize = (): void => {
+    if (this.phase) this.draw();
     if (!this.plot || this.area.clientWidth === 0) return;
     this.plot.setSize({width: this.area.clientWidth, height: this.area.clientHeight});
     this.draw();
@@ -260,20 +282,38 @@ export class PlotWindow {
   }
 
   private readonly draw = (): void => {
-    if (!this.plot || !this.visible) return;
+    if ((!this.plot && !this.phase) || !this.visible) return;
     const newest = this.data.times.lastTime();
     const end = this.zoom ? this.zoom[1] : this.paused ? this.pausedAt_s : Number.isNaN(newest) ? this.context.store.time_s : newest;
     // A run that is younger than the window begins at the left edge.
     const born_s = Math.min(this.context.store.status?.begin_s ?? 0, end - 1);
     const begin = this.zoom ? this.zoom[0] : Math.max(end - this.window_s, born_s);
     this.fitButton.hidden = this.zoom === null;
+    if (this.phase) {
+      this.drawPhase(begin, end);
+      return;
+    }
     const columns = this.data.columns(begin, end, Math.max(100, this.area.clientWidth));
-    this.plot.batch(() => {
+    this.plot?.batch(() => {
       this.plot?.setData(columns as unknown as uPlot.AlignedData, false);
       this.plot?.setScale('x', {min: begin, max: end});
     });
     this.showValues();
   };
+
+  /** Points as they came: thinned to their extremes they would lie at other times. */
+  private drawPhase(begin_s: number, end_s: number): void {
+    if (this.values.length === 0 || this.area.clientWidth === 0) return;
+    const most = 6000;
+    const columns = this.data.columns(begin_s, end_s, most);
+    const css = getComputedStyle(document.documentElement);
+    const against = this.values[0] as Shown;
+    const others = this.values.length > 1 ? this.values.slice(1) : [against];
+    drawPhase(this.phaseCanvas, this.area.clientWidth, this.area.clientHeight, {label: against.unit ? `${against.address} [${against.unit}]` : against.address, values: columns[1] ?? []},
+        others.map((v, i) => ({color: v.color, label: v.address, values: columns[this.values.length > 1 ? i + 2 : 1] ?? []})),
+        {grid: css.getPropertyValue('--plot-grid'), text: css.getPropertyValue('--dim'), font: '11px system-ui, sans-serif'});
+    this.showValues();
+  }
 
   private showLegend(): void {
     clear(this.legend);
@@ -305,7 +345,7 @@ export class PlotWindow {
   }
 
   private savePng(): void {
-    const source = this.plot?.ctx.canvas;
+    const source = this.phase ? this.phaseCanvas : this.plot?.ctx.canvas;
     if (!source) return;
     const scale = devicePixelRatio || 1;
     const head = 26 * scale;
@@ -337,12 +377,4 @@ export class PlotWindow {
     for (const stop of this.stops) stop();
     this.element.remove();
   }
-}
-
-/** Some room above and below; a constant gets a range of its size. */
-export function padded(min: number | null, max: number | null): [number, number] {
-  if (min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max)) return [-1, 1];
-  const size = max - min;
-  const room = size > 1e-9 * Math.max(Math.abs(min), Math.abs(max)) ? size * 0.08 : Math.max(Math.abs(max) * 0.1, 1e-3);
-  return [min - room, max + room];
 }

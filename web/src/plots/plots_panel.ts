@@ -63,6 +63,12 @@ export class PlotsPanel implements Panel {
     void target?.add({address, unit});
   }
 
+  /** A plot of its own for values against the first one. */
+  addPhase(addresses: string[]): void {
+    this.active = this.open({values: addresses.map((address) => ({address, unit: ''})), window_s: 30, phase: true});
+    this.save();
+  }
+
   setVisible(visible: boolean): void {
     this.visible = visible;
     for (const plot of this.windows) plot.setVisible(visible);
