@@ -1,4 +1,5 @@
 /// The table of commands.
+#include "base/json_writer.h"
 #include "base/text.h"
 #include "console/command.h"
 #include "sim/session/run_hooks.h"
@@ -12,7 +13,7 @@ const std::vector<BuiltinCommand>& table() {
   static const std::vector<BuiltinCommand> commands{
       {.name = "help",
        .aliases = "?",
-       .usage = "[WORD]",
+       .usage = "[WORD] [--json]",
        .help = "All commands, or one of them in full.",
        .arguments = {A::command},
        .act = cmd_help},
@@ -236,6 +237,40 @@ std::vector<std::string> command_names(const Console::Options& options) {
   return out;
 }
 
+namespace {
+
+/// Commands and, of an experiment, the keys that it binds.
+std::string help_json(const CommandCall& call) {
+  std::string text;
+  JsonWriter json(text);
+  const auto row = [&](const std::string& name, std::string_view usage, const std::string& help) {
+    json.object([&] {
+      json.key("name").text(name);
+      json.key("usage").text(usage);
+      json.key("help").text(help);
+    });
+  };
+  json.object([&] {
+    json.key("commands").list([&] {
+      for (const BuiltinCommand& command : table()) row(command.name, command.usage, command.help);
+      if (call.options.experiment)
+        for (const HookCommand& own : call.options.experiment->commands()) row(own.name, "", own.help);
+    });
+    json.key("keys").list([&] {
+      if (!call.options.experiment) return;
+      for (const KeyBinding& each : call.options.experiment->bindings())
+        json.object([&] {
+          json.key("key").text(each.key);
+          json.key("line").text(each.line);
+          json.key("help").text(each.help);
+        });
+    });
+  });
+  return text;
+}
+
+}  // namespace
+
 CommandResult cmd_help(CommandCall& call) {
   if (!call.words.empty()) {
     const std::string& word = call.words.front();
@@ -252,6 +287,7 @@ CommandResult cmd_help(CommandCall& call) {
     return Error{"there is no command '" + word.substr(0, 60) + "'",
                  suggestion(word, command_names(call.options))};
   }
+  if (call.json) return std::optional(help_json(call));
   std::size_t width = 0;
   for (const BuiltinCommand& command : table())
     width = std::max(width, std::string_view(command.name).size());
@@ -263,6 +299,9 @@ CommandResult cmd_help(CommandCall& call) {
   for (const BuiltinCommand& command : table()) add(command.name, command.help);
   if (call.options.experiment)
     for (const HookCommand& own : call.options.experiment->commands()) add(own.name, own.help);
+  if (call.options.experiment)
+    for (const KeyBinding& key : call.options.experiment->bindings())
+      text += "\nkey " + key.key + "  " + key.line + (key.help.empty() ? "" : ": " + key.help);
   text += "\n`help WORD` says what follows a word.";
   return std::optional(text);
 }

@@ -117,6 +117,8 @@ void Console::execute(std::string_view line, const Caller& caller, const Reply& 
   if (!command) {
     if (!own_command(options_, name)) return answer(false, unknown_command(name, options_).text());
     if (!caller.may_steer) return answer(false, "'" + name + "' is for those who may steer; you may watch");
+    // On its way to where it was before, the run repeats the lines of that time.
+    if (const std::string why = session_.report().takes_no_input; !why.empty()) return answer(false, why);
     auto done = options_.experiment->execute(line);
     return done ? answer(true, std::move(*done)) : answer(false, done.error().text());
   }

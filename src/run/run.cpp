@@ -52,6 +52,7 @@ class Run {
   std::vector<Error> warnings_;
   Time begin_;
   std::optional<RunHooks> hooks_;
+  Status hooks_status_;  ///< of hooks that were given back their state
   Session session_;
   RunOutputs outputs_;
   Console console_;
@@ -60,21 +61,35 @@ class Run {
 };
 
 Session::Options Run::session_options() {
-  return {
+  Session::Options options{
       .pace = {spec_.rate},
       .paused = spec_.paused,
       .history_mb = spec_.steered ? Session::Options().history_mb : 0,
       .simulation = prepared_.options,
-      .may_not_rewind = hooks_ ? "its experiment in C++ keeps a state of its own" : "",
-      .on_world = [this](Simulation& next, const std::string& why) { outputs_.on_world_replaced(next, why); },
+      .may_not_rewind = hooks_ ? callbacks_.hooks->may_not_rewind() : "",
+      .may_not_load = hooks_ && !callbacks_.hooks->stateless
+                          ? "it does not hold the state of the experiment in C++"
+                          : "",
+      .on_world =
+          [this](Simulation& next, const std::string& why) {
+            if (hooks_) hooks_->replace(next);
+            outputs_.on_world_replaced(next, why);
+          },
       .tick = [this](Simulation& simulation,
                      std::optional<Time> measured) { return tick(simulation, measured); }};
+  if (hooks_) {
+    options.save_beside = [this] { return hooks_->save(); };
+    options.load_beside = [this](std::span<const std::byte> saved) { hooks_status_ = hooks_->load(saved); };
+  }
+  return options;
 }
 
 Status Run::tick(Simulation& simulation, std::optional<Time> measured) {
+  SL_TRY(std::exchange(hooks_status_, {}));
   // A tick that runs again after a rewind has all its input already.
-  if (!session_.rerunning()) SL_TRY(console_.before_tick());
-  return hooks_ ? hooks_->tick(measured) : simulation.tick(measured);
+  const bool repeats = session_.rerunning();
+  if (!repeats) SL_TRY(console_.before_tick());
+  return hooks_ ? hooks_->tick(measured, repeats) : simulation.tick(measured);
 }
 
 void Run::warn(Error warning) {

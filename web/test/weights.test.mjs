@@ -63,3 +63,26 @@ test('a phase plot shows all points with room around them', () => {
   assert.equal(fading(0, 100), 0.12);
   assert.equal(fading(99, 100), 1);
 });
+
+const { bindingsOf } = await load('app/bindings.ts');
+const { Actions } = await load('app/actions.ts');
+
+test('keys of a run are read, and nothing else is taken for one', () => {
+  assert.deepEqual(bindingsOf('{"commands":[],"keys":[{"key":"K","line":"kick hard","help":"Kicks"},{"key":"","line":"x","help":""},{"key":"j","line":"jump"},{"line":"y"},null]}'),
+    [{ key: 'k', line: 'kick hard', help: 'Kicks' }, { key: 'j', line: 'jump', help: 'jump' }]);
+  assert.deepEqual(bindingsOf('all commands'), []);
+  assert.deepEqual(bindingsOf('{"keys":7}'), []);
+});
+
+test('keys of a run come and go without those of the page', () => {
+  const actions = new Actions(() => null, () => undefined);
+  let pressed = '';
+  actions.add({ id: 'page.a', group: 'Page', title: 'A', keys: ['a'], run: () => (pressed += 'a') });
+  actions.add({ id: 'run.k', group: 'Run', title: 'Kick', keys: ['k'], run: () => (pressed += 'k') });
+  assert.ok(actions.press('k') && actions.press('a'));
+  assert.equal(actions.boundTo('k').title, 'Kick');
+  actions.removeGroup('Run');
+  assert.equal(actions.press('k'), false);
+  assert.ok(actions.press('a'));
+  assert.equal(pressed, 'kaa');
+});

@@ -6,7 +6,10 @@
 /// Determinism   hooks are called on the thread that ticks, in a fixed order. What they do to the world goes through
 ///               Simulation::submit() or command(), takes effect in the next tick and is logged, so that a recording
 ///               replays without them. Draw random numbers from a Stream, never from elsewhere.
-/// State         hooks keep their own state; it is not part of snapshots, so a run with hooks cannot be rewound.
+/// State         hooks keep their own state, outside of the simulation's. A run is reset and rewound where Hooks::save and load
+///               write and read that state, or Hooks::stateless says that there is none. The ticks on the way to the target call
+///               the hooks and commands again; what they request there is ignored, because the input log has it. After a reset on_start is
+///               called as at the beginning, after load() of the state from before it.
 /// Errors        a hook that returns an error, or throws, ends the run with exit code 1; results so far are kept.
 #include <functional>
 #include <map>
@@ -38,30 +41,64 @@ struct HookCommand {
   std::function<Result<std::string>(RunHooks&, std::span<const std::string> words)> act;
 };
 
+/// Key of the page that runs a line of the console.
+struct KeyBinding {
+  std::string key;   ///< as the browser names it, in lower case: "k", "f2", "arrowup", "ctrl+k"
+  std::string line;  ///< "kick ball 3"; any line that the console takes
+  std::string help;  ///< for the page's sheet of keys
+};
+
 /// Functions of the user's program. All are optional.
 struct Hooks {
   std::function<Status(RunHooks&)> on_start, before_tick, after_tick, on_end;
   std::function<Status(RunHooks&, const Touch&)> on_contact;
   std::function<Status(RunHooks&, const std::string& name)> on_event;
   std::vector<HookCommand> commands;
+  /// State of the hooks, both or neither: written to bytes and read back. See keep().
+  std::function<void(ByteWriter&)> save;
+  std::function<void(ByteReader&)> load;
+  bool stateless = false;                          ///< the hooks remember nothing from tick to tick
   std::vector<const ControllerKind*> controllers;  ///< controller kinds of the program, known to scenarios
+
+  /// Saves and loads a value or a struct with a field list. @pre it outlives the hooks
+  template <class T>
+  void keep(T& state) {
+    save = [&state](ByteWriter& w) { write(w, state); };
+    load = [&state](ByteReader& r) { read(r, state); };
+  }
+  /// "": a run with these hooks can be rewound.
+  std::string may_not_rewind() const;
 };
 
 class RunHooks {
  public:
-  /// @pre both outlive this object
-  RunHooks(Simulation& sim, const Hooks& hooks) : sim_(sim), hooks_(hooks) {}
-  Simulation& simulation() { return sim_; }
-  const Simulation& simulation() const { return sim_; }
+  /// @pre both outlive this object; a simulation that replaces the first by replace()
+  RunHooks(Simulation& sim, const Hooks& hooks) : sim_(&sim), hooks_(hooks) {}
+  /// The present one: another after a reset or a jump back.
+  Simulation& simulation() { return *sim_; }
+  const Simulation& simulation() const { return *sim_; }
   std::span<const HookCommand> commands() const { return hooks_.commands; }
 
   Status start();
   /// One tick with the hooks around it; argument as Simulation::tick().
-  Status tick(std::optional<Time> measured = std::nullopt);
+  /// @param repeats  the input of the tick is in the log of the run: what hooks request for it is dropped
+  Status tick(std::optional<Time> measured = std::nullopt, bool repeats = false);
   Status finish();
 
   /// Emits a named event: on_event is called for it after the present or next tick, after the events of the scenario.
   void emit(std::string name) { emitted_.push_back(std::move(name)); }
+  /// Binds a key of the page to a line of the console; to be called by on_start. Keys that the page needs itself stay what they are.
+  /// Errors: no key, no line, or a key that is bound already to another line.
+  Status bind(std::string key, std::string line, std::string help);
+  std::span<const KeyBinding> bindings() const { return bindings_; }
+
+  // --- runs that are rewound ---
+  void replace(Simulation& sim);
+  /// State of the hooks, and what has been seen of contacts and events.
+  std::vector<std::byte> save() const;
+  /// @param saved  by save(); empty: the beginning, for which on_start is called again
+  Status load(std::span<const std::byte> saved);
+
   /// Runs a line: the name of a command and its words, separated by blanks; "..." keeps blanks.
   Result<std::string> execute(std::string_view line);
 
@@ -69,12 +106,26 @@ class RunHooks {
   template <class... Arguments>
   Status call(const char* name, const std::function<Status(RunHooks&, Arguments...)>& hook,
               const std::type_identity_t<Arguments>&... arguments);
+  Result<std::string> act(std::string_view line);
+  void repeat_lines();
+  void forget_future_lines();
   Result<const HookCommand*> find_command(const std::vector<std::string>& words) const;
   Status report_contacts();
   Status report_events();
 
-  Simulation& sim_;
+  Simulation* sim_;
   const Hooks& hooks_;
+  std::vector<KeyBinding> bindings_;
+  std::vector<std::byte> first_;  ///< state of the hooks before on_start
+  /// Lines that came from outside of the hooks, by the tick after which they came; those from next_line_ on are of a future that
+  /// was left.
+  struct Line {
+    std::uint64_t tick = 0;
+    std::string text;
+  };
+  std::vector<Line> lines_;
+  std::size_t next_line_ = 0;
+  bool inside_ = false;  ///< a hook or a command is at work
   std::vector<std::string> emitted_;
   std::vector<std::uint32_t> owner_;  ///< per body: index of its entity
   std::uint64_t owner_revision_ = ~std::uint64_t{0};

@@ -94,6 +94,11 @@ class Session {
     SimulationOptions simulation = {};       ///< for the worlds that follow the first
     std::optional<InputLog> input_log = {};  ///< input of a recording to repeat
     std::string may_not_rewind = {};         ///< not empty: why reset, load and jumps back are refused
+    std::string may_not_load = {};           ///< not empty: why a snapshot of another run is refused
+    /// State beside the simulation's (run hooks): kept with each snapshot, given back with it. A jump back repeats one tick at
+    /// least, because what such state has requested for the next tick is in no snapshot; the beginning is given back as empty.
+    std::function<std::vector<std::byte>()> save_beside = {};
+    std::function<void(std::span<const std::byte> saved)> load_beside = {};
     /// Called on the simulation's thread when the world was replaced; `why`: "reset", "rewound to 3 s", "loaded".
     std::function<void(Simulation& world, const std::string& why)> on_world = {};
     /// Runs one tick with everything around it; unset: Simulation::tick().
@@ -183,6 +188,8 @@ class Session {
     std::uint64_t tick = 0;
     Time now;
     std::vector<std::byte> bytes;
+    std::vector<std::byte> beside = {};  ///< of Options::save_beside
+    std::size_t size() const { return bytes.size() + beside.size(); }
   };
   struct InputRecorder;
   struct Pacer;
@@ -242,6 +249,7 @@ class Session {
   std::optional<Time> feed_input_log();
   Status go_back(Time to);
   Status replace(std::span<const std::byte> bytes, const std::string& why);
+  Status restore_kept(std::size_t index, const std::string& why);
   void forget_future();
   void keep_snapshot();
   void keep_within_limits();

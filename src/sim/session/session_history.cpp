@@ -81,7 +81,8 @@ void Session::keep_snapshot() {
     if (snapshot_cost_s_ > share * (at_s - snapshot_at_s_)) return;
   }
   history_.push_back({simulation_->tick_index(), now, simulation_->snapshot()});
-  history_bytes_ += history_.back().bytes.size();
+  if (options_.save_beside) history_.back().beside = options_.save_beside();
+  history_bytes_ += history_.back().size();
   snapshot_cost_s_ = wall_s() - at_s;
   snapshot_at_s_ = at_s;
   keep_within_limits();
@@ -96,7 +97,7 @@ void Session::keep_within_limits() {
     history_bytes_ = 0;
     for (std::size_t i = 0; i < history_.size(); ++i) {
       if (i % 2 != 0) continue;
-      history_bytes_ += history_[i].bytes.size();
+      history_bytes_ += history_[i].size();
       thinner.push_back(std::move(history_[i]));
     }
     history_ = std::move(thinner);
@@ -132,7 +133,7 @@ void Session::forget_future() {
   if (options_.input_log) return;
   past_.forget_after(simulation_->tick_index());
   while (history_.size() > 1 && history_.back().tick > simulation_->tick_index()) {
-    history_bytes_ -= history_.back().bytes.size();
+    history_bytes_ -= history_.back().size();
     history_.pop_back();
   }
   if (history_.size() < 2) begins_late_ = false;
@@ -159,12 +160,19 @@ Status Session::replace(std::span<const std::byte> bytes, const std::string& why
   return {};
 }
 
+Status Session::restore_kept(std::size_t index, const std::string& why) {
+  SL_TRY(replace(history_[index].bytes, why));
+  if (options_.load_beside)
+    options_.load_beside(index == 0 ? std::span<const std::byte>() : history_[index].beside);
+  return {};
+}
+
 /// Restores the latest snapshot not after `to`, unless running on from here is the shorter way.
 Status Session::go_back(Time to) {
   // The latest one not after `to`; the first is the beginning of the run.
   std::size_t best = 0;
   for (std::size_t i = 0; i < history_.size(); ++i)
-    if (history_[i].now <= to) best = i;
+    if (options_.load_beside && i > 0 ? history_[i].now < to : history_[i].now <= to) best = i;
   const Time now = simulation_->now();
   const bool ahead = to >= now && status_;
   if (ahead && (history_.empty() || history_[best].now <= now)) return {};  // forward: only run on
@@ -174,7 +182,7 @@ Status Session::go_back(Time to) {
   const std::uint64_t frontier = simulation_->tick_index();
   const std::uint64_t before = rerun_until_;
   if (!options_.input_log) rerun_until_ = std::max(frontier, rerun_until_);
-  Status status = replace(history_[best].bytes, "rewound to " + number_text(to.s()) + " s");
+  Status status = restore_kept(best, "rewound to " + number_text(to.s()) + " s");
   if (!status) rerun_until_ = before;
   return status;
 }

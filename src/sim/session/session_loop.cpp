@@ -158,6 +158,8 @@ Status Session::load_last(std::vector<Load> loads) {
   for (const Load& other : loads)
     if (other.done) other.done(Error{"another one was asked for meanwhile"});
   Status status = may_rewind();
+  if (status && !options_.may_not_load.empty())
+    status = Error{"no snapshot can be loaded: " + options_.may_not_load};
   if (status && options_.input_log) status = Error{"this is a recording: nothing can be loaded into it"};
   // The snapshot may be anybody's: it starts no process, nor does a reset to it.
   if (status) options_.simulation.start_programs = false;
@@ -181,7 +183,7 @@ Status Session::load_last(std::vector<Load> loads) {
 }
 
 Status Session::reset_world() {
-  SL_TRY(replace(history_.front().bytes, "reset"));
+  SL_TRY(restore_kept(0, "reset"));
   forget_future();
   clear_end();
   drop_target();

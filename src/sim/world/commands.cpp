@@ -6,6 +6,11 @@
 
 namespace sandlot {
 
+void Commands::drop_unlogged() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(inbox_, [](const Pending& each) { return !each.logged; });
+}
+
 bool Commands::awaits_spawn(std::string_view name) const {
   const std::lock_guard lock(mutex_);
   return std::any_of(inbox_.begin(), inbox_.end(), [&](const Pending& each) {

@@ -43,6 +43,8 @@ class Commands {
   std::uint64_t submit(Request request, Source source) { return queue(std::move(request), source, false); }
   /// Queues a request of a log: those are carried out before all others, in the order in which they are queued.
   std::uint64_t repeat(Request request, Source source) { return queue(std::move(request), source, true); }
+  /// Drops the requests that wait and are not of a log.
+  void drop_unlogged();
   /// Whether a new instance of this name waits for the next tick.
   bool awaits_spawn(std::string_view name) const;
   /// Creation order of the entity that a target belongs to; nothing when there is none.

@@ -104,6 +104,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::uint64_t repeat(Request request, Source source) {
     return commands_.repeat(std::move(request), source);
   }
+  /// Drops the requests that wait and are not of a log: who repeats a tick has them there.
+  void drop_unlogged() { commands_.drop_unlogged(); }
   /// Outcomes of the requests that the last tick carried out.
   std::span<const Outcome> outcomes() const { return commands_.outcomes(); }
 

@@ -3,7 +3,7 @@
 export interface Action {
   id: string;
   title: string;
-  group: 'Time' | 'View' | 'Scene' | 'Robots' | 'Panels' | 'Page';
+  group: 'Time' | 'View' | 'Scene' | 'Robots' | 'Panels' | 'Page' | 'Run';
   /** Keys as KeyboardEvent.key says them, lower case, "ctrl+" before; empty: no key. */
   keys: string[];
   /** Changes the run: only for those who may. */
@@ -12,6 +12,7 @@ export interface Action {
 }
 
 export class Actions {
+  /** In the order in which they came. Those of the group Run are bound by the program of the run, and go with it. */
   readonly list: Action[] = [];
   private readonly byKey = new Map<string, Action>();
   private readonly byId = new Map<string, Action>();
@@ -27,6 +28,18 @@ export class Actions {
       }
       this.byId.set(action.id, action);
       this.list.push(action);
+    }
+  }
+
+  boundTo(key: string): Action | undefined {
+    return this.byKey.get(key);
+  }
+
+  removeGroup(group: Action['group']): void {
+    for (const action of this.list.filter((a) => a.group === group)) {
+      for (const key of action.keys) this.byKey.delete(key);
+      this.byId.delete(action.id);
+      this.list.splice(this.list.indexOf(action), 1);
     }
   }
 

@@ -29,6 +29,7 @@ import {RobotPanelsPane} from '../ui/robot_panels';
 import {Tree} from '../ui/tree';
 import {Video} from '../ui/video';
 import {Actions, keyOf} from './actions';
+import {bindKeys} from './bindings';
 import type {Context} from './context';
 import {dragLine} from './drags';
 import {word} from './format';
@@ -140,6 +141,7 @@ export class App {
     this.tools.onOverlays();
 
     this.wire();
+    bindKeys(this.client, this.steer, this.actions, (text) => this.toasts.show(text));
     this.scene.setTheme(this.theme());
     this.keys();
     this.client.connect();
