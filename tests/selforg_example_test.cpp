@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "command.h"
 #include "selforg/log_file.h"
 
@@ -46,6 +48,47 @@ TEST(SelfOrgExample, LogsStoresAndLoads) {
   const Printed wrong = shell(program() + " --set epsC=9");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.out, HasSubstr("epsC"));
+}
+
+/// Lines on standard input, one per "\\n".
+Printed talked(const std::string& lines, const std::string& arguments = "--console paused") {
+  return shell("printf '" + lines + "' | " + program() + " " + arguments);
+}
+
+TEST(SelfOrgExample, ItsConsoleOnATerminalTunesStoresAndLoads) {
+  TestFolder folder;
+  const std::string file = folder.file("agent"), log = folder.file("log");
+  const Printed first = talked("step 300\\nset eps* 0.2\\nshow eps*\\nstep 200\\nstore " + file +
+                               "\\nlist\\nquit\\n");
+  ASSERT_EQ(first.exit_code, 0) << first.out;
+  EXPECT_THAT(first.out, HasSubstr("epsC = 0.2\nepsA = 0.2\n"));
+  EXPECT_THAT(first.out,
+              HasSubstr("stored in " + file +
+                        " after 500 steps\nsox behind one_to_one, 2 sensors, 2 motors, 500 steps"));
+  // The steps are those of the program without a console.
+  const auto end_of = [](const std::string& out) { return out.substr(out.find("ends at")); };
+  EXPECT_EQ(end_of(talked("step 700\\nquit\\n").out), end_of(shell(program() + " --steps 700").out));
+  const Printed second = talked("load " + file + "\\nlog " + log + " 10\\nstep 100\\nlog off\\nshow epsC\\n");
+  ASSERT_EQ(second.exit_code, 0) << second.out;
+  EXPECT_THAT(second.out, HasSubstr("epsC = 0.2"));
+  auto table = selforg::read_log(log);
+  ASSERT_TRUE(static_cast<bool>(table)) << table.error().text();
+  EXPECT_EQ(table->rows.size(), 10u);
+  EXPECT_EQ(talked("run\\nquit\\n", "--console paused").exit_code, 0);
+  EXPECT_EQ(talked("quit", "--console on").exit_code, 0) << "a last line without an end counts";
+}
+
+TEST(SelfOrgExample, WrongLinesAreAnsweredAndChangeNothing) {
+  TestFolder folder;
+  std::ofstream(folder.file("bad")) << "SELFAGT\n but not really";
+  const Printed out = talked(
+      "sett a 1\\nset eps* 9\\nset epsD 1\\nload " + folder.file("bad") +
+      "\\nstep 0\\nstep -1\\nshow Q\\nset epsC nan\\nshow eps*\\nset a = b = c\\n=\\n");
+  EXPECT_EQ(out.exit_code, 0) << out.out;
+  for (const char* part : {"there is no command 'sett'", "did you mean 'set'", "epsC",
+                           "there is no parameter 'epsD'", "has version", "'0' is not a number of steps",
+                           "'-1' is not a number of steps", "there is no 'Q'", "epsC = 0.1\nepsA = 0.1"})
+    EXPECT_THAT(out.out, HasSubstr(part));
 }
 
 }  // namespace

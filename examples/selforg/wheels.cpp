@@ -1,13 +1,19 @@
 /// A two-wheeler that finds its own behaviour, in a plain program: the robot is fifty lines of our own, there is no simulator.
 ///
 ///   wheels [--steps N] [--seed N] [--controller KIND] [--set NAME=NUMBER] [--log FILE] [--load FILE] [--store FILE]
+///   wheels --console on                                      runs on, with a console on the terminal: help
+///   wheels --console paused                                  the same, but waits for `run` or `step N`
 ///
 /// Sensors   the speeds of the two wheels. Motors   their desired speeds. The wheels follow with a lag; at the walls of the arena
 /// they stall, which the sensors show and the world model has to learn.
+#include <unistd.h>
+
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 #include <sandlot/selforg.h>
 
@@ -66,7 +72,7 @@ void or_exit(const Status& status) {
 [[noreturn]] void usage() {
   std::fprintf(stderr,
                "usage: wheels [--steps N] [--seed N] [--controller KIND] [--set NAME=NUMBER] [--log FILE] "
-               "[--load FILE] [--store FILE]\n");
+               "[--load FILE] [--store FILE] [--console on|paused]\n");
   std::exit(2);
 }
 
@@ -81,7 +87,7 @@ double number(const char* text) {
 
 int main(int argc, char** argv) {
   long steps = 6000;
-  std::string log, load, store;
+  std::string log, load, store, console;
   std::vector<std::pair<std::string, double>> parameters;
   selforg::AgentSpec spec;
   for (int i = 1; i < argc; i += 2) {
@@ -93,6 +99,7 @@ int main(int argc, char** argv) {
     else if (key == "--log") log = value;
     else if (key == "--load") load = value;
     else if (key == "--store") store = value;
+    else if (key == "--console" && (value == "on" || value == "paused")) console = value;
     else if (key == "--set" && value.find('=') != std::string::npos)
       parameters.emplace_back(value.substr(0, value.find('=')), number(value.c_str() + value.find('=') + 1));
     else usage();
@@ -107,9 +114,18 @@ int main(int argc, char** argv) {
   if (!log.empty()) or_exit(agent.start_log(log));
 
   constexpr double dt_s = 0.02;
-  for (long k = 0; k < steps; ++k) {
+  const auto step = [&] {
     agent.step(dt_s);
     robot.move(dt_s);
+  };
+  if (console.empty()) {
+    for (long k = 0; k < steps; ++k) step();
+  } else {
+    selforg::Terminal terminal(agent, {.paused = console == "paused", .prompt = isatty(0) != 0});
+    while (terminal.serve()) {
+      step();
+      if (console == "on") std::this_thread::sleep_for(std::chrono::duration<double>(dt_s));  // real time
+    }
   }
   or_exit(agent.stop_log());
   if (!store.empty()) or_exit(agent.wired().store(store));

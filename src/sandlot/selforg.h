@@ -3,6 +3,7 @@
 /// package `selforg` alone is enough to use them.
 #include "selforg/agent.h"
 #include "selforg/arrays.h"
+#include "selforg/console.h"
 #include "selforg/dep/dep.h"
 #include "selforg/experts/experts.h"
 #include "selforg/log_file.h"

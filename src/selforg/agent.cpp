@@ -166,9 +166,25 @@ void Agent::step(double dt_s, Mode mode) {
   time_s_ += dt_s;
 }
 
-Status Agent::set(std::string_view parameter, double number) {
-  SL_TRY(controller().set(parameter, number));
-  if (log_.is_open()) log_.comment(fmt::format("{}={}", parameter, number_text(number)));
+Status Agent::set(std::string_view parameter, std::string_view value) {
+  // "wiring[0].noise.strength" and "noise.strength" with slashes, as elements know them.
+  std::string path;
+  for (const char c : parameter) {
+    if (c == '.' || (c == '[' && !path.empty() && path.back() != '/')) path += '/';
+    else if (c != ']' && c != '[') path += c;
+  }
+  constexpr std::string_view of_wiring = "wiring/";
+  if (path == "noise") {
+    double number = 0;
+    if (!parse_number(value, number) || !(number >= 0 && number <= 1e3))
+      return Error{fmt::format("'{}' is not in [0, 1000]", value.substr(0, 40)), "", {}, "/noise"};
+    wired_->set_noise(number);
+  } else if (starts_with(path, of_wiring)) {
+    SL_TRY(wired_->wiring().set_parameter(path.substr(of_wiring.size()), Node::scalar(std::string(value))));
+  } else {
+    SL_TRY(controller().set_parameter(path, Node::scalar(std::string(value))));
+  }
+  if (log_.is_open()) log_.comment(fmt::format("{}={}", parameter, value));
   return {};
 }
 

@@ -8,6 +8,7 @@
 /// WiredController is the same without a robot: the robot's numbers in, the robot's numbers out.
 #include <memory>
 
+#include "base/text.h"
 #include "selforg/controller.h"
 #include "selforg/log_file.h"
 #include "selforg/wiring.h"
@@ -98,6 +99,7 @@ class Agent {
   void only_control_robot() { robot_->set_motors(y_); }
 
   WiredController& wired() { return *wired_; }
+  const WiredController& wired() const { return *wired_; }
   Controller& controller() { return wired_->controller(); }
   Robot& robot() { return *robot_; }
   std::span<const double> last_sensors() const { return x_; }
@@ -108,8 +110,11 @@ class Agent {
     return log_.open(path, spec, *wired_);
   }
   Status stop_log() { return log_.close(); }
-  /// Sets a parameter of the controller and notes it in the log.
-  Status set(std::string_view parameter, double number);
+  /// Sets a parameter and notes it in the log: of the controller, of the wiring ("wiring.noise.strength"), or "noise".
+  Status set(std::string_view parameter, double number) {
+    return set(parameter, std::string_view(number_text(number)));
+  }
+  Status set(std::string_view parameter, std::string_view value);
 
  private:
   Agent() = default;
