@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "command.h"
 #include "selforg/log_file.h"
@@ -15,6 +16,8 @@ using testing::HasSubstr;
 std::string program() {
   return (std::filesystem::path(SANDLOT_BIN).parent_path() / "selforg_wheels").string();
 }
+
+std::string source_folder() { return std::filesystem::current_path().string(); }
 
 double way_m(const std::string& out) {
   double way = -1;
@@ -89,6 +92,40 @@ TEST(SelfOrgExample, WrongLinesAreAnsweredAndChangeNothing) {
                            "there is no parameter 'epsD'", "has version", "'0' is not a number of steps",
                            "'-1' is not a number of steps", "there is no 'Q'", "epsC = 0.1\nepsA = 0.1"})
     EXPECT_THAT(out.out, HasSubstr(part));
+}
+
+/// What a microcontroller would get: no heap, no mathematics, nothing at all from outside but what compilers may call.
+TEST(SelfOrgExample, TheFixedSizeBuildNeedsNothingAndIsSmall) {
+  TestFolder folder;
+  const std::string object = folder.file("tiny.o");
+  for (const char* standard : {"c++17", "c++20"}) {
+    const Printed made = shell(
+        "cd " + folder.path.string() + " && c++ -std=" + standard +
+        " -Os -ffreestanding -fno-exceptions -fno-rtti -Wall -Wextra -Werror -Wdouble-promotion"
+        " -fstack-usage -I " +
+        source_folder() + "/src -c " + source_folder() + "/examples/selforg/tiny.cpp -o " + object);
+    ASSERT_EQ(made.exit_code, 0) << made.out;
+    std::istringstream undefined(shell("nm -u " + object).out);
+    for (std::string sign, name; undefined >> sign >> name;)
+      EXPECT_TRUE(name == "memcpy" || name == "memset" || name == "memmove") << name;
+    const Printed size = shell("size " + object + " | tail -1");
+    long text = 0, data = 0, bss = 0;
+    ASSERT_EQ(std::sscanf(size.out.c_str(), "%ld %ld %ld", &text, &data, &bss), 3) << size.out;
+    EXPECT_LT(text, 8 * 1024) << size.out;
+    EXPECT_LT(data + bss, 1024) << size.out;
+    EXPECT_GT(bss, 500) << "the object has its memory in itself";
+    std::ifstream usage(folder.file("tiny.su"));
+    int functions = 0;
+    for (std::string line; std::getline(usage, line); ++functions) {
+      std::istringstream words(line.substr(line.find('\t')));
+      long bytes = 0;
+      std::string kind;
+      words >> bytes >> kind;
+      EXPECT_EQ(kind, "static") << line;
+      EXPECT_LT(bytes, 256) << line;
+    }
+    EXPECT_GT(functions, 3);
+  }
 }
 
 }  // namespace

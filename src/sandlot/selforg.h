@@ -13,3 +13,4 @@
 #include "selforg/sox/sox.h"
 #include "selforg/store.h"
 #include "selforg/teaching.h"
+#include "selforg/terminal/terminal.h"

@@ -1,10 +1,6 @@
 #include "selforg/console.h"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
-
-#include <cerrno>
 
 #include "base/text.h"
 
@@ -12,7 +8,6 @@ namespace sandlot::selforg {
 namespace {
 
 constexpr std::size_t most_letters = 4096;
-constexpr double most_steps = 1e15;
 
 constexpr std::string_view help_text =
     "list                 the agent and its parameters\n"
@@ -23,20 +18,6 @@ constexpr std::string_view help_text =
     "log FILE [INTERVAL]  values every INTERVAL steps (5) from now on; log off ends it\n"
     "babble STEPS         motors move at random, and the agent learns from it\n"
     "pause, run, step [N], quit\n";
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (const std::string_view word : split(line, ' '))
-    if (!trim(word).empty()) words.push_back(trim(word));
-  return words;
-}
-
-Result<std::uint64_t> number_of_steps(std::string_view text) {
-  double number = 0;
-  if (!parse_number(text, number) || !(number >= 1 && number <= most_steps) || number != std::floor(number))
-    return Error{fmt::format("'{}' is not a number of steps", text.substr(0, 40)), "1 to 1e15"};
-  return static_cast<std::uint64_t>(number);
-}
 
 /// Parameters of controller and wiring, and the factor on noise.
 struct Named {
@@ -77,6 +58,21 @@ bool fitting(std::string_view name, std::string_view pattern) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (const std::string_view word : split(line, ' '))
+    if (!trim(word).empty()) words.push_back(trim(word));
+  return words;
+}
+
+Result<std::uint64_t> number_of_steps(std::string_view text) {
+  constexpr double most_steps = 1e15;
+  double number = 0;
+  if (!parse_number(text, number) || !(number >= 1 && number <= most_steps) || number != std::floor(number))
+    return Error{fmt::format("'{}' is not a number of steps", text.substr(0, 40)), "1 to 1e15"};
+  return static_cast<std::uint64_t>(number);
+}
 
 Result<std::string> AgentConsole::show(std::span<const std::string_view> names) const {
   std::vector<Named> all = parameters_of(agent_);
@@ -191,76 +187,6 @@ Result<std::string> AgentConsole::execute(std::string_view line) {
       fmt::format("there is no command '{}'", command.substr(0, 60)),
       suggestion(command, std::vector<std::string>{"help", "list", "show", "set", "store", "load", "log",
                                                    "babble", "pause", "run", "step", "quit"})};
-}
-
-void Terminal::print(std::string_view text) const {
-  while (!text.empty()) {
-    const ssize_t written = ::write(options_.out, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-/// @return whether something came
-bool Terminal::read_more(bool wait) {
-  if (ended_) return false;
-  pollfd watched{options_.in, POLLIN, 0};
-  int ready = 0;
-  do ready = ::poll(&watched, 1, wait ? -1 : 0);
-  while (ready < 0 && errno == EINTR);
-  if (ready <= 0) return false;
-  char block[4096];
-  const ssize_t got = ::read(options_.in, block, sizeof block);
-  if (got < 0 && (errno == EINTR || errno == EAGAIN)) return false;
-  if (got <= 0) {
-    ended_ = true;
-    if (!pending_.empty()) pending_ += '\n';  // a last line without an end
-    return !pending_.empty();
-  }
-  pending_.append(block, static_cast<std::size_t>(got));
-  if (pending_.size() > (std::size_t{1} << 20) && pending_.find('\n') == std::string::npos) pending_.clear();
-  return true;
-}
-
-/// @return false: quit
-bool Terminal::execute(std::string_view line) {
-  const auto words = words_of(line);
-  if (!words.empty() && words.size() <= 2) {
-    const std::string_view command = words.front();
-    if (command == "quit" || command == "exit") return false;
-    if (command == "pause" && words.size() == 1) return state_ = State::paused, true;
-    if (command == "run" && words.size() == 1) return state_ = State::running, true;
-    if (command == "step") {
-      const auto steps = words.size() == 1 ? Result<std::uint64_t>(1) : number_of_steps(words[1]);
-      if (steps) state_ = State::stepping, steps_left_ = *steps;
-      else print(steps.error().text() + "\n");
-      return true;
-    }
-  }
-  const auto answer = console_.execute(line);
-  print(answer ? *answer : answer.error().text() + "\n");
-  return true;
-}
-
-bool Terminal::serve() {
-  for (;;) {
-    if (state_ == State::stepping) {
-      if (steps_left_ > 0) return --steps_left_, true;
-      state_ = State::paused;
-    }
-    if (const std::size_t end = pending_.find('\n'); end != std::string::npos) {
-      const std::string line = pending_.substr(0, end);
-      pending_.erase(0, end + 1);
-      if (!execute(line)) return false;
-      continue;
-    }
-    const bool paused = state_ == State::paused;
-    if (paused && options_.prompt && !ended_) print("selforg> ");
-    if (read_more(paused)) continue;
-    if (!paused) return true;
-    if (ended_) return false;
-  }
 }
 
 }  // namespace sandlot::selforg
