@@ -88,6 +88,11 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
     SL_ASSIGN(const std::size_t x, column_of(table, options.x));
     std::vector<std::size_t> chosen;
     for (const std::string& name : options.y) {
+      const std::size_t before = chosen.size();
+      if (name.find('*') != std::string::npos)
+        for (std::size_t i = 0; i < table.names.size(); ++i)
+          if (i != x && fits_pattern(table.names[i], name)) chosen.push_back(i);
+      if (chosen.size() > before) continue;
       SL_ASSIGN(const std::size_t y, column_of(table, name));
       chosen.push_back(y);
     }

@@ -111,9 +111,7 @@ Ended ran(const std::string& file, std::uint64_t at = 0, const std::function<Sta
   spec.may_be_endless = true;
   const auto summary = run(spec, callbacks);
   EXPECT_TRUE(summary) << summary.error().text();
-  if (summary) {
-    EXPECT_THAT(summary->errors, testing::IsEmpty());
-  }
+  if (summary) { EXPECT_THAT(summary->errors, testing::IsEmpty()); }
   ended.memory = experiment.memory;
   return ended;
 }

@@ -34,6 +34,15 @@ void RunOutputs::record_error(Status status) {
 
 Status RunOutputs::open_log(const PreparedRun& prepared) {
   if (!spec_.step_times_file.empty()) SL_TRY(step_times_.emplace(spec_.step_times_file).status());
+  const Simulation& simulation = session_.simulation();
+  // Of a run that goes on from a snapshot the scenario's logs are not begun again, as its CSV log is not.
+  std::vector<AgentLogDecl> agents = spec_.from_file.empty() ? declared_agent_logs(simulation)
+                                                             : std::vector<AgentLogDecl>();
+  for (const std::string& text : spec_.agent_logs) agents.push_back(parse_agent_log(text));
+  for (AgentLogDecl& decl : agents) {
+    SL_ASSIGN(auto log, AgentLog::open(simulation, std::move(decl)));
+    agent_logs_.push_back(std::move(log));
+  }
   if (!prepared.log) return {};
   SL_ASSIGN(log_, CsvLog::open(session_.simulation(), *prepared.log));
   log_file_ = prepared.log->file;
@@ -64,6 +73,10 @@ Status RunOutputs::start(const PreparedRun& prepared) {
     SL_TRY(log_->begin());
     session_.add_observer(log_.get());
   }
+  for (const auto& log : agent_logs_) {
+    SL_TRY(log->begin());
+    session_.add_observer(log.get());
+  }
   if (step_times_) session_.add_step_observer(&*step_times_);
   snapshots_.emplace(spec_.snapshots, simulation);
   return {};
@@ -89,6 +102,11 @@ void RunOutputs::on_world_replaced(Simulation& next, const std::string& why) {
     warn_of_end("the log", log_file_);
     end_log();
   }
+  for (const auto& log : agent_logs_) {
+    session_.remove_observer(log.get());
+    warn_of_end("the log", log->file());
+  }
+  end_agent_logs();
   if (recorder_ && !recorded_) {
     session_.remove_observer(recorder_.get());
     warn_of_end("the recording", recorded_to_);
@@ -182,7 +200,13 @@ void RunOutputs::rescue(Error& error) {
   error.fix += (error.fix.empty() ? "" : "; ") + ("the world before it is in '" + file + "'");
 }
 
+void RunOutputs::end_agent_logs() {
+  for (const auto& log : agent_logs_) record_error(log->finish());
+  agent_logs_.clear();
+}
+
 void RunOutputs::finish() {
+  end_agent_logs();
   end_log();
   if (step_times_) {
     session_.remove_step_observer(&*step_times_);

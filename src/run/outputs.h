@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "draw/run_drawing.h"
+#include "record/agent_log.h"
 #include "run/film.h"
 #include "run/prepare.h"
 #include "run/snapshot_files.h"
@@ -69,6 +70,7 @@ class RunOutputs {
 
  private:
   void end_log();
+  void end_agent_logs();
   void end_recording();
   void end_film();
 
@@ -78,6 +80,7 @@ class RunOutputs {
   TravelMeter travel_;
   std::optional<draw::RunDrawing> drawing_;
   std::unique_ptr<CsvLog> log_;
+  std::vector<std::unique_ptr<AgentLog>> agent_logs_;
   std::optional<StepTimesFile> step_times_;
   std::mutex recorder_mutex_;  ///< recording() comes from other threads
   std::unique_ptr<Recorder> recorder_;

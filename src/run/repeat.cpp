@@ -36,6 +36,7 @@ Status check(const RepeatSpec& spec) {
   if (!run.summary_file.empty()) return refuse("--summary");
   if (!run.drawing_file.empty()) return refuse("--svg");
   if (!run.log_file.empty()) return refuse("--log");
+  if (!run.agent_logs.empty()) return refuse("--agent-log");
   if (!run.step_times_file.empty()) return refuse("--step-times");
   if (!run.record_file.empty()) return refuse("--record");
   if (!run.snapshots.file.empty()) return refuse("--snapshot");
@@ -53,6 +54,10 @@ Status check_outputs(const PreparedRun& prepared) {
     return Error{"--repeat: the scenario is recorded into '" + prepared.recording->recording.file +
                      "', which cannot hold several runs",
                  "leave `record` out of it"};
+  if (const auto logs = declared_agent_logs(*prepared.simulation); !logs.empty())
+    return Error{fmt::format("--repeat: '{}' logs into '{}', which cannot hold several runs",
+                             logs.front().agent, logs.front().file),
+                 "leave `log` out of its keys"};
   const model::Setup& setup = prepared.simulation->setup();
   const auto& events = prepared.simulation->monitor().events();
   const bool may_stop = std::any_of(events.begin(), events.end(),

@@ -59,8 +59,9 @@ struct RunSpec {
   std::string log_file;                 ///< CSV
   std::vector<std::string> log_values;  ///< addresses and expressions; empty: the scenario's
   std::optional<double> log_rate_hz;
-  std::string step_times_file;  ///< CSV of wall times; they differ from run to run
-  std::string record_file;      ///< MCAP
+  std::vector<std::string> agent_logs;  ///< "ROBOT/CONTROLLER=FILE", in addition to those of the scenario
+  std::string step_times_file;          ///< CSV of wall times; they differ from run to run
+  std::string record_file;              ///< MCAP
   std::vector<std::string> record_topics;
   std::string record_compression;
   SnapshotOptions snapshots;

@@ -102,10 +102,12 @@ void add_plot(CommandLine& line) {
   PlotFilesOptions& options = line.keep<PlotFilesOptions>();
   PlotTexts& text = line.keep<PlotTexts>();
   CLI::App* const verb = line.app.add_subcommand("plot", "Draw columns of CSV files as lines, as an SVG");
-  verb->add_option("files", options.files, "CSV files: a line of names, then numbers")->required();
+  verb->add_option("files", options.files, "CSV files (a line of names, then numbers) and logs of agents")
+      ->required();
   verb->add_option("--out", options.out, "SVG file to write")->required();
   verb->add_option("--x", options.figure.x, "Column of the horizontal axis")->capture_default_str();
-  verb->add_option("--y", text.y, "Columns to draw, with commas between them; all others if left out");
+  verb->add_option("--y", text.y,
+                   "Columns to draw, with commas between them and * for any letters; all others if left out");
   verb->add_option("--title", options.figure.title, "Title of the figure");
   verb->add_option("--x-label", options.figure.x_label, "Label of the horizontal axis");
   verb->add_option("--y-label", options.figure.y_label, "Label of the vertical axis");

@@ -60,6 +60,11 @@ struct RunFlags {
                     "Values to log: addresses and expressions with commas between them (docs/values.md)");
     verb.add_option("--log-rate", log_rate,
                     "Lines per simulated second, such as '10 Hz'; one per tick if left out");
+    verb.add_option(
+            "--agent-log", options.spec.agent_logs,
+            "Write the values of an agent that learns to a text file: ROBOT/CONTROLLER=FILE; may be given "
+            "several times")
+        ->allow_extra_args(false);
     verb.add_option("--step-times", options.spec.step_times_file,
                     "Write the wall time of each tick to this CSV file");
     verb.add_option("--svg", options.spec.drawing_file,

@@ -17,6 +17,7 @@
 /// Limits   the border to controllers gives no limits of devices: a range that is not [-1, 1] has to be stated.
 /// Errors   sensors and motors that are not there, ranges that are empty, unknown controllers and parameters.
 #include <memory>
+#include <optional>
 
 #include "controllers/selforg/guidance.h"
 #include "selforg/agent.h"
@@ -54,6 +55,23 @@ struct Part {
   }
 };
 
+/// Log that the run writes (record/agent_log.h).
+struct Log {
+  std::string file;
+  int interval = 5;
+  std::vector<std::string> values;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"file", "", "Text file in the format of selforg's tools, which the verb `plot` draws.", 0, 0,
+                Field::required, 1000, 1},
+          s.file);
+    visit(Field{"interval", "1", "Control steps per line.", 1, 1e6}, s.interval);
+    visit(Field{"values", "",
+                "Values to log, with * for any letters; none: all. A minus in front leaves them out: -A*.", 0,
+                0, Field::none, 1000},
+          s.values);
+  }
+};
+
 struct Spec {
   std::string agent = "sox";
   Node parameters;
@@ -63,6 +81,7 @@ struct Spec {
   int publish_interval = 1;
   std::uint32_t babbling = 0;
   GuidanceSpec guidance;
+  std::optional<Log> log;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"agent", "", "Kind of the agent's controller: sox, semox, dep, experts, sine, ...", 0, 0,
                 Field::none, 100, 1},
@@ -83,6 +102,7 @@ struct Spec {
         Field{"babbling", "1",
               "Control steps at the beginning in which motors move at random and the model learns.", 0, 1e9},
         s.babbling);
+    visit(Field{"log", "", "Log of the agent's values that the run writes; none: no log."}, s.log);
   }
 };
 
