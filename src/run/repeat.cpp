@@ -14,6 +14,7 @@
 #include "base/hash.h"
 #include "base/program.h"
 #include "base/text.h"
+#include "record/agent_log.h"
 #include "run/fields_json.h"
 #include "run/prepare.h"
 #include "sim/watch/monitor.h"

@@ -148,19 +148,24 @@ bool same_sizes(const T& a, const T& b) {
   }
 }
 
-/// Whether all numbers in an object with a field list are finite.
+/// Largest numbers that a State which was reached by steps can hold: elements of lists and matrices are limited to 1e50 (Sox's
+/// errors), other numbers are at most sums of their squares. Products of a few such numbers are finite.
+inline constexpr double most_element = 1.000001e50, most_number = 1e120;
+
+/// Whether all numbers in an object with a field list are within these bounds; a file may hold any.
 template <class T>
-bool finite_numbers(const T& x) {
-  if constexpr (std::is_floating_point_v<T>) return std::isfinite(x);
+bool numbers_in_bounds(const T& x, double most = most_number) {
+  if constexpr (std::is_floating_point_v<T>) return x >= -most && x <= most;
   else if constexpr (is_vector<T>::value) {
     if constexpr (Fielded<typename T::value_type> || std::is_floating_point_v<typename T::value_type>)
       for (const auto& each : x)
-        if (!finite_numbers(each)) return false;
+        if (!numbers_in_bounds(each, std::is_floating_point_v<typename T::value_type> ? most_element : most))
+          return false;
     return true;
   } else if constexpr (Fielded<T>) {
-    bool finite = true;
-    T::fields(x, [&](const Field&, const auto& member) { finite = finite && finite_numbers(member); });
-    return finite;
+    bool fits = true;
+    T::fields(x, [&](const Field&, const auto& member) { fits = fits && numbers_in_bounds(member, most); });
+    return fits;
   } else {
     return true;
   }
@@ -200,7 +205,7 @@ void load_sized(ByteReader& r, T& element) {
   read_tunables(r, spec);
   read(r, state);
   if (!r.ok()) return;
-  if (!same_sizes(state, element.state) || !finite_numbers(state)) return r.fail();
+  if (!same_sizes(state, element.state) || !numbers_in_bounds(state)) return r.fail();
   if constexpr (requires { element.fits(state); })
     if (!element.fits(state)) return r.fail();
   element.spec = std::move(spec);
@@ -258,7 +263,7 @@ class ControllerOf final : public ElementAdapter<Controller, T> {
     auto input = this->input_;
     read(r, input);
     if (!r.ok()) return;
-    if (!same_sizes(input, this->input_) || !finite_numbers(input)) return r.fail();
+    if (!same_sizes(input, this->input_) || !numbers_in_bounds(input)) return r.fail();
     load_sized(r, this->element_);
     if (r.ok()) this->input_ = std::move(input);
   }
