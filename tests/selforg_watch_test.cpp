@@ -22,7 +22,7 @@ std::string scenario(const TestFolder& folder, const std::string& more = "",
     const bool first = std::string(robot) == "one";
     text += std::string("  - name: ") + robot +
             "\n    model: " + std::filesystem::absolute("models").string() + "/rover\n    pose: [" +
-            (first ? "0" : "2") + ", 0]\n    controller:\n      kind: selforg\n" + (first ? more : "") +
+            (first ? "0" : "2") + ", 0, 0]\n    controller:\n      kind: selforg\n" + (first ? more : "") +
             "      sensors:\n"
             "        - {device: drive, value: twist.twist.linear.x, min: -0.5, max: 0.5}\n"
             "        - {device: drive, value: twist.twist.angular.z, min: -2, max: 2}\n"

@@ -29,6 +29,7 @@ interface Shown extends Value {
 /** Told apart on dark and on light. */
 const colors = ['#4f9dff', '#f2994a', '#2fb67c', '#e5629b', '#a57bf0', '#c9a227', '#27b3c4', '#e06050'];
 const rate_hz = 20;
+const phase_rate_hz = 50;  // curves need more points than lines over time
 const windows_s = [5, 10, 30, 60, 300, 1800];
 
 export class PlotWindow {
@@ -83,6 +84,7 @@ export class PlotWindow {
     this.phaseButton.addEventListener('click', () => {
       this.phase = !this.phase;
       this.zoom = null;
+      this.rewatch();
       this.build();
       this.changed();
     });
@@ -176,7 +178,7 @@ export class PlotWindow {
     const places = good.map((v) => this.values.indexOf(v));
     const row = new Float64Array(this.values.length);
     let last_s = Number.NEGATIVE_INFINITY;
-    this.watch = new Watch(this.context.client, good.map((v) => v.address), rate_hz, (time_s, values) => {
+    this.watch = new Watch(this.context.client, good.map((v) => v.address), this.phase ? phase_rate_hz : rate_hz, (time_s, values) => {
       if (time_s - last_s > 2 && last_s > this.data.times.lastTime() - 1e-6) this.data.gap();
       last_s = time_s;
       row.fill(Number.NaN);

@@ -49,7 +49,7 @@ export function nextScale(before: number, values: ArrayLike<number>): number {
 /** Cells of a matrix in so much room: numbers in them where they can be read, else squares. */
 export function cellSize(rows: number, columns: number, width: number, height: number): {width: number; height: number; numbers: boolean} {
   const numbers = rows * 16 <= height && columns * 44 <= width;
-  if (numbers) return {width: 44, height: Math.max(16, Math.min(24, Math.floor(height / rows))), numbers};
+  if (numbers) return {width: 44, height: rows > 6 ? 16 : Math.max(16, Math.min(24, Math.floor(height / rows))), numbers};
   const side = Math.max(3, Math.min(22, Math.floor(height / rows), Math.floor(width / columns)));
   return {width: side, height: side, numbers};
 }

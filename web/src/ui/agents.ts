@@ -33,7 +33,7 @@ export class AgentsPanel implements Panel {
   private readonly form = h('div', {class: 'agent-form form'});
   private readonly hint = h('div', {class: 'empty'}, 'No robot of this world has a controller of kind selforg');
   private readonly body = h('div', {class: 'agent-body'}, this.tiles, this.networkArea, this.form);
-  readonly element = h('div', {class: 'pane agents'}, h('div', {class: 'pane-head wrap'}, this.choice, this.what, this.scalars, this.readout, this.phaseButton, this.file, this.storeButton, this.loadButton), this.body, this.hint);
+  readonly element = h('div', {class: 'pane agents'}, h('div', {class: 'pane-head'}, this.choice, this.what, this.scalars, this.readout, this.phaseButton, this.file, this.storeButton, this.loadButton), this.body, this.hint);
   private visible = false;
   private chosen = remembered('agent', '');
   private listed = '';
@@ -199,6 +199,9 @@ export class AgentsPanel implements Panel {
     const css = getComputedStyle(document.documentElement);
     const line = css.getPropertyValue('--line-strong');
     const height = Math.max(60, this.tiles.clientHeight - 34);
+    // So that all matrices are seen at once where their cells stay large enough.
+    const matrices = this.order.filter((name) => (this.values.get(name)?.columns ?? 1) > 1).length;
+    const width = Math.max(110, (this.tiles.clientWidth - 24) / Math.max(1, Math.min(3, matrices)) - 16);
     const scalars: string[] = [];
     for (const name of this.order) {
       const weights = this.values.get(name) as Weights;
@@ -213,7 +216,7 @@ export class AgentsPanel implements Panel {
         const next = this.order.slice(this.order.indexOf(name) + 1).map((n) => this.tile.get(n)).find((t) => t !== undefined);
         this.tiles.insertBefore(tile.element, next?.element ?? null);
       }
-      tile.draw(weights, height, map, line);
+      tile.draw(weights, width, height, map, line);
     }
     setText(this.scalars, scalars.join('   '));
     const own = (name: string): Weights | null => this.values.get(name) ?? null;

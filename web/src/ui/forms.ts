@@ -46,7 +46,7 @@ export function fieldViews(owner: string, fields: Field[]): FieldView[] {
     const control = controlOf(field);
     return {
       path: field.path, address: `${owner}.${parts.join('.')}`, label: words(parts[parts.length - 1] ?? field.path), group: parts.slice(0, -1).map(words).join(' › '),
-      control, unit: field.unit ?? '', help: field.help ?? '', tunable: field.tunable === true, slider: field.path === 'errors' ? errorsSlider : control === 'number' ? sliderOf(field.min, field.max, integer) : null,
+      control, unit: field.unit === '1' ? '' : field.unit ?? '', help: field.help ?? '', tunable: field.tunable === true, slider: field.path === 'errors' ? errorsSlider : control === 'number' ? sliderOf(field.min, field.max, integer) : null,
       integer, length: field.length ?? 0, fallback: field.default ?? '', choices: field.choices ?? [], min: field.min ?? null, max: field.max ?? null,
     };
   });

@@ -42,10 +42,10 @@ export class MatrixTile {
     if (w && this.hovered >= 0) this.tell(`${elementName(w, this.hovered)} = ${(w.values[this.hovered] as number).toPrecision(6)}`);
   }
 
-  draw(weights: Weights, height: number, map: SignedMap, line: string): void {
+  draw(weights: Weights, room: number, height: number, map: SignedMap, line: string): void {
     this.weights = weights;
     this.most = nextScale(this.most, weights.values);
-    const cell = (this.cell = cellSize(weights.rows, weights.columns, 420, height));
+    const cell = (this.cell = cellSize(weights.rows, weights.columns, room, height));
     const width = cell.width * weights.columns;
     const tall = cell.height * weights.rows;
     const scale = devicePixelRatio || 1;

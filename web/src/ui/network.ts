@@ -33,7 +33,7 @@ export interface NetworkLayout {
 
 /** Where nodes are drawn: layers side by side, each spread over the height. */
 export function layoutNetwork(sensors: number, motors: number, predicts: boolean, width: number, height: number): NetworkLayout {
-  const names = [{title: 'sensors', name: 'x', count: sensors}, {title: 'motors', name: 'y', count: motors}, ...(predicts ? [{title: 'predicted', name: "x'", count: sensors}] : [])];
+  const names = [{title: 'sensors', name: 'x', count: sensors}, {title: 'motors', name: 'y', count: motors}, ...(predicts ? [{title: 'predicted', name: 'x′', count: sensors}] : [])];
   const side = 46;
   const top = 24;
   const most = Math.max(1, sensors, motors);
@@ -131,7 +131,7 @@ export function drawNetwork(canvas: HTMLCanvasElement, width: number, height: nu
     const label = `${layout.layers[place.layer]?.name ?? ''}${place.index}`;
     if (place.layer === 0) paint.fillText(label, place.x - beside, place.y + 4);
     else if (place.layer === ends) paint.fillText(label, place.x + beside, place.y + 4);
-    else if (layout.radius >= 8) paint.fillText(label, place.x, place.y - beside + 2);
+    else if (k === hovered || (height - 30) / Math.max(1, motors) > 2 * layout.radius + 13) paint.fillText(label, place.x, place.y - beside + 2);
   });
   return layout;
 }
