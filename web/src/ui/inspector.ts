@@ -218,6 +218,8 @@ export class Inspector implements Panel {
           into.append(h('h4', {}, group));
         }
         const row = new FieldRow(view, parameters);
+        // The kind lists the parameters of all agents; an agent has some of them.
+        row.element.hidden = view.tunable && view.path.startsWith('parameters/');
         rows.set(view.address, row);
         into.append(row.element);
       }
@@ -234,7 +236,12 @@ export class Inspector implements Panel {
     }
     const steering = (): void => rows.forEach((row) => row.setReason(store.whyNotSteer()));
     const show = (names: Iterable<string>): void => {
-      for (const name of names) rows.get(name)?.show(parameters.values.get(name));
+      for (const name of names) {
+        const row = rows.get(name);
+        const value = parameters.values.get(name);
+        if (row && value !== undefined && value !== null) row.element.hidden = false;
+        row?.show(value);
+      }
     };
     void actual?.then((listed) => {
       const values = new Map((Array.isArray(listed) ? listed : []).map((entry) => [entry.address, entry.value]));
