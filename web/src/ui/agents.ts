@@ -170,12 +170,8 @@ export class AgentsPanel implements Panel {
     const {parameters, store} = this.context;
     const views = fieldViews(path, store.world?.kinds[kind]?.fields ?? []).filter((v) => v.tunable);
     const rows = new Map(views.map((view) => [view.address, new FieldRow(view, parameters)]));
-    let group = '';
-    for (const view of views) {
-      const row = rows.get(view.address) as FieldRow;
+    for (const row of rows.values()) {
       row.element.hidden = true;
-      if (view.group !== group && view.group !== 'parameters') this.form.append(h('h4', {hidden: true}, view.group));
-      group = view.group;
       this.form.append(row.element);
     }
     const reason = (): void => rows.forEach((row) => row.setReason(store.whyNotSteer()));

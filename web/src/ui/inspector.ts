@@ -207,19 +207,24 @@ export class Inspector implements Panel {
   private form(views: FieldView[], title = 'Parameters', actual: Promise<Listed[] | null> | null = null): void {
     const {parameters, store} = this.context;
     if (views.length === 0) return;
-    const ordered = [...views].sort((a, b) => Number(b.tunable) - Number(a.tunable));
+    const groups = [...new Set(views.map((v) => v.group))];
+    const ordered = [...views].sort((a, b) => Number(b.tunable) - Number(a.tunable) || groups.indexOf(a.group) - groups.indexOf(b.group));
     const section = h('section', {class: 'block form'});
     const rows = new Map<string, FieldRow>();
+    const headings = new Map<string, HTMLElement>();
     const put = (into: HTMLElement, list: FieldView[]): void => {
       let group = '';
       for (const view of list) {
+        // The kind lists the parameters of all agents; an agent has some of them.
+        const perhaps = view.tunable && view.path.startsWith('parameters/');
         if (view.group !== group) {
           group = view.group;
-          into.append(h('h4', {}, group));
+          const heading = h('h4', {hidden: perhaps}, group);
+          into.append(heading);
+          if (perhaps) headings.set(group, heading);
         }
         const row = new FieldRow(view, parameters);
-        // The kind lists the parameters of all agents; an agent has some of them.
-        row.element.hidden = view.tunable && view.path.startsWith('parameters/');
+        row.element.hidden = perhaps;
         rows.set(view.address, row);
         into.append(row.element);
       }
@@ -239,7 +244,10 @@ export class Inspector implements Panel {
       for (const name of names) {
         const row = rows.get(name);
         const value = parameters.values.get(name);
-        if (row && value !== undefined && value !== null) row.element.hidden = false;
+        if (row && value !== undefined && value !== null) {
+          row.element.hidden = false;
+          headings.get(views.find((v) => v.address === name)?.group ?? '')?.removeAttribute('hidden');
+        }
         row?.show(value);
       }
     };
