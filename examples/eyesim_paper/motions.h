@@ -5,7 +5,7 @@
 #include "eyebot.h"
 
 #define SLOT_MS 50
-#define START_MS 1000    /* until the speeds are reached */
+#define START_MS 1000 /* until the speeds are reached */
 #define MEASURED_MS 2000
 
 static void next_slot(void) { OSWait(SLOT_MS - OSGetCount() % SLOT_MS); }
@@ -16,7 +16,7 @@ static void read_encoders(int motors, int ticks[]) {
 }
 
 /* Share of the full speed of each motor [percent]. */
-static void motion(const char *name, int motors, const int percent[]) {
+static void motion(const char* name, int motors, const int percent[]) {
   int before[4], after[4], begin, i;
   for (i = 0; i < motors; i++) MOTORDrive(i + 1, percent[i]);
   OSWait(START_MS);

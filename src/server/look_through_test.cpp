@@ -20,9 +20,7 @@ TEST(LookThrough, AViewerSeesADeviceThatNobodyAsksAndLeavesNoTrace) {
   for (int i = 0; i < 8; ++i) {
     const auto scan = viewer.next(subscription);
     ASSERT_TRUE(scan);
-    if (i > 1) {
-      EXPECT_GE(scan->ns - before, 100'000'000u) << "its rate is 10 Hz";
-    }
+    if (i > 1) { EXPECT_GE(scan->ns - before, 100'000'000u) << "its rate is 10 Hz"; }
     before = scan->ns;
   }
   run.end();

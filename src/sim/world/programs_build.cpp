@@ -172,9 +172,9 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
       program->wait = std::make_unique<SimulationParts::Wait>();
       if (auto* const surrounded = dynamic_cast<programs::Surrounded*>(program->program.get());
           surrounded && !driven.team)
-        surrounded->describe(facts_of(*driven.robots.front(), devices_),
-                             setup_.clock.mode == model::Clock::Mode::fixed ? setup_.step
-                                                                            : setup_.clock.min_step);
+        surrounded->describe(
+            facts_of(*driven.robots.front(), devices_),
+            setup_.clock.mode == model::Clock::Mode::fixed ? setup_.step : setup_.clock.min_step);
     }
     program->description = describe(driven, before, period_s);
     if (program->description->robot == driven.name) {
