@@ -1,23 +1,16 @@
 #pragma once
-/// Values of a run by address, and its input from outside to feed another run with.
+/// Input from outside of a run, to feed another run with.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "sim/watch/values.h"
+#include "sim/test_values.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot::test {
-
-inline double value(const Simulation& simulation, const std::string& address) {
-  auto found = NamedValue::find(simulation, address);
-  EXPECT_TRUE(found) << (found ? "" : found.error().text());
-  return found ? found->read().value_or(NAN) : NAN;
-}
 
 /// Logs and hashes of a run, by tick.
 struct InputLog : Observer {

@@ -77,7 +77,7 @@ TEST_F(EyesimPaths, AreRightInAScenarioOfEyeSim6) {
   const auto root = sim_tree(
       "world %sim%/worlds/small/Room.wld\nrobi scout.robi chase.dll 400 800 90\n"
       "object 900 800 0 0.0 %sim%/worlds/objects/can/can.ms3d\n",
-      file, diagnostics);
+      file, {}, diagnostics);
   ASSERT_TRUE(root) << root.error().text();
   EXPECT_EQ(root->find("world")->text(), at("home/worlds/small/Room.wld"));
   const Node& robot = root->find("robots")->items().front();
