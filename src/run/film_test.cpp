@@ -20,7 +20,7 @@ std::unique_ptr<Simulation> world(const std::string& step) {
       "version: 1\nname: t\ntime: {step: " + step +
       ", stop: 100 s}\nrobots:\n"
       "  - {name: bot, model: {builder: diff_robot}, controller: {kind: sequence, steps: "
-      "[{at: 0 s, orders: {drive: [0, 0, 1]}}]}, devices: {drive: {level: ideal}}}\n";
+      "[{at: 0 s, orders: {drive: [0, 0, 1]}}]}, devices: {drive: {level: ideal, rate: 2}}}\n";
   options.text = text;
   auto setup = load("t.yaml", options, diagnostics);
   EXPECT_TRUE(setup) << setup.error().text();
