@@ -138,3 +138,33 @@ test('a body that drives evenly is drawn evenly, one message late', () => {
   near(at[0], 0.35, 1e-9);
   near(y.world[0], 0.15, 1e-9); // y was first told of: at once, and there it stays
 });
+
+test('a body that an early message does not tell of goes on from where it is', () => {
+  const bodies = new Bodies(new THREE.Group(), new Assets('/none', () => {}), () => {});
+  const model = { id: 'a', name: 'a', static: false, links: [{ name: 'link', pose: IDENTITY, parent: -1, joint: -1, visuals: [], collisions: [] }], joints: [] };
+  const instance = { id: 1, name: 'x', original: '', model: 'a', robot: false, team: '', pose: IDENTITY, devices: [], controllers: [] };
+  bodies.setWorld({ epoch: 1, revision: 1, lights: [], models: [model], instances: [instance] });
+  const body = bodies.by_id.get(1);
+  const clock = new Between();
+  clock.pace(true, 200);
+  const message = (ms, time_s, x) => {
+    bodies.glide(clock.share(ms));
+    const glides = clock.message(ms);
+    bodies.restart();
+    if (x === null) return;
+    body.values.set([x, 0, 0, 1, 0, 0, 0]);
+    bodies.take(body, time_s, glides);
+  };
+  message(0, 0, 0);
+  message(200, 0.1, 0.1);
+  message(360, 0.2, null); // at 0.8 of the way
+  near(body.world[0], 0.08, 1e-12);
+  let last = body.world[0];
+  for (let ms = 370; ms < 600; ms += 10) {
+    bodies.glide(clock.share(ms));
+    assert.ok(body.world[0] >= last, `${body.world[0]} after ${last}`);
+    last = body.world[0];
+  }
+  near(last, 0.1, 1e-12);
+  assert.equal(bodies.glide(1), false);
+});
