@@ -196,12 +196,15 @@ Status pictures_of_the_past(const Report& report, std::vector<std::vector<std::s
   }
   report.page.paragraph(fmt::format(
       "A robot takes pictures of another one that drives by at 300 mm/s. Where the other one is in a picture "
-      "tells when the world looked like that: {} of {} pictures are known by it. They were {:g} to {:g} ms "
-      "old when the call returned, "
-      "which waits for a picture that is taken in the next time slot. The true place at that time lies "
-      "{:.1f} mm beside the middle of "
-      "what is seen on average, with a deviation of {:.1f} mm; in a time slot the robot drives 15 mm.",
-      found, lines.size(), least, most, off_mm.mean(), off_mm.deviation()));
+      "tells when the world looked like that: {} of {} pictures are known by it. When the call returned, "
+      "which "
+      "waits for a picture of the next time slot, their ages were {}. The true place at that time lies "
+      "{:.1f} mm "
+      "beside the middle of what is seen on average, with a deviation of {:.1f} mm; in a time slot the robot "
+      "drives 15 mm.",
+      found, lines.size(),
+      least == most ? fmt::format("{:g} ms", least) : fmt::format("{:g} to {:g} ms", least, most),
+      off_mm.mean(), off_mm.deviation()));
   statements.push_back(
       {"A robot might record the image of another one at a position where it will be in the "
        "future.",
