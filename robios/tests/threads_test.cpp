@@ -23,6 +23,7 @@ TEST(RobiosThreads, TakeTurns) {
   // main goes on until it waits; then each thread until it yields.
   EXPECT_EQ(trace("yield"), "main a0 b0 a1 b1 a2 b2 end\n");
 }
+TEST(RobiosThreads, WaitInAQueue) { EXPECT_EQ(trace("queue"), "sa sb sc all ma mb mc end\n"); }
 TEST(RobiosThreads, Mutexes) { EXPECT_EQ(trace("mutex"), "end\n"); }
 TEST(RobiosThreads, ConditionsAndSemaphores) { EXPECT_EQ(trace("cond"), "p1 c1 p2 c2 p3 c3 end\n"); }
 TEST(RobiosThreads, Others) { EXPECT_EQ(trace("others"), "cleaned end\n"); }

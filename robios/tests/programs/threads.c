@@ -46,6 +46,32 @@ static void *greedy(void *number) {
   }
   return 0;
 }
+/* Who waits longest gets the lock, the semaphore: a, b, c, however many give way meanwhile. */
+static void *queued(void *name) {
+  sem_wait(&sem);
+  printf("s%s ", (char *)name);
+  pthread_mutex_lock(&m);
+  printf("m%s ", (char *)name);
+  pthread_mutex_unlock(&m);
+  return 0;
+}
+static void run_queue(void) {
+  pthread_t t[3];
+  const char *names[3] = {"a", "b", "c"};
+  int i;
+  sem_init(&sem, 0, 0);
+  for (i = 0; i < 3; i++) {
+    pthread_create(&t[i], 0, queued, (void *)names[i]);
+    usleep(1000);
+  }
+  pthread_mutex_lock(&m);
+  for (i = 0; i < 3; i++) sem_post(&sem);
+  usleep(1000);
+  printf("all ");
+  pthread_mutex_unlock(&m);
+  for (i = 0; i < 3; i++) pthread_join(t[i], 0);
+  printf("end\n");
+}
 static void run_mutex(void) {
   int zero = 0, one = 1;
   pthread_t a, b;
@@ -237,6 +263,7 @@ int main(int argc, char **argv) {
   pthread_t t;
   if (!strcmp(what, "yield")) run_yield();
   if (!strcmp(what, "mutex")) run_mutex();
+  if (!strcmp(what, "queue")) run_queue();
   if (!strcmp(what, "cond")) run_cond();
   if (!strcmp(what, "slices")) run_slices();
   if (!strcmp(what, "others")) run_others();
