@@ -31,31 +31,28 @@ class Exchange {
     long sent = 0, expected = 0, received = 0, pictures = 0;
   };
 
-  explicit Exchange(int duration_s) : duration_s_(duration_s) {
+  /// @param delay_ms  of the radio, beyond the time on the air
+  Exchange(int duration_s, int delay_ms) : duration_s_(duration_s) {
     fs::permissions(folder_.path, fs::perms(0755));
     fs::copy_file("tests/robios/exchange.c", folder_.file("exchange.c"));
+    // Header and data of 8 bytes at least with 250 kbit/s.
+    const int air_ns = delay_ms * 1'000'000 + 700'000;
     std::ofstream out(folder_.file("exchange.yaml"));
-    out << "version: 1\nphysics: planar\ntime: {step: " << step_ms << " ms}\n"
-        << "media: [{kind: radio, name: air, half_duplex: false, collisions: false, delay: 40 "
-           "ms}]\nthings:\n";
+    out << "version: 1\nphysics: planar\ntime: {step: " << step_ms << " ms}\nmedia:\n"
+        << "  - {kind: radio, name: air, half_duplex: false, collisions: false, delay: " << delay_ms
+        << " ms}\nthings:\n";
     for (int i = 0; i < robots; ++i)
       out << "  - {name: hand" << i << ", model: {builder: block, size: [0.02, " << 1.8 * column_m
           << ", 1], mass: 1}, pose: [" << hand_m + 0.01 << ", " << 10 * i << ", 0.5]}\n";
     out << "robots:\n";
     for (std::size_t i = 0; i < slots_ms.size(); ++i)
       out << "  - name: robot" << i << "\n    model: {builder: diff_robot}\n    pose: [0, " << 10 * i
-          << ", 0]\n"
-             "    devices:\n      radio: {kind: radio, link: base}\n      screen: {kind: screen}\n"
-             "      eye: {kind: camera, link: base, pose: [0, 0, 0.5, 0, 0, 0], width: 160, height: 4, "
-             "horizontal_fov: 90 deg, on_request: true}\n"
-             "    controller: {kind: robios, program: exchange.c, slot: "
-          << slots_ms[i] << " ms, flags: [-DSEED=1, -DEND_MS="
-          << 1000 * duration_s
-          // A delay of 40 ms, and header and data of 8 bytes at least with 250 kbit/s.
-          << ", -DSTEP_NS=" << step_ms << "000000LL, -DAIR_NS=40700000LL, -DCODES="
-          << codes
-          // A picture that is taken in the tick in which a slot ends is there at the beginning of the next one.
-          << ", -DLAG=" << 1 << "]}\n";
+          << ", 0]\n    devices:\n      radio: {kind: radio, link: base}\n      screen: {kind: screen}\n"
+          << "      eye: {kind: camera, link: base, pose: [0, 0, 0.5, 0, 0, 0], width: 160, height: 4, "
+          << "horizontal_fov: 90 deg, on_request: true}\n"
+          << "    controller: {kind: robios, program: exchange.c, slot: " << slots_ms[i]
+          << " ms, flags: [-DSEED=1, -DEND_MS=" << 1000 * duration_s << ", -DSTEP_NS=" << step_ms
+          << "000000LL, -DAIR_NS=" << air_ns << ", -DCODES=" << codes << ", -DLAG=1]}\n";
   }
 
   /// Runs to the end of the programs. @return the hash, and what the programs counted together
@@ -130,8 +127,14 @@ TEST(RobiosRadio, LosesMessagesAndBitsAsOftenAsASimFileSays) {
   expect(wrong, bits, bit_error);
 }
 
+TEST(RobiosExchanges, MessagesTakeTheTimeOfTheRadio) {
+  const Exchange::Totals totals = Exchange(10, 40).run(2).second;
+  EXPECT_GT(totals.received, 3'000);
+  EXPECT_EQ(totals.received, totals.expected);
+}
+
 TEST(SlowRobiosExchanges, NothingComesFromTheFuture) {
-  Exchange exchange(220);
+  Exchange exchange(220, 0);
   const auto [hash, totals] = exchange.run(1);
   EXPECT_GE(totals.received + totals.pictures, 100'000);
   EXPECT_GE(totals.pictures, 4'000);
