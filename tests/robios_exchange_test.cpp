@@ -134,10 +134,10 @@ TEST(RobiosExchanges, MessagesTakeTheTimeOfTheRadio) {
 }
 
 TEST(SlowRobiosExchanges, NothingComesFromTheFuture) {
-  Exchange exchange(220, 0);
+  Exchange exchange(120, 0);
   const auto [hash, totals] = exchange.run(1);
   EXPECT_GE(totals.received + totals.pictures, 100'000);
-  EXPECT_GE(totals.pictures, 4'000);
+  EXPECT_GE(totals.pictures, 3'000);
   EXPECT_EQ(totals.received, totals.expected);
   std::printf("%ld messages sent, %ld received, %ld pictures\n", totals.sent, totals.received,
               totals.pictures);

@@ -97,7 +97,7 @@ int main(void) {
       case 4: OSWait(coin(60)); break;
       case 5: LCDSetPrintf(coin(5), 0, "%d", sent); break;
       case 6:
-        if (coin(3) == 0) take_picture();
+        if (coin(2) == 0) take_picture();
         break;
       case 7: VWGetPosition(&x, &y, &phi); break;
       default: usleep(coin(20000));
