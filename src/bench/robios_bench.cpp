@@ -135,7 +135,7 @@ void add_four_robots(std::vector<Row>& rows) {
   std::vector<double> ours, reference;
   for (int i = 0; i < 4; ++i) {
     const Crowd programs = four_robots("crowd.c"), controllers = four_robots("controller:wander");
-    // Turns of the robots cost the programs pictures: three quarters of all at least.
+    // A robot that turns takes none: three quarters of all at least.
     SL_CHECK(4 * programs.pictures >= 3 * controllers.pictures);
     ours.push_back(programs.wall_s);
     reference.push_back(controllers.wall_s);
