@@ -98,6 +98,6 @@ test("a device shows its own, and what is fixed as it is", { skip }, async () =>
 test("what the sliders did is in the recording, and a replay does it again", { skip }, async () => {
   assert.equal(await served.stop(), 0);
   const out = execFileSync(sandlot, ["replay", recording], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
-  assert.match(out, /same|identical|equal|proved/i);
+  assert.match(out, /^replayed +\d+ ticks/m);
   assert.deepEqual(complaints, []);
 });

@@ -77,6 +77,33 @@ Result<std::vector<std::string>> without_posts(const std::vector<Row>& rows,
   return out;
 }
 
+/// Whether cells are drawn three characters wide, a wall and two of floor: walls in every third column, and not in every second.
+bool is_wide(const std::vector<Row>& rows) {
+  bool elsewhere = false;
+  for (const Row& row : rows)
+    for (std::size_t i = 0; i < row.text.size(); ++i) {
+      if (row.text[i] != '|') continue;
+      if (i % 3 != 0) return false;
+      elsewhere = elsewhere || i % 2 == 1;
+    }
+  return elsewhere;
+}
+
+/// Such a row with cells of two characters: of the floor's two the letter, if there is one.
+std::string narrowed(std::string_view row) {
+  std::string out;
+  for (std::size_t i = 0; i < row.size(); i += 3) {
+    out += row[i] == '|' ? '|' : ' ';
+    char floor = ' ';
+    for (std::size_t k = i + 1; k < std::min(i + 3, row.size()); ++k)
+      if (row[k] != ' ' && row[k] != '_') floor = row[k];
+      else if (floor == ' ') floor = row[k];
+    out += floor;
+  }
+  while (out.size() > 1 && out.back() == ' ') out.pop_back();
+  return out;
+}
+
 }  // namespace
 
 Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
@@ -115,6 +142,9 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
     SL_ASSIGN(redrawn, without_posts(rows, name));
     for (std::size_t i = 0; i < redrawn.size(); ++i) rows[i] = {redrawn[i], rows[2 * i].line};
     rows.resize(redrawn.size());
+  } else if (is_wide(rows)) {
+    for (const Row& row : rows) redrawn.push_back(narrowed(row.text));
+    for (std::size_t i = 0; i < redrawn.size(); ++i) rows[i].text = redrawn[i];
   }
   Plan plan;
   std::size_t columns = 0;

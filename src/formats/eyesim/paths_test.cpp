@@ -152,5 +152,19 @@ TEST(EyesimMazes, MayMarkTheirGoal) {
   EXPECT_TRUE(d.warnings.empty()) << d.warnings.front().text();
 }
 
+TEST(EyesimMazes, MayHaveCellsOfThreeCharacters) {
+  // Two columns of three rows: a floor below the upper left and the middle right cell, a wall between the upper ones.
+  Diagnostics d;
+  const auto wide = read_maze(" _____\n|__|  |\n|s __ |\n|_____|\n", "wide.maz", d);
+  ASSERT_TRUE(wide);
+  EXPECT_TRUE(d.warnings.empty()) << d.warnings.front().text();
+  ASSERT_EQ(wide->walls.size(), 7u);  // with the four around
+  EXPECT_NEAR(wide->width_m, 0.72, 1e-12);
+  EXPECT_NEAR(wide->height_m, 1.08, 1e-12);
+  ASSERT_EQ(wide->starts.size(), 1u);
+  EXPECT_NEAR(wide->starts.front().x_m, 0.18, 1e-12);
+  EXPECT_NEAR(wide->starts.front().y_m, 0.54, 1e-12);
+}
+
 }  // namespace
 }  // namespace sandlot::formats::eyesim

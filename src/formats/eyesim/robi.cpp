@@ -510,6 +510,7 @@ class Reader {
          {"passive_joint", std::vector<std::string>{"front_left_joint", "front_right_joint"}},
          {"left_steering_joint", "front_left_steering"},
          {"right_steering_joint", "front_right_steering"},
+         {"wheelbase", number_text(front.forward_m - back.forward_m)},
          {"wheel_radius", number_text(back.diameter_m / 2)},
          {"max_linear_speed", max_speed(back)},
          {"max_angular_speed", max_turn(back)}});

@@ -297,6 +297,29 @@ TEST_F(OneOfEverything, MotorsAreTheWheelsOfAMecanumDrive) {
   EXPECT_FALSE(ordered<msg::JointState>(MotorOrder{4, 0, 1}, 6));
 }
 
+TEST_F(OneOfEverything, MotorAndServoOneDriveACar) {
+  find("ackermann_drive");
+  sandlot::robios::Robot out{};
+  robot.describe(spec, state, out);
+  EXPECT_EQ(out.motors, 1u);
+  EXPECT_EQ(out.servos, 2u);
+  EXPECT_STREQ(out.servo_names[0], "steering");
+  // Half of 0.6 m/s; the wheels turn by 0.6 rad at most, on a wheelbase of 1.5 times the track of 0.2 m.
+  constexpr double tangent = 0.6841368083416923;
+  const auto ahead = ordered<msg::Twist>(MotorOrder{0, 0, 0.5}, 0);
+  ASSERT_TRUE(ahead);
+  EXPECT_NEAR(ahead->linear.x, 0.3, 1e-12);
+  EXPECT_NEAR(ahead->angular.z, 0, 1e-12);
+  const auto left = ordered<msg::Twist>(ServoOrder{0, 0}, 0);
+  ASSERT_TRUE(left);
+  EXPECT_NEAR(left->linear.x, 0.3, 1e-12);
+  EXPECT_NEAR(left->angular.z, tangent, 1e-9);
+  EXPECT_NEAR(ordered<msg::Twist>(ServoOrder{0, 1}, 0)->angular.z, -tangent, 1e-9);
+  EXPECT_NEAR(ordered<msg::Twist>(MotorOrder{0, 0, -0.5}, 0)->angular.z, tangent, 1e-9);
+  EXPECT_NEAR(ordered<msg::Float64>(ServoOrder{1, 0.75}, 5)->data, 3.14159265358979 / 4, 1e-9);
+  EXPECT_FALSE(ordered<msg::Twist>(MotorOrder{1, 0, 1}, 0));
+}
+
 TEST_F(OneOfEverything, ItsOdometryBeginsWhereItIsSet) {
   find();
   // The drive counts (1, 2) at a heading of 90 degrees; that place shall be (5, 0) at 0.
