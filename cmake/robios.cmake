@@ -33,6 +33,7 @@ sandlot_robios_plain(robios_host)
 macro(sandlot_robios_install)
   install(TARGETS robios6 robios7 LIBRARY DESTINATION lib)
   install(TARGETS robios_host RUNTIME DESTINATION bin)
+  install(FILES robios/python/eye.py robios/python/robios_main.py DESTINATION lib/robios)
   install(DIRECTORY robios/include/robios6 robios/include/robios7 DESTINATION include)
 endmacro()
 

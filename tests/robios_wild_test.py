@@ -191,5 +191,62 @@ class Robots(Found):
         self.assertLess(math.dist(at(6.5)[:2], at(7)[:2]), 0.01)
 
 
+class Python(Found):
+    def test_programs_drive_look_and_wait(self):
+        printed, rows = self.run_program("drive.py", """
+from eye import *
+import threading
+import time
+
+LCDMenu("GO", "", "", "END")
+LCDPrintf("turning \\n", "")  # one value too many
+begin = time.time()
+VWStraight(300, 200.7)
+VWWait()
+x, y, phi = VWGetPosition()
+print(x, y, phi)
+CAMInit(QQVGA)
+image = CAMGet()
+print(len(image) == QQVGA_SIZE, len(IPSobel(IPCol2Gray(image))) == QQVGA_PIXELS)
+LCDImageStart(0, 0, 10, 10)
+LCDImageBinary([1] * 100)
+print("%06x" % LCDGetPixel(5, 5), IPPCol2RGB(ORANGE), KEYRead() == NOKEY, len(LIDARGet()) in (0, 360))
+ticks = []
+timer = OSAttachTimer(100, lambda: ticks.append(1))
+thread = threading.Thread(target=time.sleep, args=(0.5,))
+thread.start()
+thread.join()
+OSWait(500)
+OSDetachTimer(timer)
+print(len(ticks), 2 < time.time() - begin < 5)
+SIMSetRobot(0, 2500, 1500, 0, 90)
+""", 6)
+        self.assertEqual(printed[:3], ["300 0 0", "True True", "ffffff [255, 165, 0] True True"])
+        # 1000 ms of 100 ms each, and whatever the calls around took.
+        self.assertRegex(printed[3], r"^(9|10|11) True$")
+        self.assertAlmostEqual(rows[-1][0], 2.5, delta=1e-3)
+        self.assertAlmostEqual(rows[-1][2], math.pi / 2, delta=1e-3)
+
+    def test_programs_use_files_beside_them_but_our_library(self):
+        self.write("eye.py", 'import ctypes\nctypes.CDLL("libeyesim.so")\n')
+        self.write("helper.py", "from eye import *\n\ndef far():\n    return PSDGet(PSD_BACK)\n")
+        printed, _ = self.run_program("use.py", "from helper import far\nprint(far() > 0, __name__)\n")
+        self.assertEqual(printed, ["True __main__"])
+
+    def test_programs_say_where_they_fail(self):
+        self.write("x.sim", "world room.wld\nS4 1000 1000 0 fail.py\n")
+        self.write("fail.py", "from eye import *\nVWStraight(100, 100)\nundefined()\n")
+        done = subprocess.run([SANDLOT, "run", self.path("x.sim"), "--duration", "2s"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("NameError", done.stderr)
+
+    def test_robots_talk(self):
+        self.write("talk.py", "from eye import *\nRADIOInit()\nme = RADIOGetID()\n"
+                   "if me == 1:\n    OSWait(200)\n    RADIOSend(2, 'ping')\n    print(RADIOReceive())\n"
+                   "else:\n    sender, text = RADIOReceive()\n    RADIOSend(sender, text + ' pong')\n")
+        sim = self.write("two.sim", "world room.wld\nS4 1000 1000 0 talk.py\nLabBot 1000 2000 0 talk.py\n")
+        self.assertEqual(self.run_sim(sim, 3)[0], ["[2, 'ping pong']"])
+
+
 if __name__ == "__main__":
     unittest.main()

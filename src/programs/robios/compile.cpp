@@ -56,6 +56,7 @@ struct Library {
   std::string folder;   ///< of librobios7.so
   std::string headers;  ///< of eyebot.h
   std::string host;     ///< the file that runs programs that are libraries
+  std::string python;   ///< of eye.py
 };
 
 /// Empty where there is none.
@@ -71,6 +72,8 @@ Library find_library(int api) {
       if (out.headers.empty() && fs::exists(at / "eyebot.h", none)) out.headers = at.string();
     for (const fs::path& at : {above / "robios_host", above / "bin" / "robios_host"})
       if (out.host.empty() && fs::exists(at, none)) out.host = at.string();
+    for (const fs::path& at : {above / "robios" / "python", above / "lib" / "robios"})
+      if (out.python.empty() && fs::exists(at / "eye.py", none)) out.python = at.string();
   }
   return out;
 }
@@ -325,7 +328,7 @@ Result<ProgramLaunch> prepare(const Source& source) {
   const fs::path named = fs::path(out.folder) / source.program;
   if (!fs::is_regular_file(named, none))
     return Error{"there is no program '" + source.program + "' in '" + out.folder + "'",
-                 "program: names a .c or .cpp file, a library (.so) or an executable"};
+                 "program: names a .c, .cpp or .py file, a library (.so) or an executable"};
   const fs::path file = fs::canonical(named, none);
   // By its place in the folder, as the sandbox shows it; else by its whole path.
   const fs::path relative = file.lexically_relative(out.folder);
@@ -361,11 +364,17 @@ Result<ProgramLaunch> prepare(const Source& source) {
     if (library.folder.empty() || library.host.empty()) return Error{missing, "install it whole"};
     out.read_folders.push_back(fs::path(library.host).parent_path().string());
     out.command = {library.host, shown};
+  } else if (file.extension() == ".py") {
+    if (library.folder.empty() || library.python.empty()) return Error{missing, "install it whole"};
+    // Its threads and clocks are the library's, too.
+    out.environment.push_back("LD_PRELOAD=" + library.folder + "/librobios" + std::to_string(api) + ".so");
+    out.python_folders.push_back(library.python);
+    out.command = {"python3", "-m", "robios_main", shown};
   } else if (access(file.c_str(), X_OK) == 0) {
     out.command = {shown};
   } else {
     return Error{"'" + source.program + "' is no program",
-                 "program: names a .c or .cpp file, a library (.so) or an executable (chmod +x)"};
+                 "program: names a .c, .cpp or .py file, a library (.so) or an executable (chmod +x)"};
   }
   return out;
 }

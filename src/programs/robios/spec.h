@@ -32,11 +32,11 @@ struct Spec {
   Budget budget;
 
   static void fields(auto& s, auto&& visit) {
-    visit(
-        Field{"program", "",
-              "Program of the robot: a .c or .cpp file, which is compiled, a library (.so) or an executable.",
-              0, 0, Field::required, 4096},
-        s.program);
+    visit(Field{"program", "",
+                "Program of the robot: a .c or .cpp file, which is compiled, a .py file, a library (.so) or "
+                "an executable.",
+                0, 0, Field::required, 4096},
+          s.program);
     visit(
         Field{
             "folder", "",
