@@ -39,6 +39,7 @@ struct RunOptions {
   RunSpec spec;
   std::optional<ServeOptions> serve;
   bool watch = false;            ///< restart programs whose files have changed
+  bool verbose = false;          ///< write what `check` would report, too
   std::string program_logs;      ///< folder for what programs print; "": none
   bool json = false;             ///< print the summary as JSON instead of text
   const Hooks* hooks = nullptr;  ///< C++ functions of an embedding program

@@ -130,7 +130,6 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Sess
     self->wake(&Hub::state_changed);
   };
   log::set_listener([self](log::Level level, std::string_view text) {
-    if (!self->hub.counts().log_read) return;
     const std::uint8_t ros_level = level == log::Level::warning ? 30 : level == log::Level::info ? 20 : 10;
     self->mailbox->push([ros_level, line = std::string(text)](Hub& hub) { hub.send_log(ros_level, line); });
   });

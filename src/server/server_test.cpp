@@ -558,6 +558,21 @@ TEST(Server, WarningsOfTheProgramAreLogLines) {
   EXPECT_EQ(log.msg, "the floor is wet");
 }
 
+TEST(Server, WhoSubscribesLateHasTheLatestLogLines) {
+  Running run(one_rover(), {.paused = true});
+  run.go();
+  for (int i = 0; i < 250; ++i) log::info("line " + std::to_string(i));
+  Viewer viewer(run.url());
+  const std::uint32_t lines = viewer.subscribe("/rosout");
+  const auto first = viewer.next(lines);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(viewer.read<msg::Log>(*first).msg, "line 50");
+  for (int i = 51; i < 249; ++i) ASSERT_TRUE(viewer.next(lines));
+  const auto last = viewer.next(lines);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(viewer.read<msg::Log>(*last).msg, "line 249");
+}
+
 TEST(Server, TheGraphNamesWhoTalksToWhom) {
   Running run(one_rover("wander"), {.paused = true});
   run.go();

@@ -27,6 +27,9 @@ struct RunFlags {
     serve.add_to(verb);
     verb.get_option("--port")->excludes(without);
     verb.add_flag("--paused", options.spec.paused, "Begin paused; with --port");
+    verb.add_flag(
+        "--verbose", options.verbose,
+        "Explain what is probably wrong in the world, as `sandlot check` does; also in the log of the page");
     verb.add_option("--command", options.spec.commands,
                     "A console line for the run, such as 'at 2s pose rover 1 2'; may be given several times")
         ->allow_extra_args(false);

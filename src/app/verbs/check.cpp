@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/lint_file.h"
 #include "base/json_text.h"
 #include "formats/kind.h"
 #include "sim/lint/lint.h"
@@ -46,14 +47,14 @@ std::string levels_text(const Simulation& simulation) {
   return all;
 }
 
-/// What lint says of a file that was built.
-std::vector<Finding> lint_file(const std::string& file, const FileOptions& options,
-                               const Simulation& simulation) {
+}  // namespace
+
+std::vector<Finding> lint_file(const std::string& file, const std::vector<formats::Override>& overrides,
+                               const std::vector<std::string>& paths, const Simulation& simulation) {
   std::vector<Finding> findings = lint(simulation);
   if (const formats::FormatKind* const format = formats::find_format(file); format && format->scenario) {
     Diagnostics repeated;
-    if (const auto scenario = formats::read_scenario_file(file, {search_path(options.paths)},
-                                                          options.overrides, repeated))
+    if (const auto scenario = formats::read_scenario_file(file, {search_path(paths)}, overrides, repeated))
       for (Finding& finding : lint(*scenario)) findings.push_back(std::move(finding));
   }
   for (Finding& finding : findings)
@@ -61,7 +62,9 @@ std::vector<Finding> lint_file(const std::string& file, const FileOptions& optio
   return findings;
 }
 
-}  // namespace
+std::string text_of(const Finding& finding) {
+  return finding.text.text() + (finding.rule.empty() ? "" : " [" + finding.rule + "]");
+}
 
 int check(const FileOptions& options) {
   nlohmann::ordered_json report = nlohmann::ordered_json::array();
@@ -75,7 +78,8 @@ int check(const FileOptions& options) {
     std::vector<Finding> findings;
     for (const Error& warning : diagnostics.warnings) findings.push_back({"", warning});
     if (built)
-      for (Finding& finding : lint_file(file, options, **built)) findings.push_back(std::move(finding));
+      for (Finding& finding : lint_file(file, options.overrides, options.paths, **built))
+        findings.push_back(std::move(finding));
     if (!built || (options.strict && !findings.empty())) result = exit_bad_input;
     if (options.json) {
       for (const Finding& finding : findings)

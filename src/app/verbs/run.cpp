@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/lint_file.h"
 #include "app/progress.h"
 #include "app/serve.h"
 #include "base/json_text.h"
@@ -104,13 +106,30 @@ int run(const RunOptions& options) {
   spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);
   Progress progress;
   std::optional<Served> served;
+  // Held back until there is a page, so that its log has them, too.
+  std::vector<std::string> held;
+  bool ready = !options.serve;
+  const auto release = [&] {
+    ready = true;
+    for (const std::string& each : std::exchange(held, {})) log::warning(each);
+  };
   const RunCallbacks callbacks{
       .hooks = options.hooks,
-      .on_warning = [](const Error& warning) { log::warning(warning.text()); },
+      .on_warning =
+          [&](const Error& warning) {
+            if (ready) log::warning(warning.text());
+            else held.push_back(warning.text());
+          },
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
         catch_interrupts();  // before there are processes and folders of theirs to be left
-        return serve(options, parts, served);
+        SL_TRY(serve(options, parts, served));
+        release();
+        if (options.verbose)
+          for (const Finding& each :
+               lint_file(options.spec.file, options.spec.overrides, options.spec.paths, parts.session.simulation()))
+            log::warning(text_of(each));
+        return {};
       },
       .keep_going =
           [&](const Simulation& simulation) {
@@ -126,6 +145,7 @@ int run(const RunOptions& options) {
             summary.clients = served->clients();
           }};
   const auto summary = sandlot::run(spec, callbacks);
+  release();
   if (!summary) return complain(summary.error());
   progress.clear();
   std::fputs(options.json ? as_json_text(*summary).c_str() : as_text(*summary).c_str(), stdout);

@@ -226,6 +226,8 @@ Status Hub::subscribe(ClientId id, std::uint32_t subscription, std::uint32_t cha
   }
   to.subscribers.push_back(made);
   if (to.kind == ChannelKind::status) send_status(true);
+  if (to.kind == ChannelKind::log)
+    for (const auto& [stamp, bytes] : log_lines_) send(made, {to.info, stamp, bytes}, true);
   subscriptions_changed_ = true;
   graph_changed_ = true;
   return {};
@@ -340,7 +342,6 @@ void Hub::flush(bool at_once) {
   summary->step_times = channel_wanted(ChannelKind::step_times);
   summary->commands = subscribed(ChannelKind::commands);
   summary->world = subscribed(ChannelKind::world);
-  counts_.log_read = subscribed(ChannelKind::log);
   summary->transforms_static = subscribed(ChannelKind::transforms_static);
   for (const auto& [id, client] : clients_)
     if (client.all_parameters || !client.parameters.empty()) summary->parameters = true;

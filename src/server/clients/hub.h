@@ -127,7 +127,8 @@ class Hub final : private ServiceHost {
   void answer_parameters(ClientId client, const std::string& id, std::span<const foxglove::Parameter> values,
                          std::span<const std::string> errors);
   void report_refusal(ClientId client, const std::string& why);
-  /// A line for /rosout; levels of rcl_interfaces/msg/Log.
+  /// A line for /rosout; levels of rcl_interfaces/msg/Log. Who subscribes later has the latest 200, too: what a program prints when it
+  /// begins is mostly over before somebody looks.
   void send_log(std::uint8_t level, const std::string& text);
   /// Who is connected, to those who may see it.
   void send_clients(std::vector<OutsideProgram> programs);
@@ -135,7 +136,6 @@ class Hub final : private ServiceHost {
   struct Counts {
     std::atomic<std::uint64_t> refused = 0, dropped = 0;
     std::atomic<std::uint64_t> too_long = 0;  ///< dropped, as they fit no datagram
-    std::atomic<bool> log_read = false;       ///< somebody has subscribed to /rosout
   };
   const Counts& counts() const { return counts_; }
   void count_refused() { ++counts_.refused; }
@@ -320,6 +320,7 @@ class Hub final : private ServiceHost {
   bool graph_changed_ = false;
   Clock::time_point flushed_, status_sent_, time_sent_, framed_, looked_, graph_sent_;
   Counts counts_;
+  std::deque<std::pair<Time, Payload>> log_lines_;
   Roster roster_;
   Clock::time_point clients_measured_, clients_asked_;
 };

@@ -247,13 +247,15 @@ void Hub::send_status(bool to_new_ones_only) {
 }
 
 void Hub::send_log(std::uint8_t level, const std::string& text) {
-  if (!subscribed(ChannelKind::log)) return;
+  constexpr std::size_t most_lines = 200;
   msg::Log log;
   log.stamp = report_.now;
   log.level = level;
   log.name = "sandlot";
   log.msg = text;
-  send_to_all(channel(ChannelKind::log), report_.now, cdr_of(log), true);
+  if (log_lines_.size() == most_lines) log_lines_.pop_front();
+  log_lines_.emplace_back(report_.now, cdr_of(log));
+  send_to_all(channel(ChannelKind::log), report_.now, log_lines_.back().second, true);
 }
 
 void Hub::answer(ClientId id, const std::function<void(Face&)>& tell) {
