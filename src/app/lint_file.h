@@ -9,10 +9,11 @@
 namespace sandlot::app {
 
 /// Findings of the simulation and, where the file is a scenario, of its text. @param overrides, paths  with which it was read
-std::vector<Finding> lint_file(const std::string& file, const std::vector<formats::Override>& overrides,
-                               const std::vector<std::string>& paths, const Simulation& simulation);
+std::vector<sandlot::Finding> lint_file(const std::string& file,
+                                        const std::vector<formats::Override>& overrides,
+                                        const std::vector<std::string>& paths, const Simulation& simulation);
 
 /// "what; fix [rule]".
-std::string text_of(const Finding& finding);
+std::string text_of(const sandlot::Finding& finding);
 
 }  // namespace sandlot::app

@@ -49,20 +49,21 @@ std::string levels_text(const Simulation& simulation) {
 
 }  // namespace
 
-std::vector<Finding> lint_file(const std::string& file, const std::vector<formats::Override>& overrides,
-                               const std::vector<std::string>& paths, const Simulation& simulation) {
-  std::vector<Finding> findings = lint(simulation);
+std::vector<sandlot::Finding> lint_file(const std::string& file,
+                                        const std::vector<formats::Override>& overrides,
+                                        const std::vector<std::string>& paths, const Simulation& simulation) {
+  std::vector<sandlot::Finding> findings = lint(simulation);
   if (const formats::FormatKind* const format = formats::find_format(file); format && format->scenario) {
     Diagnostics repeated;
     if (const auto scenario = formats::read_scenario_file(file, {search_path(paths)}, overrides, repeated))
-      for (Finding& finding : lint(*scenario)) findings.push_back(std::move(finding));
+      for (sandlot::Finding& finding : lint(*scenario)) findings.push_back(std::move(finding));
   }
-  for (Finding& finding : findings)
+  for (sandlot::Finding& finding : findings)
     if (!finding.text.place.file) finding.text.place.file = std::make_shared<const std::string>(file);
   return findings;
 }
 
-std::string text_of(const Finding& finding) {
+std::string text_of(const sandlot::Finding& finding) {
   return finding.text.text() + (finding.rule.empty() ? "" : " [" + finding.rule + "]");
 }
 
@@ -75,19 +76,19 @@ int check(const FileOptions& options) {
     if (built && (*built)->setup().log)
       if (Status status = CsvLog::check(**built, *(*built)->setup().log); !status)
         built = std::move(status.error());
-    std::vector<Finding> findings;
+    std::vector<sandlot::Finding> findings;
     for (const Error& warning : diagnostics.warnings) findings.push_back({"", warning});
     if (built)
-      for (Finding& finding : lint_file(file, options.overrides, options.paths, **built))
+      for (sandlot::Finding& finding : lint_file(file, options.overrides, options.paths, **built))
         findings.push_back(std::move(finding));
     if (!built || (options.strict && !findings.empty())) result = exit_bad_input;
     if (options.json) {
-      for (const Finding& finding : findings)
+      for (const sandlot::Finding& finding : findings)
         report.push_back(to_json(finding.text, "warning", finding.rule));
       if (!built) report.push_back(to_json(built.error(), "error", ""));
       continue;
     }
-    for (const Finding& finding : findings)
+    for (const sandlot::Finding& finding : findings)
       std::fprintf(stderr, "warning: %s%s\n", finding.text.text().c_str(),
                    finding.rule.empty() ? "" : (" [" + finding.rule + "]").c_str());
     if (!built) {

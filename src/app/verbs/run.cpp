@@ -126,8 +126,8 @@ int run(const RunOptions& options) {
         SL_TRY(serve(options, parts, served));
         release();
         if (options.verbose)
-          for (const Finding& each :
-               lint_file(options.spec.file, options.spec.overrides, options.spec.paths, parts.session.simulation()))
+          for (const sandlot::Finding& each : lint_file(options.spec.file, options.spec.overrides,
+                                                        options.spec.paths, parts.session.simulation()))
             log::warning(text_of(each));
         return {};
       },
