@@ -1,5 +1,5 @@
 #pragma once
-/// Lint: probable mistakes in a world that can run. `sandlot check` reports them, `sandlot run` does not.
+/// Lint: probable mistakes in a world that can run. `sandlot check` and `sandlot run --verbose` report them.
 ///
 /// Each rule is a function of rules.h with its derivation beside it. A rule that cannot be derived has no place here: a
 /// false alarm costs more than a slip that stays.
