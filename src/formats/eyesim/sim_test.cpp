@@ -177,8 +177,23 @@ TEST_F(EyesimScenario, GivesErrorModelsToTheDevicesThatHaveThem) {
   ASSERT_EQ(s.setup.media.size(), 1u);
   EXPECT_EQ(key(s.setup.media[0].config, {"bit_error_rate"}), "0.001");
   EXPECT_EQ(key(s.setup.media[0].config, {"drop"}), "0.5");
-  // Wrong bits are for the program to see.
+  // Wrong bits are for the program to see, also those that a slider of the page makes.
   EXPECT_EQ(key(devices, {"radio", "level"}), "bits");
+  EXPECT_EQ(key(read("S4 0 0 0\n").robots.at(0).devices, {"radio", "level"}), "bits");
+}
+
+TEST_F(EyesimScenario, HasEachErrorModelWithStrengthZeroForSliders) {
+  const Scenario s = read("robot scout.robi\nScout 0 0 0\nerror camera salt_and_pepper 0.1\n");
+  const Node& devices = s.robots.at(0).devices;
+  EXPECT_EQ(key(devices.find("PSD_FRONT")->find("noise")->items().at(0), {"gaussian", "std"}), "0");
+  const Node& drive = *devices.find("drive")->find("command_errors");
+  EXPECT_EQ(key(drive.find("linear")->items().at(0), {"gaussian", "std"}), "0");
+  EXPECT_EQ(key(drive.find("angular")->items().at(0), {"gaussian", "std"}), "0");
+  const auto& camera = devices.find("camera")->find("noise")->items();
+  ASSERT_EQ(camera.size(), 3u);
+  EXPECT_EQ(key(camera[0], {"salt_and_pepper", "pepper"}), "0.05");
+  EXPECT_EQ(key(camera[1], {"gaussian", "std"}), "0");
+  EXPECT_EQ(key(camera[2], {"hundreds_and_thousands", "rate"}), "0");
 }
 
 TEST_F(EyesimScenario, CamerasTakePicturesForProgramsThatAsk) {
