@@ -140,5 +140,68 @@ double mean(const RepeatSummary& all) {
   return all.all && all.all->criterion.mean ? *all.all->criterion.mean : -1e9;
 }
 
+double least(const RepeatSummary& all) { return all.all ? all.all->criterion.min.value_or(-1e9) : -1e9; }
+double most(const RepeatSummary& all) { return all.all ? all.all->criterion.max.value_or(1e9) : 1e9; }
+/// Settings for another kind of agent.
+Settings agent(const char* kind, const std::string& robot) {
+  return {{"agent", kind}, {"robots." + robot + ".controller.parameters", "{}"}};
+}
+
+TEST(SlowSelfOrgBehaviour, ABallFindsRollingAboutItsAxes) {
+  const RepeatSummary sox = runs("sphere");
+  EXPECT_GE(least(sox), 2) << "axes";
+  EXPECT_EQ(mean(runs("sphere", agent("sine", "ball"))), 0);
+}
+
+TEST(SlowSelfOrgBehaviour, TheWorldModelIsDeprivedWhenTheControllerStopsLearning) {
+  const RepeatSummary learns = runs("world_model"), frozen = runs("world_model", {{"freeze", "1 min"}});
+  // While both learn, A's singular values are those of wheels that follow their motors: about 1.
+  EXPECT_GT(least(learns), 0.95);
+  EXPECT_LT(most(frozen), 0.85);
+}
+
+TEST(SlowSelfOrgBehaviour, CrossMotorTeachingReachesTheTaughtCoordination) {
+  const RepeatSummary taught = runs("cross_motor"),
+                      free = runs("cross_motor", {{"robots.nimm.controller.cross_motor", "[]"}});
+  EXPECT_GT(least(taught), 0.5);
+  EXPECT_LT(std::abs(mean(free)), 0.3);
+}
+
+TEST(SlowSelfOrgBehaviour, RewardsRaiseSpeedAndSpin) {
+  const auto mean_of = [](const char* speed, const char* spin, const char* figure) {
+    return mean(runs(
+        "reward", {{"speed", speed}, {"spin", spin}, {"criterion", std::string("{value: ") + figure + "}"}}));
+  };
+  EXPECT_GT(mean_of("1", "0", "rules/speed.mean"), mean_of("0", "0", "rules/speed.mean"));
+  EXPECT_GT(mean_of("0", "1", "rules/turning.mean"), mean_of("0", "0", "rules/turning.mean"));
+}
+
+TEST(SlowSelfOrgBehaviour, ARingAndAHexapodGetAboutBetterThanByBabbling) {
+  EXPECT_GT(mean(runs("slider_wheelie")), mean(runs("slider_wheelie", agent("babbling", "wheelie"))));
+  EXPECT_GT(mean(runs("hexapod")), mean(runs("hexapod", agent("babbling", "hexapod"))));
+}
+
+TEST(SlowSelfOrgBehaviour, AnExpertRollsAgainSoonerThanItWasLearned) {
+  EXPECT_LT(mean(runs("experts")), 1) << "time of recall as a part of the time of learning";
+}
+
+TEST(SlowSelfOrgBehaviour, PrimitivesTogetherAvoidObstaclesBetterThanEachAlone) {
+  const double together = mean(runs("obstacles"));
+  for (const char* alone :
+       {"[{name: forwards, biases: [0.6, 0.6]}]", "[{name: backwards, biases: [-0.4, -0.4]}]",
+        "[{name: left, biases: [-0.3, 0.3]}]", "[{name: right, biases: [0.3, -0.3]}]"})
+    EXPECT_GT(together, mean(runs("obstacles", {{"primitives", alone}}))) << alone;
+}
+
+/// Each robot is somewhere else, or in another shape, than where it began.
+TEST(SlowSelfOrgBehaviour, EachRobotMoves) {
+  for (const std::string& name : all_names()) {
+    const RepeatSummary all = runs(name, {{"time.stop", "70 s"}}, 1);
+    ASSERT_EQ(all.runs.size(), 1u) << name;
+    EXPECT_TRUE(all.runs[0].criterion) << name;
+    EXPECT_NE(all.runs[0].criterion.value_or(0), 0) << name;
+  }
+}
+
 }  // namespace
 }  // namespace sandlot::test
