@@ -14,6 +14,7 @@ namespace {
 struct Spec {
   int members = 5;
   double size_m = 0.4, force_Nm = 2, speed_radps = 12, body_mass_kg = 1, wheel_mass_kg = 0.2;
+  WheelShape wheels = WheelShape::balls;
   Units units = Units::si;
 
   static void fields(auto& s, auto&& visit) {
@@ -23,6 +24,7 @@ struct Spec {
     visit(Field{"speed", "rad/s", "Fastest turn of a wheel.", 0, 1e3}, s.speed_radps);
     visit(Field{"body_mass", "kg", "Mass of a member's body.", 1e-4, 1e5}, s.body_mass_kg);
     visit(Field{"wheel_mass", "kg", "Mass of each wheel.", 1e-4, 1e5}, s.wheel_mass_kg);
+    visit(Field{"wheels", "", "Shape of the wheels."}, s.wheels);
     visit(units_field, s.units);
   }
 };
@@ -30,7 +32,8 @@ struct Spec {
 Result<Built> build(const Spec& s) {
   Built out;
   model::Model& m = out.model;
-  const double radius = 0.25 * s.size_m, body_radius = 0.24 * s.size_m, width = 0.12 * s.size_m;
+  const double radius = 0.25 * s.size_m, body_radius = 0.24 * s.size_m;
+  const double width = s.wheels == WheelShape::balls ? 2 * radius : 0.12 * s.size_m;
   const double pitch = 1.25 * s.size_m;
   out.X_WM.p.z = radius;
   model::Surface smooth;
@@ -57,10 +60,10 @@ Result<Built> build(const Spec& s) {
       const std::string name = numbered(side > 0 ? "left" : "right", i + 1);
       const Vec3 at{x, side * (body_radius + width / 2 + 0.02 * s.size_m), 0};
       const std::uint32_t wheel = add_link(m, name + "_wheel", {at, {}});
-      add_part(m, wheel, creature_wheel(WheelShape::discs, radius, width, s.wheel_mass_kg));
+      add_part(m, wheel, creature_wheel(s.wheels, radius, width, s.wheel_mass_kg));
       add_part(m, wheel,
                {.shape = Sphere{0.2 * radius},
-                .X_LP = {{0.6 * radius, side * width / 2, 0}, {}},
+                .X_LP = {{0.6 * radius, side * 0.4 * width, 0}, {}},
                 .color = colors::yellow,
                 .touches = false});
       add_motor(m, name,

@@ -102,6 +102,7 @@ struct Spec {
         Field{"babbling", "1",
               "Control steps at the beginning in which motors move at random and the model learns.", 0, 1e9},
         s.babbling);
+    GuidanceSpec::fields(s.guidance, visit);
     visit(Field{"log", "", "Log of the agent's values that the run writes; none: no log."}, s.log);
   }
 };
