@@ -8,7 +8,7 @@
 /// Equations  those of selforg/sox/sox.h (docs/selforg.md) in the same order of additions. Left out: forms of L^+ other than
 ///            Moore-Penrose, the root error, babbling, and guidance but for the reward.
 /// Same       in double, C, A and the motor values stay within 1e-12 of those of selforg/sox for 1000 steps of the same sensor
-///            values; in float one step from the same matrices differs by less than 1e-6 (fixed_test.cpp).
+///            values with the default parameters; in float one step from the same matrices differs by less than 1e-6 (fixed_test.cpp).
 /// Size       all memory is in the object: 736 bytes of Sox<4, 2> in float, with 6.5 KiB of code (g++ -Os, x86-64). The stack
 ///            holds less than 256 bytes in one function.
 /// Time       O(n^3) per step, two factorisations.
