@@ -269,6 +269,52 @@ TEST(SelfOrg, PublishesMatricesRowAfterRow) {
   EXPECT_EQ(C->data, (std::vector<double>{1, 0, 0, 1, 0, 0}));  // the identity of 3 x 2
 }
 
+TEST(SelfOrg, BrokenSensorsNoSensorsAndDeadMatricesGiveFiniteOrders) {
+  Node blind = Rig::config();
+  blind.set("sensors", Node::sequence());
+  for (const char* agent : {"sox", "semox", "dep", "experts"}) {
+    Rig broken, none;
+    Node node = Rig::config(), without = blind;
+    node.set("agent", Node::scalar(agent)), without.set("agent", Node::scalar(agent));
+    ASSERT_TRUE(static_cast<bool>(broken.init(node)) && static_cast<bool>(none.init(without))) << agent;
+    for (int k = 0; k < 200; ++k) {
+      broken.see(k);
+      if (k % 3 == 0)
+        broken.hinge.message.data[1] = k % 2 ? std::nan("") : std::numeric_limits<double>::infinity();
+      if (k > 100)
+        broken.hinge.message.data = {0, 0}, broken.light.message.data = 5;  // silence: singular matrices
+      broken.hinge.publish(Time::from_s(1));
+      broken.step();
+      none.step();
+      for (Rig* const rig : {&broken, &none}) {
+        const double hip = rig->order<msg::Float64>(1).data;
+        ASSERT_TRUE(hip >= 0 && hip <= 4) << agent << " " << k;
+        ASSERT_TRUE(std::abs(rig->order<msg::Twist>(0).angular.z) <= 3) << agent << " " << k;
+      }
+    }
+  }
+}
+
+TEST(SelfOrg, ParametersOutOfRangeAreRefusedWithTheirPath) {
+  const auto path_of = [](const char* parameter, const char* value) {
+    Rig rig;
+    Node node = Rig::config(), parameters = Node::map();
+    parameters.set(parameter, Node::scalar(value));
+    node.set("parameters", parameters);
+    const Status ready = rig.init(node);
+    return ready ? std::string() : ready.error().path;
+  };
+  EXPECT_EQ(path_of("epsC", "5"), "");
+  for (const char* value : {"5.1", "-0.1", "nan", "inf", "fast"})
+    EXPECT_NE(path_of("epsC", value), "") << value;
+  EXPECT_NE(path_of("s4delay", "10"), "");
+  EXPECT_NE(path_of("epsD", "1"), "");
+  Rig rig;
+  ASSERT_TRUE(static_cast<bool>(rig.init()));
+  EXPECT_FALSE(static_cast<bool>(rig.controller.set_parameter("parameters/epsC", Node::scalar("9"))));
+  EXPECT_EQ(rig.controller.value(ValuePart::parameter, *parse_value_path("parameters.epsC")).value, 0.1);
+}
+
 TEST(SelfOrg, RefusesWhatIsNotThere) {
   const auto complaint = [](auto&& change) {
     Rig rig;
