@@ -56,10 +56,10 @@ TEST(AgentCommands, RobotsAndAgentsAreListed) {
 TEST(AgentCommands, PatternsSetParametersOfAllAgents) {
   Talk talk(agents(3));
   EXPECT_EQ(talk.ok("set */controller.parameters.eps* 0.3"),
-            "rover1/controller.parameters.epsA = 0.3 with the next tick\n"
             "rover1/controller.parameters.epsC = 0.3 with the next tick\n"
-            "rover2/controller.parameters.epsA = 0.3 with the next tick\n"
-            "rover2/controller.parameters.epsC = 0.3 with the next tick");
+            "rover1/controller.parameters.epsA = 0.3 with the next tick\n"
+            "rover2/controller.parameters.epsC = 0.3 with the next tick\n"
+            "rover2/controller.parameters.epsA = 0.3 with the next tick");
   talk.ok("set */controller.wiring[0].noise.strength 0.25");
   talk.step();
   EXPECT_EQ(talk.ok("show rover2/controller.parameters.epsA"), "rover2/controller.parameters.epsA = 0.3");
