@@ -65,8 +65,8 @@ TEST(SelfOrgWatch, ALogOfAnAgentIsReadByPlotAndByTheLibrary) {
 TEST(SelfOrgWatch, AScenarioLogsTheValuesThatItNames) {
   TestFolder folder;
   const std::string log = folder.file("one.log");
-  const std::string file = scenario(folder,
-                                    "      log: {file: " + log + ", interval: 10, values: ['C[*', '-C[1*']}\n");
+  const std::string file = scenario(
+      folder, "      log: {file: " + log + ", interval: 10, values: ['C[*', '-C[1*']}\n");
   const auto summary = summary_of(file);
   ASSERT_FALSE(summary.contains("failed")) << summary.dump(2);
   auto table = selforg::read_log(log);
