@@ -195,9 +195,9 @@ Status guidance(const ReproduceContext& context, ReportPage& page) {
 Status memory(const ReproduceContext& context, ReportPage& page) {
   page.heading("Sections 6.1 and 6.2: memory, and a task");
   const Experiment barrel{"experts", {{"experts", {}}}};
-  SL_ASSIGN(std::vector<Measured> times, measure(context, barrel, "learning", "rules/learning.first"));
+  SL_ASSIGN(std::vector<Measured> times, measure(context, barrel, "learning", "learning"));
   times[0].name = "learning";
-  SL_ASSIGN(std::vector<Measured> recalled, measure(context, barrel, "recall", "recalled"));
+  SL_ASSIGN(std::vector<Measured> recalled, measure(context, barrel, "recall"));
   recalled[0].name = "recall by an expert";
   times.push_back(std::move(recalled[0]));
   const Estimate sooner = paired_difference(times[0].runs, times[1].runs,

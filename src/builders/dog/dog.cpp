@@ -34,7 +34,7 @@ struct Spec {
 Result<Built> build(const Spec& s) {
   Built out;
   model::Model& m = out.model;
-  const double size = s.size_m, half_leg = 0.3 * size, foot = 0.05 * size;
+  const double size = s.size_m, half_leg = 0.22 * size, foot = 0.06 * size;
   const auto [sine, cosine] = math::sincos(0.35);  // of the bent legs at joint angle 0
   out.X_WM.p.z = 2 * half_leg * cosine + foot;
   const std::uint32_t trunk = add_link(m, "trunk", {});
@@ -51,7 +51,7 @@ Result<Built> build(const Spec& s) {
   for (const double side : {1.0, -1.0})
     for (const double end : {1.0, -1.0}) {
       const std::string name = std::string(side > 0 ? "left_" : "right_") + (end > 0 ? "front" : "rear");
-      const Vec3 hip{end * 0.42 * size, side * 0.21 * size, 0};
+      const Vec3 hip{end * 0.42 * size, side * 0.28 * size, 0};
       const Vec3 back{-sine, 0, -cosine}, front{sine, 0, -cosine};
       const auto joint = [&](const char* what, std::uint32_t parent, std::uint32_t child, Vec3 at,
                              double limit, double power) {
