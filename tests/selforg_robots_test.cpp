@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/text.h"
 #include "command.h"
 #include "run/repeat.h"
 #include "selforg/agent.h"
@@ -55,20 +56,17 @@ TEST(SelfOrgRobots, EachScenarioLoadsWithoutAWarningAndHasACriterion) {
 struct Driven {
   const char* scenario;
   const char* robot;
-  /// Addresses of the sensors, and ranges, as the scenario has them; `#` stands for an index.
-  const char* sensors;
+  const char* sensors;  ///< addresses, `#` for x, y, z or an index
   int count;
-  double half_range;
 };
 
 class SelfOrgAgent : public testing::TestWithParam<Driven> {};
 INSTANTIATE_TEST_SUITE_P(Robots, SelfOrgAgent,
-                         testing::Values(Driven{"sphere", "ball", "ball/imu.linear_acceleration.#", 3, 9.81},
-                                         Driven{"hexapod", "hexapod", "hexapod/joints.position[#]", 12, 1},
-                                         Driven{"slider_wheelie", "wheelie", "wheelie/joints.position[#]", 8,
-                                                1},
-                                         Driven{"world_model", "nimm", "nimm/joints.velocity[#]", 2, 1},
-                                         Driven{"humanoid", "human", "human/joints.position[#]", 16, 1}),
+                         testing::Values(Driven{"sphere", "ball", "ball/imu.linear_acceleration.#", 3},
+                                         Driven{"hexapod", "hexapod", "hexapod/joints.position[#]", 12},
+                                         Driven{"slider_wheelie", "wheelie", "wheelie/joints.position[#]", 8},
+                                         Driven{"world_model", "nimm", "nimm/joints.velocity[#]", 2},
+                                         Driven{"humanoid", "human", "human/joints.position[#]", 16}),
                          [](const auto& each) { return std::string(each.param.scenario); });
 
 /// The robot of a simulation as a plain program sees it: numbers in, numbers out. Its agent begins with the seed that the run gives,
@@ -101,17 +99,28 @@ TEST_P(SelfOrgAgent, OrdersTheSameInAPlainProgram) {
   spec.name = p.robot;
   spec.noise = 0.05;
   spec.seed = Stream(simulation->setup().seed, entity_key(controller), Purpose::controller, 0).bits64();
-  if (std::string(p.scenario) == "sphere") {
-    spec.parameters = Node::map();
-    spec.parameters.set("error", Node::scalar("logarithmic"));
-  }
+  const auto instance = std::find_if(simulation->setup().instances.begin(),
+                                     simulation->setup().instances.end(),
+                                     [&](const auto& each) { return each.name == p.robot; });
+  ASSERT_NE(instance, simulation->setup().instances.end());
+  const Node& config = instance->controllers.at(0).config;
+  if (const Node* const parameters = config.find("parameters")) spec.parameters = *parameters;
+  // The largest number of a sensor's range; all of these are symmetric. One entry may stand for many sensors.
+  const auto half_range = [&](std::size_t i) {
+    const auto& entries = config.find("sensors")->items();
+    double half = 1;
+    if (const Node* const max = entries[entries.size() == 1 ? 0 : i].find("max")) {
+      EXPECT_TRUE(parse_number(max->text(), half));
+    }
+    return half;
+  };
   auto plain = selforg::WiredController::make(n, m, spec);
   ASSERT_TRUE(plain) << plain.error().text();
   std::vector<double> x(n), y(m);
   // Tick 0 is taken; control steps are every other tick. What the robot measures in a tick is what its controller sees in it.
   for (int step = 0; step < 500; ++step) {
     if (step > 0) advance(*simulation, 2);
-    for (std::size_t i = 0; i < n; ++i) x[i] = sensors[i].read().value_or(0) / p.half_range;
+    for (std::size_t i = 0; i < n; ++i) x[i] = sensors[i].read().value_or(0) / half_range(i);
     (*plain)->step(x, y);
     for (std::size_t i = 0; i < m; ++i)
       ASSERT_EQ(*motors[i].read(), y[i]) << "step " << step << ", motor " << i;
