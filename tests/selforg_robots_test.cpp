@@ -190,10 +190,11 @@ TEST(SlowSelfOrgBehaviour, ARingAndAHexapodGetAboutBetterThanByBabbling) {
   EXPECT_GT(mean(runs("hexapod")), mean(runs("hexapod", agent("babbling", "hexapod"))));
 }
 
-TEST(SlowSelfOrgBehaviour, AnExpertRollsAgainSoonerThanItWasLearned) {
-  const RepeatSummary recall = runs("experts");
-  ASSERT_TRUE(recall.all && recall.all->success);
-  EXPECT_GE(recall.all->success->successes, 2u);
+/// Recall begins from standing still, after two and a half minutes at the earliest.
+TEST(SlowSelfOrgBehaviour, AnExpertRollsAgainFromStandingStill) {
+  int within_a_minute = 0;
+  for (const RepeatedRun& run : runs("experts").runs) within_a_minute += run.criterion.value_or(1e9) < 60;
+  EXPECT_GE(within_a_minute, 2) << "of 3";
 }
 
 TEST(SlowSelfOrgBehaviour, PrimitivesTogetherAvoidObstaclesBetterThanEachAlone) {
