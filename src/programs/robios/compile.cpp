@@ -366,10 +366,10 @@ Result<ProgramLaunch> prepare(const Source& source) {
     out.command = {library.host, shown};
   } else if (file.extension() == ".py") {
     if (library.folder.empty() || library.python.empty()) return Error{missing, "install it whole"};
-    // Its threads and clocks are the library's, too.
-    out.environment.push_back("LD_PRELOAD=" + library.folder + "/librobios" + std::to_string(api) + ".so");
+    // Its threads and clocks are the library's, too; those of the sandbox are not.
+    const std::string preload = "LD_PRELOAD=" + library.folder + "/librobios" + std::to_string(api) + ".so";
     out.python_folders.push_back(library.python);
-    out.command = {"python3", "-m", "robios_main", shown};
+    out.command = {"env", preload, "python3", "-m", "robios_main", shown};
   } else if (access(file.c_str(), X_OK) == 0) {
     out.command = {shown};
   } else {
