@@ -43,13 +43,13 @@ class Exchange {
         << " ms}\nthings:\n";
     for (int i = 0; i < robots; ++i)
       out << "  - {name: hand" << i << ", model: {builder: block, size: [0.02, " << 1.8 * column_m
-          << ", 1], mass: 1}, pose: [" << hand_m + 0.01 << ", " << 10 * i << ", 0.5]}\n";
+          << ", 1], mass: 1}, pose: [" << hand_m + 0.01 << ", " << 10 * i << ", 0]}\n";
     out << "robots:\n";
     for (std::size_t i = 0; i < slots_ms.size(); ++i)
       out << "  - name: robot" << i << "\n    model: {builder: diff_robot}\n    pose: [0, " << 10 * i
           << ", 0]\n    devices:\n      radio: {kind: radio, link: base}\n      screen: {kind: screen}\n"
           << "      eye: {kind: camera, link: base, pose: [0, 0, 0.5, 0, 0, 0], width: 160, height: 4, "
-          << "horizontal_fov: 90 deg, on_request: true}\n"
+          << "horizontal_fov: 90 deg, rate: 20, on_request: true}\n"
           << "    controller: {kind: robios, program: exchange.c, slot: " << slots_ms[i]
           << " ms, flags: [-DSEED=1, -DEND_MS=" << 1000 * duration_s << ", -DSTEP_NS=" << step_ms
           << "000000LL, -DAIR_NS=" << air_ns << ", -DCODES=" << codes << ", -DLAG=1]}\n";
@@ -81,7 +81,7 @@ class Exchange {
       const double column = 80 - codes + 2 * code + 1;  // its middle, from the left edge
       for (int i = 0; i < robots; ++i)
         simulation->submit(PoseRequest{"hand" + std::to_string(i),
-                                       {{hand_m + 0.01, 10 * i + (80 - column) * column_m, 0.5}, {}}});
+                                       {{hand_m + 0.01, 10 * i + (80 - column) * column_m, 0}, {}}});
       advance(*simulation, 1);
     }
     log::set_listener({});
