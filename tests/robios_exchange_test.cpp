@@ -134,7 +134,7 @@ TEST(RobiosExchanges, MessagesTakeTheTimeOfTheRadio) {
 }
 
 TEST(SlowRobiosExchanges, NothingComesFromTheFuture) {
-  Exchange exchange(150, 0);
+  Exchange exchange(180, 0);
   const auto [hash, totals] = exchange.run(1);
   EXPECT_GE(totals.received + totals.pictures, 100'000);
   EXPECT_GE(totals.pictures, 3'000);

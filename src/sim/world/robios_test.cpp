@@ -71,7 +71,8 @@ TEST_F(RobiosWorld, SensesAndOrdersOncePerSlot) {
 TEST_F(RobiosWorld, OrdersActInTheTickInWhichTheirSlotEnds) {
   const auto live = build(with({"drive"}), {.start_programs = true});
   ASSERT_TRUE(live);
-  for (int tick = 1; tick <= 100; ++tick) {
+  advance(*live, 4);
+  for (int tick = 5; tick <= 100; ++tick) {
     advance(*live, 1);
     // The first order is of the slot up to 50 ms, which the fifth tick ends.
     EXPECT_NEAR(value(*live, "rover1/drive/ideal/command.linear.x"), 0.01 * (tick / 5), 1e-12) << tick;
