@@ -99,11 +99,10 @@ TEST_P(SelfOrgAgent, OrdersTheSameInAPlainProgram) {
   spec.name = p.robot;
   spec.noise = 0.05;
   spec.seed = Stream(simulation->setup().seed, entity_key(controller), Purpose::controller, 0).bits64();
-  const auto instance = std::find_if(simulation->setup().instances.begin(),
-                                     simulation->setup().instances.end(),
-                                     [&](const auto& each) { return each.name == p.robot; });
-  ASSERT_NE(instance, simulation->setup().instances.end());
-  const Node& config = instance->controllers.at(0).config;
+  const auto entity = std::find_if(simulation->entities().begin(), simulation->entities().end(),
+                                   [&](const auto& each) { return each->instance.name == p.robot; });
+  ASSERT_NE(entity, simulation->entities().end());
+  const Node& config = (*entity)->instance.controllers.at(0).config;
   if (const Node* const parameters = config.find("parameters")) spec.parameters = *parameters;
   // The largest number of a sensor's range; all of these are symmetric. One entry may stand for many sensors.
   const auto half_range = [&](std::size_t i) {
