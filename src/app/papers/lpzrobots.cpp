@@ -157,11 +157,7 @@ Status guidance(const ReproduceContext& context, ReportPage& page) {
             measure(context,
                     {"cross_motor",
                      {{"each teaches the other", {}},
-                      {"no teaching", {{"robots.nimm.controller.cross_motor", "[]"}}},
-                      {"babbling",
-                       {{"agent", "babbling"},
-                        {"robots.nimm.controller.parameters", "{}"},
-                        {"robots.nimm.controller.cross_motor", "[]"}}}}},
+                      {"no teaching", {{"robots.nimm.controller.cross_motor", "[]"}}}}},
                     "cross_motor"));
   page.paragraph(
       "Cross-motor teaching, 4 minutes: agreement of the two motors of a two-wheeler after the first minute, "

@@ -13,7 +13,7 @@ constexpr Paper all[] = {
     {"cooperation", "Simulator for cooperation and competition of mobile robots", 20, 19, "95 %",
      make_cooperation},
     {"eyesim", "Mobile Robot Simulation with Realistic Error Models", 20, 0, "99.9 %", make_eyesim},
-    {"lpzrobots", "Goal-oriented control of self-organizing behavior in autonomous robots", 20, 40, "95 %",
+    {"lpzrobots", "Goal-oriented control of self-organizing behavior in autonomous robots", 20, 39, "95 %",
      make_lpzrobots},
     {"msl", "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction", 0, 0, "",
      make_msl},
