@@ -342,7 +342,7 @@ for second in range(1, 3):
 
     def test_what_does_not_go_together_is_refused(self):
         _, text = self.run_scenario("examples/pipe/wander.yaml", "--watch", "--headless", code=2)
-        self.assertIn("it starts none", text)
+        self.assertIn("the run starts none", text)
         _, text = self.run_scenario(self.scenario(DRIVE, "restart: sometimes"), "--headless", code=2)
         self.assertIn("on_failure", text)
         _, text = self.run_scenario(self.scenario(DRIVE, "memory: 512 MHz"), "--headless", code=2)

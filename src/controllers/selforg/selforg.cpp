@@ -42,7 +42,7 @@ std::vector<std::string> spread(const std::string& text) {
   };
   const int first = number(open + 1, dots), last = number(dots + 2, close);
   std::vector<std::string> paths;
-  if (first < 0 || last - first > 1000) return {text};
+  if (first < 0 || last < first || last - first > 1000) return {text};
   for (int i = first; i <= last; ++i)
     paths.push_back(text.substr(0, open + 1) + std::to_string(i) + text.substr(close));
   return paths;

@@ -360,6 +360,8 @@ TEST(SelfOrg, PatternsAndSpreadsAreTheirListsWrittenOut) {
   EXPECT_EQ(all, with_lists({{"hinge", "data[0]"}, {"hinge", "data[1]"}}, {"hip_1", "hip_2"}));
   EXPECT_NE(all, with_lists({{"hinge", "data[0..1]"}}, {"hip_2", "hip_1"}));
   EXPECT_EQ(with_lists({{"hinge", "data[0]"}}, {"leg_*"}), "/motors/0/device: the robot has no 'leg_*'");
+  for (const char* wrong : {"data[1..0x]", "data[1..0]", "data[..1]"})
+    EXPECT_EQ(with_lists({{"hinge", wrong}}, {"hip_*"}).rfind("/sensors/0/value: ", 0), 0u) << wrong;
 }
 
 TEST(SelfOrg, AnInfiniteNumberIsTheEndOfTheRange) {
