@@ -208,7 +208,8 @@ TEST(SlowSelfOrgBehaviour, PrimitivesTogetherAvoidObstaclesBetterThanEachAlone) 
 /// Each robot is somewhere else, or in another shape, than where it began.
 TEST(SlowSelfOrgBehaviour, EachRobotMoves) {
   for (const std::string& name : all_names()) {
-    const RepeatSummary all = runs(name, {{"time.stop", "70 s"}}, 1);
+    const bool judged_late = name == "obstacles" || name == "world_model";  // behind the second minute
+    const RepeatSummary all = runs(name, judged_late ? Settings() : Settings{{"time.stop", "70 s"}}, 1);
     ASSERT_EQ(all.runs.size(), 1u) << name;
     EXPECT_TRUE(all.runs[0].criterion) << name;
     EXPECT_NE(all.runs[0].criterion.value_or(0), 0) << name;
