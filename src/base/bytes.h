@@ -4,6 +4,7 @@
 /// write(w, x) and read(r, x) handle numbers, enumerations, strings, vectors, optionals, plain structs
 /// without padding and structs with a field list. Reading checks every length: bytes may come from a damaged
 /// file.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/fields.h"
@@ -22,17 +24,48 @@ namespace sandlot {
 /// Appends bytes to a buffer whose capacity is reused.
 class ByteWriter {
  public:
-  void raw(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const std::byte*>(data);
-    bytes_.insert(bytes_.end(), bytes, bytes + size);
+  ByteWriter() = default;
+  ByteWriter(const ByteWriter&) = default;
+  ByteWriter(ByteWriter&& other) noexcept
+      : bytes_(std::move(other.bytes_)), free_(std::exchange(other.free_, 0)) {}
+  ByteWriter& operator=(ByteWriter other) noexcept {
+    bytes_.swap(other.bytes_);
+    std::swap(free_, other.free_);
+    return *this;
   }
-  std::span<const std::byte> bytes() const { return bytes_; }
-  std::vector<std::byte>& buffer() { return bytes_; }
-  std::size_t size() const { return bytes_.size(); }
-  void clear() { bytes_.clear(); }
+  ~ByteWriter() = default;
+
+  void raw(const void* data, std::size_t size) {
+    if (size == 0) return;
+    if (free_ < size) make_room(size);
+    std::memcpy(bytes_.data() + (bytes_.size() - free_), data, size);
+    free_ -= size;
+  }
+  std::span<const std::byte> bytes() const { return {bytes_.data(), size()}; }
+  /// To be moved from, or appended to.
+  std::vector<std::byte>& buffer() {
+    bytes_.resize(size());
+    free_ = 0;
+    return bytes_;
+  }
+  /// Writes over bytes that were written before, such as a size that is known only afterwards.
+  template <class T>
+  void patch(std::size_t at, const T& value) {
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+  }
+  std::size_t size() const { return bytes_.size() - free_; }
+  void clear() { free_ = bytes_.size(); }
 
  private:
-  std::vector<std::byte> bytes_;
+  /// In steps, so that a few bytes cost no more than their copy.
+  void make_room(std::size_t size) {
+    constexpr std::size_t least = 64, most = 65'536;
+    const std::size_t used = bytes_.size() - free_;
+    bytes_.resize(used + size + std::clamp(used, least, most));
+    free_ = bytes_.size() - used;
+  }
+  std::vector<std::byte> bytes_;  ///< what was written, then `free_` bytes that were not
+  std::size_t free_ = 0;
 };
 
 /// Reads what ByteWriter wrote. Once a read fails all later ones do, and ok() is false.

@@ -94,6 +94,41 @@ TEST(Bytes, ReadBackWhatWasWritten) {
   EXPECT_FALSE(back.none);
 }
 
+TEST(Bytes, AWriterHasWhatWasWrittenHoweverItWasUsedBefore) {
+  const auto text = [](std::span<const std::byte> bytes) {
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  ByteWriter w;
+  std::string all;
+  for (int i = 0; i < 1000; ++i) {  // past several steps of its memory
+    const std::string piece(static_cast<std::size_t>(i % 37), static_cast<char>('a' + i % 26));
+    w.raw(piece.data(), piece.size());
+    all += piece;
+    ASSERT_EQ(w.size(), all.size());
+  }
+  EXPECT_EQ(text(w.bytes()), all);
+  w.patch(1, '!');
+  all[1] = '!';
+  EXPECT_EQ(text(w.bytes()), all);
+  EXPECT_EQ(text(w.buffer()), all);
+  w.buffer().push_back(std::byte{'z'});
+  w.raw("end", 3);
+  EXPECT_EQ(text(w.bytes()), all + "zend");
+  const ByteWriter copy = w;
+  ByteWriter moved = std::move(w);
+  EXPECT_EQ(text(copy.bytes()), text(moved.bytes()));
+  w.raw("new", 3);  // NOLINT(bugprone-use-after-move): it is empty
+  EXPECT_EQ(text(w.bytes()), "new");
+  const std::vector<std::byte> taken = std::move(moved.buffer());
+  EXPECT_EQ(text(taken), all + "zend");
+  moved.raw("x", 1);
+  EXPECT_EQ(text(moved.bytes()), "x");
+  w.clear();
+  EXPECT_EQ(w.size(), 0u);
+  w.raw("again", 5);
+  EXPECT_EQ(text(w.bytes()), "again");
+}
+
 TEST(Bytes, EveryTruncationIsNoticed) {
   const auto bytes = bytes_of(All{});
   for (std::size_t n = 0; n < bytes.size(); ++n) {

@@ -61,7 +61,7 @@ void put_end(ByteWriter& w, Summary& summary, std::uint64_t offset, std::uint32_
     put(w, offsets_start);
     // The checksum covers the summary and the footer up to here, its head included.
     const std::uint64_t footer_size = 20;
-    std::memcpy(w.buffer().data() + w.size() - 24, &footer_size, 8);
+    w.patch(w.size() - 24, footer_size);
     put(w, crc32(w.bytes().subspan(summary_at)));
   });
   w.raw(magic.data(), magic.size());

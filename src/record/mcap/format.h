@@ -183,7 +183,7 @@ void put(ByteWriter& w, const T& value) {
     put(w, std::uint32_t{0});
     for (const auto& [key, second] : value) put(w, key), put(w, second);
     const auto size = static_cast<std::uint32_t>(w.size() - at - 4);
-    std::memcpy(w.buffer().data() + at, &size, 4);
+    w.patch(at, size);
   } else {
     write(w, value);  // numbers; text and bytes after their length as u32
   }
@@ -219,7 +219,7 @@ void put_record_of(ByteWriter& w, Op op, Fill&& fill) {
   put(w, std::uint64_t{0});
   fill();
   const std::uint64_t size = w.size() - at - 8;
-  std::memcpy(w.buffer().data() + at, &size, 8);
+  w.patch(at, size);
 }
 template <class T>
 void put_record(ByteWriter& w, Op op, const T& content) {

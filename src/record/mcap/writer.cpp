@@ -82,7 +82,7 @@ Status Writer::flush() {
     const std::size_t at = out_.size();
     compressed = compressor_.compress(chunk_.bytes(), out_.buffer());
     chunk_head_.stored_size = out_.size() - at;
-    std::memcpy(out_.buffer().data() + at - 8, &chunk_head_.stored_size, 8);
+    out_.patch(at - 8, chunk_head_.stored_size);
   });
   if (!compressed) return status_ = compressed;
   ChunkIndex entry{chunk_head_.start_time,

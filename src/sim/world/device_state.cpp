@@ -41,7 +41,7 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
     write(w, std::uint64_t{0});
     device.keys->save(device, w);
     const std::uint64_t size = w.size() - at - 8;
-    std::memcpy(w.buffer().data() + at, &size, 8);
+    w.patch(at, size);
   }
   pools_[device.kind].pool->save(device.index, w);
 }

@@ -24,7 +24,7 @@ void write_block(ByteWriter& w, Fill&& fill) {
   write(w, std::uint64_t{0});
   fill(w);
   const std::uint64_t size = w.size() - at - 8;
-  std::memcpy(w.buffer().data() + at, &size, 8);
+  w.patch(at, size);
 }
 
 ByteReader read_block(ByteReader& r) {
