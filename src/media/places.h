@@ -79,17 +79,18 @@ class Places {
     double squared_m2 = 0;  ///< of its distance
   };
   /// The same in the order of the cells, which the places alone decide; for those whom the order does not matter.
-  void find_within(Vec3 p_W, double distance_m, std::vector<Near>& out) const {
+  /// @param memory  of what is returned; only grows
+  std::span<const Near> find_within(Vec3 p_W, double distance_m, std::vector<Near>& memory) const {
     std::size_t count = 0;
     visit_near(p_W, distance_m, [&](std::span<const Filed> row, double squared_m2) {
-      if (out.size() < count + row.size()) out.resize(count + row.size());
+      if (memory.size() < count + row.size()) memory.resize(count + row.size());
       for (const Filed& each : row) {
         const double of_each_m2 = squared(each.p_W - p_W);
-        out[count] = {each.index, of_each_m2};
+        memory[count] = {each.index, of_each_m2};
         count += of_each_m2 <= squared_m2 ? 1 : 0;
       }
     });
-    out.resize(count);
+    return std::span(memory).first(count);
   }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 /// Port: what devices that send and receive packets have in common: names, inbox, orders.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -93,13 +94,19 @@ struct SendCounts {
   }
 };
 
+/// Names mostly are as long as those that were there.
+inline void assign(std::string_view from, std::string& to) {
+  if (to.size() == from.size()) std::copy(from.begin(), from.end(), to.begin());
+  else to = from;
+}
+
 /// Adds a packet to a message.
 inline void add_reception(msg::RadioReceptionArray& message, Refill<msg::RadioReception>& refill,
-                          const Delivery& delivery, const PacketView& packet, double rssi_dBm) {
+                          const DeliveryHead& delivery, const PacketView& packet, double rssi_dBm) {
   msg::RadioReception& to = refill.next(message.packets);
   to.stamp = delivery.at;
-  to.from = packet.from;
-  to.to = packet.to;
+  assign(packet.from, to.from);
+  assign(packet.to, to.to);
   to.channel = delivery.channel;
   to.rssi = rssi_dBm;
   to.data.assign(packet.data.begin(), packet.data.end());

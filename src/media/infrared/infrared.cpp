@@ -122,14 +122,12 @@ struct Infrared {
         continue;
       }
       ++state.delivered;
-      Delivery* const delivery = receiver.inbox->add();
-      if (!delivery) continue;
-      delivery->at = emission.at + Time::from_s(to.distances_m[i] / light_mps);
-      delivery->emitter = emission.emitter;
-      delivery->channel = emission.channel;
-      delivery->strength = to.strengths_Wpm2[i];
-      delivery->direction_W = to.directions[i] * -1.0;
-      delivery->payload.assign(first, first + bytes.size());
+      receiver.inbox->put({.at = emission.at + Time::from_s(to.distances_m[i] / light_mps),
+                           .emitter = emission.emitter,
+                           .channel = emission.channel,
+                           .strength = to.strengths_Wpm2[i],
+                           .direction_W = to.directions[i] * -1.0},
+                          {first, bytes.size()});
     }
   }
 

@@ -124,13 +124,13 @@ void look(const Spec& spec, const Start& start, const Places& places, const Medi
   const Vec3 from_W = places.point(start.sender);
   const double limit_m = reach_m(spec, start.power_dBm), least_dBm = floor_dBm(spec);
   const bool by_distance = spec.model == Model::log_distance;
-  places.find_within(from_W, limit_m, to.near);
-  to.receivers.resize(to.near.size());
-  to.distances_m.resize(to.near.size());
-  to.powers_dBm.resize(to.near.size());
+  const std::span<const Places::Near> near = places.find_within(from_W, limit_m, to.near);
+  to.receivers.resize(near.size());
+  to.distances_m.resize(near.size());
+  to.powers_dBm.resize(near.size());
   double farthest_m = 0;
   std::size_t count = 0;
-  for (const auto& [index, squared_m2] : to.near) {
+  for (const auto& [index, squared_m2] : near) {
     if (index == start.sender || !places.hears(index, start.channel)) continue;
     const double distance_m = std::sqrt(squared_m2);
     if (!(distance_m <= limit_m)) continue;

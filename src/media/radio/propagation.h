@@ -24,7 +24,7 @@ namespace sandlot::media::radio {
 
 /// Whom a transmission reaches. Kept for its memory.
 struct Reached {
-  std::vector<Places::Near> near;
+  std::vector<Places::Near> near;        ///< memory of find_within()
   std::vector<std::uint32_t> receivers;  ///< indices, in any order
   std::vector<double> distances_m;
   std::vector<double> powers_dBm;  ///< as received

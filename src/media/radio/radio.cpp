@@ -28,6 +28,7 @@
 #include <optional>
 
 #include "base/math.h"
+#include "base/prefetch.h"
 #include "base/random.h"
 #include "media/medium.h"
 #include "media/packet.h"
@@ -62,8 +63,9 @@ struct Radio {
   std::vector<std::uint32_t> touched;         ///< receivers at which something arrives or that send
   std::vector<Start> starts;
   std::vector<Reached> reached;
-  std::size_t on_the_way = 0;                    ///< signals in `arrivals`
-  std::vector<std::vector<std::uint8_t>> spare;  ///< packets that are over, for their memory
+  std::size_t on_the_way = 0;  ///< signals in `arrivals`
+  /// Packets that are over, for their memory. Inboxes may hold what was lent of them until the next deliver().
+  std::vector<std::vector<std::uint8_t>> spare;
 
   Status init(const ElementBuild& build) {
     if (spec.csma.max_exponent < spec.csma.min_exponent)
@@ -103,6 +105,7 @@ struct Radio {
 
   void deliver(const MediumContext& context) {
     if (context.emissions.empty() && state.senders.empty() && state.signals.empty()) return;
+    for (const Receiver& each : context.receivers) each.inbox->keep();
     unpack(context);
     take(context);
     places.update(context);
@@ -390,6 +393,7 @@ struct Radio {
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const Start& start = starts[i];
       const std::uint64_t number = next - starts.size() + i;
+      if (i + 2 < starts.size()) expect_at_ends(reached[i + 2].receivers);
       const Time air = air_time(state.transmissions[number - state.first].packet);
       Signal signal{.transmission = number, .channel = start.channel};
       if (spec.half_duplex) {
@@ -413,6 +417,11 @@ struct Radio {
     starts.clear();
   }
 
+  /// Asks for the memory in which the next signals of some radios will lie.
+  void expect_at_ends(std::span<const std::uint32_t> receivers) const {
+    for (const std::uint32_t each : receivers) prefetch(arrivals[each].data() + arrivals[each].size(), 1);
+  }
+
   // ------------------------------------------------------------------------------------------------------ judging
 
   void judge(const MediumContext& context) {
@@ -420,7 +429,11 @@ struct Radio {
     std::array<std::atomic<std::uint64_t>, counts> sums{};
     parallel_for(touched.size(), 16, [&](std::size_t first, std::size_t last) {
       std::array<std::uint64_t, counts> own{};
-      for (std::size_t i = first; i < last; ++i) judge_at(touched[i], context, own);
+      for (std::size_t i = first; i < last; ++i) {
+        if (i + 2 < last) prefetch(context.receivers[touched[i + 2]].inbox, 1);
+        if (i + 1 < last) expect(touched[i + 1], context);
+        judge_at(touched[i], context, own);
+      }
       for (std::size_t k = 0; k < counts; ++k) sums[k] += own[k];
     });
     state.delivered += sums[Count::delivered];
@@ -431,6 +444,12 @@ struct Radio {
     state.bits += sums[Count::bits];
     state.wrong_bits += sums[Count::wrong_bits];
     state.damaged += sums[Count::damaged];
+  }
+
+  /// Asks for the memory of a radio that is judged next.
+  void expect(std::uint32_t index, const MediumContext& context) const {
+    prefetch(arrivals[index].data(), arrivals[index].size());
+    context.receivers[index].inbox->expect(arrivals[index].size());
   }
 
   /// A function with its latest value: powers at a receiver are often the same.
@@ -527,26 +546,23 @@ struct Radio {
     }
     ++sums[Count::delivered];
     sums[Count::bits] += 8 * data;
-    // A full inbox loses the packet, but not its part in the statistics of the air.
-    Delivery* const room = inbox.add();
-    Delivery lost;
-    Delivery& delivery = room ? *room : lost;
-    delivery.at = signal.end + Time::from_s(spec.delay_s);
-    delivery.emitter = sent.emitter;
-    delivery.channel = signal.channel;
-    delivery.strength = signal.power_dBm;
-    delivery.payload.assign(sent.packet.begin(), sent.packet.end());
-    if (random) {
-      PacketHead head = packet.head();
-      const std::span<std::uint8_t> payload(delivery.payload);
-      head.wrong_bits = flip_bits(payload.last(data), p, *random);
-      if (head.wrong_bits > 0) write_head(head, payload);
-      sums[Count::wrong_bits] += head.wrong_bits;
-      sums[Count::damaged] += head.wrong_bits > 0;
-    }
     const Vec3 way_W = packet.point() - places.point(index);
     const double distance_m = norm(way_W);
-    delivery.direction_W = distance_m > 0 ? way_W * (1 / distance_m) : Vec3{};
+    const DeliveryHead delivery{.at = signal.end + Time::from_s(spec.delay_s),
+                                .emitter = sent.emitter,
+                                .channel = signal.channel,
+                                .strength = signal.power_dBm,
+                                .direction_W = distance_m > 0 ? way_W * (1 / distance_m) : Vec3{}};
+    if (!random) return inbox.lend(delivery, sent.packet);
+    // A full inbox loses the packet, but not its part in the statistics of the air.
+    std::vector<std::uint8_t> lost;
+    std::span<std::uint8_t> payload = inbox.put(delivery, sent.packet);
+    if (payload.empty()) payload = lost = sent.packet;
+    PacketHead head = packet.head();
+    head.wrong_bits = flip_bits(payload.last(data), p, *random);
+    if (head.wrong_bits > 0) write_head(head, payload);
+    sums[Count::wrong_bits] += head.wrong_bits;
+    sums[Count::damaged] += head.wrong_bits > 0;
   }
 };
 

@@ -137,12 +137,12 @@ struct Shout {
       const std::span<const std::byte> bytes = context.buffer.bytes(word);
       const auto* const first = reinterpret_cast<const std::uint8_t*>(bytes.data());
       state.under_way.push_back({receiver.key,
-                                 {.at = word.at + Time::from_s(delay_s),
-                                  .emitter = word.emitter,
-                                  .channel = word.channel,
-                                  .strength = level,
-                                  .direction_W = to.directions[i] * -1.0,
-                                  .payload = {first, first + bytes.size()}}});
+                                 {{.at = word.at + Time::from_s(delay_s),
+                                   .emitter = word.emitter,
+                                   .channel = word.channel,
+                                   .strength = level,
+                                   .direction_W = to.directions[i] * -1.0},
+                                  {first, first + bytes.size()}}});
     }
   }
 
@@ -172,7 +172,7 @@ struct Shout {
     for (auto each = state.under_way.begin(); each != arrived; ++each) {
       const Receiver* const receiver = context.find_receiver(each->receiver);
       if (!receiver) continue;
-      receiver->inbox->put(std::move(each->delivery));
+      receiver->inbox->put(each->delivery);
       ++state.heard;
     }
     state.under_way.erase(state.under_way.begin(), arrived);

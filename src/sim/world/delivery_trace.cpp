@@ -18,10 +18,11 @@ void DeliveryTrace::end(std::uint32_t medium, std::span<const Receiver> receiver
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     const std::size_t at = (i + simulation.tick_index()) % receivers.size();
     const Receiver& receiver = receivers[at];
-    const std::span<const Delivery> items = receiver.inbox->items();
+    const std::span<const Received> items = receiver.inbox->items();
     if (items.size() <= sizes_[at]) continue;
     const auto to = serial_of(receiver.key);
-    for (const Delivery& delivery : items.subspan(sizes_[at])) {
+    for (const Received& received : items.subspan(sizes_[at])) {
+      const DeliveryHead& delivery = received.head;
       if (deliveries_.size() >= most_per_tick) return;
       const auto from = serial_of(delivery.emitter);
       if (from && to) deliveries_.push_back({medium, *from, *to, delivery.channel, delivery.strength});

@@ -118,14 +118,15 @@ struct Infrared {
 
   void sample(const Context& context) {
     const Vec3 axis_W = rotate(port.pose(context.engine).q, {1, 0, 0});
-    for (const Delivery& delivery : port.inbox->items()) {
+    for (const Received& received : port.inbox->items()) {
+      const DeliveryHead& delivery = received.head;
       const double cosine = dot(axis_W, delivery.direction_W);
       if (least_cos >= 0 && !(cosine > 0 && cosine >= least_cos)) continue;
       const double power_W = delivery.strength * area_of(cosine);
       if (!(power_W > 0)) continue;
       const double power_dBm = 10 / std::numbers::ln10 * math::log(1000 * power_W);
       if (power_dBm < spec.sensitivity_dBm) continue;
-      const auto packet = read_packet(delivery.payload);
+      const auto packet = read_packet(received.payload());
       if (!packet || !(spec.promiscuous || port.is_for_us(packet->to))) continue;
       ++state.received;
       add_reception(topic->message, refill, delivery, *packet, power_dBm);

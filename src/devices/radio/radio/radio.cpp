@@ -10,6 +10,7 @@
 /// For whom a receiver publishes what is for its robot, its team, its own `address` or all; promiscuous: everything on its channel.
 /// Limits   the header is never damaged; up to 1000 packets wait for the next sample; one antenna, the same all round.
 /// Cost     one copy of the data per packet and active level.
+#include "base/prefetch.h"
 #include "devices/kind.h"
 #include "devices/radio/port.h"
 #include "messages/messages.h"
@@ -93,17 +94,41 @@ struct Radio {
   }
 
   static void sense(PoolView<Radio> pool, const Context& context) {
-    for (const std::uint32_t index : pool.due) {
+    for (std::size_t i = 0; i < pool.due.size(); ++i) {
+      expect(pool, i);
+      const std::uint32_t index = pool.due[i];
       Radio& r = pool.all[index];
       if (r.spec.rate_hz == 0 && r.port.inbox->items().empty()) continue;
       r.sample(pool.levels[index], context);
     }
   }
 
+  /// Asks for the memory of the radios that sense after number i: first their own, then what that points to.
+  static void expect(PoolView<Radio> pool, std::size_t i) {
+    const auto ahead = [&](std::size_t by) {
+      return i + by < pool.due.size() ? &pool.all[pool.due[i + by]] : nullptr;
+    };
+    if (const Radio* const fourth = ahead(4)) prefetch(fourth, 1);
+    if (const Radio* const third = ahead(3)) {
+      prefetch(third->port.inbox, 1);
+      for (const auto* const topic : third->topics) prefetch(topic, 1);
+    }
+    if (const Radio* const second = ahead(2)) {
+      const std::size_t count = second->port.inbox->items().size();
+      second->port.inbox->expect(count);
+      for (const auto* const topic : second->topics)
+        prefetch(topic->message.packets.data(), std::min(count, topic->message.packets.size()));
+    }
+    if (const Radio* const next = ahead(1))
+      for (const auto* const topic : next->topics)
+        for (const msg::RadioReception& each : topic->message.packets) prefetch(each.data.data(), 1);
+  }
+
   void sample(std::uint32_t levels, const Context& context) {
     std::size_t came = 0;
-    for (const Delivery& delivery : port.inbox->items()) {
-      const auto packet = read_packet(delivery.payload);
+    for (const Received& received : port.inbox->items()) {
+      const DeliveryHead& delivery = received.head;
+      const auto packet = read_packet(received.payload());
       if (!packet || !(spec.promiscuous || port.is_for_us(packet->to))) continue;
       const bool damaged = packet->wrong_bits() > 0;
       ++state.received;

@@ -160,8 +160,9 @@ struct RangeBearing {
   void sample(const Context& context) {
     const Pose X_SW = inverse(port.pose(context.engine));
     std::vector<msg::RangeBearing>& neighbours = topic->message.neighbours;
-    for (const Delivery& delivery : port.inbox->items()) {
-      const auto packet = read_packet(delivery.payload);
+    for (const Received& received : port.inbox->items()) {
+      const DeliveryHead& delivery = received.head;
+      const auto packet = read_packet(received.payload());
       if (!packet || packet->wrong_bits() > 0 || !port.is_for_us(packet->to)) continue;
       msg::RangeBearing& to = refill.next(neighbours);
       to.stamp = delivery.at;

@@ -49,11 +49,13 @@ struct Ear {
       const Quat q_SW = conjugate(context.engine.states()[e.body.index].X_WB.q * e.q_LS);
       std::vector<msg::Heard>& words = e.heard->message.words;
       std::size_t used = 0;
-      for (const Delivery& delivery : e.inbox->items()) {
+      for (const Received& received : e.inbox->items()) {
+        const DeliveryHead& delivery = received.head;
+        const std::span<const std::uint8_t> payload = received.payload();
         if (delivery.strength < e.spec.threshold_dB) continue;
         if (used == words.size()) words.emplace_back();
         msg::Heard& word = words[used++];
-        word.text.assign(delivery.payload.begin(), delivery.payload.end());
+        word.text.assign(payload.begin(), payload.end());
         word.stamp = delivery.at;
         word.level = delivery.strength;
         word.direction = rotate(q_SW, delivery.direction_W);
