@@ -1,6 +1,7 @@
 #include "devices/energy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "physics/parallel.h"
@@ -20,15 +21,6 @@ double inertia_about_z(const model::Inertial& inertial, const Pose& X_BL) {
 
 /// Accounts that a thread serves at a time.
 constexpr std::size_t accounts_at_a_time = 256;
-
-struct PlanarVelocity {
-  double x = 0, y = 0, turn = 0;
-};
-/// Of a base, in its own frame.
-PlanarVelocity in_plane(const BodyState& state) {
-  const Vec3 v = rotate_inverse(state.X_WB.q, state.V_WB.linear);
-  return {v.x, v.y, rotate_inverse(state.X_WB.q, state.V_WB.angular).z};
-}
 
 }  // namespace
 
@@ -81,9 +73,26 @@ void EnergyLedger::remove(const EnergyMeter& meter) {
 void EnergyLedger::begin_tick(double tick_s) {
   for (EnergyMeter* const meter : movers_) meter->rails_.active = meter->turning_ = false;
   parallel_for(accounts_.size(), accounts_at_a_time, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t by = 1; by <= 3 && i + by < end; ++by) accounts_[i + by]->expect(by);
       for (EnergyMeter* const meter : accounts_[i]->meters) meter->draw(meter->drain_W_ * tick_s);
+    }
   });
+}
+
+template <class Take>
+void EnergyLedger::visit_velocities(const Engine& engine, std::size_t begin, std::size_t end,
+                                    Take&& take) const {
+  std::array<BodyState, 16> states;  // few at a time: they stay near the processor
+  for (std::size_t first = begin; first < end; first += states.size()) {
+    const std::size_t count = std::min(states.size(), end - first);
+    engine.states_of(std::span(bodies_).subspan(first, count), std::span(states).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Quat& q_WB = states[i].X_WB.q;
+      const Vec3 v_B = rotate_inverse(q_WB, states[i].V_WB.linear);
+      take(first + i, PlanarVelocity{v_B.x, v_B.y, rotate_inverse(q_WB, states[i].V_WB.angular).z});
+    }
+  }
 }
 
 void EnergyLedger::begin_physics(const Engine& engine) {
@@ -97,7 +106,9 @@ void EnergyLedger::begin_physics(const Engine& engine) {
     bodies_.push_back(meter->account_->base.index);
   }
   before_.resize(bodies_.size());
-  if (!bodies_.empty()) engine.states_of(bodies_, before_);
+  parallel_for(bodies_.size(), accounts_at_a_time, [&](std::size_t begin, std::size_t end) {
+    visit_velocities(engine, begin, end, [&](std::size_t i, PlanarVelocity v_B) { before_[i] = v_B; });
+  });
 }
 
 void EnergyLedger::after_substep(const Engine& engine, double h_s) {
@@ -115,28 +126,28 @@ void EnergyLedger::after_substep(const Engine& engine, double h_s) {
 
 void EnergyLedger::after_physics(const Engine& engine, double tick_s, double gravity_mps2) {
   if (riders_.empty()) return;
-  after_.resize(bodies_.size());
-  engine.states_of(bodies_, after_);
-  const auto draw_work = [&](std::size_t i) {
+  constexpr std::size_t ahead = 4;
+  const auto draw_work = [&](std::size_t i, PlanarVelocity b) {
+    if (i + ahead < riders_.size()) prefetch(riders_[i + ahead], 1);
     EnergyMeter& meter = *riders_[i];
     const EnergyAccount& account = *meter.account_;
     const DriveTarget& to = meter.rails_;
-    const PlanarVelocity a = in_plane(before_[i]), b = in_plane(after_[i]);
-    const PlanarVelocity mean{0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.turn + b.turn)};
-    const double dx = to.vx_mps - a.x, dy = to.vy_mps - a.y, change = std::sqrt(dx * dx + dy * dy);
+    const PlanarVelocity a = before_[i];
+    const PlanarVelocity mean{0.5 * (a.x_mps + b.x_mps), 0.5 * (a.y_mps + b.y_mps),
+                              0.5 * (a.turn_radps + b.turn_radps)};
+    const double dx = to.vx_mps - a.x_mps, dy = to.vy_mps - a.y_mps, change = std::sqrt(dx * dx + dy * dy);
     const double most = to.max_accel_mps2 * tick_s;
     const double push = account.mass_kg / tick_s * (change > most ? most / change : 1);  // [N] per m/s
     const double most_turn = to.max_angular_accel_radps2 * tick_s;
     const double twist = account.inertia_kgm2 / tick_s *
-                         std::clamp(to.wz_radps - a.turn, -most_turn, most_turn);
-    const double speed = std::sqrt(mean.x * mean.x + mean.y * mean.y);
-    const double power_W = push * (dx * mean.x + dy * mean.y) + twist * mean.turn +
-                           meter.rates_.rolling_resistance * account.mass_kg * gravity_mps2 * speed;
+                         std::clamp(to.wz_radps - a.turn_radps, -most_turn, most_turn);
+    const double speed = std::sqrt(mean.x_mps * mean.x_mps + mean.y_mps * mean.y_mps);
+    const double power_W = push * (dx * mean.x_mps + dy * mean.y_mps) + twist * mean.turn_radps +
+                           meter.rolling_resistance_ * account.mass_kg * gravity_mps2 * speed;
     meter.draw_work(power_W * tick_s);
   };
-  parallel_for(riders_.size(), accounts_at_a_time, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) draw_work(i);
-  });
+  parallel_for(riders_.size(), accounts_at_a_time,
+               [&](std::size_t begin, std::size_t end) { visit_velocities(engine, begin, end, draw_work); });
   riders_.clear();
 }
 

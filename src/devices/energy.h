@@ -29,6 +29,7 @@
 
 #include "base/bytes.h"
 #include "base/fields.h"
+#include "base/prefetch.h"
 #include "geometry/pose.h"
 #include "model/model.h"
 #include "physics/engine.h"
@@ -37,7 +38,8 @@ namespace sandlot {
 
 struct EnergyAccount;
 
-/// What a device has drawn from the battery of its robot. What every tick reads lies on its first cache line.
+/// What a device has drawn from the battery of its robot. What every tick reads lies on its first cache line, what rails need on
+/// its second.
 class alignas(64) EnergyMeter {
  public:
   struct State {
@@ -81,7 +83,7 @@ class alignas(64) EnergyMeter {
 
   /// Draws energy [J]; below 0: gives back.
   void draw(double energy_J) { state.pending_J += energy_J; }
-  void draw_for_use() { draw(rates_.per_use_J); }
+  void draw_for_use() { draw(per_use_J_); }
   /// In actuate: the device moves its robot on rails in this tick.
   void ride(const DriveTarget& target) { rails_ = target; }
   /// In actuate: the motors of its joints work in this tick, as the engine computes it.
@@ -98,6 +100,9 @@ class alignas(64) EnergyMeter {
   const Rates& rates() const { return rates_; }
   void set_rates(const Rates& rates) {
     rates_ = rates;
+    per_use_J_ = rates.per_use_J;
+    efficiency_ = rates.efficiency;
+    rolling_resistance_ = rates.rolling_resistance;
     set_dead(false);
   }
   /// A dead device drains nothing. Said again in each tick of those that may fail.
@@ -108,33 +113,34 @@ class alignas(64) EnergyMeter {
  private:
   friend class EnergyLedger;
   void draw_work(double work_J) {
-    if (work_J > 0) draw(work_J / rates_.efficiency);
+    if (work_J > 0) draw(work_J / efficiency_);
   }
 
-  double drain_W_ = 0;
+  double drain_W_ = 0, per_use_J_ = 0;
   EnergyAccount* account_;
   Use use_;
   bool rides_ = false, turning_ = false;
-  Rates rates_;
   DriveTarget rails_{.active = false};
+  double efficiency_ = 1, rolling_resistance_ = 0;
+  Rates rates_;
   std::vector<JointId> joints_;  ///< whose motors it has
 };
 
 /// Account of a robot with a battery.
-struct EnergyAccount {
+struct alignas(64) EnergyAccount {
   std::vector<EnergyMeter*> meters;  ///< in the order of the robot's devices
-  BodyId base;
-  double mass_kg = 0, inertia_kgm2 = 0;  ///< of the whole robot; about the vertical through the base's origin
-
+  /// From chargers, in this tick. @pre within room()
+  double offered_J = 0;
   // Shown by the battery, after each tick:
-  BodyId body;
-  Vec3 p_LS;  ///< its place on its link
   double energy_J = 0, fraction = 0;
   double room_J = 0, max_charge_W = 0;  ///< what it can take
   bool empty = false;
+  BodyId body;
+  Vec3 p_LS;  ///< place of the battery on its link
 
-  /// From chargers, in this tick. @pre within room()
-  double offered_J = 0;
+  BodyId base;
+  double mass_kg = 0, inertia_kgm2 = 0;  ///< of the whole robot; about the vertical through the base's origin
+
   double room(double dt_s) const {
     const double most = std::min(room_J, max_charge_W * dt_s) - offered_J;
     return most > 0 ? most : 0;
@@ -147,6 +153,13 @@ struct EnergyAccount {
   Bill bill() const;
   /// Pays the bill: these shares of it.
   void settle(double drawn_share, double given_share);
+  /// Asks for the memory of the account that is served `by` accounts later: the nearer, the farther along the pointers.
+  void expect(std::size_t by) const {
+    if (by == 1)
+      for (const EnergyMeter* const meter : meters) prefetch(&meter->state, 1);
+    else if (by == 2) prefetch(meters.data(), meters.size());
+    else prefetch(this, 1);
+  }
 };
 
 /// The accounts of a world, and the mechanical work of drives and joint motors.
@@ -169,11 +182,19 @@ class EnergyLedger {
   void after_physics(const Engine& engine, double tick_s, double gravity_mps2);  ///< work of rails
 
  private:
+  /// Of a base, in its own frame.
+  struct PlanarVelocity {
+    double x_mps = 0, y_mps = 0, turn_radps = 0;
+  };
+  /// Calls take(i, velocity of the i-th rider's base).
+  template <class Take>
+  void visit_velocities(const Engine& engine, std::size_t begin, std::size_t end, Take&& take) const;
+
   std::vector<EnergyAccount*> accounts_;
   std::vector<EnergyMeter*> movers_;            ///< of devices that do mechanical work
   std::vector<EnergyMeter*> riders_, turners_;  ///< those that do in this tick
   std::vector<std::uint32_t> bodies_;           ///< bases of the riders
-  std::vector<BodyState> before_, after_;
+  std::vector<PlanarVelocity> before_;
 };
 
 }  // namespace sandlot

@@ -78,10 +78,11 @@ Status DevicePools::deliver(Device& device, Slot& slot, std::span<const std::byt
     return {};
   };
   if (!device.keys) return take();
-  const auto index = static_cast<std::size_t>(&slot - device.commands.data());
-  Status taken = device.keys_act
-                     ? device.keys->take_command(device, index, bytes, now, all_errors(device, now), explain)
-                     : take();
+  const auto take_late = [&] {
+    const auto index = static_cast<std::size_t>(&slot - device.commands.data());
+    return device.keys->take_command(device, index, bytes, now, all_errors(device, now), explain);
+  };
+  Status taken = device.keys_act ? take_late() : take();
   if (!taken) {
     device.keys->count_refused();
     return taken;

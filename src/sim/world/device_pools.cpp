@@ -40,6 +40,23 @@ struct SlotMaker final : TopicMaker {
   }
 };
 
+bool same(const Place& a, const Place& b) {
+  return a.file == b.file && a.line == b.line && a.column == b.column;
+}
+
+/// Whether two configurations hold the same, written at the same places.
+bool same(const Node& a, const Node& b) {
+  if (a.type() != b.type() || !same(a.place(), b.place()) || a.text() != b.text()) return false;
+  if (!std::equal(a.items().begin(), a.items().end(), b.items().begin(), b.items().end(),
+                  [](const Node& x, const Node& y) { return same(x, y); }))
+    return false;
+  const auto same_entry = [](const Node::Entry& x, const Node::Entry& y) {
+    return x.key == y.key && same(x.key_place, y.key_place) && same(x.value, y.value);
+  };
+  return &a.entries() == &b.entries() || std::equal(a.entries().begin(), a.entries().end(),
+                                                    b.entries().begin(), b.entries().end(), same_entry);
+}
+
 /// The error for a key that a device of the kind does not have. The kind's reader knows its own keys alone; this one also
 /// those of every device.
 std::optional<Error> unknown_key(const Node& config, const Kind& kind) {
@@ -140,6 +157,11 @@ Status DevicePools::add(Entity& entity, const model::DeviceDecl& declared, const
   SL_ASSIGN(std::shared_ptr<DeviceKeys> keys, take_device_keys(decl.config, kind_has_errors));
   const bool has_errors = kind_has_errors || (keys && keys->spec.command_errors);
   SL_ASSIGN(std::shared_ptr<Faults> faults, take_faults(decl.config, has_errors, kind->name));
+
+  // Where keys were taken out, each of many devices that are declared alike is left with a map of its own: one serves all.
+  if (!pool->devices.empty())
+    if (const Node& other = std::as_const(*pool->devices.back()).decl.config; same(other, decl.config))
+      decl.config = other;
 
   Owned<EnergyMeter> meter;
   if (entity.energy) meter = meter_of(entity, *kind);

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <map>
 
+#include "base/prefetch.h"
 #include "base/text.h"
 #include "physics/parallel.h"
 #include "sim/world/beings.h"
+#include "sim/world/device_keys.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -209,6 +211,9 @@ void Programs::prefetch_orders(std::size_t i) const {
           first.routes[order.slot].slot->topic.get());
       __builtin_prefetch(topic, 1);
       __builtin_prefetch(topic + cache_line, 1);
+      const SimulationParts::Device& device = *first.routes[order.slot].device;
+      if (device.keys) prefetch(&device.keys->state, 1);
+      if (device.energy) prefetch(device.energy.get(), 1);
     }
 }
 

@@ -85,7 +85,11 @@ void Battery::show() const {
 void Battery::settle(PoolView<Battery> pool, const Context& context) {
   constexpr std::size_t at_a_time = 256;
   parallel_for(pool.due.size(), at_a_time, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) pool.all[pool.due[i]].pay(context.tick.s());
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t by = 1; by <= 3 && i + by < end; ++by) pool.all[pool.due[i + by]].account->expect(by);
+      if (i + 2 < end) pool.all[pool.due[i + 2]].open_circuit.expect();
+      pool.all[pool.due[i]].pay(context.tick.s());
+    }
   });
 }
 

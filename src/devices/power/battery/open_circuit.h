@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/fields.h"
+#include "base/prefetch.h"
 
 namespace sandlot::battery {
 
@@ -55,7 +56,10 @@ class OpenCircuit {
                                         [](double e, const Knot& knot) { return e < knot.energy; });
     const Knot& k = *(above - 1);
     const double more = energy - k.energy;
-    const double voltage = std::sqrt(std::max(0.0, k.voltage_V * k.voltage_V + 2 * k.slope * more));
+    // Where the voltage does not fall, the root of its square is itself, to the last bit.
+    const double voltage = k.slope == 0
+                               ? k.voltage_V
+                               : std::sqrt(std::max(0.0, k.voltage_V * k.voltage_V + 2 * k.slope * more));
     return {voltage, std::clamp(k.charge + 2 * more / (k.voltage_V + voltage), 0.0, 1.0)};
   }
   /// Energy left at a charge, per charge of a full battery [J/C].
@@ -66,6 +70,9 @@ class OpenCircuit {
     const double more = charge - k.charge;
     return k.energy + more * (k.voltage_V + 0.5 * k.slope * more);
   }
+
+  /// Asks for its memory.
+  void expect() const { prefetch(knots_.data(), knots_.size()); }
 
  private:
   struct Knot {
