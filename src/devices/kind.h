@@ -6,7 +6,7 @@
 ///     using Spec = ...;                   // named fields with a field list; constant but for tunable fields
 ///     using State = ...;                  // plain data with a field list: all that changes
 ///     Spec spec; State state;
-///     std::optional<Late> late;  // only where some devices come to have more State: no bytes while it is empty
+///     Boxed<Late> late;          // only where some devices come to have more State: no bytes while it is empty
 ///     ...                                 // what create() resolved: handles, topics
 ///     static Result<Device> create(const DeviceBuild&, Spec);
 ///     static void sense(PoolView<Device>, const Context&);    // and/or actuate, pre_substep, post_substep, switch_level

@@ -128,7 +128,7 @@ Topics make_topics(const DeviceBuild& build, std::optional<double> max_curvature
   return made;
 }
 
-void begin(std::optional<Late>& late, const Slot& slot, const Limits& limits, const PlanarPose& now,
+void begin(Boxed<Late>& late, const Slot& slot, const Limits& limits, const PlanarPose& now,
            const PlanarMotion& moving, std::size_t motors) {
   if (!late) late.emplace().maneuver.standing_s.resize(motors);
   State& state = late->maneuver;
@@ -191,7 +191,7 @@ void begin(State& state, const DriveManeuver& command, const Limits& limits, con
   state.remaining_rad = state.angle_rad;
 }
 
-void end(std::optional<Late>& late) {
+void end(Boxed<Late>& late) {
   if (!in_force(late)) return;
   State& state = late->maneuver;
   state.in_force = 0;
@@ -297,7 +297,7 @@ void watch_motor(State& state, std::size_t motor, double wanted_mps, double turn
   since = stands ? std::min(since + tick_s, 1.0) : 0;
 }
 
-bool ride(std::optional<Late>& late, const Topics& topics, const Limits& limits, const BodyState& base,
+bool ride(Boxed<Late>& late, const Topics& topics, const Limits& limits, const BodyState& base,
           const Context& context) {
   const bool fresh = is_new(late, *topics.command);
   if (!late && !fresh) return false;
@@ -328,7 +328,7 @@ void publish(Topic<msg::DriveProgress>& topic, const State& state, Time now) {
   topic.publish(now);
 }
 
-bool fits(const std::optional<Late>& late, std::size_t motors) {
+bool fits(const Boxed<Late>& late, std::size_t motors) {
   if (!late) return true;
   const State& s = late->maneuver;
   bool sound = s.kind <= DriveManeuver::stop && s.standing_s.size() == motors;

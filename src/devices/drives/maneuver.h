@@ -33,6 +33,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/boxed.h"
 #include "devices/kind.h"
 #include "kinematics/wheels.h"
 #include "messages/messages.h"
@@ -135,28 +136,28 @@ struct Topics {
 Topics make_topics(const DeviceBuild& build, std::optional<double> max_curvature_pm = std::nullopt);
 
 /// A command that the drive has not seen yet.
-inline bool is_new(const std::optional<Late>& late, const Slot& slot) {
+inline bool is_new(const Boxed<Late>& late, const Slot& slot) {
   return slot.count != (late ? late->maneuver.taken : 0);
 }
-inline bool in_force(const std::optional<Late>& late) { return late && late->maneuver.in_force; }
+inline bool in_force(const Boxed<Late>& late) { return late && late->maneuver.in_force; }
 
 /// Begins the slot's maneuver. @param moving  velocity of D now  @param motors  number of the drive's motors
-void begin(std::optional<Late>& late, const Slot& slot, const Limits& limits, const PlanarPose& now,
+void begin(Boxed<Late>& late, const Slot& slot, const Limits& limits, const PlanarPose& now,
            const PlanarMotion& moving, std::size_t motors);
 void begin(State& state, const msg::DriveManeuver& command, const Limits& limits, const PlanarPose& now,
            const PlanarMotion& moving);
 /// Another command came.
-void end(std::optional<Late>& late);
+void end(Boxed<Late>& late);
 /// Takes the odometry of this tick; `setpoint` is the velocity for the tick that begins. @pre it is in force
 void step(State& state, const Limits& limits, const PlanarPose& now, double tick_s);
 /// Speeds of the rim of a motor's wheel, once per tick. @param motor  from 0
 void watch_motor(State& state, std::size_t motor, double wanted_mps, double turning_mps, double tick_s);
 /// All of it in a tick of a drive without wheels: it counts its true motion.
 /// @return whether a maneuver is in force
-bool ride(std::optional<Late>& late, const Topics& topics, const Limits& limits, const BodyState& base,
+bool ride(Boxed<Late>& late, const Topics& topics, const Limits& limits, const BodyState& base,
           const Context& context);
 void publish(Topic<msg::DriveProgress>& topic, const State& state, Time now);
 /// Whether a snapshot's State fits a drive with so many motors.
-bool fits(const std::optional<Late>& late, std::size_t motors);
+bool fits(const Boxed<Late>& late, std::size_t motors);
 
 }  // namespace sandlot::maneuver

@@ -160,7 +160,7 @@ TEST(Maneuver, ACarGoesBackToAPointBehind) {
 }
 
 TEST(Maneuver, AMotorThatIsDrivenAndStandsIsNamed) {
-  std::optional<Late> late;
+  Boxed<Late> late;
   Slot slot("/r/d/maneuver/command", std::nullopt);
   slot.count = 1;
   begin(late, slot, {}, {}, {}, 2);

@@ -279,7 +279,7 @@ inline Level active(std::uint32_t levels) { return static_cast<Level>(std::count
 struct Drive {
   const Common& spec;
   State& state;
-  std::optional<maneuver::Late>& late;
+  Boxed<maneuver::Late>& late;
   Base& base;
 };
 void actuate(Drive drive, std::uint32_t levels, const Context& context);

@@ -12,7 +12,7 @@ struct Device {
   using State = wheeled::State;
   Spec spec;
   State state;
-  std::optional<maneuver::Late> late;
+  Boxed<maneuver::Late> late;
   Base base;
 
   static Result<Device> create(const DeviceBuild& build, Spec spec) {

@@ -62,7 +62,7 @@ struct Mover {
   using State = body_velocity::State;
   Spec spec;
   State state;
-  std::optional<maneuver::Late> late;
+  Boxed<maneuver::Late> late;
 
   BodyId base;
   EnergyMeter* energy = nullptr;

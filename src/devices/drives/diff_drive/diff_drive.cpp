@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/prefetch.h"
 #include "base/text.h"
 
 namespace sandlot::diff_drive {
@@ -123,6 +124,13 @@ void drive_wheels(const Drive& drive, WheelSpeeds speeds, bool kinematic, std::v
   side(drive.right, speeds.right_radps);
 }
 
+/// Asks for the memory of what a drive that acts soon points to.
+void expect(const Drive& drive, std::uint32_t levels) {
+  prefetch(drive.command[levels >> ideal & 1 ? ideal : contact], 1);
+  prefetch(&drive.maneuver.command->count, 1);
+  for (const auto* const wheels : {&drive.left, &drive.right}) prefetch(wheels->data(), wheels->size());
+}
+
 /// The wheels follow what the base really does, so that a robot held by a wall does not count turns.
 void roll_wheels(const Drive& drive, std::vector<RollTarget>& targets) {
   const double per_m = 1 / drive.geometry.wheel_radius_m, half_m = 0.5 * drive.geometry.wheel_separation_m;
@@ -155,7 +163,10 @@ Status check_levels(std::uint32_t levels, const Capabilities& engine) {
 }  // namespace
 
 void Drive::actuate(PoolView<Drive> pool, const Context& context) {
-  for (const std::uint32_t index : pool.due) {
+  constexpr std::size_t ahead = 3;
+  for (std::size_t i = 0; i < pool.due.size(); ++i) {
+    if (i + ahead < pool.due.size()) expect(pool.all[pool.due[i + ahead]], pool.levels[pool.due[i + ahead]]);
+    const std::uint32_t index = pool.due[i];
     Drive& drive = pool.all[index];
     const Level level = is_ideal(pool.levels[index]) ? ideal : contact;
     if (drive.spec->odometry || drive.late) count_wheels(drive, context.engine.joint_states());

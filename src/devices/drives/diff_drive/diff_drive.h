@@ -116,7 +116,7 @@ struct Drive {
   using State = diff_drive::State;
   SharedSpec<Spec> spec;
   State state;
-  std::optional<maneuver::Late> late;
+  Boxed<maneuver::Late> late;
 
   BodyId base;
   EnergyMeter* energy = nullptr;

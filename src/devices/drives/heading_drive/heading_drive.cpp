@@ -63,7 +63,7 @@ struct HeadingDrive {
   using State = heading_drive::State;
   Spec spec;
   State state;
-  std::optional<maneuver::Late> late;
+  Boxed<maneuver::Late> late;
   BodyId base;
   Topic<msg::SpeedHeading>* command = nullptr;
   maneuver::Topics maneuver;
