@@ -157,17 +157,19 @@ void Publisher::fill_instances(Frame& frame, bool links) const {
   for (std::size_t i = 0; i < sim_.entities_.size(); ++i) {
     const SimulationParts::Entity& entity = *sim_.entities_[i];
     FrameInstance& out = frame.instances[i];
-    out.name = entity.instance.name;
+    // Frames are filled again and again: of the entity that it showed before, what stays is there already.
+    if (out.serial != entity.serial || out.model != entity.instance.model) {
+      out.name = entity.instance.name;
+      out.serial = entity.serial;
+      out.model = entity.instance.model;
+    }
     out.id = entity.id;
-    out.serial = entity.serial;
     out.is_robot = entity.instance.is_robot;
     out.X_WM = sim_.engine_->pose(entity.id);
     const std::span<const BodyId> bodies = sim_.engine_->bodies(entity.id);
     out.V_WB = states[bodies.front().index].V_WB;
-    out.model = entity.instance.model;
-    out.X_WL.clear();
-    if (links)
-      for (const BodyId body : bodies) out.X_WL.push_back(states[body.index].X_WB);
+    out.X_WL.resize(links ? bodies.size() : 0);
+    for (std::size_t l = 0; l < out.X_WL.size(); ++l) out.X_WL[l] = states[bodies[l].index].X_WB;
   }
 }
 
