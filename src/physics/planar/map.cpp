@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "base/prefetch.h"
+
 namespace sandlot::planar {
 namespace {
 
@@ -343,6 +345,16 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
       }
     }
   return true;
+}
+
+void Map::expect(const RayJob& job) const {
+  constexpr std::size_t few = 4096;  // that stay near the processor
+  if (discs_.size() < few) return;
+  const HashGrid::Range range = disc_cells_.cover(around({job.X_WS.p.x, job.X_WS.p.y}, job.max_m));
+  if (range.empty() || (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1) > Reach::most_cells) return;
+  for (std::int64_t j = range.y0; j <= range.y1; ++j)
+    for (std::int64_t i = range.x0; i <= range.x1; ++i)
+      for (const std::uint32_t k : disc_cells_.in_slot(disc_cells_.slot(i, j))) prefetch(&discs_[k], 1);
 }
 
 void Map::cast(const RayJob& job, std::uint32_t ignored) const {

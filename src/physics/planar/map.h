@@ -69,6 +69,8 @@ class Map {
 
   /// @param ignored  slot of the instance that the rays do not see, or ~0u
   void cast(const RayJob& job, std::uint32_t ignored) const;
+  /// Asks for the memory of the discs that the rays of a job, soon to be cast, may meet.
+  void expect(const RayJob& job) const;
 
  private:
   struct Ray;

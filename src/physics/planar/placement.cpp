@@ -190,6 +190,7 @@ void PlanarEngine::add_joints(Instance& instance) {
         instance.wheels.push_back(std::move(caster));
       }
   }
+  instance.wheels.shrink_to_fit();
   for (const JointPlan& l : plan.constraints) {
     if (l.kind == JointPlan::Kind::steering) continue;
     JointConstraint constraint{

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/prefetch.h"
 #include "base/read.h"
 #include "geometry/mesh.h"
 
@@ -271,7 +272,9 @@ void PlanarEngine::overlaps(std::span<const OverlapQuery> queries, std::vector<s
 
 void PlanarEngine::cast(std::span<const RayJob> jobs) const {
   refresh_map();
-  for (const RayJob& job : jobs) {
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (i + 1 < jobs.size()) map_.expect(jobs[i + 1]);
+    const RayJob& job = jobs[i];
     SL_CHECK(job.distance_m.size() == job.directions.size());
     SL_CHECK(job.body.empty() || job.body.size() == job.directions.size());
     map_.cast(job, job.ignore_body < body_slot_.size() ? body_slot_[job.ignore_body] : none);
@@ -348,9 +351,17 @@ BodyState PlanarEngine::canonical_state(std::uint32_t slot) const {
   return base;
 }
 
+/// Asks for the memory of an instance that is needed some instances later.
+void PlanarEngine::expect(std::uint32_t slot) const {
+  if (slot == none) return;
+  prefetch(&instances_[slot], 1);
+  if (const std::uint32_t group = summaries_[slot].group; group != none) prefetch(&groups_[group], 1);
+}
+
 /// Sensors mostly sit on canonical links, whose states need no tree of joints and no memory.
 void PlanarEngine::states_of(std::span<const std::uint32_t> bodies, std::span<BodyState> out) const {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + 4 < bodies.size()) expect(body_slot_[bodies[i + 4]]);
     const std::uint32_t slot = body_slot_[bodies[i]];
     SL_CHECK_MSG(slot != none, "no such body");
     out[i] = body_is_first_[bodies[i]] ? canonical_state(slot) : states()[bodies[i]];

@@ -131,6 +131,7 @@ class PlanarEngine final : public Engine, private RayCaster {
   bool alive(BodyId id) const;
 
   // planar.cpp, placement.cpp
+  void expect(std::uint32_t slot) const;
   void add_joints(Instance& instance);
   void settle(std::uint32_t slot, const Pose& X_WM);
   void shape(std::uint32_t slot);

@@ -94,8 +94,10 @@ Status PlanarEngine::check_finite() const {
   if (failure_) return *failure_;
   double worst = 1;
   std::uint32_t exploding = none;
-  for (const std::uint32_t slot : order_) {
-    const Instance& instance = instances_[slot];
+  constexpr std::size_t ahead = 4;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    if (i + ahead < order_.size()) expect(order_[i + ahead]);
+    const Instance& instance = instances_[order_[i]];
     double sum = instance.z_m;
     for (const std::uint32_t k : instance.groups) {
       const RigidGroup& b = groups_[k];

@@ -92,6 +92,9 @@ class Programs {
   /// Acts on an answer. @return why the program cannot go on
   std::optional<Error> answer(ProgramEntry& entry, const OutsideAnswer& answer, Time now);
 
+  /// Whether there ever was one that is not a controller.
+  bool any_beyond_controllers() const { return any_beyond_controllers_; }
+
   static void save(const ProgramEntry& program, ByteWriter& w);
   static bool load(ProgramEntry& program, ByteReader& r, Time now);
 
@@ -141,6 +144,7 @@ class Programs {
   Commands& commands_;
   std::vector<const ControllerKind*> kinds_;
   std::vector<Team> teams_;
+  bool any_beyond_controllers_ = false;
   std::shared_ptr<const Description> described_;  ///< the latest
   /// All programs in entity order, then the teams'; those that run at every control step, kind by kind; those that may be
   /// due at other times; those with topics.

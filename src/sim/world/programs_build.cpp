@@ -170,6 +170,7 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
     } else {
       program->program = other_kind->create();
       program->wait = std::make_unique<SimulationParts::Wait>();
+      any_beyond_controllers_ = true;
       if (auto* const surrounded = dynamic_cast<programs::Surrounded*>(program->program.get());
           surrounded && !driven.team)
         surrounded->describe(

@@ -233,7 +233,7 @@ void Simulation::control() {
   const PhaseTimer timer(phase_times_, Phase::control);
   if (!options_.run_programs) return;
   const bool control_step = tick_ % static_cast<std::uint64_t>(setup_.control_interval) == 0;
-  show_beings(entities_, *engine_);
+  if (programs_.any_beyond_controllers()) show_beings(entities_, *engine_);
   if (auto failed = programs_.step(entities_, now_, control_step)) fail(std::move(*failed));
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/math.h"
+#include "base/prefetch.h"
 #include "physics/parallel.h"
 
 namespace sandlot::proximity {
@@ -100,13 +101,19 @@ void Ring::sense(PoolView<Ring> pool, const Context& context) {
     std::array<BodyState, batch> states;
     while (begin < end) {
       const std::size_t count = std::min(batch, end - begin);
-      for (std::size_t i = 0; i < count; ++i) bodies[i] = pool.all[pool.due[begin + i]].body;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Ring& ring = pool.all[pool.due[begin + i]];
+        bodies[i] = ring.body;
+        prefetch(&ring.scan->message, 1);
+      }
       context.engine.states_of({bodies.data(), count}, {states.data(), count});
       for (std::size_t i = 0; i < count; ++i) {
         Ring& ring = pool.all[pool.due[begin + i]];
         // A message may have been restored from a file.
         ring.scan->message.ranges.resize(ring.directions_S->size());
         ring.scan->message.intensities.resize(ring.directions_S->size());
+        prefetch(ring.scan->message.ranges.data(), ring.scan->message.ranges.size());
+        prefetch(ring.scan->message.intensities.data(), ring.scan->message.intensities.size());
         jobs[i] = {.X_WS = states[i].X_WB * ring.X_LS,
                    .directions = *ring.directions_S,
                    .min_m = ring.spec->radius_m,
