@@ -1,7 +1,6 @@
 # Tests: src/<layer>/**/*_test.cpp become <layer>_tests, tests/*_test.cpp become scenario_tests. One executable per
 # layer keeps the number of links small. A layer's tests link that layer and what it may use; a test that needs more
 # belongs into tests/, where everything is at hand.
-include(GoogleTest)
 
 # Tests are compiled once and run once: -O0 takes a third less time for the former than -O2, and what it adds to the latter is
 # a tenth of that: most of a test's time is spent in the libraries. With the address sanitizer it takes less than half the time.
@@ -12,10 +11,15 @@ function(sandlot_test_options target)
   endif()
 endfunction()
 
-# The prefix of a suite's name decides its label: Slow* is `slow`, Long* is `long`, everything else is `unit`.
+# Labels: a suite named Slow* is `slow`, one named Long* is `long`. Every other one is a `unit` test, or `system` where the tests
+# are of whole programs (tests/).
 function(sandlot_test_executable name sources libraries)
   if(NOT sources)
     return()
+  endif()
+  set(label unit)
+  if(ARGC GREATER 3)
+    set(label ${ARGV3})
   endif()
   add_executable(${name} ${sources})
   target_include_directories(${name} PRIVATE src)
@@ -26,20 +30,18 @@ function(sandlot_test_executable name sources libraries)
   # Tests run in the source root; from there this is the command that those in tests/ try.
   file(RELATIVE_PATH command ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/sandlot)
   target_compile_definitions(${name} PRIVATE SANDLOT_BIN="${command}")
-  foreach(label unit slow long)
-    set(filter_unit "-Slow*:*/Slow*:Long*:*/Long*")
-    set(filter_slow "Slow*:*/Slow*")
-    set(filter_long "Long*:*/Long*")
-    set(timeout_unit 120)
-    if(SANDLOT_SANITIZE)
-      set(timeout_unit 600)  # what takes seconds takes minutes there
-    endif()
-    set(timeout_slow 600)
-    set(timeout_long 3600)
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
-      TEST_FILTER "${filter_${label}}"
-      PROPERTIES LABELS ${label} TIMEOUT ${timeout_${label}} ENVIRONMENT "${SANDLOT_TEST_ENVIRONMENT}")
-  endforeach()
+  set(timeout 120)
+  if(SANDLOT_SANITIZE)
+    set(timeout 600)  # what takes seconds takes minutes there
+  endif()
+  file(WRITE ${CMAKE_BINARY_DIR}/suites/${name}.cmake "set(program \"${CMAKE_BINARY_DIR}/${name}\")
+set(folder \"${CMAKE_SOURCE_DIR}\")
+set(label ${label})
+set(timeout ${timeout})
+set(environment \"${SANDLOT_TEST_ENVIRONMENT}\")
+include(\"${CMAKE_SOURCE_DIR}/cmake/discover_suites.cmake\")
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_BINARY_DIR}/suites/${name}.cmake)
 endfunction()
 
 foreach(layer IN LISTS sandlot_layers)
@@ -84,14 +86,14 @@ set(libraries ${sandlot_layers})
 list(REMOVE_ITEM libraries bench)  # a program of its own
 list(TRANSFORM libraries PREPEND sandlot_)
 list(REVERSE libraries)
-sandlot_test_executable(scenario_tests "${sources}" "${libraries}")
+sandlot_test_executable(scenario_tests "${sources}" "${libraries}" system)
 target_include_directories(scenario_tests PRIVATE clients/cpp)
 add_dependencies(scenario_tests sandlot client_clearing selforg_wheels robios6 robios7 robios_host ${plugins})
 sandlot_robios_tests()
 # tests/vision: what software written for real cameras makes of our pictures.
 if(TARGET sandlot_opencv)
   file(GLOB sources CONFIGURE_DEPENDS tests/vision/*_test.cpp)
-  sandlot_test_executable(vision_tests "${sources}" "${libraries};sandlot_opencv")
+  sandlot_test_executable(vision_tests "${sources}" "${libraries};sandlot_opencv" system)
 else()
   message(STATUS "No OpenCV (Debian: libopencv-calib3d-dev, libopencv-video-dev): the tests in tests/vision are left out")
 endif()
@@ -115,12 +117,12 @@ set_tests_properties(tutorials PROPERTIES LABELS slow TIMEOUT 600
 add_test(NAME client_clock COMMAND Python3::Interpreter tests/clock_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(client_clock PROPERTIES LABELS unit)
 add_test(NAME clients COMMAND Python3::Interpreter tests/clients_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(clients PROPERTIES LABELS unit TIMEOUT 300
+set_tests_properties(clients PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
 # Programs that a run starts itself.
 add_test(NAME started_programs COMMAND Python3::Interpreter tests/started_programs_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(started_programs PROPERTIES LABELS unit TIMEOUT 300
+set_tests_properties(started_programs PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
 # RoBIOS programs in examples/robios.
@@ -130,7 +132,7 @@ set_tests_properties(robios_programs PROPERTIES LABELS slow TIMEOUT 600
 
 # Programs and files for EyeSim as they are found elsewhere.
 add_test(NAME robios_wild COMMAND Python3::Interpreter tests/robios_wild_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(robios_wild PROPERTIES LABELS unit TIMEOUT 300
+set_tests_properties(robios_wild PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
 # The same law in four places.
@@ -147,7 +149,7 @@ if(SANDLOT_PAGE)
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
   file(GLOB sources CONFIGURE_DEPENDS web/test/*.test.mjs)
   add_test(NAME page_units COMMAND ${SANDLOT_NODE} --test ${sources} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/web)
-  set_tests_properties(page_types page_units PROPERTIES LABELS unit TIMEOUT 120)
+  set_tests_properties(page_types page_units PROPERTIES LABELS system TIMEOUT 120)
 endif()
 
 # tests/js/*_test.mjs hold messages and recordings against readers that others wrote. `./dev test` installs those.
@@ -156,7 +158,7 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME_WE)
     add_test(NAME js_${name} COMMAND ${SANDLOT_NODE} ${source} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-    set_tests_properties(js_${name} PROPERTIES LABELS unit TIMEOUT 120
+    set_tests_properties(js_${name} PROPERTIES LABELS system TIMEOUT 120
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
   # A browser that draws with the processor takes its time; beside other tests it would wait in vain.

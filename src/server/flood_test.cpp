@@ -292,9 +292,10 @@ TEST(Floods, WhoTakesMuchTimeIsReadLaterAndLosesNothing) {
   one.send(many);
   EXPECT_TRUE(soon([&] { return heavy >= 4; }));
   two.send(R"({"a":1})");
-  // 4 x 30 ms are more than the 100 ms that it may take at once; 20 ms of it are forgiven in 0.4 s.
+  // 4 x 30 ms are more than the 100 ms that it may take at once; the other four are spread over 2.4 s.
   EXPECT_TRUE(soon([&] { return heavy_when_light_came >= 0; }));
-  EXPECT_EQ(heavy_when_light_came, 4);
+  EXPECT_GE(heavy_when_light_came, 4);
+  EXPECT_LT(heavy_when_light_came, 8);
   EXPECT_TRUE(soon([&] { return heavy == 8; }, 10)) << heavy;
   (*transport)->stop();
 }
