@@ -9,11 +9,11 @@ using Index = unsigned;
 
 template <class Real>
 constexpr Real clipped(Real x, Real limit) {
-  return x > limit ? limit : x < -limit ? -limit : x == x ? x : Real(0);
+  return x > limit ? limit : x < -limit ? -limit : __builtin_isnan(x) ? Real(0) : x;
 }
 template <class Real>
 constexpr bool is_finite(Real x) {
-  return x - x == Real(0);
+  return __builtin_isfinite(x);
 }
 template <class Real>
 constexpr Real size_of(Real x) {
@@ -44,7 +44,7 @@ template <class Real>
 constexpr Real tanh_of(Real x) {
   const Real e = exp_of_minus(2 * size_of(x));
   const Real value = (1 - e) / (1 + e);
-  return x < 0 ? -value : x > 0 ? value : x == x ? Real(0) : x;
+  return x < 0 ? -value : x > 0 ? value : __builtin_isnan(x) ? x : Real(0);
 }
 
 /// Inverse or Moore-Penrose pseudo-inverse of an R x K matrix: as selforg/matrix.h has it, with L D L^T in place of Cholesky.
