@@ -14,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sandlot::Diagnostics diagnostics;
   const auto result = sandlot::formats::parse_scenario(text, "/nowhere/fuzz.yaml", overrides, diagnostics);
   if (result) {
-    SL_CHECK(result->step_s > 0 && result->substeps >= 1 && result->control_interval >= 1);
+    const auto& setup = result->setup;
+    SL_CHECK(setup.step.ns > 0 && setup.substeps >= 1 && setup.control_interval >= 1);
     for (const auto& robot : result->robots)
       SL_CHECK(robot.count >= 1 && sandlot::is_finite(robot.placement.X_WM));
   } else {

@@ -164,7 +164,7 @@ TEST(Clients, OthersSeeThemselvesAloneAndDrivingClientsNobody) {
     ASSERT_EQ(seen["clients"].size(), 1u) << seen;
     EXPECT_EQ(seen["clients"][0]["role"], "spectator");
     EXPECT_EQ(std::to_string(seen["clients"][0]["id"].get<int>()),
-              spectator.info["metadata"]["sandlot_client"]);
+              spectator.info["metadata"]["sandlot_client"].get<std::string>());
     EXPECT_TRUE(seen["programs"].empty());
   }
   EXPECT_EQ(spectator.console("clients")["text"], "only an administrator sees who is connected");
