@@ -149,6 +149,8 @@ export class RobotPanel {
     if (this.canvas.height !== image.height) this.canvas.height = image.height;
     // Small screens are magnified by whole numbers.
     this.canvas.style.width = `${image.width * Math.max(1, Math.floor(256 / image.width))}px`;
+    // Wider ones are drawn smaller than they are: letters would lose lines of theirs.
+    this.canvas.style.imageRendering = image.width > 256 ? 'auto' : 'pixelated';
     this.canvas.getContext('2d')?.putImageData(new ImageData(pixels, image.width, image.height), 0, 0);
     this.canvas.hidden = false;
     this.dark.hidden = true;
