@@ -12,7 +12,7 @@ function(sandlot_test_options target)
 endfunction()
 
 # Labels: a suite named Slow* is `slow`, one named Long* is `long`. Every other one is a `unit` test, or `system` where the tests
-# are of whole programs (tests/).
+# are of whole programs (tests/) or talk by sockets.
 function(sandlot_test_executable name sources libraries)
   if(NOT sources)
     return()
@@ -46,7 +46,11 @@ endfunction()
 
 foreach(layer IN LISTS sandlot_layers)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/${layer}/*_test.cpp)
-  sandlot_test_executable(${layer}_tests "${sources}" sandlot_${layer})
+  set(label unit)
+  if(layer STREQUAL "server")
+    set(label system)  # most of their time they wait for sockets
+  endif()
+  sandlot_test_executable(${layer}_tests "${sources}" sandlot_${layer} ${label})
 endforeach()
 # The planar engine is held against Chipmunk. The program itself does without.
 if(NOT sandlot_third_party_chipmunk)
