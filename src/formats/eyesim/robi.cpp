@@ -9,6 +9,7 @@
 #include "base/math.h"
 #include "base/text.h"
 #include "builders/wheeled.h"
+#include "files/text.h"
 #include "formats/eyesim/errors.h"
 #include "formats/eyesim/lines.h"
 #include "formats/eyesim/shapes.h"
@@ -66,7 +67,8 @@ class Reader {
   Result<Robi> read(const std::vector<Line>& lines) {
     numberless_psds_ = are_numberless(lines);
     for (const Line& line : lines) SL_TRY(take(line));
-    if (lines.empty()) return Error{"the file describes no robot", "begin with: drive DIFFERENTIAL_DRIVE"};
+    if (lines.empty())
+      return Error{"the file describes no robot", "begin with: drive DIFFERENTIAL_DRIVE", place_in(file_)};
     if (!drive_line_)
       diagnostics_.warn(lines.front().error("the robot has no drive; it gets that of two wheels",
                                             "begin with: drive DIFFERENTIAL_DRIVE"));

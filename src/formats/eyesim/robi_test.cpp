@@ -120,7 +120,7 @@ TEST(EyesimRobot, SaysWhatIsWrongWithItsLine) {
   EXPECT_EQ(robi_error("psd A 1 0 0 0 0\npsd A 2 0 0 0 0\n"),
             "scout.robi:2: two psds have the name 'A' or the number 2; the other one is at scout.robi:1");
   EXPECT_EQ(robi_error("lidar 400 10\n"), "scout.robi:1: a lidar sees 1 to 360 degrees");
-  EXPECT_EQ(robi_error(""), "the file describes no robot; begin with: drive DIFFERENTIAL_DRIVE");
+  EXPECT_EQ(robi_error(""), "scout.robi: the file describes no robot; begin with: drive DIFFERENTIAL_DRIVE");
 }
 
 TEST(EyesimObject, ScalesItsMeshAndTurnsItUpright) {
