@@ -61,7 +61,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto whole = objects(text, std::max<std::size_t>(1, size)), pieces = objects(text, 3);
   SL_CHECK(whole == pieces);
   std::string joined;
-  if (!text.empty() && nlohmann::json::accept(text)) {
+  // The library takes a zero byte for the end of a text.
+  if (!text.empty() && text.find('\0') == text.npos && nlohmann::json::accept(text)) {
     for (const std::string& each : fragments(text, 100, "x"))
       joined += nlohmann::json::parse(each)["data"].get<std::string>();
     SL_CHECK(joined == text);

@@ -3,6 +3,7 @@
 /// every kind of device, medium, rule and marker, on both engines, and what a run keeps in addition: events, failures,
 /// pulls, manual overrides, commands and messages on their way.
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "files/resources.h"
 #include "geometry/height_grid.h"
 #include "geometry/mesh.h"
+#include "markers/marker.h"
+#include "media/medium.h"
+#include "rules/rule.h"
 #include "sim/load/load.h"
 #include "sim/world/simulation.h"
 
@@ -198,8 +202,8 @@ robots:
       mover: {kind: body_velocity, initial_linear: [0.2, 0, 0], drain_per_use: 1 J, efficiency: 0.5}
       battery: {kind: battery, capacity: 2 J, resistance: 0.1, drain: 3 W}
       charger: {kind: charger, power: 5 W}
-    properties: {fuel: {value: 5, unit: kg, min: 0, max: 10}}
       screen: {kind: text_display, rows: 2, columns: 5, mass: 100 g}
+    properties: {fuel: {value: 5, unit: kg, min: 0, max: 10}}
 )"},
     {"elements", "rigid", R"(
 media: [{kind: wind, velocity: [-6, 1, 0]}, {kind: shout}]
@@ -213,6 +217,9 @@ rules:
   - {kind: place, object: ball, when: ball.pose.y > 1, place: [0.5, 0, 0.11]}
   - {kind: set, when: ball.pose.y > 1, set: [{parameter: rules/impact.threshold, value: 0.02 Ns}]}
   - {kind: statistics, value: ball.pose.x, bins: 3, quantiles: [0.5]}
+  - {kind: coverage, values: [ball.pose.x, cart.pose.y], ranges: [[-1, 1]], bins: 3}
+  - {kind: path, values: [ball.pose.x, ball.pose.y], interval: 50 ms}
+  - {kind: episodes, when: ball.pose.x > 0.1, at_least: 0.1 s}
 things: [{name: ball, model: msl_ball, pose: [0.25, 0, 0.11]}]
 robots:
   - name: cart
@@ -296,6 +303,28 @@ inline model::Setup small_setup(const SmallWorld& world, std::string_view step =
   setup->geography.emplace();
   if (std::string_view(world.name) == "shapes") add_shapes(*setup);
   return std::move(*setup);
+}
+
+/// Kinds of devices, media, rules and markers that no small world has: a new kind needs a place in one.
+inline std::vector<std::string> missing_kinds() {
+  std::set<std::string> there;
+  for (const SmallWorld& world : small_worlds) {
+    const model::Setup setup = small_setup(world);
+    for (const model::Instance& instance : setup.instances)
+      for (const model::DeviceDecl& device : instance.devices) there.insert(device.kind);
+    for (const auto* const list : {&setup.media, &setup.rules, &setup.markers})
+      for (const model::ElementDecl& element : *list) there.insert(element.kind);
+  }
+  std::vector<std::string> missing;
+  const auto look = [&](const auto& known) {
+    for (const auto* const kind : known)
+      if (!there.contains(kind->name)) missing.emplace_back(kind->name);
+  };
+  look(device_kinds());
+  look(medium_kinds());
+  look(rule_kinds());
+  look(marker_kinds());
+  return missing;
 }
 
 /// Its snapshot after a few ticks, with a pull, a command from outside, a failure and a factor on errors.

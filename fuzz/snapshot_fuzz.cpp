@@ -3,12 +3,8 @@
 /// of 5 bytes: where (24 bits), what, and with which value.
 #include <cstring>
 #include <limits>
-#include <set>
 
 #include "base/hash.h"
-#include "markers/marker.h"
-#include "media/medium.h"
-#include "rules/rule.h"
 #include "sim/world/snapshot.h"
 #include "small_worlds.h"
 
@@ -19,24 +15,7 @@ using sandlot::Simulation;
 
 std::vector<std::vector<std::byte>> real_snapshots() {
   std::vector<std::vector<std::byte>> out;
-  std::set<std::string> kinds;
-  for (const auto& world : sandlot::fuzz::small_worlds) {
-    out.push_back(sandlot::fuzz::small_snapshot(world));
-    const auto examined = sandlot::examine_snapshot(out.back());
-    SL_CHECK(examined);
-    for (const sandlot::model::Instance& instance : examined->setup.instances)
-      for (const sandlot::model::DeviceDecl& device : instance.devices) kinds.insert(device.kind);
-    for (const auto* const list : {&examined->setup.media, &examined->setup.rules, &examined->setup.markers})
-      for (const sandlot::model::ElementDecl& element : *list) kinds.insert(element.kind);
-  }
-  // A new kind needs a place in a small world.
-  const auto check = [&](const auto& known) {
-    for (const auto* const kind : known) SL_CHECK_MSG(kinds.contains(kind->name), kind->name);
-  };
-  check(sandlot::device_kinds());
-  check(sandlot::medium_kinds());
-  check(sandlot::rule_kinds());
-  check(sandlot::marker_kinds());
+  for (const auto& world : sandlot::fuzz::small_worlds) out.push_back(sandlot::fuzz::small_snapshot(world));
   return out;
 }
 

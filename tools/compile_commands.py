@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lists the sources of a compile database, or compiles those of the program alone, as far as syntax and types go.
+"""Lists the sources of a compile database, or compiles those of the program and its fuzz targets alone, as far as syntax and types go.
 
 Usage: compile_commands.py BUILD --list
        compile_commands.py BUILD --syntax JOBS [N/OF]  exits 1 and prints what the compiler says of those that fail;
@@ -29,7 +29,7 @@ def main():
     if sys.argv[2] == "--list":
         print("\n".join(entry["file"] for entry in entries))
         return 0
-    entries = [entry for entry in entries if "/src/" in entry["file"] and not entry["file"].endswith("_test.cpp")]
+    entries = [entry for entry in entries if ("/src/" in entry["file"] or "/fuzz/" in entry["file"]) and not entry["file"].endswith("_test.cpp")]
     if len(sys.argv) > 4:
         first, of = (int(number) for number in sys.argv[4].split("/"))
         entries = entries[first::of]
