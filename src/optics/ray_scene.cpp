@@ -3,10 +3,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <unordered_map>
 #include <utility>
 
@@ -215,6 +217,11 @@ struct RayScene::Impl {
   std::uint64_t revision = 0;
   bool fixed_is_current = false;
 
+  /// Poses whose trees are built once a ray asks: most ticks of most worlds cast none.
+  const SceneFrame* frame = nullptr;
+  std::atomic<bool> stale = false;
+  std::mutex building;
+
   /// The tree of a mesh, taken over from the last revision if that had it; null for shapes without triangles.
   const TriangleTree* tree_of(const Shape& shape, decltype(trees)& old) {
     const void* const key = optics::triangles_of(shape);
@@ -230,6 +237,7 @@ struct RayScene::Impl {
     return tree.get();
   }
 
+  void build();
   void cast(const RayJob& job) const;
 };
 
@@ -259,16 +267,25 @@ void RayScene::set_shapes(std::span<const SceneShape> shapes) {
 void RayScene::update(const SceneFrame& frame) {
   Impl& s = *impl_;
   SL_CHECK(frame.X_WG.size() >= s.groups);
-  const embree::FlushDenormals flush;
-  if (!s.fixed_is_current || frame.revision != s.revision) {
-    s.fixed.place(frame.X_WG);
-    s.fixed.commit(s.arena);
-    s.fixed_is_current = true;
-    s.revision = frame.revision;
+  s.frame = &frame;
+  s.stale.store(true, std::memory_order_release);
+}
+
+/// Of all threads that ask at the same time the first one builds, and the others wait for it.
+void RayScene::Impl::build() {
+  const std::lock_guard lock(building);
+  if (!stale.load(std::memory_order_acquire)) return;
+  SL_CHECK(frame->X_WG.size() >= groups);
+  if (!fixed_is_current || frame->revision != revision) {
+    fixed.place(frame->X_WG);
+    fixed.commit(arena);
+    fixed_is_current = true;
+    revision = frame->revision;
   }
-  s.moving.place(frame.X_WG);
-  s.moving.commit(s.arena);
-  for (WorldPlane& plane : s.planes) plane.place(frame.X_WG);
+  moving.place(frame->X_WG);
+  moving.commit(arena);
+  for (WorldPlane& plane : planes) plane.place(frame->X_WG);
+  stale.store(false, std::memory_order_release);
 }
 
 void RayScene::Impl::cast(const RayJob& job) const {
@@ -332,6 +349,7 @@ void RayScene::Impl::cast(const RayJob& job) const {
 
 void RayScene::cast(std::span<const RayJob> jobs) const {
   const embree::FlushDenormals flush;
+  if (impl_->stale.load(std::memory_order_acquire)) impl_->build();
   for (const RayJob& job : jobs) impl_->cast(job);
 }
 

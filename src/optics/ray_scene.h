@@ -9,8 +9,9 @@
 ///            shapes show it.
 /// Precision  single precision inside; distances within 2e-6 of the size of the scene around the sensor.
 /// Limits     surfaces only: a ray that starts inside a solid sees its far side. No materials yet.
-/// Cost       update: about 0.4 us per moving solid (one tree over them is rebuilt), nothing for the others
-///            until the revision changes. A mesh: 1 us per triangle when it is first seen, then as any solid.
+/// Cost       update: nothing. The first cast after it: about 0.4 us per moving solid (one tree over them is
+///            rebuilt), nothing for the others until the revision changes. A mesh: 1 us per triangle when it is
+///            first seen, then as any solid.
 ///            cast: 20 ns per ray of a 2D fan on a soccer field; no allocation of ours.
 /// Determinism  one answer per Embree isa (fixed, see `isa()`), for any thread count and grouping of jobs.
 #include <memory>
@@ -45,9 +46,10 @@ class RayScene final : public RayCaster {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// Replaces all geometry; the next update() builds the trees.
+  /// Replaces all geometry; rays need an update() before them.
   void set_shapes(std::span<const SceneShape> shapes);
-  /// Takes the poses of this tick: one commit. @pre frame.X_WG covers all groups
+  /// Takes the poses of this tick; the first cast() after it builds the trees, and threads that ask meanwhile wait.
+  /// @pre frame.X_WG covers all groups; the frame outlives the casts before the next update()
   void update(const SceneFrame& frame);
   void cast(std::span<const RayJob> jobs) const override;
 

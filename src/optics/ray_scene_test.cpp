@@ -396,6 +396,7 @@ TEST(RayScene, TheAnswerDependsOnTheJobAlone) {
   EXPECT_EQ(together, apart);
   for (const std::size_t threads : {2u, 4u}) {
     std::fill(threaded.begin(), threaded.end(), -1.f);
+    scene.update(frame);  // whichever thread is the first builds the trees
     std::vector<std::thread> pool;
     for (std::size_t k = 0; k < threads; ++k)
       pool.emplace_back([&, k] {
