@@ -131,8 +131,11 @@ void Map::overlaps(OverlapQuery ball, std::vector<std::uint32_t>& bodies) const 
         }
         const Silhouette& silhouette = silhouettes_[discs_[k].silhouette];
         for (std::size_t part = 0; part < silhouette.parts.size(); ++part) {
-          const double across = radius_at(silhouette.parts[part].heights);
-          if (across >= 0 && nearest(silhouette.parts[part], silhouette.edges, centre).distance_m <= across)
+          const Outline& outline = silhouette.parts[part];
+          const double across = radius_at(outline.heights), most = across + outline.radius_m + 1e-6;
+          const Vec2 off = outline.centre - centre;
+          if (across >= 0 && dot(off, off) <= most * most &&
+              nearest(outline, silhouette.edges, centre).distance_m <= across)
             bodies.push_back(silhouette.bodies[part]);
         }
       }
@@ -203,11 +206,21 @@ void Map::meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& 
   for (const std::uint32_t k : walls) meet_wall(ray, k, hit);
 }
 
-void Map::meet_silhouette(const Ray& ray, std::uint32_t index, Hit& hit) const {
-  const Silhouette& silhouette = silhouettes_[index];
+/// True when nothing within a circle can be what the ray meets first. The margin is far beyond rounding, so that the exact
+/// outlines inside decide alone.
+inline bool Map::passes_by(const Ray& ray, Vec2 centre, double radius_m, const Hit& hit) {
+  const Chord c = chord_of_circle(centre - ray.origin, radius_m * (1 + 1e-9) + 1e-9, ray.direction,
+                                  ray.length2, ray.inverse_length2);
+  return !(c.first <= c.last) || c.first > hit.t || c.last < ray.min_m;
+}
+
+void Map::meet_silhouette(const Ray& ray, const Disc& disc, Hit& hit) const {
+  if (passes_by(ray, disc.centre, disc.radius_m, hit)) return;
+  const Silhouette& silhouette = silhouettes_[disc.silhouette];
   for (std::size_t i = 0; i < silhouette.parts.size(); ++i) {
     const Outline& part = silhouette.parts[i];
     if (ray.dz == 0 && (ray.z < part.heights.min_m || ray.z > part.heights.max_m)) continue;
+    if (passes_by(ray, part.centre, part.radius_m, hit)) continue;
     const Chord c = chord(part, silhouette.edges, ray.origin, ray.direction);
     if (c.first <= c.last) hit.meet(ray, c, part.heights, silhouette.bodies[i]);
   }
@@ -220,7 +233,7 @@ void Map::meet_all(const Ray& ray, Hit& hit) const {
         disc_cells_.cover(around(disc.centre, disc.radius_m)).empty())
       continue;
     if (disc.silhouette == ~0u) hit.meet(ray, disc);
-    else meet_silhouette(ray, disc.silhouette, hit);
+    else meet_silhouette(ray, disc, hit);
   }
   for (std::uint32_t k = 0; k < walls_.size(); ++k) meet_wall(ray, k, hit);
 }
@@ -299,7 +312,7 @@ template <bool with_walls>
           // Copies, so that the others may stay in registers.
           const Ray same = ray;
           Hit met = hit;
-          meet_silhouette(same, met_disc.silhouette, met);
+          meet_silhouette(same, met_disc, met);
           hit = met;
         }
       }
@@ -381,7 +394,7 @@ void Map::cast(const RayJob& job, std::uint32_t ignored) const {
       if (near)
         for (std::uint32_t k = 0; k < reach.count; ++k) {
           if (reach.discs[k]->silhouette == ~0u) hit.meet(ray, *reach.discs[k]);
-          else meet_silhouette(ray, reach.discs[k]->silhouette, hit);
+          else meet_silhouette(ray, *reach.discs[k], hit);
         }
       else if (anything) walls_.empty() ? walk<false>(ray, shared, hit) : walk<true>(ray, shared, hit);
     }

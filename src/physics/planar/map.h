@@ -84,7 +84,8 @@ class Map {
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
   void meet_wall(const Ray& ray, std::uint32_t wall, Hit& hit) const;
-  void meet_silhouette(const Ray& ray, std::uint32_t silhouette, Hit& hit) const;
+  static bool passes_by(const Ray& ray, Vec2 centre, double radius_m, const Hit& hit);
+  void meet_silhouette(const Ray& ray, const Disc& disc, Hit& hit) const;
   void meet_all(const Ray& ray, Hit& hit) const;
 
   double cell_m_;

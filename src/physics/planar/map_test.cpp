@@ -205,6 +205,36 @@ TEST(PlanarRays, TheSensorsPoseTurnsTheFan) {
   EXPECT_FLOAT_EQ(distance[1], 2.8f);
 }
 
+/// A box that moves is an outline of edges within a circle through its corners, which is looked at first: it must lose none.
+TEST(PlanarRays, MeetAMovingBoxUpToItsCorners) {
+  World w;
+  const double yaw = 0.5;
+  const InstanceId box = w.add(model_of(Box{{2, 1, 1}}), at(5, 3, yaw, 0.5));
+  const std::uint32_t index = w.engine.bodies(box)[0].index;
+  const math::SinCos turn = math::sincos(yaw);
+  for (const Vec2 corner : {Vec2{1, 0.5}, Vec2{-1, 0.5}, Vec2{-1, -0.5}, Vec2{1, -0.5}}) {
+    const Vec3 out = normalised(
+        Vec3{turn.cos * corner.x - turn.sin * corner.y, turn.sin * corner.x + turn.cos * corner.y, 0});
+    const Vec3 along{-out.y, out.x, 0}, centre{5, 3, 0.2};
+    const double radius_m = std::sqrt(1.25);
+    for (const double off : {-1e-3, 1e-3}) {
+      const Vec3 beside = centre + out * (radius_m + off);
+      for (const double from_m : {0.05, 4.0}) {  // within the circle but outside of the box, and from afar
+        std::uint32_t body = no_body;
+        const float seen = w.see(beside - along * from_m, along, 100, no_body, &body);
+        EXPECT_EQ(body, off < 0 ? index : no_body) << corner.x << " " << corner.y << " " << off;
+        if (off < 0) { EXPECT_NEAR(seen, from_m, 3e-3); }
+      }
+      const OverlapQuery ball{{beside.x, beside.y, 0.2}, 5e-4};
+      std::vector<std::uint32_t> bodies, ends;
+      w.engine.overlaps({&ball, 1}, bodies, ends);
+      EXPECT_EQ(bodies.size(), off < 0 ? 1U : 0U);
+    }
+    // The far side of a box around the origin, beyond min_m.
+    EXPECT_NEAR(w.see(centre, out, 100, no_body, nullptr, 1e-6), radius_m, 1e-6);
+  }
+}
+
 TEST(PlanarOverlaps, NameBodiesOnceAndInOrder) {
   World w;
   const InstanceId wall = w.add(model_of(Box{{5, 0.2, 1}}, true), at(0, 1, 0, 0.5));
