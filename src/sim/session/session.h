@@ -23,7 +23,7 @@
 /// Input log   of a recording, given as Options::input_log: the run repeats the recording, ends where it ends, and takes no
 ///             other input.
 /// Threads     run() belongs to one thread, the simulation's. Orders may come from any thread.
-/// Cost        a lock per tick; a snapshot now and then: at most 2 % of the wall time, and twice `history_mb` of memory.
+/// Cost        a lock per tick; a snapshot now and then: `history_share` of the wall time, and twice `history_mb` of memory.
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -91,6 +91,8 @@ class Session {
     double history_mb =
         256;  ///< memory for snapshots to rewind to, and for the input since as much again; 0: none
     double history_every_s = 1;  ///< simulated time between two, at least; more as the run becomes long
+    double history_share =
+        0.02;  ///< of the wall time, that snapshots may take; infinite: one whenever it is due
     SimulationOptions simulation = {};       ///< for the worlds that follow the first
     std::optional<InputLog> input_log = {};  ///< input of a recording to repeat
     std::string may_not_rewind = {};         ///< not empty: why reset, load and jumps back are refused

@@ -75,10 +75,9 @@ void Session::keep_snapshot() {
   if (options_.history_mb <= 0) return;
   const Time now = simulation_->now();
   const double at_s = wall_s();
-  constexpr double share = 0.02;
   if (!history_.empty()) {
     if (now - history_.back().now < Time::from_s(history_gap_s_)) return;
-    if (snapshot_cost_s_ > share * (at_s - snapshot_at_s_)) return;
+    if (snapshot_cost_s_ > options_.history_share * (at_s - snapshot_at_s_)) return;
   }
   history_.push_back({simulation_->tick_index(), now, simulation_->snapshot()});
   if (options_.save_beside) history_.back().beside = options_.save_beside();
