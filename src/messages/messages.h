@@ -14,6 +14,7 @@
 #include "messages/sandlot_msgs.h"
 #include "messages/sandlot_panel.h"
 #include "messages/sandlot_radio.h"
+#include "messages/sandlot_soccer.h"
 #include "messages/sandlot_speech.h"
 #include "messages/sandlot_time.h"
 #include "messages/sensor_msgs.h"
