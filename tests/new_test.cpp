@@ -7,6 +7,7 @@
 #include <string>
 
 #include "command.h"
+#include "programs/test_sandbox.h"
 
 namespace sandlot::test {
 namespace {
@@ -85,6 +86,7 @@ TEST(SlowNew, ACppProjectBuildsAndPassesItsTest) {
 }
 
 TEST(New, ARobiosProgramArrives) {
+  SKIP_WITHOUT_SANDBOX();
   const TestFolder scratch;
   fs::permissions(scratch.path, fs::perms(0755));  // programs of root run as nobody
   const Printed made = in_folder(scratch.path, "$SANDLOT new controller wall --lang robios");

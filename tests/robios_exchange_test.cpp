@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "base/test_folder.h"
+#include "programs/test_sandbox.h"
 #include "sim/load/load.h"
 #include "sim/test_world.h"
 
@@ -94,6 +95,7 @@ class Exchange {
 };
 
 TEST(RobiosRadio, LosesMessagesAndBitsAsOftenAsASimFileSays) {
+  SKIP_WITHOUT_SANDBOX();
   const double bit_error = 0.002, loss = 0.1;
   TestFolder folder;
   fs::permissions(folder.path, fs::perms(0755));
@@ -128,12 +130,14 @@ TEST(RobiosRadio, LosesMessagesAndBitsAsOftenAsASimFileSays) {
 }
 
 TEST(RobiosExchanges, MessagesTakeTheTimeOfTheRadio) {
+  SKIP_WITHOUT_SANDBOX();
   const Exchange::Totals totals = Exchange(10, 40).run(2).second;
   EXPECT_GT(totals.received, 5'000);
   EXPECT_EQ(totals.received, totals.expected);
 }
 
 TEST(SlowRobiosExchanges, NothingComesFromTheFuture) {
+  SKIP_WITHOUT_SANDBOX();
   Exchange exchange(180, 0);
   const auto [hash, totals] = exchange.run(1);
   EXPECT_GE(totals.received + totals.pictures, 100'000);

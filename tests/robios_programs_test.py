@@ -9,6 +9,8 @@ import subprocess
 import tempfile
 import unittest
 
+import sandbox
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SANDLOT = os.path.abspath(os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/release/sandlot")))
 FOLDER = os.path.join(ROOT, "examples/robios")
@@ -118,6 +120,9 @@ class Maze:
 
 
 class Programs(unittest.TestCase):
+    def setUp(self):
+        sandbox.skip_without(self)
+
     def near(self, pose, x, y, tolerance_m, yaw=None, tolerance_rad=0.05):
         self.assertLess(math.hypot(pose[0] - x, pose[1] - y), tolerance_m, f"{pose} is not at {x} {y}")
         if yaw is not None:

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/program.h"
 #include "base/test_folder.h"
+#include "programs/test_sandbox.h"
 #include "sim/test_input.h"
 #include "sim/test_world.h"
 
@@ -27,6 +28,7 @@ class RobiosPrograms : public testing::Test {
     log::set_listener([this](log::Level, std::string_view text) { said += std::string(text) + "\n"; });
   }
   ~RobiosPrograms() override { log::set_listener({}); }
+  void SetUp() override { SKIP_WITHOUT_SANDBOX(); }
 
   model::Setup with(const std::vector<std::string>& programs,
                     const std::vector<std::pair<const char*, const char*>>& more = {}) const {

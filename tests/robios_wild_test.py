@@ -6,12 +6,15 @@ import subprocess
 import tempfile
 import unittest
 
+import sandbox
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SANDLOT = os.path.abspath(os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/release/sandlot")))
 
 
 class Found(unittest.TestCase):
     def setUp(self):
+        sandbox.skip_without(self)
         self.scratch = tempfile.TemporaryDirectory()
         self.addCleanup(self.scratch.cleanup)
         os.chmod(self.scratch.name, 0o755)  # programs of root run as nobody

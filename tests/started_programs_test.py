@@ -11,15 +11,13 @@ import threading
 import time
 import unittest
 
+import sandbox
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SANDLOT = os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/sandlot"))
 CLIENTS = os.path.join(ROOT, "clients/python")
 sys.path.insert(0, CLIENTS)
 from sandlot_client import Connection, Refused, Robot  # noqa: E402
-
-DOCTOR = subprocess.run([SANDLOT, "doctor", "--json"], cwd=ROOT, stdout=subprocess.PIPE, text=True).stdout
-NO_SANDBOX = [each["detail"] for each in json.loads(DOCTOR)
-              if each["name"] == "sandbox" and "run in sandboxes" not in each["detail"]]
 
 DRIVE = """
 from sandlot_client import Robot
@@ -33,8 +31,7 @@ with Robot() as rover:
 
 class Started(unittest.TestCase):
     def setUp(self):
-        if NO_SANDBOX:
-            self.skipTest(NO_SANDBOX[0])
+        sandbox.skip_without(self)
         self.scratch = tempfile.TemporaryDirectory()
         self.addCleanup(self.scratch.cleanup)
         os.chmod(self.scratch.name, 0o755)  # also for `nobody`, when the tests run as root

@@ -15,6 +15,7 @@
 
 #include "base/test_folder.h"
 #include "programs/process_tree.h"
+#include "programs/test_sandbox.h"
 
 namespace sandlot::programs {
 namespace {
@@ -53,7 +54,7 @@ Ran wait_for(Child child) {
 class Sandbox : public testing::Test {
  protected:
   void SetUp() override {
-    if (const auto version = sandbox_version(); !version) GTEST_SKIP() << version.error().text();
+    SKIP_WITHOUT_SANDBOX();
     auto made = PrivateFolder::make(program_user());
     ASSERT_TRUE(made) << made.error().text();
     sockets.emplace(std::move(*made));

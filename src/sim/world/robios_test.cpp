@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "base/test_folder.h"
+#include "programs/test_sandbox.h"
 #include "sim/session/session.h"
 #include "sim/test_input.h"
 #include "sim/test_world.h"
@@ -191,6 +192,7 @@ TEST_F(RobiosWorld, ProgramsThatMeanHarmEndAlone) {
 }
 
 TEST_F(RobiosWorld, FloodsAndForksStayInTheirSandbox) {
+  SKIP_WITHOUT_SANDBOX();
   std::size_t lines = 0;
   log::set_listener(
       [&](log::Level, std::string_view text) { lines += text.find("nobody wants") != text.npos; });
