@@ -59,7 +59,7 @@ struct RefereeTeam {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the team in the scenario, such as cyan."}, s.name);
     visit(Field{"title", "", "Name of the team's software."}, s.title);
-    visit(Field{"score", "1", "Goals."}, s.score);
+    visit(Field{"score", "1", "Number of goals scored."}, s.score);
     visit(Field{"robots", "1", "Robots that take part at present."}, s.robots);
     visit(Field{"yellow_cards", "1", "Yellow cards so far."}, s.yellow_cards);
     visit(Field{"red_cards", "1", "Red cards so far."}, s.red_cards);
