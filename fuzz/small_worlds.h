@@ -254,6 +254,7 @@ robots:
     devices:
       go: {kind: heading_drive}
       foot: {kind: kicker, pose: [0.14, 0, 0.1, 0, 0, 0], reach: 1, opening: 60 deg}
+      dribbler: {kind: ball_handler, reach: 1, opening: 90 deg, strength: 1}
       lamp: {kind: lamp, levels: [brightness, color]}
       eyes: {kind: agent_eyes}
       health: {kind: property_sensor, property: health}

@@ -29,6 +29,7 @@
   builder(basin)                  \
   builder(box_pile)               \
   builder(block)                  \
+  builder(soccer_field)           \
   builder(soccer_goal)            \
   builder(seesaw)                 \
   builder(stairs)

@@ -5,6 +5,7 @@
   device(ackermann_drive)       \
   device(agent_eyes)            \
   device(altimeter)             \
+  device(ball_handler)          \
   device(barometer)             \
   device(battery)               \
   device(body_velocity)         \

@@ -79,9 +79,9 @@ PairSurface combine(const model::Surface& a, const model::Surface& b) {
   pair.mu2 = std::min(mu2(a), mu2(b));
   pair.slip1 = a.slip1 + b.slip1;
   pair.slip2 = slip2(a) + slip2(b);
-  const model::Surface& bouncer = b.restitution > a.restitution ? b : a;
-  pair.restitution = bouncer.restitution;
-  pair.restitution_threshold_mps = bouncer.restitution_threshold_mps;
+  pair.restitution = std::max(a.restitution, b.restitution);
+  // The larger, as in Gazebo: nothing bounces off a net whose threshold is beyond all speeds.
+  pair.restitution_threshold_mps = std::max(a.restitution_threshold_mps, b.restitution_threshold_mps);
   combine_softness(a, b, pair);
   return pair;
 }

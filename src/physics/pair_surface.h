@@ -6,7 +6,7 @@
 /// Skin        multiplies what either law gives, along its axis. Where both have a skin, that with the
 ///             smaller ratio counts. Where the axis stands up from the surface (more than 71 deg) there is no
 ///             direction along: the value across holds both ways.
-/// Bounce      the larger restitution counts, above the threshold of the surface it came from.
+/// Bounce      the larger restitution counts, above the larger threshold.
 /// Softness    springs in series, dampers add; slip and soft_cfm are compliances in series: they add.
 ///             soft_erp and the fastest correction: the smaller.
 /// Rolling     resistances add. Belts: the difference of their velocities.

@@ -92,6 +92,16 @@ TEST(PairSurface, FrictionIsTheSmallerBounceTheLarger) {
   }
 }
 
+TEST(PairSurface, WhatHasAHighThresholdSwallowsTheBounceOfTheOther) {
+  Surface net, ball;
+  net.restitution_threshold_mps = 1000;
+  ball.restitution = 0.6;
+  for (const PairSurface& pair : {combine(net, ball), combine(ball, net)}) {
+    EXPECT_DOUBLE_EQ(pair.restitution, 0.6);
+    EXPECT_DOUBLE_EQ(pair.restitution_threshold_mps, 1000);
+  }
+}
+
 TEST(PairSurface, ADirectionBelongsToOneOfThem) {
   Surface wheel, floor;
   wheel.mu = 1, wheel.mu2 = 0.2, wheel.fdir1 = {1, 0, 0};

@@ -4,7 +4,8 @@
 ///          the posts is at x = 0.
 /// Size     inside, between the posts and below the bar. Default: the Middle Size League's, rule book of
 ///          2023.
-/// Touches  as whole walls, so that neither balls nor lasers pass the net; one sees its cords.
+/// Touches  as whole walls, so that neither balls nor lasers pass the net; one sees its cords. Nothing
+///          bounces off the net: what flies into it drops, and stays behind the line.
 #include <algorithm>
 #include <cmath>
 
@@ -74,11 +75,14 @@ Result<Built> build(const Spec& s) {
 
   // Walls of the net: their insides are flush with those of the posts. They begin behind the posts.
   const double length = s.depth_m + wall - s.post_m, middle_x = s.post_m + length / 2;
+  model::Surface slack;
+  if (!s.walls) slack.restitution_threshold_mps = 1000;
   const auto part = [&](Vec3 at, Vec3 size, bool touches) {
     add_part(m, frame,
              {.shape = Box{size},
               .X_LP = {at, {}},
               .color = net,
+              .surface = slack,
               .touches = touches,
               .shown = !touches || s.walls});
   };

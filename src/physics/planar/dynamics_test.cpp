@@ -114,6 +114,19 @@ TEST(PlanarGround, ABallRollsOnAndRollingResistanceSlowsIt) {
   EXPECT_NEAR(w.state(held).V_WB.linear.x, 1 - 0.002 * g / (1.4 * 0.1), 1e-9);
 }
 
+TEST(PlanarGround, AHollowBallIsSlowedLess) {
+  World w;
+  auto ball = std::make_shared<model::Model>(*solid(Sphere{0.11}, 0.43, 0, 0.8, 0.11));
+  ball->links[0].collisions[0].surface.rolling_resistance_m = 0.0056;
+  const double inertia = 2.0 / 3 * 0.43 * 0.11 * 0.11;
+  ball->links[0].inertial.moments = {inertia, inertia, inertia};
+  const InstanceId id = w.add(ball, at(0, 0));
+  kick(w, id, {1, 0, 0}, 0, 0.43);
+  w.run(100);
+  // a = rho g / r / (1 + 2/3)
+  EXPECT_NEAR(w.state(id).V_WB.linear.x, 1 - 0.6 * 0.0056 * g / 0.11, 1e-9);
+}
+
 TEST(PlanarGround, TheSmallerMuOfBodyAndFloorCounts) {
   World w;
   auto ice = model_of(Box{{2, 20, 0.2}}, true);

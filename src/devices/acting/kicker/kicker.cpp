@@ -80,6 +80,7 @@ Result<Kicker> Kicker::create(const DeviceBuild& build, Spec spec) {
                        "0 there, or the engine rigid");
   Kicker kicker{spec};
   kicker.body = build.body();
+  kicker.energy = build.energy;
   kicker.robot = build.instance.name;
   kicker.X_LS = build.decl.X_LS;
   kicker.kick = build.publish<msg::KickerState>(0, "kick");
@@ -115,8 +116,13 @@ void Kicker::actuate(PoolView<Kicker> pool, const Context& context) {
       if (impulse_Ns > 0) kicker.take(impulse_Ns, context);
     }
     if (state.charge < 1) {
-      const double time_s = kicker.spec.recharge_time_s;
-      state.charge = time_s > 0 ? std::min(1.0, state.charge + context.tick.s() / time_s) : 1;
+      const double time_s = kicker.spec.recharge_time_s, room = 1 - state.charge;
+      double filled = time_s > 0 ? std::min(room, context.tick.s() / time_s) : room;
+      if (kicker.energy && kicker.spec.energy_J > 0) {
+        kicker.energy->draw(filled * kicker.spec.energy_J);
+        filled *= kicker.energy->state.share;
+      }
+      state.charge = filled < room ? state.charge + filled : 1;
     }
   }
 }

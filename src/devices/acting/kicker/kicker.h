@@ -9,7 +9,8 @@
 ///          stands still takes it too: the robot is pushed back.
 /// Energy   The store fills linearly in `recharge_time`, first full when the robot comes into the world. A kick of J takes the
 ///          part (J / max_impulse)^2 of a full store, as the energy of a given mass grows. With less than that in store
-///          the kick is weaker: max_impulse * sqrt(charge). A kick into the air takes as much.
+///          the kick is weaker: max_impulse * sqrt(charge). A kick into the air takes as much. With `energy` the robot's battery,
+///          if it has one, pays what fills the store: it fills by the share that the battery delivered in the tick before.
 /// Output   sandlot_msgs/KickerState at `rate`: charge, ready, kicks, hits, impulse and name of what was met.
 /// Time     a command acts in the first physics step of its tick: force J / h over that step of h.
 /// Noise    none; see the common key command_errors.
@@ -29,6 +30,7 @@ struct Spec {
   double opening_rad = 0;
   double elevation_rad = 0;
   double recharge_time_s = 1;
+  double energy_J = 0;
   double rate_hz = 0;
 
   static void fields(auto& s, auto&& visit) {
@@ -46,6 +48,9 @@ struct Spec {
     visit(Field{"recharge_time", "s", "Time in which the empty store is filled; 0: at once.", 0, 1e6,
                 Field::tunable},
           s.recharge_time_s);
+    visit(Field{"energy", "J", "Energy of the full store, which the battery of the robot pays; 0: none.", 0,
+                1e9, Field::tunable},
+          s.energy_J);
     visit(Field{"rate", "Hz", "Messages per second; 0: one in every tick.", 0, 1e5}, s.rate_hz);
   }
 };
@@ -74,6 +79,7 @@ struct Kicker {
   State state;
 
   BodyId body;
+  EnergyMeter* energy = nullptr;
   std::string robot;
   Pose X_LS;
   Topic<msg::KickerState>* kick = nullptr;
