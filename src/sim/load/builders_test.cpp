@@ -131,7 +131,8 @@ TEST_P(EachBuilder, IsTheSameWhenItComesFromAFile) {
   Diagnostics diagnostics;
   const auto direct = load_instance("builder:" + GetParam(), GetParam(), {}, diagnostics);
   ASSERT_TRUE(direct);
-  if (GetParam() == "terrain" || GetParam() == "basin") return;  // have no file: convert makes a mesh of them
+  // These have no file: convert makes a mesh of the first two.
+  if (GetParam() == "terrain" || GetParam() == "basin" || GetParam() == "soccer_field") return;
   auto xml = formats::sdf_of(*direct, diagnostics);
   ASSERT_TRUE(xml) << xml.error().text();
   const std::string file = testing::TempDir() + "builder_" + GetParam() + ".sdf";

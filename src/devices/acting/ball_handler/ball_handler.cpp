@@ -1,6 +1,7 @@
 #include "devices/acting/ball_handler/ball_handler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,17 +14,20 @@ namespace {
 constexpr double settling_s = 0.08;
 /// Share of a difference of velocities that is taken away in a physics step.
 constexpr double gain = 0.5;
+/// Largest distance of a ball's middle from the origin of its link.
+constexpr double margin_m = 0.5;
 
 /// The sphere that a ball is.
 const model::Collision* ball_of(const BodyName& name) {
   if (!name.link || !name.moves || name.link->collisions.size() != 1) return nullptr;
   const model::Collision& skin = name.link->collisions.front();
-  return skin.surface.touches && std::holds_alternative<Sphere>(skin.shape) ? &skin : nullptr;
+  const bool is_ball = skin.surface.touches && std::holds_alternative<Sphere>(skin.shape);
+  return is_ball && norm(skin.X_LC.p) <= margin_m ? &skin : nullptr;
 }
 
-Vec3 centre_of_mass(const Engine& engine, BodyId body) {
+Vec3 centre_of_mass(const Engine& engine, BodyId body, const Pose& X_WB) {
   const model::Link* const link = engine.name(body).link;
-  return engine.states()[body.index].X_WB * (link ? link->inertial.X_LCo.p : Vec3{});
+  return X_WB * (link ? link->inertial.X_LCo.p : Vec3{});
 }
 
 Vec3 velocity_at(const BodyState& body, Vec3 point_W) {
@@ -69,19 +73,22 @@ bool BallHandler::fits() const {
 
 /// The ball that is held if it is still within reach, else the nearest that is: ball, and the names in State.
 void BallHandler::find_ball(const Engine& engine) {
-  const Pose X_WS = engine.states()[body.index].X_WB * X_LS;
-  const OverlapQuery near{X_WS.p, spec.reach_m};
-  found.clear(), ends.clear();
-  engine.overlaps(std::span(&near, 1), found, ends);
+  const auto bodies = engine.states();
+  const Pose X_WS = bodies[body.index].X_WB * X_LS;
+  const double farthest_m = spec.reach_m + margin_m;
   double nearest = std::numeric_limits<double>::infinity();
   BodyId best;
   bool kept = false;
-  for (const std::uint32_t index : found) {
+  for (std::uint32_t index = 0; index < bodies.size(); ++index) {
+    // Two subtractions tell nearly all bodies: much less than a query of shapes, of which wheels with rollers have many.
+    if (!(std::abs(bodies[index].X_WB.p.x - X_WS.p.x) < farthest_m &&
+          std::abs(bodies[index].X_WB.p.y - X_WS.p.y) < farthest_m))
+      continue;
     const BodyId id = engine.body_at(index);
     const BodyName name = engine.name(id);
     const model::Collision* const skin = ball_of(name);
     if (!skin || name.instance == robot) continue;
-    const Vec3 at = inverse(X_WS) * (engine.states()[index].X_WB * skin->X_LC.p);
+    const Vec3 at = inverse(X_WS) * (bodies[index].X_WB * skin->X_LC.p);
     const double distance = math::hypot(at.x, at.y);
     if (distance > spec.reach_m || std::abs(math::atan2(at.y, at.x)) > spec.opening_rad / 2) continue;
     if (!planar && std::abs(at.z) > std::get<Sphere>(skin->shape).radius_m) continue;
@@ -128,7 +135,10 @@ void BallHandler::actuate(PoolView<BallHandler> pool, const Context& context) {
 
 void BallHandler::pull(const Context& context, double h_s) {
   const Engine& engine = context.engine;
-  const BodyState &carrier = engine.states()[body.index], &held = engine.states()[ball.index];
+  const std::array indices{body.index, ball.index};
+  std::array<BodyState, 2> states;
+  engine.states_of(indices, states);
+  const BodyState &carrier = states[0], &held = states[1];
   const model::Link& link = *engine.name(ball).link;
   const model::Collision& skin = link.collisions.front();
   const Vec3 p = held.X_WB * skin.X_LC.p;
@@ -147,9 +157,9 @@ void BallHandler::pull(const Context& context, double h_s) {
   }
   state.impulse_Ns += norm(force_N) * h_s;
   context.actuation.wrenches.push_back(
-      {ball, force_N, torque_Nm + cross(p - centre_of_mass(engine, ball), force_N)});
+      {ball, force_N, torque_Nm + cross(p - centre_of_mass(engine, ball, held.X_WB), force_N)});
   context.actuation.wrenches.push_back(
-      {body, -force_N, -torque_Nm - cross(p - centre_of_mass(engine, body), force_N)});
+      {body, -force_N, -torque_Nm - cross(p - centre_of_mass(engine, body, carrier.X_WB), force_N)});
 }
 
 void BallHandler::pre_substep(PoolView<BallHandler> pool, const Context& context, double h_s) {

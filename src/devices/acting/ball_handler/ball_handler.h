@@ -4,7 +4,7 @@
 /// Frame    the device's frame S: x points to where the ball is held. It belongs in the middle of the robot, at the height of
 ///          the ball's middle.
 /// Command  level `hold`: std_msgs/Float64, the strength from 0 (released) to 1; it holds until the next command.
-/// Holds    a ball: a link whose only collision is a sphere, of another robot or object, that forces move. Its middle must lie
+/// Holds    a ball: a link whose only collision is a sphere about its origin, of another robot or object, that forces move. Its middle must lie
 ///          within `reach` of S's origin, seen from above, and within `opening` about x; in height no farther from S than
 ///          its radius. Of several the nearest.
 /// Acts     in each physics step of h, seen from above, with the ball's middle p, mass m, moment of inertia I and radius r,
@@ -22,8 +22,8 @@
 /// Noise    none; see the common key command_errors.
 /// Limits   the wheels' own inertia, and slip between them and the ball: the force acts at the middle of the ball. It presses
 ///          on nothing: the ball is held free of the body. A spin about the vertical is left alone.
-/// Cost     a comparison while released; while active a query of a ball per tick, and per physics step and ball held two
-///          wrenches. No allocation after the first query.
+/// Cost     a comparison while released; while active two subtractions per body of the world and tick, and per physics step
+///          and ball held two wrenches. No allocation.
 /// Errors   hold_distance beyond the reach.
 #include "devices/kind.h"
 #include "messages/messages.h"
@@ -89,8 +89,7 @@ struct BallHandler {
   bool planar = false;
   Topic<msg::BallHandlerState>* hold = nullptr;
   Topic<msg::Float64>* command = nullptr;
-  BodyId ball;                             ///< what is held, found again in each tick
-  std::vector<std::uint32_t> found, ends;  ///< of the query, kept for their memory
+  BodyId ball;  ///< what is held, found again in each tick
 
   static Result<BallHandler> create(const DeviceBuild& build, Spec spec);
   static void actuate(PoolView<BallHandler> pool, const Context& context);
