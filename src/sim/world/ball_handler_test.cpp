@@ -62,8 +62,9 @@ TEST(BallHandler, HoldsTheBallStraightOnAndInATurnWhileItRolls) {
     EXPECT_TRUE(handler(*simulation).engaged);
     EXPECT_EQ(handler(*simulation).object, "ball");
     EXPECT_NEAR(value(*simulation, "ball.twist.linear.x"), 2, 1e-3);
-    if (engine == std::string("rigid"))
+    if (engine == std::string("rigid")) {
       EXPECT_NEAR(value(*simulation, "ball.twist.angular.y"), 2 / radius_m, 0.2) << "it rolls";
+    }
     // At constant speed it takes what rolling resistance takes: m b.
     EXPECT_NEAR(handler(*simulation).force, ball_kg * rolling_mps2, 0.03 * ball_kg * rolling_mps2);
     EXPECT_NEAR(ball_place(*simulation).x, 0.335, 0.005);
@@ -143,7 +144,7 @@ TEST(BallHandler, GivesAndTakesTheSameMomentum) {
     model::Setup setup = dribbler(engine, 2);
     setup.gravity = {};
     model::Instance& robot = setup.instances[1];
-    robot.devices.erase(robot.devices.begin());  // nothing moves it but the ball
+    robot.devices.erase(0);  // nothing moves it but the ball
     auto slick = std::make_shared<model::Model>(*robot.model);
     slick->links[0].collisions[0].surface.mu = slick->links[0].collisions[0].surface.mu2 = 0;
     robot.model = slick;
@@ -180,7 +181,7 @@ TEST(Kicker, TheBatteryPaysWhatFillsItsStore) {
   model::Setup setup = dribbler("planar", 2);
   model::Instance& robot = setup.instances[1];
   robot.devices.push_back(device("battery", "battery", map({{"capacity", "1000"}})));
-  robot.devices[2] = device(
+  robot.devices.edit()[2] = device(
       "foot", "kicker",
       map({{"max_impulse", "2"}, {"reach", "0.1"}, {"energy", "80"}, {"recharge_time", "0.5"}}),
       {{0.2, 0, -0.09}, {}});
