@@ -11,7 +11,7 @@
 namespace sandlot {
 namespace {
 
-std::unique_ptr<Simulation> world(const std::string& engine, const std::string& rest) {
+std::unique_ptr<Simulation> soccer_world(const std::string& engine, const std::string& rest) {
   Diagnostics diagnostics;
   LoadOptions options;
   options.text = "version: 1\nname: t\nphysics: " + engine + "\ntime: {step: 4 ms, substeps: 2}\n" + rest;
@@ -20,8 +20,8 @@ std::unique_ptr<Simulation> world(const std::string& engine, const std::string& 
   return setup ? test::build(std::move(*setup)) : nullptr;
 }
 
-Vec3 place_of(const Simulation& simulation, const char* name) {
-  return simulation.engine().pose(*simulation.find_instance(name)).p;
+Vec3 ball_place(const Simulation& simulation) {
+  return simulation.engine().pose(*simulation.find_instance("ball")).p;
 }
 
 Result<Built> field(const std::string& words) {
@@ -100,12 +100,12 @@ TEST(SoccerField, TakesDimensionsThatAreGivenAndTheOthersFromItsSize) {
 
 /// A goal at x = 11 and the ball of the league, shot.
 std::unique_ptr<Simulation> shot(const std::string& engine, Vec3 from, Vec3 velocity) {
-  auto simulation = world(engine,
-                          "things:\n  - {name: field, model: {builder: soccer_field}}\n"
-                          "  - {name: goal, model: {builder: soccer_goal}, pose: [11, 0, 0]}\n"
-                          "  - {name: ball, model: models/msl_ball/model.sdf, pose: [" +
-                              std::to_string(from.x) + ", " + std::to_string(from.y) + ", " +
-                              std::to_string(from.z) + ", 0, 0, 0]}\n");
+  auto simulation = soccer_world(engine,
+                                 "things:\n  - {name: field, model: {builder: soccer_field}}\n"
+                                 "  - {name: goal, model: {builder: soccer_goal}, pose: [11, 0, 0]}\n"
+                                 "  - {name: ball, model: models/msl_ball/model.sdf, pose: [" +
+                                     std::to_string(from.x) + ", " + std::to_string(from.y) + ", " +
+                                     std::to_string(from.z) + ", 0, 0, 0]}\n");
   if (simulation) simulation->submit(VelocityRequest{"ball", {velocity, {}}});
   return simulation;
 }
@@ -127,7 +127,7 @@ TEST(SoccerGoal, HoldsWhatIsShotIntoItAndKeepsOutWhatHitsItFromOutside) {
       bool was_in = false;
       for (int i = 0; i < 100; ++i) {
         test::advance(*simulation, 10);
-        const Vec3 p = place_of(*simulation, "ball");
+        const Vec3 p = ball_place(*simulation);
         const bool in = p.x > 11 + 0.11 && p.x < 11.6 && std::abs(p.y) < 1.2 && p.z < 1;
         EXPECT_TRUE(s.scores ? in || !was_in : !in) << engine << ": out again, or through the net " << p.x;
         was_in = was_in || in;
@@ -139,7 +139,7 @@ TEST(SoccerGoal, HoldsWhatIsShotIntoItAndKeepsOutWhatHitsItFromOutside) {
 
 TEST(SoccerBall, RollsOutAsFarAsItsDeceleration) {
   for (const char* const engine : {"rigid", "planar"}) {
-    const auto simulation = world(
+    const auto simulation = soccer_world(
         engine, "things: [{name: ball, model: models/msl_ball/model.sdf, pose: [0, 0, 0]}]\n");
     ASSERT_TRUE(simulation);
     // Rolling from the start: w = v / r about y.
@@ -147,24 +147,24 @@ TEST(SoccerBall, RollsOutAsFarAsItsDeceleration) {
     const double a = 0.6 * 0.0056 * 9.81 / 0.11;
     EXPECT_NEAR(a, 0.3, 1e-3);
     test::advance(*simulation, static_cast<int>((2 / a + 0.5) / 0.004));
-    EXPECT_NEAR(place_of(*simulation, "ball").x, 2 * 2 / (2 * a), 0.02 * 2 * 2 / (2 * a)) << engine;
+    EXPECT_NEAR(ball_place(*simulation).x, 2 * 2 / (2 * a), 0.02 * 2 * 2 / (2 * a)) << engine;
   }
 }
 
 TEST(SoccerBall, BouncesToTheSquareOfItsRestitution) {
-  const auto simulation = world(
+  const auto simulation = soccer_world(
       "rigid", "things: [{name: ball, model: models/msl_ball/model.sdf, pose: [0, 0, 1, 0, 0, 0]}]\n");
   ASSERT_TRUE(simulation);
   // The file's pose is added: the ball begins 1 m above the ground.
   double lowest = 2, highest = 0;
-  const double start = place_of(*simulation, "ball").z;
+  const double start = ball_place(*simulation).z;
   int ticks = 0;
-  for (; ticks < 300 && place_of(*simulation, "ball").z <= lowest; ++ticks) {
-    lowest = place_of(*simulation, "ball").z;
+  for (; ticks < 300 && ball_place(*simulation).z <= lowest; ++ticks) {
+    lowest = ball_place(*simulation).z;
     test::advance(*simulation, 1);
   }
   for (int i = 0; i < 100; ++i) {
-    highest = std::max(highest, place_of(*simulation, "ball").z);
+    highest = std::max(highest, ball_place(*simulation).z);
     test::advance(*simulation, 1);
   }
   // It falls by h, hits the ground at sqrt(2 g h) and rises by e^2 h. A step of 2 ms is 0.4 % of the fall.
