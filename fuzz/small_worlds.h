@@ -264,6 +264,13 @@ robots:
     properties: {health: {value: 100, min: 0, max: 100}, age: 3}
     controller: {kind: sequence, steps: [{at: 0.1 s, orders: {foot: 0.1, go: [0.3, 1]}}, {at: 0.29 s, orders: {foot: 0.05}}]}
 )"},
+    {"soccer", "planar", R"(
+rules: [{kind: referee, stop_time: 20 ms, prepare_min: 20 ms, prepare_max: 50 ms, take_time: 0.1 s}]
+things: [{name: ball, model: msl_ball, pose: [0, 0, 0.11]}]
+robots:
+  - {name: cyan1, team: cyan, model: scout, pose: [-3, 0, 0], devices: {referee: {kind: referee_link}}}
+  - {name: magenta2, team: magenta, model: scout, pose: [2, 0, 0], devices: {referee: {kind: referee_link}}}
+)"},
     {"shapes", "rigid", R"(
 things: [{name: ball, model: msl_ball, pose: [0, 0, 0.5]}]
 )"},

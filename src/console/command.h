@@ -123,6 +123,7 @@ CommandResult cmd_level(CommandCall& call);
 CommandResult cmd_command(CommandCall& call);
 CommandResult cmd_sample(CommandCall& call);
 CommandResult cmd_press(CommandCall& call);
+CommandResult cmd_referee(CommandCall& call);
 CommandResult cmd_call(CommandCall& call);
 CommandResult cmd_values(CommandCall& call);
 CommandResult cmd_events(CommandCall& call);

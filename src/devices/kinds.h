@@ -47,6 +47,7 @@
   device(radio)                 \
   device(range_bearing)         \
   device(range_finder)          \
+  device(referee_link)          \
   device(rgbd_camera)           \
   device(screen)                \
   device(segmentation_camera)   \

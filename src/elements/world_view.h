@@ -3,14 +3,17 @@
 ///
 /// Names are looked up when they are needed, since entities come and go; a pointer from here holds for one phase of one tick.
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/result.h"
 #include "base/time.h"
-#include "messages/topic.h"
+#include "messages/command_queue.h"
 #include "model/model.h"
 #include "physics/engine.h"
 
@@ -68,10 +71,35 @@ class WorldView {
 /// Inputs of an element's construction.
 class ElementBuild {
  public:
-  ElementBuild(const model::ElementDecl& declared, const WorldView& view) : decl(declared), world(view) {}
+  /// @param path  "rules/referee"
+  ElementBuild(const model::ElementDecl& declared, std::string its_path, const WorldView& view)
+      : decl(declared), own_path(std::move(its_path)), world(view) {}
   virtual ~ElementBuild() = default;
   const model::ElementDecl& decl;
+  std::string own_path;
   const WorldView& world;
+
+  /// A topic of a rule, `/rules/referee/<name>`; it lives as long as the rule, and is part of its State.
+  template <class M>
+  Topic<M>* publish(const char* name) const {
+    auto made = std::make_unique<Topic<M>>("/" + own_path + "/" + name);
+    Topic<M>* const topic = made.get();
+    made_.topics.push_back(std::move(made));
+    return topic;
+  }
+  /// Orders to a rule, `/rules/referee/<name>/command`: a command slot that keeps several of them.
+  template <class M>
+  CommandQueue<M>* accept_queue(const char* name, std::size_t limit) const {
+    auto made = std::make_unique<CommandQueue<M>>("/" + own_path + "/" + name + "/command", limit);
+    CommandQueue<M>* const slot = made.get();
+    made_.commands.push_back(std::move(made));
+    return slot;
+  }
+  /// What the element has made of these.
+  struct Made {
+    std::vector<std::unique_ptr<TopicBase>> topics, commands;
+  };
+  Made take_made() const { return std::move(made_); }
 
   /// Errors name the nearest entity. An entity may be gone when a world is restored: then there is none.
   virtual Status expect_entity(std::string_view name, const char* key) const = 0;
@@ -94,6 +122,9 @@ class ElementBuild {
     return {std::move(what), std::move(fix), node && node->place().file ? node->place() : decl.place,
             std::string("/") + key};
   }
+
+ private:
+  mutable Made made_;
 };
 
 /// Two bodies that touched in a sub-step of the tick.

@@ -9,6 +9,7 @@
   rule(impact)              \
   rule(path)                \
   rule(place)               \
+  rule(referee)             \
   rule(set)                 \
   rule(statistics)          \
   rule(zone)

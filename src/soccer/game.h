@@ -131,7 +131,7 @@ struct RobotRecord {
   double pushed_Ns = 0, goal_area_s = 0;
   Vec3 velocity_mps;  ///< in the tick before
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"who", "", "Robot."}, s.who);
+    visit(Field{"who", "", "Robot that is remembered."}, s.who);
     visit(Field{"absence", "", "Why the robot is out."}, s.absence);
     visit(Field{"away", "s", "Time for which it has been out."}, s.away_s);
     visit(Field{"yellow", "1", "Yellow cards that count."}, s.yellow);
@@ -241,7 +241,7 @@ struct State {
     visit(Field{"anchor", "m", "Place from which the ball has not gone far."}, s.anchor_m);
     visit(Field{"anchor_time", "s", "Time for which it has been there."}, s.anchor_s);
     visit(Field{"score", "1", "Goals of each team."}, s.score);
-    visit(Field{"teams", "", "Teams."}, s.teams);
+    visit(Field{"teams", "", "Records of both teams."}, s.teams);
     visit(Field{"touches", "", "Touches of the ball."}, s.touches);
     visit(Field{"robots", "", "Robots that have taken part."}, s.robots);
     visit(Field{"decisions", "1", "Decisions so far."}, s.decisions);

@@ -83,6 +83,15 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
             made.orders);
     }
   }
+  for (const WorldElements::Part& part : simulation.elements().parts()) {
+    for (const auto& topic : part.topics) out->topics.push_back({topic->name(), &topic->info(), part.path});
+    for (const auto& slot : part.commands) {
+      const std::string& name = slot->name();  // "/rules/referee/word/command"
+      const std::size_t begin = part.path.size() + 2;
+      out->slots.push_back(
+          {name, part.path, name.substr(begin, name.rfind('/') - begin), true, &slot->info(), slot->clone()});
+    }
+  }
   for (const Simulation::Team& team : simulation.teams()) {
     add_published(team.programs);
     for (const auto& program : team.programs) {

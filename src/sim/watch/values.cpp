@@ -70,6 +70,8 @@ bool NamedValue::resolve() {
   }
   if (const WorldElements::Part* const part = simulation_->elements().find_part(thing))
     return resolve_element(*part->element);
+  if (const TopicBase* const topic = simulation_->elements().find_own_topic(thing))
+    return resolve_topic(*topic);
   const Simulation::Entity* const entity = simulation_->find_entity(first_part(thing));
   if (!entity) {
     if (rest == "criterion" && resolve_criterion(thing)) return true;

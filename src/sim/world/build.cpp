@@ -270,7 +270,7 @@ const TopicBase* Simulation::find_topic(std::string_view name) const {
         for (const Outputs::Output& output : program->outputs->all())
           if (std::string_view(output.topic->name()).substr(1) == name.substr(begin))
             return output.topic.get();
-  return nullptr;
+  return elements_.find_own_topic(name);
 }
 
 namespace {

@@ -40,6 +40,7 @@ struct Simulation::Processor {
   Result<Entity*> entity_named(const std::string& name);
   Result<Device*> device_named(const std::string& path);
   Status deliver(Device& device, std::string_view level, const CommandRequest& command);
+  Status deliver(TopicBase& of_rule, const CommandRequest& command) const;
   Status set_errors(Entity* entity, std::string_view field, const Node& value);
   static Status set_property(model::PropertyDecl& property, const Node& value);
 };
@@ -71,7 +72,10 @@ Status Simulation::Processor::operator()(const CommandRequest& command) {
       level = target.substr(slash + 1);
     }
   }
-  Status status = device ? deliver(*device, level, command) : no_device(command.target);
+  TopicBase* const of_rule = device ? nullptr : sim.elements_.command_slot(target, command.type);
+  Status status = device    ? deliver(*device, level, command)
+                  : of_rule ? deliver(*of_rule, command)
+                            : no_device(command.target);
   if (!status) sim.commands_.count_refused();
   return status;
 }
@@ -84,6 +88,16 @@ Status Simulation::Processor::deliver(Device& device, std::string_view level, co
     return Error{"'" + command.target + "' is driven from outside"};
   SL_TRY(sim.devices_.deliver(device, *slot, command.bytes, sim.now_));
   if (!source.is_inside()) sim.commands_.override_manually(device, sim.now_);
+  return {};
+}
+
+/// Orders to a rule are for those who run the world, and for other rules: neither for programs nor for who drives a robot.
+Status Simulation::Processor::deliver(TopicBase& of_rule, const CommandRequest& command) const {
+  if (source.kind != Source::Kind::admin && source.kind != Source::Kind::rule)
+    return Error{"'" + command.target + "' takes orders from administrators alone"};
+  SL_TRY(of_rule.assign(command.bytes));
+  of_rule.stamp = sim.now_;
+  ++of_rule.count;
   return {};
 }
 

@@ -135,7 +135,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   const TopicBase* find_topic(std::string_view name) const override;
   std::vector<const TopicBase*> topics() const;
   /// Calls visit(topic, path of the device or program that publishes it) for each topic: by entity in creation order, its
-  /// devices' and then its programs', and in the end those of teams.
+  /// devices' and then its programs', then those of teams, in the end those of rules.
   template <class Visit>
   void for_each_topic(Visit&& visit) const {
     const auto published = [&](const ProgramEntries& programs) {
@@ -149,6 +149,8 @@ class Simulation final : public SimulationParts, public TopicFinder {
       published(entity->programs);
     }
     for (const Team& team : teams()) published(team.programs);
+    for (const WorldElements::Part& part : elements_.parts())
+      for (const auto& topic : part.topics) visit(*topic, part.path);
   }
   /// The instances of the world now, in creation order.
   std::vector<const model::Instance*> instances() const;

@@ -47,9 +47,9 @@ Error at_declaration(Error error, const model::ElementDecl& decl) {
 
 /// What elements may ask while they are built.
 struct WorldElements::Build final : ElementBuild {
-  Build(const model::ElementDecl& declared, const WorldElements& all, bool world_restored,
-        std::span<const std::string> known_before, std::vector<std::string>& known)
-      : ElementBuild(declared, all),
+  Build(const model::ElementDecl& declared, std::string its_path, const WorldElements& all,
+        bool world_restored, std::span<const std::string> known_before, std::vector<std::string>& known)
+      : ElementBuild(declared, std::move(its_path), all),
         elements(all),
         restored(world_restored),
         before(known_before),
@@ -157,10 +157,13 @@ Status WorldElements::build(const SimulationOptions& options, bool restored,
   SL_TRY(check_names(setup.markers, "markers"));
   SL_TRY(check_names(setup.media, "media"));
   SL_TRY(check_names(setup.rules, "rules"));
-  const auto init = [&](auto& element, const model::ElementDecl& decl) -> Status {
-    const Build build(decl, *this, restored, before, addresses);
+  ElementBuild::Made made;  // of the element that was made last
+  const auto init = [&](const char* list, auto& element, const model::ElementDecl& decl) -> Status {
+    const Build build(decl, std::string(list) + "/" + sanitised(decl.name), *this, restored, before,
+                      addresses);
     Status status = element.init(build);
     if (!status) return at_declaration(std::move(status.error()), decl);
+    made = build.take_made();
     return {};
   };
   const auto add_part = [&](const char* list, const model::ElementDecl& decl, Element& element,
@@ -168,24 +171,26 @@ Status WorldElements::build(const SimulationOptions& options, bool restored,
     Part part{
         std::string(list) + "/" + sanitised(decl.name), 0, &element, kind.name, kind.help, kind.describe};
     part.key = entity_key(part.path);
+    part.topics = std::move(made.topics);
+    part.commands = std::move(made.commands);
     parts_.push_back(std::move(part));
   };
   for (const model::ElementDecl& decl : setup.markers) {
     SL_ASSIGN(const MarkerKind* const kind, find_kind<MarkerKind>(decl, marker_kinds(), {}, "marker"));
     NamedMarker marker{sanitised(decl.name), kind->create()};
-    SL_TRY(init(*marker.marker, decl));
+    SL_TRY(init("markers", *marker.marker, decl));
     markers_.push_back(std::move(marker));
   }
   for (const model::ElementDecl& decl : setup.media) {
     SL_ASSIGN(const MediumKind* const kind, find_kind(decl, medium_kinds(), options.extra_media, "medium"));
     media_.push_back({kind->create(), kind, {}, {}, {}});
-    SL_TRY(init(*media_.back().medium, decl));
+    SL_TRY(init("media", *media_.back().medium, decl));
     add_part("media", decl, *media_.back().medium, *kind);
   }
   for (const model::ElementDecl& decl : setup.rules) {
     SL_ASSIGN(const RuleKind* const kind, find_kind(decl, rule_kinds(), options.extra_rules, "rule"));
     rules_.push_back({kind->create(), kind, {}, 0});
-    SL_TRY(init(*rules_.back().rule, decl));
+    SL_TRY(init("rules", *rules_.back().rule, decl));
     add_part("rules", decl, *rules_.back().rule, *kind);
     touches_wanted_ = std::max(touches_wanted_, kind->touches);
   }
@@ -354,6 +359,24 @@ const WorldElements::Part* WorldElements::find_part(std::string_view path) const
   return nullptr;
 }
 
+const TopicBase* WorldElements::find_own_topic(std::string_view name) const {
+  const std::string_view bare = name.substr(name.substr(0, 1) == "/" ? 1 : 0);
+  for (const Part& part : parts_)
+    for (const auto& topic : part.topics)
+      if (std::string_view(topic->name()).substr(1) == bare || part.path == bare) return topic.get();
+  return nullptr;
+}
+
+TopicBase* WorldElements::command_slot(std::string_view target, std::string_view type) {
+  for (const Part& part : parts_)
+    for (const auto& slot : part.commands) {
+      const std::string_view name = std::string_view(slot->name()).substr(1);
+      const bool named = part.path == target || name.substr(0, name.rfind('/')) == target;
+      if (named && type == slot->type()) return slot.get();
+    }
+  return nullptr;
+}
+
 const WorldElements::NamedRule* WorldElements::rule_of(const Part& part) const {
   const auto found = std::find_if(rules_.begin(), rules_.end(),
                                   [&](const NamedRule& each) { return each.rule.get() == part.element; });
@@ -362,6 +385,8 @@ const WorldElements::NamedRule* WorldElements::rule_of(const Part& part) const {
 
 void WorldElements::save(const Part& part, ByteWriter& w) const {
   part.element->save(w);
+  for (const auto* const slots : {&part.topics, &part.commands})
+    for (const auto& slot : *slots) slot->save(w);
   const NamedRule* const rule = rule_of(part);
   if (!rule) return;
   write(w, rule->number);
@@ -376,6 +401,8 @@ void WorldElements::save(const Part& part, ByteWriter& w) const {
 
 bool WorldElements::load(const Part& part, ByteReader& r) {
   part.element->load(r);
+  for (const auto* const slots : {&part.topics, &part.commands})
+    for (const auto& slot : *slots) slot->load(r);
   const NamedRule* const rule = rule_of(part);
   if (!rule) return r.ok();
   NamedRule& loaded = rules_[static_cast<std::size_t>(rule - rules_.data())];

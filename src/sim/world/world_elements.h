@@ -77,10 +77,16 @@ class WorldElements final : public WorldView {
     const char* kind = "";
     const char* help = "";  ///< of the kind
     std::vector<FieldInfo> (*describe)() = nullptr;
+    std::vector<std::unique_ptr<TopicBase>> topics = {},
+                                            commands = {};  ///< of a rule: what it publishes and takes
   };
   /// Media, then rules, each in the order of the file.
   std::span<const Part> parts() const { return parts_; }
   const Part* find_part(std::string_view path) const;
+  /// Topic of a rule, "/rules/referee/state", or "rules/referee" for its first one; null: there is none.
+  const TopicBase* find_own_topic(std::string_view name) const;
+  /// Slot of a rule for orders to "rules/referee" or "rules/referee/word"; null: there is none of that type.
+  TopicBase* command_slot(std::string_view target, std::string_view type);
   void save(const Part& part, ByteWriter& w) const;
   /// False: the bytes do not fit.
   bool load(const Part& part, ByteReader& r);

@@ -280,6 +280,12 @@ model::Setup everything() {
         device("lamp", "infrared", map({{"half_angle", "90 deg"}, {"acceptance", "180 deg"}})));
     each.devices.push_back(device("buoy", "range_bearing", map({{"medium", "ether"}, {"beacon_rate", "3"}})));
   }
+  std::string team = "cyan";
+  for (model::Instance& each : setup.instances) {
+    if (!each.is_robot) continue;
+    each.devices.push_back(device("referee", "referee_link"));
+    each.team = std::exchange(team, "magenta");
+  }
   setup.instances.push_back(placed("ball", one_shape("ball", Sphere{0.1}, 0.5), {{0, 0, 0.1}, {}}));
   setup.markers.push_back(
       element("disc", with(map({{"radius", "1.5"}}), "centre", numbers({2, 0})), "right"));
@@ -287,6 +293,8 @@ model::Setup everything() {
   goals.set("goals", list({map({{"marker", "right"}})}));
   goals.set("place", numbers({0, 0, 0.1}));
   setup.rules.push_back(element("goals", goals));
+  setup.rules.push_back(
+      element("referee", map({{"stop_time", "0.1"}, {"prepare_max", "0.2"}, {"take_time", "0.1"}})));
   setup.rules.push_back(element("impact", map({{"threshold", "0.001"}})));
   setup.rules.push_back(element("place", with(map({{"object", "ball"}, {"when", "ball.pose.x > 0.4"}}),
                                               "place", numbers({2, 0, 0.1}))));
@@ -331,6 +339,8 @@ TEST(WorldElements, GoOnFromASnapshotInAnyNumberOfThreads) {
   ASSERT_GT(value(*whole, "media/air.words"), 0);
   ASSERT_GT(value(*whole, "media/ether.delivered"), 3);
   ASSERT_GT(value(*whole, "media/light.delivered"), 3);
+  ASSERT_GT(value(*whole, "rules/referee.decisions"), 2);
+  ASSERT_GT(value(*whole, "/rover1/referee/state.commands"), 2);
   for (const std::uint64_t at : {24u, 33u, 48u}) {
     const auto first = build(everything());
     play(*first, at);
