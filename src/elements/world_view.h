@@ -73,11 +73,11 @@ class ElementBuild {
  public:
   /// @param path  "rules/referee"
   ElementBuild(const model::ElementDecl& declared, std::string its_path, const WorldView& view)
-      : decl(declared), own_path(std::move(its_path)), world(view) {}
+      : decl(declared), world(view), own_path(std::move(its_path)) {}
   virtual ~ElementBuild() = default;
   const model::ElementDecl& decl;
-  std::string own_path;
   const WorldView& world;
+  std::string own_path;  ///< of the element
 
   /// A topic of a rule, `/rules/referee/<name>`; it lives as long as the rule, and is part of its State.
   template <class M>

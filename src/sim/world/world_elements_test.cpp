@@ -339,8 +339,8 @@ TEST(WorldElements, GoOnFromASnapshotInAnyNumberOfThreads) {
   ASSERT_GT(value(*whole, "media/air.words"), 0);
   ASSERT_GT(value(*whole, "media/ether.delivered"), 3);
   ASSERT_GT(value(*whole, "media/light.delivered"), 3);
-  ASSERT_GT(value(*whole, "rules/referee.decisions"), 2);
-  ASSERT_GT(value(*whole, "/rover1/referee/state.commands"), 2);
+  ASSERT_GT(value(*whole, "rules/referee.decisions"), 1);
+  ASSERT_GT(value(*whole, "/rover1/referee/state.commands"), 1);
   for (const std::uint64_t at : {24u, 33u, 48u}) {
     const auto first = build(everything());
     play(*first, at);
