@@ -135,6 +135,11 @@ add_test(NAME started_programs COMMAND Python3::Interpreter tests/started_progra
 set_tests_properties(started_programs PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+# A base station of the middle-size league at the referee box, as docs/referee_box.md says.
+add_test(NAME refbox COMMAND Python3::Interpreter tests/refbox_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(refbox PROPERTIES LABELS system TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # RoBIOS programs in examples/robios.
 add_test(NAME robios_programs COMMAND Python3::Interpreter tests/robios_programs_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(robios_programs PROPERTIES LABELS slow TIMEOUT 600

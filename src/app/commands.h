@@ -35,9 +35,17 @@ struct ServeOptions {
   int most_clients = 64, most_per_address = 32;
 };
 
+/// Referee box of a run, for base stations of the league's teams.
+struct RefboxFlags {
+  std::string at;         ///< PORT or ADDRESS:PORT; "": there is none
+  std::string teams;      ///< server/refbox/teams.h
+  std::string protocols;  ///< as there
+};
+
 struct RunOptions {
   RunSpec spec;
   std::optional<ServeOptions> serve;
+  RefboxFlags refbox;
   bool watch = false;            ///< restart programs whose files have changed
   bool verbose = false;          ///< write what `check` would report, too
   std::string program_logs;      ///< folder for what programs print; "": none

@@ -37,6 +37,8 @@ class Run {
   Status start();
   /// From the first tick to the last.
   void execute();
+  /// Instead of execute() and finish(), when start() has failed.
+  void abandon();
   /// Ends what is being written and writes the files of the end.
   Summary finish();
 
@@ -58,6 +60,7 @@ class Run {
   Console console_;
   RunReport report_;
   std::optional<std::uint64_t> seen_tick_;  ///< by keep_going()
+  bool ready_ = false;                      ///< on_ready was called
 };
 
 Session::Options Run::session_options() {
@@ -101,8 +104,15 @@ Status Run::start() {
   SL_TRY(outputs_.open_log(prepared_));
   for (const std::string& line : spec_.commands) SL_TRY(console_.schedule(line));
   if (!spec_.script_file.empty()) SL_TRY(console_.schedule_script(spec_.script_file));
+  ready_ = true;
   if (callbacks_.on_ready) SL_TRY(callbacks_.on_ready({session_, console_, outputs_}));
   return outputs_.start(prepared_);
+}
+
+/// Whoever has taken hold of the session lets it go before it ends.
+void Run::abandon() {
+  Summary none;
+  if (ready_ && callbacks_.on_end) callbacks_.on_end(none);
 }
 
 bool Run::keep_going(const Simulation& simulation) {
@@ -160,7 +170,10 @@ Result<Summary> run(const RunSpec& spec, const RunCallbacks& callbacks) {
     for (const Error& warning : diagnostics.warnings) callbacks.on_warning(warning);
   if (!prepared) return prepared.error();
   Run one(spec, callbacks, std::move(*prepared), std::move(diagnostics));
-  SL_TRY(one.start());
+  if (const Status begun = one.start(); !begun) {
+    one.abandon();
+    return begun.error();
+  }
   one.execute();
   return one.finish();
 }

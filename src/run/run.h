@@ -42,7 +42,7 @@ struct RunCallbacks {
   std::function<Status(const RunParts&)> on_ready;
   /// After each tick and at least ten times a second. @return false: the run ends
   std::function<bool(const Simulation&)> keep_going;
-  /// Before the summary is written.
+  /// Before the summary is written; with an empty one when nothing was run after on_ready.
   std::function<void(Summary&)> on_end;
 };
 

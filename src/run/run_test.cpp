@@ -280,6 +280,10 @@ TEST(Summary, HasTheKeysThatPeopleParseInTheirOrder) {
   s.recording.emplace();
   s.server.emplace();
   EXPECT_EQ(keys(as_json(s)), always + " video recording server clients");
+  s.refbox = {.address = "127.0.0.1:28097", .teams = {{.team = "cyan", .protocol = "2009", .words = 3}}};
+  EXPECT_EQ(keys(as_json(s)), always + " video recording server clients refbox");
+  EXPECT_EQ(as_json(s)["refbox"]["teams"][0]["words"], 3);
+  EXPECT_THAT(as_text(s), HasSubstr("refbox     cyan: 0 connections (2009), 3 words"));
   EXPECT_EQ(keys(as_json(s)["recording"]), "file messages bytes dropped_messages lost_ticks complete");
   EXPECT_EQ(keys(as_json(s)["server"]), "viewers_most refused dropped");
   EXPECT_EQ(as_json(s)["criterion"], nullptr);

@@ -152,6 +152,13 @@ std::string as_text(const Summary& s) {
   }
   if (s.clients.size() > most_clients)
     out += fmt::format("           ... {} clients in all\n", s.clients.size());
+  if (s.refbox) {
+    for (const RefboxTeamSummary& team : s.refbox->teams)
+      out += fmt::format("refbox     {}: {} connections ({}), {} words, {} world states, {} wrong messages\n",
+                         team.team, team.connections, team.protocol, team.words, team.world_states,
+                         team.wrong + team.dropped);
+    if (s.refbox->refused > 0) out += fmt::format("refbox     sent away {} connections\n", s.refbox->refused);
+  }
   const char* const from_outside = s.errors.empty() ? "by request" : "by an error";
   out += fmt::format("stopped    {}\n", s.stopped.empty() ? from_outside : s.stopped);
   out += fmt::format("state      {} ({})\n", hash_text(s.state_hash.value), s.profile);

@@ -166,6 +166,33 @@ struct ClientSummary {
   }
 };
 
+struct RefboxTeamSummary {
+  std::string team, protocol;
+  std::uint64_t connections = 0, words = 0, world_states = 0, wrong = 0, dropped = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"team", "", "Name of the team in the scenario."}, s.team);
+    visit(Field{"protocol", "", "json or 2009."}, s.protocol);
+    visit(Field{"connections", "1", "Number of times that its base station connected."}, s.connections);
+    visit(Field{"words", "1", "Words of the referee that were sent."}, s.words);
+    visit(Field{"world_states", "1", "World states that came."}, s.world_states);
+    visit(Field{"wrong", "1", "Messages that were no world states."}, s.wrong);
+    visit(Field{"dropped", "1", "Messages that came too fast."}, s.dropped);
+  }
+};
+
+struct RefboxSummary {
+  std::string address;
+  std::uint64_t refused = 0;
+  std::vector<RefboxTeamSummary> teams;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"address", "", "Address and port."}, s.address);
+    visit(Field{"refused", "1", "Connections of no team, or of a team that was connected."}, s.refused);
+    visit(Field{"teams", "", "Figures of each team's base station."}, s.teams);
+  }
+};
+
 struct Summary {
   std::string name, physics;
   std::uint64_t seed = 0;
@@ -194,6 +221,7 @@ struct Summary {
   std::optional<RecordingSummary> recording;
   std::optional<ServerSummary> server;
   std::vector<ClientSummary> clients;
+  std::optional<RefboxSummary> refbox;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the scenario."}, s.name);
@@ -234,6 +262,7 @@ struct Summary {
     visit(Field{"server", "", "Viewers of the run."}, s.server);
     visit(Field{"clients", "", "Clients of the server that drove something, present at the end or gone."},
           s.clients);
+    visit(Field{"refbox", "", "Base stations at the referee box."}, s.refbox);
   }
 };
 

@@ -26,6 +26,15 @@ struct RunFlags {
     CLI::Option* const without = verb.add_flag("--headless", headless, "Run without a page");
     serve.add_to(verb);
     verb.get_option("--port")->excludes(without);
+    verb.add_flag("--refbox{127.0.0.1:28097}", options.refbox.at,
+                  "Be a referee box for base stations of the middle-size league: --refbox or "
+                  "--refbox=ADDRESS:PORT (docs/referee_box.md)");
+    verb.add_option(
+        "--refbox-teams", options.refbox.teams,
+        "Addresses of the teams' base stations, such as cyan=127.0.0.2,magenta=172.16.39.*; if left "
+        "out, who comes first is cyan");
+    verb.add_option("--refbox-protocol", options.refbox.protocols,
+                    "Protocol of the base stations: json, 2009 or cyan=2009,magenta=json; json if left out");
     verb.add_flag("--paused", options.spec.paused, "Begin paused; with --port");
     verb.add_flag(
         "--verbose", options.verbose,
@@ -40,7 +49,7 @@ struct RunFlags {
     verb.add_option(
         "--rate", rate,
         "max: as fast as possible; 1: in real time; 0.5, 2 ...: that many times real time. If left "
-        "out: max, with --port 1");
+        "out: max, with --port or --refbox 1");
     verb.add_option("--seed", options.spec.seed, "Seed of all random numbers, instead of the scenario's");
     verb.add_option("--errors", options.spec.errors,
                     "Factor on the errors of all devices, in addition to factors in the scenario; 0: exact")
@@ -118,7 +127,11 @@ struct RunFlags {
     SL_TRY(read_size("--video-size", video_size, options.spec.film.view));
     if (options.spec.paused && !options.serve)
       return Error{"--paused: nobody could let the run go on", "add --port 8765"};
-    SL_TRY(read_rate(rate.empty() && options.serve ? "1" : rate, options.spec.rate));
+    const bool has_refbox = !options.refbox.at.empty();
+    if (!has_refbox && !(options.refbox.teams.empty() && options.refbox.protocols.empty()))
+      return Error{"--refbox-teams and --refbox-protocol are for a referee box, but there is none",
+                   "add --refbox"};
+    SL_TRY(read_rate(rate.empty() && (options.serve || has_refbox) ? "1" : rate, options.spec.rate));
     options.spec.log_values = split_list(log_values);
     if (threads->count() > 0) options.at_a_time = options.spec.threads;
     if (!log_rate.empty()) {

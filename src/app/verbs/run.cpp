@@ -11,6 +11,7 @@
 #include "app/interrupt.h"
 #include "app/lint_file.h"
 #include "app/progress.h"
+#include "app/refbox.h"
 #include "app/serve.h"
 #include "base/json_text.h"
 #include "base/log.h"
@@ -26,6 +27,8 @@ namespace {
 int run_again(const RunOptions& options) {
   if (options.hooks) return complain({"--repeat: a program that embeds Sandlot repeats its runs itself", ""});
   if (options.serve) return complain({"--port and --repeat: a page shows one run", "leave one of them out"});
+  if (!options.refbox.at.empty())
+    return complain({"--refbox and --repeat: a referee box is of one run", "leave one of them out"});
   RepeatSpec spec{.run = options.spec,
                   .count = *options.repeat,
                   .at_a_time = options.at_a_time,
@@ -103,9 +106,10 @@ int run(const RunOptions& options) {
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.starts_clients = true;
-  spec.may_be_endless = options.serve || isatty(STDOUT_FILENO);
+  spec.may_be_endless = options.serve || !options.refbox.at.empty() || isatty(STDOUT_FILENO);
   Progress progress;
   std::optional<Served> served;
+  std::optional<ServedRefbox> refbox;
   // Held back until there is a page, so that its log has them, too.
   std::vector<std::string> held;
   bool ready = !options.serve;
@@ -124,6 +128,9 @@ int run(const RunOptions& options) {
       .on_ready = [&](const RunParts& parts) -> Status {
         catch_interrupts();  // before there are processes and folders of theirs to be left
         SL_TRY(serve(options, parts, served));
+        if (!options.refbox.at.empty()) {
+          SL_ASSIGN(refbox, ServedRefbox::start(options.refbox, parts.session));
+        }
         release();
         if (options.verbose)
           for (const sandlot::Finding& each : lint_file(options.spec.file, options.spec.overrides,
@@ -139,6 +146,7 @@ int run(const RunOptions& options) {
           },
       .on_end =
           [&](Summary& summary) {
+            if (refbox) summary.refbox = refbox->stop();
             if (!served) return;
             const ServerSummary ended = served->stop();
             if (options.serve) summary.server = ended;
