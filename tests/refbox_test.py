@@ -44,6 +44,11 @@ class Box(unittest.TestCase):
             if found:
                 return int(found.group(1))
 
+    def station(self, port, protocol="json"):
+        made = Station(port=port, protocol=protocol)
+        self.addCleanup(made.close)
+        return made
+
     def stop(self):
         self.run_.kill()
         self.run_.communicate()
@@ -61,10 +66,10 @@ class Box(unittest.TestCase):
 
     def test_stations_are_welcomed_and_counted(self):
         port = self.start("--refbox-protocol", "cyan=json,magenta=2009")
-        cyan = Station(port=port)
+        cyan = self.station(port)
         self.assertEqual(cyan.welcome, ("WELCOME", "own"))
         self.assertEqual(cyan.own, "224.16.32.1")
-        magenta = Station(port=port, protocol="2009")
+        magenta = self.station(port, "2009")
         self.assertEqual(magenta.welcome, ("WELCOME", ""))
         cyan.send_world_state(robots=[{"id": 1, "pose": [1, 2, 0]}])
         magenta.send_world_state(balls=[{"position": [float("nan"), 0, 0]}])
@@ -76,7 +81,7 @@ class Box(unittest.TestCase):
 
     def test_hostile_stations_leave_the_run_as_it_is(self):
         port = self.start()
-        cyan = Station(port=port)
+        cyan = self.station(port)
         flood = b"x" * 10_000
         try:
             for _ in range(100):
@@ -85,7 +90,7 @@ class Box(unittest.TestCase):
         except ConnectionError:
             pass
         cyan.close()
-        magenta = Station(port=port)
+        magenta = self.station(port)
         magenta.socket.sendall(b'{"type":"worldst')
         magenta.close()
         attacked = self.summary()
@@ -103,7 +108,7 @@ class Box(unittest.TestCase):
     @unittest.skipUnless('"referee"' in RULES and os.path.exists(MATCH), "there is no match yet")
     def test_a_match_begins_with_stop_kickoff_start(self):
         port = self.start("--duration", "60s", "--rate", "5", "--refbox-protocol", "cyan=json,magenta=2009", scenario=MATCH)
-        cyan, magenta = Station(port=port), Station(port=port, protocol="2009")
+        cyan, magenta = self.station(port), self.station(port, "2009")
         for station in (cyan, magenta):
             words = station.until(lambda word: word[0] == "START", 60)
             commands = [word for word, _ in words]

@@ -140,6 +140,29 @@ TEST(Refbox, TellsASetPieceInBothProtocols) {
   EXPECT_EQ(box.team(Side::cyan).words, 5u);
 }
 
+TEST(Refbox, PassesOnWhatARuleOfTheRunSays) {
+  Box box;
+  Socket cyan = box.station();
+  EXPECT_NE(next(cyan), "");
+  Simulation& world = box.session.simulation();
+  const auto say = [&](std::uint64_t sequence, const char* command, const char* team, Source::Kind kind) {
+    const LogEntry entry = said(sequence, command, team);
+    // A rule asks at the end of a tick; a robot without the device loses nothing but its own word.
+    world.submit(CommandRequest{"rover1/referee", entry.type, entry.bytes}, {kind, 0});
+  };
+  say(1, "STOP", "", Source::Kind::rule);
+  say(7, "GOAL", "magenta", Source::Kind::admin);
+  EXPECT_TRUE(world.tick());
+  say(2, "KICKOFF", "cyan", Source::Kind::rule);
+  say(2, "KICKOFF", "cyan", Source::Kind::rule);
+  EXPECT_TRUE(world.tick());
+  say(3, "START", "", Source::Kind::rule);
+  EXPECT_TRUE(world.tick());
+  EXPECT_EQ(next(cyan), R"({"command":"STOP","targetTeam":""})");
+  EXPECT_EQ(next(cyan), R"({"command":"KICKOFF","targetTeam":"224.16.32.1"})");
+  EXPECT_EQ(next(cyan), R"({"command":"START","targetTeam":""})");
+}
+
 TEST(Refbox, KeepsTheLatestWorldStateAndGoesOnAfterWrongOnes) {
   Box box;
   Socket cyan = box.station();
