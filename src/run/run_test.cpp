@@ -261,6 +261,19 @@ TEST_F(RunTest, CriteriaThatCannotBeReadAreRefusedWithTheirPlace) {
   }
 }
 
+TEST(Run, ThatCannotBeginLetsGoOfTheSessionBeforeItEnds) {
+  // The recording is opened last: whoever serves the run has begun by then.
+  int ready = 0, ended = 0;
+  const RunCallbacks callbacks{.on_ready = [&](const RunParts&) -> Status { return ++ready, Status(); },
+                               .on_end = [&](Summary&) { ++ended; }};
+  const auto refused = run(
+      {.file = "scenarios/indoor.yaml", .duration_s = 0.01, .record_file = "/nonexistent/run.mcap"},
+      callbacks);
+  EXPECT_FALSE(refused);
+  EXPECT_EQ(ready, 1);
+  EXPECT_EQ(ended, 1);
+}
+
 TEST(Summary, HasTheKeysThatPeopleParseInTheirOrder) {
   Summary s;
   const auto keys = [](const nlohmann::ordered_json& json) {
