@@ -44,6 +44,7 @@ void add_calibrate(CommandLine& line);
 // recordings.cpp
 void add_replay(CommandLine& line);
 void add_diff(CommandLine& line);
+void add_fit(CommandLine& line);
 void add_topic(CommandLine& line);
 void add_doctor(CommandLine& line);
 // program.cpp

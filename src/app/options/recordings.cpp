@@ -1,9 +1,10 @@
-/// Options of the verbs about recordings and snapshots: replay, diff, topic, doctor.
+/// Options of the verbs about recordings and snapshots: replay, diff, fit, topic, doctor.
 #include <CLI/CLI.hpp>
 
 #include "app/flags.h"
 #include "app/options/options.h"
 #include "app/options/shared.h"
+#include "app/verbs/fit.h"
 #include "app/verbs/topic_export.h"
 #include "run/snapshot_files.h"
 
@@ -36,6 +37,12 @@ void add_topic_verb(CommandLine& line, CLI::App& topic_verb, const char* name, c
     line.result = status ? act(flags.options) : complain(status.error());
   });
 }
+
+struct FitFlags {
+  FitOptions options;
+  DurationOption from, to;
+  std::vector<std::string> sets;
+};
 
 struct ExportFlags {
   ExportOptions options;
@@ -130,6 +137,43 @@ void add_diff(CommandLine& line) {
       "Exit code 0: no difference in the ticks that both have, 1: a difference, 2: they cannot be compared.\n"
       "Example: sandlot diff a.mcap b.mcap");
   verb->callback([&line, &options] { line.result = diff(options); });
+}
+
+void add_fit(CommandLine& line) {
+  FitFlags& flags = line.keep<FitFlags>();
+  FitOptions& options = flags.options;
+  CLI::App* const verb = line.app.add_subcommand("fit", "Find the parameters with which a recorded run is met");
+  verb->add_option("file", options.file, "The scenario that was recorded")->required();
+  verb->add_option("--recording", options.recording, "The recording, an MCAP file")->required();
+  verb->add_option("--parameter", options.parameters,
+                   "Address, as for --set, and limits of a parameter: ADDRESS=LOW:HIGH, with :log on a "
+                   "logarithmic scale; may be given several times")
+      ->allow_extra_args(false)
+      ->required();
+  verb->add_option("--compare", options.compare,
+                   "Number of a topic and its scale: TOPIC.FIELD[:SCALE]; may be given several times; left out: "
+                   "speeds of motors and odometry")
+      ->allow_extra_args(false);
+  verb->add_option("--runs", options.runs, "Most runs")->check(CLI::Range(2, 100000))->capture_default_str();
+  verb->add_option("--screening", options.screening, "Runs all over the limits before the search")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  verb->add_option("--from", flags.from.text, "Compare from this time of the recording");
+  verb->add_option("--to", flags.to.text, "Compare up to this time");
+  verb->add_option("--out", options.out, "File for the values, as --set words");
+  add_sets(*verb, flags.sets);
+  add_paths(*verb, options.paths);
+  add_json(*verb, options.json);
+  verb->footer(
+      "Exit code 0: converged, 1: ended before, 2: the input is wrong. --set of a parameter is where it starts.\n"
+      "Example: sandlot fit scenarios/motor_ramp.yaml --recording run.mcap --parameter "
+      "robots[0].devices.left_motor.velocity.p=0.1:10:log");
+  verb->callback([&line, &flags] {
+    Status status = flags.from.read("--from", flags.options.from_s);
+    if (status) status = flags.to.read("--to", flags.options.to_s);
+    if (status) status = read_sets(flags.sets, flags.options.overrides);
+    line.result = status ? fit(flags.options) : complain(status.error());
+  });
 }
 
 void add_topic(CommandLine& line) {
