@@ -10,9 +10,9 @@
 namespace sandlot::statistics {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Eigen::Index;
 using Points = std::vector<std::vector<double>>;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ class Search {
   LeastSquares out_;
   VectorXd u_, r_;
   MatrixXd J_;  ///< of the point u_
-  double damping_ = 1e-3;
+  double damping_ = 1e-3, difference_ = 1e-4;
 };
 
 std::vector<std::optional<VectorXd>> Search::at(const std::vector<VectorXd>& points) {
@@ -139,7 +139,7 @@ bool Search::jacobian() {
   std::vector<VectorXd> points;
   for (Index i = 0; i < count(); ++i) {
     points.push_back(u_);
-    points.back()[i] += u_[i] + options_.difference > 1 ? -options_.difference : options_.difference;
+    points.back()[i] += u_[i] + difference_ > 1 ? -difference_ : difference_;
   }
   const auto found = at(points);
   J_.resize(r_.size(), count());
@@ -230,14 +230,14 @@ void Search::finish() {
     if (values[k] < largest * singular * singular) lost = lost.cwiseMax(direction.cwiseAbs());
   }
   const double variance = freedom > 0 ? r_.squaredNorm() / freedom : unlimited;
-  const double t =
-      freedom > 0 ? boost::math::quantile(boost::math::students_t(freedom), 0.975) : unlimited;
+  const double t = freedom > 0 ? boost::math::quantile(boost::math::students_t(freedom), 0.975) : unlimited;
   for (Index i = 0; i < values.size(); ++i) {
     const auto k = static_cast<std::size_t>(free[static_cast<std::size_t>(i)]);
     const FitParameter& p = parameters_[k];
     FittedParameter& fitted = out_.parameters[k];
     fitted.undetermined = lost[i] > 1e-3 || freedom <= 0;
-    const double half = fitted.undetermined ? unlimited : t * std::sqrt(variance * covariance(i, i)) / length[i];
+    const double half = fitted.undetermined ? unlimited
+                                            : t * std::sqrt(variance * covariance(i, i)) / length[i];
     const double u = u_[free[static_cast<std::size_t>(i)]];
     const auto unbounded = [&](double v) {
       return p.logarithmic ? p.low * std::exp(v * std::log(p.high / p.low)) : p.low + v * (p.high - p.low);
@@ -253,9 +253,15 @@ void Search::finish() {
 Result<LeastSquares> Search::run() {
   SL_TRY(check(parameters_));
   if (options_.most_evaluations < 1 + static_cast<int>(parameters_.size()))
-    return Error{"the evaluations do not suffice for one step", "allow more of them than there are parameters"};
+    return Error{"the evaluations do not suffice for one step",
+                 "allow more of them than there are parameters"};
   SL_TRY(begin());
-  while (jacobian() && improve()) {
+  // Quantised residuals look flat, or steep, at a small scale: coarse differences lead the way.
+  for (const double factor : {100.0, 10.0, 1.0}) {
+    difference_ = std::min(factor * options_.difference, 0.05);
+    damping_ = 1e-3;
+    out_.converged = false;
+    while (jacobian() && improve()) {}
   }
   finish();
   return std::move(out_);

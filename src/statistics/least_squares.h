@@ -30,7 +30,8 @@ struct FitParameter {
 struct LeastSquaresOptions {
   int most_evaluations = 200;  ///< never exceeded
   int screening = 0;           ///< points tried before the search, in addition to the start
-  double difference = 1e-4;    ///< of the scaled parameters
+  double difference =
+      1e-4;  ///< of the scaled parameters, after passes with 100 and 10 times as much for residuals with steps
   double largest_step = 0.25;  ///< of a scaled parameter in one iteration
   double tolerance = 1e-7;     ///< relative decrease of the sum of squares that ends the search
 };
@@ -39,12 +40,14 @@ struct FittedParameter {
   double value = 0, low = 0, high = 0;  ///< with its 95 % interval; both are the value where it is not free
   bool at_low = false, at_high = false;
   bool without_effect = false;  ///< no residual changes with it
-  bool undetermined = false;    ///< free, but the residuals do not tell it apart from others: the interval is infinite
+  bool undetermined =
+      false;  ///< free, but the residuals do not tell it apart from others: the interval is infinite
 };
 
 struct LeastSquares {
   std::vector<FittedParameter> parameters;
-  std::vector<double> first, last;               ///< residuals at the start (empty: it could not be evaluated) and at the end
+  std::vector<double> first,
+      last;  ///< residuals at the start (empty: it could not be evaluated) and at the end
   std::vector<std::vector<double>> correlation;  ///< of each two parameters; 0 where one is not free
   double condition = 1;                          ///< ratio of singular values of J with columns of length 1
   int evaluations = 0, failed = 0;

@@ -142,7 +142,8 @@ void add_diff(CommandLine& line) {
 void add_fit(CommandLine& line) {
   FitFlags& flags = line.keep<FitFlags>();
   FitOptions& options = flags.options;
-  CLI::App* const verb = line.app.add_subcommand("fit", "Find the parameters with which a recorded run is met");
+  CLI::App* const verb = line.app.add_subcommand("fit",
+                                                 "Find the parameters with which a recorded run is met");
   verb->add_option("file", options.file, "The scenario that was recorded")->required();
   verb->add_option("--recording", options.recording, "The recording, an MCAP file")->required();
   verb->add_option("--parameter", options.parameters,
@@ -150,9 +151,10 @@ void add_fit(CommandLine& line) {
                    "logarithmic scale; may be given several times")
       ->allow_extra_args(false)
       ->required();
-  verb->add_option("--compare", options.compare,
-                   "Number of a topic and its scale: TOPIC.FIELD[:SCALE]; may be given several times; left out: "
-                   "speeds of motors and odometry")
+  verb->add_option(
+          "--compare", options.compare,
+          "Number of a topic and its scale: TOPIC.FIELD[:SCALE]; may be given several times; left out: "
+          "speeds of motors and odometry")
       ->allow_extra_args(false);
   verb->add_option("--runs", options.runs, "Most runs")->check(CLI::Range(2, 100000))->capture_default_str();
   verb->add_option("--screening", options.screening, "Runs all over the limits before the search")
@@ -165,7 +167,8 @@ void add_fit(CommandLine& line) {
   add_paths(*verb, options.paths);
   add_json(*verb, options.json);
   verb->footer(
-      "Exit code 0: converged, 1: ended before, 2: the input is wrong. --set of a parameter is where it starts.\n"
+      "Exit code 0: converged, 1: ended before, 2: the input is wrong. --set of a parameter is where it "
+      "starts.\n"
       "Example: sandlot fit scenarios/motor_ramp.yaml --recording run.mcap --parameter "
       "robots[0].devices.left_motor.velocity.p=0.1:10:log");
   verb->callback([&line, &flags] {

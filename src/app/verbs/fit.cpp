@@ -57,8 +57,9 @@ Error of_file(const std::string& file, std::string what, std::string fix = "") {
 
 /// Splits "ADDRESS=LOW:HIGH[:log]"; the start is that of --set, else the middle.
 Status read_parameter(const std::string& text, Problem& problem) {
-  const Error wrong{"--parameter '" + text.substr(0, 200) + "' is not ADDRESS=LOW:HIGH or ADDRESS=LOW:HIGH:log",
-                    "such as robots[0].devices.left_motor.velocity.p=0.1:10:log"};
+  const Error wrong{
+      "--parameter '" + text.substr(0, 200) + "' is not ADDRESS=LOW:HIGH or ADDRESS=LOW:HIGH:log",
+      "such as robots[0].devices.left_motor.velocity.p=0.1:10:log"};
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos) return wrong;
   const std::string address = text.substr(0, equals);
@@ -72,7 +73,8 @@ Status read_parameter(const std::string& text, Problem& problem) {
   if (colon == std::string::npos || !parse_number(range.substr(0, colon), p.low) ||
       !parse_number(range.substr(colon + 1), p.high))
     return wrong;
-  if (!(p.low < p.high)) return Error{"--parameter " + address + ": the lower limit must be below the upper one"};
+  if (!(p.low < p.high))
+    return Error{"--parameter " + address + ": the lower limit must be below the upper one"};
   if (p.logarithmic && p.low <= 0) return Error{"--parameter " + address + ": log needs limits above 0"};
   if (std::find(problem.addresses.begin(), problem.addresses.end(), address) != problem.addresses.end())
     return Error{"--parameter " + address + " is given more than once"};
@@ -80,15 +82,17 @@ Status read_parameter(const std::string& text, Problem& problem) {
   for (const formats::Override& each : problem.options.overrides) {
     if (each.path != address) continue;
     if (!parse_number(each.value, p.start) || !(p.start >= p.low && p.start <= p.high))
-      return Error{"--set " + address + "=" + each.value + " is where the fit starts: it must lie in its limits, [" +
-                   number_text(p.low) + ", " + number_text(p.high) + "]"};
+      return Error{"--set " + address + "=" + each.value +
+                   " is where the fit starts: it must lie in its limits, [" + number_text(p.low) + ", " +
+                   number_text(p.high) + "]"};
   }
   problem.addresses.push_back(address);
   problem.parameters.push_back(p);
   return {};
 }
 
-Result<model::Setup> load(const Problem& problem, const std::vector<double>& values, Diagnostics& diagnostics) {
+Result<model::Setup> load(const Problem& problem, const std::vector<double>& values,
+                          Diagnostics& diagnostics) {
   std::vector<formats::Override> overrides = problem.fixed;
   for (std::size_t i = 0; i < values.size(); ++i)
     overrides.push_back({problem.addresses[i], fmt::format("{:.17g}", values[i])});
@@ -120,8 +124,9 @@ Status read_commands(Problem& problem) {
     return out;
   };
   if (theirs.name != ours.name || theirs.step != ours.step || names(theirs) != names(ours))
-    return of_file(file, "the recording is of another scenario: '" + theirs.name + "', not '" + ours.name +
-                             "' with the same things and step",
+    return of_file(file,
+                   "the recording is of another scenario: '" + theirs.name + "', not '" + ours.name +
+                       "' with the same things and step",
                    "name the scenario that was recorded");
   bool commanded = false;
   while (true) {
@@ -131,7 +136,8 @@ Status read_commands(Problem& problem) {
     problem.ticks.push_back({tick->tick, tick->now, tick->log, 0, {}, nullptr});
     for (const LogEntry& entry : tick->log) commanded = commanded || entry.kind == LogEntry::command;
   }
-  if (!commanded) return of_file(file, "there is no command in the recording", "a fit needs a run that was driven");
+  if (!commanded)
+    return of_file(file, "there is no command in the recording", "a fit needs a run that was driven");
   return {};
 }
 
@@ -188,7 +194,8 @@ Status read_compared(Problem& problem) {
       }));
     }
     if (c.recorded.empty())
-      return of_file(file, "'" + c.topic + "' has no number '" + c.path + "' in that time", suggestion(c.path, known));
+      return of_file(file, "'" + c.topic + "' has no number '" + c.path + "' in that time",
+                     suggestion(c.path, known));
     double mean = 0, squares = 0;
     const auto n = static_cast<double>(c.recorded.size());
     for (const auto& [stamp, value] : c.recorded) mean += value / n;
@@ -207,12 +214,14 @@ Result<std::vector<double>> trial(const Problem& problem, const std::vector<doub
   Diagnostics diagnostics;
   SL_ASSIGN(model::Setup setup, load(problem, values, diagnostics));
   setup.stop.reset();
-  SL_ASSIGN(const auto fresh, Simulation::create(std::move(setup), {.run_programs = false, .paths = problem.options.paths},
-                                           diagnostics));
+  SL_ASSIGN(const auto fresh,
+            Simulation::create(std::move(setup), {.run_programs = false, .paths = problem.options.paths},
+                               diagnostics));
   SL_ASSIGN(record::Replay replay,
             record::Replay::begin(
                 fresh->snapshot(),
-                {.programs = record::Programs::logged, .compare = false, .paths = problem.options.paths}, diagnostics));
+                {.programs = record::Programs::logged, .compare = false, .paths = problem.options.paths},
+                diagnostics));
   std::vector<const TopicBase*> topics;
   for (const Compared& c : problem.compared) {
     topics.push_back(replay.simulation().find_topic(c.topic));
@@ -232,8 +241,9 @@ Result<std::vector<double>> trial(const Problem& problem, const std::vector<doub
     for (const auto& [stamp, value] : problem.compared[i].recorded) {
       const auto at = shown[i].find(stamp);
       if (at == shown[i].end())
-        return Error{"'" + problem.compared[i].topic + "' has no message at " + number_text(Time{stamp}.s()) + " s",
-                     "the rates of the scenario must be those of the recording"};
+        return Error{
+            "'" + problem.compared[i].topic + "' has no message at " + number_text(Time{stamp}.s()) + " s",
+            "the rates of the scenario must be those of the recording"};
       residuals.push_back((at->second - value) / problem.compared[i].scale);
     }
   return residuals;
@@ -270,7 +280,9 @@ Json rms(const Problem& problem, const std::vector<double>& residuals, std::size
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json as_json(const Problem& problem, const LeastSquares& fitted) {
-  Json json{{"runs", fitted.evaluations}, {"failed", fitted.failed}, {"converged", fitted.converged},
+  Json json{{"runs", fitted.evaluations},
+            {"failed", fitted.failed},
+            {"converged", fitted.converged},
             {"condition", number(fitted.condition)}};
   Json parameters = Json::array(), compared = Json::array(), notes = Json::array();
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
@@ -287,8 +299,8 @@ Json as_json(const Problem& problem, const LeastSquares& fitted) {
     if (p.undetermined) notes.push_back(address + " is not determined by what is compared");
     for (std::size_t j = i + 1; j < fitted.parameters.size(); ++j)
       if (std::abs(fitted.correlation[i][j]) > confounded)
-        notes.push_back(fmt::format("{} and {} are confounded: correlation {:.4f}", address, problem.addresses[j],
-                                    fitted.correlation[i][j]));
+        notes.push_back(fmt::format("{} and {} are confounded: correlation {:.4f}", address,
+                                    problem.addresses[j], fitted.correlation[i][j]));
   }
   for (std::size_t i = 0; i < problem.compared.size(); ++i)
     compared.push_back({{"field", problem.compared[i].topic + "." + problem.compared[i].path},
@@ -308,12 +320,14 @@ std::string cell(const Json& x) { return x.is_null() ? "-" : fmt::format("{:.5g}
 
 void print(const Json& json) {
   std::size_t wide = 9;
-  for (const Json& p : json["parameters"]) wide = std::max(wide, p["parameter"].get_ref<const std::string&>().size());
-  for (const Json& c : json["compared"]) wide = std::max(wide, c["field"].get_ref<const std::string&>().size());
+  for (const Json& p : json["parameters"])
+    wide = std::max(wide, p["parameter"].get_ref<const std::string&>().size());
+  for (const Json& c : json["compared"])
+    wide = std::max(wide, c["field"].get_ref<const std::string&>().size());
   fmt::print("{:<{}}  {:>10}  {:>10}  95 % interval\n", "parameter", wide, "start", "value");
   for (const Json& p : json["parameters"])
-    fmt::print("{:<{}}  {:>10}  {:>10}  {} to {}\n", p["parameter"].get<std::string>(), wide, cell(p["start"]),
-               cell(p["value"]), cell(p["low"]), cell(p["high"]));
+    fmt::print("{:<{}}  {:>10}  {:>10}  {} to {}\n", p["parameter"].get<std::string>(), wide,
+               cell(p["start"]), cell(p["value"]), cell(p["low"]), cell(p["high"]));
   fmt::print("\n{:<{}}  {:>10}  {:>10}  values\n", "compared", wide, "rms before", "after");
   for (const Json& c : json["compared"])
     fmt::print("{:<{}}  {:>10}  {:>10}  {}\n", c["field"].get<std::string>(), wide, cell(c["rms_before"]),
@@ -332,9 +346,12 @@ Result<LeastSquares> search(Problem& problem) {
   SL_TRY(read_commands(problem));
   SL_TRY(read_compared(problem));
   std::string why;
-  const auto evaluate = [&](const std::vector<std::vector<double>>& points) { return trials(problem, points); };
+  const auto evaluate = [&](const std::vector<std::vector<double>>& points) {
+    return trials(problem, points);
+  };
   auto fitted = statistics::least_squares(
-      problem.parameters, {.most_evaluations = problem.options.runs, .screening = problem.options.screening}, evaluate);
+      problem.parameters, {.most_evaluations = problem.options.runs, .screening = problem.options.screening},
+      evaluate);
   if (fitted) return fitted;
   // The reason of a run tells more than that none could be carried out.
   std::vector<double> start;
