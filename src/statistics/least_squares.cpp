@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/math.h"
+
 namespace sandlot::statistics {
 namespace {
 
@@ -33,10 +35,10 @@ Status check(const std::vector<FitParameter>& parameters) {
 double value_at(const FitParameter& p, double u) {
   if (u <= 0) return p.low;
   if (u >= 1) return p.high;
-  return p.logarithmic ? p.low * std::exp(u * std::log(p.high / p.low)) : p.low + u * (p.high - p.low);
+  return p.logarithmic ? p.low * math::exp(u * math::log(p.high / p.low)) : p.low + u * (p.high - p.low);
 }
 double scaled(const FitParameter& p, double x) {
-  return p.logarithmic ? std::log(x / p.low) / std::log(p.high / p.low) : (x - p.low) / (p.high - p.low);
+  return p.logarithmic ? math::log(x / p.low) / math::log(p.high / p.low) : (x - p.low) / (p.high - p.low);
 }
 
 /// Halton's number in (0, 1) of a base.
@@ -240,7 +242,7 @@ void Search::finish() {
                                             : t * std::sqrt(variance * covariance(i, i)) / length[i];
     const double u = u_[free[static_cast<std::size_t>(i)]];
     const auto unbounded = [&](double v) {
-      return p.logarithmic ? p.low * std::exp(v * std::log(p.high / p.low)) : p.low + v * (p.high - p.low);
+      return p.logarithmic ? p.low * math::exp(v * math::log(p.high / p.low)) : p.low + v * (p.high - p.low);
     };
     fitted.low = unbounded(u - half);
     fitted.high = unbounded(u + half);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/math.h"
+
 namespace sandlot::statistics {
 namespace {
 
@@ -46,7 +48,7 @@ Residuals decay(const std::vector<double>& x) {
   std::vector<double> out;
   for (int i = 0; i < 40; ++i) {
     const double t = 0.05 * i;
-    out.push_back(x[0] * std::exp(-x[1] * t) - 2 * std::exp(-3 * t) - (i % 2 ? 0.01 : -0.01));
+    out.push_back(x[0] * math::exp(-x[1] * t) - 2 * math::exp(-3 * t) - (i % 2 ? 0.01 : -0.01));
   }
   return out;
 }
@@ -62,7 +64,7 @@ TEST(LeastSquares, TheIntervalOfADecayIsThatOfTheCovarianceByHand) {
     double aa = 0, ab = 0, bb = 0, squares = 0;
     const Residuals residuals = decay({a, b});
     for (int i = 0; i < 40; ++i) {
-      const double t = 0.05 * i, da = std::exp(-b * t), db = -a * t * da;
+      const double t = 0.05 * i, da = math::exp(-b * t), db = -a * t * da;
       aa += da * da, ab += da * db, bb += db * db;
       squares += (*residuals)[static_cast<std::size_t>(i)] * (*residuals)[static_cast<std::size_t>(i)];
     }
@@ -71,7 +73,7 @@ TEST(LeastSquares, TheIntervalOfADecayIsThatOfTheCovarianceByHand) {
     // the logarithm, whose ratio of ends is exp(2 half / value).
     const double half = 2.0244 * std::sqrt(variance * aa / determinant);
     if (logarithmic)
-      EXPECT_NEAR(std::log(fit->parameters[1].high / fit->parameters[1].low), 2 * half / b, 0.01 * half / b);
+      EXPECT_NEAR(math::log(fit->parameters[1].high / fit->parameters[1].low), 2 * half / b, 0.01 * half / b);
     else EXPECT_NEAR(fit->parameters[1].high - fit->parameters[1].low, 2 * half, 0.01 * half);
     const double by_hand = -ab / std::sqrt(aa * bb);
     EXPECT_NEAR(fit->correlation[0][1], by_hand, 0.01);
